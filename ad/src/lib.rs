@@ -1,0 +1,10 @@
+//! Numbers for physics that is written once and evaluated many ways.
+//!
+//! [`Scalar`] is the trait that dynamics are written against. It is implemented for `f64` (simulate), for [`Dual`] (value
+//! and exact first derivatives in one pass) and for duals over duals (second derivatives). This crate knows no ship.
+
+mod dual;
+mod scalar;
+
+pub use dual::Dual;
+pub use scalar::Scalar;
