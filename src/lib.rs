@@ -1,1 +1,4 @@
-//! Trimtab.
+//! Automatic differentiation for ship dynamics: fit an interpretable manoeuvring model to recordings of a ship, and find
+//! the physics it lacks.
+
+pub mod state;

@@ -1,0 +1,186 @@
+//! The vocabulary of motion: state, inputs and force, generic over the number type.
+//! Everything here is in SI units and radians; what is read in other units is converted where it is read.
+
+use std::ops::{Add, AddAssign, Mul};
+use trimtab_ad::Scalar;
+
+/// Number of entries of a state vector `[x, y, psi, u, v, r]`.
+pub const STATES: usize = 6;
+
+/// Names of the state entries, in order.
+pub const STATE_NAMES: [&str; STATES] = ["x", "y", "psi", "u", "v", "r"];
+/// Units of the state entries, in order.
+pub const STATE_UNITS: [&str; STATES] = ["m", "m", "rad", "m/s", "m/s", "rad/s"];
+
+/// Position, heading and velocity of the ship's midship point.
+///
+/// Earth frame: `x` north, `y` east, `psi` clockwise from north. Body frame: `u` forward, `v` to starboard, `r` to
+/// starboard. Velocities are over ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<S> {
+    /// North position \[m\].
+    pub x: S,
+    /// East position \[m\].
+    pub y: S,
+    /// Heading \[rad\], clockwise from north, not wrapped.
+    pub psi: S,
+    /// Surge velocity over ground \[m/s\].
+    pub u: S,
+    /// Sway velocity over ground \[m/s\], to starboard.
+    pub v: S,
+    /// Yaw rate \[rad/s\], to starboard.
+    pub r: S,
+}
+
+impl<S: Scalar> State<S> {
+    /// From `[x, y, psi, u, v, r]`.
+    pub fn from_array([x, y, psi, u, v, r]: [S; STATES]) -> Self {
+        Self { x, y, psi, u, v, r }
+    }
+    /// To `[x, y, psi, u, v, r]`.
+    pub fn to_array(self) -> [S; STATES] {
+        [self.x, self.y, self.psi, self.u, self.v, self.r]
+    }
+    /// A constant state, with zero derivatives.
+    pub fn constant(s: &[f64; STATES]) -> Self {
+        Self::from_array(s.map(S::from_f64))
+    }
+    /// True when every entry is finite.
+    pub fn is_finite(&self) -> bool {
+        self.to_array().iter().all(|s| s.is_finite())
+    }
+}
+
+/// What acts on the ship from outside at one instant: actuators and environment.
+///
+/// A channel that was not recorded holds its neutral value (no wind, no current, no waves, deep water, no bank, no
+/// thruster), so that the terms which read it give no force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inputs<S> {
+    /// Time \[s\].
+    pub t: S,
+    /// Propeller rate \[1/s\], negative astern.
+    pub n: S,
+    /// Rudder angle \[rad\], positive turns to starboard.
+    pub delta: S,
+    /// True wind velocity over ground \[m/s\] as (north, east) components of where it blows TO.
+    pub wind: [S; 2],
+    /// Current velocity over ground \[m/s\] as (north, east) components of where it sets TO.
+    pub current: [S; 2],
+    /// Wave height and direction as `H_s^2 (north, east)` of where waves travel TO \[m2\].
+    pub waves: [S; 2],
+    /// Draught over water depth, d/h \[-\]; 0 in deep water.
+    pub draught_to_depth: S,
+    /// Bank proximity `1/y_s - 1/y_p` \[1/m\] from the distances to the starboard and the port bank; 0 in open water.
+    pub bank: S,
+    /// Bow thruster command \[-\], -1 (full to port) to 1 (full to starboard).
+    pub thruster: S,
+}
+
+impl<S: Scalar> Inputs<S> {
+    /// Propeller and rudder alone, in a neutral environment.
+    pub fn actuators(t: f64, n: f64, delta: f64) -> Self {
+        let zero = S::zero();
+        Self {
+            t: S::from_f64(t),
+            n: S::from_f64(n),
+            delta: S::from_f64(delta),
+            wind: [zero; 2],
+            current: [zero; 2],
+            waves: [zero; 2],
+            draught_to_depth: zero,
+            bank: zero,
+            thruster: zero,
+        }
+    }
+
+    /// The inputs as a constant of another number type.
+    pub fn constant(i: &Inputs<f64>) -> Self {
+        i.map(S::from_f64)
+    }
+}
+
+impl<S: Copy> Inputs<S> {
+    /// Applies `f` to every entry.
+    pub fn map<T>(&self, f: impl Fn(S) -> T) -> Inputs<T> {
+        Inputs {
+            t: f(self.t),
+            n: f(self.n),
+            delta: f(self.delta),
+            wind: self.wind.map(&f),
+            current: self.current.map(&f),
+            waves: self.waves.map(&f),
+            draught_to_depth: f(self.draught_to_depth),
+            bank: f(self.bank),
+            thruster: f(self.thruster),
+        }
+    }
+
+    /// Applies `f` to the entries of two inputs pairwise.
+    pub fn zip<T>(&self, other: &Self, f: impl Fn(S, S) -> T) -> Inputs<T> {
+        let pair = |a: [S; 2], b: [S; 2]| [f(a[0], b[0]), f(a[1], b[1])];
+        Inputs {
+            t: f(self.t, other.t),
+            n: f(self.n, other.n),
+            delta: f(self.delta, other.delta),
+            wind: pair(self.wind, other.wind),
+            current: pair(self.current, other.current),
+            waves: pair(self.waves, other.waves),
+            draught_to_depth: f(self.draught_to_depth, other.draught_to_depth),
+            bank: f(self.bank, other.bank),
+            thruster: f(self.thruster, other.thruster),
+        }
+    }
+}
+
+impl<S: Scalar> Inputs<S> {
+    /// Linear interpolation between two instants, `fraction` of the way from `self` to `next`.
+    pub fn between(&self, next: &Self, fraction: f64) -> Self {
+        self.zip(next, |a, b| a + (b - a) * fraction)
+    }
+}
+
+/// Force on the ship's body axes about midship: X forward \[N\], Y to starboard \[N\], N to starboard \[N m\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Force<S> {
+    /// Surge force \[N\].
+    pub x: S,
+    /// Sway force \[N\].
+    pub y: S,
+    /// Yaw moment \[N m\].
+    pub n: S,
+}
+
+impl<S: Scalar> Force<S> {
+    /// No force.
+    pub fn zero() -> Self {
+        Self { x: S::zero(), y: S::zero(), n: S::zero() }
+    }
+    /// To `[X, Y, N]`.
+    pub fn to_array(self) -> [S; 3] {
+        [self.x, self.y, self.n]
+    }
+}
+
+impl<S: Scalar> Add for Force<S> {
+    type Output = Self;
+    fn add(mut self, o: Self) -> Self {
+        self += o;
+        self
+    }
+}
+
+impl<S: Scalar> AddAssign for Force<S> {
+    fn add_assign(&mut self, o: Self) {
+        self.x += o.x;
+        self.y += o.y;
+        self.n += o.n;
+    }
+}
+
+impl<S: Scalar> Mul<S> for Force<S> {
+    type Output = Self;
+    fn mul(self, k: S) -> Self {
+        Self { x: self.x * k, y: self.y * k, n: self.n * k }
+    }
+}
