@@ -1,10 +1,13 @@
 //! Forward-mode dual numbers with `N` partial derivatives over any [`Scalar`]: `f64`, SIMD lanes, or duals again.
-//! The generic law of every function is one line, `chain`; the tests hold each against num-dual.
+//! It is not a tape: nothing is recorded and there is no reverse pass.
 
 use crate::Scalar;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// `re + sum_j eps[j] e_j` with `e_i e_j = 0`: a value and its `N` first derivatives.
+///
+/// The value is computed by the same operations as without derivatives and has the same bits. `Dual<Dual<f64, N>, M>` has
+/// second derivatives in `eps[i].eps[j]`; `Dual<Lanes, N>` differentiates eight evaluations at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<T, const N: usize> {
     /// The value.
@@ -64,8 +67,9 @@ impl<T: Scalar, const N: usize> Div for Dual<T, N> {
     type Output = Self;
     #[inline]
     fn div(self, o: Self) -> Self {
+        // A division of its own, not `self.re * inv`: the value then has the same bits as without derivatives.
+        let re = self.re / o.re;
         let inv = T::one() / o.re;
-        let re = self.re * inv;
         let mut eps = self.eps;
         for j in 0..N {
             eps[j] = (self.eps[j] - o.eps[j] * re) * inv;
@@ -105,7 +109,8 @@ impl<T: Scalar, const N: usize> Div<f64> for Dual<T, N> {
     type Output = Self;
     #[inline]
     fn div(self, x: f64) -> Self {
-        self * (1.0 / x)
+        let inv = 1.0 / x;
+        Self { re: self.re / x, eps: self.eps.map(|e| e * inv) }
     }
 }
 impl<T: Scalar, const N: usize> AddAssign for Dual<T, N> {
@@ -186,12 +191,19 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
     }
     #[inline]
     fn atan2(self, x: Self) -> Self {
-        let inv = T::one() / (self.re * self.re + x.re * x.re).max(T::from_f64(f64::MIN_POSITIVE));
+        // At the origin `inv` is the constant 0, not a large number: the second derivatives vanish there as well.
+        let distance2 = self.re * self.re + x.re * x.re;
+        let origin = distance2.less(T::from_f64(f64::MIN_POSITIVE));
+        let inv = T::select(origin, T::zero(), T::one() / T::select(origin, T::one(), distance2));
         let (dy, dx) = (x.re * inv, -self.re * inv);
         let mut eps = self.eps;
         for j in 0..N {
             eps[j] = self.eps[j] * dy + x.eps[j] * dx;
         }
         Self { re: self.re.atan2(x.re), eps }
+    }
+    #[inline]
+    fn nearest(self) -> Self {
+        Self::constant(self.re.nearest())
     }
 }

@@ -4,7 +4,11 @@
 //! and exact first derivatives in one pass) and for duals over duals (second derivatives). This crate knows no ship.
 
 mod dual;
+mod lanes;
+mod num_dual;
 mod scalar;
+pub mod smooth;
 
 pub use dual::Dual;
+pub use lanes::{LaneMask, Lanes};
 pub use scalar::Scalar;

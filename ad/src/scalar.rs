@@ -51,7 +51,10 @@ pub trait Scalar:
     fn sin_cos(self) -> (Self, Self);
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
-    /// Four-quadrant arc tangent of `self / x`, in (-pi, pi]. At the origin the value and the derivative are zero.
+    /// Four-quadrant arc tangent of `self / x`, in [-pi, pi] (-pi only for `self = -0.0`).
+    ///
+    /// At the origin, where the angle is not defined, the value and the derivatives are zero, whatever the signs of the
+    /// zeros. The derivatives are also zero where `self^2 + x^2` underflows, that is within 1e-154 of the origin.
     fn atan2(self, x: Self) -> Self;
 
     /// The constant 0.
@@ -93,6 +96,14 @@ pub trait Scalar:
     #[inline]
     fn min(self, other: Self) -> Self {
         Self::select(other.less(self), other, self)
+    }
+    /// The integer nearest to the real part, the lower one of two equally near, with zero derivatives.
+    ///
+    /// The default reads [`Scalar::value`]; a type with lanes must override it.
+    #[inline]
+    fn nearest(self) -> Self {
+        let even = self.value().round_ties_even();
+        Self::from_f64(if even - self.value() == 0.5 { even - 1.0 } else { even })
     }
     /// `self` held inside `[lo, hi]`; the derivative vanishes outside.
     #[inline]
@@ -146,6 +157,6 @@ impl Scalar for f64 {
     }
     #[inline]
     fn atan2(self, x: Self) -> Self {
-        f64::atan2(self, x)
+        if self == 0.0 && x == 0.0 { 0.0 } else { f64::atan2(self, x) }
     }
 }
