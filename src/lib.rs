@@ -1,5 +1,12 @@
 //! Automatic differentiation for ship dynamics: fit an interpretable manoeuvring model to recordings of a ship, and find
 //! the physics it lacks.
 
+pub mod error;
 pub mod fit;
+pub mod flow;
+pub mod model;
+pub mod parameter;
+pub mod ship;
+pub mod simulate;
 pub mod state;
+pub mod terms;

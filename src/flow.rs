@@ -1,0 +1,258 @@
+//! What the terms share at one instant: water-relative velocity, propeller thrust and rudder inflow.
+//! It gives no force itself; its parameters (wake, thrust, race, straightening) are those of the pseudo-term `flow`.
+
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use crate::terms::{Group, Moment, Physics, Term, TermInfo};
+use std::f64::consts::PI;
+use trimtab_ad::Scalar;
+
+/// What terms may change for the others before forces are computed. Neutral: no current, zero additions, factors 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Adjust<S> {
+    /// Current over ground \[m/s\], (north, east) components of where it sets to.
+    pub current: [S; 2],
+    /// Added to the effective wake fraction \[-\].
+    pub wake: S,
+    /// Factor on propeller thrust \[-\].
+    pub thrust: S,
+    /// Factor on the propeller race factor kappa \[-\].
+    pub race: S,
+    /// Factor on resistance \[-\].
+    pub resistance: S,
+    /// Factor on sway-force derivatives \[-\].
+    pub sway: S,
+    /// Factor on the static yaw derivative N_v and N_vvr \[-\].
+    pub yaw_static: S,
+    /// Factor on the rotary derivatives Y_r, N_r, N_rr, N_rrv \[-\].
+    pub rotary: S,
+    /// Factor on sway and yaw added mass \[-\].
+    pub added_mass: S,
+    /// Factor on the ship's mass and yaw inertia \[-\].
+    pub mass: S,
+    /// Shift of the centre of gravity \[m\], forward.
+    pub x_g: S,
+    /// Share (0 paper form, 1 fore-aft consistent form) of the sternway correction \[-\].
+    pub sternway: S,
+    /// Angle of attack beyond which rudder lift is lost, as a lift fraction lost at 40 degrees \[-\].
+    pub stall: S,
+}
+
+impl<S: Scalar> Adjust<S> {
+    /// No change to anything.
+    pub fn neutral() -> Self {
+        let (zero, one) = (S::zero(), S::one());
+        Self {
+            current: [zero; 2],
+            wake: zero,
+            thrust: one,
+            race: one,
+            resistance: one,
+            sway: one,
+            yaw_static: one,
+            rotary: one,
+            added_mass: one,
+            mass: one,
+            x_g: zero,
+            sternway: zero,
+            stall: zero,
+        }
+    }
+}
+
+/// Velocities and inflows at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Flow<S> {
+    /// Surge velocity through the water \[m/s\].
+    pub u: S,
+    /// Sway velocity through the water \[m/s\].
+    pub v: S,
+    /// Yaw rate \[rad/s\].
+    pub r: S,
+    /// Speed through the water, regularised: sqrt(u^2 + v^2 + small^2) \[m/s\].
+    pub speed: S,
+    /// sqrt(u^2 + small^2) \[m/s\].
+    pub abs_u: S,
+    /// sqrt(v^2 + small^2) \[m/s\].
+    pub abs_v: S,
+    /// sqrt(r^2 + (small/L)^2) \[rad/s\].
+    pub abs_r: S,
+    /// Current in body axes \[m/s\].
+    pub current: [S; 2],
+    /// Propeller advance velocity \[m/s\].
+    pub advance: S,
+    /// Propeller thrust T \[N\], before thrust deduction.
+    pub thrust: S,
+    /// Net propeller force X_n \[N\], after thrust deduction.
+    pub propulsion: S,
+    /// Axial rudder inflow u_R \[m/s\].
+    pub rudder_u: S,
+    /// Lateral rudder inflow v_R = -gamma (v + l_R r) \[m/s\].
+    pub rudder_v: S,
+    /// What other terms changed.
+    pub adjust: Adjust<S>,
+}
+
+/// Indices of the flow parameters.
+mod index {
+    pub const WAKE: usize = 0;
+    pub const THRUST_DEDUCTION: usize = 1;
+    pub const KT0: usize = 2;
+    pub const KT1: usize = 3;
+    pub const KT2: usize = 4;
+    pub const ASTERN: usize = 5;
+    pub const WAKE_RATIO: usize = 6;
+    pub const RACE: usize = 7;
+    pub const RACE_ASTERN: usize = 8;
+    pub const STRAIGHTENING: usize = 9;
+    pub const ASYMMETRY: usize = 10;
+    pub const LEVER: usize = 11;
+}
+
+impl<S: Scalar> Flow<S> {
+    /// Flow at a moment, from the parameters `p` of the term `flow` and what other terms adjusted.
+    ///
+    /// Propeller (all quadrants, continuous through n = 0 and u = 0):
+    /// `T = f rho (k0 D^4 n|n| + k1 D^3 |n| V_A + k2 D^2 V_A |V_A|)`, k0 times `astern` and k1 times 0.3 for n < 0 (crash-back of
+    /// the Wageningen B4-70 chart), `V_A = (1 - w) u` ahead and `u` astern; `X_n = (1 - t) T` ahead, `T` astern. For n, u > 0
+    /// this is `rho n^2 D^4 K_T(J)`.
+    ///
+    /// Rudder (Yasukawa & Yoshimura 2015, eq. 22 to 26, written so that n -> 0 and u -> 0 are regular):
+    /// `a = u_P + kappa (sqrt(u_P^2 + c+) - u_P) - kappa_a sqrt(c-)`, `c = 8 T / (pi rho D^2)`,
+    /// `u_R^2 = eps^2 (eta a|a| + (1 - eta) u_P|u_P|)` with its sign, `eta = D/H_R`.
+    pub fn new(p: &[S], at: &Moment<S>, adjust: Adjust<S>) -> Self {
+        let ship = at.ship;
+        let small = ship.small_speed();
+        let tiny = small * small;
+        let (sin, cos) = at.state.psi.sin_cos();
+        let [north, east] = adjust.current;
+        let current = [north * cos + east * sin, east * cos - north * sin];
+        let (u, v, r) = (at.state.u - current[0], at.state.v - current[1], at.state.r);
+        let speed = (u * u + v * v + tiny).sqrt();
+        let abs_u = (u * u + tiny).sqrt();
+        let abs_v = (v * v + tiny).sqrt();
+        let abs_r = (r * r + tiny / (ship.hull.lpp * ship.hull.lpp)).sqrt();
+
+        let rho = ship.hull.water_density;
+        let d = ship.propeller.diameter;
+        let n = at.inputs.n;
+        let abs_n = n.abs();
+        // 0 astern to 1 ahead, over a few small speeds.
+        let ahead = (u / abs_u + 1.0) * 0.5;
+        let wake = (p[index::WAKE] + adjust.wake) * ahead;
+        let advance = (S::one() - wake) * u;
+        let reverse = n.less(S::zero());
+        let k0 = p[index::KT0] * S::select(reverse, p[index::ASTERN], S::one());
+        let k1 = p[index::KT1] * S::select(reverse, S::from_f64(0.3), S::one());
+        let thrust = adjust.thrust
+            * rho
+            * (k0 * d.powi(4) * n * abs_n
+                + k1 * d.powi(3) * abs_n * advance
+                + p[index::KT2] * d.powi(2) * advance * (advance * advance + 1e-2 * tiny).sqrt());
+        let positive = S::zero().less(thrust);
+        let propulsion = thrust * (S::one() - S::select(positive, p[index::THRUST_DEDUCTION], S::zero()));
+
+        let c = thrust * (8.0 / (PI * rho * d * d));
+        let c_ahead = S::select(positive, c, S::zero());
+        let c_astern = S::select(positive, S::zero(), -c);
+        let eta = (d / ship.rudder.span).min(1.0);
+        let race = p[index::RACE] * adjust.race * ((advance * advance + c_ahead + 1e-2 * tiny).sqrt() - advance.abs())
+            - p[index::RACE_ASTERN] * ((c_astern + 1e-2 * tiny).sqrt() - 0.1 * small);
+        let a = advance + race;
+        let square = a * a.abs() * eta + advance * advance.abs() * (1.0 - eta);
+        // Signed square root, smooth through zero: s / (s^2 + small^4)^(1/4).
+        let rudder_u = p[index::WAKE_RATIO] * square / (square * square + 1e-2 * tiny * tiny).sqrt().sqrt();
+        let lever = p[index::LEVER] * ship.hull.lpp;
+        let lateral = v + lever * r;
+        let rudder_v =
+            -lateral * (p[index::STRAIGHTENING] + p[index::ASYMMETRY] * lateral / (lateral * lateral + tiny).sqrt());
+        Self { u, v, r, speed, abs_u, abs_v, abs_r, current, advance, thrust, propulsion, rudder_u, rudder_v, adjust }
+    }
+}
+
+/// The pseudo-term that holds the parameters of [`Flow`].
+pub struct FlowTerm;
+
+static INFO: TermInfo = TermInfo {
+    name: "flow",
+    title: "propeller thrust, wake and rudder inflow",
+    group: Group::Propulsion,
+    equation: "T = rho n^2 D^4 K_T(J), K_T = k0 + k1 J + k2 J^2, J = (1-w) u/(n D), four quadrants; \
+               u_R = eps sqrt(eta (u_P + kappa (sqrt(u_P^2 + 8T/(pi rho D^2)) - u_P))^2 + (1-eta) u_P^2); v_R = -gamma (v + l_R r)",
+    source: "Yasukawa & Yoshimura 2015, J. Mar. Sci. Technol. 20, eq. 11-14 and 22-26; reversal by Yasukawa's factor",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("wake", "w", "-", "effective wake fraction")
+            .default(|s| s.propeller.wake)
+            .scale(|_| 0.05)
+            .spread(|_| 0.08)
+            .bounds(0.0, 0.9),
+        ParameterInfo::new("thrust_deduction", "t", "-", "thrust deduction, thrust ahead")
+            .default(|s| s.propeller.thrust_deduction)
+            .scale(|_| 0.05)
+            .spread(|_| 0.06)
+            .bounds(0.0, 0.8),
+        ParameterInfo::new("kt0", "k0", "-", "thrust coefficient at J = 0")
+            .default(|s| s.propeller.thrust_coefficients[0])
+            .scale(|s| 0.1 * s.propeller.thrust_coefficients[0])
+            .spread(|s| 0.15 * s.propeller.thrust_coefficients[0])
+            .bounds(0.0, 2.0),
+        ParameterInfo::new("kt1", "k1", "-", "slope of the thrust coefficient")
+            .default(|s| s.propeller.thrust_coefficients[1])
+            .scale(|s| 0.1 * s.propeller.thrust_coefficients[0])
+            .spread(|s| 0.3 * s.propeller.thrust_coefficients[0])
+            .bounds(-2.0, 1.0),
+        ParameterInfo::new("kt2", "k2", "-", "curvature of the thrust coefficient")
+            .default(|s| s.propeller.thrust_coefficients[2])
+            .scale(|s| 0.1 * s.propeller.thrust_coefficients[0])
+            .spread(|s| 0.3 * s.propeller.thrust_coefficients[0])
+            .bounds(-2.0, 1.0),
+        ParameterInfo::new("astern", "b_t", "-", "thrust astern over thrust ahead, at rest")
+            .default(|s| s.propeller.astern)
+            .scale(|_| 0.1)
+            .spread(|_| 0.2)
+            .bounds(0.0, 2.0),
+        ParameterInfo::new("wake_ratio", "eps", "-", "wake at the rudder over wake at the propeller")
+            .default(|s| s.rudder.wake_ratio)
+            .scale(|_| 0.1)
+            .spread(|_| 0.3)
+            .bounds(0.0, 3.0),
+        ParameterInfo::new("race", "kappa", "-", "propeller race factor at the rudder")
+            .default(|s| s.rudder.race)
+            .scale(|_| 0.1)
+            .spread(|_| 0.2)
+            .bounds(0.0, 2.0),
+        ParameterInfo::new("race_astern", "kappa_a", "-", "inflow taken from the rudder by a propeller turning astern")
+            .default(|_| 0.144)
+            .scale(|_| 0.05)
+            .spread(|_| 0.15)
+            .bounds(-1.0, 1.0),
+        ParameterInfo::new("straightening", "gamma", "-", "flow straightening of the lateral rudder inflow")
+            .default(|s| s.rudder.straightening)
+            .scale(|_| 0.1)
+            .spread(|_| 0.15)
+            .bounds(0.0, 2.0),
+        ParameterInfo::new("asymmetry", "dgamma", "-", "port-starboard difference of the flow straightening")
+            .scale(|_| 0.05)
+            .spread(|_| 0.1)
+            .bounds(-1.0, 1.0)
+            .odd(),
+        ParameterInfo::new("lever", "l_R/L", "-", "effective position of the rudder in the inflow over L")
+            .default(|s| s.rudder.lever)
+            .scale(|_| 0.1)
+            .spread(|_| 0.2)
+            .bounds(-2.0, 0.0),
+    ],
+};
+
+impl Term for FlowTerm {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for FlowTerm {
+    fn force(&self, _p: &[S], _at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
+        Force::zero()
+    }
+}

@@ -1,0 +1,514 @@
+//! A model: a ship, a list of terms, and one vector of parameters; from these the equations of motion.
+//! It holds no recording and knows no cost: it only says how the ship accelerates.
+
+use crate::error::suggestion;
+use crate::flow::{Adjust, Flow};
+use crate::parameter::ParameterInfo;
+use crate::ship::{Ship, line_of};
+use crate::state::{Force, Inputs, STATES, State};
+use crate::terms::hull::Inertia;
+use crate::terms::{self, AnyTerm, Form, Moment, Number};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use trimtab_ad::Scalar;
+
+/// Terms that every model has, in this order.
+pub const BASE: [&str; 5] = ["flow", "hull", "resistance", "propeller", "rudder"];
+
+/// Dotted names of the paper's eleven parameters, p0 to p10.
+pub const ELEVEN: [&str; 11] = [
+    "propeller.side_force",
+    "resistance.linear",
+    "resistance.quadratic",
+    "resistance.cubic",
+    "rudder.lift0",
+    "rudder.lift1",
+    "rudder.lift2",
+    "rudder.lift3",
+    "rudder.drag0",
+    "rudder.drag1",
+    "rudder.drag2",
+];
+
+/// Why a model could not be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// The file could not be opened.
+    #[error("{path}: cannot read the model file ({source}); check the path given as `model` in the study")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is not TOML of the expected shape.
+    #[error("{path}:{line}: {message}")]
+    Parse {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: usize,
+        /// What is wrong.
+        message: String,
+    },
+    /// A term that is not in the catalogue.
+    #[error("unknown term `{name}`{suggestion}; `trimtab terms` lists them")]
+    UnknownTerm {
+        /// The name found.
+        name: String,
+        /// A near name, as part of a sentence.
+        suggestion: String,
+    },
+    /// A parameter that no term of the model has.
+    #[error("unknown parameter `{name}`{suggestion}; `trimtab terms` lists the parameters of each term")]
+    UnknownParameter {
+        /// The name found.
+        name: String,
+        /// A near name, as part of a sentence.
+        suggestion: String,
+    },
+    /// A value that a parameter cannot take.
+    #[error("parameter `{name}` = {value}: {expected}")]
+    BadValue {
+        /// Dotted name.
+        name: String,
+        /// Value found.
+        value: f64,
+        /// What it should be.
+        expected: String,
+    },
+    /// The sway-yaw mass matrix cannot be inverted.
+    #[error(
+        "the sway-yaw mass matrix is singular or negative (determinant {determinant:.3e}); check hull.mass, hull.inertia, hull.x_g and the added masses hull.Yvdot, hull.Yrdot, hull.Nvdot, hull.Nrdot (negative values)"
+    )]
+    SingularMass {
+        /// Its determinant.
+        determinant: f64,
+    },
+}
+
+/// A prior on a parameter: what is believed of it before the data.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Prior {
+    /// Mean \[unit of the parameter\].
+    pub mean: f64,
+    /// Standard deviation \[unit of the parameter\].
+    pub sd: f64,
+}
+
+/// One parameter of a model: what it is, its value, and whether a fit may move it.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Dotted name, `term.parameter`.
+    pub name: String,
+    /// What is known of it.
+    pub info: &'static ParameterInfo,
+    /// Its value.
+    pub value: f64,
+    /// Whether a fit may move it.
+    pub free: bool,
+    /// Lower bound for the fit.
+    pub lower: f64,
+    /// Upper bound for the fit.
+    pub upper: f64,
+    /// Prior for the fit.
+    pub prior: Option<Prior>,
+    /// A natural size: the solver's unit for it.
+    pub scale: f64,
+}
+
+#[derive(Clone)]
+struct Placed {
+    term: &'static dyn AnyTerm,
+    offset: usize,
+    len: usize,
+}
+
+/// A manoeuvring model of one ship.
+#[derive(Clone)]
+pub struct Model {
+    /// Name, for headings.
+    pub name: String,
+    /// The ship.
+    pub ship: Ship,
+    /// Low-speed form of hull and resistance.
+    pub form: Form,
+    /// The parameters, in the order of the terms.
+    pub parameters: Vec<Parameter>,
+    /// Values added to parameters in runs of one session: session name to (parameter index, addition).
+    pub sessions: BTreeMap<String, Vec<(usize, f64)>>,
+    terms: Vec<Placed>,
+}
+
+impl std::fmt::Debug for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Model").field("name", &self.name).field("terms", &self.term_names()).finish_non_exhaustive()
+    }
+}
+
+/// A model file: terms and parameter settings; everything else comes from the terms and the ship.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelFile {
+    /// Name, for headings.
+    pub name: String,
+    /// Low-speed form, `paper` or `regular`.
+    #[serde(default)]
+    pub form: Form,
+    /// Terms beyond the base (hull, resistance, propeller, rudder).
+    #[serde(default)]
+    pub terms: Vec<String>,
+    /// Settings by dotted parameter name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub parameters: BTreeMap<String, Setting>,
+    /// Additions by session and dotted parameter name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub sessions: BTreeMap<String, BTreeMap<String, f64>>,
+}
+
+/// What a model file may say of one parameter; what is left out comes from the term.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Setting {
+    /// Value, and start of a fit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    /// Whether a fit may move it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free: Option<bool>,
+    /// Lower bound.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower: Option<f64>,
+    /// Upper bound.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper: Option<f64>,
+    /// Prior.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prior: Option<Prior>,
+}
+
+impl Model {
+    /// A model of the base terms and those named in `extra`, with default parameters; the paper's eleven are free.
+    pub fn new(ship: Ship, name: &str, form: Form, extra: &[&str]) -> Result<Self, ModelError> {
+        let mut model = Self {
+            name: name.into(),
+            ship,
+            form,
+            parameters: Vec::new(),
+            sessions: BTreeMap::new(),
+            terms: Vec::new(),
+        };
+        for term in BASE.iter().chain(extra) {
+            model.add_term(term)?;
+        }
+        for name in ELEVEN {
+            if let Some(i) = model.index(name) {
+                model.parameters[i].free = true;
+            }
+        }
+        let from_ship = model.ship.parameters.clone();
+        for (name, value) in &from_ship {
+            // A ship file may give parameters of terms that this model does not use.
+            if let Some(i) = model.index(name) {
+                model.parameters[i].value = *value;
+            } else if !crate::terms::CATALOGUE.iter().any(|t| name.starts_with(&format!("{}.", t.info().name))) {
+                return Err(model.unknown(name));
+            }
+        }
+        model.check()?;
+        Ok(model)
+    }
+
+    /// Adds a term with its default parameters, all fixed; adding one that is there already changes nothing.
+    pub fn add_term(&mut self, name: &str) -> Result<(), ModelError> {
+        if self.terms.iter().any(|t| t.term.info().name == name) {
+            return Ok(());
+        }
+        let term = terms::find(name).ok_or_else(|| ModelError::UnknownTerm {
+            name: name.into(),
+            suggestion: suggestion(name, terms::CATALOGUE.iter().map(|t| t.info().name)),
+        })?;
+        let info = term.info();
+        self.terms.push(Placed { term, offset: self.parameters.len(), len: info.parameters.len() });
+        for parameter in info.parameters {
+            self.parameters.push(Parameter {
+                name: format!("{}.{}", info.name, parameter.name),
+                info: parameter,
+                value: (parameter.default)(&self.ship),
+                free: false,
+                lower: parameter.lower,
+                upper: parameter.upper,
+                prior: None,
+                scale: (parameter.scale)(&self.ship),
+            });
+        }
+        Ok(())
+    }
+
+    /// Reads a model file.
+    pub fn read(path: &Path, ship: Ship) -> Result<Self, ModelError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| ModelError::Read { path: path.to_path_buf(), source })?;
+        Self::parse(&text, path, ship)
+    }
+
+    /// Reads the text of a model file; `path` is used in messages.
+    pub fn parse(text: &str, path: &Path, ship: Ship) -> Result<Self, ModelError> {
+        let file: ModelFile = toml::from_str(text).map_err(|e| ModelError::Parse {
+            path: path.to_path_buf(),
+            line: e.span().map_or(1, |s| line_of(text, s.start)),
+            message: e.message().trim_end().to_string(),
+        })?;
+        Self::from_file(&file, ship).map_err(|e| {
+            let (ModelError::UnknownTerm { name, .. }
+            | ModelError::UnknownParameter { name, .. }
+            | ModelError::BadValue { name, .. }) = &e
+            else {
+                return e;
+            };
+            ModelError::Parse {
+                path: path.to_path_buf(),
+                line: text.find(name.as_str()).map_or(1, |at| line_of(text, at)),
+                message: e.to_string(),
+            }
+        })
+    }
+
+    /// A model from the content of a model file.
+    pub fn from_file(file: &ModelFile, ship: Ship) -> Result<Self, ModelError> {
+        let extra: Vec<&str> = file.terms.iter().map(String::as_str).collect();
+        let mut model = Self::new(ship, &file.name, file.form, &extra)?;
+        for (name, setting) in &file.parameters {
+            let i = model.find(name)?;
+            let p = &mut model.parameters[i];
+            p.value = setting.value.unwrap_or(p.value);
+            p.free = setting.free.unwrap_or(p.free);
+            p.lower = setting.lower.unwrap_or(p.lower);
+            p.upper = setting.upper.unwrap_or(p.upper);
+            p.prior = setting.prior.or(p.prior);
+            if let Some(prior) = p.prior
+                && !(prior.sd > 0.0 && prior.mean.is_finite())
+            {
+                return Err(ModelError::BadValue {
+                    name: name.clone(),
+                    value: prior.sd,
+                    expected: "a prior needs a finite mean and a positive sd".into(),
+                });
+            }
+            if !p.value.is_finite() || p.lower > p.upper {
+                return Err(ModelError::BadValue {
+                    name: name.clone(),
+                    value: p.value,
+                    expected: format!("the value must be finite and lower ({}) <= upper ({})", p.lower, p.upper),
+                });
+            }
+        }
+        for (session, additions) in &file.sessions {
+            let mut list = Vec::new();
+            for (name, value) in additions {
+                list.push((model.find(name)?, *value));
+            }
+            model.sessions.insert(session.clone(), list);
+        }
+        model.check()?;
+        Ok(model)
+    }
+
+    /// The model as the content of a model file: every value that differs from its default, every setting of a fit.
+    pub fn to_file(&self) -> ModelFile {
+        let mut parameters = BTreeMap::new();
+        for p in &self.parameters {
+            let default = (p.info.default)(&self.ship);
+            let free_by_default = ELEVEN.contains(&p.name.as_str());
+            let setting = Setting {
+                value: (p.value != default || p.free).then_some(p.value),
+                free: (p.free != free_by_default).then_some(p.free),
+                lower: (p.lower != p.info.lower).then_some(p.lower),
+                upper: (p.upper != p.info.upper).then_some(p.upper),
+                prior: p.prior,
+            };
+            if setting.value.is_some() || setting.free.is_some() || setting.prior.is_some() {
+                parameters.insert(p.name.clone(), setting);
+            }
+        }
+        let name_of = |(i, v): &(usize, f64)| (self.parameters[*i].name.clone(), *v);
+        ModelFile {
+            name: self.name.clone(),
+            form: self.form,
+            terms: self.term_names().iter().filter(|t| !BASE.contains(t)).map(ToString::to_string).collect(),
+            parameters,
+            sessions: self.sessions.iter().map(|(s, list)| (s.clone(), list.iter().map(name_of).collect())).collect(),
+        }
+    }
+
+    /// Names of the model's terms, in order.
+    pub fn term_names(&self) -> Vec<&'static str> {
+        self.terms.iter().map(|t| t.term.info().name).collect()
+    }
+
+    /// Index of a parameter by dotted name.
+    pub fn index(&self, name: &str) -> Option<usize> {
+        self.parameters.iter().position(|p| p.name == name)
+    }
+
+    /// Index of a parameter by dotted name, or by the symbol of the paper (`p5`).
+    pub fn find(&self, name: &str) -> Result<usize, ModelError> {
+        self.index(name)
+            .or_else(|| self.parameters.iter().position(|p| p.info.symbol == name && ELEVEN.contains(&p.name.as_str())))
+            .ok_or_else(|| self.unknown(name))
+    }
+
+    fn unknown(&self, name: &str) -> ModelError {
+        ModelError::UnknownParameter {
+            name: name.into(),
+            suggestion: suggestion(name, self.parameters.iter().map(|p| p.name.as_str())),
+        }
+    }
+
+    /// Sets parameters by dotted name or symbol.
+    pub fn set(&mut self, values: &[(&str, f64)]) -> Result<(), ModelError> {
+        for (name, value) in values {
+            let i = self.find(name)?;
+            self.parameters[i].value = *value;
+        }
+        self.check()
+    }
+
+    /// The paper's eleven parameters p0 to p10 at their values.
+    pub fn eleven(&self) -> [f64; 11] {
+        ELEVEN.map(|n| self.index(n).map_or(0.0, |i| self.parameters[i].value))
+    }
+
+    /// Sets the paper's eleven parameters p0 to p10.
+    pub fn set_eleven(&mut self, p: &[f64; 11]) {
+        for (name, value) in ELEVEN.iter().zip(p) {
+            if let Some(i) = self.index(name) {
+                self.parameters[i].value = *value;
+            }
+        }
+    }
+
+    /// Indices of the free parameters.
+    pub fn free(&self) -> Vec<usize> {
+        (0..self.parameters.len()).filter(|i| self.parameters[*i].free).collect()
+    }
+
+    /// The parameter values.
+    pub fn values(&self) -> Vec<f64> {
+        self.parameters.iter().map(|p| p.value).collect()
+    }
+
+    /// The parameter values for runs of a session: the values plus the session's additions.
+    pub fn values_in(&self, session: &str) -> Vec<f64> {
+        let mut values = self.values();
+        for (i, addition) in self.sessions.get(session).into_iter().flatten() {
+            values[*i] += addition;
+        }
+        values
+    }
+
+    /// The part of a parameter vector that belongs to a term, empty when the model does not have the term.
+    pub fn part<'a, S>(&self, term: &str, theta: &'a [S]) -> &'a [S] {
+        self.terms.iter().find(|t| t.term.info().name == term).map_or(&[], |t| &theta[t.offset..t.offset + t.len])
+    }
+
+    fn check(&self) -> Result<(), ModelError> {
+        let theta = self.values();
+        let flow = self.flow(&theta, &State::constant(&[0.0; STATES]), &Inputs::actuators(0.0, 0.0, 0.0));
+        let inertia = Inertia::new(self.part("hull", &theta), &flow);
+        let determinant = inertia.sway * inertia.yaw - inertia.sway_yaw * inertia.yaw_sway;
+        if determinant > 0.0 && inertia.surge > 0.0 { Ok(()) } else { Err(ModelError::SingularMass { determinant }) }
+    }
+
+    /// Passes a run's inputs through the terms that change them (actuator lag, rudder offset).
+    pub fn drive<S: Number>(&self, theta: &[S], dt: f64, series: &mut [Inputs<S>]) {
+        for t in &self.terms {
+            S::physics(t.term).drive(&theta[t.offset..t.offset + t.len], &self.ship, dt, series);
+        }
+    }
+
+    fn moment<'a, S: Scalar>(&'a self, state: &State<S>, inputs: &Inputs<S>) -> Moment<'a, S> {
+        Moment { ship: &self.ship, form: self.form, state: *state, inputs: *inputs }
+    }
+
+    /// What the terms share at a moment.
+    pub fn flow<S: Number>(&self, theta: &[S], state: &State<S>, inputs: &Inputs<S>) -> Flow<S> {
+        let at = self.moment(state, inputs);
+        let mut adjust = Adjust::neutral();
+        adjust.current = inputs.current;
+        for t in &self.terms {
+            S::physics(t.term).adjust(&theta[t.offset..t.offset + t.len], &at, &mut adjust);
+        }
+        Flow::new(self.part("flow", theta), &at, adjust)
+    }
+
+    /// Time derivative of the state \[x', y', psi', u', v', r'\], and the flow behind it.
+    ///
+    /// The equations are solved in the water frame, where a uniform current exerts no force, and the velocities over ground
+    /// follow from `u' = u_r' + v_c r`, `v' = v_r' - u_c r`. `push` is a force added to that of the terms
+    /// (X, Y \[N\], N \[N m\]).
+    pub fn rates<S: Number>(
+        &self,
+        theta: &[S],
+        state: &State<S>,
+        inputs: &Inputs<S>,
+        push: &Force<S>,
+    ) -> ([S; STATES], Flow<S>) {
+        let at = self.moment(state, inputs);
+        let flow = self.flow(theta, state, inputs);
+        let mut force = *push;
+        for t in &self.terms {
+            force += S::physics(t.term).force(&theta[t.offset..t.offset + t.len], &at, &flow);
+        }
+        let inertia = Inertia::new(self.part("hull", theta), &flow);
+        let [du, dv, dr] = inertia.solve(&force);
+        let (sin, cos) = state.psi.sin_cos();
+        let rates = [
+            state.u * cos - state.v * sin,
+            state.u * sin + state.v * cos,
+            state.r,
+            du + flow.current[1] * state.r,
+            dv - flow.current[0] * state.r,
+            dr,
+        ];
+        (rates, flow)
+    }
+
+    /// The force of each term by name at a moment (X, Y \[N\], N \[N m\]).
+    pub fn contributions(
+        &self,
+        theta: &[f64],
+        state: &State<f64>,
+        inputs: &Inputs<f64>,
+    ) -> Vec<(&'static str, Force<f64>)> {
+        let at = self.moment(state, inputs);
+        let flow = self.flow(theta, state, inputs);
+        self.terms
+            .iter()
+            .map(|t| {
+                let force = f64::physics(t.term).force(&theta[t.offset..t.offset + t.len], &at, &flow);
+                (t.term.info().name, force)
+            })
+            .collect()
+    }
+
+    /// What the sensors report of a state whose rates are known: the state, changed by the sensor terms.
+    pub fn measure<S: Number>(
+        &self,
+        theta: &[S],
+        state: &State<S>,
+        inputs: &Inputs<S>,
+        rates: &[S; STATES],
+        flow: &Flow<S>,
+    ) -> [S; STATES] {
+        let at = self.moment(state, inputs);
+        let mut y = state.to_array();
+        for t in &self.terms {
+            S::physics(t.term).measure(&theta[t.offset..t.offset + t.len], &at, flow, rates, &mut y);
+        }
+        y
+    }
+}

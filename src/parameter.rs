@@ -1,0 +1,88 @@
+//! What is known of a parameter before any fit: name, symbol, unit, default, bounds, prior and mirror parity.
+//! Values are not here: a model holds them in one vector, in the order of its terms.
+
+use crate::ship::Ship;
+
+/// How a parameter behaves when the ship is mirrored port to starboard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parity {
+    /// Unchanged: the same value describes the mirrored ship.
+    Even,
+    /// Changes sign: a value other than zero makes port and starboard differ.
+    Odd,
+}
+
+/// One parameter of a term.
+#[derive(Clone, Copy)]
+pub struct ParameterInfo {
+    /// Name within its term, e.g. `lift1`; the dotted name is `rudder.lift1`.
+    pub name: &'static str,
+    /// Symbol as in the source, e.g. `p5`.
+    pub symbol: &'static str,
+    /// SI unit, `-` for none.
+    pub unit: &'static str,
+    /// One line of plain words.
+    pub about: &'static str,
+    /// Default for a ship.
+    pub default: fn(&Ship) -> f64,
+    /// A change that matters \[same unit\]: the solver's scale, and the size at which a nonlinear effect is probed.
+    pub scale: fn(&Ship) -> f64,
+    /// Standard deviation of what is known beforehand \[same unit\]; infinite when nothing is.
+    pub spread: fn(&Ship) -> f64,
+    /// Lower bound.
+    pub lower: f64,
+    /// Upper bound.
+    pub upper: f64,
+    /// Mirror parity.
+    pub parity: Parity,
+}
+
+impl ParameterInfo {
+    /// A free parameter with default 0, scale 1, no prior, no bounds, even parity.
+    pub const fn new(name: &'static str, symbol: &'static str, unit: &'static str, about: &'static str) -> Self {
+        Self {
+            name,
+            symbol,
+            unit,
+            about,
+            default: |_| 0.0,
+            scale: |_| 1.0,
+            spread: |_| f64::INFINITY,
+            lower: f64::NEG_INFINITY,
+            upper: f64::INFINITY,
+            parity: Parity::Even,
+        }
+    }
+    /// Sets the default.
+    pub const fn default(mut self, default: fn(&Ship) -> f64) -> Self {
+        self.default = default;
+        self
+    }
+    /// Sets the scale.
+    pub const fn scale(mut self, scale: fn(&Ship) -> f64) -> Self {
+        self.scale = scale;
+        self
+    }
+    /// Sets the prior standard deviation.
+    pub const fn spread(mut self, spread: fn(&Ship) -> f64) -> Self {
+        self.spread = spread;
+        self
+    }
+    /// Sets the bounds.
+    pub const fn bounds(mut self, lower: f64, upper: f64) -> Self {
+        self.lower = lower;
+        self.upper = upper;
+        self
+    }
+    /// Marks the parameter as breaking mirror symmetry.
+    pub const fn odd(mut self) -> Self {
+        self.parity = Parity::Odd;
+        self
+    }
+}
+
+impl std::fmt::Debug for ParameterInfo {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ParameterInfo").field("name", &self.name).field("unit", &self.unit).finish_non_exhaustive()
+    }
+}

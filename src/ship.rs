@@ -1,0 +1,421 @@
+//! A ship's fixed particulars, read from a TOML file and checked once, and the empirical hull coefficients they imply.
+//! What is fitted is not here: parameters live with the terms that use them, and take their defaults from here.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::path::{Path, PathBuf};
+
+/// Why a ship file could not be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShipError {
+    /// The file could not be opened.
+    #[error("{path}: cannot read the ship file ({source}); check the path given as `ship` in the study")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is not TOML of the expected shape.
+    #[error("{path}:{line}: {message}")]
+    Parse {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: usize,
+        /// What is wrong and what is expected.
+        message: String,
+    },
+    /// A value is outside what a ship can have.
+    #[error("{path}:{line}: {key} = {found} {expected}")]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: usize,
+        /// Dotted key.
+        key: String,
+        /// The value found.
+        found: f64,
+        /// What it should be, as the rest of a sentence.
+        expected: String,
+    },
+}
+
+/// A ship: what is fixed about it, in SI units.
+///
+/// Axes: x forward from midship, y to starboard.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Ship {
+    /// Name, for headings.
+    pub name: String,
+    /// Where the particulars come from.
+    #[serde(default)]
+    pub source: String,
+    /// Hull particulars.
+    pub hull: HullParticulars,
+    /// Propeller particulars.
+    pub propeller: PropellerParticulars,
+    /// Rudder particulars.
+    pub rudder: RudderParticulars,
+    /// Above-water particulars, needed for wind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub above_water: Option<AboveWater>,
+    /// Bow thruster, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thruster: Option<ThrusterParticulars>,
+    /// Hull coefficients given instead of estimated, dimensional (SI), by name (`Yv`, `Nr`, `Yvdot`, ...).
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub coefficients: BTreeMap<String, f64>,
+    /// Hull coefficients given instead of estimated, made dimensionless with 1/2 rho, L and d (MMG and Inoue's "L-d"
+    /// normalisation), by the same names.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub coefficients_prime: BTreeMap<String, f64>,
+    /// Default values of named parameters of any term, e.g. `"resistance.linear" = 10500.0`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub parameters: BTreeMap<String, f64>,
+}
+
+/// Hull particulars.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct HullParticulars {
+    /// Length between perpendiculars L \[m\].
+    pub lpp: f64,
+    /// Breadth B \[m\].
+    pub breadth: f64,
+    /// Mean draught d \[m\].
+    pub draught: f64,
+    /// Mass m \[kg\].
+    pub mass: f64,
+    /// Block coefficient C_b \[-\].
+    pub block_coefficient: f64,
+    /// Longitudinal centre of gravity x_G \[m\], forward of midship.
+    #[serde(default)]
+    pub x_g: f64,
+    /// Yaw radius of gyration about the centre of gravity over L \[-\].
+    #[serde(default = "default_gyration")]
+    pub gyration: f64,
+    /// Water density rho \[kg/m3\].
+    #[serde(default = "default_density")]
+    pub water_density: f64,
+}
+
+fn default_gyration() -> f64 {
+    0.25
+}
+fn default_density() -> f64 {
+    1025.0
+}
+
+/// Propeller particulars of a single screw.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct PropellerParticulars {
+    /// Diameter D \[m\].
+    pub diameter: f64,
+    /// Longitudinal position x_P \[m\], forward of midship; about -0.48 L.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// Effective wake fraction in straight running w \[-\].
+    pub wake: f64,
+    /// Thrust deduction t \[-\].
+    pub thrust_deduction: f64,
+    /// `K_T(J) = k0 + k1 J + k2 J^2`.
+    pub thrust_coefficients: [f64; 3],
+    /// Thrust rotating astern at rest over thrust ahead at rest \[-\]; about 0.72 to 0.77 for a fixed-pitch propeller.
+    #[serde(default = "default_astern")]
+    pub astern: f64,
+}
+
+fn default_astern() -> f64 {
+    0.74
+}
+
+/// Rudder particulars of a single rudder behind the propeller.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct RudderParticulars {
+    /// Area A_R \[m2\].
+    pub area: f64,
+    /// Span H_R \[m\].
+    pub span: f64,
+    /// Longitudinal position x_R \[m\], forward of midship; about -0.5 L.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// Flow straightening gamma_R \[-\].
+    #[serde(default = "default_straightening")]
+    pub straightening: f64,
+    /// Effective longitudinal position in the inflow l_R over L \[-\].
+    #[serde(default = "default_lever")]
+    pub lever: f64,
+    /// Ratio of wake at the rudder to wake at the propeller, epsilon \[-\].
+    #[serde(default = "default_wake_ratio")]
+    pub wake_ratio: f64,
+    /// Propeller race factor kappa \[-\].
+    #[serde(default = "default_race")]
+    pub race: f64,
+}
+
+fn default_straightening() -> f64 {
+    0.45
+}
+fn default_lever() -> f64 {
+    -0.85
+}
+fn default_wake_ratio() -> f64 {
+    1.05
+}
+fn default_race() -> f64 {
+    0.5
+}
+
+/// Above-water particulars.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct AboveWater {
+    /// Frontal (transverse) projected area A_F \[m2\].
+    pub frontal_area: f64,
+    /// Lateral projected area A_L \[m2\].
+    pub lateral_area: f64,
+    /// Length overall \[m\].
+    pub length_overall: f64,
+    /// Air density \[kg/m3\].
+    #[serde(default = "default_air_density")]
+    pub air_density: f64,
+}
+
+fn default_air_density() -> f64 {
+    1.225
+}
+
+/// Bow thruster particulars.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct ThrusterParticulars {
+    /// Full thrust at rest \[N\].
+    pub thrust: f64,
+    /// Longitudinal position \[m\], forward of midship.
+    pub x: f64,
+}
+
+/// Coefficient names accepted in a ship file, with the exponents of L and d in the "L-d" normalisation:
+/// dimensional = prime * 1/2 rho * L^a * d.
+pub const COEFFICIENTS: [(&str, i32); 16] = [
+    ("Xudot", 2),
+    ("Yvdot", 2),
+    ("Yrdot", 3),
+    ("Nvdot", 3),
+    ("Nrdot", 4),
+    ("Xvr", 2),
+    ("Yv", 1),
+    ("Yr", 2),
+    ("Nv", 2),
+    ("Nr", 3),
+    ("Yvv", 1),
+    ("Yvr", 2),
+    ("Yrr", 3),
+    ("Nrr", 4),
+    ("Nrrv", 4),
+    ("Nvvr", 3),
+];
+
+impl Ship {
+    /// Reads and checks a ship file.
+    pub fn read(path: &Path) -> Result<Self, ShipError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| ShipError::Read { path: path.to_path_buf(), source })?;
+        Self::parse(&text, path)
+    }
+
+    /// Reads and checks the text of a ship file; `path` is used in messages.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, ShipError> {
+        let ship: Self = toml::from_str(text).map_err(|e| ShipError::Parse {
+            path: path.to_path_buf(),
+            line: e.span().map_or(1, |s| line_of(text, s.start)),
+            message: explain(e.message()),
+        })?;
+        ship.check(text, path)?;
+        Ok(ship)
+    }
+
+    fn check(&self, text: &str, path: &Path) -> Result<(), ShipError> {
+        let at = |key: &str| {
+            let last = key.rsplit('.').next().unwrap_or(key);
+            text.lines().position(|l| l.trim_start().trim_start_matches('"').starts_with(last)).map_or(1, |i| i + 1)
+        };
+        let fail = |key: &str, found: f64, expected: &str| {
+            Err(ShipError::Value {
+                path: path.to_path_buf(),
+                line: at(key),
+                key: key.into(),
+                found,
+                expected: expected.into(),
+            })
+        };
+        let h = &self.hull;
+        let mut positive = vec![
+            ("hull.lpp", h.lpp),
+            ("hull.breadth", h.breadth),
+            ("hull.draught", h.draught),
+            ("hull.mass", h.mass),
+            ("hull.block_coefficient", h.block_coefficient),
+            ("hull.gyration", h.gyration),
+            ("hull.water_density", h.water_density),
+            ("propeller.diameter", self.propeller.diameter),
+            ("rudder.area", self.rudder.area),
+            ("rudder.span", self.rudder.span),
+        ];
+        if let Some(a) = &self.above_water {
+            positive.extend([
+                ("above_water.frontal_area", a.frontal_area),
+                ("above_water.lateral_area", a.lateral_area),
+                ("above_water.length_overall", a.length_overall),
+                ("above_water.air_density", a.air_density),
+            ]);
+        }
+        for (key, value) in positive {
+            if !(value.is_finite() && value > 0.0) {
+                return fail(key, value, "must be a positive number in SI units");
+            }
+        }
+        if h.block_coefficient > 1.0 {
+            return fail("hull.block_coefficient", h.block_coefficient, "must be at most 1");
+        }
+        let displaced = h.water_density * h.lpp * h.breadth * h.draught * h.block_coefficient;
+        if !(0.5..2.0).contains(&(h.mass / displaced)) {
+            return fail(
+                "hull.mass",
+                h.mass,
+                &format!("kg is not the {displaced:.4e} kg that rho L B d C_b displaces; is the mass in kg?"),
+            );
+        }
+        for (key, w) in
+            [("propeller.wake", self.propeller.wake), ("propeller.thrust_deduction", self.propeller.thrust_deduction)]
+        {
+            if !(0.0..1.0).contains(&w) {
+                return fail(key, w, "must lie in [0, 1)");
+            }
+        }
+        for name in self.coefficients.keys().chain(self.coefficients_prime.keys()) {
+            if !COEFFICIENTS.iter().any(|(n, _)| n == name) {
+                let known: Vec<&str> = COEFFICIENTS.iter().map(|(n, _)| *n).collect();
+                return Err(ShipError::Parse {
+                    path: path.to_path_buf(),
+                    line: at(name),
+                    message: format!(
+                        "unknown coefficient `{name}`{}; known are {}",
+                        crate::error::suggestion(name, known.iter().copied()),
+                        known.join(", ")
+                    ),
+                });
+            }
+        }
+        let d = self.mass_determinant();
+        if d.is_nan() || d <= 0.0 {
+            return fail(
+                "hull.mass",
+                h.mass,
+                &format!(
+                    "kg makes the sway-yaw mass matrix singular (determinant {d:.3e}); check Yvdot, Yrdot, Nvdot, Nrdot, x_g and gyration"
+                ),
+            );
+        }
+        Ok(())
+    }
+
+    /// (m - Y_vdot)(I_z - N_rdot) - (m x_G - Y_rdot)(m x_G - N_vdot), which must be positive.
+    pub fn mass_determinant(&self) -> f64 {
+        let c = |n: &str| self.coefficient(n);
+        let (m, xg) = (self.hull.mass, self.hull.x_g);
+        (m - c("Yvdot")) * (self.yaw_inertia() - c("Nrdot")) - (m * xg - c("Yrdot")) * (m * xg - c("Nvdot"))
+    }
+
+    /// Yaw moment of inertia about midship \[kg m2\]: `m (k L)^2 + m x_G^2`.
+    pub fn yaw_inertia(&self) -> f64 {
+        let h = &self.hull;
+        h.mass * ((h.gyration * h.lpp).powi(2) + h.x_g * h.x_g)
+    }
+
+    /// Propeller position x_P \[m\]; -0.48 L where the file does not give it.
+    pub fn propeller_x(&self) -> f64 {
+        self.propeller.x.unwrap_or(-0.48 * self.hull.lpp)
+    }
+
+    /// Rudder position x_R \[m\]; -0.5 L where the file does not give it.
+    pub fn rudder_x(&self) -> f64 {
+        self.rudder.x.unwrap_or(-0.5 * self.hull.lpp)
+    }
+
+    /// Small speed below which the dynamics are regularised \[m/s\]: 0.002 sqrt(g L) (5.8 cm/s for an 85 m ship).
+    pub fn small_speed(&self) -> f64 {
+        0.002 * (9.80665 * self.hull.lpp).sqrt()
+    }
+
+    /// A dimensional hull coefficient (SI): from the file (`coefficients`, then `coefficients_prime`), else estimated.
+    ///
+    /// Linear derivatives and added masses by Clarke, Gedling & Hine 1982; surge added mass by the Zhou 1983 regression of Motora's charts; X_vr by
+    /// Hasegawa 1980; nonlinear derivatives by the Zhou 1983 regression of the charts of Inoue, Hirano & Kijima 1981.
+    /// Signs and units follow the equation in [`crate::terms::hull`]. An unknown name gives 0.
+    pub fn coefficient(&self, name: &str) -> f64 {
+        if let Some(value) = self.coefficients.get(name) {
+            return *value;
+        }
+        let h = &self.hull;
+        let prime_to_si =
+            |prime: f64, length_power: i32| prime * 0.5 * h.water_density * h.lpp.powi(length_power) * h.draught;
+        if let Some(prime) = self.coefficients_prime.get(name) {
+            let power = COEFFICIENTS.iter().find(|(n, _)| *n == name).map_or(0, |(_, p)| *p);
+            return prime_to_si(*prime, power);
+        }
+        let (l, b, d, cb) = (h.lpp, h.breadth, h.draught, h.block_coefficient);
+        // Clarke's coefficients are made dimensionless with powers of L alone: L/d times those of the L-d normalisation.
+        let clarke =
+            |bracket: f64, length_power: i32| prime_to_si(-PI * (d / l).powi(2) * bracket * l / d, length_power);
+        let fullness = (1.0 - cb) * d / b;
+        let x_c = cb * b / l;
+        match name {
+            "Xudot" => {
+                let (lb, db) = (l / b, d / b);
+                let percent = 0.398 + 11.97 * cb * (1.0 + 3.73 * db) - 2.89 * cb * lb * (1.0 + 1.13 * db)
+                    + 0.175 * cb * lb * lb * (1.0 + 0.541 * db)
+                    - 1.107 * lb * db;
+                -0.01 * h.mass * percent
+            }
+            "Yvdot" => clarke(1.0 + 0.16 * cb * b / d - 5.1 * (b / l).powi(2), 2),
+            "Yrdot" => clarke(0.67 * b / l - 0.0033 * (b / d).powi(2), 3),
+            "Nvdot" => clarke(1.1 * b / l - 0.041 * b / d, 3),
+            "Nrdot" => clarke(1.0 / 12.0 + 0.017 * cb * b / d - 0.33 * b / l, 4),
+            "Xvr" => (1.75 * cb - 0.525 - 1.0) * -self.coefficient("Yvdot"),
+            "Yv" => clarke(1.0 + 0.40 * cb * b / d, 1),
+            "Yr" => clarke(-0.5 + 2.2 * b / l - 0.080 * b / d, 2),
+            "Nv" => clarke(0.5 + 2.4 * d / l, 2),
+            "Nr" => clarke(0.25 + 0.039 * b / d - 0.56 * b / l, 3),
+            "Yvv" => prime_to_si(0.048265 - 6.293 * fullness, 1),
+            "Yvr" => prime_to_si(-0.3791 + 1.28 * fullness, 2),
+            "Yrr" => prime_to_si(0.0045 - 0.445 * fullness, 3),
+            "Nrr" => prime_to_si(-0.0805 + 8.6092 * x_c * x_c - 36.9816 * x_c.powi(3), 4),
+            "Nrrv" => prime_to_si(-0.05877 + 0.43958 * cb * d / b, 4),
+            "Nvvr" => prime_to_si(-0.42361 - 3.5193 * x_c + 135.4668 * x_c * x_c - 686.3107 * x_c.powi(3), 3),
+            _ => 0.0,
+        }
+    }
+}
+
+/// The line, counted from 1, of a byte offset in a text.
+pub(crate) fn line_of(text: &str, offset: usize) -> usize {
+    text.as_bytes().iter().take(offset).filter(|b| **b == b'\n').count() + 1
+}
+
+/// Adds the next step to what the TOML reader says.
+fn explain(message: &str) -> String {
+    let message = message.trim_end();
+    if message.contains("missing field") {
+        format!("{message}; add it (all values in SI units)")
+    } else {
+        message.to_string()
+    }
+}

@@ -1,0 +1,153 @@
+//! From a scenario, a model and parameters to a trajectory: explicit Euler as in the paper, RK4 for audits.
+//! The same code runs on any number type; what happens to the states on the way out is the caller's.
+
+use crate::model::Model;
+use crate::state::{Force, Inputs, STATES, State};
+use crate::terms::Number;
+use serde::{Deserialize, Serialize};
+
+/// How a step is integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// Explicit Euler, as in the paper: order 1.
+    #[default]
+    Euler,
+    /// Classical Runge-Kutta: order 4 where the inputs are linear within a sub-step.
+    Rk4,
+}
+
+/// Integration settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Integration {
+    /// Method.
+    pub method: Method,
+    /// Sub-steps within one sample period; inputs are linear between samples.
+    pub substeps: usize,
+}
+
+impl Default for Integration {
+    fn default() -> Self {
+        Self { method: Method::Euler, substeps: 1 }
+    }
+}
+
+/// What a simulation needs beside a model: sample period, inputs at every sample, and the initial state.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// Sample period \[s\].
+    pub dt: f64,
+    /// Inputs at each sample.
+    pub inputs: Vec<Inputs<f64>>,
+    /// State at the first sample `[x, y, psi, u, v, r]`.
+    pub initial: [f64; STATES],
+}
+
+/// A simulated run.
+#[derive(Clone, Debug)]
+pub struct Trajectory {
+    /// Sample period \[s\].
+    pub dt: f64,
+    /// State at each sample; shorter than the scenario when the simulation diverged.
+    pub states: Vec<[f64; STATES]>,
+    /// First sample at which the state was no longer finite or the ship was absurdly fast.
+    pub diverged_at: Option<usize>,
+}
+
+/// Speed over ground beyond which a simulation is called diverged: 10 sqrt(g L) \[m/s\].
+fn absurd_speed(model: &Model) -> f64 {
+    10.0 * (9.80665 * model.ship.hull.lpp).sqrt()
+}
+
+/// Advances a state over one sub-step of length `h` \[s\] under inputs known at its start, middle and end.
+pub fn advance<S: Number>(
+    model: &Model,
+    theta: &[S],
+    method: Method,
+    h: f64,
+    state: &[S; STATES],
+    inputs: [&Inputs<S>; 3],
+    push: &Force<S>,
+) -> [S; STATES] {
+    let f = |s: &[S; STATES], i: &Inputs<S>| model.rates(theta, &State::from_array(*s), i, push).0;
+    let moved = |k: &[S; STATES], h: f64| std::array::from_fn(|j| state[j] + k[j] * h);
+    let k1 = f(state, inputs[0]);
+    match method {
+        Method::Euler => moved(&k1, h),
+        Method::Rk4 => {
+            let k2 = f(&moved(&k1, 0.5 * h), inputs[1]);
+            let k3 = f(&moved(&k2, 0.5 * h), inputs[1]);
+            let k4 = f(&moved(&k3, h), inputs[2]);
+            std::array::from_fn(|j| state[j] + (k1[j] + (k2[j] + k3[j]) * 2.0 + k4[j]) * (h / 6.0))
+        }
+    }
+}
+
+/// Advances a state over one sample period, in sub-steps, with inputs linear between the two samples.
+pub fn step<S: Number>(
+    model: &Model,
+    theta: &[S],
+    integration: Integration,
+    dt: f64,
+    state: &[S; STATES],
+    now: &Inputs<S>,
+    next: &Inputs<S>,
+    push: &Force<S>,
+) -> [S; STATES] {
+    let count = integration.substeps.max(1);
+    let h = dt / count as f64;
+    if count == 1 && integration.method == Method::Euler {
+        return advance(model, theta, integration.method, h, state, [now, now, now], push);
+    }
+    let mut state = *state;
+    for i in 0..count {
+        let at = |offset: f64| now.between(next, (i as f64 + offset) / count as f64);
+        let (start, middle, end) = match integration.method {
+            Method::Euler => (at(0.0), at(0.0), at(0.0)),
+            Method::Rk4 => (at(0.0), at(0.5), at(1.0)),
+        };
+        state = advance(model, theta, integration.method, h, &state, [&start, &middle, &end], push);
+    }
+    state
+}
+
+/// Simulates a scenario and hands every sample (index, state) to `sink`, the initial one first.
+///
+/// `sink` returns false to stop early. `initial` may carry derivatives.
+pub fn rollout<S: Number>(
+    model: &Model,
+    theta: &[S],
+    integration: Integration,
+    dt: f64,
+    inputs: &[Inputs<f64>],
+    initial: &[S; STATES],
+    mut sink: impl FnMut(usize, &[S; STATES]) -> bool,
+) {
+    let mut series: Vec<Inputs<S>> = inputs.iter().map(Inputs::constant).collect();
+    model.drive(theta, dt, &mut series);
+    let mut state = *initial;
+    for k in 0..series.len() {
+        if !sink(k, &state) || k + 1 == series.len() {
+            return;
+        }
+        state = step(model, theta, integration, dt, &state, &series[k], &series[k + 1], &Force::zero());
+    }
+}
+
+/// Simulates a scenario with plain numbers.
+pub fn simulate(model: &Model, theta: &[f64], integration: Integration, scenario: &Scenario) -> Trajectory {
+    let limit = absurd_speed(model);
+    let mut states = Vec::with_capacity(scenario.inputs.len());
+    let mut diverged_at = None;
+    rollout(model, theta, integration, scenario.dt, &scenario.inputs, &scenario.initial, |k, s| {
+        let sane = s.iter().all(|v| v.is_finite()) && s[3].hypot(s[4]) < limit;
+        if sane {
+            states.push(*s);
+        } else {
+            diverged_at = Some(k);
+        }
+        sane
+    });
+    Trajectory { dt: scenario.dt, states, diverged_at }
+}

@@ -1,0 +1,154 @@
+//! Inertia and hull hydrodynamics in the Spyrou 1996 form, the left-hand side of the paper's eq. (1).
+//! It gives the mass matrix and everything quadratic in (u, v, r); resistance in u alone is a term of its own.
+
+use super::{Form, Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::ship::Ship;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Inertia and hull forces.
+pub struct Hull;
+
+macro_rules! derivative {
+    ($name:literal, $unit:literal, $about:literal) => {
+        ParameterInfo::new($name, $name, $unit, $about)
+            .default(|s| s.coefficient($name))
+            .scale(|s| 0.1 * reference(s, $name))
+            .spread(|s| 0.3 * reference(s, $name))
+    };
+}
+
+/// The size of a coefficient for scaling: its estimate, kept away from zero by what is usual for its kind.
+fn reference(ship: &Ship, name: &str) -> f64 {
+    let usual = match name {
+        "Xudot" | "Xvr" => 0.01,
+        "Yvdot" | "Yv" | "Yvv" => 0.1,
+        "Nrdot" | "Nr" | "Nrr" => 0.01,
+        "Yr" | "Nv" | "Yvr" | "Nrrv" | "Nvvr" => 0.05,
+        _ => 0.01,
+    };
+    let power = crate::ship::COEFFICIENTS.iter().find(|(n, _)| *n == name).map_or(0, |(_, p)| *p);
+    let floor = usual * 0.5 * ship.hull.water_density * ship.hull.lpp.powi(power) * ship.hull.draught;
+    ship.coefficient(name).abs().max(floor)
+}
+
+static INFO: TermInfo = TermInfo {
+    name: "hull",
+    title: "inertia and hull hydrodynamics",
+    group: Group::Hull,
+    equation: "(m-Xudot) u' + (Yvdot-Xvr-m) v r + (Yrdot-m xG) r^2 = X; \
+               (m-Yvdot) v' + (m xG-Yrdot) r' - Yv U v + (m u-Yr U) r - Yvv v|v| - Yvr v|r| - Yrr r|r| = Y; \
+               (m xG-Nvdot) v' + (Iz-Nrdot) r' - Nv U v + (m xG u-Nr U) r - Nrr r|r| - Nrrv r^2 v/U - Nvvr v^2 r/U = N",
+    source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (1) after Spyrou 1996; coefficients by Clarke et al. 1982 and Inoue et al. 1981",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("mass", "m", "kg", "mass")
+            .default(|s| s.hull.mass)
+            .scale(|s| 0.1 * s.hull.mass)
+            .spread(|s| 0.05 * s.hull.mass)
+            .bounds(1e-3, f64::INFINITY),
+        ParameterInfo::new("inertia", "Iz", "kg m2", "yaw moment of inertia about midship")
+            .default(Ship::yaw_inertia)
+            .scale(|s| 0.1 * s.yaw_inertia())
+            .spread(|s| 0.1 * s.yaw_inertia())
+            .bounds(1e-6, f64::INFINITY),
+        ParameterInfo::new("x_g", "xG", "m", "centre of gravity forward of midship")
+            .default(|s| s.hull.x_g)
+            .scale(|s| 0.01 * s.hull.lpp)
+            .spread(|s| 0.01 * s.hull.lpp),
+        derivative!("Xudot", "kg", "surge added mass, negative"),
+        derivative!("Yvdot", "kg", "sway added mass, negative"),
+        derivative!("Yrdot", "kg m", "sway-yaw added mass"),
+        derivative!("Nvdot", "kg m", "yaw-sway added mass"),
+        derivative!("Nrdot", "kg m2", "yaw added inertia, negative"),
+        derivative!("Xvr", "kg", "surge force of drift and turn"),
+        derivative!("Yv", "kg/m", "linear sway damping"),
+        derivative!("Yr", "kg", "sway force of turn"),
+        derivative!("Nv", "kg", "yaw moment of drift"),
+        derivative!("Nr", "kg m", "linear yaw damping"),
+        derivative!("Yvv", "kg/m", "quadratic sway damping"),
+        derivative!("Yvr", "kg", "sway force of v|r|"),
+        derivative!("Yrr", "kg m", "sway force of r|r|"),
+        derivative!("Nrr", "kg m2", "quadratic yaw damping"),
+        derivative!("Nrrv", "kg m2", "yaw moment of r^2 v/U"),
+        derivative!("Nvvr", "kg m", "yaw moment of v^2 r/U"),
+    ],
+};
+
+/// The mass matrix of the three equations: surge alone, sway and yaw coupled.
+#[derive(Clone, Copy, Debug)]
+pub struct Inertia<S> {
+    /// m - Xudot.
+    pub surge: S,
+    /// m - Yvdot.
+    pub sway: S,
+    /// m xG - Yrdot.
+    pub sway_yaw: S,
+    /// m xG - Nvdot.
+    pub yaw_sway: S,
+    /// Iz - Nrdot.
+    pub yaw: S,
+}
+
+impl<S: Scalar> Inertia<S> {
+    /// The mass matrix from the parameters of the term `hull`.
+    pub fn new(p: &[S], flow: &Flow<S>) -> Self {
+        let a = &flow.adjust;
+        let m = p[0] * a.mass;
+        let xg = p[2] + a.x_g;
+        Self {
+            surge: m - p[3],
+            sway: m - p[4] * a.added_mass,
+            sway_yaw: m * xg - p[5] * a.added_mass,
+            yaw_sway: m * xg - p[6] * a.added_mass,
+            yaw: p[1] * a.mass - p[7] * a.added_mass,
+        }
+    }
+
+    /// Accelerations (u', v', r') under a force.
+    pub fn solve(&self, f: &Force<S>) -> [S; 3] {
+        let inverse = S::one() / (self.sway * self.yaw - self.sway_yaw * self.yaw_sway);
+        [
+            f.x / self.surge,
+            (f.y * self.yaw - f.n * self.sway_yaw) * inverse,
+            (f.n * self.sway - f.y * self.yaw_sway) * inverse,
+        ]
+    }
+}
+
+impl Term for Hull {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Hull {
+    /// Everything of eq. (1)'s left-hand side but the accelerations, moved to the right.
+    ///
+    /// Form `regular` (Yoshimura's low-speed form, and share `sternway` of it in the paper form): U is replaced by |u| in the
+    /// damping terms Yv and Nr, and by u in the odd terms Yr and Nv. 1/U is 1/sqrt(U^2 + small^2) in both forms.
+    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+        let [m, _, xg, _, yvdot, yrdot, _, _, xvr, yv, yr, nv, nr, yvv, yvr, yrr, nrr, nrrv, nvvr] =
+            std::array::from_fn(|i| p[i]);
+        let a = &flow.adjust;
+        let (m, xg) = (m * a.mass, xg + a.x_g);
+        let (u, v, r) = (flow.u, flow.v, flow.r);
+        let share = match at.form {
+            Form::Paper => a.sternway,
+            Form::Regular => S::one(),
+        };
+        let even = flow.speed + (flow.abs_u - flow.speed) * share;
+        let odd = flow.speed + (u - flow.speed) * share;
+        let (yvdot, yrdot) = (yvdot * a.added_mass, yrdot * a.added_mass);
+        let x = (m + xvr - yvdot) * v * r + (m * xg - yrdot) * r * r;
+        let y = a.sway * (yv * even * v + yvv * v * flow.abs_v + yvr * v * flow.abs_r)
+            + a.rotary * (yr * odd * r + yrr * r * flow.abs_r)
+            - m * u * r;
+        let n = a.yaw_static * (nv * odd * v + nvvr * v * v * r / flow.speed)
+            + a.rotary * (nr * even * r + nrr * r * flow.abs_r + nrrv * r * r * v / flow.speed)
+            - m * xg * u * r;
+        Force { x, y, n }
+    }
+}

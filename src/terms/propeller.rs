@@ -1,0 +1,36 @@
+//! Propeller forces: net thrust, and a side force proportional to it (parameter p0 of the paper).
+//! Thrust itself comes from the flow; effects beyond the paper's linear side force are terms of their own.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Propeller forces.
+pub struct Propeller;
+
+static INFO: TermInfo = TermInfo {
+    name: "propeller",
+    title: "propeller thrust and side force",
+    group: Group::Propulsion,
+    equation: "X_n = (1-t) T; Y_n = p0 X_n; N_n = x_P Y_n",
+    source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (2)",
+    needs: &[],
+    parameters: &[ParameterInfo::new("side_force", "p0", "-", "side force over net thrust, to starboard")
+        .scale(|_| 0.01)
+        .odd()],
+};
+
+impl Term for Propeller {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Propeller {
+    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+        let y = p[0] * flow.propulsion;
+        Force { x: flow.propulsion, y, n: y * at.ship.propeller_x() }
+    }
+}

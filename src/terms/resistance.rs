@@ -1,0 +1,62 @@
+//! Surge resistance as a cubic in u, the parameters p1 to p3 of the paper.
+//! It enters the surge equation as -R(u): printed with a plus sign there, R >= 0 would push the ship.
+
+use super::{Form, Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Surge resistance.
+pub struct Resistance;
+
+static INFO: TermInfo = TermInfo {
+    name: "resistance",
+    title: "surge resistance",
+    group: Group::Hull,
+    equation: "X = -R(u), R = p1 u + p2 u^2 + p3 u^3 (form `regular`: p2 u|u|)",
+    source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (1); sign corrected",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("linear", "p1", "N s/m", "linear resistance").scale(rate::<1>),
+        ParameterInfo::new("quadratic", "p2", "N s2/m2", "quadratic resistance").scale(rate::<2>),
+        ParameterInfo::new("cubic", "p3", "N s3/m3", "cubic resistance").scale(rate::<3>),
+    ],
+};
+
+/// Resistance of order 1/2 rho L d u^2 0.02 at Froude number 0.2, spread over the powers of u.
+fn rate<const POWER: i32>(ship: &crate::ship::Ship) -> f64 {
+    let h = &ship.hull;
+    let u = 0.2 * (9.80665 * h.lpp).sqrt();
+    0.5 * h.water_density * h.lpp * h.draught * 0.02 * u.powi(2 - POWER)
+}
+
+impl Resistance {
+    /// R(u) \[N\] of the printed form.
+    pub fn curve<S: Scalar>(p: &[S], u: f64) -> S {
+        p[0] * u + p[1] * (u * u) + p[2] * (u * u * u)
+    }
+    /// dR/du \[N s/m\] of the printed form.
+    pub fn slope<S: Scalar>(p: &[S], u: f64) -> S {
+        p[0] + p[1] * (2.0 * u) + p[2] * (3.0 * u * u)
+    }
+}
+
+impl Term for Resistance {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Resistance {
+    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+        let u = flow.u;
+        let share = match at.form {
+            Form::Paper => flow.adjust.sternway,
+            Form::Regular => S::one(),
+        };
+        let square = u * (u + (u.abs() - u) * share);
+        let r = p[0] * u + p[1] * square + p[2] * u * u * u;
+        Force { x: -(r * flow.adjust.resistance), ..Force::zero() }
+    }
+}

@@ -1,0 +1,86 @@
+//! Rudder forces from a cubic lift and a quadratic drag curve, the parameters p4 to p10 of the paper.
+//! The curves hold up to 45 degrees of attack; beyond 60 degrees the rudder is a flat plate, with a smooth blend between.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use std::f64::consts::PI;
+use trimtab_ad::{Scalar, smooth};
+
+/// Rudder forces.
+pub struct Rudder;
+
+/// Angle of attack up to which the polynomials hold \[rad\].
+pub const CURVE_LIMIT: f64 = 45.0 * PI / 180.0;
+/// Angle of attack from which the rudder is a flat plate \[rad\].
+pub const PLATE_LIMIT: f64 = 60.0 * PI / 180.0;
+/// Normal-force coefficient of a flat plate across the flow \[-\].
+pub const PLATE_NORMAL: f64 = 1.2;
+
+static INFO: TermInfo = TermInfo {
+    name: "rudder",
+    title: "rudder lift and drag",
+    group: Group::Rudder,
+    equation: "a = delta - g, g = atan2(v_R, u_R); c_L = p4 + p5 a + p6 a^2 + p7 a^3, c_D = p8 + p9 a + p10 a^2; \
+               L, D = 1/2 rho A_R U_R^2 (c_L, c_D); X = -D cos g - L sin g, Y = D sin g - L cos g, N = x_R Y; \
+               |a| from 45 to 60 deg blends into a flat plate, c_L = 1.2 sin a cos a, c_D = 1.2 sin^2 a",
+    source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (3)-(4); resolution of lift and drag derived, area and inflow not printed there",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("lift0", "p4", "-", "lift coefficient at zero angle").scale(|_| 0.05).odd(),
+        ParameterInfo::new("lift1", "p5", "1/rad", "slope of the lift coefficient").default(|_| 2.5).scale(|_| 0.5),
+        ParameterInfo::new("lift2", "p6", "1/rad2", "even curvature of the lift coefficient").scale(|_| 0.5).odd(),
+        ParameterInfo::new("lift3", "p7", "1/rad3", "cubic of the lift coefficient").default(|_| -3.0).scale(|_| 1.0),
+        ParameterInfo::new("drag0", "p8", "-", "drag coefficient at zero angle").default(|_| 0.02).scale(|_| 0.02),
+        ParameterInfo::new("drag1", "p9", "1/rad", "slope of the drag coefficient").scale(|_| 0.1).odd(),
+        ParameterInfo::new("drag2", "p10", "1/rad2", "curvature of the drag coefficient")
+            .default(|_| 1.3)
+            .scale(|_| 0.5),
+    ],
+};
+
+impl Rudder {
+    /// The printed lift polynomial at an angle of attack `a` \[rad\].
+    pub fn lift_polynomial<S: Scalar>(p: &[S], a: S) -> S {
+        p[0] + a * (p[1] + a * (p[2] + a * p[3]))
+    }
+    /// The printed drag polynomial at an angle of attack `a` \[rad\].
+    pub fn drag_polynomial<S: Scalar>(p: &[S], a: S) -> S {
+        p[4] + a * (p[5] + a * p[6])
+    }
+    /// Lift and drag coefficients at any angle of attack `a` in (-pi, pi] \[rad\].
+    ///
+    /// `stall` is the fraction of lift lost at 40 degrees, growing linearly from 25 degrees.
+    pub fn coefficients<S: Scalar>(p: &[S], a: S, stall: S) -> (S, S) {
+        let inside = a.clamp(-PLATE_LIMIT, PLATE_LIMIT);
+        let plate = smooth::smooth_step((a.abs() - CURVE_LIMIT) / (PLATE_LIMIT - CURVE_LIMIT));
+        let (sin, cos) = a.sin_cos();
+        let lost = stall * ((inside.abs() - 25.0 * PI / 180.0).max(S::zero()) / (15.0 * PI / 180.0));
+        let lift = Self::lift_polynomial(p, inside) * (S::one() - lost);
+        let drag = Self::drag_polynomial(p, inside);
+        (lift + (sin * cos * PLATE_NORMAL - lift) * plate, drag + (sin * sin * PLATE_NORMAL - drag) * plate)
+    }
+}
+
+impl Term for Rudder {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Rudder {
+    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+        let (u, v) = (flow.rudder_u, flow.rudder_v);
+        let inflow = v.atan2(u);
+        let a = smooth::wrap_angle(at.inputs.delta - inflow);
+        let (lift, drag) = Self::coefficients(p, a, flow.adjust.stall);
+        let pressure = 0.5 * at.ship.hull.water_density * at.ship.rudder.area;
+        // L and D with cos g = u_R/U_R and sin g = v_R/U_R: one factor U_R is left, so that no inflow gives no force.
+        let square = u * u + v * v;
+        let speed = (square + 1e-12).sqrt() * pressure;
+        let x = -(drag * u + lift * v) * speed;
+        let y = (drag * v - lift * u) * speed;
+        Force { x, y, n: y * at.ship.rudder_x() }
+    }
+}
