@@ -32,10 +32,10 @@ pub fn blend<S: Scalar>(x: S, lo: f64, hi: f64, a: S, b: S) -> S {
 /// `ln(1 + e^x)`: the smooth `max(x, 0)`, without overflow at either end. For a corner of width `w`, use `softplus(x / w) w`.
 #[inline]
 pub fn softplus<S: Scalar>(x: S) -> S {
-    /// Below this, `1 + e` loses digits of `e` and four terms of the series of `ln(1 + e)` are exact to rounding.
+    /// Below this, `1 + e` drops more digits of `e` than the series of `ln(1 + e)` does after three terms.
     const SMALL: f64 = 1e-4;
     let e = (-x.abs()).exp();
-    let series = e * (e * (e * (e * -0.25 + 1.0 / 3.0) - 0.5) + 1.0);
+    let series = e * (e * (e * (1.0 / 3.0) - 0.5) + 1.0);
     x.max(S::zero()) + S::select(e.less(S::from_f64(SMALL)), series, (e + 1.0).ln())
 }
 

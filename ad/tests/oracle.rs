@@ -131,3 +131,9 @@ fn every_number_type_keeps_the_corners() {
         |z| vec![entry(&z.v1, 0, 1), entry(&z.v2, 1, 1), entry(&z.v2, 0, 1)],
     );
 }
+
+#[test]
+fn the_angle_of_the_origin_has_no_mixed_derivative_either() {
+    let angle = second_order(0.0, 0).atan2(second_order(0.0, 1));
+    assert_eq!(angle, Second::zero());
+}
