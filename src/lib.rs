@@ -6,6 +6,7 @@ pub mod fit;
 pub mod flow;
 pub mod model;
 pub mod parameter;
+pub mod recording;
 pub mod ship;
 pub mod simulate;
 pub mod state;

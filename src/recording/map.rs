@@ -1,0 +1,348 @@
+//! The column map: a small TOML file that says how a foreign layout becomes canonical channels.
+//! It describes the file only; reading by it is `read.rs`, and what the channels mean is `channel.rs`.
+
+use super::channel::{CHANNELS, Channel};
+use super::error::{RecordingError, line_at, toml_problem};
+use crate::error::suggestion;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// How the columns of a file become channels. The default is the canonical layout: one header line, commas, columns
+/// named after the channels with the unit in brackets.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ColumnMap {
+    /// What separates fields.
+    #[serde(default)]
+    pub delimiter: Delimiter,
+    /// What separates whole from fraction in a number.
+    #[serde(default)]
+    pub decimal: Decimal,
+    /// Lines to skip before the header, or before the data where there is no header.
+    #[serde(default)]
+    pub skip_lines: usize,
+    /// Whether a line of column names comes before the data.
+    #[serde(default)]
+    pub header: Header,
+    /// Axes in which the columns `u` and `v` (and `u_water`, `v_water`) are given.
+    #[serde(default)]
+    pub velocity_frame: VelocityFrame,
+    /// What the columns `u` and `v` are relative to.
+    #[serde(default)]
+    pub speed: SpeedReference,
+    /// Point of the ship whose position is recorded, metres `[forward, starboard]` of midship.
+    #[serde(default)]
+    pub reference_point: [f64; 2],
+    /// Point whose velocity is recorded; the position's when not given.
+    #[serde(default)]
+    pub velocity_point: Option<[f64; 2]>,
+    /// Time step \[s\] from which to rebuild a time column that is missing or rounded.
+    #[serde(default)]
+    pub dt: Option<f64>,
+    /// Time \[s\] to subtract from every row.
+    #[serde(default)]
+    pub time_zero: f64,
+    /// Channels to derive from others where they were not recorded: `u` and `v` from position and heading, `r` from heading.
+    #[serde(default)]
+    pub derive: Vec<Derived>,
+    /// Length \[s\] of the local quadratic fit that derives them; nine rows when not given.
+    #[serde(default)]
+    pub derive_span: Option<f64>,
+    /// Longest dropout \[s\] to bridge by straight lines; none when not given.
+    #[serde(default)]
+    pub bridge: Option<f64>,
+    /// Column of each channel. Without this table columns are found under the channels' own names.
+    #[serde(default)]
+    pub columns: Option<BTreeMap<String, Column>>,
+    /// The file it was read from.
+    #[serde(skip)]
+    pub path: Option<PathBuf>,
+    /// Line of each channel's entry in that file.
+    #[serde(skip)]
+    lines: BTreeMap<String, usize>,
+}
+
+/// What separates fields.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Delimiter {
+    /// `,`
+    #[default]
+    Comma,
+    /// `;`
+    Semicolon,
+    /// The tabulator.
+    Tab,
+    /// Any run of blanks.
+    Whitespace,
+}
+
+/// What separates whole from fraction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Decimal {
+    /// `1.5`
+    #[default]
+    Point,
+    /// `1,5`
+    Comma,
+}
+
+/// Whether there is a line of names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(from = "bool")]
+pub struct Header(pub bool);
+
+impl Default for Header {
+    fn default() -> Self {
+        Self(true)
+    }
+}
+
+impl From<bool> for Header {
+    fn from(present: bool) -> Self {
+        Self(present)
+    }
+}
+
+/// Axes of recorded velocities.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum VelocityFrame {
+    /// Forward and to starboard.
+    #[default]
+    Body,
+    /// North and east, the axes of `x` and `y`.
+    Earth,
+}
+
+/// What recorded velocities are relative to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum SpeedReference {
+    /// The earth.
+    #[default]
+    #[serde(rename = "over ground")]
+    OverGround,
+    /// The water: `u`, `v` are then stored as `u_water`, `v_water`.
+    #[serde(rename = "through water")]
+    ThroughWater,
+}
+
+/// A channel that can be derived from others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Derived {
+    /// Surge velocity over ground, from position and heading.
+    U,
+    /// Sway velocity over ground, from position and heading.
+    V,
+    /// Yaw rate, from heading.
+    R,
+}
+
+/// Where a channel comes from: `psi = "psi_hat"`, or a table with the keys below.
+///
+/// The channel is `sign * scale * value + offset` in the column's unit, then converted to SI.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Column {
+    /// Name in the header, with or without the unit in brackets.
+    pub name: Option<String>,
+    /// Position in the row, counted from 1.
+    pub index: Option<usize>,
+    /// A constant, where there is no column.
+    pub value: Option<f64>,
+    /// Unit; the header's when not given.
+    pub unit: Option<String>,
+    /// Factor on the value.
+    pub scale: Option<f64>,
+    /// 1 or -1: the sense in which the column is positive (`-1` for a rudder positive to port).
+    pub sign: Option<f64>,
+    /// Added, in the column's unit.
+    pub offset: Option<f64>,
+}
+
+impl Column {
+    /// Factor and offset in the column's unit.
+    pub(crate) fn linear(&self) -> (f64, f64) {
+        (self.sign.unwrap_or(1.0) * self.scale.unwrap_or(1.0), self.offset.unwrap_or(0.0))
+    }
+
+    /// The column as a person would name it.
+    pub(crate) fn label(&self) -> String {
+        match (&self.name, self.index) {
+            (Some(name), _) => name.clone(),
+            (None, Some(index)) => format!("number {index}"),
+            (None, None) => "constant".to_owned(),
+        }
+    }
+}
+
+/// The table form of a column; the string form is its `column` alone.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ColumnTable {
+    column: Option<String>,
+    index: Option<usize>,
+    value: Option<f64>,
+    unit: Option<String>,
+    scale: Option<f64>,
+    sign: Option<f64>,
+    offset: Option<f64>,
+}
+
+impl<'de> Deserialize<'de> for Column {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> serde::de::Visitor<'de> for Either {
+            type Value = Column;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a column name, or a table with `column`, `index` or `value`")
+            }
+            fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<Column, E> {
+                Ok(Column { name: Some(name.to_owned()), ..Column::default() })
+            }
+            fn visit_map<M: serde::de::MapAccess<'de>>(self, map: M) -> Result<Column, M::Error> {
+                use serde::de::Error;
+                let t = ColumnTable::deserialize(serde::de::value::MapAccessDeserializer::new(map))?;
+                let sources =
+                    [t.column.is_some(), t.index.is_some(), t.value.is_some()].iter().filter(|given| **given).count();
+                if sources != 1 {
+                    return Err(M::Error::custom("give exactly one of `column`, `index` and `value`"));
+                }
+                if t.index == Some(0) {
+                    return Err(M::Error::custom("`index` counts from 1"));
+                }
+                if t.sign.is_some_and(|s| s != 1.0 && s != -1.0) {
+                    return Err(M::Error::custom("`sign` is 1 or -1; use `scale` for any other factor"));
+                }
+                if [t.value, t.scale, t.offset].into_iter().flatten().any(|v| !v.is_finite()) || t.scale == Some(0.0) {
+                    return Err(M::Error::custom("`value`, `scale` and `offset` must be finite and `scale` not zero"));
+                }
+                Ok(Column {
+                    name: t.column,
+                    index: t.index,
+                    value: t.value,
+                    unit: t.unit,
+                    scale: t.scale,
+                    sign: t.sign,
+                    offset: t.offset,
+                })
+            }
+        }
+        deserializer.deserialize_any(Either)
+    }
+}
+
+impl ColumnMap {
+    /// Reads and checks a column map.
+    ///
+    /// # Errors
+    /// [`RecordingError::Read`] or [`RecordingError::Map`], the latter with line and near names.
+    pub fn read(path: &Path) -> Result<Self, RecordingError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| RecordingError::Read { path: path.to_owned(), source })?;
+        Self::parse(&text, path)
+    }
+
+    /// Checks the text of a column map; `path` is for messages.
+    ///
+    /// # Errors
+    /// [`RecordingError::Map`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, RecordingError> {
+        let fail = |line, message| RecordingError::Map { path: path.to_owned(), line, message };
+        let mut map: Self = toml::from_str(text).map_err(|e| {
+            let (line, message) = toml_problem(text, &e);
+            fail(line, message)
+        })?;
+        map.path = Some(path.to_owned());
+        map.lines = channel_lines(text);
+        for name in map.columns.iter().flat_map(BTreeMap::keys) {
+            if Channel::from_name(name).is_none() {
+                let near = suggestion(name, CHANNELS.iter().map(|c| c.name));
+                return Err(fail(
+                    map.line(name),
+                    format!("unknown channel `{name}`{near}; `trimtab check --help` lists them"),
+                ));
+            }
+        }
+        let positive = [("dt", map.dt), ("derive_span", map.derive_span), ("bridge", map.bridge)];
+        for (key, value) in positive {
+            if value.is_some_and(|v| !v.is_finite() || v <= 0.0) {
+                return Err(fail(key_line(text, key), format!("`{key}` must be a positive number of seconds")));
+            }
+        }
+        let points = map.reference_point.iter().chain(map.velocity_point.iter().flatten());
+        if points.into_iter().any(|v| !v.is_finite()) || !map.time_zero.is_finite() {
+            return Err(fail(1, "`reference_point`, `velocity_point` and `time_zero` must be finite".to_owned()));
+        }
+        Ok(map)
+    }
+
+    /// Line of a channel's entry in the map file, 1 when it was not read from one.
+    pub(crate) fn line(&self, channel: &str) -> usize {
+        self.lines.get(channel).copied().unwrap_or(1)
+    }
+}
+
+/// The line of each key of the `[columns]` table (or of its sub-tables `[columns.x]`).
+fn channel_lines(text: &str) -> BTreeMap<String, usize> {
+    let Ok(document) = toml::from_str::<SpannedColumns>(text) else { return BTreeMap::new() };
+    let keys = document.columns.into_iter().flat_map(BTreeMap::into_iter);
+    keys.map(|(name, value)| (name, line_at(text, value.span().start))).collect()
+}
+
+/// The same document read for the places of its columns alone.
+#[derive(Deserialize)]
+struct SpannedColumns {
+    columns: Option<BTreeMap<String, toml::Spanned<toml::Value>>>,
+}
+
+/// The line on which a top-level key is set, for messages about its value.
+pub(crate) fn key_line(text: &str, key: &str) -> usize {
+    text.lines()
+        .position(|l| l.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('=')))
+        .map_or(1, |i| i + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<ColumnMap, String> {
+        ColumnMap::parse(text, Path::new("columns.toml")).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn an_empty_map_is_the_canonical_layout() {
+        let map = parse("").unwrap();
+        assert_eq!(map.delimiter, Delimiter::Comma);
+        assert!(map.header.0 && map.columns.is_none());
+    }
+
+    #[test]
+    fn a_column_is_a_name_or_a_table() {
+        let map = parse("[columns]\npsi = \"heading\"\ndelta = { index = 3, unit = \"deg\", sign = -1 }\n").unwrap();
+        let columns = map.columns.unwrap();
+        assert_eq!(columns["psi"].name.as_deref(), Some("heading"));
+        assert_eq!(columns["delta"].linear(), (-1.0, 0.0));
+    }
+
+    #[test]
+    fn mistakes_in_a_map_name_line_and_the_near_word() {
+        let cases = [
+            ("delimter = \"tab\"", "columns.toml:1:", "did you mean `delimiter`?"),
+            ("dt = 0.1\nderive = [\"q\"]", "columns.toml:2:", "unknown variant `q`"),
+            ("[columns]\n\npsy = \"heading\"", "columns.toml:3:", "did you mean `psi`?"),
+            ("[columns]\nn = { index = 0 }", "columns.toml:2:", "counts from 1"),
+            ("[columns]\nn = { index = 1, sing = -1 }", "columns.toml:2:", "did you mean `sign`?"),
+            ("[columns]\nn = { index = 1, value = 3.0 }", "columns.toml:2:", "exactly one"),
+            ("skip_lines = 1\ndt = -0.1", "columns.toml:2:", "positive"),
+            ("speed = \"over water\"", "columns.toml:1:", "did you mean"),
+        ];
+        for (text, place, hint) in cases {
+            let message = parse(text).unwrap_err();
+            assert!(message.starts_with(place) && message.contains(hint), "{text}\n{message}");
+        }
+    }
+}

@@ -1,0 +1,415 @@
+//! From the text of a file to raw channels in SI units: lines, fields, columns, units, missing values.
+//! What follows (time, frames, reference point, derived channels) is `convert.rs`.
+
+use super::channel::{CHANNELS, Channel};
+use super::error::RecordingError;
+use super::map::{Column, ColumnMap, Decimal, Delimiter, SpeedReference};
+use super::{Recording, UNITS};
+use crate::error::suggestion;
+use std::path::{Path, PathBuf};
+
+/// Channels without which nothing can be simulated.
+const REQUIRED: [Channel; 3] = [Channel::T, Channel::N, Channel::Delta];
+
+/// A column of the header.
+struct HeaderColumn {
+    /// The whole text.
+    full: String,
+    /// Without the brackets.
+    name: String,
+    /// What stands in the brackets.
+    unit: Option<String>,
+}
+
+/// A channel with its source and its conversion to SI: `value * scale + offset`.
+struct Source {
+    channel: Channel,
+    /// Field in the row, from 0; `None` for a constant.
+    field: Option<usize>,
+    /// The constant, in SI.
+    constant: f64,
+    label: String,
+    unit: String,
+    scale: f64,
+    offset: f64,
+}
+
+/// Reads a recording; see [`Recording::read`].
+pub(super) fn read(path: &Path, map: &ColumnMap) -> Result<Recording, RecordingError> {
+    let bytes = std::fs::read(path).map_err(|source| RecordingError::Read { path: path.to_owned(), source })?;
+    let text = String::from_utf8_lossy(&bytes);
+    parse(text.strip_prefix('\u{feff}').unwrap_or(&text), path, map)
+}
+
+/// Parses the text of a recording.
+fn parse(text: &str, path: &Path, map: &ColumnMap) -> Result<Recording, RecordingError> {
+    let empty = |line, what: &str| RecordingError::Empty { path: path.to_owned(), line, what: what.to_owned() };
+    let mut lines = text.lines().enumerate().map(|(i, l)| (i + 1, l)).skip(map.skip_lines).peekable();
+    while lines.next_if(|(_, l)| l.trim().is_empty()).is_some() {}
+    let header_line = lines.peek().map_or(1, |(line, _)| *line);
+    let header: Option<Vec<HeaderColumn>> = if map.header.0 {
+        let (_, line) = lines.next().ok_or_else(|| empty(1, "there is no header line"))?;
+        Some(split(line, map.delimiter).into_iter().map(|f| header_column(&f)).collect())
+    } else {
+        None
+    };
+    let sources = sources(header.as_deref(), header_line, path, map)?;
+
+    // Rows as raw fields. A row of blanks only counts as a dropout when data follow it.
+    let expected = header.as_ref().map(Vec::len);
+    let needed = sources.iter().filter_map(|s| s.field).max().map_or(0, |f| f + 1);
+    let mut rows: Vec<(usize, Vec<f64>)> = Vec::new();
+    let mut data_rows = 0;
+    for (line, content) in lines {
+        if content.is_empty() {
+            continue;
+        }
+        let fields = split(content, map.delimiter);
+        if fields.iter().all(|f| f.is_empty()) {
+            rows.push((line, vec![f64::NAN; sources.len()]));
+            continue;
+        }
+        let surplus = expected.filter(|&e| fields.len() > e && fields[e..].iter().any(|f| !f.is_empty()));
+        if fields.len() < expected.unwrap_or(needed) || surplus.is_some() {
+            return Err(RecordingError::Ragged {
+                path: path.to_owned(),
+                line,
+                expected: expected.unwrap_or(needed),
+                found: fields.len(),
+            });
+        }
+        let values = sources.iter().map(|s| s.value(&fields, map.decimal).ok_or(s));
+        let values = values.collect::<Result<Vec<f64>, &Source>>().map_err(|s| RecordingError::NotANumber {
+            path: path.to_owned(),
+            line,
+            column: s.label.clone(),
+            found: s.field.map(|f| fields[f].clone()).unwrap_or_default(),
+        })?;
+        rows.push((line, values));
+        data_rows = rows.len();
+    }
+    if data_rows == 0 {
+        return Err(empty(header_line, "no row of data follows"));
+    }
+    let mut without_time: Vec<usize> = rows.split_off(data_rows).into_iter().map(|(line, _)| line).collect();
+
+    if let Some(dt) = map.dt {
+        let time = sources.iter().position(|s| s.channel == Channel::T);
+        for (i, (_, values)) in rows.iter_mut().enumerate() {
+            if let Some(time) = time {
+                values[time] = i as f64 * dt;
+            }
+        }
+    }
+    if let Some(time) = sources.iter().position(|s| s.channel == Channel::T) {
+        without_time.extend(rows.iter().filter(|(_, v)| !v[time].is_finite()).map(|(line, _)| *line));
+        rows.retain(|(_, v)| v[time].is_finite());
+        for (_, values) in &mut rows {
+            values[time] -= map.time_zero;
+        }
+    }
+    if rows.is_empty() {
+        return Err(empty(header_line, "no row has a time"));
+    }
+    without_time.sort_unstable();
+
+    let used: Vec<usize> = sources.iter().filter_map(|s| s.field).collect();
+    let unused = header.iter().flatten().enumerate().filter(|(i, _)| !used.contains(i)).map(|(_, h)| h.full.clone());
+    let mut recording = Recording {
+        name: path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default(),
+        path: path.to_owned(),
+        header_line,
+        lines: rows.iter().map(|(line, _)| *line).collect(),
+        data: vec![None; CHANNELS.len()],
+        units: vec![None; CHANNELS.len()],
+        derived: Vec::new(),
+        without_time: ranges(&without_time),
+        unused: unused.collect(),
+        bridged: Vec::new(),
+    };
+    for (i, source) in sources.into_iter().enumerate() {
+        let slot = match (source.channel, map.speed) {
+            (Channel::U, SpeedReference::ThroughWater) => Channel::UWater,
+            (Channel::V, SpeedReference::ThroughWater) => Channel::VWater,
+            (channel, _) => channel,
+        };
+        recording.data[slot as usize] = Some(rows.iter().map(|(_, v)| v[i]).collect());
+        recording.units[slot as usize] = Some(source.unit);
+    }
+    recording.finish(map)?;
+    Ok(recording)
+}
+
+impl Source {
+    /// The value in SI, NaN when missing, `None` when it is no number.
+    fn value(&self, fields: &[String], decimal: Decimal) -> Option<f64> {
+        let Some(field) = self.field else { return Some(self.constant) };
+        let text = fields[field].trim();
+        if text.is_empty() || ["nan", "na", "n/a", "null", "none", "-nan"].iter().any(|m| text.eq_ignore_ascii_case(m))
+        {
+            return Some(f64::NAN);
+        }
+        let parsed = match decimal {
+            Decimal::Point => text.parse::<f64>(),
+            Decimal::Comma => text.replace(',', ".").parse::<f64>(),
+        };
+        let value = parsed.ok()?;
+        Some(if value.is_finite() { value * self.scale + self.offset } else { f64::NAN })
+    }
+}
+
+/// Where each channel comes from.
+fn sources(
+    header: Option<&[HeaderColumn]>,
+    header_line: usize,
+    path: &Path,
+    map: &ColumnMap,
+) -> Result<Vec<Source>, RecordingError> {
+    let mut sources = Vec::new();
+    for info in CHANNELS {
+        let listed = map.columns.as_ref().map(|columns| columns.get(info.name));
+        let own_name = Column { name: Some(info.name.to_owned()), ..Column::default() };
+        let column = match listed {
+            Some(Some(column)) => column,
+            Some(None) => continue,
+            None if header.is_none() => {
+                return Err(map_problem(
+                    map,
+                    path,
+                    1,
+                    "a file without a header needs a [columns] table with `index` entries",
+                ));
+            }
+            None if find(header, header_line, path, info.name)?.is_some() => &own_name,
+            None => continue,
+        };
+        sources.push(source(info.channel, column, header, header_line, path, map)?);
+    }
+    if map.dt.is_some() && !sources.iter().any(|s| s.channel == Channel::T) {
+        let unit = "s".to_owned();
+        let (channel, label) = (Channel::T, "t".to_owned());
+        sources.insert(0, Source { channel, field: None, constant: 0.0, label, unit, scale: 1.0, offset: 0.0 });
+    }
+    for channel in REQUIRED {
+        if sources.iter().any(|s| s.channel == channel) {
+            continue;
+        }
+        if map.columns.is_some() {
+            let text = format!(
+                "[columns] has no entry for channel `{channel}` ({}), which every run needs",
+                channel.info().words
+            );
+            return Err(map_problem(map, path, 1, &text));
+        }
+        return Err(missing_column(header, header_line, path, channel.name(), channel));
+    }
+    Ok(sources)
+}
+
+/// Resolves one channel's column, unit and conversion.
+fn source(
+    channel: Channel,
+    column: &Column,
+    header: Option<&[HeaderColumn]>,
+    header_line: usize,
+    path: &Path,
+    map: &ColumnMap,
+) -> Result<Source, RecordingError> {
+    let map_line = map.line(channel.name());
+    let field = match (&column.name, column.index) {
+        (Some(name), _) => {
+            if header.is_none() {
+                let text = format!(
+                    "channel `{channel}` is given by the name `{name}` in a file without a header; give its `index`"
+                );
+                return Err(map_problem(map, path, map_line, &text));
+            }
+            let found = find(header, header_line, path, name)?;
+            Some(found.ok_or_else(|| missing_column(header, header_line, path, name, channel))?)
+        }
+        (None, Some(index)) => {
+            if let Some(columns) = header.map(<[HeaderColumn]>::len).filter(|&n| index > n) {
+                let text = format!("channel `{channel}` is column {index}, but the header has {columns} columns");
+                return Err(map_problem(map, path, map_line, &text));
+            }
+            Some(index - 1)
+        }
+        (None, None) => None,
+    };
+    let quantity = channel.info().quantity;
+    let in_header = field.and_then(|f| header.and_then(|h| h.get(f))).and_then(|h| h.unit.clone());
+    // A unit from the map is wrong in the map; one from the header, or none at all, in the file.
+    let (place, line) = match (&column.unit, &map.path) {
+        (Some(_), Some(map_path)) => (map_path.clone(), map_line),
+        _ => (path.to_owned(), header_line),
+    };
+    let unit = column.unit.clone().or(in_header);
+    let problem = |problem: String, near: String| RecordingError::Unit {
+        path: place.clone(),
+        line,
+        column: column.label(),
+        problem,
+        channel,
+        suggestion: near,
+    };
+    let unit = unit.ok_or_else(|| problem("has no unit".to_owned(), String::new()))?;
+    let factor = quantity.factor(&unit).ok_or_else(|| {
+        let known = UNITS.iter().filter(|u| u.quantity == quantity).flat_map(|u| u.spellings.iter().copied());
+        problem(format!("has the unit `{unit}`"), suggestion(&unit, known))
+    })?;
+    let (scale, offset) = column.linear();
+    let constant = column.value.map_or(f64::NAN, |v| (v * scale + offset) * factor);
+    let label = field.and_then(|f| header.and_then(|h| h.get(f))).map_or_else(|| column.label(), |h| h.full.clone());
+    Ok(Source { channel, field, constant, label, unit, scale: scale * factor, offset: offset * factor })
+}
+
+/// The field of a header column by its full text, its name, or its name without regard to case.
+fn find(
+    header: Option<&[HeaderColumn]>,
+    line: usize,
+    path: &Path,
+    name: &str,
+) -> Result<Option<usize>, RecordingError> {
+    let header = header.unwrap_or_default();
+    let tests: [fn(&HeaderColumn, &str) -> bool; 3] =
+        [|h, n| h.full == n, |h, n| h.name == n, |h, n| h.name.eq_ignore_ascii_case(n)];
+    for test in tests {
+        let mut hits = header.iter().enumerate().filter(|(_, h)| test(h, name)).map(|(i, _)| i);
+        if let Some(first) = hits.next() {
+            if hits.next().is_some() {
+                return Err(RecordingError::RepeatedColumn { path: path.to_owned(), line, column: name.to_owned() });
+            }
+            return Ok(Some(first));
+        }
+    }
+    Ok(None)
+}
+
+fn missing_column(
+    header: Option<&[HeaderColumn]>,
+    line: usize,
+    path: &Path,
+    column: &str,
+    channel: Channel,
+) -> RecordingError {
+    let header = header.unwrap_or_default();
+    RecordingError::MissingColumn {
+        path: path.to_owned(),
+        line,
+        column: column.to_owned(),
+        channel,
+        suggestion: suggestion(column, header.iter().map(|h| h.name.as_str())),
+        found: header.iter().map(|h| format!("`{}`", h.full)).collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// A problem of the column map, told of the map's file, or of the recording where the map is the default one.
+fn map_problem(map: &ColumnMap, path: &Path, line: usize, message: &str) -> RecordingError {
+    let path: PathBuf = map.path.clone().unwrap_or_else(|| path.to_owned());
+    RecordingError::Map { path, line, message: message.to_owned() }
+}
+
+/// `u [kn]` or `u (kn)` into name and unit.
+fn header_column(text: &str) -> HeaderColumn {
+    let full = text.to_owned();
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        if let Some((name, rest)) = full.split_once(open)
+            && let Some((unit, _)) = rest.rsplit_once(close)
+        {
+            return HeaderColumn { name: name.trim().to_owned(), unit: Some(unit.trim().to_owned()), full };
+        }
+    }
+    HeaderColumn { name: full.clone(), unit: None, full }
+}
+
+/// The fields of a line, trimmed and without quotes.
+fn split(line: &str, delimiter: Delimiter) -> Vec<String> {
+    let separator = match delimiter {
+        Delimiter::Whitespace => return line.split_whitespace().map(|f| f.trim_matches('"').to_owned()).collect(),
+        Delimiter::Comma => ',',
+        Delimiter::Semicolon => ';',
+        Delimiter::Tab => '\t',
+    };
+    let mut fields = vec![String::new()];
+    let mut quoted = false;
+    for c in line.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            c if c == separator && !quoted => fields.push(String::new()),
+            c => {
+                if let Some(last) = fields.last_mut() {
+                    last.push(c);
+                }
+            }
+        }
+    }
+    fields.into_iter().map(|f| f.trim().to_owned()).collect()
+}
+
+/// Consecutive numbers as (first, last).
+fn ranges(lines: &[usize]) -> Vec<(usize, usize)> {
+    let mut ranges: Vec<(usize, usize)> = Vec::new();
+    for &line in lines {
+        match ranges.last_mut() {
+            Some(last) if last.1 + 1 == line => last.1 = line,
+            _ => ranges.push((line, line)),
+        }
+    }
+    ranges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TABLE: &str = "t [s],x [m],y [m],psi [deg],u [kn],v [m/s],r [deg/s],n [rpm],delta [deg]\n\
+                         0,0,0,359,10,0,1,60,-5\n1,5,0,0.5,10,0,1,60,-5\n2,10,0,1.5,10,0,1,60,-5\n";
+
+    fn read(text: &str, map: &str) -> Result<Recording, RecordingError> {
+        let map = ColumnMap::parse(map, Path::new("columns.toml")).unwrap();
+        parse(text, Path::new("run.csv"), &map)
+    }
+
+    #[test]
+    fn a_canonical_file_is_read_into_si_units() {
+        let r = read(TABLE, "").unwrap();
+        assert_eq!((r.len(), r.line(0), r.step()), (3, 2, 1.0));
+        let at = |c| r.get(c).unwrap()[1];
+        assert!((at(Channel::U) - 5.144_444).abs() < 1e-6);
+        assert!((at(Channel::N) - 1.0).abs() < 1e-12);
+        assert!((at(Channel::Delta) + 5_f64.to_radians()).abs() < 1e-12);
+        assert!((at(Channel::Psi) - 360.5_f64.to_radians()).abs() < 1e-12, "unwrapped across north");
+    }
+
+    #[test]
+    fn a_map_changes_delimiter_sign_unit_and_name() {
+        let text = "made by a logger\n\ntime;n;rudder\n0,0;60;5\n0,5;60;-5\n";
+        let map = "delimiter = \"semicolon\"\ndecimal = \"comma\"\nskip_lines = 1\n[columns]\n\
+                   t = { column = \"time\", unit = \"s\" }\nn = { column = \"n\", unit = \"rpm\" }\n\
+                   delta = { column = \"rudder\", unit = \"deg\", sign = -1 }\nu = { value = 2.0, unit = \"m/s\" }\n";
+        let r = read(text, map).unwrap();
+        assert_eq!(r.time(), [0.0, 0.5]);
+        assert!((r.get(Channel::Delta).unwrap()[0] + 5_f64.to_radians()).abs() < 1e-12);
+        assert_eq!(r.get(Channel::U).unwrap(), [2.0, 2.0]);
+        assert_eq!(r.line(0), 4);
+    }
+
+    #[test]
+    fn columns_can_be_counted_and_time_rebuilt() {
+        let map = "delimiter = \"whitespace\"\nheader = false\ndt = 0.5\n[columns]\nt = { index = 1, unit = \"s\" }\n\
+                   n = { index = 2, unit = \"rps\" }\ndelta = { index = 3, unit = \"rad\" }\n";
+        let r = read("0.0  1 0.1\n 1.0 1 0.1\n1.0\t1 0.1\n", map).unwrap();
+        assert_eq!(r.time(), [0.0, 0.5, 1.0]);
+    }
+
+    #[test]
+    fn written_recordings_are_read_back_bit_for_bit() {
+        let r = read(TABLE, "").unwrap();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        r.write(file.path()).unwrap();
+        let again = Recording::read(file.path(), &ColumnMap::default()).unwrap();
+        for (channel, values) in r.channels() {
+            assert_eq!(Some(values), again.get(channel), "{channel}");
+        }
+    }
+}

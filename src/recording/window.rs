@@ -1,0 +1,894 @@
+//! From a recording to windows: stretches on a uniform grid with inputs, measured states and an initial state, ready to be simulated.
+//! Windows never reach across a dropout or a gap; which windows train and which test is decided by the study.
+
+use super::Recording;
+use super::channel::{Channel, STATE_CHANNELS};
+use super::convert::to_earth;
+use super::error::RecordingError;
+use super::local::local_fit;
+use crate::state::{Inputs, STATES};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// On which side of the split a run is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Split {
+    /// Parameters are fitted to it.
+    Train,
+    /// It is kept aside to judge the fit.
+    Test,
+}
+
+/// What a study says about a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Labels {
+    /// Name of the run.
+    pub run: String,
+    /// Session (a day, a voyage): what may share a hidden condition.
+    pub session: String,
+    /// Kind of manoeuvre.
+    pub manoeuvre: String,
+    /// Train or test.
+    pub split: Split,
+}
+
+/// What to do with a run that has missing values or jumps in time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Gaps {
+    /// Refuse it with one error that names the lines.
+    #[default]
+    Refuse,
+    /// Cut it there and use the unbroken stretches.
+    Split,
+}
+
+/// Where a window's initial state comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Initial {
+    /// The first sample as measured. Channels that were not measured are estimated as in `Smoothed`, over ten rows.
+    First,
+    /// A local motion fitted to all state channels over `span` seconds: uniform acceleration in u, v and r, with x, y and psi
+    /// their integrals, each channel weighted by its own scatter.
+    Smoothed {
+        /// Length of the fit \[s\], centred on the start where the recording allows it.
+        span: f64,
+    },
+}
+
+/// How recordings are cut into windows.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WindowSettings {
+    /// Grid step \[s\]; the recording's own when absent.
+    ///
+    /// At the recording's own step samples are used as they are. A finer grid interpolates linearly. On a coarser one each
+    /// sample is the mean over one step centred on it, of inputs and measured states alike, so that both keep the same timing;
+    /// the grid then starts half a step inside the stretch.
+    pub step: Option<f64>,
+    /// Window length \[s\]; each unbroken stretch is one window when absent.
+    pub window: Option<f64>,
+    /// Overlap of consecutive windows \[s\].
+    pub overlap: f64,
+    /// Time left out at the start of each run \[s\].
+    pub discard_start: f64,
+    /// Time left out at the end of each run \[s\].
+    pub discard_end: f64,
+    /// First time used, in the recording's time \[s\].
+    pub from: Option<f64>,
+    /// Last time used \[s\].
+    pub to: Option<f64>,
+    /// Initial state.
+    pub initial: Initial,
+    /// Missing values and gaps.
+    pub gaps: Gaps,
+    /// The ship's draught \[m\], which turns depth into d/h.
+    pub draught: f64,
+}
+
+impl WindowSettings {
+    /// The whole run at its own step, started from its first row.
+    pub fn whole(draught: f64) -> Self {
+        Self {
+            step: None,
+            window: None,
+            overlap: 0.0,
+            discard_start: 0.0,
+            discard_end: 0.0,
+            from: None,
+            to: None,
+            initial: Initial::First,
+            gaps: Gaps::Refuse,
+            draught,
+        }
+    }
+}
+
+/// Which environmental channels were recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Environment {
+    /// True or apparent wind.
+    pub wind: bool,
+    /// Current.
+    pub current: bool,
+    /// Waves.
+    pub waves: bool,
+    /// Water depth.
+    pub depth: bool,
+    /// Distance to a bank on either side.
+    pub bank: bool,
+    /// Bow thruster.
+    pub thruster: bool,
+}
+
+/// What was ordered, where it was recorded, on the window's grid.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Order {
+    /// Ordered rudder angle \[rad\].
+    pub delta: Option<Vec<f64>>,
+    /// Ordered propeller rate \[1/s\].
+    pub n: Option<Vec<f64>>,
+}
+
+/// A stretch of a run on a uniform grid: `inputs` and `measured` have one entry a sample, steps + 1 in all.
+#[derive(Clone, Debug)]
+pub struct Window {
+    /// Name of the run.
+    pub run: String,
+    /// Session of the run.
+    pub session: String,
+    /// Manoeuvre of the run.
+    pub manoeuvre: String,
+    /// Train or test.
+    pub split: Split,
+    /// Time of the first sample \[s\].
+    pub start_time: f64,
+    /// Step \[s\].
+    pub dt: f64,
+    /// Inputs at each sample.
+    pub inputs: Vec<Inputs<f64>>,
+    /// Measured `[x, y, psi, u, v, r]` at each sample; 0 in channels that were not measured.
+    pub measured: Vec<[f64; STATES]>,
+    /// Which of them were measured or derived; the others must carry no weight.
+    pub measured_channels: [bool; STATES],
+    /// Initial state.
+    pub initial: [f64; STATES],
+    /// Environmental channels recorded.
+    pub has: Environment,
+    /// Orders recorded.
+    pub order: Order,
+    /// Velocity through water (forward, starboard) \[m/s\], where a log recorded it.
+    pub water: Option<Vec<[f64; 2]>>,
+}
+
+impl Window {
+    /// Number of steps.
+    pub fn steps(&self) -> usize {
+        self.inputs.len().saturating_sub(1)
+    }
+
+    /// Length \[s\].
+    pub fn duration(&self) -> f64 {
+        self.steps() as f64 * self.dt
+    }
+
+    /// Time of a sample \[s\].
+    pub fn time(&self, sample: usize) -> f64 {
+        self.start_time + sample as f64 * self.dt
+    }
+
+    /// Length of the measured track \[m\]; from the measured speed where no position was measured.
+    pub fn path_length(&self) -> f64 {
+        if self.measured_channels[0] && self.measured_channels[1] {
+            self.measured.windows(2).map(|s| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1])).sum()
+        } else {
+            self.mean_speed() * self.duration()
+        }
+    }
+
+    /// Mean of the measured speed over ground \[m/s\]; from the track where velocity was not measured.
+    pub fn mean_speed(&self) -> f64 {
+        if self.measured_channels[3] && self.measured_channels[4] {
+            self.measured.iter().map(|s| s[3].hypot(s[4])).sum::<f64>() / self.measured.len() as f64
+        } else if self.measured_channels[0] && self.measured_channels[1] {
+            self.path_length() / self.duration()
+        } else {
+            self.measured.iter().map(|s| s[3].abs()).sum::<f64>() / self.measured.len() as f64
+        }
+    }
+}
+
+/// An unbroken stretch too short for a window.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Skipped {
+    /// Name of the run.
+    pub run: String,
+    /// First line.
+    pub first_line: usize,
+    /// Last line.
+    pub last_line: usize,
+    /// Length \[s\].
+    pub length: f64,
+}
+
+/// The windows of a run and what was left over.
+#[derive(Clone, Debug, Default)]
+pub struct Windows {
+    /// In order of time.
+    pub windows: Vec<Window>,
+    /// Stretches too short for one.
+    pub skipped: Vec<Skipped>,
+}
+
+/// Steps a window must have to say anything of a motion.
+const MIN_STEPS: usize = 2;
+/// Relative difference below which two steps are the same.
+const SAME_STEP: f64 = 1e-6;
+
+impl Recording {
+    /// Cuts the recording into windows.
+    ///
+    /// # Errors
+    /// [`RecordingError`]: an interruption where `gaps` refuses one, a missing channel, a setting that cannot be, or no stretch
+    /// as long as a window.
+    pub fn windows(&self, labels: &Labels, settings: &WindowSettings) -> Result<Windows, RecordingError> {
+        if let (Gaps::Refuse, Some(error)) = (settings.gaps, self.interruption()) {
+            return Err(error);
+        }
+        let columns = self.columns(settings.draught)?;
+        let grid = self.grid(settings)?;
+        let t = self.time();
+        let (first, last) = (t.first().copied().unwrap_or(0.0), t.last().copied().unwrap_or(0.0));
+        let begin = (first + settings.discard_start).max(settings.from.unwrap_or(f64::MIN));
+        let end = (last - settings.discard_end).min(settings.to.unwrap_or(f64::MAX));
+
+        let mut result = Windows::default();
+        let mut longest: Option<(f64, usize)> = None;
+        for segment in self.segments() {
+            let sampler = Sampler::new(t, segment.clone(), &grid, begin, end);
+            let needed = grid.window.unwrap_or(MIN_STEPS);
+            if sampler.steps < needed {
+                let length = sampler.steps as f64 * grid.step;
+                let line = self.line(segment.start);
+                if longest.is_none_or(|(l, _)| length > l) {
+                    longest = Some((length, line));
+                }
+                let (run, last_line) = (labels.run.clone(), self.line(segment.end - 1));
+                result.skipped.push(Skipped { run, first_line: line, last_line, length });
+                continue;
+            }
+            let length = grid.window.unwrap_or(sampler.steps);
+            let stride = length - grid.overlap;
+            let mut start = 0;
+            while start + length <= sampler.steps {
+                result.windows.push(self.window(labels, settings, &columns, &sampler, start..start + length + 1)?);
+                start += stride;
+            }
+        }
+        if result.windows.is_empty() {
+            let (have, line) = longest.unwrap_or((0.0, self.line(0)));
+            let need = grid.window.unwrap_or(MIN_STEPS) as f64 * grid.step;
+            return Err(RecordingError::TooShort { path: self.path.clone(), line, have, need });
+        }
+        Ok(result)
+    }
+
+    /// One window: samples `samples` of the sampler's grid.
+    fn window(
+        &self,
+        labels: &Labels,
+        settings: &WindowSettings,
+        columns: &Columns,
+        sampler: &Sampler,
+        samples: Range<usize>,
+    ) -> Result<Window, RecordingError> {
+        let take = |values: &[f64]| samples.clone().map(|k| sampler.sample(values, k)).collect::<Vec<f64>>();
+        let measured_columns = STATE_CHANNELS.map(|c| self.get(c).map(take));
+        let measured_channels = std::array::from_fn(|i| measured_columns[i].is_some());
+        let rows = samples.len();
+        let measured: Vec<[f64; STATES]> = (0..rows)
+            .map(|k| std::array::from_fn(|i| measured_columns[i].as_ref().map_or(0.0, |column| column[k])))
+            .collect();
+        let inputs_columns = columns.inputs.each_ref().map(|c| take(c));
+        let start_time = sampler.time(samples.start);
+        let inputs = (0..rows).map(|k| {
+            let at = |i: usize| inputs_columns[i][k];
+            Inputs {
+                t: sampler.time(samples.start + k),
+                n: at(0),
+                delta: at(1),
+                wind: [at(2), at(3)],
+                current: [at(4), at(5)],
+                waves: [at(6), at(7)],
+                draught_to_depth: at(8),
+                bank: at(9),
+                thruster: at(10),
+            }
+        });
+        // Orders and logs may drop out without interrupting a run; a window in which they do goes without.
+        let whole = |channel| self.get(channel).map(take).filter(|v| v.iter().all(|x| x.is_finite()));
+        let water = whole(Channel::UWater).zip(whole(Channel::VWater));
+        let mut window = Window {
+            run: labels.run.clone(),
+            session: labels.session.clone(),
+            manoeuvre: labels.manoeuvre.clone(),
+            split: labels.split,
+            start_time,
+            dt: sampler.step,
+            inputs: inputs.collect(),
+            initial: measured[0],
+            measured,
+            measured_channels,
+            has: columns.has,
+            order: Order { delta: whole(Channel::DeltaOrder), n: whole(Channel::NOrder) },
+            water: water.map(|(u, v)| u.into_iter().zip(v).map(|(u, v)| [u, v]).collect()),
+        };
+        let (span, all) = match settings.initial {
+            Initial::First => (10.0 * self.step(), false),
+            Initial::Smoothed { span } => (span, true),
+        };
+        if all || measured_channels.contains(&false) {
+            let estimate = self.local_motion(&sampler.segment, start_time, span);
+            let estimate = estimate.ok_or_else(|| RecordingError::Setting {
+                path: self.path.clone(),
+                message: format!(
+                    "`initial_span` = {span} s covers fewer than three rows at {start_time:.2} s; set it to several steps of {:.3} s",
+                    self.step()
+                ),
+            })?;
+            for i in 0..STATES {
+                if all || !measured_channels[i] {
+                    window.initial[i] = estimate[i];
+                }
+            }
+        }
+        Ok(window)
+    }
+
+    /// The grid: step, window and overlap in steps.
+    fn grid(&self, settings: &WindowSettings) -> Result<Grid, RecordingError> {
+        let fail = |message: String| RecordingError::Setting { path: self.path.clone(), message };
+        let t = self.time();
+        let median = self.step();
+        // Over an unbroken regular run the mean step is the median without its rounding.
+        let mean = self.duration() / (self.len().max(2) - 1) as f64;
+        let regular = t.iter().enumerate().all(|(i, ti)| (ti - t[0] - i as f64 * mean).abs() < 1e-3 * mean);
+        let own = (if regular { mean } else { median } * 1e9).round() / 1e9;
+        let step = settings.step.unwrap_or(own);
+        let times = [("step", step), ("window", settings.window.unwrap_or(1.0))];
+        if let Some((key, value)) = times.into_iter().find(|(_, v)| !v.is_finite() || *v <= 0.0) {
+            return Err(fail(format!("`{key}` = {value} s is not a positive time; correct it in the study")));
+        }
+        let window = settings.window.map(|w| (w / step).round() as usize);
+        if let Some(short) = window.filter(|&w| w < MIN_STEPS) {
+            let text = format!(
+                "a window of {short} steps of {step} s is too short; set `window` to {MIN_STEPS} steps or more"
+            );
+            return Err(fail(text));
+        }
+        let overlap = (settings.overlap / step).round() as usize;
+        if settings.overlap < 0.0 || window.is_some_and(|w| overlap >= w) {
+            let text =
+                format!("`window_overlap` = {} s must be shorter than `window` and not negative", settings.overlap);
+            return Err(fail(text));
+        }
+        let as_recorded = (step / own - 1.0).abs() < SAME_STEP;
+        let width = if step > own * (1.0 + SAME_STEP) { step } else { 0.0 };
+        Ok(Grid { step, window, overlap, as_recorded, width })
+    }
+
+    /// Inputs at every row, by column, in the order of [`Inputs`].
+    fn columns(&self, draught: f64) -> Result<Columns, RecordingError> {
+        let need = |c, next: &str| self.require(c, "to simulate the run", next);
+        let from_position = "record it, or derive it from position and heading with `derive` in a column map";
+        let positions = self.has(Channel::X) && self.has(Channel::Y) && self.has(Channel::Psi);
+        if !positions {
+            need(Channel::U, from_position)?;
+            need(Channel::V, from_position)?;
+        }
+        if !self.has(Channel::Psi) {
+            need(Channel::R, "record it or the heading")?;
+        }
+        let rows = self.len();
+        let zero = || vec![0.0; rows];
+        let mut inputs: [Vec<f64>; 11] = std::array::from_fn(|_| zero());
+        inputs[0] = need(Channel::N, "add the column")?.to_vec();
+        inputs[1] = need(Channel::Delta, "add the column")?.to_vec();
+        let mut has = Environment::default();
+        let mut put = |at: usize, vectors: Vec<[f64; 2]>| {
+            (inputs[at], inputs[at + 1]) = vectors.into_iter().map(|v| (v[0], v[1])).unzip();
+        };
+        if let Some((speed, from)) = self.pair(Channel::WindSpeed, Channel::WindDirection) {
+            has.wind = true;
+            put(2, polar(speed, from, -1.0).collect());
+        } else if let Some((speed, from)) = self.pair(Channel::ApparentWindSpeed, Channel::ApparentWindDirection) {
+            has.wind = true;
+            let purpose = "to turn apparent into true wind";
+            let next = "record it, or record the true wind";
+            let psi = self.require(Channel::Psi, purpose, next)?;
+            let u = self.require(Channel::U, purpose, next)?;
+            let v = self.require(Channel::V, purpose, next)?;
+            let air = polar(speed, from, -1.0).enumerate();
+            put(2, air.map(|(i, air)| to_earth(psi[i], [air[0] + u[i], air[1] + v[i]])).collect());
+        }
+        if let Some((speed, to)) = self.pair(Channel::CurrentSpeed, Channel::CurrentDirection) {
+            has.current = true;
+            put(4, polar(speed, to, 1.0).collect());
+        }
+        if let Some((height, from)) = self.pair(Channel::WaveHeight, Channel::WaveDirection) {
+            has.waves = true;
+            let squared: Vec<f64> = height.iter().map(|h| h * h).collect();
+            put(6, polar(&squared, from, -1.0).collect());
+        }
+        if let Some(depth) = self.get(Channel::Depth) {
+            has.depth = true;
+            inputs[8] = depth.iter().map(|h| draught / h).collect();
+        }
+        for (channel, sign) in [(Channel::BankStarboard, 1.0), (Channel::BankPort, -1.0)] {
+            if let Some(distance) = self.get(channel) {
+                has.bank = true;
+                inputs[9].iter_mut().zip(distance).for_each(|(bank, y)| *bank += sign / y);
+            }
+        }
+        if let Some(thruster) = self.get(Channel::Thruster) {
+            has.thruster = true;
+            inputs[10] = thruster.to_vec();
+        }
+        if has.wind || has.current || has.waves {
+            self.require(
+                Channel::Psi,
+                "to bring wind, current and waves to the ship's axes",
+                "record it, or leave them out",
+            )?;
+        }
+        Ok(Columns { inputs, has })
+    }
+
+    fn pair(&self, a: Channel, b: Channel) -> Option<(&[f64], &[f64])> {
+        self.get(a).zip(self.get(b))
+    }
+
+    /// State at `t0` of the local motion that fits all state channels of `segment` best over `span` seconds: u, v and r linear in
+    /// time, x, y and psi their integrals. Channels that were not recorded come out of the others, or as 0 (position, and heading
+    /// without one). `None` when fewer than three rows are covered.
+    fn local_motion(&self, segment: &Range<usize>, t0: f64, span: f64) -> Option<[f64; STATES]> {
+        let t = self.time();
+        // Centred on t0, moved inside where the segment ends.
+        let (first, last) = (t[segment.start], t[segment.end - 1]);
+        let from = (t0 - 0.5 * span).min(last - span).max(first);
+        let slack = 1e-9 * span;
+        let rows: Vec<usize> =
+            segment.clone().filter(|&i| t[i] >= from - slack && t[i] <= from + span + slack).collect();
+        if rows.len() < 3 {
+            return None;
+        }
+        let tau: Vec<f64> = rows.iter().map(|&i| t[i] - t0).collect();
+        let channel = |c: Channel| self.get(c).map(|v| rows.iter().map(|&i| v[i]).collect::<Vec<f64>>());
+        let [x, y, psi, u, v, r] = STATE_CHANNELS.map(channel);
+
+        let mut turn = Rows::default();
+        if let Some(psi) = &psi {
+            turn.push(&tau, psi, |_, s| vec![1.0, s, 0.5 * s * s]);
+        }
+        if let Some(r) = &r {
+            turn.push(&tau, r, |_, s| vec![0.0, 1.0, s]);
+        }
+        let heading = turn.solve(3)?;
+        let psi_at = |s: f64| heading[0] + heading[1] * s + 0.5 * heading[2] * s * s;
+        // Integrals from 0 to s of cos psi, sin psi, and of both times the running time, by Simpson's rule.
+        let integrals = |s: f64| {
+            const PANELS: usize = 8;
+            let mut sum = [0.0; 4];
+            for i in 0..=2 * PANELS {
+                let at = s * i as f64 / (2 * PANELS) as f64;
+                let weight = if i == 0 || i == 2 * PANELS {
+                    1.0
+                } else if i % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                };
+                let (sin, cos) = psi_at(at).sin_cos();
+                for (sum, value) in sum.iter_mut().zip([cos, sin, at * cos, at * sin]) {
+                    *sum += weight * value;
+                }
+            }
+            sum.map(|v| v * s / (6 * PANELS) as f64)
+        };
+        let mut motion = Rows::default();
+        // Unknowns: x0, y0, u0, u', v0, v'. Without a heading the track cannot be told from drift, so it is left out.
+        if psi.is_some() {
+            let table: Vec<[f64; 4]> = tau.iter().map(|&s| integrals(s)).collect();
+            if let Some(x) = &x {
+                motion.push(&tau, x, |i, _| {
+                    let [c, s, ct, st] = table[i];
+                    vec![1.0, 0.0, c, ct, -s, -st]
+                });
+            }
+            if let Some(y) = &y {
+                motion.push(&tau, y, |i, _| {
+                    let [c, s, ct, st] = table[i];
+                    vec![0.0, 1.0, s, st, c, ct]
+                });
+            }
+        }
+        if let Some(u) = &u {
+            motion.push(&tau, u, |_, s| vec![0.0, 0.0, 1.0, s, 0.0, 0.0]);
+        }
+        if let Some(v) = &v {
+            motion.push(&tau, v, |_, s| vec![0.0, 0.0, 0.0, 0.0, 1.0, s]);
+        }
+        let m = motion.solve(6)?;
+        let mut state = [m[0], m[1], heading[0], m[2], m[4], heading[1]];
+        if psi.is_none() {
+            for (i, values) in [x, y].into_iter().enumerate() {
+                state[i] = values.and_then(|v| local_fit(&tau, &v, 0.0)).map_or(0.0, |c| c[0]);
+            }
+        }
+        state.iter().all(|s| s.is_finite()).then_some(state)
+    }
+}
+
+/// Grid step and lengths in steps.
+struct Grid {
+    step: f64,
+    window: Option<usize>,
+    overlap: usize,
+    /// The grid is the recording's own: rows are used as they are where they are regular.
+    as_recorded: bool,
+    /// Width of the mean around each sample \[s\], 0 for none.
+    width: f64,
+}
+
+/// Inputs by column and row.
+struct Columns {
+    inputs: [Vec<f64>; 11],
+    has: Environment,
+}
+
+/// Samples an unbroken stretch on a grid.
+struct Sampler<'a> {
+    t: &'a [f64],
+    segment: Range<usize>,
+    start: f64,
+    step: f64,
+    width: f64,
+    /// Row of sample 0, when samples are rows.
+    row: Option<usize>,
+    /// Steps that fit.
+    steps: usize,
+}
+
+impl<'a> Sampler<'a> {
+    fn new(t: &'a [f64], segment: Range<usize>, grid: &Grid, begin: f64, end: f64) -> Self {
+        let slack = 1e-6 * grid.step;
+        let rows = &t[segment.clone()];
+        let aligned =
+            rows.iter().enumerate().all(|(i, ti)| (ti - rows[0] - i as f64 * grid.step).abs() < 1e-3 * grid.step);
+        let (first, last) = (rows[0], rows[rows.len() - 1]);
+        if grid.as_recorded && aligned {
+            let from = segment.start + rows.partition_point(|&ti| ti < begin - slack);
+            let to = segment.start + rows.partition_point(|&ti| ti <= end + slack);
+            let steps = to.saturating_sub(from + 1);
+            let start = t.get(from).copied().unwrap_or(last);
+            return Self { t, segment, start, step: grid.step, width: 0.0, row: Some(from), steps };
+        }
+        let start = begin.max(first + 0.5 * grid.width);
+        let room = end.min(last - 0.5 * grid.width) - start;
+        let steps = if room < 0.0 { 0 } else { ((room + slack) / grid.step).floor() as usize };
+        Self { t, segment, start, step: grid.step, width: grid.width, row: None, steps }
+    }
+
+    fn time(&self, sample: usize) -> f64 {
+        match self.row {
+            Some(row) => self.t[row + sample],
+            None => self.start + sample as f64 * self.step,
+        }
+    }
+
+    /// The sample of a column: the row itself, a linear interpolation, or the mean over `width` of the line through the rows.
+    fn sample(&self, values: &[f64], sample: usize) -> f64 {
+        if let Some(row) = self.row {
+            return values[row + sample];
+        }
+        let at = self.time(sample);
+        if self.width == 0.0 {
+            return self.interpolate(values, at);
+        }
+        // Trapezoids between the ends of the mean and the rows inside are the exact integral of the line.
+        let (from, to) = (at - 0.5 * self.width, at + 0.5 * self.width);
+        let rows = &self.t[self.segment.clone()];
+        let inside = rows.partition_point(|&t| t <= from)..rows.partition_point(|&t| t < to);
+        let mut before = (from, self.interpolate(values, from));
+        let mut integral = 0.0;
+        let knots = inside.map(|i| (rows[i], values[self.segment.start + i]));
+        for point in knots.chain(std::iter::once((to, self.interpolate(values, to)))) {
+            integral += 0.5 * (point.1 + before.1) * (point.0 - before.0);
+            before = point;
+        }
+        integral / self.width
+    }
+
+    fn interpolate(&self, values: &[f64], at: f64) -> f64 {
+        let rows = &self.t[self.segment.clone()];
+        let next = rows.partition_point(|&t| t <= at).clamp(1, rows.len() - 1);
+        let (a, b) = (self.segment.start + next - 1, self.segment.start + next);
+        let fraction = (at - self.t[a]) / (self.t[b] - self.t[a]);
+        values[a] + (values[b] - values[a]) * fraction
+    }
+}
+
+/// Rows of a weighted least-squares problem.
+#[derive(Default)]
+struct Rows {
+    basis: Vec<Vec<f64>>,
+    right: Vec<f64>,
+}
+
+impl Rows {
+    /// Adds a channel, weighted by the inverse of its scatter about its own quadratic.
+    fn push(&mut self, tau: &[f64], values: &[f64], basis: impl Fn(usize, f64) -> Vec<f64>) {
+        let weight = 1.0 / scatter(tau, values);
+        for (i, (&s, &v)) in tau.iter().zip(values).enumerate() {
+            self.basis.push(basis(i, s).into_iter().map(|b| b * weight).collect());
+            self.right.push(v * weight);
+        }
+    }
+
+    /// Solution of least norm, columns scaled to unit length; columns without data come out as 0.
+    fn solve(self, unknowns: usize) -> Option<Vec<f64>> {
+        let rows = self.right.len();
+        let mut a = nalgebra::DMatrix::from_fn(rows, unknowns, |i, j| self.basis[i][j]);
+        let scale: Vec<f64> = (0..unknowns).map(|j| a.column(j).norm()).collect();
+        for (j, &s) in scale.iter().enumerate().filter(|(_, s)| **s > 0.0) {
+            a.column_mut(j).scale_mut(1.0 / s);
+        }
+        let solution = a.svd(true, true).solve(&nalgebra::DVector::from_vec(self.right), 1e-10).ok()?;
+        Some((0..unknowns).map(|j| if scale[j] > 0.0 { solution[j] / scale[j] } else { 0.0 }).collect())
+    }
+}
+
+/// Root mean square distance of samples from their own quadratic, with a floor for samples without noise.
+fn scatter(tau: &[f64], values: &[f64]) -> f64 {
+    let middle = tau[tau.len() / 2];
+    let range = values.iter().fold(0.0_f64, |m, v| m.max((v - values[0]).abs()));
+    let floor = 1e-6 * range + 1e-9 * values[0].abs() + 1e-12;
+    let Some([c0, c1, c2]) = local_fit(tau, values, middle) else { return floor };
+    let residual = |(s, v): (&f64, &f64)| v - (c0 + c1 * (s - middle) + 0.5 * c2 * (s - middle).powi(2));
+    let sum: f64 = tau.iter().zip(values).map(|p| residual(p).powi(2)).sum();
+    (sum / values.len().saturating_sub(3).max(1) as f64).sqrt().max(floor)
+}
+
+/// Vectors of a magnitude and a direction clockwise from north (or from the bow); `sign` -1 for directions something comes FROM.
+fn polar<'a>(magnitude: &'a [f64], direction: &'a [f64], sign: f64) -> impl Iterator<Item = [f64; 2]> + 'a {
+    magnitude.iter().zip(direction).map(move |(m, d)| [sign * m * d.cos(), sign * m * d.sin()])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn labels() -> Labels {
+        Labels { run: "run".into(), session: "day".into(), manoeuvre: "turning".into(), split: Split::Train }
+    }
+
+    /// A run whose channels are straight lines in time, `rows` long with step `dt`.
+    fn straight(rows: usize, dt: f64) -> Vec<(Channel, Vec<f64>)> {
+        let t: Vec<f64> = (0..rows).map(|i| i as f64 * dt).collect();
+        let line = |a: f64, b: f64| t.iter().map(|t| a + b * t).collect::<Vec<f64>>();
+        vec![
+            (Channel::X, line(3.0, 2.0)),
+            (Channel::Y, line(-1.0, 0.5)),
+            (Channel::Psi, line(0.1, 0.0)),
+            (Channel::U, line(2.0, 0.01)),
+            (Channel::V, line(0.0, -0.01)),
+            (Channel::R, line(0.001, 0.0001)),
+            (Channel::N, line(1.0, 0.001)),
+            (Channel::Delta, line(-0.1, 0.001)),
+            (Channel::T, t),
+        ]
+    }
+
+    fn settings() -> WindowSettings {
+        WindowSettings::whole(5.0)
+    }
+
+    #[test]
+    fn the_own_step_changes_nothing_bit_for_bit() {
+        let r = Recording::from_channels("run", straight(50, 0.1)).unwrap();
+        let w = &r.windows(&labels(), &settings()).unwrap().windows[0];
+        assert_eq!((w.measured.len(), w.inputs.len(), w.dt), (50, 50, 0.1));
+        for row in 0..50 {
+            let recorded = STATE_CHANNELS.map(|c| r.get(c).unwrap()[row]);
+            assert_eq!(w.measured[row], recorded);
+            assert_eq!(w.inputs[row].t, r.time()[row]);
+            assert_eq!(w.inputs[row].delta, r.get(Channel::Delta).unwrap()[row]);
+        }
+        assert_eq!(w.initial, w.measured[0]);
+    }
+
+    #[test]
+    fn track_length_and_mean_speed_are_those_of_the_measured_motion() {
+        let r = Recording::from_channels("run", straight(101, 0.1)).unwrap();
+        let w = &r.windows(&labels(), &settings()).unwrap().windows[0];
+        assert!((w.path_length() - 10.0 * 2_f64.hypot(0.5)).abs() < 1e-9);
+        let mean =
+            r.get(Channel::U).unwrap().iter().zip(r.get(Channel::V).unwrap()).map(|(u, v)| u.hypot(*v)).sum::<f64>()
+                / 101.0;
+        assert!((w.mean_speed() - mean).abs() < 1e-12);
+    }
+
+    #[test]
+    fn apparent_wind_becomes_true_wind_with_the_ships_motion() {
+        let mut channels = straight(20, 1.0);
+        let (u, psi) = (channels[3].1.clone(), channels[2].1.clone());
+        channels[4].1.fill(0.0);
+        // True wind of 6 m/s from 40 deg: U_A cos g = U_T cos(g_T - psi) + u, U_A sin g = U_T sin(g_T - psi) + v.
+        let from = 40_f64.to_radians();
+        let apparent = u.iter().zip(&psi).map(|(u, p)| [6.0 * (from - p).cos() + u, 6.0 * (from - p).sin()]);
+        let (speed, angle) = apparent.map(|a| (a[0].hypot(a[1]), a[1].atan2(a[0]))).unzip();
+        channels.push((Channel::ApparentWindSpeed, speed));
+        channels.push((Channel::ApparentWindDirection, angle));
+        let r = Recording::from_channels("run", channels).unwrap();
+        let w = &r.windows(&labels(), &settings()).unwrap().windows[0];
+        assert!(w.has.wind);
+        for i in &w.inputs {
+            assert!((i.wind[0] + 6.0 * from.cos()).abs() < 1e-12 && (i.wind[1] + 6.0 * from.sin()).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn environment_channels_arrive_as_the_inputs_promise() {
+        let mut channels = straight(10, 1.0);
+        let add = |channels: &mut Vec<_>, c: Channel, v: f64| channels.push((c, vec![v; 10]));
+        add(&mut channels, Channel::WindSpeed, 8.0);
+        add(&mut channels, Channel::WindDirection, 0.0);
+        add(&mut channels, Channel::CurrentSpeed, 0.5);
+        add(&mut channels, Channel::CurrentDirection, std::f64::consts::FRAC_PI_2);
+        add(&mut channels, Channel::WaveHeight, 2.0);
+        add(&mut channels, Channel::WaveDirection, std::f64::consts::PI);
+        add(&mut channels, Channel::Depth, 20.0);
+        add(&mut channels, Channel::BankPort, 50.0);
+        let r = Recording::from_channels("run", channels).unwrap();
+        let w = &r.windows(&labels(), &settings()).unwrap().windows[0];
+        let i = &w.inputs[3];
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+        close(i.wind[0], -8.0);
+        close(i.current[1], 0.5);
+        close(i.waves[0], 4.0);
+        close(i.draught_to_depth, 0.25);
+        close(i.bank, -0.02);
+        assert!(!w.has.thruster && w.has.bank && w.has.depth && w.has.waves && w.has.current);
+    }
+
+    #[test]
+    fn a_smoothed_initial_state_is_nearer_the_truth_than_a_noisy_sample() {
+        use rand::SeedableRng;
+        use rand_distr::{Distribution, Normal};
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+        let (mut first, mut smoothed) = (0.0, 0.0);
+        for _ in 0..40 {
+            let noise = Normal::new(0.0, 0.05).unwrap();
+            let (u, v, r) = (2.0, -0.3, 0.05);
+            let t: Vec<f64> = (0..100).map(|i| 0.1 * f64::from(i)).collect();
+            let psi: Vec<f64> = t.iter().map(|t| r * t).collect();
+            let mut noisy =
+                |values: Vec<f64>| values.into_iter().map(|x| x + noise.sample(&mut rng)).collect::<Vec<f64>>();
+            let x = psi.iter().map(|p| (u * p.sin() + v * (p.cos() - 1.0)) / r).collect();
+            let y = psi.iter().map(|p| (u * (1.0 - p.cos()) + v * p.sin()) / r).collect();
+            let channels = vec![
+                (Channel::X, noisy(x)),
+                (Channel::Y, noisy(y)),
+                (Channel::Psi, noisy(psi)),
+                (Channel::U, noisy(vec![u; 100])),
+                (Channel::V, noisy(vec![v; 100])),
+                (Channel::R, noisy(vec![r; 100])),
+                (Channel::N, vec![1.0; 100]),
+                (Channel::Delta, vec![0.1; 100]),
+                (Channel::T, t),
+            ];
+            let recording = Recording::from_channels("run", channels).unwrap();
+            let truth = [0.0, 0.0, 0.0, u, v, r];
+            let error = |initial| {
+                let w = recording.windows(&labels(), &WindowSettings { initial, ..settings() }).unwrap();
+                w.windows[0].initial.iter().zip(truth).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
+            };
+            first += error(Initial::First);
+            smoothed += error(Initial::Smoothed { span: 3.0 });
+        }
+        assert!(smoothed < 0.2 * first, "{smoothed} {first}");
+    }
+
+    #[test]
+    fn a_smoothed_initial_state_of_an_exact_circle_is_exact() {
+        let (u, v, r) = (2.0, -0.3, 0.05);
+        let t: Vec<f64> = (0..100).map(|i| 0.1 * f64::from(i)).collect();
+        let psi: Vec<f64> = t.iter().map(|t| 0.3 + r * t).collect();
+        let x = psi.iter().map(|p| (u * p.sin() + v * p.cos()) / r).collect::<Vec<_>>();
+        let y = psi.iter().map(|p| (-u * p.cos() + v * p.sin()) / r).collect::<Vec<_>>();
+        let truth = [x[0], y[0], 0.3, u, v, r];
+        let full = vec![
+            (Channel::X, x),
+            (Channel::Y, y),
+            (Channel::Psi, psi),
+            (Channel::N, vec![1.0; 100]),
+            (Channel::Delta, vec![0.1; 100]),
+            (Channel::T, t),
+        ];
+        // Velocity and yaw rate were not recorded: they come out of position and heading.
+        let recording = Recording::from_channels("run", full).unwrap();
+        let initial = Initial::Smoothed { span: 2.0 };
+        let w = recording.windows(&labels(), &WindowSettings { initial, ..settings() }).unwrap();
+        assert_eq!(w.windows[0].measured_channels, [true, true, true, false, false, false]);
+        for (a, b) in w.windows[0].initial.iter().zip(truth) {
+            assert!((a - b).abs() < 1e-6, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn a_window_longer_than_the_run_is_one_clear_error() {
+        let r = Recording::from_channels("run", straight(50, 0.1)).unwrap();
+        let error = r.windows(&labels(), &WindowSettings { window: Some(10.0), ..settings() }).unwrap_err().to_string();
+        assert!(error.starts_with("run:2: ") && error.contains("4.90 s") && error.contains("10.00 s"), "{error}");
+    }
+
+    proptest! {
+        #[test]
+        fn resampling_keeps_straight_lines(step in 0.03..3.0f64, jitter in prop::collection::vec(-0.015..0.015f64, 200)) {
+            let mut channels = straight(200, 0.1);
+            let last = channels.len() - 1;
+            let t: Vec<f64> = channels[last].1.iter().zip(&jitter).map(|(t, j)| t + j).collect();
+            for (channel, values) in &mut channels {
+                let (a, b) = (values[0], (values[199] - values[0]) / 19.9);
+                if *channel != Channel::T {
+                    values.iter_mut().zip(&t).for_each(|(v, t)| *v = a + b * t);
+                }
+            }
+            channels[last].1 = t;
+            let r = Recording::from_channels("run", channels).unwrap();
+            let w = r.windows(&labels(), &WindowSettings { step: Some(step), ..settings() }).unwrap();
+            let w = &w.windows[0];
+            for (k, (s, i)) in w.measured.iter().zip(&w.inputs).enumerate() {
+                let t = w.time(k);
+                prop_assert!((s[0] - (3.0 + 2.0 * t)).abs() < 1e-9);
+                prop_assert!((s[1] - (-1.0 + 0.5 * t)).abs() < 1e-9);
+                prop_assert!((i.n - (1.0 + 0.001 * t)).abs() < 1e-9 && (i.t - t).abs() < 1e-9);
+            }
+        }
+
+        #[test]
+        fn windows_are_as_many_as_fit_and_share_their_ends(rows in 10_usize..400, length in 2_usize..60, overlap in 0_usize..59, hole in 0_usize..400) {
+            prop_assume!(overlap < length);
+            let mut channels = straight(rows, 0.5);
+            if hole < rows {
+                channels[0].1[hole] = f64::NAN;
+            }
+            let r = Recording::from_channels("run", channels).unwrap();
+            let s = WindowSettings {
+                window: Some(0.5 * length as f64),
+                overlap: 0.5 * overlap as f64,
+                gaps: Gaps::Split,
+                ..settings()
+            };
+            let pieces = if hole < rows { vec![hole, rows - hole - 1] } else { vec![rows] };
+            let expected: usize = pieces
+                .iter()
+                .map(|&rows| rows.saturating_sub(1))
+                .filter(|&steps| steps >= length)
+                .map(|steps| (steps - length) / (length - overlap) + 1)
+                .sum();
+            match r.windows(&labels(), &s) {
+                Ok(w) => {
+                    prop_assert_eq!(w.windows.len(), expected);
+                    for w in &w.windows {
+                        prop_assert_eq!(w.steps(), length);
+                        prop_assert!(w.measured.iter().flatten().all(|v| v.is_finite()), "a window reaches across the hole");
+                    }
+                }
+                Err(_) => prop_assert_eq!(expected, 0),
+            }
+        }
+    }
+}
