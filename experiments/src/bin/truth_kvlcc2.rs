@@ -1,6 +1,9 @@
 //! Prints the trials of KVLCC2 under the standard MMG simulator beside a reference simulation and beside the model tests.
 //! It checks nothing: the tests of the simulator do.
 
+// An advance of 3.142 ship lengths is not pi.
+#![allow(clippy::approx_constant)]
+
 use comfy_table::{Table, presets};
 use trimtab_experiments::truth::mmg::Mmg;
 use trimtab_experiments::truth::ships::{kvlcc2, kvlcc2_model};
