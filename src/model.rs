@@ -344,6 +344,15 @@ impl Model {
         }
     }
 
+    /// The same model, and the same parameter vector, evaluating only the terms for which `keep` holds.
+    ///
+    /// Leaving out terms at their neutral parameters changes no result, only the time it takes.
+    pub fn restricted(&self, keep: impl Fn(&str) -> bool) -> Self {
+        let mut view = self.clone();
+        view.terms.retain(|t| keep(t.term.info().name));
+        view
+    }
+
     /// Names of the model's terms, in order.
     pub fn term_names(&self) -> Vec<&'static str> {
         self.terms.iter().map(|t| t.term.info().name).collect()
@@ -412,6 +421,7 @@ impl Model {
 
     /// The part of a parameter vector that belongs to a term, empty when the model does not have the term.
     pub fn part<'a, S>(&self, term: &str, theta: &'a [S]) -> &'a [S] {
+        // The base terms come first, so that this search is short.
         self.terms.iter().find(|t| t.term.info().name == term).map_or(&[], |t| &theta[t.offset..t.offset + t.len])
     }
 

@@ -1,0 +1,279 @@
+//! Scores and information of all runs, and the small dense algebra that every later step is made of.
+//! It does not know what a column means: names and verdicts are made elsewhere.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+use std::collections::BTreeMap;
+
+/// Score and information of one run.
+#[derive(Clone, Debug)]
+pub struct RunEvidence {
+    /// Session of the run.
+    pub session: String,
+    /// Score by column.
+    pub score: DVector<f64>,
+    /// Information by pairs of columns.
+    pub information: DMatrix<f64>,
+}
+
+/// Sums of scores and information over sessions and over all runs.
+#[derive(Clone, Debug)]
+pub struct Evidence {
+    /// By run, in order.
+    pub runs: Vec<RunEvidence>,
+    /// Sum over all runs.
+    pub total: RunEvidence,
+    /// Sums by session.
+    pub sessions: BTreeMap<String, RunEvidence>,
+}
+
+/// A linear test of a group of columns against a base.
+#[derive(Clone, Debug)]
+pub struct Test {
+    /// The statistic: twice the gain in log-likelihood that the quadratic model promises.
+    pub statistic: f64,
+    /// Degrees of freedom that the data can see.
+    pub degrees: usize,
+    /// p-value of the statistic under chi-squared.
+    pub p: f64,
+    /// Estimated amplitudes, in units of the columns' scales.
+    pub amplitude: DVector<f64>,
+    /// Covariance of the amplitudes.
+    pub covariance: DMatrix<f64>,
+    /// Smallest share of the columns' information that is left once the base is fitted too, 0 to 1.
+    pub retained: f64,
+}
+
+/// Directions with less than this share of their information left are not seen at all.
+pub const UNSEEN: f64 = 0.01;
+
+impl Evidence {
+    /// Sums the runs in order.
+    pub fn new(runs: Vec<RunEvidence>) -> Self {
+        let n = runs.first().map_or(0, |r| r.score.len());
+        let empty = |session: &str| RunEvidence {
+            session: session.into(),
+            score: DVector::zeros(n),
+            information: DMatrix::zeros(n, n),
+        };
+        let mut total = empty("");
+        let mut sessions: BTreeMap<String, RunEvidence> = BTreeMap::new();
+        for r in &runs {
+            total.score += &r.score;
+            total.information += &r.information;
+            let s = sessions.entry(r.session.clone()).or_insert_with(|| empty(&r.session));
+            s.score += &r.score;
+            s.information += &r.information;
+        }
+        Self { runs, total, sessions }
+    }
+
+    /// The base block: its information with the prior precision added, factorised.
+    pub fn base(&self, columns: &[usize], precision: &[f64], pull: &[f64]) -> Base {
+        let n = columns.len();
+        let mut h = pick(&self.total.information, columns, columns);
+        let mut g = DVector::from_fn(n, |i, _| self.total.score[columns[i]]);
+        for i in 0..n {
+            h[(i, i)] += precision[i];
+            g[i] += pull[i];
+        }
+        Base { columns: columns.to_vec(), inverse: pseudo_inverse(&h), score: g }
+    }
+
+    /// Tests a group of columns, common to all runs, after the base has had its say.
+    pub fn test(&self, base: &Base, columns: &[usize]) -> Test {
+        let cross = pick(&self.total.information, columns, &base.columns);
+        let own = pick(&self.total.information, columns, columns);
+        let score = DVector::from_fn(columns.len(), |i, _| self.total.score[columns[i]]);
+        base.test(&score, &own, &cross)
+    }
+
+    /// Tests whether a group of columns acts differently from session to session, its common part projected out.
+    ///
+    /// The amplitudes are those of each session in turn (session-major), relative to the common part. `None` when there
+    /// are fewer than two sessions.
+    pub fn contrast(&self, base: &Base, columns: &[usize]) -> Option<Test> {
+        if self.sessions.len() < 2 {
+            return None;
+        }
+        let mut with_common = base.columns.clone();
+        with_common.extend(columns);
+        let k = columns.len();
+        let n = base.columns.len();
+        let mut precise = DMatrix::zeros(n + k, n + k);
+        let cross = pick(&self.total.information, columns, &base.columns);
+        let own = pick(&self.total.information, columns, columns);
+        // Bordered inverse of [base, common part].
+        let b = &base.inverse * cross.transpose();
+        let schur = pseudo_inverse(&(&own - &cross * &b));
+        precise.view_mut((0, 0), (n, n)).copy_from(&(&base.inverse + &b * &schur * b.transpose()));
+        precise.view_mut((0, n), (n, k)).copy_from(&(-(&b * &schur)));
+        precise.view_mut((n, 0), (k, n)).copy_from(&(-(&schur * b.transpose())));
+        precise.view_mut((n, n), (k, k)).copy_from(&schur);
+        let mut score = base.score.clone().resize_vertically(n + k, 0.0);
+        for (i, c) in columns.iter().enumerate() {
+            score[n + i] = self.total.score[*c];
+        }
+        let extended = Base { columns: with_common, inverse: precise, score };
+        let sessions = self.sessions.len();
+        let mut g = DVector::zeros(sessions * k);
+        let mut h = DMatrix::zeros(sessions * k, sessions * k);
+        let mut c = DMatrix::zeros(sessions * k, n + k);
+        for (s, e) in self.sessions.values().enumerate() {
+            for i in 0..k {
+                g[s * k + i] = e.score[columns[i]];
+            }
+            h.view_mut((s * k, s * k), (k, k)).copy_from(&pick(&e.information, columns, columns));
+            c.view_mut((s * k, 0), (k, n + k)).copy_from(&pick(&e.information, columns, &extended.columns));
+        }
+        Some(extended.test(&g, &h, &c))
+    }
+}
+
+/// A block of columns that is always fitted along.
+#[derive(Clone, Debug)]
+pub struct Base {
+    /// Its columns.
+    pub columns: Vec<usize>,
+    /// Inverse of its information (prior included).
+    pub inverse: DMatrix<f64>,
+    /// Its score (prior included).
+    pub score: DVector<f64>,
+}
+
+impl Base {
+    /// The step towards the maximum of the quadratic model.
+    pub fn step(&self) -> DVector<f64> {
+        &self.inverse * &self.score
+    }
+
+    /// Tests further columns with given score, own information and cross information with the base.
+    pub fn test(&self, score: &DVector<f64>, own: &DMatrix<f64>, cross: &DMatrix<f64>) -> Test {
+        let reduced = own - cross * &self.inverse * cross.transpose();
+        let effective = score - cross * self.step();
+        let k = score.len();
+        // In units in which each column alone carries information 1.
+        let unit: Vec<f64> = (0..k).map(|i| 1.0 / own[(i, i)].max(f64::MIN_POSITIVE).sqrt()).collect();
+        let scaled = DMatrix::from_fn(k, k, |i, j| 0.5 * (reduced[(i, j)] + reduced[(j, i)]) * unit[i] * unit[j]);
+        let full = DMatrix::from_fn(k, k, |i, j| own[(i, j)] * unit[i] * unit[j]);
+        let eigen = SymmetricEigen::new(scaled.clone());
+        let full_eigen = SymmetricEigen::new(full);
+        let floor = UNSEEN * full_eigen.eigenvalues.max().max(1.0) * 0.1;
+        let z = DVector::from_fn(k, |i, _| effective[i] * unit[i]);
+        let mut statistic = 0.0;
+        let mut degrees = 0;
+        let mut amplitude = DVector::zeros(k);
+        let mut covariance = DMatrix::zeros(k, k);
+        for (l, v) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            if *l > floor.max(UNSEEN) {
+                let along = v.dot(&z);
+                statistic += along * along / l;
+                degrees += 1;
+                amplitude += v * (along / l);
+                covariance += v * v.transpose() / *l;
+            }
+        }
+        for i in 0..k {
+            amplitude[i] *= unit[i];
+            for j in 0..k {
+                covariance[(i, j)] *= unit[i] * unit[j];
+            }
+        }
+        let retained = retained_share(&reduced, own);
+        Test { statistic, degrees, p: chi_squared_p(statistic, degrees), amplitude, covariance, retained }
+    }
+}
+
+/// Smallest generalised eigenvalue of (reduced, own): the share of information that is left in the worst direction.
+fn retained_share(reduced: &DMatrix<f64>, own: &DMatrix<f64>) -> f64 {
+    let k = own.nrows();
+    let eigen = SymmetricEigen::new(own.clone());
+    let largest = eigen.eigenvalues.max();
+    if largest <= 0.0 {
+        return 0.0;
+    }
+    let kept: Vec<usize> = (0..k).filter(|i| eigen.eigenvalues[*i] > 1e-9 * largest).collect();
+    let half =
+        DMatrix::from_fn(k, kept.len(), |i, j| eigen.eigenvectors[(i, kept[j])] / eigen.eigenvalues[kept[j]].sqrt());
+    let relative = half.transpose() * reduced * &half;
+    let symmetric = (&relative + relative.transpose()) * 0.5;
+    SymmetricEigen::new(symmetric).eigenvalues.min().clamp(0.0, 1.0)
+}
+
+/// Upper tail of chi-squared; 1 for no degrees of freedom. Underflows to the smallest positive number, not to zero.
+pub fn chi_squared_p(statistic: f64, degrees: usize) -> f64 {
+    if degrees == 0 || !statistic.is_finite() {
+        return 1.0;
+    }
+    ChiSquared::new(degrees as f64).map_or(1.0, |d| d.sf(statistic.max(0.0)).max(f64::MIN_POSITIVE))
+}
+
+/// Rows and columns of a matrix.
+pub fn pick(m: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
+    DMatrix::from_fn(rows.len(), columns.len(), |i, j| m[(rows[i], columns[j])])
+}
+
+/// Inverse of a symmetric positive matrix, scaled to unit diagonal; directions without information get none.
+pub fn pseudo_inverse(m: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = m.nrows();
+    let unit: Vec<f64> = (0..n).map(|i| 1.0 / m[(i, i)].max(f64::MIN_POSITIVE).sqrt()).collect();
+    let scaled = DMatrix::from_fn(n, n, |i, j| 0.5 * (m[(i, j)] + m[(j, i)]) * unit[i] * unit[j]);
+    if let Some(c) = scaled.clone().cholesky() {
+        let inverse = c.inverse();
+        if inverse.iter().all(|v| v.is_finite()) && inverse.amax() < 1e10 {
+            return DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * unit[i] * unit[j]);
+        }
+    }
+    let eigen = SymmetricEigen::new(scaled);
+    let mut inverse = DMatrix::zeros(n, n);
+    for (l, v) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        if *l > 1e-10 {
+            inverse += v * v.transpose() / *l;
+        }
+    }
+    DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * unit[i] * unit[j])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one_run(session: &str, score: &[f64], information: &[f64]) -> RunEvidence {
+        let n = score.len();
+        RunEvidence {
+            session: session.into(),
+            score: DVector::from_column_slice(score),
+            information: DMatrix::from_row_slice(n, n, information),
+        }
+    }
+
+    #[test]
+    fn a_column_that_the_base_can_mimic_retains_nothing() {
+        let e = Evidence::new(vec![one_run("a", &[3.0, 3.0], &[4.0, 4.0, 4.0, 4.0])]);
+        let base = e.base(&[0], &[0.0], &[0.0]);
+        let t = e.test(&base, &[1]);
+        assert_eq!(t.degrees, 0);
+        assert!(t.retained < 1e-12 && t.p == 1.0);
+    }
+
+    #[test]
+    fn an_independent_column_is_tested_as_if_alone() {
+        let e = Evidence::new(vec![one_run("a", &[5.0, 6.0], &[4.0, 0.0, 0.0, 9.0])]);
+        let base = e.base(&[0], &[0.0], &[0.0]);
+        let t = e.test(&base, &[1]);
+        assert!((t.statistic - 4.0).abs() < 1e-12 && (t.amplitude[0] - 6.0 / 9.0).abs() < 1e-12);
+        assert!((t.retained - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_common_amplitude_makes_no_contrast() {
+        // Both sessions see the mechanism with the same amplitude 2.
+        let runs =
+            vec![one_run("a", &[0.0, 8.0], &[1.0, 0.0, 0.0, 4.0]), one_run("b", &[0.0, 4.0], &[1.0, 0.0, 0.0, 2.0])];
+        let e = Evidence::new(runs);
+        let base = e.base(&[0], &[0.0], &[0.0]);
+        let t = e.contrast(&base, &[1]).unwrap();
+        assert!(t.statistic.abs() < 1e-9, "{t:?}");
+        assert_eq!(t.degrees, 1);
+    }
+}

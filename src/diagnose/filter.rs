@@ -1,0 +1,608 @@
+//! An extended Kalman filter whose innovations carry exact, predictable sensitivities to any number of parameters.
+//! It knows nothing of mechanisms or verdicts: it turns a run into a log-likelihood, a score vector and an information matrix.
+//!
+//! State: `[x y psi u v r | w_X w_Y w_N | e_1 .. e_6]`, the ship, an unknown force as three Ornstein-Uhlenbeck processes, and
+//! the coloured part of six sensors. The sensitivities follow the filter with its gains held fixed,
+//! `d_k = H D_k + dh/dp`, `D_{k+1} = F_k (D_k - G_k d_k) + df/dp`, so that `d_k` depends on the past alone and
+//! `g = sum d_k' S_k^-1 e_k` is a martingale: unbiased at the truth whatever is left out of `d_k`.
+
+use super::noise::{GROUP_OF, Noise};
+use crate::model::Model;
+use crate::simulate::{Integration, step};
+use crate::state::{Force, Inputs, STATES, State};
+use crate::terms::{CHUNK, Gradient, Group, find};
+use nalgebra::{DMatrix, DVector};
+
+/// Length of the filter state.
+pub const Z: usize = 15;
+/// A square matrix over the filter state.
+pub type Square = [[f64; Z]; Z];
+
+/// One run as the filter needs it.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Name of the recording (and window).
+    pub name: String,
+    /// Session it belongs to.
+    pub session: String,
+    /// What was sailed.
+    pub manoeuvre: String,
+    /// Sample period \[s\].
+    pub dt: f64,
+    /// Inputs at each sample.
+    pub inputs: Vec<Inputs<f64>>,
+    /// Measured `[x, y, psi, u, v, r]` at each sample; NaN where a channel has no value.
+    pub measured: Vec<[f64; STATES]>,
+    /// Channels that were measured at all.
+    pub channels: [bool; STATES],
+    /// Start of the state estimate.
+    pub initial: [f64; STATES],
+}
+
+/// A direction in parameter space along which sensitivities are carried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Column {
+    /// Index of the parameter in the model.
+    pub parameter: usize,
+    /// Unit of the column: the sensitivity is to `parameter / scale`.
+    pub scale: f64,
+    /// How the derivative is taken.
+    pub probe: Probe,
+}
+
+/// How the sensitivity to a parameter is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Probe {
+    /// The exact derivative.
+    Tangent,
+    /// `(f(+scale) - f(-scale)) / 2`: for effects quadratic in their amplitude, whose derivative at zero vanishes.
+    Odd,
+    /// `f(scale) - f(0)`: for effects that exist on one side only.
+    Forward,
+}
+
+/// Forces on the body axes as functions of the state, added as further columns after the parameters.
+pub type ForceBasis<'a> = &'a (dyn Fn(usize, &State<f64>, &Inputs<f64>, &mut Vec<[f64; 3]>) + Sync);
+
+/// What one pass over one run gives.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// Log-likelihood of the run.
+    pub log_likelihood: f64,
+    /// Number of scalar measurements used.
+    pub used: usize,
+    /// Number of scalar measurements set aside as outliers.
+    pub outliers: usize,
+    /// Score by column.
+    pub score: DVector<f64>,
+    /// Information by pairs of columns.
+    pub information: DMatrix<f64>,
+    /// Standardised innovations by sample and channel; NaN where there was no measurement.
+    pub innovations: Vec<[f64; STATES]>,
+    /// Filtered state by sample.
+    pub filtered: Vec<[f64; Z]>,
+    /// The linearisation, where asked for.
+    pub tangent: Option<Tangent>,
+}
+
+/// The step maps of a run, linearised along its filtered path.
+#[derive(Clone, Debug, Default)]
+pub struct Tangent {
+    /// Point of linearisation by sample.
+    pub state: Vec<[f64; STATES]>,
+    /// Its image one sample later without unknown force.
+    pub image: Vec<[f64; STATES]>,
+    /// State Jacobian.
+    pub a: Vec<[[f64; STATES]; STATES]>,
+    /// Force Jacobian.
+    pub gamma: Vec<[[f64; 3]; STATES]>,
+    /// What the sensors report at the point of linearisation, less the state.
+    pub offset: Vec<[f64; STATES]>,
+}
+
+/// A model prepared for passes over many runs with the same columns.
+pub struct Filter<'a> {
+    model: &'a Model,
+    /// Integration of the step map.
+    pub integration: Integration,
+    columns: Vec<Column>,
+    chunks: Vec<Chunk>,
+    base: Model,
+    senses: bool,
+}
+
+struct Chunk {
+    view: Model,
+    columns: std::ops::Range<usize>,
+    drives: bool,
+    senses: bool,
+}
+
+/// Innovations larger than this many standard deviations are set aside as outliers.
+pub const GATE: f64 = 6.0;
+
+fn group_of(parameter: &str) -> Option<Group> {
+    find(parameter.split('.').next()?).map(|t| t.info().group)
+}
+
+impl<'a> Filter<'a> {
+    /// Prepares passes with these columns; terms at neutral values that no column needs are left out.
+    pub fn new(model: &'a Model, integration: Integration, columns: &[Column]) -> Self {
+        let neutral = |term: &str| {
+            let prefix = format!("{term}.");
+            model.parameters.iter().enumerate().filter(|(_, p)| p.name.starts_with(&prefix)).all(|(i, p)| {
+                p.value == (p.info.default)(&model.ship)
+                    && !model.sessions.values().flatten().any(|(j, addition)| *j == i && *addition != 0.0)
+            })
+        };
+        let active: Vec<&str> =
+            model.term_names().into_iter().filter(|t| crate::model::BASE.contains(t) || !neutral(t)).collect();
+        let base = model.restricted(|t| active.contains(&t));
+        let term_of = |c: &Column| model.parameters[c.parameter].name.split('.').next().unwrap_or("").to_string();
+        let chunks = (0..columns.len())
+            .step_by(CHUNK)
+            .map(|start| {
+                let range = start..(start + CHUNK).min(columns.len());
+                let owners: Vec<String> = columns[range.clone()].iter().map(term_of).collect();
+                let sensor = |o: &String| find(o).is_some_and(|t| t.info().group == Group::Sensor);
+                Chunk {
+                    view: model.restricted(|t| active.contains(&t) || owners.iter().any(|o| o == t)),
+                    senses: owners.iter().any(sensor),
+                    drives: owners.iter().any(|o| !crate::model::BASE.contains(&o.as_str())),
+                    columns: range,
+                }
+            })
+            .collect();
+        let senses = active.iter().any(|t| find(t).is_some_and(|t| t.info().group == Group::Sensor));
+        Self { model, integration, columns: columns.to_vec(), chunks, base, senses }
+    }
+
+    /// Passes over one run.
+    ///
+    /// `basis` adds columns for forces that act as given over each step. `keep_tangent` stores the linearisation.
+    pub fn pass(&self, run: &Run, noise: &Noise, basis: Option<(usize, ForceBasis)>, keep_tangent: bool) -> Pass {
+        let parameters = self.columns.len();
+        let extra = basis.map_or(0, |(n, _)| n);
+        let width = parameters + extra;
+        let theta = self.model.values_in(&run.session);
+        let constants: Vec<Gradient> = theta.iter().map(|t| Gradient::constant(*t)).collect();
+        let mut series = run.inputs.clone();
+        self.base.drive(&theta, run.dt, &mut series);
+        let seeded: Vec<Seeded> = self.chunks.iter().map(|c| Seeded::new(c, &self.columns, &theta, run)).collect();
+
+        let mut z = [0.0; Z];
+        z[..STATES].copy_from_slice(&run.initial);
+        let mut p = initial_covariance(noise, self.model);
+        let mut d = vec![0.0; Z * width];
+        let mut pass = Pass {
+            log_likelihood: 0.0,
+            used: 0,
+            outliers: 0,
+            score: DVector::zeros(width),
+            information: DMatrix::zeros(width, width),
+            innovations: Vec::with_capacity(run.measured.len()),
+            filtered: Vec::with_capacity(run.measured.len()),
+            tangent: keep_tangent.then(Tangent::default),
+        };
+        let mut rows = vec![0.0; STATES * width];
+        let mut forces = Vec::with_capacity(extra);
+        let mut weighted: Vec<f64> = Vec::new();
+        let a_force = (-run.dt / noise.force_time).exp();
+        let rho: [f64; STATES] = std::array::from_fn(|j| (-run.dt / noise.sensors[GROUP_OF[j]].time).exp());
+        for k in 0..run.measured.len() {
+            let now = &series[k];
+            let state: [f64; STATES] = std::array::from_fn(|j| z[j]);
+            // What the sensors report, and how that changes with state and parameters.
+            let (report, h) = self.report(&constants, &state, now);
+            let sensing = self.sensing_columns(&seeded, &state, k);
+            if let Some(t) = &mut pass.tangent {
+                t.offset.push(std::array::from_fn(|j| report[j] - state[j]));
+            }
+            let mut innovation = [f64::NAN; STATES];
+            let reference = z;
+            for j in 0..STATES {
+                let y = run.measured[k][j];
+                if !run.channels[j] || !y.is_finite() {
+                    continue;
+                }
+                let sensor = &noise.sensors[GROUP_OF[j]];
+                // Measurement row: the state through h, and this channel's coloured noise.
+                let mut predicted = report[j] + z[9 + j];
+                for i in 0..STATES {
+                    predicted += h[j][i] * (z[i] - reference[i]);
+                }
+                let mut e = y - predicted;
+                if j == 2 {
+                    e = trimtab_ad::smooth::wrap_angle(e);
+                }
+                let ph: [f64; Z] = std::array::from_fn(|i| {
+                    let mut sum = p[i][9 + j];
+                    for l in 0..STATES {
+                        sum += p[i][l] * h[j][l];
+                    }
+                    sum
+                });
+                let mut s = sensor.white * sensor.white + ph[9 + j];
+                for l in 0..STATES {
+                    s += h[j][l] * ph[l];
+                }
+                let sigma = s.sqrt();
+                innovation[j] = e / sigma;
+                if e.abs() > GATE * sigma {
+                    pass.outliers += 1;
+                    pass.log_likelihood -= 0.5 * GATE * GATE + sigma.ln() + 0.5 * (2.0 * std::f64::consts::PI).ln();
+                    continue;
+                }
+                pass.used += 1;
+                pass.log_likelihood -= 0.5 * (e * e / s + s.ln() + (2.0 * std::f64::consts::PI).ln());
+                if width > 0 {
+                    let row = &mut rows[j * width..(j + 1) * width];
+                    row.copy_from_slice(&d[(9 + j) * width..(10 + j) * width]);
+                    for l in 0..STATES {
+                        if h[j][l] != 0.0 {
+                            axpy(row, h[j][l], &d[l * width..(l + 1) * width]);
+                        }
+                    }
+                    for (c, value) in sensing.iter().flat_map(|(c, v)| c.clone().zip(v[j].iter())) {
+                        row[c] += value;
+                    }
+                    let inverse = 1.0 / s;
+                    axpy(pass.score.as_mut_slice(), e * inverse, row);
+                    let root = inverse.sqrt();
+                    weighted.extend(row.iter().map(|v| v * root));
+                }
+                for i in 0..Z {
+                    let gain = ph[i] / s;
+                    z[i] += gain * e;
+                    if width > 0 && gain != 0.0 {
+                        axpy(&mut d[i * width..(i + 1) * width], -gain, &rows[j * width..(j + 1) * width]);
+                    }
+                    for l in 0..=i {
+                        p[i][l] -= gain * ph[l];
+                        p[l][i] = p[i][l];
+                    }
+                }
+            }
+            // Information is added in blocks of samples: one matrix product instead of many rank-one updates.
+            if width > 0 && (weighted.len() > 64 * width || k + 1 == run.measured.len()) {
+                let rows = weighted.len() / width;
+                let block = DMatrix::from_column_slice(width, rows, &weighted);
+                pass.information.gemm(1.0, &block, &block.transpose(), 1.0);
+                weighted.clear();
+            }
+            pass.innovations.push(innovation);
+            pass.filtered.push(z);
+            if k + 1 == run.measured.len() {
+                break;
+            }
+            // Prediction.
+            let state: [f64; STATES] = std::array::from_fn(|j| z[j]);
+            let push = [z[6], z[7], z[8]];
+            let next = &series[k + 1];
+            let (image, a, gamma) = self.linearise(&constants, run.dt, &state, &push, now, next);
+            forces.clear();
+            if let Some((_, f)) = basis {
+                f(k, &State::from_array(state), now, &mut forces);
+            }
+            let mut moved = vec![0.0; Z * width];
+            if width > 0 {
+                for i in 0..STATES {
+                    let row = &mut moved[i * width..(i + 1) * width];
+                    for l in 0..STATES {
+                        axpy(row, a[i][l], &d[l * width..(l + 1) * width]);
+                    }
+                    for l in 0..3 {
+                        axpy(row, gamma[i][l], &d[(6 + l) * width..(7 + l) * width]);
+                    }
+                    for (c, f) in forces.iter().enumerate() {
+                        row[parameters + c] += gamma[i][0] * f[0] + gamma[i][1] * f[1] + gamma[i][2] * f[2];
+                    }
+                }
+                for i in 0..3 {
+                    axpy(&mut moved[(6 + i) * width..(7 + i) * width], a_force, &d[(6 + i) * width..(7 + i) * width]);
+                }
+                for i in 0..STATES {
+                    axpy(&mut moved[(9 + i) * width..(10 + i) * width], rho[i], &d[(9 + i) * width..(10 + i) * width]);
+                }
+                self.parameter_columns(&seeded, k, run.dt, &state, &push, &mut moved, width);
+            }
+            d = moved;
+            if let Some(t) = &mut pass.tangent {
+                let free: [f64; STATES] = std::array::from_fn(|i| {
+                    image[i] - gamma[i][0] * push[0] - gamma[i][1] * push[1] - gamma[i][2] * push[2]
+                });
+                t.state.push(state);
+                t.image.push(free);
+                t.a.push(a);
+                t.gamma.push(gamma);
+            }
+            z[..STATES].copy_from_slice(&image);
+            for i in 0..3 {
+                z[6 + i] *= a_force;
+            }
+            for i in 0..STATES {
+                z[9 + i] *= rho[i];
+            }
+            p = predict(&p, &a, &gamma, a_force, &rho, noise);
+        }
+        pass
+    }
+
+    /// The step map and its Jacobians with respect to state and force.
+    fn linearise(
+        &self,
+        theta: &[Gradient],
+        dt: f64,
+        state: &[f64; STATES],
+        push: &[f64; 3],
+        now: &Inputs<f64>,
+        next: &Inputs<f64>,
+    ) -> ([f64; STATES], [[f64; STATES]; STATES], [[f64; 3]; STATES]) {
+        let x: [Gradient; STATES] = std::array::from_fn(|j| Gradient::variable(state[j], j));
+        let w: [Gradient; 3] = std::array::from_fn(|j| Gradient::variable(push[j], STATES + j));
+        let y = step(
+            &self.base,
+            theta,
+            self.integration,
+            dt,
+            &x,
+            &Inputs::constant(now),
+            &Inputs::constant(next),
+            &Force { x: w[0], y: w[1], n: w[2] },
+        );
+        (
+            y.map(|v| v.re),
+            y.map(|v| std::array::from_fn(|j| v.eps[j])),
+            y.map(|v| std::array::from_fn(|j| v.eps[STATES + j])),
+        )
+    }
+
+    /// Adds the derivative of the step map with respect to the parameters to the sensitivities.
+    fn parameter_columns(
+        &self,
+        seeded: &[Seeded],
+        k: usize,
+        dt: f64,
+        state: &[f64; STATES],
+        push: &[f64; 3],
+        moved: &mut [f64],
+        width: usize,
+    ) {
+        for (chunk, seed) in self.chunks.iter().zip(seeded) {
+            if seed.tangents {
+                let x: [Gradient; STATES] = state.map(Gradient::constant);
+                let w = push.map(Gradient::constant);
+                let y = step(
+                    &chunk.view,
+                    &seed.theta,
+                    self.integration,
+                    dt,
+                    &x,
+                    &seed.instant(k),
+                    &seed.instant(k + 1),
+                    &Force { x: w[0], y: w[1], n: w[2] },
+                );
+                for i in 0..STATES {
+                    for (lane, c) in chunk.columns.clone().enumerate() {
+                        moved[i * width + c] += y[i].eps[lane];
+                    }
+                }
+            }
+            for probe in &seed.probes {
+                let f = |side: &Side| {
+                    step(
+                        &chunk.view,
+                        &side.theta,
+                        self.integration,
+                        dt,
+                        state,
+                        &side.series[k],
+                        &side.series[k + 1],
+                        &Force { x: push[0], y: push[1], n: push[2] },
+                    )
+                };
+                let (high, low) = (f(&probe.high), f(&probe.low));
+                for i in 0..STATES {
+                    moved[i * width + probe.column] += (high[i] - low[i]) * probe.weight;
+                }
+            }
+        }
+    }
+
+    /// What the sensors report at a state, and the derivative with respect to the state.
+    fn report(
+        &self,
+        theta: &[Gradient],
+        state: &[f64; STATES],
+        inputs: &Inputs<f64>,
+    ) -> ([f64; STATES], [[f64; STATES]; STATES]) {
+        if !self.senses {
+            let identity = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
+            return (*state, identity);
+        }
+        let x = State::from_array(std::array::from_fn(|j| Gradient::variable(state[j], j)));
+        let inputs = Inputs::constant(inputs);
+        let (rates, flow) = self.base.rates(theta, &x, &inputs, &Force::zero());
+        let y = self.base.measure(theta, &x, &inputs, &rates, &flow);
+        (y.map(|v| v.re), y.map(|v| std::array::from_fn(|j| v.eps[j])))
+    }
+
+    /// Derivatives of the report with respect to the sensor parameters: column range and values by channel.
+    fn sensing_columns(
+        &self,
+        seeded: &[Seeded],
+        state: &[f64; STATES],
+        k: usize,
+    ) -> Vec<(std::ops::Range<usize>, [Vec<f64>; STATES])> {
+        let mut out = Vec::new();
+        for (chunk, seed) in self.chunks.iter().zip(seeded) {
+            if !chunk.senses {
+                continue;
+            }
+            let x = State::from_array(state.map(Gradient::constant));
+            let inputs = seed.instant(k);
+            let (rates, flow) = chunk.view.rates(&seed.theta, &x, &inputs, &Force::zero());
+            let y = chunk.view.measure(&seed.theta, &x, &inputs, &rates, &flow);
+            let count = chunk.columns.len();
+            out.push((chunk.columns.clone(), y.map(|v| v.eps[..count].to_vec())));
+        }
+        out
+    }
+}
+
+/// A chunk's parameters with their seeds, for one run.
+struct Seeded {
+    theta: Vec<Gradient>,
+    series: Option<Vec<Inputs<Gradient>>>,
+    plain: Vec<Inputs<f64>>,
+    tangents: bool,
+    probes: Vec<Probed>,
+}
+
+struct Side {
+    theta: Vec<f64>,
+    series: Vec<Inputs<f64>>,
+}
+
+struct Probed {
+    column: usize,
+    high: Side,
+    low: Side,
+    weight: f64,
+}
+
+impl Seeded {
+    fn new(chunk: &Chunk, columns: &[Column], theta: &[f64], run: &Run) -> Self {
+        let mut dual: Vec<Gradient> = theta.iter().map(|t| Gradient::constant(*t)).collect();
+        let mut probes = Vec::new();
+        let mut tangents = false;
+        for (lane, c) in chunk.columns.clone().enumerate() {
+            let Column { parameter, scale, probe } = columns[c];
+            let side = |amount: f64| {
+                let mut theta = theta.to_vec();
+                theta[parameter] += amount;
+                let mut series = run.inputs.clone();
+                chunk.view.drive(&theta, run.dt, &mut series);
+                Side { theta, series }
+            };
+            match probe {
+                Probe::Tangent => {
+                    tangents = true;
+                    dual[parameter].eps[lane] = scale;
+                }
+                Probe::Odd => probes.push(Probed { column: c, high: side(scale), low: side(-scale), weight: 0.5 }),
+                Probe::Forward => probes.push(Probed { column: c, high: side(scale), low: side(0.0), weight: 1.0 }),
+            }
+        }
+        let mut plain = run.inputs.clone();
+        chunk.view.drive(theta, run.dt, &mut plain);
+        let series = (chunk.drives && tangents).then(|| {
+            let mut s: Vec<Inputs<Gradient>> = run.inputs.iter().map(Inputs::constant).collect();
+            chunk.view.drive(&dual, run.dt, &mut s);
+            s
+        });
+        Self { theta: dual, series, plain, tangents, probes }
+    }
+
+    fn instant(&self, k: usize) -> Inputs<Gradient> {
+        self.series.as_ref().map_or_else(|| Inputs::constant(&self.plain[k]), |s| s[k])
+    }
+}
+
+/// `y += a x`.
+#[inline]
+fn axpy(y: &mut [f64], a: f64, x: &[f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += a * x;
+    }
+}
+
+/// Wide on the ship's state (the run's own start is unknown), stationary on the unknown force and the coloured sensors.
+pub fn initial_covariance(noise: &Noise, model: &Model) -> Square {
+    let mut p = [[0.0; Z]; Z];
+    let l = model.ship.hull.lpp;
+    let speed = (9.80665 * l).sqrt();
+    let wide = [0.5 * l, 0.5 * l, 0.2, 0.05 * speed, 0.05 * speed, 0.1 * speed / l];
+    for (i, w) in wide.iter().enumerate() {
+        p[i][i] = w * w;
+    }
+    for i in 0..3 {
+        p[6 + i][6 + i] = noise.force[i] * noise.force[i];
+    }
+    for j in 0..STATES {
+        let c = noise.sensors[GROUP_OF[j]].coloured;
+        p[9 + j][9 + j] = c * c;
+    }
+    p
+}
+
+/// `F P F' + Q` with the block structure of the filter state.
+pub fn predict(
+    p: &Square,
+    a: &[[f64; STATES]; STATES],
+    gamma: &[[f64; 3]; STATES],
+    a_force: f64,
+    rho: &[f64; STATES],
+    noise: &Noise,
+) -> Square {
+    let mut fp = [[0.0; Z]; Z];
+    for i in 0..STATES {
+        for l in 0..STATES {
+            for c in 0..Z {
+                fp[i][c] += a[i][l] * p[l][c];
+            }
+        }
+        for l in 0..3 {
+            for c in 0..Z {
+                fp[i][c] += gamma[i][l] * p[6 + l][c];
+            }
+        }
+    }
+    for i in 0..3 {
+        for c in 0..Z {
+            fp[6 + i][c] = a_force * p[6 + i][c];
+        }
+    }
+    for i in 0..STATES {
+        for c in 0..Z {
+            fp[9 + i][c] = rho[i] * p[9 + i][c];
+        }
+    }
+    let mut out = [[0.0; Z]; Z];
+    for i in 0..Z {
+        for j in 0..=i {
+            let v = if j < STATES {
+                let mut sum = 0.0;
+                for l in 0..STATES {
+                    sum += fp[i][l] * a[j][l];
+                }
+                for l in 0..3 {
+                    sum += fp[i][6 + l] * gamma[j][l];
+                }
+                sum
+            } else if j < 9 {
+                fp[i][j] * a_force
+            } else {
+                fp[i][j] * rho[j - 9]
+            };
+            out[i][j] = v;
+            out[j][i] = v;
+        }
+    }
+    for i in 0..3 {
+        out[6 + i][6 + i] += noise.force[i] * noise.force[i] * (1.0 - a_force * a_force);
+    }
+    for j in 0..STATES {
+        let c = noise.sensors[GROUP_OF[j]].coloured;
+        out[9 + j][9 + j] += c * c * (1.0 - rho[j] * rho[j]);
+    }
+    out
+}
+
+/// The group a parameter's term belongs to.
+pub fn parameter_group(model: &Model, parameter: usize) -> Option<Group> {
+    group_of(&model.parameters[parameter].name)
+}
+
+// The chunk must hold the six states and the three forces at once.
+const _: () = assert!(CHUNK >= STATES + 3);
