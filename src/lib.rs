@@ -8,6 +8,7 @@ pub mod flow;
 pub mod model;
 pub mod parameter;
 pub mod recording;
+pub mod report;
 pub mod ship;
 pub mod simulate;
 pub mod state;
