@@ -7,6 +7,12 @@ use crate::terms::{Group, Moment, Physics, Term, TermInfo};
 use std::f64::consts::PI;
 use trimtab_ad::Scalar;
 
+/// An earth-fixed (north, east) vector in body axes (forward, starboard) at heading `psi`.
+pub fn to_body<S: Scalar>([north, east]: [S; 2], psi: S) -> [S; 2] {
+    let (sin, cos) = psi.sin_cos();
+    [north * cos + east * sin, east * cos - north * sin]
+}
+
 /// What terms may change for the others before forces are computed. Neutral: no current, zero additions, factors 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Adjust<S> {
@@ -14,6 +20,10 @@ pub struct Adjust<S> {
     pub current: [S; 2],
     /// Added to the effective wake fraction \[-\].
     pub wake: S,
+    /// Wake lost per squared sine of the drift angle at the propeller \[-\].
+    pub wake_relief: S,
+    /// Wake gained per sine of the drift angle at the propeller, stern moving to starboard \[-\].
+    pub wake_asymmetry: S,
     /// Factor on propeller thrust \[-\].
     pub thrust: S,
     /// Factor on the propeller race factor kappa \[-\].
@@ -32,6 +42,8 @@ pub struct Adjust<S> {
     pub mass: S,
     /// Shift of the centre of gravity \[m\], forward.
     pub x_g: S,
+    /// Added to the sway-yaw \[kg m\] and yaw-yaw \[kg m2\] entries of the mass matrix per cube of speed through the water.
+    pub roll: [S; 2],
     /// Share (0 paper form, 1 fore-aft consistent form) of the sternway correction \[-\].
     pub sternway: S,
     /// Angle of attack beyond which rudder lift is lost, as a lift fraction lost at 40 degrees \[-\].
@@ -45,6 +57,8 @@ impl<S: Scalar> Adjust<S> {
         Self {
             current: [zero; 2],
             wake: zero,
+            wake_relief: zero,
+            wake_asymmetry: zero,
             thrust: one,
             race: one,
             resistance: one,
@@ -54,6 +68,7 @@ impl<S: Scalar> Adjust<S> {
             added_mass: one,
             mass: one,
             x_g: zero,
+            roll: [zero; 2],
             sternway: zero,
             stall: zero,
         }
@@ -124,9 +139,7 @@ impl<S: Scalar> Flow<S> {
         let ship = at.ship;
         let small = ship.small_speed();
         let tiny = small * small;
-        let (sin, cos) = at.state.psi.sin_cos();
-        let [north, east] = adjust.current;
-        let current = [north * cos + east * sin, east * cos - north * sin];
+        let current = to_body(adjust.current, at.state.psi);
         let (u, v, r) = (at.state.u - current[0], at.state.v - current[1], at.state.r);
         let speed = (u * u + v * v + tiny).sqrt();
         let abs_u = (u * u + tiny).sqrt();
@@ -139,7 +152,11 @@ impl<S: Scalar> Flow<S> {
         let abs_n = n.abs();
         // 0 astern to 1 ahead, over a few small speeds.
         let ahead = (u / abs_u + 1.0) * 0.5;
-        let wake = (p[index::WAKE] + adjust.wake) * ahead;
+        // Sine of the drift angle at the propeller.
+        let side = v + r * ship.propeller_x();
+        let drift = side / (u * u + side * side + tiny).sqrt();
+        let wake =
+            (p[index::WAKE] + adjust.wake - drift * (adjust.wake_relief * drift - adjust.wake_asymmetry)) * ahead;
         let advance = (S::one() - wake) * u;
         let reverse = n.less(S::zero());
         let k0 = p[index::KT0] * S::select(reverse, p[index::ASTERN], S::one());

@@ -98,12 +98,13 @@ impl<S: Scalar> Inertia<S> {
         let a = &flow.adjust;
         let m = p[0] * a.mass;
         let xg = p[2] + a.x_g;
+        let cube = flow.speed * flow.speed * flow.speed;
         Self {
             surge: m - p[3],
             sway: m - p[4] * a.added_mass,
-            sway_yaw: m * xg - p[5] * a.added_mass,
+            sway_yaw: m * xg - p[5] * a.added_mass + a.roll[0] * cube,
             yaw_sway: m * xg - p[6] * a.added_mass,
-            yaw: p[1] * a.mass - p[7] * a.added_mass,
+            yaw: p[1] * a.mass - p[7] * a.added_mass + a.roll[1] * cube,
         }
     }
 

@@ -135,14 +135,92 @@ pub type GradientLanes = trimtab_ad::Dual<trimtab_ad::Lanes, CHUNK>;
 
 numbers!(f64, Gradient, Curvature, NumDual, Lanes, GradientLanes);
 
+pub mod antenna;
+pub mod asymmetric;
+pub mod bank;
+pub mod crossflow;
+pub mod current;
+pub mod earth_force;
+pub mod engine_lag;
+pub mod fouling;
+pub mod heading_bias;
 pub mod hull;
+pub mod hull_nonlinear;
+pub mod loading;
+pub mod log_scale;
+pub mod mean_wind;
+pub mod munk;
 pub mod propeller;
+pub mod propeller_walk;
+pub mod push;
+pub mod race;
 pub mod resistance;
+pub mod roll;
 pub mod rudder;
+pub mod rudder_lag;
+pub mod rudder_offset;
+pub mod rudder_rate;
+pub mod rudder_stall;
+pub mod shallow;
+pub mod size;
+pub mod sternway;
+pub mod sway_log_bias;
+pub mod symmetric;
+pub mod thrust_loss;
+pub mod thruster;
+pub mod tide;
+pub mod time_skew;
+pub mod wake_drift;
+pub mod water_log;
+pub mod wave_drift;
+pub mod waves;
+pub mod wind;
+pub mod yaw_rate_bias;
 
 /// Every term, in the order in which they are listed and added up.
-pub static CATALOGUE: &[&dyn AnyTerm] =
-    &[&crate::flow::FlowTerm, &hull::Hull, &resistance::Resistance, &propeller::Propeller, &rudder::Rudder];
+pub static CATALOGUE: &[&dyn AnyTerm] = &[
+    &crate::flow::FlowTerm,
+    &hull::Hull,
+    &resistance::Resistance,
+    &propeller::Propeller,
+    &rudder::Rudder,
+    &current::Current,
+    &tide::Tide,
+    &wind::Wind,
+    &mean_wind::MeanWind,
+    &waves::Waves,
+    &wave_drift::WaveDrift,
+    &earth_force::EarthForce,
+    &shallow::Shallow,
+    &bank::Bank,
+    &propeller_walk::PropellerWalk,
+    &wake_drift::WakeDrift,
+    &thrust_loss::ThrustLoss,
+    &engine_lag::EngineLag,
+    &race::Race,
+    &rudder_offset::RudderOffset,
+    &rudder_lag::RudderLag,
+    &rudder_rate::RudderRate,
+    &rudder_stall::RudderStall,
+    &crossflow::Crossflow,
+    &hull_nonlinear::HullNonlinear,
+    &sternway::Sternway,
+    &munk::Munk,
+    &loading::Loading,
+    &fouling::Fouling,
+    &roll::Roll,
+    &thruster::Thruster,
+    &push::Push,
+    &symmetric::Symmetric,
+    &asymmetric::Asymmetric,
+    &heading_bias::HeadingBias,
+    &yaw_rate_bias::YawRateBias,
+    &log_scale::LogScale,
+    &sway_log_bias::SwayLogBias,
+    &antenna::Antenna,
+    &time_skew::TimeSkew,
+    &water_log::WaterLog,
+];
 
 /// The term of that name.
 pub fn find(name: &str) -> Option<&'static dyn AnyTerm> {

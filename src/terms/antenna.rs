@@ -1,0 +1,47 @@
+//! Positions and velocities that are those of an antenna away from midship.
+//! Horizontal lever only; its motion in roll is not there.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::STATES;
+use trimtab_ad::Scalar;
+
+/// Antenna lever arm.
+pub struct Antenna;
+
+static INFO: TermInfo = TermInfo {
+    name: "antenna",
+    title: "antenna lever arm",
+    group: Group::Sensor,
+    equation: "(x, y)_m = (x, y) + R(psi) (l_x, l_y), u_m = u - r l_y, v_m = v + r l_x",
+    source: "rigid-body kinematics",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("x", "l_x", "m", "antenna forward of where it is taken to be")
+            .scale(|s| 0.05 * s.hull.lpp)
+            .spread(|s| 0.3 * s.hull.lpp)
+            .bounds(-300.0, 300.0),
+        ParameterInfo::new("y", "l_y", "m", "antenna to starboard of where it is taken to be")
+            .scale(|s| 0.02 * s.hull.lpp)
+            .spread(|s| 0.1 * s.hull.lpp)
+            .bounds(-50.0, 50.0)
+            .odd(),
+    ],
+};
+
+impl Term for Antenna {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Antenna {
+    fn measure(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+        let (sin, cos) = at.state.psi.sin_cos();
+        y[0] += p[0] * cos - p[1] * sin;
+        y[1] += p[0] * sin + p[1] * cos;
+        y[3] -= at.state.r * p[1];
+        y[4] += at.state.r * p[0];
+    }
+}

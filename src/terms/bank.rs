@@ -1,0 +1,43 @@
+//! Suction towards the nearer bank of a channel, with a moment that turns the bow away from it.
+//! It needs the distances to both banks; a bank that was not recorded cannot be told from other body forces.
+
+use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Bank suction.
+pub struct Bank;
+
+static INFO: TermInfo = TermInfo {
+    name: "bank",
+    title: "bank suction",
+    group: Group::Environment,
+    equation: "eta = B (1/y_s - 1/y_p); Y = suction 1/2 rho L d u^2 eta (towards the bank), N = -moment 1/2 rho L^2 d u^2 eta (bow away)",
+    source: "Norrbin 1974, linear in 1/distance",
+    needs: &["bank"],
+    parameters: &[
+        ParameterInfo::new("suction", "c_y", "-", "suction coefficient, about 0.1 in deep water")
+            .scale(|_| 0.1)
+            .spread(|_| 0.2)
+            .bounds(0.0, 2.0),
+        ParameterInfo::new("moment", "c_n", "-", "bow-out moment coefficient, about a quarter of that")
+            .scale(|_| 0.025)
+            .spread(|_| 0.05)
+            .bounds(0.0, 1.0),
+    ],
+};
+
+impl Term for Bank {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Bank {
+    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+        let pressure = flow.u * flow.u * at.inputs.bank * (at.ship.hull.breadth * size::pressure(at.ship));
+        Force { x: S::zero(), y: p[0] * pressure, n: -(p[1] * pressure) * at.ship.hull.lpp }
+    }
+}

@@ -1,0 +1,41 @@
+//! A uniform steady current that carries the ship and the water around it.
+//! Its forces come from the velocity through the water that all other terms use; a tide that turns is a term of its own.
+
+use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::flow::Adjust;
+use crate::parameter::ParameterInfo;
+use trimtab_ad::Scalar;
+
+/// Steady current.
+pub struct Current;
+
+static INFO: TermInfo = TermInfo {
+    name: "current",
+    title: "steady current",
+    group: Group::Environment,
+    equation: "V_c = (north, east) over ground, setting to; u_r = u - V_c,x, v_r = v - V_c,y in body axes; u' = u_r' + V_c,y r, v' = v_r' - V_c,x r",
+    source: "Fossen 2011, Handbook of Marine Craft Hydrodynamics, sec. 8.3, irrotational current",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("north", "V_cN", "m/s", "current towards north")
+            .scale(|s| 0.007 * size::speed(s))
+            .bounds(-5.0, 5.0),
+        ParameterInfo::new("east", "V_cE", "m/s", "current towards east")
+            .scale(|s| 0.007 * size::speed(s))
+            .bounds(-5.0, 5.0)
+            .odd(),
+    ],
+};
+
+impl Term for Current {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Current {
+    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+        adjust.current[0] += p[0];
+        adjust.current[1] += p[1];
+    }
+}

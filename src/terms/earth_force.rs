@@ -1,0 +1,37 @@
+//! A constant force in a fixed direction on earth, acting at midship.
+//! It says nothing of its cause: it is the generic form of what wind, waves or a line do at a constant speed.
+
+use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::flow::{Flow, to_body};
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Constant earth-fixed force.
+pub struct EarthForce;
+
+static INFO: TermInfo = TermInfo {
+    name: "earth_force",
+    title: "constant earth-fixed force",
+    group: Group::Environment,
+    equation: "X = F_N cos psi + F_E sin psi, Y = F_E cos psi - F_N sin psi, N = 0",
+    source: "generic, no source",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("north", "F_N", "N", "force towards north").scale(size::force),
+        ParameterInfo::new("east", "F_E", "N", "force towards east").scale(size::force).odd(),
+    ],
+};
+
+impl Term for EarthForce {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for EarthForce {
+    fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
+        let [x, y] = to_body([p[0], p[1]], at.state.psi);
+        Force { x, y, n: S::zero() }
+    }
+}

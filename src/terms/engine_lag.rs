@@ -1,0 +1,36 @@
+//! First-order lag between the recorded propeller rate, then an order, and the shaft.
+//! No torque balance, no reversing delay; a shaft rate that was measured has no lag.
+
+use super::rudder_lag::first_order;
+use super::{Group, Physics, Term, TermInfo, size};
+use crate::parameter::ParameterInfo;
+use crate::ship::Ship;
+use crate::state::Inputs;
+use trimtab_ad::Scalar;
+
+/// Engine lag.
+pub struct EngineLag;
+
+static INFO: TermInfo = TermInfo {
+    name: "engine_lag",
+    title: "engine lag",
+    group: Group::Propulsion,
+    equation: "tau n' = n_c - n",
+    source: "first-order shaft response, exact for an order that is linear between samples",
+    needs: &[],
+    parameters: &[ParameterInfo::new("time", "tau", "s", "time constant")
+        .scale(|s| 3.0 * size::time(s))
+        .bounds(0.0, 300.0)],
+};
+
+impl Term for EngineLag {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for EngineLag {
+    fn drive(&self, p: &[S], _ship: &Ship, dt: f64, series: &mut [Inputs<S>]) {
+        first_order(p[0], dt, series, |i| &mut i.n);
+    }
+}

@@ -1,0 +1,34 @@
+//! A resistance that is higher in proportion: a fouled hull, or added resistance of any kind.
+//! With one loading and one season it cannot be told from p1 to p3; it is meant for differences between sessions.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Adjust;
+use crate::parameter::ParameterInfo;
+use trimtab_ad::Scalar;
+
+/// Fouling.
+pub struct Fouling;
+
+static INFO: TermInfo = TermInfo {
+    name: "fouling",
+    title: "fouling",
+    group: Group::Hull,
+    equation: "R -> (1 + f) R",
+    source: "proportional increase, no source",
+    needs: &[],
+    parameters: &[ParameterInfo::new("fraction", "f", "-", "relative increase of resistance")
+        .scale(|_| 0.1)
+        .bounds(0.0, 3.0)],
+};
+
+impl Term for Fouling {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Fouling {
+    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+        adjust.resistance *= p[0] + 1.0;
+    }
+}

@@ -1,0 +1,37 @@
+//! A compass that reads a constant too much.
+//! Only the heading channel; the ship's path tells, since it does not go where it points.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::STATES;
+use trimtab_ad::Scalar;
+
+/// Heading bias.
+pub struct HeadingBias;
+
+static INFO: TermInfo = TermInfo {
+    name: "heading_bias",
+    title: "heading bias",
+    group: Group::Sensor,
+    equation: "psi_m = psi + b",
+    source: "constant bias, no source",
+    needs: &[],
+    parameters: &[ParameterInfo::new("bias", "b", "rad", "reported minus true heading")
+        .scale(|_| 0.0175)
+        .spread(|_| 0.035)
+        .bounds(-0.5, 0.5)
+        .odd()],
+};
+
+impl Term for HeadingBias {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for HeadingBias {
+    fn measure(&self, p: &[S], _at: &Moment<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+        y[2] += p[0];
+    }
+}

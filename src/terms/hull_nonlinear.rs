@@ -1,0 +1,55 @@
+//! Hull forces of higher order in drift and turn, which the base model leaves out.
+//! The N_vvr and N_vrr of the cubic model are already in `hull`; coefficients are dimensionless, with 1/2 rho L d.
+
+use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Other hull nonlinearity.
+pub struct HullNonlinear;
+
+static INFO: TermInfo = TermInfo {
+    name: "hull_nonlinear",
+    title: "other hull nonlinearity",
+    group: Group::Hull,
+    equation: "V^2 = u^2 + v^2 + (r L/2)^2; X = 1/2 rho L d (X_vv v^2 + X_rr r^2 L^2 + X_vvvv v^4/V^2), Y = 1/2 rho L d (Y_vvv v^3 + Y_vvr v^2 r L + Y_vrr v r^2 L^2 + Y_rrr r^3 L^3)/V, N = 1/2 rho L^2 d (N_vvv v^3 + N_rrr r^3 L^3)/V",
+    source: "Yasukawa & Yoshimura 2015 eq. 8 to 10, with V for U so that turning on the spot stays finite",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("X_vv", "X_vv", "-", "surge force of drift").scale(|_| 0.03).spread(|_| 0.06),
+        ParameterInfo::new("X_rr", "X_rr", "-", "surge force of turn").scale(|_| 0.01).spread(|_| 0.02),
+        ParameterInfo::new("X_vvvv", "X_vvvv", "-", "surge force of large drift").scale(|_| 0.5).spread(|_| 1.0),
+        ParameterInfo::new("Y_vvv", "Y_vvv", "-", "cubic sway damping").scale(|_| 0.5).spread(|_| 1.0),
+        ParameterInfo::new("Y_vvr", "Y_vvr", "-", "sway force of v^2 r").scale(|_| 0.3).spread(|_| 0.6),
+        ParameterInfo::new("Y_vrr", "Y_vrr", "-", "sway force of v r^2").scale(|_| 0.3).spread(|_| 0.6),
+        ParameterInfo::new("Y_rrr", "Y_rrr", "-", "cubic sway force of turn").scale(|_| 0.02).spread(|_| 0.04),
+        ParameterInfo::new("N_vvv", "N_vvv", "-", "cubic yaw moment of drift").scale(|_| 0.1).spread(|_| 0.2),
+        ParameterInfo::new("N_rrr", "N_rrr", "-", "cubic yaw damping").scale(|_| 0.01).spread(|_| 0.02),
+    ],
+};
+
+impl Term for HullNonlinear {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for HullNonlinear {
+    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+        let ship = at.ship;
+        let l = ship.hull.lpp;
+        let small = ship.small_speed();
+        let (v, r) = (flow.v, flow.r * l);
+        let square = flow.u * flow.u + v * v + r * r * 0.25 + small * small;
+        let inverse = S::one() / square.sqrt();
+        let (vv, rr) = (v * v, r * r);
+        let unit = size::pressure(ship);
+        Force {
+            x: (p[0] * vv + p[1] * rr + p[2] * vv * vv / square) * unit,
+            y: (p[3] * vv * v + p[4] * vv * r + p[5] * v * rr + p[6] * rr * r) * inverse * unit,
+            n: (p[7] * vv * v + p[8] * rr * r) * inverse * (unit * l),
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! A ship loaded otherwise than its particulars say: mass and yaw inertia, and the centre of gravity.
+//! Draught, and with it the hull coefficients, stay as they are.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Adjust;
+use crate::parameter::ParameterInfo;
+use trimtab_ad::Scalar;
+
+/// Loading condition.
+pub struct Loading;
+
+static INFO: TermInfo = TermInfo {
+    name: "loading",
+    title: "loading condition",
+    group: Group::Hull,
+    equation: "m -> (1 + mass) m, Iz -> (1 + mass) Iz, xG -> xG + x_g L",
+    source: "rigid body",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("mass", "dm/m", "-", "relative change of mass and yaw inertia")
+            .scale(|_| 0.1)
+            .bounds(-0.5, 0.5),
+        ParameterInfo::new("x_g", "dxG/L", "-", "shift of the centre of gravity forward, over L")
+            .scale(|_| 0.01)
+            .bounds(-0.1, 0.1),
+    ],
+};
+
+impl Term for Loading {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Loading {
+    fn adjust(&self, p: &[S], at: &Moment<S>, adjust: &mut Adjust<S>) {
+        adjust.mass *= p[0] + 1.0;
+        adjust.x_g += p[1] * at.ship.hull.lpp;
+    }
+}

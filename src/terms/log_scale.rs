@@ -1,0 +1,37 @@
+//! A speed log that reads too much in proportion, along and across.
+//! Positions are not affected, and tell.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::STATES;
+use trimtab_ad::Scalar;
+
+/// Log scale error.
+pub struct LogScale;
+
+static INFO: TermInfo = TermInfo {
+    name: "log_scale",
+    title: "log scale error",
+    group: Group::Sensor,
+    equation: "(u, v)_m = (1 + e) (u, v)",
+    source: "constant scale error, no source",
+    needs: &[],
+    parameters: &[ParameterInfo::new("error", "e", "-", "relative error of the reported speed")
+        .scale(|_| 0.03)
+        .spread(|_| 0.05)
+        .bounds(-0.5, 0.5)],
+};
+
+impl Term for LogScale {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for LogScale {
+    fn measure(&self, p: &[S], _at: &Moment<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+        y[3] += y[3] * p[0];
+        y[4] += y[4] * p[0];
+    }
+}

@@ -1,0 +1,45 @@
+//! Load of a steady wind that was not measured, with typical load coefficients.
+//! Gusts are not here, nor is a wind that was recorded: that is the term `wind`.
+
+use super::wind::wind_load;
+use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Unmeasured mean wind.
+pub struct MeanWind;
+
+/// Typical load coefficients c_x, c_y, c_n \[-\].
+pub const TYPICAL: [f64; 3] = [0.7, 0.8, 0.1];
+
+static INFO: TermInfo = TermInfo {
+    name: "mean_wind",
+    title: "unmeasured mean wind",
+    group: Group::Environment,
+    equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the same in still air; c_x = 0.7, c_y = 0.8, c_n = 0.1",
+    source: "cosine and sine form, C_X = -c_x cos g, C_Y = c_y sin g, C_N = c_n sin 2g, of Fossen 2011, eq. 8.31 to 8.33; middle of the ranges given there",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("north", "W_N", "m/s", "wind towards north")
+            .scale(|s| 0.17 * size::speed(s))
+            .bounds(-40.0, 40.0),
+        ParameterInfo::new("east", "W_E", "m/s", "wind towards east")
+            .scale(|s| 0.17 * size::speed(s))
+            .bounds(-40.0, 40.0)
+            .odd(),
+    ],
+};
+
+impl Term for MeanWind {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for MeanWind {
+    fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
+        wind_load(at.ship, &at.state, [p[0], p[1]], TYPICAL.map(S::from_f64))
+    }
+}

@@ -1,0 +1,37 @@
+//! An additional destabilising yaw moment of drift, of the kind that potential flow gives.
+//! Odd in u: it changes sense with the direction of motion, as the base model's N_v U v does not.
+
+use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Munk moment.
+pub struct Munk;
+
+static INFO: TermInfo = TermInfo {
+    name: "munk",
+    title: "Munk moment",
+    group: Group::Hull,
+    equation: "N = -k 1/2 rho L^2 d u v",
+    source: "slender-body theory, Munk 1924",
+    needs: &[],
+    parameters: &[ParameterInfo::new("factor", "k", "-", "moment coefficient, 0.2 for a slender body")
+        .scale(|_| 0.02)
+        .spread(|_| 0.05)
+        .bounds(-1.0, 1.0)],
+};
+
+impl Term for Munk {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Munk {
+    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+        let n = -(p[0] * flow.u * flow.v) * (size::pressure(at.ship) * at.ship.hull.lpp);
+        Force { n, ..Force::zero() }
+    }
+}

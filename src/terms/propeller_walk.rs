@@ -1,0 +1,54 @@
+//! Side force of the propeller, with its own strength ahead and astern.
+//! The paper's side force proportional to net thrust is `propeller.side_force`; this one is proportional to n^2 and fades with speed.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Propeller walk.
+pub struct PropellerWalk;
+
+static INFO: TermInfo = TermInfo {
+    name: "propeller_walk",
+    title: "propeller walk",
+    group: Group::Propulsion,
+    equation: "Y = w rho D^4 n^2/(1 + J^2), J = u/(n D), w = ahead for n > 0, astern for n < 0; N = x_P Y. Right-handed screw: astern < 0 (stern to port), ahead >= 0 (small)",
+    source: "shape after Hachii's measurements as used in low-speed MMG models; the fade exp(-J^2) written 1/(1 + J^2), regular at n = 0",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("ahead", "w_a", "-", "side force coefficient turning ahead, to starboard")
+            .scale(|_| 0.01)
+            .bounds(-0.2, 0.2)
+            .odd(),
+        ParameterInfo::new(
+            "astern",
+            "w_b",
+            "-",
+            "side force coefficient turning astern, to starboard; negative for a right-handed screw",
+        )
+        .scale(|_| 0.02)
+        .bounds(-0.2, 0.2)
+        .odd(),
+    ],
+};
+
+impl Term for PropellerWalk {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for PropellerWalk {
+    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+        let ship = at.ship;
+        let d = ship.propeller.diameter;
+        let small = ship.small_speed();
+        let w = S::select(at.inputs.n.less(S::zero()), p[1], p[0]);
+        let tip = at.inputs.n * at.inputs.n * (d * d);
+        let fade = tip / (tip + flow.u * flow.u + 1e-2 * small * small);
+        let y = w * tip * fade * (ship.hull.water_density * d * d);
+        Force { x: S::zero(), y, n: y * ship.propeller_x() }
+    }
+}

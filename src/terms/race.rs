@@ -1,0 +1,34 @@
+//! A change of the propeller race at the rudder.
+//! Seen only in how well the rudder works with the propeller turning; lift slope and race are hard to tell apart.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Adjust;
+use crate::parameter::ParameterInfo;
+use trimtab_ad::Scalar;
+
+/// Propeller race on the rudder.
+pub struct Race;
+
+static INFO: TermInfo = TermInfo {
+    name: "race",
+    title: "propeller race on the rudder",
+    group: Group::Rudder,
+    equation: "kappa -> (1 + c) kappa",
+    source: "Yasukawa & Yoshimura 2015 eq. 23, proportional change",
+    needs: &[],
+    parameters: &[ParameterInfo::new("change", "c", "-", "relative change of the race factor")
+        .scale(|_| 0.3)
+        .bounds(-1.0, 3.0)],
+};
+
+impl Term for Race {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Race {
+    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+        adjust.race *= p[0] + 1.0;
+    }
+}

@@ -1,0 +1,65 @@
+//! Yaw moment and sway force of the heel that a turn causes, following the turn with a lag.
+//! Heel is quasi-static: the lag is expanded to first order, so that roll resonance and heel from wind are not here. With a negative `yaw` the lag takes away inertia, and 1/2 rho L^2 d |yaw| U^3 tau/g must stay below Iz - Nrdot.
+
+use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::flow::{Adjust, Flow};
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Roll-yaw coupling.
+pub struct Roll;
+
+/// Sway force and yaw moment per U^3 r.
+fn gains<S: Scalar>(p: &[S], at: &Moment<S>) -> [S; 2] {
+    let unit = size::pressure(at.ship) / size::GRAVITY;
+    [p[0] * unit, p[1] * (unit * at.ship.hull.lpp)]
+}
+
+static INFO: TermInfo = TermInfo {
+    name: "roll",
+    title: "roll-yaw coupling",
+    group: Group::Hull,
+    equation: "h = U (r - tau r')/g; Y = sway 1/2 rho L d U^2 h, N = yaw 1/2 rho L^2 d U^2 h; the part in r' joins the mass matrix",
+    source: "quasi-static reduction of the four-degree-of-freedom model of Son & Nomoto 1981",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("sway", "k_Y", "-", "sway force of heel, per U r/g")
+            .scale(|_| 0.1)
+            .spread(|_| 0.5)
+            .bounds(-5.0, 5.0),
+        ParameterInfo::new("yaw", "k_N", "-", "yaw moment of heel, per U r/g")
+            .scale(|_| 0.1)
+            .spread(|_| 0.5)
+            .bounds(-5.0, 5.0),
+        ParameterInfo::new(
+            "lag",
+            "tau",
+            "s",
+            "time by which heel follows the turn, about a quarter of the roll period",
+        )
+        .default(size::time)
+        .scale(size::time)
+        .bounds(0.0, 30.0),
+    ],
+};
+
+impl Term for Roll {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Roll {
+    fn adjust(&self, p: &[S], at: &Moment<S>, adjust: &mut Adjust<S>) {
+        let [sway, yaw] = gains(p, at);
+        adjust.roll[0] += sway * p[2];
+        adjust.roll[1] += yaw * p[2];
+    }
+
+    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+        let [sway, yaw] = gains(p, at);
+        let cause = flow.speed * flow.speed * flow.speed * flow.r;
+        Force { x: S::zero(), y: sway * cause, n: yaw * cause }
+    }
+}

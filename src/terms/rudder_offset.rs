@@ -1,0 +1,39 @@
+//! A rudder that stands off the recorded angle by a constant.
+//! Looks like `rudder.lift0` wherever the inflow is steady; only coasting and changes of rpm tell them apart.
+
+use super::{Group, Physics, Term, TermInfo};
+use crate::parameter::ParameterInfo;
+use crate::ship::Ship;
+use crate::state::Inputs;
+use trimtab_ad::Scalar;
+
+/// Rudder zero offset.
+pub struct RudderOffset;
+
+static INFO: TermInfo = TermInfo {
+    name: "rudder_offset",
+    title: "rudder zero offset",
+    group: Group::Rudder,
+    equation: "delta -> delta + offset",
+    source: "constant offset, no source",
+    needs: &[],
+    parameters: &[ParameterInfo::new("offset", "b", "rad", "true minus recorded rudder angle")
+        .scale(|_| 0.0175)
+        .spread(|_| 0.0175)
+        .bounds(-0.35, 0.35)
+        .odd()],
+};
+
+impl Term for RudderOffset {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for RudderOffset {
+    fn drive(&self, p: &[S], _ship: &Ship, _dt: f64, series: &mut [Inputs<S>]) {
+        for inputs in series {
+            inputs.delta += p[0];
+        }
+    }
+}

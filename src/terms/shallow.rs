@@ -1,0 +1,62 @@
+//! Shallow water: damping, added mass and resistance grow with draught over water under the keel.
+//! One number for the depth scales fixed sensitivities; squat, and the strong growth of cross-flow drag below h/d = 1.5, are not modelled.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Adjust;
+use crate::parameter::ParameterInfo;
+use trimtab_ad::Scalar;
+
+/// Shallow water.
+pub struct Shallow;
+
+// Least-squares slopes over z of the published factors, mean of ships A and B, KVLCC2, KCS and Esso Osaka:
+// Y_v 0.39 and Y_vv 1.4; N_v 0.49 and N_vvr 1.0; Y_r 0.15, N_r 0.10 and N_rr 0.49; m_y 0.59 and J_z 0.49.
+const SWAY: f64 = 0.5;
+const YAW_STATIC: f64 = 0.5;
+const ROTARY: f64 = 0.15;
+const ADDED_MASS: f64 = 0.55;
+const RESISTANCE: f64 = 0.15;
+/// Largest d/h that is believed \[-\]: the ship is nearly aground.
+const MOST: f64 = 0.9;
+
+static INFO: TermInfo = TermInfo {
+    name: "shallow",
+    title: "shallow water",
+    group: Group::Environment,
+    equation: "z = ratio + strength (d/h)/(1 - d/h); factors 1 + a z: sway a = 0.5, yaw of drift 0.5, rotary 0.15, added mass 0.55, resistance 0.15",
+    source: "Hirano/Kijima effective aspect ratio and Li & Wu added mass, fitted over h/d = 1.5 to 3 for five ships; resistance after Schlichting",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("ratio", "z", "-", "draught over water under the keel d/(h-d), depth not recorded")
+            .scale(|_| 0.5)
+            .bounds(0.0, 4.0),
+        ParameterInfo::new(
+            "strength",
+            "k",
+            "-",
+            "share of the effect that the recorded depth should have; 1 as published",
+        )
+        .scale(|_| 1.0)
+        .spread(|_| 1.0)
+        .bounds(0.0, 3.0),
+    ],
+};
+
+impl Term for Shallow {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Shallow {
+    fn adjust(&self, p: &[S], at: &Moment<S>, adjust: &mut Adjust<S>) {
+        let q = at.inputs.draught_to_depth.clamp(0.0, MOST);
+        let z = p[0] + p[1] * q / (S::one() - q);
+        let factor = |sensitivity: f64| z * sensitivity + 1.0;
+        adjust.sway *= factor(SWAY);
+        adjust.yaw_static *= factor(YAW_STATIC);
+        adjust.rotary *= factor(ROTARY);
+        adjust.added_mass *= factor(ADDED_MASS);
+        adjust.resistance *= factor(RESISTANCE);
+    }
+}

@@ -1,0 +1,35 @@
+//! Hull and resistance forces that keep their sense when the ship moves astern.
+//! A share of the fore-aft consistent form inside the paper's form; in a model of form `regular` it does nothing.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Adjust;
+use crate::parameter::ParameterInfo;
+use trimtab_ad::Scalar;
+
+/// Sternway hull forces.
+pub struct Sternway;
+
+static INFO: TermInfo = TermInfo {
+    name: "sternway",
+    title: "sternway hull forces",
+    group: Group::Hull,
+    equation: "Yv U v -> Yv |u| v, Nr U r -> Nr |u| r, Yr U r -> Yr u r, Nv U v -> Nv u v, p2 u^2 -> p2 u|u|, in a share from 0 to 1",
+    source: "Yoshimura & Masumoto 2012 low-speed form",
+    needs: &[],
+    parameters: &[ParameterInfo::new("share", "s", "-", "share of the consistent form")
+        .scale(|_| 1.0)
+        .spread(|_| 1.0)
+        .bounds(0.0, 1.0)],
+};
+
+impl Term for Sternway {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Sternway {
+    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+        adjust.sternway += p[0];
+    }
+}

@@ -1,0 +1,37 @@
+//! A speed log that reads a constant too much across.
+//! Like a current across the ship that turns with it.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::STATES;
+use trimtab_ad::Scalar;
+
+/// Sway-log bias.
+pub struct SwayLogBias;
+
+static INFO: TermInfo = TermInfo {
+    name: "sway_log_bias",
+    title: "sway-log bias",
+    group: Group::Sensor,
+    equation: "v_m = v + b",
+    source: "constant bias, no source",
+    needs: &[],
+    parameters: &[ParameterInfo::new("bias", "b", "m/s", "reported minus true sway velocity, to starboard")
+        .scale(|_| 0.05)
+        .spread(|_| 0.1)
+        .bounds(-2.0, 2.0)
+        .odd()],
+};
+
+impl Term for SwayLogBias {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for SwayLogBias {
+    fn measure(&self, p: &[S], _at: &Moment<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+        y[4] += p[0];
+    }
+}

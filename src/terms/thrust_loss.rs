@@ -1,0 +1,32 @@
+//! A loss of thrust in proportion: a fouled, damaged or badly known propeller.
+//! The race on the rudder is made of thrust and weakens with it.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Adjust;
+use crate::parameter::ParameterInfo;
+use trimtab_ad::Scalar;
+
+/// Loss of thrust.
+pub struct ThrustLoss;
+
+static INFO: TermInfo = TermInfo {
+    name: "thrust_loss",
+    title: "loss of thrust",
+    group: Group::Propulsion,
+    equation: "T -> (1 - k) T",
+    source: "proportional loss, no source",
+    needs: &[],
+    parameters: &[ParameterInfo::new("fraction", "k", "-", "fraction of thrust lost").scale(|_| 0.1).bounds(0.0, 0.9)],
+};
+
+impl Term for ThrustLoss {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for ThrustLoss {
+    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+        adjust.thrust *= S::one() - p[0];
+    }
+}

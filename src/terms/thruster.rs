@@ -1,0 +1,50 @@
+//! Bow thruster, losing force as the ship gathers speed.
+//! Force follows the command at once; force and moment fade alike. A ship without thruster particulars gets a typical one: 1e-4 rho g L^2 d at 0.4 L.
+
+use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Bow thruster.
+pub struct Thruster;
+
+static INFO: TermInfo = TermInfo {
+    name: "thruster",
+    title: "bow thruster",
+    group: Group::External,
+    equation: "Y = gain T_0 command/(1 + (u/u_h)^2), N = x_T Y",
+    source: "fade to half the thrust at u_h as in harbour-manoeuvring practice, 2.5 kn for a coaster",
+    needs: &["thruster"],
+    parameters: &[
+        ParameterInfo::new("gain", "k_T", "-", "share of the nominal thrust; 1 as specified")
+            .scale(|_| 0.5)
+            .spread(|_| 1.0)
+            .bounds(0.0, 3.0),
+        ParameterInfo::new("half_speed", "u_h", "m/s", "speed at which half of the thrust is left")
+            .default(|s| 0.045 * size::speed(s))
+            .scale(|s| 0.01 * size::speed(s))
+            .spread(|s| 0.02 * size::speed(s))
+            .bounds(0.01, 20.0),
+    ],
+};
+
+impl Term for Thruster {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Thruster {
+    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+        let hull = &at.ship.hull;
+        let (thrust, x) = at.ship.thruster.as_ref().map_or_else(
+            || (1e-4 * hull.water_density * size::GRAVITY * hull.lpp.powi(2) * hull.draught, 0.4 * hull.lpp),
+            |t| (t.thrust, t.x),
+        );
+        let speed = flow.u / p[1];
+        let y = p[0] * at.inputs.thruster * thrust / (speed * speed + 1.0);
+        Force { x: S::zero(), y, n: y * x }
+    }
+}

@@ -1,0 +1,53 @@
+//! A uniform current that turns with the principal lunar tide.
+//! Only the M2 constituent; the acceleration of the water (1e-4 m/s2) exerts no force here.
+
+use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::flow::Adjust;
+use crate::parameter::ParameterInfo;
+use std::f64::consts::TAU;
+use trimtab_ad::Scalar;
+
+/// Tidal current.
+pub struct Tide;
+
+/// Period of the M2 tide \[s\].
+pub const PERIOD: f64 = 44_714.0;
+
+static INFO: TermInfo = TermInfo {
+    name: "tide",
+    title: "tidal current",
+    group: Group::Environment,
+    equation: "V_c += (north_cos, east_cos) cos w t + (north_sin, east_sin) sin w t, w = 2 pi/44714 s",
+    source: "M2 constituent, Doodson 1921; kinematics as `current`",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("north_sin", "V_sinN", "m/s", "sine amplitude of the current towards north")
+            .scale(|s| 0.007 * size::speed(s))
+            .bounds(-5.0, 5.0),
+        ParameterInfo::new("north_cos", "V_cosN", "m/s", "cosine amplitude of the current towards north")
+            .scale(|s| 0.007 * size::speed(s))
+            .bounds(-5.0, 5.0),
+        ParameterInfo::new("east_sin", "V_sinE", "m/s", "sine amplitude of the current towards east")
+            .scale(|s| 0.007 * size::speed(s))
+            .bounds(-5.0, 5.0)
+            .odd(),
+        ParameterInfo::new("east_cos", "V_cosE", "m/s", "cosine amplitude of the current towards east")
+            .scale(|s| 0.007 * size::speed(s))
+            .bounds(-5.0, 5.0)
+            .odd(),
+    ],
+};
+
+impl Term for Tide {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Tide {
+    fn adjust(&self, p: &[S], at: &Moment<S>, adjust: &mut Adjust<S>) {
+        let (sin, cos) = (at.inputs.t * (TAU / PERIOD)).sin_cos();
+        adjust.current[0] += p[0] * sin + p[1] * cos;
+        adjust.current[1] += p[2] * sin + p[3] * cos;
+    }
+}

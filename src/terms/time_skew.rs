@@ -1,0 +1,44 @@
+//! Channels that are reported late: positions, and the heading.
+//! First order in the delay, good while the rates change little over it; velocities are taken to be on time.
+
+use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::STATES;
+use trimtab_ad::Scalar;
+
+/// Time skew between channels.
+pub struct TimeSkew;
+
+static INFO: TermInfo = TermInfo {
+    name: "time_skew",
+    title: "time skew between channels",
+    group: Group::Sensor,
+    equation: "y_m(t) = y(t) - tau y'(t)",
+    source: "first-order expansion of a delay",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("position", "tau_p", "s", "delay of the position channels")
+            .scale(|s| 0.2 * size::time(s))
+            .spread(|s| size::time(s))
+            .bounds(-20.0, 20.0),
+        ParameterInfo::new("heading", "tau_h", "s", "delay of the heading channel")
+            .scale(|s| 0.2 * size::time(s))
+            .spread(|s| size::time(s))
+            .bounds(-20.0, 20.0),
+    ],
+};
+
+impl Term for TimeSkew {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for TimeSkew {
+    fn measure(&self, p: &[S], _at: &Moment<S>, _flow: &Flow<S>, rate: &[S; STATES], y: &mut [S; STATES]) {
+        y[0] -= rate[0] * p[0];
+        y[1] -= rate[1] * p[0];
+        y[2] -= rate[2] * p[1];
+    }
+}

@@ -1,0 +1,48 @@
+//! Wake at the propeller that changes with the drift angle there.
+//! It changes thrust and, through the race, the rudder; port and starboard may differ.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Adjust;
+use crate::parameter::ParameterInfo;
+use trimtab_ad::Scalar;
+
+/// Wake change in drift.
+pub struct WakeDrift;
+
+static INFO: TermInfo = TermInfo {
+    name: "wake_drift",
+    title: "wake change in drift",
+    group: Group::Propulsion,
+    equation: "w = w_0 - relief s^2 + asymmetry s, s = (v + x_P r)/sqrt(u^2 + (v + x_P r)^2), the sine of the drift angle at the propeller",
+    source: "quadratic wake law, cf. Yasukawa & Yoshimura 2015 eq. 15 to 17",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new(
+            "relief",
+            "c",
+            "-",
+            "wake lost when the propeller sees the flow from the side, about 0.4 over a full beam flow",
+        )
+        .scale(|_| 0.3)
+        .spread(|_| 0.5)
+        .bounds(0.0, 2.0),
+        ParameterInfo::new("asymmetry", "c_a", "-", "wake gained when the stern moves to starboard")
+            .scale(|_| 0.1)
+            .spread(|_| 0.2)
+            .bounds(-0.5, 0.5)
+            .odd(),
+    ],
+};
+
+impl Term for WakeDrift {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for WakeDrift {
+    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+        adjust.wake_relief += p[0];
+        adjust.wake_asymmetry += p[1];
+    }
+}

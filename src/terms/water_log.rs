@@ -1,0 +1,42 @@
+//! A speed log that reports velocity through the water although it is read as over ground.
+//! Without a current in the model there is no difference, and no effect.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::STATES;
+use trimtab_ad::Scalar;
+
+/// Ground/water speed mix-up.
+pub struct WaterLog;
+
+static INFO: TermInfo = TermInfo {
+    name: "water_log",
+    title: "ground/water speed mix-up",
+    group: Group::Sensor,
+    equation: "(u, v)_m = (u, v) - share V_c in body axes",
+    source: "kinematics",
+    needs: &[],
+    parameters: &[ParameterInfo::new(
+        "share",
+        "s",
+        "-",
+        "share of the current missing from the reported velocity; 1 for a log that measures through the water",
+    )
+    .scale(|_| 1.0)
+    .spread(|_| 1.0)
+    .bounds(0.0, 1.0)],
+};
+
+impl Term for WaterLog {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for WaterLog {
+    fn measure(&self, p: &[S], _at: &Moment<S>, flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+        y[3] -= flow.current[0] * p[0];
+        y[4] -= flow.current[1] * p[0];
+    }
+}

@@ -1,0 +1,45 @@
+//! Mean drift load of waves that were not measured: one direction on earth, a different gain ahead and abeam.
+//! Unlike wind it does not depend on the speed of the ship; unlike `earth_force` it is several times stronger abeam than ahead.
+
+use super::waves::drift_load;
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Unmeasured wave drift.
+pub struct WaveDrift;
+
+/// Typical drift coefficients c_x, c_y, c_n \[-\].
+pub const TYPICAL: [f64; 3] = [0.15, 0.8, -0.05];
+
+static INFO: TermInfo = TermInfo {
+    name: "wave_drift",
+    title: "unmeasured wave drift",
+    group: Group::Environment,
+    equation: "X = 1/16 rho g L H_s^2 c_x cos chi, Y = 1/16 rho g L H_s^2 c_y sin chi, N = 1/16 rho g L^2 H_s^2 c_n sin chi; chi from the bow to where the waves travel; c_x = 0.15, c_y = 0.8, c_n = -0.05",
+    source: "Daidola et al. 1986 mean drift with constant coefficients, typical for waves half as long as the ship",
+    needs: &[],
+    parameters: &[
+        ParameterInfo::new("north", "H2_N", "m2", "significant wave height squared, towards north")
+            .scale(|s| 3.5e-5 * s.hull.lpp * s.hull.lpp)
+            .bounds(-100.0, 100.0),
+        ParameterInfo::new("east", "H2_E", "m2", "significant wave height squared, towards east")
+            .scale(|s| 3.5e-5 * s.hull.lpp * s.hull.lpp)
+            .bounds(-100.0, 100.0)
+            .odd(),
+    ],
+};
+
+impl Term for WaveDrift {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for WaveDrift {
+    fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
+        drift_load(at.ship, at.state.psi, [p[0], p[1]], TYPICAL.map(S::from_f64))
+    }
+}

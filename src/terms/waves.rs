@@ -1,0 +1,55 @@
+//! Mean drift load of the measured waves, proportional to the wave height squared.
+//! Coefficients do not depend on wave length or ship speed, and motions at wave frequency are not modelled.
+
+use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::flow::{Flow, to_body};
+use crate::parameter::ParameterInfo;
+use crate::ship::Ship;
+use crate::state::Force;
+use trimtab_ad::Scalar;
+
+/// Measured waves.
+pub struct Waves;
+
+/// Mean drift load of waves given as `H_s^2 (north, east)` \[m2\] of where they travel to, with coefficients `c` = (c_x,
+/// c_y, c_n). The mean of the squared amplitude of an irregular sea is `H_s^2/8`.
+pub(super) fn drift_load<S: Scalar>(ship: &Ship, psi: S, waves: [S; 2], c: [S; 3]) -> Force<S> {
+    let [along, across] = to_body(waves, psi);
+    let unit = ship.hull.water_density * size::GRAVITY * ship.hull.lpp / 16.0;
+    Force { x: c[0] * along * unit, y: c[1] * across * unit, n: c[2] * across * (unit * ship.hull.lpp) }
+}
+
+static INFO: TermInfo = TermInfo {
+    name: "waves",
+    title: "measured waves",
+    group: Group::Environment,
+    equation: "X = 1/16 rho g L H_s^2 c_x cos chi, Y = 1/16 rho g L H_s^2 c_y sin chi, N = 1/16 rho g L^2 H_s^2 c_n sin chi; chi from the bow to where the waves travel",
+    source: "Daidola et al. 1986 mean drift with constant coefficients",
+    needs: &["waves"],
+    parameters: &[
+        ParameterInfo::new("drag", "c_x", "-", "longitudinal drift coefficient, typically 0.05 to 0.3")
+            .scale(|_| 0.15)
+            .spread(|_| 0.3)
+            .bounds(0.0, 2.0),
+        ParameterInfo::new("side", "c_y", "-", "lateral drift coefficient, typically 0.4 to 1.3")
+            .scale(|_| 0.8)
+            .spread(|_| 1.0)
+            .bounds(0.0, 3.0),
+        ParameterInfo::new("yaw", "c_n", "-", "yaw drift coefficient, typically -0.1 to 0.1")
+            .scale(|_| 0.05)
+            .spread(|_| 0.1)
+            .bounds(-0.5, 0.5),
+    ],
+};
+
+impl Term for Waves {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for Waves {
+    fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
+        drift_load(at.ship, at.state.psi, at.inputs.waves, [p[0], p[1], p[2]])
+    }
+}

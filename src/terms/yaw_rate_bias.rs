@@ -1,0 +1,37 @@
+//! A rate gyro that reads a constant too much.
+//! Only the yaw-rate channel; the heading channel tells.
+
+use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::flow::Flow;
+use crate::parameter::ParameterInfo;
+use crate::state::STATES;
+use trimtab_ad::Scalar;
+
+/// Yaw-rate bias.
+pub struct YawRateBias;
+
+static INFO: TermInfo = TermInfo {
+    name: "yaw_rate_bias",
+    title: "yaw-rate bias",
+    group: Group::Sensor,
+    equation: "r_m = r + b",
+    source: "constant bias, no source",
+    needs: &[],
+    parameters: &[ParameterInfo::new("bias", "b", "rad/s", "reported minus true yaw rate")
+        .scale(|_| 0.001)
+        .spread(|_| 0.002)
+        .bounds(-0.1, 0.1)
+        .odd()],
+};
+
+impl Term for YawRateBias {
+    fn info(&self) -> &'static TermInfo {
+        &INFO
+    }
+}
+
+impl<S: Scalar> Physics<S> for YawRateBias {
+    fn measure(&self, p: &[S], _at: &Moment<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+        y[5] += p[0];
+    }
+}
