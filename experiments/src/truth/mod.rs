@@ -7,6 +7,8 @@
 
 pub mod captive;
 pub mod crossflow;
+pub mod dataset;
+pub mod helmsman;
 pub mod large_drift;
 pub mod mmg;
 pub mod propeller;
@@ -299,7 +301,7 @@ pub(crate) fn astern_weight(n: f64, diameter: f64, u: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::ships::{ship_a, ship_b};
+    use super::ships::{kvlcc2, ship_a, ship_b};
     use super::*;
 
     fn truths() -> Vec<Box<dyn Truth>> {
@@ -309,7 +311,8 @@ mod tests {
     #[test]
     fn force_is_finite_in_all_four_quadrants_and_at_rest() {
         let grid = [-6.0, -1.0, -1e-3, -1e-9, 0.0, 1e-9, 1e-3, 1.0, 6.0];
-        for truth in truths() {
+        let kvlcc2: Box<dyn Truth> = Box::new(kvlcc2());
+        for truth in truths().into_iter().chain([kvlcc2]) {
             for u in grid {
                 for v in grid {
                     for r in grid.map(|g| g * 0.01) {
