@@ -4,6 +4,7 @@
 use super::axis::Axis;
 use super::canvas::Canvas;
 use super::draw;
+use super::marks::lies;
 use super::palette::Color;
 use std::path::{Path, PathBuf};
 
@@ -86,7 +87,7 @@ pub enum Mark {
     /// A line at this x.
     VLine(f64),
     /// One bar for each category, with an optional interval (ends as values; empty for none). Bars lie when the
-    /// categories are on the y axis. Several layers of bars or boxes in a panel stand side by side.
+    /// categories are on the y axis, the better choice for long names. Several layers of bars or boxes in a panel stand side by side.
     Bars {
         /// Length of each bar.
         values: Vec<f64>,
@@ -513,7 +514,7 @@ fn rows(panel: &Panel, layer: &Layer) -> Vec<Row> {
     let category = |axis: &Axis, i: usize| {
         Some(axis.labels().and_then(|labels| labels.get(i).cloned()).unwrap_or_else(|| i.to_string()))
     };
-    let lying = draw::lies(panel);
+    let lying = lies(panel);
     let slot = |kind, i: usize, v: f64, lo, hi| {
         if lying {
             row(kind, number(v), category(&panel.y, i), f64::NAN, lo, hi)

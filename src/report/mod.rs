@@ -6,7 +6,10 @@ mod canvas;
 mod draw;
 mod figure;
 mod html;
+mod legend;
+mod marks;
 mod palette;
+mod style;
 mod table;
 
 pub use axis::{Axis, Scale, equal_aspect};
