@@ -3,8 +3,10 @@
 
 pub mod diagnose;
 pub mod error;
+pub mod evaluate;
 pub mod fit;
 pub mod flow;
+pub mod maneuver;
 pub mod model;
 pub mod parameter;
 pub mod recording;

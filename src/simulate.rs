@@ -56,7 +56,7 @@ pub struct Trajectory {
 }
 
 /// Speed over ground beyond which a simulation is called diverged: 10 sqrt(g L) \[m/s\].
-fn absurd_speed(model: &Model) -> f64 {
+pub fn absurd_speed(model: &Model) -> f64 {
     10.0 * (9.80665 * model.ship.hull.lpp).sqrt()
 }
 

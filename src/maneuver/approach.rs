@@ -1,0 +1,159 @@
+//! How a trial is approached: settings as a person gives them, and the balanced approach they lead to.
+//! Nothing is sailed here.
+
+use super::ManeuverError;
+use crate::model::Model;
+use crate::state::{Force, Inputs, STATES, State};
+use serde::{Deserialize, Serialize};
+
+/// Settings of the trials, the section `[maneuver]` of a study. What is left out is chosen from the ship.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ManeuverSettings {
+    /// Approach speed \[m/s\]; Froude number 0.15 when neither `speed` nor `n_rpm` is given.
+    pub speed: Option<f64>,
+    /// Propeller rate of the approach \[rpm\]; the rate that holds `speed` when left out.
+    pub n_rpm: Option<f64>,
+    /// Rudder angle of the turning circle \[deg\]; 35.
+    pub turning_deg: Option<f64>,
+    /// Rudder and heading angle of each zigzag \[deg\]; 10/10 and 20/20.
+    pub zigzag_deg: Option<Vec<[f64; 2]>>,
+    /// Rudder rate \[deg/s\]; 2.32 (35 deg to 30 deg across in 28 s, SOLAS), for models below 20 m that of a 200 m ship in
+    /// model time.
+    pub rudder_rate_deg_s: Option<f64>,
+    /// Propeller rate of the crash stop \[rpm\], negative astern; minus the approach rate.
+    pub astern_rpm: Option<f64>,
+    /// Rate at which the propeller is reversed \[rpm/s\]; from ahead to astern while sailing two ship lengths.
+    pub engine_rate_rpm_s: Option<f64>,
+    /// Integration step \[s\], Runge-Kutta of order 4; a fiftieth of a ship length at approach speed.
+    pub step: Option<f64>,
+}
+
+/// A balanced approach, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Approach {
+    /// Approach speed U0 \[m/s\].
+    pub speed: f64,
+    /// Propeller rate \[rps\], kept through turning circle and zigzag.
+    pub n: f64,
+    /// Whether `n` holds `speed` on a straight course; false when both were given.
+    pub balanced: bool,
+    /// Rudder rate \[rad/s\].
+    pub rudder_rate: f64,
+    /// Propeller rate of the crash stop \[rps\].
+    pub astern: f64,
+    /// Rate at which the propeller rate changes \[rps/s\].
+    pub engine_rate: f64,
+    /// Integration step \[s\].
+    pub step: f64,
+}
+
+/// Froude number of the approach where nothing is given.
+const FROUDE: f64 = 0.15;
+/// Tolerance of a balance, relative.
+const BALANCE: f64 = 1e-10;
+
+impl ManeuverSettings {
+    /// Rudder angle of the turning circle \[rad\].
+    pub fn turning_angle(&self) -> f64 {
+        self.turning_deg.unwrap_or(35.0).to_radians()
+    }
+
+    /// Rudder and heading angle of each zigzag \[rad\].
+    pub fn zigzag_angles(&self) -> Vec<[f64; 2]> {
+        self.zigzag_deg.clone().unwrap_or_else(|| vec![[10.0, 10.0], [20.0, 20.0]]).iter().map(to_radians).collect()
+    }
+
+    /// The approach of a ship with this model and parameter vector.
+    ///
+    /// # Errors
+    /// [`ManeuverError`]: a setting that cannot be, or no balance between thrust and resistance.
+    pub fn approach(&self, model: &Model, theta: &[f64]) -> Result<Approach, ManeuverError> {
+        self.check()?;
+        let length = model.ship.hull.lpp;
+        let gravity = 9.80665;
+        let (speed, n, balanced) = match (self.speed, self.n_rpm) {
+            (Some(speed), Some(rpm)) => (speed, rpm / 60.0, false),
+            (None, Some(rpm)) => (balanced_speed(model, theta, rpm / 60.0)?, rpm / 60.0, true),
+            (speed, None) => {
+                let speed = speed.unwrap_or(FROUDE * (gravity * length).sqrt());
+                (speed, balanced_rate(model, theta, speed)?, true)
+            }
+        };
+        let usual = if length < 20.0 { 2.32 * (200.0 / length).sqrt() } else { 2.32 };
+        let astern = self.astern_rpm.map_or(-n, |rpm| rpm / 60.0);
+        let engine = (n - astern).abs().max(1e-3) * speed / (2.0 * length);
+        Ok(Approach {
+            speed,
+            n,
+            balanced,
+            rudder_rate: self.rudder_rate_deg_s.unwrap_or(usual).to_radians(),
+            astern,
+            engine_rate: self.engine_rate_rpm_s.map_or(engine, |rate| rate / 60.0),
+            step: self.step.unwrap_or(0.02 * length / speed),
+        })
+    }
+
+    fn check(&self) -> Result<(), ManeuverError> {
+        let fail = |key, found, expected| Err(ManeuverError::Setting { key, found, expected });
+        let positive = [
+            ("speed", self.speed),
+            ("n_rpm", self.n_rpm),
+            ("rudder_rate_deg_s", self.rudder_rate_deg_s),
+            ("engine_rate_rpm_s", self.engine_rate_rpm_s),
+            ("step", self.step),
+        ];
+        for (key, value) in positive {
+            if let Some(found) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+                return fail(key, found, "must be a positive number");
+            }
+        }
+        if let Some(found) = self.astern_rpm.filter(|v| !(v.is_finite() && *v < 0.0)) {
+            return fail("astern_rpm", found, "must be negative: the propeller turns astern");
+        }
+        let angles = self.zigzag_deg.iter().flatten().flatten().map(|a| ("zigzag_deg", *a));
+        for (key, found) in angles.chain(self.turning_deg.map(|a| ("turning_deg", a))) {
+            if !(found > 0.0 && found <= 90.0) {
+                return fail(key, found, "must be an angle between 0 and 90 degrees; both sides are sailed");
+            }
+        }
+        Ok(())
+    }
+}
+
+fn to_radians(pair: &[f64; 2]) -> [f64; 2] {
+    pair.map(f64::to_radians)
+}
+
+/// Surge acceleration \[m/s2\] on a straight course with the rudder amidships.
+fn surge(model: &Model, theta: &[f64], u: f64, n: f64) -> f64 {
+    let state = State::from_array([0.0, 0.0, 0.0, u, 0.0, 0.0]);
+    let rates: [f64; STATES] = model.rates(theta, &state, &Inputs::actuators(0.0, n, 0.0), &Force::zero()).0;
+    rates[3]
+}
+
+/// The propeller rate \[rps\] that holds a speed ahead \[m/s\]: zero surge acceleration at v = r = delta = 0.
+fn balanced_rate(model: &Model, theta: &[f64], speed: f64) -> Result<f64, ManeuverError> {
+    // Ten times the rate of no slip is beyond any propeller.
+    let limit = 10.0 * speed / model.ship.propeller.diameter;
+    first_root(|n| surge(model, theta, speed, n), 0.0, limit, 1.0).ok_or(ManeuverError::NoRate { speed, limit })
+}
+
+/// The lowest speed ahead \[m/s\] that a propeller rate \[rps\] holds.
+fn balanced_speed(model: &Model, theta: &[f64], n: f64) -> Result<f64, ManeuverError> {
+    let limit = 2.0 * (9.80665 * model.ship.hull.lpp).sqrt();
+    first_root(|u| surge(model, theta, u, n), 0.0, limit, -1.0).ok_or(ManeuverError::NoSpeed { n })
+}
+
+/// The first root of `f` in (`low`, `high`] where it changes to the sign of `after`: marching, then bisection.
+fn first_root(f: impl Fn(f64) -> f64, low: f64, high: f64, after: f64) -> Option<f64> {
+    const STEPS: usize = 400;
+    let at = |i: usize| low + (high - low) * i as f64 / STEPS as f64;
+    let i = (1..=STEPS).find(|&i| f(at(i - 1)) * after < 0.0 && f(at(i)) * after >= 0.0)?;
+    let (mut low, mut high) = (at(i - 1), at(i));
+    while high - low > BALANCE * high {
+        let middle = 0.5 * (low + high);
+        if f(middle) * after < 0.0 { low = middle } else { high = middle }
+    }
+    Some(0.5 * (low + high))
+}

@@ -1,0 +1,73 @@
+//! Sails a trial: simulates the ship under orders given while she sails, with rudder and engine of finite rate.
+//! What is ordered when is the trial's; what is measured afterwards too.
+
+use super::{Approach, Ended, Track};
+use crate::model::Model;
+use crate::simulate::{Integration, Method, absurd_speed, step};
+use crate::state::{Force, Inputs, STATES};
+
+/// Orders to rudder and engine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Orders {
+    /// Rudder angle \[rad\].
+    pub delta: f64,
+    /// Propeller rate \[rps\].
+    pub n: f64,
+}
+
+/// Sails from the approach (x = y = psi = 0, straight ahead) under the orders of `helm`, which is shown the track so far
+/// at every sample and gives the orders from then on, or `None` to end the trial.
+///
+/// Orders are followed at the approach's rudder and engine rate. Terms that act on whole input series (actuator lag,
+/// rudder offset) are applied to the series that results, anew whenever an order changes; they must be causal.
+pub(super) fn sail(
+    model: &Model,
+    theta: &[f64],
+    approach: &Approach,
+    mut helm: impl FnMut(&Track) -> Option<Orders>,
+) -> (Track, Ended) {
+    let dt = approach.step;
+    let lengths = 200.0;
+    let steps = (lengths * model.ship.hull.lpp / approach.speed / dt).ceil() as usize;
+    let integration = Integration { method: Method::Rk4, substeps: 1 };
+    let limit = absurd_speed(model);
+
+    let mut orders = Orders { delta: 0.0, n: approach.n };
+    let mut actuators: Vec<Inputs<f64>> =
+        (0..=steps).map(|k| Inputs::actuators(k as f64 * dt, approach.n, 0.0)).collect();
+    let mut driven = actuators.clone();
+    model.drive(theta, dt, &mut driven);
+
+    let mut track = Track::default();
+    let mut state: [f64; STATES] = [0.0, 0.0, 0.0, approach.speed, 0.0, 0.0];
+    for k in 0..=steps {
+        track.t.push(k as f64 * dt);
+        track.states.push(state);
+        track.delta.push(actuators[k].delta);
+        track.n.push(actuators[k].n);
+        let Some(new) = helm(&track) else {
+            return (track, Ended::Complete);
+        };
+        if new != orders {
+            orders = new;
+            for i in k + 1..=steps {
+                actuators[i].delta = follow(actuators[i - 1].delta, orders.delta, approach.rudder_rate * dt);
+                actuators[i].n = follow(actuators[i - 1].n, orders.n, approach.engine_rate * dt);
+            }
+            driven.clone_from(&actuators);
+            model.drive(theta, dt, &mut driven);
+        }
+        if k < steps {
+            state = step(model, theta, integration, dt, &state, &driven[k], &driven[k + 1], &Force::zero());
+            if !(state.iter().all(|s| s.is_finite()) && state[3].hypot(state[4]) < limit) {
+                return (track, Ended::Diverged { after: (k + 1) as f64 * dt });
+            }
+        }
+    }
+    (track, Ended::TimeOut { after: steps as f64 * dt })
+}
+
+/// One step of an actuator towards its order, by at most `reach`.
+fn follow(now: f64, order: f64, reach: f64) -> f64 {
+    now + (order - now).clamp(-reach, reach)
+}

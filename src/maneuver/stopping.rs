@@ -1,0 +1,72 @@
+//! The crash stop: sailing one, and reading track reach, head reach, lateral deviation and time from any track.
+//! Criteria for the numbers are in `imo`.
+
+use super::sail::{Orders, sail};
+use super::{Approach, Side, Track, Trial, imo};
+use crate::model::Model;
+use serde::Serialize;
+
+/// What a stop is measured by, from the order to the engine until the ship makes no more way ahead; what was not reached
+/// is absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Stopping {
+    /// Speed at the order \[m/s\].
+    pub approach_speed: f64,
+    /// Distance along the track \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub track_reach: Option<f64>,
+    /// Distance along the course at the order \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub head_reach: Option<f64>,
+    /// Distance across that course \[m\], positive to starboard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lateral_deviation: Option<f64>,
+    /// Change of heading \[rad\], positive to starboard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heading_change: Option<f64>,
+    /// Time \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
+}
+
+/// Measures a stop on a track whose engine was ordered astern at sample `order`.
+pub fn stopping(track: &Track, order: usize) -> Stopping {
+    let Some(start) = track.states.get(order) else {
+        return Stopping::default();
+    };
+    let course = start[2];
+    let approach_speed = track.speed(order);
+    let Some(stop) = track.first_above(order, 0.0, |s| -s[3]) else {
+        return Stopping { approach_speed, ..Stopping::default() };
+    };
+    let s = track.state(stop);
+    let [ahead, abeam] = track.ahead_abeam(order, course, [s[0], s[1]]);
+    let [x, y, ..] = track.states[stop.sample];
+    Stopping {
+        approach_speed,
+        track_reach: Some(track.distance(order, stop.sample) + (s[0] - x).hypot(s[1] - y)),
+        head_reach: Some(ahead),
+        lateral_deviation: Some(abeam),
+        heading_change: Some(s[2] - course),
+        time: Some(track.time(stop) - track.t[order]),
+    }
+}
+
+/// Sails a crash stop: engine to the approach's astern rate, rudder amidships, until the ship makes no more way ahead.
+pub fn stopping_trial(model: &Model, theta: &[f64], approach: &Approach) -> Trial<Stopping> {
+    let orders = Orders { delta: 0.0, n: approach.astern };
+    let (track, ended) = sail(model, theta, approach, |track| {
+        // `first_above` needs the sample after the last one with way ahead.
+        track.states.last().is_none_or(|s| s[3] > 0.0).then_some(orders)
+    });
+    let measures = stopping(&track, 0);
+    Trial {
+        name: format!("crash stop, propeller {:.0} rpm", approach.astern * 60.0),
+        side: Side::of(measures.lateral_deviation.unwrap_or(0.0)),
+        approach: *approach,
+        ended,
+        measures,
+        criteria: imo::stopping(&model.ship, &measures),
+        track,
+    }
+}

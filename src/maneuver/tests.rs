@@ -1,0 +1,232 @@
+//! Tests of the trials: laws on tracks of known shape, mirror symmetry, and the measured trials of KVLCC2 where the data are.
+
+use super::*;
+use crate::model::Model;
+use crate::ship::Ship;
+use crate::terms::Form;
+use std::f64::consts::PI;
+use std::path::Path;
+
+fn ship(name: &str) -> Ship {
+    Ship::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("experiments/ships/{name}.toml"))).unwrap()
+}
+
+fn model(form: Form) -> Model {
+    let mut model = Model::new(ship("a"), "A", form, &[]).unwrap();
+    // The published p* of ship A.
+    model.set_eleven(&[-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370]);
+    model
+}
+
+/// A ship that sails straight for 10 s, then on a circle of `radius` at 2 m/s.
+fn circle(radius: f64, side: f64) -> Track {
+    let mut track = Track::default();
+    let speed = 2.0;
+    for k in 0..=(10.0 + 14.0 * radius / speed) as usize * 10 {
+        let t = k as f64 * 0.1;
+        let angle = speed * (t - 10.0).max(0.0) / radius;
+        let ahead = speed * t.min(10.0) + radius * angle.sin();
+        let rate = if t > 10.0 { side * speed / radius } else { 0.0 };
+        track.t.push(t);
+        track.states.push([ahead, side * radius * (1.0 - angle.cos()), side * angle, speed, 0.0, rate]);
+        track.delta.push(if t > 10.0 { side * 0.6 } else { 0.0 });
+        track.n.push(1.0);
+    }
+    track
+}
+
+/// Turns a track about the origin.
+fn rotated(track: &Track, by: f64) -> Track {
+    let (sin, cos) = by.sin_cos();
+    let mut track = track.clone();
+    for s in &mut track.states {
+        (s[0], s[1], s[2]) = (s[0] * cos - s[1] * sin, s[0] * sin + s[1] * cos, s[2] + by);
+    }
+    track
+}
+
+#[test]
+fn a_geometric_circle_is_measured_exactly_on_any_course_and_side() {
+    for side in [1.0, -1.0] {
+        for course in [0.0, 2.5, -40.0] {
+            let track = rotated(&circle(50.0, side), course);
+            let execute = turning_execute(&track).unwrap();
+            assert_eq!(execute, 100);
+            let m = turning(&track, execute);
+            for (found, expected, what) in [
+                (m.advance.unwrap(), 50.0, "advance"),
+                (m.transfer.unwrap(), 50.0, "transfer"),
+                (m.tactical_diameter.unwrap(), 100.0, "tactical diameter"),
+                (m.steady.unwrap().diameter, 100.0, "steady diameter"),
+                (m.time_90.unwrap(), 25.0 * 0.5 * PI, "time to 90 deg"),
+                (m.rudder, side * 0.6, "rudder"),
+            ] {
+                assert!((found - expected).abs() < 0.02, "{what}: {found} instead of {expected}");
+            }
+            assert!(m.steady.unwrap().speed_loss.abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn what_a_track_does_not_reach_is_absent() {
+    let mut track = circle(50.0, 1.0);
+    for column in [&mut track.t, &mut track.delta, &mut track.n] {
+        column.truncate(300);
+    }
+    track.states.truncate(300);
+    let m = turning(&track, 100);
+    assert_eq!((m.advance, m.tactical_diameter, m.steady), (None, None, None));
+    let text = serde_json::to_string(&m).unwrap();
+    assert!(!text.contains("null") && !text.contains("advance"), "{text}");
+}
+
+#[test]
+fn a_zigzag_of_known_heading_gives_its_overshoots_and_period() {
+    // Heading 10 sin with overshoots of 4 deg: 14 deg amplitude, rudder put over at 10 deg.
+    let amplitude = 14.0_f64.to_radians();
+    let heading = 10.0_f64.to_radians();
+    let mut track = Track::default();
+    let (mut side, mut executes) = (1.0, vec![0]);
+    for k in 0..6000 {
+        let t = k as f64 * 0.1;
+        let psi = amplitude * (2.0 * PI * t / 200.0).sin();
+        if side * psi >= heading {
+            side = -side;
+            executes.push(k);
+        }
+        track.t.push(t);
+        track.states.push([2.0 * t, 0.0, psi, 2.0, 0.0, 0.0]);
+        track.delta.push(if k == 0 { 0.0 } else { side * heading });
+        track.n.push(1.0);
+    }
+    let found = zigzag_executes(&track);
+    assert_eq!(found.len(), executes.len());
+    assert!(found.iter().zip(&executes).all(|(f, e)| f.abs_diff(*e) <= 1), "{found:?} {executes:?}");
+    let m = zigzag(&track, &executes, heading);
+    for o in &m.overshoots[..4] {
+        assert!((o.to_degrees() - 4.0).abs() < 1e-3, "{o}");
+    }
+    assert!((m.period.unwrap() - 200.0).abs() < 0.2);
+    assert!((m.reach.unwrap() - 100.0).abs() < 0.1);
+    assert!((m.initial_turning.unwrap() - 2.0 * m.initial_turning_time.unwrap()).abs() < 1e-6);
+}
+
+#[test]
+fn the_approach_is_balanced_whichever_of_speed_and_rate_is_given() {
+    let model = model(Form::Regular);
+    let theta = model.values();
+    let by_speed = ManeuverSettings { speed: Some(5.0), ..Default::default() }.approach(&model, &theta).unwrap();
+    let rpm = by_speed.n * 60.0;
+    let by_rate = ManeuverSettings { n_rpm: Some(rpm), ..Default::default() }.approach(&model, &theta).unwrap();
+    assert!((by_rate.speed - 5.0).abs() < 1e-6, "{}", by_rate.speed);
+    let state = crate::state::State::from_array([0.0, 0.0, 0.0, 5.0, 0.0, 0.0]);
+    let inputs = crate::state::Inputs::actuators(0.0, by_speed.n, 0.0);
+    let (rates, _) = model.rates(&theta, &state, &inputs, &crate::state::Force::zero());
+    assert!(rates[3].abs() < 1e-6, "{rates:?}");
+}
+
+#[test]
+fn settings_that_cannot_be_are_refused_by_name() {
+    let model = model(Form::Regular);
+    let theta = model.values();
+    let bad = [
+        (ManeuverSettings { speed: Some(-1.0), ..Default::default() }, "speed"),
+        (ManeuverSettings { astern_rpm: Some(100.0), ..Default::default() }, "astern_rpm"),
+        (ManeuverSettings { zigzag_deg: Some(vec![[10.0, -10.0]]), ..Default::default() }, "zigzag_deg"),
+        (ManeuverSettings { turning_deg: Some(f64::NAN), ..Default::default() }, "turning_deg"),
+    ];
+    for (settings, name) in bad {
+        match settings.approach(&model, &theta) {
+            Err(ManeuverError::Setting { key, .. }) => assert_eq!(key, name),
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+}
+
+#[test]
+fn a_mirror_symmetric_ship_turns_alike_to_both_sides() {
+    let mut model = model(Form::Regular);
+    for name in ["propeller.side_force", "rudder.lift0", "rudder.lift2", "rudder.drag1"] {
+        model.set(&[(name, 0.0)]).unwrap();
+    }
+    let theta = model.values();
+    let settings = ManeuverSettings::default();
+    let approach = settings.approach(&model, &theta).unwrap();
+    let [right, left] = Side::BOTH.map(|s| turning_trial(&model, &theta, &approach, s, settings.turning_angle()));
+    assert_eq!(right.ended, Ended::Complete);
+    let near = |a: Option<f64>, b: Option<f64>| (a.unwrap() - b.unwrap()).abs() < 1e-9 * a.unwrap();
+    assert!(near(right.measures.advance, left.measures.advance));
+    assert!(near(right.measures.tactical_diameter, left.measures.tactical_diameter));
+    let [right, left] =
+        Side::BOTH.map(|s| zigzag_trial(&model, &theta, &approach, s, [10.0_f64.to_radians(); 2]).measures);
+    assert_eq!(right.overshoots.len(), 3);
+    assert!(right.overshoots.iter().zip(&left.overshoots).all(|(a, b)| (a - b).abs() < 1e-9));
+}
+
+#[test]
+fn ship_a_with_the_published_parameters_turns_as_computed_elsewhere() {
+    // An independent RK4 simulation at 200 rpm gave advance 3.55 L, tactical diameter 3.60 L and 3.66 L, r 0.025 rad/s.
+    // It used a Fourier propeller where the model has a quadratic one: 8 %, 10 % of r.
+    let model = model(Form::Paper);
+    let theta = model.values();
+    let settings = ManeuverSettings { n_rpm: Some(200.0), ..Default::default() };
+    let approach = settings.approach(&model, &theta).unwrap();
+    for (side, diameter) in [(Side::Starboard, 3.60), (Side::Port, 3.66)] {
+        let trial = turning_trial(&model, &theta, &approach, side, settings.turning_angle());
+        let m = trial.measures;
+        let (advance, td) = (m.advance.unwrap() / 85.0, m.tactical_diameter.unwrap() / 85.0);
+        assert!((advance / 3.55 - 1.0).abs() < 0.08, "advance {advance}");
+        assert!((td / diameter - 1.0).abs() < 0.08, "tactical diameter {td}");
+        let rate = m.steady.unwrap().yaw_rate.abs();
+        assert!((rate / 0.025 - 1.0).abs() < 0.1, "yaw rate {rate}, {m:?}");
+    }
+}
+
+#[test]
+fn a_crash_stop_ends_with_no_way_ahead_and_its_reaches_agree() {
+    let model = model(Form::Regular);
+    let theta = model.values();
+    let approach = ManeuverSettings::default().approach(&model, &theta).unwrap();
+    let trial = stopping_trial(&model, &theta, &approach);
+    assert_eq!(trial.ended, Ended::Complete);
+    let m = trial.measures;
+    let (track, head, side) = (m.track_reach.unwrap(), m.head_reach.unwrap(), m.lateral_deviation.unwrap());
+    assert!(track >= head.hypot(side) - 1e-9, "{m:?}");
+    assert!(trial.track.states.last().unwrap()[3].abs() < 0.05);
+    assert!(m.time.unwrap() > 0.0);
+}
+
+#[test]
+fn a_finer_step_does_not_move_the_measures() {
+    let model = model(Form::Regular);
+    let theta = model.values();
+    let at = |step| {
+        let settings = ManeuverSettings { step: Some(step), speed: Some(5.0), ..Default::default() };
+        let approach = settings.approach(&model, &theta).unwrap();
+        turning_trial(&model, &theta, &approach, Side::Starboard, settings.turning_angle()).measures
+    };
+    let (coarse, fine) = (at(0.34), at(0.085));
+    assert!((coarse.advance.unwrap() - fine.advance.unwrap()).abs() < 0.01);
+    assert!((coarse.tactical_diameter.unwrap() - fine.tactical_diameter.unwrap()).abs() < 0.01);
+}
+
+#[test]
+fn imo_limits_follow_length_over_speed_and_bind_from_100_m() {
+    let limits = |length: f64, speed: f64| {
+        let mut ship = ship("b");
+        ship.hull.lpp = length;
+        let angle = 10.0_f64.to_radians();
+        let m = Zigzag { rudder: -angle, heading: angle, approach_speed: speed, ..Default::default() };
+        imo::zigzag(&ship, &m).iter().map(|c| (c.limit, c.binding)).collect::<Vec<_>>()
+    };
+    assert_eq!(limits(90.0, 10.0), [(Some(2.5), false), (Some(10.0), false), (Some(25.0), false)]);
+    assert_eq!(limits(120.0, 6.0), [(Some(2.5), true), (Some(15.0), true), (Some(32.5), true)]);
+    assert_eq!(limits(300.0, 6.0), [(Some(2.5), true), (Some(20.0), true), (Some(40.0), true)]);
+    let verdict = |degrees: f64| {
+        let m = Turning { rudder: degrees.to_radians(), advance: Some(4.0 * 123.0), ..Default::default() };
+        imo::turning(&ship("b"), &m).iter().map(|c| c.verdict).collect::<Vec<_>>()
+    };
+    assert_eq!(verdict(-35.0), [imo::Verdict::Met, imo::Verdict::NotApplicable]);
+    assert_eq!(verdict(20.0), [imo::Verdict::NotApplicable; 2]);
+}

@@ -1,0 +1,120 @@
+//! The zigzag: sailing one, and reading executes, overshoots, initial turning and period from any track.
+//! Criteria for the numbers are in `imo`.
+
+use super::sail::{Orders, sail};
+use super::{Approach, Side, Track, Trial, imo};
+use crate::model::Model;
+use serde::Serialize;
+
+/// What a zigzag is measured by; what was not reached is absent.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Zigzag {
+    /// Rudder angle \[rad\].
+    pub rudder: f64,
+    /// Change of heading at which the rudder is put over \[rad\].
+    pub heading: f64,
+    /// Speed at the first execute \[m/s\].
+    pub approach_speed: f64,
+    /// Times of the executes, from the first \[s\].
+    pub executes: Vec<f64>,
+    /// Overshoot angles, first to last \[rad\]: how far heading runs past `heading` after each execute but the first.
+    pub overshoots: Vec<f64>,
+    /// Distance sailed along the track until heading has changed by `heading` \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial_turning: Option<f64>,
+    /// Time until heading has changed by `heading` \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial_turning_time: Option<f64>,
+    /// Time from the first execute until heading is back where it began \[s\] (the reach).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reach: Option<f64>,
+    /// Time from the second to the fourth execute \[s\]: one full cycle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub period: Option<f64>,
+}
+
+/// Measures a zigzag of `heading` \[rad\] on a track whose rudder was put over at the samples `executes`.
+pub fn zigzag(track: &Track, executes: &[usize], heading: f64) -> Zigzag {
+    let Some((&first, later)) = executes.split_first() else {
+        return Zigzag::default();
+    };
+    let course = track.states[first][2];
+    let end = *later.first().unwrap_or(&(track.len() - 1));
+    let moved = track.delta[first..end.max(first + 1)].iter().map(|d| d - track.delta[first]);
+    let rudder = moved.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
+    let side = Side::of(rudder).sign();
+
+    let turned = |s: &[f64; 6]| side * (s[2] - course);
+    let answered = track.first_above(first, heading, turned);
+    // An overshoot is complete once the ship has turned back: at the next execute, or past a peak within the track.
+    let overshoots = later.iter().enumerate().filter_map(|(i, &from)| {
+        let towards = if i % 2 == 0 { side } else { -side };
+        let to = later.get(i + 1).copied().unwrap_or(track.len() - 1);
+        let beyond = |k: usize| towards * (track.states[k][2] - course) - heading;
+        let peak = (from..=to).max_by(|&a, &b| beyond(a).total_cmp(&beyond(b)))?;
+        (peak < to).then(|| beyond(peak).max(0.0))
+    });
+    let back = later.first().and_then(|&second| track.first_above(second, 0.0, |s| -turned(s)));
+    Zigzag {
+        rudder,
+        heading,
+        approach_speed: track.speed(first),
+        executes: executes.iter().map(|&k| track.t[k] - track.t[first]).collect(),
+        overshoots: overshoots.collect(),
+        initial_turning: answered.map(|a| {
+            let [x, y, ..] = track.states[a.sample];
+            let [x1, y1, ..] = track.state(a);
+            track.distance(first, a.sample) + (x1 - x).hypot(y1 - y)
+        }),
+        initial_turning_time: answered.map(|a| track.time(a) - track.t[first]),
+        reach: back.map(|b| track.time(b) - track.t[first]),
+        period: (executes.len() > 3).then(|| track.t[executes[3]] - track.t[executes[1]]),
+    }
+}
+
+/// The samples at which the rudder of a recorded zigzag begins to move to the other side: for each passage beyond half the
+/// largest angle on the other side than before, the last sample before it at which the rudder was still within a tenth of
+/// that angle of where it had been held.
+pub fn zigzag_executes(track: &Track) -> Vec<usize> {
+    let largest = track.delta.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+    let mut executes = Vec::new();
+    let (mut side, mut held, mut from) = (0.0, track.delta.first().copied().unwrap_or(0.0), 0);
+    for (k, &delta) in track.delta.iter().enumerate() {
+        if delta.abs() > 0.5 * largest && delta.signum() != side {
+            side = delta.signum();
+            let still = (from..k).rev().find(|&i| (track.delta[i] - held).abs() <= 0.1 * largest);
+            executes.extend(still);
+            (held, from) = (delta, k);
+        } else if side * delta > side * held {
+            (held, from) = (delta, k);
+        }
+    }
+    executes
+}
+
+/// Sails a zigzag with the rudder at `angles[0]` and heading at `angles[1]` \[rad\], the first rudder to one side, until
+/// the fifth execute.
+pub fn zigzag_trial(model: &Model, theta: &[f64], approach: &Approach, side: Side, angles: [f64; 2]) -> Trial<Zigzag> {
+    const EXECUTES: usize = 5;
+    let [rudder, heading] = angles;
+    let mut executes = vec![0];
+    let mut to = side.sign();
+    let (track, ended) = sail(model, theta, approach, |track| {
+        if track.states.last().is_some_and(|s| to * s[2] >= heading) {
+            executes.push(track.len() - 1);
+            to = -to;
+        }
+        (executes.len() < EXECUTES).then_some(Orders { delta: to * rudder, n: approach.n })
+    });
+    let mut measures = zigzag(&track, &executes, heading);
+    measures.rudder = side.sign() * rudder;
+    Trial {
+        name: format!("zigzag {:.0}/{:.0}, {} first", rudder.to_degrees(), heading.to_degrees(), side.word()),
+        side,
+        approach: *approach,
+        ended,
+        criteria: imo::zigzag(&model.ship, &measures),
+        measures,
+        track,
+    }
+}
