@@ -1,0 +1,199 @@
+//! A fit as the nonlinear program that Ipopt is given: scaled parameters, cost plus priors, linear constraints.
+//! It decides nothing about what is fitted and reports nothing: it translates, and remembers what evaluations share.
+
+use super::constraints::Row;
+use super::cost::{Cost, Quadratic};
+use super::ipopt::{IterationReport, Nlp};
+use super::{Hessian, Progress};
+use crate::model::Model;
+use nalgebra::{DMatrix, DVector};
+
+/// Priors on the free parameters, as residuals beside those of the data.
+///
+/// The cost is no likelihood, so a prior needs to be told how much a unit of cost is worth. With the residuals' variance
+/// `s^2` (of the weighted residuals, which are taken as equally uncertain), `-2 s^2/M log posterior` is, up to a constant,
+/// `C(p) + w sum_j ((p_j - mean_j)/sd_j)^2` with `w = strength s^2/M`.
+#[derive(Clone, Debug)]
+pub(super) struct Priors {
+    /// Index among the free parameters, mean, standard deviation.
+    pub terms: Vec<(usize, f64, f64)>,
+    /// w above; 0 switches the priors off.
+    pub weight: f64,
+}
+
+impl Priors {
+    pub fn of(model: &Model) -> Self {
+        let prior = |(j, i): (usize, usize)| model.parameters[i].prior.map(|prior| (j, prior.mean, prior.sd));
+        Self { terms: model.free().into_iter().enumerate().filter_map(prior).collect(), weight: 0.0 }
+    }
+
+    pub fn value(&self, p: &[f64]) -> f64 {
+        self.weight * self.terms.iter().map(|(j, mean, sd)| ((p[*j] - mean) / sd).powi(2)).sum::<f64>()
+    }
+
+    pub fn add_gradient(&self, p: &[f64], gradient: &mut DVector<f64>) {
+        for (j, mean, sd) in &self.terms {
+            gradient[*j] += 2.0 * self.weight * (p[*j] - mean) / (sd * sd);
+        }
+    }
+
+    pub fn add_hessian(&self, hessian: &mut DMatrix<f64>) {
+        for (j, _, sd) in &self.terms {
+            hessian[(*j, *j)] += 2.0 * self.weight / (sd * sd);
+        }
+    }
+}
+
+/// The program in `z = p / scale`, with each constraint row divided by its size over a change of one scale.
+pub(super) struct Problem<'a, 'f> {
+    pub cost: &'a Cost<'a>,
+    pub rows: &'a [Row],
+    pub priors: &'a Priors,
+    pub scales: &'a [f64],
+    /// Bounds of the parameters, in their own units.
+    pub bounds: &'a [(f64, f64)],
+    /// Start, in the parameters' own units.
+    pub start: &'a [f64],
+    /// Factor from cost to the solver's objective: one over the mean number of samples of a run, so that it is of order one.
+    pub factor: f64,
+    pub hessian: Hessian,
+    pub progress: &'f mut dyn FnMut(&Progress) -> bool,
+    cached: Option<(Vec<f64>, Quadratic)>,
+}
+
+/// The size of a row over a change of one scale in every parameter: what its solver unit is.
+pub(super) fn row_size(row: &Row, scales: &[f64]) -> f64 {
+    row.coefficients.iter().zip(scales).map(|(a, s)| (a * s).powi(2)).sum::<f64>().sqrt()
+}
+
+impl<'a, 'f> Problem<'a, 'f> {
+    pub fn new(
+        cost: &'a Cost<'a>,
+        rows: &'a [Row],
+        priors: &'a Priors,
+        scales: &'a [f64],
+        bounds: &'a [(f64, f64)],
+        start: &'a [f64],
+        factor: f64,
+        hessian: Hessian,
+        progress: &'f mut dyn FnMut(&Progress) -> bool,
+    ) -> Self {
+        Self { cost, rows, priors, scales, bounds, start, factor, hessian, progress, cached: None }
+    }
+
+    fn unscaled(&self, z: &[f64]) -> Vec<f64> {
+        z.iter().zip(self.scales).map(|(z, s)| z * s).collect()
+    }
+
+    /// Value, gradient and Gauss-Newton matrix of the data's part at a point, computed once for all that ask.
+    fn quadratic(&mut self, z: &[f64]) -> Option<&Quadratic> {
+        if self.cached.as_ref().is_none_or(|(at, _)| at != z) {
+            let p = self.unscaled(z);
+            let quadratic = match self.hessian {
+                Hessian::GaussNewton => self.cost.quadratic(&p),
+                Hessian::Exact | Hessian::LimitedMemory => self.cost.with_gradient(&p),
+            };
+            self.cached = Some((z.to_vec(), quadratic?));
+        }
+        self.cached.as_ref().map(|(_, quadratic)| quadratic)
+    }
+}
+
+impl Nlp for Problem<'_, '_> {
+    fn variables(&self) -> usize {
+        self.scales.len()
+    }
+
+    fn constraints(&self) -> usize {
+        self.rows.len()
+    }
+
+    fn variable_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
+        for (j, ((lo, hi), scale)) in self.bounds.iter().zip(self.scales).enumerate() {
+            (lower[j], upper[j]) = (lo / scale, hi / scale);
+        }
+    }
+
+    fn constraint_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
+        for (i, row) in self.rows.iter().enumerate() {
+            let size = row_size(row, self.scales);
+            (lower[i], upper[i]) = ((row.lower - row.constant) / size, (row.upper - row.constant) / size);
+        }
+    }
+
+    fn start(&self, z: &mut [f64]) {
+        for (z, (p, scale)) in z.iter_mut().zip(self.start.iter().zip(self.scales)) {
+            *z = p / scale;
+        }
+    }
+
+    fn objective(&mut self, z: &[f64]) -> Option<f64> {
+        let p = self.unscaled(z);
+        Some(self.factor * (self.cost.value(&p)? + self.priors.value(&p)))
+    }
+
+    fn gradient(&mut self, z: &[f64], gradient: &mut [f64]) -> bool {
+        let p = self.unscaled(z);
+        let Some(mut total) = self.quadratic(z).map(|q| q.gradient.clone()) else { return false };
+        self.priors.add_gradient(&p, &mut total);
+        for (j, g) in gradient.iter_mut().enumerate() {
+            *g = self.factor * total[j] * self.scales[j];
+        }
+        true
+    }
+
+    fn constraint_values(&mut self, z: &[f64], values: &mut [f64]) -> bool {
+        for (value, row) in values.iter_mut().zip(self.rows) {
+            let linear: f64 = row.coefficients.iter().zip(self.scales).zip(z).map(|((a, s), z)| a * s * z).sum();
+            *value = linear / row_size(row, self.scales);
+        }
+        true
+    }
+
+    fn jacobian_structure(&self) -> Vec<(usize, usize)> {
+        let entries = |(i, row): (usize, &Row)| {
+            let nonzero = row.coefficients.iter().enumerate().filter(|(_, a)| **a != 0.0);
+            nonzero.map(move |(j, _)| (i, j)).collect::<Vec<_>>()
+        };
+        self.rows.iter().enumerate().flat_map(entries).collect()
+    }
+
+    fn jacobian_values(&mut self, _z: &[f64], values: &mut [f64]) -> bool {
+        let mut values = values.iter_mut();
+        for row in self.rows {
+            let size = row_size(row, self.scales);
+            let nonzero = row.coefficients.iter().zip(self.scales).filter(|(a, _)| **a != 0.0);
+            for ((a, scale), value) in nonzero.zip(&mut values) {
+                *value = a * scale / size;
+            }
+        }
+        true
+    }
+
+    fn hessian_structure(&self) -> Vec<(usize, usize)> {
+        (0..self.scales.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).collect()
+    }
+
+    fn hessian_values(&mut self, z: &[f64], factor: f64, _multipliers: &[f64], values: &mut [f64]) -> bool {
+        let p = self.unscaled(z);
+        let matrix = match self.hessian {
+            Hessian::Exact => self.cost.hessian(&p),
+            _ => self.quadratic(z).map(|q| q.gauss_newton.clone()),
+        };
+        let Some(mut matrix) = matrix else { return false };
+        self.priors.add_hessian(&mut matrix);
+        for ((i, j), value) in self.hessian_structure().into_iter().zip(values) {
+            *value = factor * self.factor * matrix[(i, j)] * self.scales[i] * self.scales[j];
+        }
+        true
+    }
+
+    fn iteration(&mut self, report: &IterationReport) -> bool {
+        (self.progress)(&Progress {
+            iteration: report.iteration,
+            cost: report.objective / self.factor,
+            violation: report.inf_pr,
+            optimality: report.inf_du,
+        })
+    }
+}
