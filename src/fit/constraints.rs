@@ -216,7 +216,7 @@ pub fn rows(model: &Model, settings: &ConstraintSettings, speeds: [f64; 2]) -> R
         let step = rule.step.unwrap_or(step);
         let (lower, upper) = (rule.lower.unwrap_or(lower), rule.upper.unwrap_or(upper));
         let bad = |what: String| Err(FitError::BadRule { rule: name.into(), what });
-        if !(lower <= upper) {
+        if lower.is_nan() || upper.is_nan() || lower > upper {
             return bad(format!("lower = {lower} and upper = {upper} leave no value; correct or swap them"));
         }
         if !(from <= to && step > 0.0 && (to - from) / step < 1e5) {

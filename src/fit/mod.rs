@@ -636,8 +636,9 @@ impl<'a> Task<'a> {
         let quantile = StudentsT::new(0.0, 1.0, freedom as f64).map_or(1.96, |t| t.inverse_cdf(0.975));
         let estimate = |(j, i): (usize, &usize)| {
             let parameter = &self.model.parameters[*i];
-            // Rounding in the projection leaves 1e-8 where an active constraint leaves nothing.
-            let standard_error = error(j).map(|e| if e < 1e-9 * self.scales[j] { 0.0 } else { e });
+            // Rounding in the projection leaves 1e-16 where active constraints leave nothing.
+            let held = z.row(j).norm() < 1e-9;
+            let standard_error = error(j).map(|e| if held { 0.0 } else { e });
             Estimate {
                 name: parameter.name.clone(),
                 symbol: parameter.info.symbol,

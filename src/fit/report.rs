@@ -2,20 +2,14 @@
 //! The same content for programs is the fit itself, serialised.
 
 use super::{CovarianceKind, Derivatives, Estimate, Fit, Hessian};
-use comfy_table::{CellAlignment, Table, presets};
+use crate::report::{Table, interval, sig};
 use std::fmt::Write;
 
-/// A number to five significant digits, without an exponent where it reads well without.
+/// Significant digits of every number.
+const DIGITS: usize = 5;
+
 fn number(x: f64) -> String {
-    if x == 0.0 {
-        return "0".into();
-    }
-    let magnitude = x.abs().log10().floor();
-    if (-4.0..7.0).contains(&magnitude) {
-        format!("{x:.*}", (4.0 - magnitude).max(0.0) as usize)
-    } else {
-        format!("{x:.4e}")
-    }
+    sig(x, DIGITS)
 }
 
 impl Estimate {
@@ -31,7 +25,7 @@ impl Estimate {
         match (self.at_bound, self.standard_error, self.interval) {
             (Some(side), _, _) => format!("at its {side} bound"),
             (None, Some(0.0), _) => "held by constraints".into(),
-            (None, _, Some([lower, upper])) => format!("{} .. {}", number(lower), number(upper)),
+            (None, _, Some([lower, upper])) => interval(lower, upper, DIGITS),
             (None, _, None) => "the data do not say".into(),
         }
     }
@@ -91,11 +85,9 @@ impl Fit {
         ));
         line(String::new());
 
-        let mut table = Table::new();
-        table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-        table.set_header(["parameter", "symbol", "unit", "start", "estimate", "std. error", "95 % interval"]);
+        let mut table = Table::new(["parameter", "symbol", "unit", "start", "estimate", "std. error", "95 % interval"]);
         for e in &self.estimates {
-            table.add_row([
+            table.row([
                 e.name.clone(),
                 e.symbol.to_string(),
                 e.unit.to_string(),
@@ -104,9 +96,6 @@ impl Fit {
                 e.error_in_words(),
                 e.interval_in_words(),
             ]);
-        }
-        for column in table.column_iter_mut().skip(3).take(3) {
-            column.set_cell_alignment(CellAlignment::Right);
         }
         line(table.to_string());
         line(match (self.covariance_kind, self.design_effect) {
