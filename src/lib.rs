@@ -14,4 +14,5 @@ pub mod report;
 pub mod ship;
 pub mod simulate;
 pub mod state;
+pub mod study;
 pub mod terms;

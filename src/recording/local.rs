@@ -33,10 +33,11 @@ pub(crate) fn local_fit(t: &[f64], v: &[f64], at: f64) -> Option<[f64; 3]> {
     None
 }
 
-/// Slope of `v` at every row of `rows`, from quadratics over `span` seconds around each; five samples at least.
+/// Value, slope and curvature of `v` at every row of `rows`, from quadratics over `span` seconds around each; five samples at
+/// least.
 ///
 /// Near the ends the span is cut off, not moved. Rows outside `rows` are not looked at.
-pub(crate) fn slope(t: &[f64], v: &[f64], rows: Range<usize>, span: f64) -> Vec<f64> {
+pub(crate) fn local(t: &[f64], v: &[f64], rows: Range<usize>, span: f64) -> Vec<[f64; 3]> {
     let half = 0.5 * span * (1.0 + 1e-9);
     let (mut lo, mut hi) = (rows.start, rows.start);
     rows.clone()
@@ -49,9 +50,14 @@ pub(crate) fn slope(t: &[f64], v: &[f64], rows: Range<usize>, span: f64) -> Vec<
             }
             let from = lo.min(row.saturating_sub(2)).max(rows.start);
             let to = hi.max(row + 3).min(rows.end);
-            local_fit(&t[from..to], &v[from..to], t[row]).map_or(f64::NAN, |c| c[1])
+            local_fit(&t[from..to], &v[from..to], t[row]).unwrap_or([f64::NAN; 3])
         })
         .collect()
+}
+
+/// Slope of `v` at every row of `rows`; see [`local`].
+pub(crate) fn slope(t: &[f64], v: &[f64], rows: Range<usize>, span: f64) -> Vec<f64> {
+    local(t, v, rows, span).into_iter().map(|c| c[1]).collect()
 }
 
 #[cfg(test)]

@@ -12,6 +12,9 @@ mod window;
 
 pub use channel::{CHANNELS, Channel, ChannelInfo, STATE_CHANNELS};
 pub use error::RecordingError;
+pub(crate) use error::{line_at, toml_problem};
+pub(crate) use local::{local, slope};
+pub(crate) use map::key_line;
 pub use map::{Column, ColumnMap, Decimal, Delimiter, Derived, Header, SpeedReference, VelocityFrame};
 pub use unit::{Quantity, UNITS, Unit};
 pub use window::{Environment, Gaps, Initial, Labels, Order, Skipped, Split, Window, WindowSettings, Windows};
