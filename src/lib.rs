@@ -1,6 +1,7 @@
 //! Automatic differentiation for ship dynamics: fit an interpretable manoeuvring model to recordings of a ship, and find
 //! the physics it lacks.
 
+pub mod check;
 pub mod diagnose;
 pub mod error;
 pub mod evaluate;
