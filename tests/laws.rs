@@ -1,6 +1,9 @@
 //! Laws of the motion as a whole: order of the integrators, uniform current, energy, and the signs that seamanship knows.
 //! What each term must keep to on its own is asserted over the catalogue in `catalogue.rs`.
 
+// The lints that spare #[test] functions do not see the helpers between them.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use std::f64::consts::PI;
 use std::path::Path;
 use trimtab::model::{Model, ModelError};

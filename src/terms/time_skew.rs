@@ -20,11 +20,11 @@ static INFO: TermInfo = TermInfo {
     parameters: &[
         ParameterInfo::new("position", "tau_p", "s", "delay of the position channels")
             .scale(|s| 0.2 * size::time(s))
-            .spread(|s| size::time(s))
+            .spread(size::time)
             .bounds(-20.0, 20.0),
         ParameterInfo::new("heading", "tau_h", "s", "delay of the heading channel")
             .scale(|s| 0.2 * size::time(s))
-            .spread(|s| size::time(s))
+            .spread(size::time)
             .bounds(-20.0, 20.0),
     ],
 };
