@@ -198,6 +198,7 @@ static INFO: TermInfo = TermInfo {
                u_R = eps sqrt(eta (u_P + kappa (sqrt(u_P^2 + 8T/(pi rho D^2)) - u_P))^2 + (1-eta) u_P^2); v_R = -gamma (v + l_R r)",
     source: "Yasukawa & Yoshimura 2015, J. Mar. Sci. Technol. 20, eq. 11-14 and 22-26; reversal by Yasukawa's factor",
     needs: &[],
+    mechanisms: &[],
     parameters: &[
         ParameterInfo::new("wake", "w", "-", "effective wake fraction")
             .default(|s| s.propeller.wake)

@@ -88,6 +88,45 @@ impl Evidence {
         base.test(&score, &own, &cross)
     }
 
+    /// Tests a group of columns that acts in some sessions only, after the base has had its say; with `reference` the part
+    /// common to all sessions is projected out too, so that the other sessions are the reference.
+    pub fn test_in(&self, base: &Base, columns: &[usize], sessions: &[&str], reference: bool) -> Test {
+        let k = columns.len();
+        let mut score = DVector::zeros(k);
+        let mut own = DMatrix::zeros(k, k);
+        let against = if reference { self.extend(base, columns) } else { base.clone() };
+        let mut cross = DMatrix::zeros(k, against.columns.len());
+        for e in self.sessions.iter().filter(|(s, _)| sessions.contains(&s.as_str())).map(|(_, e)| e) {
+            score += DVector::from_fn(k, |i, _| e.score[columns[i]]);
+            own += pick(&e.information, columns, columns);
+            cross += pick(&e.information, columns, &against.columns);
+        }
+        against.test(&score, &own, &cross)
+    }
+
+    /// The base with further columns, common to all runs.
+    pub fn extend(&self, base: &Base, columns: &[usize]) -> Base {
+        let mut all = base.columns.clone();
+        all.extend(columns);
+        let k = columns.len();
+        let n = base.columns.len();
+        let mut inverse = DMatrix::zeros(n + k, n + k);
+        let cross = pick(&self.total.information, columns, &base.columns);
+        let own = pick(&self.total.information, columns, columns);
+        // Bordered inverse.
+        let b = &base.inverse * cross.transpose();
+        let schur = pseudo_inverse(&(&own - &cross * &b));
+        inverse.view_mut((0, 0), (n, n)).copy_from(&(&base.inverse + &b * &schur * b.transpose()));
+        inverse.view_mut((0, n), (n, k)).copy_from(&(-(&b * &schur)));
+        inverse.view_mut((n, 0), (k, n)).copy_from(&(-(&schur * b.transpose())));
+        inverse.view_mut((n, n), (k, k)).copy_from(&schur);
+        let mut score = base.score.clone().resize_vertically(n + k, 0.0);
+        for (i, c) in columns.iter().enumerate() {
+            score[n + i] = self.total.score[*c];
+        }
+        Base { columns: all, inverse, score }
+    }
+
     /// Tests whether a group of columns acts differently from session to session, its common part projected out.
     ///
     /// The amplitudes are those of each session in turn (session-major), relative to the common part. `None` when there
@@ -96,25 +135,9 @@ impl Evidence {
         if self.sessions.len() < 2 {
             return None;
         }
-        let mut with_common = base.columns.clone();
-        with_common.extend(columns);
         let k = columns.len();
+        let extended = self.extend(base, columns);
         let n = base.columns.len();
-        let mut precise = DMatrix::zeros(n + k, n + k);
-        let cross = pick(&self.total.information, columns, &base.columns);
-        let own = pick(&self.total.information, columns, columns);
-        // Bordered inverse of [base, common part].
-        let b = &base.inverse * cross.transpose();
-        let schur = pseudo_inverse(&(&own - &cross * &b));
-        precise.view_mut((0, 0), (n, n)).copy_from(&(&base.inverse + &b * &schur * b.transpose()));
-        precise.view_mut((0, n), (n, k)).copy_from(&(-(&b * &schur)));
-        precise.view_mut((n, 0), (k, n)).copy_from(&(-(&schur * b.transpose())));
-        precise.view_mut((n, n), (k, k)).copy_from(&schur);
-        let mut score = base.score.clone().resize_vertically(n + k, 0.0);
-        for (i, c) in columns.iter().enumerate() {
-            score[n + i] = self.total.score[*c];
-        }
-        let extended = Base { columns: with_common, inverse: precise, score };
         let sessions = self.sessions.len();
         let mut g = DVector::zeros(sessions * k);
         let mut h = DMatrix::zeros(sessions * k, sessions * k);

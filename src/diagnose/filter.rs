@@ -37,6 +37,15 @@ pub struct Run {
     pub channels: [bool; STATES],
     /// Start of the state estimate.
     pub initial: [f64; STATES],
+    /// Sample ranges in which a known event pushed the ship: there the unknown force may be anything.
+    pub disturbed: Vec<(usize, usize)>,
+}
+
+impl Run {
+    /// Factor on the variance of the unknown force at sample `k`.
+    pub fn boost(&self, k: usize) -> f64 {
+        if self.disturbed.iter().any(|(a, b)| *a <= k + 1 && k <= *b + 1) { 1e4 } else { 1.0 }
+    }
 }
 
 /// A direction in parameter space along which sensitivities are carried.
@@ -187,6 +196,11 @@ impl<'a> Filter<'a> {
         let mut rows = vec![0.0; STATES * width];
         let mut forces = Vec::with_capacity(extra);
         let mut weighted: Vec<f64> = Vec::new();
+        let mut rates_now = vec![0.0; 3 * width];
+        let mut rates_next = vec![0.0; 3 * width];
+        if parameters > 0 {
+            self.rate_columns(&seeded, 0, &run.initial, &[0.0; 3], width, &mut rates_now);
+        }
         let a_force = (-run.dt / noise.force_time).exp();
         let rho: [f64; STATES] = std::array::from_fn(|j| (-run.dt / noise.sensors[GROUP_OF[j]].time).exp());
         for k in 0..run.measured.len() {
@@ -304,7 +318,21 @@ impl<'a> Filter<'a> {
                 for i in 0..STATES {
                     axpy(&mut moved[(9 + i) * width..(10 + i) * width], rho[i], &d[(9 + i) * width..(10 + i) * width]);
                 }
-                self.parameter_columns(&seeded, k, run.dt, &state, &push, &mut moved, width);
+                // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any
+                // predictable sensitivity leaves the score unbiased, so that this costs no more than a little power.
+                let faded = push.map(|w| w * a_force);
+                self.rate_columns(&seeded, k + 1, &image, &faded, width, &mut rates_next);
+                let half = 0.5 * run.dt;
+                for i in 0..STATES {
+                    let row = &mut moved[i * width..i * width + parameters];
+                    for l in 0..3 {
+                        axpy(row, half * a[i][3 + l], &rates_now[l * width..l * width + parameters]);
+                    }
+                    if i >= 3 {
+                        axpy(row, half, &rates_next[(i - 3) * width..(i - 3) * width + parameters]);
+                    }
+                }
+                std::mem::swap(&mut rates_now, &mut rates_next);
             }
             d = moved;
             if let Some(t) = &mut pass.tangent {
@@ -323,7 +351,7 @@ impl<'a> Filter<'a> {
             for i in 0..STATES {
                 z[9 + i] *= rho[i];
             }
-            p = predict(&p, &a, &gamma, a_force, &rho, noise);
+            p = predict(&p, &a, &gamma, a_force, &rho, noise, run.boost(k));
         }
         pass
     }
@@ -357,53 +385,36 @@ impl<'a> Filter<'a> {
         )
     }
 
-    /// Adds the derivative of the step map with respect to the parameters to the sensitivities.
-    fn parameter_columns(
+    /// Derivatives of the accelerations (u', v', r') with respect to the parameters, row by row, at sample `k`.
+    fn rate_columns(
         &self,
         seeded: &[Seeded],
         k: usize,
-        dt: f64,
         state: &[f64; STATES],
         push: &[f64; 3],
-        moved: &mut [f64],
         width: usize,
+        out: &mut [f64],
     ) {
         for (chunk, seed) in self.chunks.iter().zip(seeded) {
             if seed.tangents {
-                let x: [Gradient; STATES] = state.map(Gradient::constant);
-                let w = push.map(Gradient::constant);
-                let y = step(
-                    &chunk.view,
-                    &seed.theta,
-                    self.integration,
-                    dt,
-                    &x,
-                    &seed.instant(k),
-                    &seed.instant(k + 1),
-                    &Force { x: w[0], y: w[1], n: w[2] },
-                );
-                for i in 0..STATES {
+                let x = State::from_array(state.map(Gradient::constant));
+                let [fx, fy, fn_] = push.map(Gradient::constant);
+                let force = Force { x: fx, y: fy, n: fn_ };
+                let (rates, _) = chunk.view.rates(&seed.theta, &x, &seed.instant(k), &force);
+                for i in 0..3 {
                     for (lane, c) in chunk.columns.clone().enumerate() {
-                        moved[i * width + c] += y[i].eps[lane];
+                        out[i * width + c] = rates[3 + i].eps[lane];
                     }
                 }
             }
             for probe in &seed.probes {
                 let f = |side: &Side| {
-                    step(
-                        &chunk.view,
-                        &side.theta,
-                        self.integration,
-                        dt,
-                        state,
-                        &side.series[k],
-                        &side.series[k + 1],
-                        &Force { x: push[0], y: push[1], n: push[2] },
-                    )
+                    let force = Force { x: push[0], y: push[1], n: push[2] };
+                    chunk.view.rates(&side.theta, &State::from_array(*state), &side.series[k], &force).0
                 };
                 let (high, low) = (f(&probe.high), f(&probe.low));
-                for i in 0..STATES {
-                    moved[i * width + probe.column] += (high[i] - low[i]) * probe.weight;
+                for i in 0..3 {
+                    out[i * width + probe.column] = (high[3 + i] - low[3 + i]) * probe.weight;
                 }
             }
         }
@@ -544,6 +555,7 @@ pub fn predict(
     a_force: f64,
     rho: &[f64; STATES],
     noise: &Noise,
+    boost: f64,
 ) -> Square {
     let mut fp = [[0.0; Z]; Z];
     for i in 0..STATES {
@@ -590,7 +602,7 @@ pub fn predict(
         }
     }
     for i in 0..3 {
-        out[6 + i][6 + i] += noise.force[i] * noise.force[i] * (1.0 - a_force * a_force);
+        out[6 + i][6 + i] += boost * noise.force[i] * noise.force[i] * (1.0 - a_force * a_force);
     }
     for j in 0..STATES {
         let c = noise.sensors[GROUP_OF[j]].coloured;

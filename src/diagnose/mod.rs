@@ -1,6 +1,19 @@
 //! The diagnosis: where recordings and simulation part, which physics was left out, and the proof on unseen runs.
 //! One noise model (sensors, unknown force, initial states) stands behind every step.
+//!
+//! The steps are: admit the recordings ([`admit`]), estimate parameters and noise ([`estimate`]), locate unknown forces
+//! ([`locate`]), test every mechanism of the catalogue by its sensitivities ([`screen`]), refit the leaders, and compare
+//! models on held-out runs ([`prove`]). [`diagnose`] runs them in order and concludes.
 
+pub mod admit;
+pub mod conclude;
+pub mod estimate;
 pub mod evidence;
 pub mod filter;
+pub mod locate;
+pub mod mechanism;
 pub mod noise;
+pub mod prove;
+pub mod screen;
+
+pub use conclude::{Diagnosis, Finding, Settings, Verdict, diagnose, signal};

@@ -132,7 +132,7 @@ pub fn log_likelihood(run: &Run, tangent: &Tangent, noise: &Noise, model: &Model
             break;
         }
         z = move_mean(&z, tangent, k, a_force, &rho);
-        p = predict(&p, &tangent.a[k], &tangent.gamma[k], a_force, &rho, noise);
+        p = predict(&p, &tangent.a[k], &tangent.gamma[k], a_force, &rho, noise, run.boost(k));
     }
     total
 }

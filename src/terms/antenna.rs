@@ -2,6 +2,8 @@
 //! Horizontal lever only; its motion in roll is not there.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::STATES;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "(x, y)_m = (x, y) + R(psi) (l_x, l_y), u_m = u - r l_y, v_m = v + r l_x",
     source: "rigid-body kinematics",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "antenna",
+        title: "an antenna that is not where it is taken to be",
+        kind: Kind::Sensor,
+        parameters: &["x", "y"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.2,
+        look_alikes: &["time_skew"],
+        trial: "a turn on the spot",
+    }],
     parameters: &[
         ParameterInfo::new("x", "l_x", "m", "antenna forward of where it is taken to be")
             .scale(|s| 0.05 * s.hull.lpp)

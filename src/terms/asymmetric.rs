@@ -19,6 +19,7 @@ static INFO: TermInfo = TermInfo {
                in N times L; |.| rounded at small speeds",
     source: "generic basis, no source",
     needs: &[],
+    mechanisms: &[],
     parameters: &[
         ParameterInfo::new("X_0", "X_0", "N", "constant").scale(size::force).spread(size::force),
         ParameterInfo::new("Y_0", "Y_0", "N", "constant").scale(size::force).spread(size::force).odd(),

@@ -2,6 +2,8 @@
 //! It needs the distances to both banks; a bank that was not recorded cannot be told from other body forces.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::Force;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "eta = B (1/y_s - 1/y_p); Y = suction 1/2 rho L d u^2 eta (towards the bank), N = -moment 1/2 rho L^2 d u^2 eta (bow away)",
     source: "Norrbin 1974, linear in 1/distance",
     needs: &["bank"],
+    mechanisms: &[Mechanism {
+        name: "bank",
+        title: "bank suction",
+        kind: Kind::Environment,
+        parameters: &["suction", "moment"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.1,
+        look_alikes: &[],
+        trial: "the same track close to the bank and in midstream",
+    }],
     parameters: &[
         ParameterInfo::new("suction", "c_y", "-", "suction coefficient, about 0.1 in deep water")
             .scale(|_| 0.1)

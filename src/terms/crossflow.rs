@@ -2,6 +2,8 @@
 //! One drag coefficient for all strips; it matters at large drift and when the ship turns on the spot.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::Force;
@@ -34,6 +36,17 @@ static INFO: TermInfo = TermInfo {
     equation: "Y = -1/2 rho d C_D int |v + x r| (v + x r) dx, N = -1/2 rho d C_D int |v + x r| (v + x r) x dx over the length",
     source: "Fossen 2011 sec. 6.4 after Hoerner 1965; Yoshimura 2009; integrals in closed form",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "crossflow",
+        title: "cross-flow drag at large drift",
+        kind: Kind::Ship,
+        parameters: &["drag"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.2,
+        look_alikes: &["shallow", "hull_nonlinear"],
+        trial: "drifting sideways and turning on the spot",
+    }],
     parameters: &[ParameterInfo::new(
         "drag",
         "C_D",

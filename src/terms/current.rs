@@ -2,6 +2,8 @@
 //! Its forces come from the velocity through the water that all other terms use; a tide that turns is a term of its own.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
 use trimtab_ad::Scalar;
@@ -16,6 +18,17 @@ static INFO: TermInfo = TermInfo {
     equation: "V_c = (north, east) over ground, setting to; u_r = u - V_c,x, v_r = v - V_c,y in body axes; u' = u_r' + V_c,y r, v' = v_r' - V_c,x r",
     source: "Fossen 2011, Handbook of Marine Craft Hydrodynamics, sec. 8.3, irrotational current",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "current",
+        title: "steady current",
+        kind: Kind::Environment,
+        parameters: &["north", "east"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.2,
+        look_alikes: &["tide", "mean_wind", "earth_force", "log_scale", "water_log"],
+        trial: "a stop and drift, then slow turns through all headings",
+    }],
     parameters: &[
         ParameterInfo::new("north", "V_cN", "m/s", "current towards north")
             .scale(|s| 0.007 * size::speed(s))

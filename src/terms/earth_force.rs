@@ -2,6 +2,8 @@
 //! It says nothing of its cause: it is the generic form of what wind, waves or a line do at a constant speed.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::{Flow, to_body};
 use crate::parameter::ParameterInfo;
 use crate::state::Force;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "X = F_N cos psi + F_E sin psi, Y = F_E cos psi - F_N sin psi, N = 0",
     source: "generic, no source",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "earth_force",
+        title: "a force fixed on the earth",
+        kind: Kind::Environment,
+        parameters: &["north", "east"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.2,
+        look_alikes: &["mean_wind", "wave_drift", "current"],
+        trial: "drifting stopped on several headings",
+    }],
     parameters: &[
         ParameterInfo::new("north", "F_N", "N", "force towards north").scale(size::force),
         ParameterInfo::new("east", "F_E", "N", "force towards east").scale(size::force).odd(),

@@ -3,6 +3,8 @@
 
 use super::rudder_lag::first_order;
 use super::{Group, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::parameter::ParameterInfo;
 use crate::ship::Ship;
 use crate::state::Inputs;
@@ -18,6 +20,17 @@ static INFO: TermInfo = TermInfo {
     equation: "tau n' = n_c - n",
     source: "first-order shaft response, exact for an order that is linear between samples",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "engine_lag",
+        title: "engine lag",
+        kind: Kind::Actuator,
+        parameters: &["time"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.3,
+        look_alikes: &["loading", "thrust_loss"],
+        trial: "quick changes of propeller rate, and record the shaft",
+    }],
     parameters: &[ParameterInfo::new("time", "tau", "s", "time constant")
         .scale(|s| 3.0 * size::time(s))
         .bounds(0.0, 300.0)],

@@ -2,6 +2,8 @@
 //! With one loading and one season it cannot be told from p1 to p3; it is meant for differences between sessions.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
 use trimtab_ad::Scalar;
@@ -16,6 +18,17 @@ static INFO: TermInfo = TermInfo {
     equation: "R -> (1 + f) R",
     source: "proportional increase, no source",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "fouling",
+        title: "hull fouling",
+        kind: Kind::Ship,
+        parameters: &["fraction"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.3,
+        look_alikes: &["thrust_loss"],
+        trial: "speed runs before and after docking",
+    }],
     parameters: &[ParameterInfo::new("fraction", "f", "-", "relative increase of resistance")
         .scale(|_| 0.1)
         .bounds(0.0, 3.0)],

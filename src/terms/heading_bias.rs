@@ -2,6 +2,8 @@
 //! Only the heading channel; the ship's path tells, since it does not go where it points.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::STATES;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "psi_m = psi + b",
     source: "constant bias, no source",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "heading_bias",
+        title: "a bias of the compass",
+        kind: Kind::Sensor,
+        parameters: &["bias"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.2,
+        look_alikes: &["sway_log_bias", "current"],
+        trial: "reciprocal straight runs",
+    }],
     parameters: &[ParameterInfo::new("bias", "b", "rad", "reported minus true heading")
         .scale(|_| 0.0175)
         .spread(|_| 0.035)

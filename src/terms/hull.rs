@@ -43,6 +43,7 @@ static INFO: TermInfo = TermInfo {
                (m xG-Nvdot) v' + (Iz-Nrdot) r' - Nv U v + (m xG u-Nr U) r - Nrr r|r| - Nrrv r^2 v/U - Nvvr v^2 r/U = N",
     source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (1) after Spyrou 1996; coefficients by Clarke et al. 1982 and Inoue et al. 1981",
     needs: &[],
+    mechanisms: &[],
     parameters: &[
         ParameterInfo::new("mass", "m", "kg", "mass")
             .default(|s| s.hull.mass)

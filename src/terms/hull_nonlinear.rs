@@ -2,6 +2,8 @@
 //! The N_vvr and N_vrr of the cubic model are already in `hull`; coefficients are dimensionless, with 1/2 rho L d.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::Force;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "V^2 = u^2 + v^2 + (r L/2)^2; X = 1/2 rho L d (X_vv v^2 + X_rr r^2 L^2 + X_vvvv v^4/V^2), Y = 1/2 rho L d (Y_vvv v^3 + Y_vvr v^2 r L + Y_vrr v r^2 L^2 + Y_rrr r^3 L^3)/V, N = 1/2 rho L^2 d (N_vvv v^3 + N_rrr r^3 L^3)/V",
     source: "Yasukawa & Yoshimura 2015 eq. 8 to 10, with V for U so that turning on the spot stays finite",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "hull_nonlinear",
+        title: "further hull nonlinearity",
+        kind: Kind::Ship,
+        parameters: &["X_vv", "X_rr", "Y_vvv", "Y_vrr", "N_vvv", "N_rrr"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.5,
+        look_alikes: &["crossflow"],
+        trial: "turning circles at several rudder angles",
+    }],
     parameters: &[
         ParameterInfo::new("X_vv", "X_vv", "-", "surge force of drift").scale(|_| 0.03).spread(|_| 0.06),
         ParameterInfo::new("X_rr", "X_rr", "-", "surge force of turn").scale(|_| 0.01).spread(|_| 0.02),

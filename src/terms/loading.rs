@@ -2,6 +2,8 @@
 //! Draught, and with it the hull coefficients, stay as they are.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
 use trimtab_ad::Scalar;
@@ -16,6 +18,17 @@ static INFO: TermInfo = TermInfo {
     equation: "m -> (1 + mass) m, Iz -> (1 + mass) Iz, xG -> xG + x_g L",
     source: "rigid body",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "loading",
+        title: "another loading condition (mass, trim)",
+        kind: Kind::Ship,
+        parameters: &["mass", "x_g"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.5,
+        look_alikes: &["munk", "fouling", "engine_lag"],
+        trial: "accelerations at known thrust",
+    }],
     parameters: &[
         ParameterInfo::new("mass", "dm/m", "-", "relative change of mass and yaw inertia")
             .scale(|_| 0.1)

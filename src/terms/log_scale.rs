@@ -2,6 +2,8 @@
 //! Positions are not affected, and tell.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::STATES;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "(u, v)_m = (1 + e) (u, v)",
     source: "constant scale error, no source",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "log_scale",
+        title: "a scale error of the speed log",
+        kind: Kind::Sensor,
+        parameters: &["error"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.1,
+        look_alikes: &["current", "water_log"],
+        trial: "reciprocal runs over a measured mile",
+    }],
     parameters: &[ParameterInfo::new("error", "e", "-", "relative error of the reported speed")
         .scale(|_| 0.03)
         .spread(|_| 0.05)

@@ -3,6 +3,8 @@
 
 use super::wind::wind_load;
 use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::Force;
@@ -21,6 +23,17 @@ static INFO: TermInfo = TermInfo {
     equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the same in still air; c_x = 0.7, c_y = 0.8, c_n = 0.1",
     source: "cosine and sine form, C_X = -c_x cos g, C_Y = c_y sin g, C_N = c_n sin 2g, of Fossen 2011, eq. 8.31 to 8.33; middle of the ranges given there",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "mean_wind",
+        title: "wind that was not recorded",
+        kind: Kind::Environment,
+        parameters: &["north", "east"],
+        probe: Probe::Odd,
+        needs_reference: false,
+        floor: 0.1,
+        look_alikes: &["earth_force", "wave_drift", "current"],
+        trial: "drifting stopped on several headings, and record the wind",
+    }],
     parameters: &[
         ParameterInfo::new("north", "W_N", "m/s", "wind towards north")
             .scale(|s| 0.17 * size::speed(s))

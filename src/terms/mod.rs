@@ -56,6 +56,8 @@ pub struct TermInfo {
     pub source: &'static str,
     /// Recorded channels it needs, none for most.
     pub needs: &'static [&'static str],
+    /// What the diagnosis may name with it, none for the base terms.
+    pub mechanisms: &'static [crate::diagnose::mechanism::Mechanism],
     /// Its parameters, in the order of the slice the physics is given.
     pub parameters: &'static [ParameterInfo],
 }

@@ -2,6 +2,8 @@
 //! Odd in u: it changes sense with the direction of motion, as the base model's N_v U v does not.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::Force;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "N = -k 1/2 rho L^2 d u v",
     source: "slender-body theory, Munk 1924",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "munk",
+        title: "unstable yaw moment of drift",
+        kind: Kind::Ship,
+        parameters: &["factor"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.3,
+        look_alikes: &["loading", "shallow"],
+        trial: "pull-out from a turn with rudder amidships",
+    }],
     parameters: &[ParameterInfo::new("factor", "k", "-", "moment coefficient, 0.2 for a slender body")
         .scale(|_| 0.02)
         .spread(|_| 0.05)

@@ -17,6 +17,7 @@ static INFO: TermInfo = TermInfo {
     equation: "X_n = (1-t) T; Y_n = p0 X_n; N_n = x_P Y_n",
     source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (2)",
     needs: &[],
+    mechanisms: &[],
     parameters: &[ParameterInfo::new("side_force", "p0", "-", "side force over net thrust, to starboard")
         .scale(|_| 0.01)
         .odd()],

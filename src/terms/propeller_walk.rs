@@ -2,6 +2,8 @@
 //! The paper's side force proportional to net thrust is `propeller.side_force`; this one is proportional to n^2 and fades with speed.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::Force;
@@ -17,6 +19,30 @@ static INFO: TermInfo = TermInfo {
     equation: "Y = w rho D^4 n^2/(1 + J^2), J = u/(n D), w = ahead for n > 0, astern for n < 0; N = x_P Y. Right-handed screw: astern < 0 (stern to port), ahead >= 0 (small)",
     source: "shape after Hachii's measurements as used in low-speed MMG models; the fade exp(-J^2) written 1/(1 + J^2), regular at n = 0",
     needs: &[],
+    mechanisms: &[
+        Mechanism {
+            name: "propeller_walk_astern",
+            title: "propeller walk, turning astern",
+            kind: Kind::Ship,
+            parameters: &["astern"],
+            probe: Probe::Tangent,
+            needs_reference: false,
+            floor: 0.1,
+            look_alikes: &["propeller_walk_ahead"],
+            trial: "crash stops and starts astern from rest",
+        },
+        Mechanism {
+            name: "propeller_walk_ahead",
+            title: "propeller walk, turning ahead",
+            kind: Kind::Ship,
+            parameters: &["ahead"],
+            probe: Probe::Tangent,
+            needs_reference: true,
+            floor: 0.2,
+            look_alikes: &["rudder_offset", "propeller_walk_astern"],
+            trial: "straight runs at several propeller rates, and coasting",
+        },
+    ],
     parameters: &[
         ParameterInfo::new("ahead", "w_a", "-", "side force coefficient turning ahead, to starboard")
             .scale(|_| 0.01)

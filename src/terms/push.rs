@@ -17,6 +17,7 @@ static INFO: TermInfo = TermInfo {
     equation: "(X, Y, N) = (x, y, n) (tanh((t - start)/1 s) - tanh((t - end)/1 s))/2",
     source: "generic, no source",
     needs: &[],
+    mechanisms: &[],
     parameters: &[
         ParameterInfo::new("x", "F_x", "N", "force forward").scale(size::force),
         ParameterInfo::new("y", "F_y", "N", "force to starboard").scale(size::force).odd(),

@@ -2,6 +2,8 @@
 //! Seen only in how well the rudder works with the propeller turning; lift slope and race are hard to tell apart.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
 use trimtab_ad::Scalar;
@@ -16,6 +18,17 @@ static INFO: TermInfo = TermInfo {
     equation: "kappa -> (1 + c) kappa",
     source: "Yasukawa & Yoshimura 2015 eq. 23, proportional change",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "race",
+        title: "propeller race on the rudder",
+        kind: Kind::Ship,
+        parameters: &["change"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.3,
+        look_alikes: &["rudder_stall", "wake_drift"],
+        trial: "rudder steps at rest with the propeller ahead, and coasting",
+    }],
     parameters: &[ParameterInfo::new("change", "c", "-", "relative change of the race factor")
         .scale(|_| 0.3)
         .bounds(-1.0, 3.0)],

@@ -17,6 +17,7 @@ static INFO: TermInfo = TermInfo {
     equation: "X = -R(u), R = p1 u + p2 u^2 + p3 u^3 (form `regular`: p2 u|u|)",
     source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (1); sign corrected",
     needs: &[],
+    mechanisms: &[],
     parameters: &[
         ParameterInfo::new("linear", "p1", "N s/m", "linear resistance").scale(rate::<1>),
         ParameterInfo::new("quadratic", "p2", "N s2/m2", "quadratic resistance").scale(rate::<2>),

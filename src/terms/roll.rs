@@ -2,6 +2,8 @@
 //! Heel is quasi-static: the lag is expanded to first order, so that roll resonance and heel from wind are not here. With a negative `yaw` the lag takes away inertia, and 1/2 rho L^2 d |yaw| U^3 tau/g must stay below Iz - Nrdot.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::{Adjust, Flow};
 use crate::parameter::ParameterInfo;
 use crate::state::Force;
@@ -23,6 +25,17 @@ static INFO: TermInfo = TermInfo {
     equation: "h = U (r - tau r')/g; Y = sway 1/2 rho L d U^2 h, N = yaw 1/2 rho L^2 d U^2 h; the part in r' joins the mass matrix",
     source: "quasi-static reduction of the four-degree-of-freedom model of Son & Nomoto 1981",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "roll",
+        title: "roll coupled into yaw",
+        kind: Kind::Ship,
+        parameters: &["sway", "yaw"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.5,
+        look_alikes: &["munk", "loading"],
+        trial: "zigzags at high speed, and record the roll",
+    }],
     parameters: &[
         ParameterInfo::new("sway", "k_Y", "-", "sway force of heel, per U r/g")
             .scale(|_| 0.1)

@@ -27,6 +27,7 @@ static INFO: TermInfo = TermInfo {
                |a| from 45 to 60 deg blends into a flat plate, c_L = 1.2 sin a cos a, c_D = 1.2 sin^2 a",
     source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (3)-(4); resolution of lift and drag derived, area and inflow not printed there",
     needs: &[],
+    mechanisms: &[],
     parameters: &[
         ParameterInfo::new("lift0", "p4", "-", "lift coefficient at zero angle").scale(|_| 0.05).odd(),
         ParameterInfo::new("lift1", "p5", "1/rad", "slope of the lift coefficient").default(|_| 2.5).scale(|_| 0.5),

@@ -2,6 +2,8 @@
 //! The rudder starts where it is ordered to be; a limit of its rate is `rudder_rate`.
 
 use super::{Group, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::parameter::ParameterInfo;
 use crate::ship::Ship;
 use crate::state::Inputs;
@@ -40,6 +42,17 @@ static INFO: TermInfo = TermInfo {
     equation: "tau delta' = delta_c - delta",
     source: "first-order steering gear, exact for an order that is linear between samples",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "rudder_lag",
+        title: "rudder lag",
+        kind: Kind::Actuator,
+        parameters: &["time"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.5,
+        look_alikes: &["rudder_rate", "time_skew"],
+        trial: "zigzags with quick rudder orders, and record the rudder itself",
+    }],
     parameters: &[ParameterInfo::new("time", "tau", "s", "time constant")
         .scale(|s| 0.7 * size::time(s))
         .bounds(0.0, 60.0)],

@@ -2,6 +2,8 @@
 //! Looks like `rudder.lift0` wherever the inflow is steady; only coasting and changes of rpm tell them apart.
 
 use super::{Group, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::parameter::ParameterInfo;
 use crate::ship::Ship;
 use crate::state::Inputs;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "delta -> delta + offset",
     source: "constant offset, no source",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "rudder_offset",
+        title: "rudder zero offset",
+        kind: Kind::Actuator,
+        parameters: &["offset"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.2,
+        look_alikes: &["propeller_walk_ahead"],
+        trial: "straight runs before and after the rudder is set",
+    }],
     parameters: &[ParameterInfo::new("offset", "b", "rad", "true minus recorded rudder angle")
         .scale(|_| 0.0175)
         .spread(|_| 0.0175)

@@ -2,6 +2,8 @@
 //! The parameter is the inverse of the limit, so that 0 is a gear without limit; below the limit the rudder follows its order.
 
 use super::{Group, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::parameter::ParameterInfo;
 use crate::ship::Ship;
 use crate::state::Inputs;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "per sample: delta moves by e/(1 + (|e| a/dt)^4)^(1/4), e = order - delta; |delta'| < 1/a",
     source: "rate limit with rounded corner; SOLAS II-1/29 asks 35 to -30 deg in 28 s, a = 25 s/rad",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "rudder_rate",
+        title: "rudder rate limit",
+        kind: Kind::Actuator,
+        parameters: &["inverse"],
+        probe: Probe::Forward,
+        needs_reference: false,
+        floor: 0.3,
+        look_alikes: &["rudder_lag"],
+        trial: "rudder hard over from hard over, and record the rudder itself",
+    }],
     parameters: &[ParameterInfo::new(
         "inverse",
         "1/w",

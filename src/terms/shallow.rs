@@ -2,6 +2,8 @@
 //! One number for the depth scales fixed sensitivities; squat, and the strong growth of cross-flow drag below h/d = 1.5, are not modelled.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
 use trimtab_ad::Scalar;
@@ -26,6 +28,17 @@ static INFO: TermInfo = TermInfo {
     equation: "z = ratio + strength (d/h)/(1 - d/h); factors 1 + a z: sway a = 0.5, yaw of drift 0.5, rotary 0.15, added mass 0.55, resistance 0.15",
     source: "Hirano/Kijima effective aspect ratio and Li & Wu added mass, fitted over h/d = 1.5 to 3 for five ships; resistance after Schlichting",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "shallow",
+        title: "shallow water",
+        kind: Kind::Environment,
+        parameters: &["ratio"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.1,
+        look_alikes: &["crossflow", "munk", "loading"],
+        trial: "the same turning circle in deep and in shallow water",
+    }],
     parameters: &[
         ParameterInfo::new("ratio", "z", "-", "draught over water under the keel d/(h-d), depth not recorded")
             .scale(|_| 0.5)

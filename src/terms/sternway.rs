@@ -2,6 +2,8 @@
 //! A share of the fore-aft consistent form inside the paper's form; in a model of form `regular` it does nothing.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
 use trimtab_ad::Scalar;
@@ -16,6 +18,17 @@ static INFO: TermInfo = TermInfo {
     equation: "Yv U v -> Yv |u| v, Nr U r -> Nr |u| r, Yr U r -> Yr u r, Nv U v -> Nv u v, p2 u^2 -> p2 u|u|, in a share from 0 to 1",
     source: "Yoshimura & Masumoto 2012 low-speed form",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "sternway",
+        title: "hull forces that change sign astern",
+        kind: Kind::Ship,
+        parameters: &["share"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.2,
+        look_alikes: &["propeller_walk_astern"],
+        trial: "steering with sternway",
+    }],
     parameters: &[ParameterInfo::new("share", "s", "-", "share of the consistent form")
         .scale(|_| 1.0)
         .spread(|_| 1.0)

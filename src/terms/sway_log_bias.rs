@@ -2,6 +2,8 @@
 //! Like a current across the ship that turns with it.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::STATES;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "v_m = v + b",
     source: "constant bias, no source",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "sway_log_bias",
+        title: "a bias of the sway log",
+        kind: Kind::Sensor,
+        parameters: &["bias"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.1,
+        look_alikes: &["heading_bias", "current"],
+        trial: "reciprocal straight runs",
+    }],
     parameters: &[ParameterInfo::new("bias", "b", "m/s", "reported minus true sway velocity, to starboard")
         .scale(|_| 0.05)
         .spread(|_| 0.1)

@@ -29,6 +29,7 @@ static INFO: TermInfo = TermInfo {
                X even and Y, N odd in (v, r, delta); |.| rounded at small speeds",
     source: "generic basis, no source",
     needs: &[],
+    mechanisms: &[],
     parameters: &[
         coefficient("X_u_absu", "u|u|", |_| 0.02),
         coefficient("X_uu", "u^2", |_| 0.02),

@@ -2,6 +2,8 @@
 //! The race on the rudder is made of thrust and weakens with it.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
 use trimtab_ad::Scalar;
@@ -16,6 +18,17 @@ static INFO: TermInfo = TermInfo {
     equation: "T -> (1 - k) T",
     source: "proportional loss, no source",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "thrust_loss",
+        title: "loss of thrust",
+        kind: Kind::Ship,
+        parameters: &["fraction"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.2,
+        look_alikes: &["fouling"],
+        trial: "bollard pull and speed runs before and after",
+    }],
     parameters: &[ParameterInfo::new("fraction", "k", "-", "fraction of thrust lost").scale(|_| 0.1).bounds(0.0, 0.9)],
 };
 

@@ -2,6 +2,8 @@
 //! Force follows the command at once; force and moment fade alike. A ship without thruster particulars gets a typical one: 1e-4 rho g L^2 d at 0.4 L.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::Force;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "Y = gain T_0 command/(1 + (u/u_h)^2), N = x_T Y",
     source: "fade to half the thrust at u_h as in harbour-manoeuvring practice, 2.5 kn for a coaster",
     needs: &["thruster"],
+    mechanisms: &[Mechanism {
+        name: "thruster",
+        title: "bow thruster",
+        kind: Kind::Environment,
+        parameters: &["gain"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.1,
+        look_alikes: &["push"],
+        trial: "thruster alone, at rest and at slow speed",
+    }],
     parameters: &[
         ParameterInfo::new("gain", "k_T", "-", "share of the nominal thrust; 1 as specified")
             .scale(|_| 0.5)

@@ -2,6 +2,8 @@
 //! Only the M2 constituent; the acceleration of the water (1e-4 m/s2) exerts no force here.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
 use std::f64::consts::TAU;
@@ -20,6 +22,17 @@ static INFO: TermInfo = TermInfo {
     equation: "V_c += (north_cos, east_cos) cos w t + (north_sin, east_sin) sin w t, w = 2 pi/44714 s",
     source: "M2 constituent, Doodson 1921; kinematics as `current`",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "tide",
+        title: "tidal current",
+        kind: Kind::Environment,
+        parameters: &["north_sin", "north_cos", "east_sin", "east_cos"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.2,
+        look_alikes: &["current"],
+        trial: "the same runs again three and six hours later",
+    }],
     parameters: &[
         ParameterInfo::new("north_sin", "V_sinN", "m/s", "sine amplitude of the current towards north")
             .scale(|s| 0.007 * size::speed(s))

@@ -2,6 +2,8 @@
 //! First order in the delay, good while the rates change little over it; velocities are taken to be on time.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::STATES;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "y_m(t) = y(t) - tau y'(t)",
     source: "first-order expansion of a delay",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "time_skew",
+        title: "channels recorded at different times",
+        kind: Kind::Sensor,
+        parameters: &["position", "heading"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.2,
+        look_alikes: &["antenna", "rudder_lag"],
+        trial: "zigzags, and check the clocks",
+    }],
     parameters: &[
         ParameterInfo::new("position", "tau_p", "s", "delay of the position channels")
             .scale(|s| 0.2 * size::time(s))

@@ -2,6 +2,8 @@
 //! It changes thrust and, through the race, the rudder; port and starboard may differ.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
 use trimtab_ad::Scalar;
@@ -16,6 +18,17 @@ static INFO: TermInfo = TermInfo {
     equation: "w = w_0 - relief s^2 + asymmetry s, s = (v + x_P r)/sqrt(u^2 + (v + x_P r)^2), the sine of the drift angle at the propeller",
     source: "quadratic wake law, cf. Yasukawa & Yoshimura 2015 eq. 15 to 17",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "wake_drift",
+        title: "wake that changes with drift",
+        kind: Kind::Ship,
+        parameters: &["relief", "asymmetry"],
+        probe: Probe::Tangent,
+        needs_reference: true,
+        floor: 0.2,
+        look_alikes: &["race", "hull_nonlinear"],
+        trial: "turning circles at several propeller rates",
+    }],
     parameters: &[
         ParameterInfo::new(
             "relief",

@@ -2,6 +2,8 @@
 //! Without a current in the model there is no difference, and no effect.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::STATES;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "(u, v)_m = (u, v) - share V_c in body axes",
     source: "kinematics",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "water_log",
+        title: "a speed log that reads through the water",
+        kind: Kind::Sensor,
+        parameters: &["share"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.3,
+        look_alikes: &["current", "log_scale"],
+        trial: "reciprocal runs in the current",
+    }],
     parameters: &[ParameterInfo::new(
         "share",
         "s",

@@ -3,6 +3,8 @@
 
 use super::waves::drift_load;
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::Force;
@@ -21,6 +23,17 @@ static INFO: TermInfo = TermInfo {
     equation: "X = 1/16 rho g L H_s^2 c_x cos chi, Y = 1/16 rho g L H_s^2 c_y sin chi, N = 1/16 rho g L^2 H_s^2 c_n sin chi; chi from the bow to where the waves travel; c_x = 0.15, c_y = 0.8, c_n = -0.05",
     source: "Daidola et al. 1986 mean drift with constant coefficients, typical for waves half as long as the ship",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "wave_drift",
+        title: "wave drift of waves that were not recorded",
+        kind: Kind::Environment,
+        parameters: &["north", "east"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.2,
+        look_alikes: &["mean_wind", "earth_force", "current"],
+        trial: "drifting stopped on several headings, and record the waves",
+    }],
     parameters: &[
         ParameterInfo::new("north", "H2_N", "m2", "significant wave height squared, towards north")
             .scale(|s| 3.5e-5 * s.hull.lpp * s.hull.lpp)

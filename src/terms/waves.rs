@@ -2,6 +2,8 @@
 //! Coefficients do not depend on wave length or ship speed, and motions at wave frequency are not modelled.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::{Flow, to_body};
 use crate::parameter::ParameterInfo;
 use crate::ship::Ship;
@@ -26,6 +28,17 @@ static INFO: TermInfo = TermInfo {
     equation: "X = 1/16 rho g L H_s^2 c_x cos chi, Y = 1/16 rho g L H_s^2 c_y sin chi, N = 1/16 rho g L^2 H_s^2 c_n sin chi; chi from the bow to where the waves travel",
     source: "Daidola et al. 1986 mean drift with constant coefficients",
     needs: &["waves"],
+    mechanisms: &[Mechanism {
+        name: "waves",
+        title: "wave drift, as the waves were recorded",
+        kind: Kind::Environment,
+        parameters: &["drag", "side", "yaw"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.1,
+        look_alikes: &["wave_drift", "wind"],
+        trial: "slow runs on all headings in higher waves",
+    }],
     parameters: &[
         ParameterInfo::new("drag", "c_x", "-", "longitudinal drift coefficient, typically 0.05 to 0.3")
             .scale(|_| 0.15)

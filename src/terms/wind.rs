@@ -2,6 +2,8 @@
 //! The wind channel gives speed and direction; what is unknown are the three load coefficients. Wind nobody measured is `mean_wind`.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::{Flow, to_body};
 use crate::parameter::ParameterInfo;
 use crate::ship::{AboveWater, Ship};
@@ -55,6 +57,17 @@ static INFO: TermInfo = TermInfo {
     equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the same in still air",
     source: "cosine and sine form, C_X = -c_x cos g, C_Y = c_y sin g, C_N = c_n sin 2g, of Fossen 2011, eq. 8.31 to 8.33",
     needs: &["wind"],
+    mechanisms: &[Mechanism {
+        name: "wind",
+        title: "wind, as the anemometer recorded it",
+        kind: Kind::Environment,
+        parameters: &["drag", "side", "yaw"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.1,
+        look_alikes: &["mean_wind", "earth_force", "wave_drift"],
+        trial: "slow runs on all headings in more wind",
+    }],
     parameters: &[
         ParameterInfo::new("drag", "c_x", "-", "longitudinal load coefficient, typically 0.5 to 0.9")
             .scale(|_| 0.7)

@@ -2,6 +2,8 @@
 //! Only the yaw-rate channel; the heading channel tells.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
+use crate::diagnose::filter::Probe;
+use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
 use crate::state::STATES;
@@ -17,6 +19,17 @@ static INFO: TermInfo = TermInfo {
     equation: "r_m = r + b",
     source: "constant bias, no source",
     needs: &[],
+    mechanisms: &[Mechanism {
+        name: "yaw_rate_bias",
+        title: "a bias of the rate gyro",
+        kind: Kind::Sensor,
+        parameters: &["bias"],
+        probe: Probe::Tangent,
+        needs_reference: false,
+        floor: 0.2,
+        look_alikes: &[],
+        trial: "a minute at rest",
+    }],
     parameters: &[ParameterInfo::new("bias", "b", "rad/s", "reported minus true yaw rate")
         .scale(|_| 0.001)
         .spread(|_| 0.002)

@@ -1,0 +1,180 @@
+//! Before any physics is claimed: are the recordings consistent with themselves, and is the integration step fine enough?
+//! It judges data and numerics only.
+
+use super::filter::{Filter, Run};
+use super::noise::Noise;
+use crate::model::Model;
+use crate::simulate::{Integration, Method};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// One thing wrong or odd with the recordings.
+#[derive(Clone, Debug, Serialize)]
+pub struct Issue {
+    /// The channel concerned.
+    pub channel: String,
+    /// What is seen, with numbers.
+    pub text: String,
+    /// What to do.
+    pub next_step: String,
+    /// True when no physics can be concluded before it is mended.
+    pub blocking: bool,
+}
+
+/// The admission of the recordings.
+#[derive(Clone, Debug, Serialize)]
+pub struct Admission {
+    /// Runs admitted.
+    pub runs: usize,
+    /// Samples admitted.
+    pub samples: usize,
+    /// Sessions.
+    pub sessions: usize,
+    /// Spread of headings: 0 all the same, 1 all round.
+    pub heading_spread: f64,
+    /// What is wrong or odd.
+    pub issues: Vec<Issue>,
+    /// The integration used by the diagnosis.
+    pub integration: Integration,
+    /// Largest change of a standardised innovation when the step is refined eight times.
+    pub integration_error: f64,
+    /// Gain in log-likelihood when the recordings are read as explicit Euler at one step a sample, less that of the
+    /// integration used; large and positive for recordings that a coarse simulator made.
+    pub euler_gain: f64,
+}
+
+/// Slope of `y` on `x` through the origin of the means, and their correlation.
+fn gain(pairs: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let n = pairs.len() as f64;
+    if n < 20.0 {
+        return None;
+    }
+    let (mx, my) = pairs.iter().fold((0.0, 0.0), |a, p| (a.0 + p.0 / n, a.1 + p.1 / n));
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for (x, y) in pairs {
+        xx += (x - mx) * (x - mx);
+        xy += (x - mx) * (y - my);
+        yy += (y - my) * (y - my);
+    }
+    (xx > 0.0 && yy > 0.0).then(|| (xy / xx, xy / (xx * yy).sqrt()))
+}
+
+/// Units and signs that are confused: the factor between what is recorded and what is.
+const CONFUSIONS: [(f64, &str); 7] = [
+    (-1.0, "its sign is reversed"),
+    (57.2958, "it is in degrees where radians are declared"),
+    (1.0 / 57.2958, "it is in radians where degrees are declared"),
+    (1.94384, "it is in knots where m/s are declared"),
+    (0.514444, "it is in m/s where knots are declared"),
+    (60.0, "it is per minute where per second is declared"),
+    (-57.2958, "it is in degrees with reversed sign"),
+];
+
+/// Audits the recordings' kinematics and the numerics.
+pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run]) -> Admission {
+    let mut issues = Vec::new();
+    let mut rate = Vec::new();
+    let mut surge = Vec::new();
+    let (mut cos, mut sin, mut count) = (0.0, 0.0, 0.0);
+    for r in runs {
+        // Differences over several samples, so that sensor noise does not drown the motion.
+        let span = 3.min(r.measured.len().saturating_sub(1)).max(1);
+        for w in r.measured.windows(2 * span + 1) {
+            let (a, m, b) = (&w[0], &w[span], &w[2 * span]);
+            let dt = 2.0 * span as f64 * r.dt;
+            if r.channels[2] && r.channels[5] {
+                let mean = w.iter().map(|s| s[5]).sum::<f64>() / w.len() as f64;
+                if (b[2] - a[2]).is_finite() && mean.is_finite() {
+                    rate.push(((b[2] - a[2]) / dt, mean));
+                }
+            }
+            if r.channels[0] && r.channels[1] && r.channels[2] && r.channels[3] {
+                let (dx, dy) = ((b[0] - a[0]) / dt, (b[1] - a[1]) / dt);
+                let along = dx * m[2].cos() + dy * m[2].sin();
+                let mean = w.iter().map(|s| s[3]).sum::<f64>() / w.len() as f64;
+                if along.is_finite() && mean.is_finite() {
+                    surge.push((along, mean));
+                }
+            }
+        }
+        for s in &r.measured {
+            if s[2].is_finite() {
+                cos += s[2].cos();
+                sin += s[2].sin();
+                count += 1.0;
+            }
+        }
+        for j in 0..6 {
+            let values: Vec<f64> = r.measured.iter().map(|m| m[j]).filter(|v| v.is_finite()).collect();
+            let frozen = values.len() > 20 && values.windows(2).all(|w| w[0] == w[1]);
+            if r.channels[j] && frozen {
+                issues.push(Issue {
+                    channel: crate::state::STATE_NAMES[j].into(),
+                    text: format!("{}: the channel holds one value throughout", r.name),
+                    next_step: "leave the run or the channel out".into(),
+                    blocking: false,
+                });
+            }
+        }
+    }
+    for (channel, against, pairs) in [("r", "the change of heading", &rate), ("u", "the change of position", &surge)] {
+        let Some((slope, correlation)) = gain(pairs) else { continue };
+        if correlation.abs() < 0.8 {
+            continue;
+        }
+        if let Some((_, words)) = CONFUSIONS.iter().find(|(f, _)| (slope / f - 1.0).abs() < 0.12) {
+            issues.push(Issue {
+                channel: channel.into(),
+                text: format!("{channel} is {slope:.3} times {against} (correlation {correlation:.3}): {words}"),
+                next_step: format!("correct the unit or sign of `{channel}` in the column map"),
+                blocking: true,
+            });
+        }
+    }
+    // A rudder that turns the ship the wrong way.
+    let turn: Vec<(f64, f64)> = runs
+        .iter()
+        .flat_map(|r| r.measured.iter().zip(&r.inputs).filter(|(_, i)| i.n > 0.0).map(|(m, i)| (i.delta, m[5])))
+        .filter(|(d, m)| d.is_finite() && m.is_finite())
+        .collect();
+    if let Some((slope, correlation)) = gain(&turn)
+        && correlation < -0.5
+        && slope < 0.0
+    {
+        issues.push(Issue {
+            channel: "delta".into(),
+            text: format!(
+                "rudder to starboard goes with a turn to port (correlation {correlation:.2}): the rudder's sign is reversed"
+            ),
+            next_step: "set `sign = -1` for the rudder in the column map".into(),
+            blocking: true,
+        });
+    }
+    let log_likelihood = |integration: Integration| -> (f64, Vec<Vec<[f64; 6]>>) {
+        let filter = Filter::new(model, integration, &[]);
+        let passes: Vec<_> = runs.par_iter().map(|r| filter.pass(r, noise, None, false)).collect();
+        (passes.iter().map(|p| p.log_likelihood).sum(), passes.into_iter().map(|p| p.innovations).collect())
+    };
+    let (value, innovations) = log_likelihood(integration);
+    let (_, refined) = log_likelihood(Integration { method: Method::Rk4, substeps: integration.substeps.max(1) * 8 });
+    let (euler, _) = log_likelihood(Integration { method: Method::Euler, substeps: 1 });
+    let error = innovations
+        .iter()
+        .flatten()
+        .zip(refined.iter().flatten())
+        .flat_map(|(a, b)| (0..6).map(move |j| (a[j] - b[j]).abs()))
+        .filter(|e| e.is_finite())
+        .collect::<Vec<f64>>();
+    let largest = error.iter().copied().fold(0.0, f64::max);
+    let sessions: std::collections::BTreeSet<&str> = runs.iter().map(|r| r.session.as_str()).collect();
+    Admission {
+        runs: runs.len(),
+        samples: runs.iter().map(|r| r.measured.len()).sum(),
+        sessions: sessions.len(),
+        heading_spread: if count > 0.0 { 1.0 - (cos * cos + sin * sin).sqrt() / count } else { 0.0 },
+        issues,
+        integration,
+        integration_error: largest,
+        euler_gain: euler - value,
+    }
+}

@@ -1,0 +1,1224 @@
+//! From evidence to a verdict: runs the steps in order, accepts mechanisms one after the other with backward and swap checks,
+//! and says what was found, what cannot be told, and what would have been seen. The arithmetic is in the other files.
+
+use super::admit::{Admission, admit};
+use super::estimate::{Effort, Estimate, FreeParameter, base_of, estimate, evidence, passes, restrictions};
+use super::evidence::chi_squared_p;
+use super::filter::{Column, Probe, Run};
+use super::locate::{EquationShare, Location, RegionTest, Window, locate};
+use super::mechanism::{Candidate, Kind, candidates};
+use super::noise::{Noise, NoisePrior, guess};
+use super::prove::{HeldOut, prove};
+use super::screen::{Row, Screen, screen};
+use crate::model::{Model, ModelError, Prior};
+use crate::simulate::{Integration, Method};
+use crate::terms::CATALOGUE;
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+use statrs::distribution::{ContinuousCDF, Normal};
+use std::collections::BTreeMap;
+
+/// Settings of a diagnosis, the `[diagnose]` table of a study.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// Chance of naming anything when nothing is missing.
+    pub alpha: f64,
+    /// At most this many mechanisms.
+    pub most: usize,
+    /// Mechanisms that must not be considered.
+    pub withhold: Vec<String>,
+    /// Whether unknown hull, propeller and rudder coefficients are carried along with their priors.
+    pub nuisance: bool,
+    /// Sub-steps of RK4 in one sample period.
+    pub substeps: usize,
+    /// Seed of the bootstrap.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { alpha: 0.05, most: 3, withhold: Vec::new(), nuisance: true, substeps: 1, seed: 20250226 }
+    }
+}
+
+/// What a diagnosis concludes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Nothing is missing that these data could show.
+    NothingMissing,
+    /// One mechanism (or several together) is named.
+    Named,
+    /// One of several that these data cannot tell apart.
+    OneOf,
+    /// Something is missing that the catalogue does not hold.
+    NotInCatalogue,
+    /// A sensor, not the ship.
+    Sensor,
+    /// The integration step, not the ship.
+    Numerics,
+    /// Force is there, but nothing repeats.
+    Random,
+    /// The recordings cannot answer.
+    Insufficient,
+}
+
+/// A value with its interval.
+#[derive(Clone, Debug, Serialize)]
+pub struct Amplitude {
+    /// Dotted name.
+    pub name: String,
+    /// Value.
+    pub value: f64,
+    /// SI unit.
+    pub unit: String,
+    /// Standard error.
+    pub error: f64,
+    /// 95 % interval.
+    pub ci95: [f64; 2],
+}
+
+/// Shares of the unexplained force by equation.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Equations {
+    /// Surge.
+    #[serde(rename = "X")]
+    pub x: EquationShare,
+    /// Sway.
+    #[serde(rename = "Y")]
+    pub y: EquationShare,
+    /// Yaw.
+    #[serde(rename = "N")]
+    pub n: EquationShare,
+}
+
+impl From<[EquationShare; 3]> for Equations {
+    fn from([x, y, n]: [EquationShare; 3]) -> Self {
+        Self { x, y, n }
+    }
+}
+
+/// One thing that was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finding {
+    /// Name of the mechanism; `push` for a time-local force, `generic` when the catalogue does not hold it.
+    pub mechanism: String,
+    /// Plain words.
+    pub title: String,
+    /// What kind of thing it is.
+    pub kind: Kind,
+    /// Every mechanism that these data allow in its place, itself first.
+    pub confidence_set: Vec<String>,
+    /// Why the set is what it is.
+    pub why: String,
+    /// Sessions in which it acts; empty for all.
+    pub sessions: Vec<String>,
+    /// Twice the gain in log-likelihood.
+    pub statistic: f64,
+    /// Corrected p-value.
+    pub p: f64,
+    /// Share of the force it brings, by equation.
+    pub equations: Equations,
+    /// Time windows, for a time-local force.
+    pub windows: Vec<Window>,
+    /// Where in state and inputs the force stood out.
+    pub region: Option<String>,
+    /// Its signature in words.
+    pub signature: String,
+    /// Its parameters.
+    pub parameters: Vec<Amplitude>,
+    /// Before and after on held-out runs, for all findings together.
+    pub held_out: Option<HeldOut>,
+}
+
+/// One row of the ranking.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ranked {
+    /// Mechanism.
+    pub mechanism: String,
+    /// Plain words.
+    pub title: String,
+    /// Twice the gain in log-likelihood that the scores promise.
+    pub statistic: f64,
+    /// Degrees of freedom.
+    pub degrees: usize,
+    /// Corrected p-value.
+    pub p: f64,
+    /// Amplitudes \[units of the parameters\].
+    pub amplitude: Vec<f64>,
+    /// Size over the smallest size worth naming.
+    pub size: f64,
+    /// Whether the sign is possible.
+    pub admissible: bool,
+    /// Share of information left after base parameters and nuisances.
+    pub retained: f64,
+    /// p-value with a free mirror-symmetric discrepancy as rival.
+    pub second_opinion: f64,
+    /// Sessions in which it acts; empty for all.
+    pub sessions: Vec<String>,
+}
+
+/// A mechanism that cannot be seen, and why.
+#[derive(Clone, Debug, Serialize)]
+pub struct Absorbed {
+    /// Mechanism.
+    pub mechanism: String,
+    /// Share of information left.
+    pub retained: f64,
+    /// What mimics it.
+    pub by: String,
+}
+
+/// The smallest size of a mechanism that would have been seen.
+#[derive(Clone, Debug, Serialize)]
+pub struct Detectable {
+    /// Mechanism.
+    pub mechanism: String,
+    /// Size that is seen in 80 % of such data sets.
+    pub size: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+/// How far a parameter moved.
+#[derive(Clone, Debug, Serialize)]
+pub struct Move {
+    /// Dotted name.
+    pub name: String,
+    /// Before the findings.
+    pub before: f64,
+    /// After.
+    pub after: f64,
+    /// Standard error after.
+    pub error: f64,
+    /// Difference in standard errors.
+    pub moved: f64,
+}
+
+/// How much of what was allowed for in the hull coefficients was used.
+#[derive(Clone, Debug, Serialize)]
+pub struct Budget {
+    /// Dotted name.
+    pub name: String,
+    /// Prior mean.
+    pub prior: f64,
+    /// Prior standard deviation.
+    pub sd: f64,
+    /// Estimate.
+    pub value: f64,
+    /// Distance from the prior mean in prior standard deviations.
+    pub used: f64,
+}
+
+/// Tests of a generic discrepancy.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Adequacy {
+    /// p-value of mirror-symmetric force terms: the ship's own forces have another form.
+    pub symmetric: f64,
+    /// p-value of mirror-breaking and earth-fixed force terms.
+    pub asymmetric: f64,
+}
+
+/// Two mechanisms and how alike they are on these data.
+#[derive(Clone, Debug, Serialize)]
+pub struct Likeness {
+    /// One.
+    pub a: String,
+    /// The other.
+    pub b: String,
+    /// Cosine of the principal angle after the base is projected out: 1 when they cannot be told apart.
+    pub cosine: f64,
+}
+
+/// A trial worth sailing next.
+#[derive(Clone, Debug, Serialize)]
+pub struct NextTrial {
+    /// The trial.
+    pub trial: String,
+    /// What it would decide.
+    pub why: String,
+}
+
+/// One equation of a sparse surrogate force law.
+#[derive(Clone, Debug, Serialize)]
+pub struct SurrogateTerm {
+    /// Dotted name of the monomial.
+    pub name: String,
+    /// Coefficient.
+    pub value: f64,
+    /// Standard error.
+    pub error: f64,
+}
+
+/// Everything a diagnosis says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Diagnosis {
+    /// Layout of this document.
+    pub schema: &'static str,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// One sentence.
+    pub headline: String,
+    /// What was found, strongest first.
+    pub findings: Vec<Finding>,
+    /// Audit of recordings and numerics.
+    pub admission: Admission,
+    /// Noise under the base model.
+    pub noise_before: Noise,
+    /// Noise with the findings.
+    pub noise_after: Noise,
+    /// Unexplained force under the base model.
+    pub location: Location,
+    /// Unexplained force that is left.
+    pub location_after: Option<Location>,
+    /// The ranking under the base model.
+    pub ranking: Vec<Ranked>,
+    /// Mechanisms that cannot be seen.
+    pub absorbed: Vec<Absorbed>,
+    /// Sizes that would have been seen.
+    pub detectable: Vec<Detectable>,
+    /// Pairs of mechanisms that look alike on these data.
+    pub confusable: Vec<Likeness>,
+    /// Generic tests under the base model.
+    pub adequacy_before: Adequacy,
+    /// Generic tests with the findings.
+    pub adequacy_after: Adequacy,
+    /// A sparse surrogate for what the catalogue does not hold.
+    pub surrogate: Vec<SurrogateTerm>,
+    /// How far the model's own parameters moved.
+    pub moves: Vec<Move>,
+    /// Hull error budget used.
+    pub hull_budget: Vec<Budget>,
+    /// Which trial to sail next.
+    pub next_trial: Option<NextTrial>,
+    /// Proof on held-out runs.
+    pub held_out: Option<HeldOut>,
+    /// Settings used.
+    pub settings: Settings,
+    /// The improved model, as a model file.
+    #[serde(skip)]
+    pub model: Model,
+    /// The base model, refitted.
+    #[serde(skip)]
+    pub base: Model,
+}
+
+/// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
+const NUISANCE: [&str; 31] = [
+    "hull.inertia",
+    "hull.Xudot",
+    "hull.Yvdot",
+    "hull.Yrdot",
+    "hull.Nvdot",
+    "hull.Nrdot",
+    "hull.Xvr",
+    "hull.Yv",
+    "hull.Yr",
+    "hull.Nv",
+    "hull.Nr",
+    "hull.Yvv",
+    "hull.Yvr",
+    "hull.Yrr",
+    "hull.Nrr",
+    "hull.Nrrv",
+    "hull.Nvvr",
+    "flow.wake",
+    "flow.kt0",
+    "flow.kt1",
+    "flow.astern",
+    "flow.wake_ratio",
+    "flow.race",
+    "flow.race_astern",
+    "flow.straightening",
+    "flow.asymmetry",
+    "flow.lever",
+    "crossflow.drag",
+    "hull_nonlinear.X_vv",
+    "hull_nonlinear.X_rr",
+    "sternway.share",
+];
+
+/// The free parameters of the base: those of the model, and the nuisances with their priors.
+fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParameter> {
+    let column =
+        |parameter: usize| Column { parameter, scale: model.parameters[parameter].scale, probe: Probe::Tangent };
+    let mut free: Vec<FreeParameter> =
+        model.free().into_iter().map(|i| FreeParameter::common(column(i), model.parameters[i].prior)).collect();
+    if nuisance {
+        for name in NUISANCE {
+            let Some(i) = model.index(name).filter(|i| !model.parameters[*i].free) else { continue };
+            let spread = (model.parameters[i].info.spread)(&model.ship);
+            let sd = if spread.is_finite() { spread } else { model.parameters[i].scale };
+            free.push(FreeParameter::common(column(i), Some(Prior { mean: model.parameters[i].value, sd })));
+        }
+    }
+    free
+}
+
+const FIRST: Effort = Effort { rounds: 8, noise_rounds: 3, noise_iterations: 8, noise_runs: 10 };
+const REFIT: Effort = Effort { rounds: 4, noise_rounds: 0, noise_iterations: 0, noise_runs: 10 };
+const SETTLE: Effort = Effort { rounds: 3, noise_rounds: 1, noise_iterations: 4, noise_runs: 10 };
+
+/// A mechanism with what it costs and brings.
+struct Accepted {
+    candidate: usize,
+    sessions: Option<Vec<String>>,
+    statistic: f64,
+    p: f64,
+    set: Vec<usize>,
+    why: String,
+}
+
+/// The free parameters of a candidate, started where the screen points.
+fn candidate_parameters(c: &Candidate, sessions: &Option<Vec<String>>) -> Vec<FreeParameter> {
+    c.columns
+        .iter()
+        .map(|col| FreeParameter {
+            column: Column { probe: Probe::Tangent, ..*col },
+            sessions: sessions.clone(),
+            prior: None,
+        })
+        .collect()
+}
+
+/// Sets a candidate's parameters to the amplitudes that the screen estimates.
+fn start_at(model: &mut Model, c: &Candidate, sessions: &Option<Vec<String>>, amplitude: &DVector<f64>) {
+    let norm = amplitude.norm().max(1e-12);
+    // An effect quadratic in its amplitude grows with the square: undo that for the start.
+    let factor = if c.mechanism.probe == Probe::Odd { 1.0 / norm.sqrt() } else { 1.0 };
+    for (p, a) in candidate_parameters(c, sessions).iter().zip(amplitude.iter()) {
+        let value = a * factor * p.column.scale;
+        p.set(model, value + if sessions.is_none() { p.value(model) } else { 0.0 });
+    }
+}
+
+/// Wald statistic of the last `k` free parameters of an estimate, with their covariance.
+fn wald(found: &Estimate, integration: Integration, runs: &[Run], k: usize) -> (f64, DVector<f64>, DMatrix<f64>) {
+    let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
+    let p = passes(&found.model, integration, &columns, runs, &found.noise, false);
+    let e = evidence(runs, &p, &restrictions(&found.free));
+    let base = base_of(&e, &found.model, &found.free);
+    let n = found.free.len();
+    let covariance = base.inverse.view((n - k, n - k), (k, k)).into_owned();
+    let value = DVector::from_fn(k, |i, _| {
+        let f = &found.free[n - k + i];
+        f.value(&found.model) / f.column.scale
+    });
+    let statistic = covariance.clone().try_inverse().map_or(0.0, |inv| (value.transpose() * inv * &value)[(0, 0)]);
+    (statistic, value, covariance)
+}
+
+/// Diagnoses a model against recordings.
+///
+/// `runs` are used to locate, name and model; `held_out` only to prove. `progress` is told each step in words. The result is
+/// the same bits on any number of threads.
+///
+/// # Errors
+/// When the catalogue's terms cannot be added to the model (a singular mass matrix, for instance).
+pub fn diagnose(
+    model: &Model,
+    runs: &[Run],
+    held_out: &[Run],
+    settings: &Settings,
+    progress: &(dyn Fn(&str) + Sync),
+) -> Result<Diagnosis, ModelError> {
+    let mut full = model.clone();
+    for term in CATALOGUE {
+        full.add_term(term.info().name)?;
+    }
+    let mut integration = Integration { method: Method::Rk4, substeps: settings.substeps.max(1) };
+    let free = base_parameters(&full, settings.nuisance);
+    progress("estimating parameters and noise of the base model");
+    let first_noise = guess(runs, &full);
+    let prior = NoisePrior::around(&first_noise);
+    let mut null = estimate(&full, integration, runs, &free, &first_noise, &prior, FIRST);
+    progress("auditing recordings and integration step");
+    let mut admission = admit(&null.model, integration, &null.noise, runs);
+    let numerics = admission.euler_gain > 15.0;
+    if numerics {
+        integration = Integration { method: Method::Euler, substeps: 1 };
+        null = estimate(&null.model, integration, runs, &free, &null.noise, &prior, SETTLE);
+        admission.integration = integration;
+    }
+    let list: Vec<Candidate> =
+        candidates(&full, &settings.withhold).into_iter().filter(|c| c.mechanism.applies(runs)).collect();
+    progress("locating unknown forces");
+    let mut runs = runs.to_vec();
+    let mut location = locate(&null, integration, &runs);
+    progress("testing every mechanism");
+    let mut first = screen(&null, integration, &runs, &list);
+    let blocked = admission.issues.iter().any(|i| i.blocking);
+
+    // A strong event in time inflates the noise and gets a hull's name: explain it first.
+    let mut pushes: Vec<Window> = Vec::new();
+    let local: Vec<Window> = location.windows.iter().filter(|w| is_local(w, &runs)).cloned().collect();
+    let push_gain: f64 = local.iter().map(|w| w.statistic - 20.0).sum();
+    let best_gain = first.rows.iter().find(|r| acceptable(r, &list, settings)).map_or(0.0, |r| r.test.statistic);
+    if !blocked && !settings.withhold.iter().any(|w| w == "push") && push_gain > 0.0 && push_gain > best_gain {
+        pushes = local;
+        for w in &pushes {
+            runs[w.index].disturbed.push(w.samples);
+        }
+        null = estimate(&null.model, integration, &runs, &free, &null.noise, &prior, SETTLE);
+        first = screen(&null, integration, &runs, &list);
+        let again = locate(&null, integration, &runs);
+        location.regions = again.regions;
+    }
+
+    let mut current = null.clone();
+    let mut accepted: Vec<Accepted> = Vec::new();
+    if !blocked {
+        for step in 0..settings.most {
+            let latest;
+            let s: &Screen = if step == 0 {
+                &first
+            } else {
+                latest = screen(&current, integration, &runs, &list);
+                &latest
+            };
+            let taken: Vec<usize> = accepted.iter().map(|a| a.candidate).collect();
+            let leaders: Vec<&Row> =
+                s.rows.iter().filter(|r| !taken.contains(&r.candidate) && acceptable(r, &list, settings)).collect();
+            let Some(leader) = leaders.first() else { break };
+            progress(&format!("refitting with {}", list[leader.candidate].mechanism.title));
+            let Some((entry, found)) =
+                compete(s, &leaders, leader, &current, integration, &runs, &list, &prior, settings)
+            else {
+                break;
+            };
+            accepted.push(entry);
+            current = found;
+            backward(&mut accepted, &mut current, &null, integration, &runs, &list, &prior, settings);
+        }
+    }
+    progress("checking what is left");
+    let (last, location_after) = if accepted.is_empty() {
+        (None, None)
+    } else {
+        (Some(screen(&current, integration, &runs, &list)), Some(locate(&current, integration, &runs)))
+    };
+    let adequacy = |s: &Screen| Adequacy { symmetric: s.symmetric_test.p, asymmetric: s.asymmetric_test.p };
+    let adequacy_before = adequacy(&first);
+    let adequacy_after = last.as_ref().map_or(adequacy_before, adequacy);
+    if pushes.is_empty() && !blocked {
+        let left = location_after.as_ref().unwrap_or(&location);
+        pushes = left.windows.iter().filter(|w| is_local(w, &runs)).cloned().collect();
+    }
+    let named_something = !accepted.is_empty() || !pushes.is_empty();
+    let unlisted = !blocked && !named_something && adequacy_after.asymmetric < 1e-4;
+    let surrogate = if unlisted { surrogate(last.as_ref().unwrap_or(&first), &null.model) } else { Vec::new() };
+
+    progress("proving on held-out runs");
+    let generic = generic_model(&first, &null);
+    let proof = (!held_out.is_empty()).then(|| {
+        prove(
+            (&null.model, &null.noise),
+            (&current.model, &null.noise),
+            Some(&generic),
+            integration,
+            held_out,
+            settings.seed,
+        )
+    });
+
+    let mut findings = describe(&accepted, &current, integration, &runs, &list, &location, &first);
+    findings.extend(push_findings(&pushes, &location));
+    if let Some(f) = findings.first_mut() {
+        f.held_out.clone_from(&proof);
+    }
+    let few = runs.len() < 4 || admission.samples < 150;
+    let verdict = if blocked {
+        Verdict::Sensor
+    } else if let Some(f) = findings.first() {
+        if f.confidence_set.len() > 1 {
+            Verdict::OneOf
+        } else if f.kind == Kind::Sensor {
+            Verdict::Sensor
+        } else {
+            Verdict::Named
+        }
+    } else if numerics {
+        Verdict::Numerics
+    } else if unlisted {
+        Verdict::NotInCatalogue
+    } else if few {
+        Verdict::Insufficient
+    } else if gusty(&null, &runs) {
+        Verdict::Random
+    } else {
+        Verdict::NothingMissing
+    };
+    let headline = headline(verdict, &findings, &admission, &surrogate);
+    let detectable = detectable(&first, &list, settings, &full);
+    Ok(Diagnosis {
+        schema: "trimtab-diagnosis/1",
+        verdict,
+        headline,
+        admission,
+        noise_before: null.noise,
+        noise_after: current.noise,
+        location,
+        location_after,
+        ranking: first.rows.iter().map(|r| ranked(r, &list)).collect(),
+        absorbed: absorbed(&first, &list),
+        detectable,
+        confusable: confusable(&first, &list),
+        adequacy_before,
+        adequacy_after,
+        surrogate,
+        moves: moves(&null, &current, integration, &runs, model),
+        hull_budget: budget(&current),
+        next_trial: next_trial(verdict, &findings, &list),
+        held_out: proof,
+        findings,
+        settings: settings.clone(),
+        model: trimmed(&current.model, model, &current.free),
+        base: trimmed(&null.model, model, &null.free),
+    })
+}
+
+/// A mechanism may be named: seen, significant, of possible sign and worthwhile size, and not just the ship's own forces in
+/// another form.
+fn acceptable(r: &Row, list: &[Candidate], settings: &Settings) -> bool {
+    let _ = list;
+    r.visible && r.admissible && r.p < settings.alpha && r.size >= 1.0 && r.second_opinion < 0.01
+}
+
+/// A window that is an event, not a state of affairs: it covers less than 70 % of its run.
+fn is_local(w: &Window, runs: &[Run]) -> bool {
+    let length = runs[w.index].measured.len() as f64;
+    ((w.samples.1 - w.samples.0) as f64) < 0.7 * length
+}
+
+/// Refits the leader and its rivals, and returns the best with its confidence set.
+fn compete(
+    s: &Screen,
+    leaders: &[&Row],
+    leader: &Row,
+    current: &Estimate,
+    integration: Integration,
+    runs: &[Run],
+    list: &[Candidate],
+    prior: &NoisePrior,
+    settings: &Settings,
+) -> Option<(Accepted, Estimate)> {
+    let refit = |r: &Row, noise: &Noise, effort: Effort| {
+        let c = &list[r.candidate];
+        let mut model = current.model.clone();
+        // The base moves along with the mechanism: take both from the quadratic model.
+        let columns = s.columns(list, r.candidate);
+        let shift = s.base_shift(&columns, &r.sessions, &r.test.amplitude);
+        for (f, d) in current.free.iter().zip(shift.iter()) {
+            f.set(&mut model, f.value(&current.model) + d * f.column.scale);
+        }
+        start_at(&mut model, c, &r.sessions, &r.test.amplitude);
+        let mut free = current.free.clone();
+        free.extend(candidate_parameters(c, &r.sessions));
+        estimate(&model, integration, runs, &free, noise, prior, effort)
+    };
+    let lead = refit(leader, &current.noise, SETTLE);
+    // A rival whose promised gain is far below the leader's does not overtake it.
+    let gain_needed = leader.test.statistic - f64::max(40.0, 0.15 * leader.test.statistic);
+    let mut rivals: Vec<&Row> = leaders
+        .iter()
+        .copied()
+        .filter(|r| r.candidate != leader.candidate && r.test.statistic > gain_needed)
+        .filter(|r| s.likeness(list, leader.candidate, r.candidate) > 0.3)
+        .collect();
+    rivals.truncate(3);
+    let mut field: Vec<(&Row, Estimate, f64)> = Vec::new();
+    let value = |e: &Estimate, r: &Row| e.log_posterior - r.test.degrees as f64;
+    let v = value(&lead, leader);
+    let noise = lead.noise;
+    field.push((leader, lead, v));
+    for r in rivals {
+        let e = refit(r, &noise, REFIT);
+        let v = value(&e, r);
+        field.push((r, e, v));
+    }
+    field.retain(|(r, e, _)| {
+        let k = list[r.candidate].columns.len();
+        let (statistic, value, covariance) = wald(e, integration, runs, k);
+        let error: Vec<f64> = (0..k).map(|i| covariance[(i, i)].max(0.0).sqrt()).collect();
+        let _ = error;
+        chi_squared_p(statistic, k) * (leaders.len().max(1) as f64) < settings.alpha
+            && list[r.candidate].size(value.as_slice()) >= 1.0
+    });
+    field.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let best = field.first()?.2;
+    let set: Vec<usize> = field.iter().filter(|(_, _, v)| best - v < 3.0).map(|(r, _, _)| r.candidate).collect();
+    let why = if set.len() > 1 {
+        let alike: Vec<String> = set[1..]
+            .iter()
+            .map(|c| format!("{} (likeness {:.2})", list[*c].mechanism.title, s.likeness(list, set[0], *c)))
+            .collect();
+        format!("these fit within 3 units of log-likelihood of each other: {}", alike.join(", "))
+    } else if let Some((r, _, v)) = field.get(1) {
+        format!("next best, {}, fits {:.0} units of log-likelihood worse", list[r.candidate].mechanism.title, best - v)
+    } else {
+        "no other mechanism of the catalogue comes near".into()
+    };
+    let (r, e, _) = field.swap_remove(0);
+    // The leader's noise was estimated with it; a rival that won deserves the same.
+    let e = if r.candidate == leader.candidate {
+        e
+    } else {
+        estimate(&e.model, integration, runs, &e.free, &e.noise, prior, SETTLE)
+    };
+    let entry = Accepted {
+        candidate: r.candidate,
+        sessions: r.sessions.clone(),
+        statistic: 2.0 * (e.log_posterior - current.log_posterior).max(0.5 * r.test.statistic),
+        p: r.p,
+        set,
+        why,
+    };
+    Some((entry, e))
+}
+
+/// Drops accepted mechanisms that a later one made needless.
+fn backward(
+    accepted: &mut Vec<Accepted>,
+    current: &mut Estimate,
+    null: &Estimate,
+    integration: Integration,
+    runs: &[Run],
+    list: &[Candidate],
+    prior: &NoisePrior,
+    settings: &Settings,
+) {
+    if accepted.len() < 2 {
+        return;
+    }
+    let base = null.free.len();
+    let columns: Vec<Column> = current.free.iter().map(|f| f.column).collect();
+    let p = passes(&current.model, integration, &columns, runs, &current.noise, false);
+    let e = evidence(runs, &p, &restrictions(&current.free));
+    let inverse = base_of(&e, &current.model, &current.free).inverse;
+    let mut start = base;
+    let mut drop = None;
+    for (i, a) in accepted.iter().enumerate() {
+        let k = list[a.candidate].columns.len();
+        let covariance = inverse.view((start, start), (k, k)).into_owned();
+        let value = DVector::from_fn(k, |j, _| {
+            let f = &current.free[start + j];
+            f.value(&current.model) / f.column.scale
+        });
+        let statistic = covariance.try_inverse().map_or(0.0, |inv| (value.transpose() * inv * &value)[(0, 0)]);
+        let needless =
+            chi_squared_p(statistic, k) > 0.1 * settings.alpha || list[a.candidate].size(value.as_slice()) < 1.0;
+        if needless && i + 1 < accepted.len() {
+            drop = Some((i, start, k));
+            break;
+        }
+        start += k;
+    }
+    if let Some((i, start, k)) = drop {
+        let dropped = accepted.remove(i);
+        for f in &current.free[start..start + k] {
+            let neutral = (current.model.parameters[f.column.parameter].info.default)(&current.model.ship);
+            let value = if f.sessions.is_some() { 0.0 } else { neutral };
+            f.set(&mut current.model, value);
+        }
+        let _ = dropped;
+        current.free.drain(start..start + k);
+        *current = estimate(&current.model, integration, runs, &current.free, &current.noise, prior, SETTLE);
+    }
+}
+
+/// Whether the unknown force is a material part of the forces on the ship.
+fn gusty(found: &Estimate, runs: &[Run]) -> bool {
+    let m = &found.model.ship.hull;
+    let (mut speed, mut count) = (0.0, 0.0);
+    for r in runs {
+        for s in r.measured.iter().filter(|s| s[3].is_finite()) {
+            speed += s[3].abs();
+            count += 1.0;
+        }
+    }
+    let u = speed / f64::max(count, 1.0);
+    // Against 2 % of the force that turns the ship, m u^2 / L.
+    let force = 0.02 * m.mass * u * u / m.lpp;
+    found.noise.force[0] > force || found.noise.force[1] > force
+}
+
+fn ranked(r: &Row, list: &[Candidate]) -> Ranked {
+    let c = &list[r.candidate];
+    Ranked {
+        mechanism: c.mechanism.name.into(),
+        title: c.mechanism.title.into(),
+        statistic: r.test.statistic,
+        degrees: r.test.degrees,
+        p: r.p,
+        amplitude: r.test.amplitude.iter().zip(&c.columns).map(|(a, col)| a * col.scale).collect(),
+        size: r.size,
+        admissible: r.admissible,
+        retained: r.test.retained,
+        second_opinion: r.second_opinion,
+        sessions: r.sessions.clone().unwrap_or_default(),
+    }
+}
+
+fn absorbed(s: &Screen, list: &[Candidate]) -> Vec<Absorbed> {
+    let mut out: Vec<Absorbed> = s
+        .rows
+        .iter()
+        .filter(|r| !r.visible)
+        .map(|r| {
+            let c = &list[r.candidate];
+            let by = if c.mechanism.needs_reference {
+                "the ship's own hull, propeller and rudder coefficients, which are not known well enough; \
+                 a session without it would show it"
+            } else {
+                "the model's own parameters, or there is nothing in these data that it acts on"
+            };
+            Absorbed { mechanism: c.mechanism.name.into(), retained: r.pooled.retained, by: by.into() }
+        })
+        .collect();
+    out.sort_by(|a, b| a.mechanism.cmp(&b.mechanism));
+    out
+}
+
+fn detectable(s: &Screen, list: &[Candidate], settings: &Settings, model: &Model) -> Vec<Detectable> {
+    let Ok(normal) = Normal::new(0.0, 1.0) else { return Vec::new() };
+    let visible: Vec<&Row> = s.rows.iter().filter(|r| r.visible).collect();
+    let quantile = normal.inverse_cdf(1.0 - 0.5 * settings.alpha / visible.len().max(1) as f64);
+    let needed = quantile + normal.inverse_cdf(0.8);
+    let mut out: Vec<Detectable> = visible
+        .iter()
+        .map(|r| {
+            let c = &list[r.candidate];
+            let k = c.columns.len();
+            // The least visible direction decides; quadratic effects grow with the square root.
+            let mut sd = (0..k).map(|i| r.test.covariance[(i, i)].max(0.0).sqrt()).fold(0.0, f64::max) * needed;
+            if c.mechanism.probe == Probe::Odd {
+                sd = sd.sqrt();
+            }
+            let p = &model.parameters[c.columns[0].parameter];
+            Detectable { mechanism: c.mechanism.name.into(), size: sd * c.columns[0].scale, unit: p.info.unit.into() }
+        })
+        .collect();
+    out.sort_by(|a, b| a.mechanism.cmp(&b.mechanism));
+    out
+}
+
+fn confusable(s: &Screen, list: &[Candidate]) -> Vec<Likeness> {
+    let shown: Vec<usize> = s.rows.iter().filter(|r| r.visible).map(|r| r.candidate).collect();
+    let mut out = Vec::new();
+    for (i, a) in shown.iter().enumerate() {
+        for b in &shown[i + 1..] {
+            let cosine = s.likeness(list, *a, *b);
+            if cosine > 0.7 {
+                out.push(Likeness { a: list[*a].mechanism.name.into(), b: list[*b].mechanism.name.into(), cosine });
+            }
+        }
+    }
+    out.sort_by(|a, b| b.cosine.total_cmp(&a.cosine));
+    out
+}
+
+/// The base model with the best linear generic correction, shrunk by its priors: as much as any force law could do.
+fn generic_model(s: &Screen, null: &Estimate) -> Model {
+    let mut model = null.model.clone();
+    let columns: Vec<usize> = s.symmetric.iter().chain(&s.asymmetric).copied().collect();
+    let mut shrunk = s.evidence.clone();
+    for c in &columns {
+        shrunk.total.information[(*c, *c)] += 1.0;
+    }
+    let test = shrunk.test(&s.base, &columns);
+    for (name, a) in s.basis_names.iter().zip(test.amplitude.iter()) {
+        if let Some(i) = model.index(name) {
+            model.parameters[i].value += a * model.parameters[i].scale;
+        }
+    }
+    model
+}
+
+/// Forward selection of at most four generic monomials.
+fn surrogate(s: &Screen, model: &Model) -> Vec<SurrogateTerm> {
+    let columns: Vec<usize> = s.asymmetric.iter().chain(&s.symmetric).copied().collect();
+    let shift = s.symmetric.first().copied().unwrap_or(0);
+    let name_of = |c: usize| s.basis_names[c - shift].clone();
+    let mut base = s.base.clone();
+    let mut chosen: Vec<usize> = Vec::new();
+    for _ in 0..4 {
+        let best = columns
+            .iter()
+            .filter(|c| !chosen.contains(c))
+            .map(|c| (s.evidence.test(&base, &[*c]), *c))
+            .max_by(|a, b| a.0.statistic.total_cmp(&b.0.statistic));
+        let Some((test, c)) = best else { break };
+        if test.p * columns.len() as f64 > 0.01 {
+            break;
+        }
+        chosen.push(c);
+        base = s.evidence.extend(&s.base, &chosen);
+    }
+    if chosen.is_empty() {
+        return Vec::new();
+    }
+    let test = s.evidence.test(&s.base, &chosen);
+    chosen
+        .iter()
+        .enumerate()
+        .map(|(i, c)| {
+            let name = name_of(*c);
+            let scale = model.index(&name).map_or(1.0, |j| model.parameters[j].scale);
+            SurrogateTerm {
+                value: test.amplitude[i] * scale,
+                error: test.covariance[(i, i)].max(0.0).sqrt() * scale,
+                name,
+            }
+        })
+        .collect()
+}
+
+fn describe(
+    accepted: &[Accepted],
+    found: &Estimate,
+    integration: Integration,
+    runs: &[Run],
+    list: &[Candidate],
+    location: &Location,
+    s: &Screen,
+) -> Vec<Finding> {
+    let total: usize = accepted.iter().map(|a| list[a.candidate].columns.len()).sum();
+    if total == 0 {
+        return Vec::new();
+    }
+    let (_, value, covariance) = wald(found, integration, runs, total);
+    let mut start = 0;
+    let mut out = Vec::new();
+    for a in accepted {
+        let c = &list[a.candidate];
+        let parameters = c
+            .columns
+            .iter()
+            .enumerate()
+            .map(|(i, col)| {
+                let p = &found.model.parameters[col.parameter];
+                let v = value[start + i] * col.scale;
+                let error = covariance[(start + i, start + i)].max(0.0).sqrt() * col.scale;
+                Amplitude {
+                    name: c.names[i].clone(),
+                    value: v,
+                    unit: p.info.unit.into(),
+                    error,
+                    ci95: [v - 1.96 * error, v + 1.96 * error],
+                }
+            })
+            .collect();
+        start += c.columns.len();
+        out.push(Finding {
+            mechanism: c.mechanism.name.into(),
+            title: c.mechanism.title.into(),
+            kind: c.mechanism.kind,
+            confidence_set: a.set.iter().map(|i| list[*i].mechanism.name.to_string()).collect(),
+            why: a.why.clone(),
+            sessions: a.sessions.clone().unwrap_or_default(),
+            statistic: a.statistic,
+            p: a.p,
+            equations: force_shares(c, found, runs, location),
+            windows: Vec::new(),
+            region: strongest_region(&location.regions),
+            signature: signature(c, s),
+            parameters,
+            held_out: None,
+        });
+    }
+    out
+}
+
+/// Mean square force that a mechanism brings, by equation: with it less without it, at the filtered states, in units in which
+/// the equations compare.
+fn force_shares(c: &Candidate, found: &Estimate, runs: &[Run], location: &Location) -> Equations {
+    if c.mechanism.kind == Kind::Sensor {
+        return location.equations.into();
+    }
+    let mut without = found.model.clone();
+    for col in &c.columns {
+        let p = &mut without.parameters[col.parameter];
+        p.value = (p.info.default)(&without.ship);
+        for list in without.sessions.values_mut() {
+            list.retain(|(i, _)| *i != col.parameter);
+        }
+    }
+    let mut sums = [0.0; 3];
+    let mut count: f64 = 0.0;
+    for r in runs {
+        let (with, bare) = (found.model.values_in(&r.session), without.values_in(&r.session));
+        let (mut a, mut b) = (r.inputs.clone(), r.inputs.clone());
+        found.model.drive(&with, r.dt, &mut a);
+        without.drive(&bare, r.dt, &mut b);
+        for ((m, i), j) in r.measured.iter().zip(&a).zip(&b).step_by(4) {
+            if m.iter().any(|v| !v.is_finite()) {
+                continue;
+            }
+            let state = crate::state::State::from_array(*m);
+            let zero = crate::state::Force::zero();
+            let (x, f) = found.model.rates(&with, &state, i, &zero);
+            let (y, _) = without.rates(&bare, &state, j, &zero);
+            let inertia = crate::terms::hull::Inertia::new(found.model.part("hull", &with), &f);
+            let d = [x[3] - y[3], x[4] - y[4], x[5] - y[5]];
+            let force = [
+                inertia.surge * d[0],
+                inertia.sway * d[1] + inertia.sway_yaw * d[2],
+                inertia.yaw_sway * d[1] + inertia.yaw * d[2],
+            ];
+            for e in 0..3 {
+                sums[e] += force[e] * force[e];
+            }
+            count += 1.0;
+        }
+    }
+    let l = found.model.ship.hull.lpp;
+    let rms: [f64; 3] = std::array::from_fn(|e| (sums[e] / count.max(1.0)).sqrt());
+    // A moment counts by the force pair at a quarter of the length.
+    let weight = [rms[0].powi(2), rms[1].powi(2), (rms[2] / (0.25 * l)).powi(2)];
+    let total = weight.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let share = |e: usize| EquationShare { share: weight[e] / total, rms: rms[e], sigma: location.equations[e].sigma };
+    Equations { x: share(0), y: share(1), n: share(2) }
+}
+
+fn strongest_region(regions: &[RegionTest]) -> Option<String> {
+    regions.first().filter(|r| r.p < 0.01).map(|r| r.region.clone())
+}
+
+fn signature(c: &Candidate, s: &Screen) -> String {
+    let mut words = match c.mechanism.kind {
+        Kind::Environment => "earth-fixed: it turns with the heading in body axes".to_string(),
+        Kind::Ship => "body-fixed: it goes with the ship's own motion".to_string(),
+        Kind::Actuator => "it goes with the actuator's history".to_string(),
+        Kind::Sensor => "no force: positions and velocities do not agree with each other".to_string(),
+    };
+    if s.asymmetric_test.p < 1e-3 {
+        words.push_str("; it breaks port-starboard symmetry or depends on heading");
+    }
+    words
+}
+
+fn push_findings(pushes: &[Window], location: &Location) -> Vec<Finding> {
+    if pushes.is_empty() {
+        return Vec::new();
+    }
+    let count = pushes.len() as f64;
+    let mean: [f64; 3] = std::array::from_fn(|e| pushes.iter().map(|w| w.force[e]).sum::<f64>() / count);
+    let error: [f64; 3] =
+        std::array::from_fn(|e| pushes.iter().map(|w| w.error[e].powi(2)).sum::<f64>().sqrt() / count);
+    let names = [("push.x", "N"), ("push.y", "N"), ("push.n", "N m")];
+    vec![Finding {
+        mechanism: "push".into(),
+        title: "a push for a limited time (tug, thruster, line)".into(),
+        kind: Kind::Environment,
+        confidence_set: vec!["push".into()],
+        why: "the unknown force stands in short windows of time and is absent outside them".into(),
+        sessions: Vec::new(),
+        statistic: pushes.iter().map(|w| w.statistic).sum(),
+        p: pushes.iter().map(|w| w.p).fold(1.0, f64::min),
+        equations: location.equations.into(),
+        windows: pushes.to_vec(),
+        region: None,
+        signature: "time-local".into(),
+        parameters: (0..3)
+            .map(|e| Amplitude {
+                name: names[e].0.into(),
+                value: mean[e],
+                unit: names[e].1.into(),
+                error: error[e],
+                ci95: [mean[e] - 1.96 * error[e], mean[e] + 1.96 * error[e]],
+            })
+            .collect(),
+        held_out: None,
+    }]
+}
+
+fn moves(null: &Estimate, found: &Estimate, integration: Integration, runs: &[Run], user: &Model) -> Vec<Move> {
+    let (_, _, covariance) = wald(found, integration, runs, found.free.len());
+    null.free
+        .iter()
+        .enumerate()
+        .filter(|(_, f)| user.parameters.get(f.column.parameter).is_some_and(|p| p.free))
+        .map(|(i, f)| {
+            let (before, after) = (f.value(&null.model), f.value(&found.model));
+            let error = covariance[(i, i)].max(0.0).sqrt() * f.column.scale;
+            Move {
+                name: found.model.parameters[f.column.parameter].name.clone(),
+                before,
+                after,
+                error,
+                moved: if error > 0.0 { (after - before) / error } else { 0.0 },
+            }
+        })
+        .collect()
+}
+
+fn budget(found: &Estimate) -> Vec<Budget> {
+    found
+        .free
+        .iter()
+        .filter_map(|f| {
+            let prior = f.prior?;
+            let value = f.value(&found.model);
+            Some(Budget {
+                name: found.model.parameters[f.column.parameter].name.clone(),
+                prior: prior.mean,
+                sd: prior.sd,
+                value,
+                used: (value - prior.mean) / prior.sd,
+            })
+        })
+        .collect()
+}
+
+/// The model as a file should hold it: the user's terms and those that were found to act, nothing that is neutral.
+fn trimmed(found: &Model, user: &Model, free: &[FreeParameter]) -> Model {
+    let mut model = user.clone();
+    let wanted = |name: &str| {
+        let prefix = format!("{name}.");
+        found.parameters.iter().enumerate().any(|(i, p)| {
+            p.name.starts_with(&prefix)
+                && (p.value != (p.info.default)(&found.ship)
+                    || found.sessions.values().flatten().any(|(j, v)| *j == i && *v != 0.0))
+        })
+    };
+    for term in found.term_names() {
+        if wanted(term) {
+            // Every term of the catalogue was added to the same ship before, so this cannot fail.
+            let _ = model.add_term(term);
+        }
+    }
+    for p in &mut model.parameters {
+        if let Some(i) = found.index(&p.name) {
+            p.value = found.parameters[i].value;
+            p.free |= free.iter().any(|f| f.column.parameter == i && f.prior.is_none());
+        }
+    }
+    model.sessions = BTreeMap::new();
+    for (session, additions) in &found.sessions {
+        let list: Vec<(usize, f64)> = additions
+            .iter()
+            .filter(|(_, v)| *v != 0.0)
+            .filter_map(|(i, v)| model.index(&found.parameters[*i].name).map(|j| (j, *v)))
+            .collect();
+        if !list.is_empty() {
+            model.sessions.insert(session.clone(), list);
+        }
+    }
+    model
+}
+
+fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) -> Option<NextTrial> {
+    let by_name = |n: &str| list.iter().find(|c| c.mechanism.name == n).map(|c| c.mechanism);
+    match verdict {
+        Verdict::OneOf => {
+            let set = &findings.first()?.confidence_set;
+            let rival = by_name(set.get(1)?)?;
+            Some(NextTrial {
+                trial: rival.trial.into(),
+                why: format!("it parts {} from {}", by_name(set.first()?)?.title, rival.title),
+            })
+        }
+        Verdict::Named | Verdict::Sensor => {
+            let m = by_name(&findings.first()?.mechanism)?;
+            Some(NextTrial { trial: m.trial.into(), why: format!("it shows {} best", m.title) })
+        }
+        Verdict::Insufficient => Some(NextTrial {
+            trial: "turning circles both ways, a zigzag and a crash stop, each on two headings, in two sessions".into(),
+            why: "with fewer runs no mechanism can be told from another".into(),
+        }),
+        _ => None,
+    }
+}
+
+fn headline(verdict: Verdict, findings: &[Finding], admission: &Admission, surrogate: &[SurrogateTerm]) -> String {
+    let list = |f: &Finding| {
+        let values: Vec<String> = f
+            .parameters
+            .iter()
+            .map(|p| format!("{} = {} {}", p.name, crate::report::sig(p.value, 3), p.unit))
+            .collect();
+        format!("{} ({})", f.title, values.join(", "))
+    };
+    match verdict {
+        Verdict::Named => {
+            let all: Vec<String> = findings.iter().map(list).collect();
+            format!("Missing physics: {}.", all.join("; and "))
+        }
+        Verdict::OneOf => findings.first().map_or(String::new(), |f| {
+            format!("Something is missing, and these data cannot tell which of: {}.", f.confidence_set.join(", "))
+        }),
+        Verdict::Sensor => findings.first().map_or_else(
+            || {
+                let first = admission.issues.iter().find(|i| i.blocking);
+                format!("Your sensor, not your ship: {}.", first.map_or("", |i| i.text.as_str()))
+            },
+            |f| format!("Your sensor, not your ship: {}.", list(f)),
+        ),
+        Verdict::Numerics => {
+            "The integration step, not the ship: these recordings are what explicit Euler makes of the \
+                              model at one step a sample."
+                .into()
+        }
+        Verdict::NotInCatalogue => {
+            let terms: Vec<&str> = surrogate.iter().map(|t| t.name.as_str()).collect();
+            format!(
+                "Something is missing that the catalogue does not hold; a surrogate for it (not physics): {}.",
+                terms.join(", ")
+            )
+        }
+        Verdict::Random => "Force is there that the model lacks, but nothing about it repeats: gusts.".into(),
+        Verdict::Insufficient => "These recordings cannot answer: too few runs.".into(),
+        Verdict::NothingMissing => "Nothing is missing that these data could show.".into(),
+    }
+}
+
+/// The signal-to-noise ratio of a change between two sets of runs as a mechanism's test would see it: the square root of the
+/// noncentrality after parameters, nuisances, initial states and noise have had their say.
+///
+/// `without` and `with` hold the same runs with and without the effect, with the same noise. Used to grade the strength of
+/// concealed effects. Returns 0 for a mechanism that is not in the catalogue.
+///
+/// # Errors
+/// As for [`diagnose`].
+pub fn signal(
+    model: &Model,
+    without: &[Run],
+    with: &[Run],
+    mechanism: &str,
+    settings: &Settings,
+) -> Result<f64, ModelError> {
+    let mut full = model.clone();
+    for term in CATALOGUE {
+        full.add_term(term.info().name)?;
+    }
+    let integration = Integration { method: Method::Rk4, substeps: settings.substeps.max(1) };
+    let free = base_parameters(&full, settings.nuisance);
+    let first = guess(without, &full);
+    let prior = NoisePrior::around(&first);
+    let null = estimate(&full, integration, without, &free, &first, &prior, FIRST);
+    let list: Vec<Candidate> = candidates(&full, &[]).into_iter().filter(|c| c.mechanism.name == mechanism).collect();
+    let Some(candidate) = list.first() else { return Ok(0.0) };
+    let mut columns: Vec<Column> = free.iter().map(|f| f.column).collect();
+    columns.extend(&candidate.columns);
+    let of = |runs: &[Run]| evidence(runs, &passes(&null.model, integration, &columns, runs, &null.noise, false), &[]);
+    let (a, b) = (of(without), of(with));
+    let mut difference = a.clone();
+    difference.total.score = &b.total.score - &a.total.score;
+    for (name, s) in &mut difference.sessions {
+        if let Some(other) = b.sessions.get(name) {
+            s.score = &other.score - &s.score;
+        }
+    }
+    let n = free.len();
+    let own: Vec<usize> = (n..columns.len()).collect();
+    let base = base_of(&difference, &null.model, &free);
+    // The prior's pull belongs to the estimate, not to the difference.
+    let base = super::evidence::Base { score: DVector::from_fn(n, |i, _| difference.total.score[i]), ..base };
+    let test = if candidate.mechanism.needs_reference {
+        difference.contrast(&base, &own).unwrap_or_else(|| difference.test(&base, &own))
+    } else {
+        difference.test(&base, &own)
+    };
+    Ok(test.statistic.max(0.0).sqrt())
+}

@@ -1,0 +1,202 @@
+//! The best model of a given structure: parameters with priors by Fisher scoring on the filter's scores, noise by maximum
+//! likelihood, in turn. Which parameters are free, and what is concluded, is decided elsewhere.
+
+use super::evidence::{Base, Evidence, RunEvidence};
+use super::filter::{Column, Filter, Pass, Run};
+use super::noise::{Noise, NoisePrior, fit_noise};
+use crate::model::{Model, Prior};
+use crate::simulate::Integration;
+use rayon::prelude::*;
+
+/// A free parameter of the estimate.
+#[derive(Clone, Debug)]
+pub struct FreeParameter {
+    /// Its column.
+    pub column: Column,
+    /// Sessions in which it acts, added there to the common value; `None` for all of them.
+    pub sessions: Option<Vec<String>>,
+    /// What is known of it beforehand \[unit of the parameter\].
+    pub prior: Option<Prior>,
+}
+
+impl FreeParameter {
+    /// A parameter that acts in every run.
+    pub fn common(column: Column, prior: Option<Prior>) -> Self {
+        Self { column, sessions: None, prior }
+    }
+
+    /// Its present value \[unit of the parameter\].
+    pub fn value(&self, model: &Model) -> f64 {
+        let i = self.column.parameter;
+        match self.sessions.as_ref().and_then(|s| s.first()) {
+            None => model.parameters[i].value,
+            Some(first) => {
+                model.sessions.get(first).into_iter().flatten().filter(|(j, _)| *j == i).map(|(_, v)| v).sum()
+            }
+        }
+    }
+
+    /// Sets its value, kept inside the parameter's bounds.
+    pub fn set(&self, model: &mut Model, value: f64) {
+        let i = self.column.parameter;
+        let p = &mut model.parameters[i];
+        let Some(sessions) = &self.sessions else {
+            p.value = value.clamp(p.lower, p.upper);
+            return;
+        };
+        let value = (p.value + value).clamp(p.lower, p.upper) - p.value;
+        for session in sessions {
+            let list = model.sessions.entry(session.clone()).or_default();
+            match list.iter_mut().find(|(j, _)| *j == i) {
+                Some(entry) => entry.1 = value,
+                None => list.push((i, value)),
+            }
+        }
+    }
+
+    /// Precision of the prior, and the pull of the prior on the score, in units of the column.
+    fn prior_terms(&self, model: &Model) -> (f64, f64) {
+        self.prior.map_or((0.0, 0.0), |prior| {
+            let precision = (self.column.scale / prior.sd).powi(2);
+            let away = (self.value(model) - prior.mean) / self.column.scale;
+            (precision, -precision * away)
+        })
+    }
+
+    fn log_prior(&self, model: &Model) -> f64 {
+        self.prior.map_or(0.0, |prior| -0.5 * ((self.value(model) - prior.mean) / prior.sd).powi(2))
+    }
+}
+
+/// A fitted structure.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// The model with its estimated values.
+    pub model: Model,
+    /// The noise.
+    pub noise: Noise,
+    /// What was free.
+    pub free: Vec<FreeParameter>,
+    /// Log-likelihood plus log-prior at the estimate.
+    pub log_posterior: f64,
+    /// Log-likelihood by run.
+    pub by_run: Vec<f64>,
+}
+
+/// Settings of an estimation.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Rounds of parameter steps, each followed by a noise estimate while `noise_rounds` last.
+    pub rounds: usize,
+    /// Rounds with a noise estimate.
+    pub noise_rounds: usize,
+    /// BFGS iterations in a noise estimate.
+    pub noise_iterations: usize,
+    /// Runs used for the noise estimate, evenly spread.
+    pub noise_runs: usize,
+}
+
+/// One pass over all runs.
+pub fn passes(
+    model: &Model,
+    integration: Integration,
+    columns: &[Column],
+    runs: &[Run],
+    noise: &Noise,
+    tangent: bool,
+) -> Vec<Pass> {
+    let filter = Filter::new(model, integration, columns);
+    runs.par_iter().map(|r| filter.pass(r, noise, None, tangent)).collect()
+}
+
+/// Scores and information of passes over runs.
+///
+/// `sessions[c]` restricts column c to runs of those sessions; columns beyond the slice act in every run.
+pub fn evidence(runs: &[Run], passes: &[Pass], sessions: &[Option<Vec<String>>]) -> Evidence {
+    let of = |r: &Run, p: &Pass| {
+        let (mut score, mut information) = (p.score.clone(), p.information.clone());
+        for (c, only) in sessions.iter().enumerate() {
+            if only.as_ref().is_some_and(|s| !s.contains(&r.session)) {
+                score[c] = 0.0;
+                information.row_mut(c).fill(0.0);
+                information.column_mut(c).fill(0.0);
+            }
+        }
+        RunEvidence { session: r.session.clone(), score, information }
+    };
+    Evidence::new(runs.iter().zip(passes).map(|(r, p)| of(r, p)).collect())
+}
+
+/// The session restrictions of free parameters, in their order.
+pub fn restrictions(free: &[FreeParameter]) -> Vec<Option<Vec<String>>> {
+    free.iter().map(|f| f.sessions.clone()).collect()
+}
+
+/// The base block of free parameters that are the first columns of the evidence.
+pub fn base_of(evidence: &Evidence, model: &Model, free: &[FreeParameter]) -> Base {
+    let terms: Vec<(f64, f64)> = free.iter().map(|f| f.prior_terms(model)).collect();
+    let columns: Vec<usize> = (0..free.len()).collect();
+    let (precision, pull): (Vec<f64>, Vec<f64>) = terms.into_iter().unzip();
+    evidence.base(&columns, &precision, &pull)
+}
+
+/// Fits the free parameters and the noise, starting from the model's values.
+///
+/// A step that lowers the log-posterior is halved, at most four times. Values stay inside the parameters' bounds.
+pub fn estimate(
+    start: &Model,
+    integration: Integration,
+    runs: &[Run],
+    free: &[FreeParameter],
+    noise: &Noise,
+    prior: &NoisePrior,
+    effort: Effort,
+) -> Estimate {
+    let columns: Vec<Column> = free.iter().map(|f| f.column).collect();
+    let mut model = start.clone();
+    let mut noise = *noise;
+    let log_prior = |m: &Model| free.iter().map(|f| f.log_prior(m)).sum::<f64>();
+    let posterior = |m: &Model, p: &[Pass]| p.iter().map(|p| p.log_likelihood).sum::<f64>() + log_prior(m);
+    let mut current = passes(&model, integration, &columns, runs, &noise, true);
+    let mut value = posterior(&model, &current);
+    for round in 0..effort.rounds {
+        let step = base_of(&evidence(runs, &current, &restrictions(free)), &model, free).step();
+        let largest = step.amax();
+        // Never more than ten scales at once: beyond that the linearisation says nothing.
+        let mut length = if largest > 10.0 { 10.0 / largest } else { 1.0 };
+        let mut moved = false;
+        for _ in 0..5 {
+            let mut trial = model.clone();
+            for (f, s) in free.iter().zip(step.iter()) {
+                f.set(&mut trial, f.value(&model) + length * s * f.column.scale);
+            }
+            let trial_passes = passes(&trial, integration, &columns, runs, &noise, true);
+            let trial_value = posterior(&trial, &trial_passes);
+            if trial_value.is_finite() && trial_value > value - 0.01 {
+                moved = true;
+                (model, current, value) = (trial, trial_passes, trial_value);
+                break;
+            }
+            length *= 0.4;
+        }
+        let settled = !moved || largest * length < 0.03;
+        if round < effort.noise_rounds {
+            let stride = runs.len().div_ceil(effort.noise_runs.max(1)).max(1);
+            let chosen: Vec<usize> = (0..runs.len()).step_by(stride).collect();
+            let some: Vec<&Run> = chosen.iter().map(|i| &runs[*i]).collect();
+            let tangents: Vec<_> = chosen.iter().filter_map(|i| current[*i].tangent.as_ref()).collect();
+            noise = fit_noise(&some, &tangents, &model, &noise, prior, effort.noise_iterations);
+            current = passes(&model, integration, &columns, runs, &noise, true);
+            value = posterior(&model, &current);
+        } else if settled {
+            break;
+        }
+    }
+    Estimate {
+        model,
+        noise,
+        free: free.to_vec(),
+        log_posterior: value,
+        by_run: current.iter().map(|p| p.log_likelihood).collect(),
+    }
+}

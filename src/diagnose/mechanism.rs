@@ -1,0 +1,115 @@
+//! What the diagnosis can name: a mechanism is a group of parameters of one term, with the words and cautions that go with it.
+//! The list itself is in the terms' files, beside the physics.
+
+use super::filter::{Column, Probe, Run};
+use crate::model::Model;
+use crate::terms::{CATALOGUE, Group};
+use serde::Serialize;
+
+/// What kind of thing a mechanism is, for the verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A force or inflow from outside the ship.
+    Environment,
+    /// Hull, propeller or rudder physics.
+    Ship,
+    /// An actuator that does not do what was recorded.
+    Actuator,
+    /// A sensor that does not report what is.
+    Sensor,
+}
+
+/// Something the diagnosis can name.
+#[derive(Debug)]
+pub struct Mechanism {
+    /// Name, unique over the catalogue.
+    pub name: &'static str,
+    /// Plain words, as the end of "what was left out: ...".
+    pub title: &'static str,
+    /// What kind of thing it is.
+    pub kind: Kind,
+    /// Names of its parameters within its term.
+    pub parameters: &'static [&'static str],
+    /// How the sensitivity is taken at the neutral point.
+    pub probe: Probe,
+    /// True when unknown hull, propeller and rudder coefficients can mimic it, so that only a reference session shows it.
+    pub needs_reference: bool,
+    /// Smallest amplitude worth naming, in units of the parameters' scales.
+    pub floor: f64,
+    /// Names of mechanisms that look alike on some data.
+    pub look_alikes: &'static [&'static str],
+    /// The trial that shows it best.
+    pub trial: &'static str,
+}
+
+impl Mechanism {
+    /// Whether recordings can possibly show it: a tide needs a good part of its period.
+    pub fn applies(&self, runs: &[Run]) -> bool {
+        const QUARTER_TIDE: f64 = 11_178.0;
+        let times = || runs.iter().flat_map(|r| [r.inputs.first(), r.inputs.last()]).flatten().map(|i| i.t);
+        let span = times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min);
+        self.name != "tide" || span > QUARTER_TIDE
+    }
+}
+
+/// A mechanism placed in a model.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// What it is.
+    pub mechanism: &'static Mechanism,
+    /// Name of its term.
+    pub term: &'static str,
+    /// Group of its term.
+    pub group: Group,
+    /// Its columns.
+    pub columns: Vec<Column>,
+    /// Its dotted parameter names.
+    pub names: Vec<String>,
+}
+
+impl Candidate {
+    /// Amplitude in units of the floor: below 1 it is not worth naming.
+    pub fn size(&self, amplitude: &[f64]) -> f64 {
+        amplitude.iter().map(|a| a * a).sum::<f64>().sqrt() / self.mechanism.floor
+    }
+
+    /// Whether amplitudes (in units of the scales) added to the present values stay inside the parameters' bounds, give or
+    /// take twice their standard error.
+    pub fn admissible(&self, model: &Model, amplitude: &[f64], error: &[f64]) -> bool {
+        self.columns.iter().zip(amplitude).zip(error).all(|((c, a), e)| {
+            let p = &model.parameters[c.parameter];
+            let value = p.value + a * c.scale;
+            let slack = 0.5 * e * c.scale.abs();
+            value >= p.lower - slack && value <= p.upper + slack
+        })
+    }
+}
+
+/// Every mechanism of the catalogue whose term is in the model, except the ones withheld.
+pub fn candidates(model: &Model, withhold: &[String]) -> Vec<Candidate> {
+    let mut out = Vec::new();
+    for term in CATALOGUE {
+        let info = term.info();
+        for mechanism in info.mechanisms {
+            if withhold.iter().any(|w| w == mechanism.name) {
+                continue;
+            }
+            let names: Vec<String> = mechanism.parameters.iter().map(|p| format!("{}.{p}", info.name)).collect();
+            let columns: Option<Vec<Column>> = names
+                .iter()
+                .map(|n| {
+                    model.index(n).map(|parameter| Column {
+                        parameter,
+                        scale: model.parameters[parameter].scale,
+                        probe: mechanism.probe,
+                    })
+                })
+                .collect();
+            if let Some(columns) = columns {
+                out.push(Candidate { mechanism, term: info.name, group: info.group, columns, names });
+            }
+        }
+    }
+    out
+}
