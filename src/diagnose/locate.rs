@@ -209,6 +209,15 @@ fn equation_shares(
     })
 }
 
+/// Blocks `from..to` of a run with the constant force that fits there.
+struct Span {
+    statistic: f64,
+    from: usize,
+    to: usize,
+    estimate: Vector3<f64>,
+    inverse: Matrix3<f64>,
+}
+
 /// The significant windows of one run, greedily, not overlapping.
 fn scan(
     run: &Run,
@@ -235,7 +244,7 @@ fn scan(
                     - sums[i * (blocks + 1) + j];
         }
     }
-    let mut candidates: Vec<(f64, usize, usize, Vector3<f64>, Matrix3<f64>)> = Vec::new();
+    let mut candidates: Vec<Span> = Vec::new();
     for from in 0..blocks {
         let mut score = Vector3::zeros();
         for to in from + 1..=blocks {
@@ -250,14 +259,14 @@ fn scan(
             let estimate = inverse * score;
             let statistic = score.dot(&estimate);
             if statistic.is_finite() && chi_squared_p(statistic, 3) * looked_at < 0.01 {
-                candidates.push((statistic, from, to, estimate, inverse));
+                candidates.push(Span { statistic, from, to, estimate, inverse });
             }
         }
     }
-    candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
+    candidates.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
     let mut taken: Vec<(usize, usize)> = Vec::new();
     let mut out = Vec::new();
-    for (statistic, from, to, estimate, inverse) in candidates {
+    for Span { statistic, from, to, estimate, inverse } in candidates {
         if taken.iter().any(|(a, b)| from < *b && *a < to) || out.len() == 3 {
             continue;
         }
