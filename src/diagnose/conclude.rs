@@ -251,6 +251,27 @@ pub struct SurrogateTerm {
     pub error: f64,
 }
 
+/// The unknown force along one run, as the filter estimates it.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    /// The run.
+    pub run: String,
+    /// Its session.
+    pub session: String,
+    /// Time \[s\].
+    pub time: Vec<f64>,
+    /// Filtered state `[x, y, psi, u, v, r]`.
+    pub state: Vec<[f64; 6]>,
+    /// Propeller rate \[1/s\] and rudder angle \[rad\].
+    pub inputs: Vec<[f64; 2]>,
+    /// Unknown force under the base model: X, Y \[N\], N \[N m\].
+    pub before: Vec<[f64; 3]>,
+    /// Unknown force with the findings.
+    pub after: Vec<[f64; 3]>,
+    /// Standard deviation of the former.
+    pub sd: Vec<[f64; 3]>,
+}
+
 /// Everything a diagnosis says.
 #[derive(Clone, Debug, Serialize)]
 pub struct Diagnosis {
@@ -296,12 +317,32 @@ pub struct Diagnosis {
     pub held_out: Option<HeldOut>,
     /// Settings used.
     pub settings: Settings,
+    /// The unknown force along every run, before and after, for pictures.
+    #[serde(skip)]
+    pub traces: Vec<Trace>,
     /// The improved model, as a model file.
     #[serde(skip)]
     pub model: Model,
     /// The base model, refitted.
     #[serde(skip)]
     pub base: Model,
+}
+
+fn traces(runs: &[Run], before: &Screen, after: Option<&Screen>) -> Vec<Trace> {
+    let force = |z: &[f64; super::filter::Z]| [z[6], z[7], z[8]];
+    runs.iter()
+        .enumerate()
+        .map(|(i, r)| Trace {
+            run: r.name.clone(),
+            session: r.session.clone(),
+            time: r.inputs.iter().map(|i| i.t).collect(),
+            state: before.passes[i].filtered.iter().map(|z| [z[0], z[1], z[2], z[3], z[4], z[5]]).collect(),
+            inputs: r.inputs.iter().map(|i| [i.n, i.delta]).collect(),
+            before: before.passes[i].filtered.iter().map(force).collect(),
+            after: after.unwrap_or(before).passes[i].filtered.iter().map(force).collect(),
+            sd: before.passes[i].force_sd.clone(),
+        })
+        .collect()
 }
 
 /// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
@@ -573,6 +614,7 @@ pub fn diagnose(
         held_out: proof,
         findings,
         settings: settings.clone(),
+        traces: traces(&runs, &first, last.as_ref()),
         model: trimmed(&current.model, model, &current.free),
         base: trimmed(&null.model, model, &null.free),
     })

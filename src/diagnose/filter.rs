@@ -8,6 +8,7 @@
 
 use super::noise::{GROUP_OF, Noise};
 use crate::model::Model;
+use crate::recording::Window;
 use crate::simulate::{Integration, step};
 use crate::state::{Force, Inputs, STATES, State};
 use crate::terms::{CHUNK, Gradient, Group, find};
@@ -45,6 +46,23 @@ impl Run {
     /// Factor on the variance of the unknown force at sample `k`.
     pub fn boost(&self, k: usize) -> f64 {
         if self.disturbed.iter().any(|(a, b)| *a <= k + 1 && k <= *b + 1) { 1e4 } else { 1.0 }
+    }
+}
+
+impl From<&Window> for Run {
+    /// A window of a study; channels that were not measured are left out.
+    fn from(w: &Window) -> Self {
+        Self {
+            name: format!("{} {:.0} s", w.run, w.start_time),
+            session: w.session.clone(),
+            manoeuvre: w.manoeuvre.clone(),
+            dt: w.dt,
+            inputs: w.inputs.clone(),
+            measured: w.measured.clone(),
+            channels: w.measured_channels,
+            initial: w.initial,
+            disturbed: Vec::new(),
+        }
     }
 }
 
@@ -90,6 +108,8 @@ pub struct Pass {
     pub innovations: Vec<[f64; STATES]>,
     /// Filtered state by sample.
     pub filtered: Vec<[f64; Z]>,
+    /// Standard deviation of the filtered unknown force in X, Y \[N\], N \[N m\] by sample.
+    pub force_sd: Vec<[f64; 3]>,
     /// The linearisation, where asked for.
     pub tangent: Option<Tangent>,
 }
@@ -191,6 +211,7 @@ impl<'a> Filter<'a> {
             information: DMatrix::zeros(width, width),
             innovations: Vec::with_capacity(run.measured.len()),
             filtered: Vec::with_capacity(run.measured.len()),
+            force_sd: Vec::with_capacity(run.measured.len()),
             tangent: keep_tangent.then(Tangent::default),
         };
         let mut rows = vec![0.0; STATES * width];
@@ -286,6 +307,7 @@ impl<'a> Filter<'a> {
             }
             pass.innovations.push(innovation);
             pass.filtered.push(z);
+            pass.force_sd.push(std::array::from_fn(|e| p[6 + e][6 + e].max(0.0).sqrt()));
             if k + 1 == run.measured.len() {
                 break;
             }
