@@ -17,7 +17,7 @@ static INFO: TermInfo = TermInfo {
     title: "bank suction",
     group: Group::Environment,
     equation: "eta = B (1/y_s - 1/y_p); Y = suction 1/2 rho L d u^2 eta (towards the bank), N = -moment 1/2 rho L^2 d u^2 eta (bow away)",
-    source: "Norrbin 1974, linear in 1/distance",
+    source: "Norrbin's form, linear in 1/distance; coefficients of low certainty",
     needs: &["bank"],
     mechanisms: &[Mechanism {
         name: "bank",

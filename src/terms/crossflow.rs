@@ -34,7 +34,7 @@ static INFO: TermInfo = TermInfo {
     title: "cross-flow drag at large drift",
     group: Group::Hull,
     equation: "Y = -1/2 rho d C_D int |v + x r| (v + x r) dx, N = -1/2 rho d C_D int |v + x r| (v + x r) x dx over the length",
-    source: "Fossen 2011 sec. 6.4 after Hoerner 1965; Yoshimura 2009; integrals in closed form",
+    source: "strip theory with Hoerner's drag coefficients, as in Fossen's Marine Systems Simulator and Yoshimura's low-speed model; integrals in closed form",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "crossflow",

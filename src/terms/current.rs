@@ -16,7 +16,7 @@ static INFO: TermInfo = TermInfo {
     title: "steady current",
     group: Group::Environment,
     equation: "V_c = (north, east) over ground, setting to; u_r = u - V_c,x, v_r = v - V_c,y in body axes; u' = u_r' + V_c,y r, v' = v_r' - V_c,x r",
-    source: "Fossen 2011, Handbook of Marine Craft Hydrodynamics, sec. 8.3, irrotational current",
+    source: "kinematics of a uniform irrotational current",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "current",

@@ -17,7 +17,7 @@ static INFO: TermInfo = TermInfo {
     title: "other hull nonlinearity",
     group: Group::Hull,
     equation: "V^2 = u^2 + v^2 + (r L/2)^2; X = 1/2 rho L d (X_vv v^2 + X_rr r^2 L^2 + X_vvvv v^4/V^2), Y = 1/2 rho L d (Y_vvv v^3 + Y_vvr v^2 r L + Y_vrr v r^2 L^2 + Y_rrr r^3 L^3)/V, N = 1/2 rho L^2 d (N_vvv v^3 + N_rrr r^3 L^3)/V",
-    source: "Yasukawa & Yoshimura 2015 eq. 8 to 10, with V for U so that turning on the spot stays finite",
+    source: "cubic hull force of Yasukawa & Yoshimura 2015, with V for U so that turning on the spot stays finite",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "hull_nonlinear",

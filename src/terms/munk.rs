@@ -17,7 +17,7 @@ static INFO: TermInfo = TermInfo {
     title: "Munk moment",
     group: Group::Hull,
     equation: "N = -k 1/2 rho L^2 d u v",
-    source: "slender-body theory, Munk 1924",
+    source: "potential flow about a slender body (Munk)",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "munk",

@@ -16,7 +16,7 @@ static INFO: TermInfo = TermInfo {
     title: "propeller race on the rudder",
     group: Group::Rudder,
     equation: "kappa -> (1 + c) kappa",
-    source: "Yasukawa & Yoshimura 2015 eq. 23, proportional change",
+    source: "propeller race factor of Yasukawa & Yoshimura 2015, proportional change",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "race",

@@ -23,7 +23,7 @@ static INFO: TermInfo = TermInfo {
     title: "roll-yaw coupling",
     group: Group::Hull,
     equation: "h = U (r - tau r')/g; Y = sway 1/2 rho L d U^2 h, N = yaw 1/2 rho L^2 d U^2 h; the part in r' joins the mass matrix",
-    source: "quasi-static reduction of the four-degree-of-freedom model of Son & Nomoto 1981",
+    source: "quasi-static reduction of the four-degree-of-freedom container-ship model of Son & Nomoto",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "roll",

@@ -17,7 +17,7 @@ static INFO: TermInfo = TermInfo {
     title: "rudder rate limit",
     group: Group::Rudder,
     equation: "per sample: delta moves by e/(1 + (|e| a/dt)^4)^(1/4), e = order - delta; |delta'| < 1/a",
-    source: "rate limit with rounded corner; SOLAS II-1/29 asks 35 to -30 deg in 28 s, a = 25 s/rad",
+    source: "rate limit with rounded corner; SOLAS asks 35 to -30 deg in 28 s, a = 25 s/rad",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "rudder_rate",

@@ -16,7 +16,7 @@ static INFO: TermInfo = TermInfo {
     title: "sternway hull forces",
     group: Group::Hull,
     equation: "Yv U v -> Yv |u| v, Nr U r -> Nr |u| r, Yr U r -> Yr u r, Nv U v -> Nv u v, p2 u^2 -> p2 u|u|, in a share from 0 to 1",
-    source: "Yoshimura & Masumoto 2012 low-speed form",
+    source: "Yoshimura's low-speed form, no factor 1/U",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "sternway",

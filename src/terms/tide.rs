@@ -20,7 +20,7 @@ static INFO: TermInfo = TermInfo {
     title: "tidal current",
     group: Group::Environment,
     equation: "V_c += (north_cos, east_cos) cos w t + (north_sin, east_sin) sin w t, w = 2 pi/44714 s",
-    source: "M2 constituent, Doodson 1921; kinematics as `current`",
+    source: "principal lunar constituent M2, 12.42 h; kinematics as `current`",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "tide",

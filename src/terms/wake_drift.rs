@@ -16,7 +16,7 @@ static INFO: TermInfo = TermInfo {
     title: "wake change in drift",
     group: Group::Propulsion,
     equation: "w = w_0 - relief s^2 + asymmetry s, s = (v + x_P r)/sqrt(u^2 + (v + x_P r)^2), the sine of the drift angle at the propeller",
-    source: "quadratic wake law, cf. Yasukawa & Yoshimura 2015 eq. 15 to 17",
+    source: "quadratic wake law of low-speed MMG models; an exponential one is in Yasukawa & Yoshimura 2015",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "wake_drift",

@@ -1,5 +1,5 @@
 //! Mean drift load of waves that were not measured: one direction on earth, a different gain ahead and abeam.
-//! Unlike wind it does not depend on the speed of the ship; unlike `earth_force` it is several times stronger abeam than ahead.
+//! Unlike wind it does not depend on the speed of the ship; unlike `earth_force` it is an order of magnitude stronger abeam than ahead.
 
 use super::waves::drift_load;
 use super::{Group, Moment, Physics, Term, TermInfo};
@@ -14,14 +14,14 @@ use trimtab_ad::Scalar;
 pub struct WaveDrift;
 
 /// Typical drift coefficients c_x, c_y, c_n \[-\].
-pub const TYPICAL: [f64; 3] = [0.15, 0.8, -0.05];
+pub const TYPICAL: [f64; 3] = [0.07, 1.0, 0.06];
 
 static INFO: TermInfo = TermInfo {
     name: "wave_drift",
     title: "unmeasured wave drift",
     group: Group::Environment,
-    equation: "X = 1/16 rho g L H_s^2 c_x cos chi, Y = 1/16 rho g L H_s^2 c_y sin chi, N = 1/16 rho g L^2 H_s^2 c_n sin chi; chi from the bow to where the waves travel; c_x = 0.15, c_y = 0.8, c_n = -0.05",
-    source: "Daidola et al. 1986 mean drift with constant coefficients, typical for waves half as long as the ship",
+    equation: "X = 1/16 rho g L H_s^2 c_x cos chi, Y = 1/16 rho g L H_s^2 c_y sin chi, N = 1/16 rho g L^2 H_s^2 c_n sin chi; chi from the bow to where the waves travel; c_x = 0.07, c_y = 1.0, c_n = 0.06",
+    source: "Daidola's mean drift with its coefficients for waves half as long as the ship",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "wave_drift",

@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
     title: "measured waves",
     group: Group::Environment,
     equation: "X = 1/16 rho g L H_s^2 c_x cos chi, Y = 1/16 rho g L H_s^2 c_y sin chi, N = 1/16 rho g L^2 H_s^2 c_n sin chi; chi from the bow to where the waves travel",
-    source: "Daidola et al. 1986 mean drift with constant coefficients",
+    source: "Daidola's mean drift with constant coefficients",
     needs: &["waves"],
     mechanisms: &[Mechanism {
         name: "waves",
@@ -40,15 +40,15 @@ static INFO: TermInfo = TermInfo {
         trial: "slow runs on all headings in higher waves",
     }],
     parameters: &[
-        ParameterInfo::new("drag", "c_x", "-", "longitudinal drift coefficient, typically 0.05 to 0.3")
+        ParameterInfo::new("drag", "c_x", "-", "longitudinal drift coefficient, typically 0.05 to 0.2")
             .scale(|_| 0.15)
             .spread(|_| 0.3)
             .bounds(0.0, 2.0),
-        ParameterInfo::new("side", "c_y", "-", "lateral drift coefficient, typically 0.4 to 1.3")
+        ParameterInfo::new("side", "c_y", "-", "lateral drift coefficient, typically 0.1 to 1.3")
             .scale(|_| 0.8)
             .spread(|_| 1.0)
             .bounds(0.0, 3.0),
-        ParameterInfo::new("yaw", "c_n", "-", "yaw drift coefficient, typically -0.1 to 0.1")
+        ParameterInfo::new("yaw", "c_n", "-", "yaw drift coefficient, typically -0.1 to 0.06")
             .scale(|_| 0.05)
             .spread(|_| 0.1)
             .bounds(-0.5, 0.5),

@@ -55,7 +55,7 @@ static INFO: TermInfo = TermInfo {
     title: "measured wind",
     group: Group::Environment,
     equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the same in still air",
-    source: "cosine and sine form, C_X = -c_x cos g, C_Y = c_y sin g, C_N = c_n sin 2g, of Fossen 2011, eq. 8.31 to 8.33",
+    source: "cosine and sine form, C_X = -c_x cos g, C_Y = c_y sin g, C_N = c_n sin 2g, as in public MMG codes",
     needs: &["wind"],
     mechanisms: &[Mechanism {
         name: "wind",
