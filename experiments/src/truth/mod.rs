@@ -8,6 +8,7 @@
 pub mod captive;
 pub mod crossflow;
 pub mod dataset;
+pub mod hd;
 pub mod helmsman;
 pub mod large_drift;
 pub mod mmg;
