@@ -1,0 +1,114 @@
+//! The signal-to-noise ratio as the diagnosis' own test would see it: what parameters, nuisances and noise can mimic is projected out.
+//! It is the one part of the generator that asks the library, and only how strong to make an effect, never what it looks like.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use trimtab::diagnose::filter::Run;
+use trimtab::diagnose::{Settings, signal};
+use trimtab::model::Model;
+use trimtab::ship::Ship;
+use trimtab::state::Inputs;
+
+use super::design::PERIOD;
+use super::effects::{Class, Entry};
+use super::strength::{ForceMeter, Meter};
+use super::{ConcealError, Recorded, seal};
+
+/// The ratio of the first accepted mechanism's test on the runs to train on. Effects outside the catalogue are graded by
+/// [`ForceMeter`].
+pub struct DiagnosisMeter {
+    model: Model,
+    settings: Settings,
+}
+
+impl DiagnosisMeter {
+    /// A meter for the ship and base model of the concealed cases.
+    ///
+    /// # Errors
+    /// [`ConcealError::Meter`] when the library refuses them.
+    pub fn new() -> Result<Self, ConcealError> {
+        let fail = |e: &dyn std::fmt::Display| ConcealError::Meter { message: e.to_string() };
+        let ship = Ship::parse(&seal::ship_file(), Path::new("ship.toml")).map_err(|e| fail(&e))?;
+        let model = Model::parse(seal::MODEL, Path::new("model.toml"), ship).map_err(|e| fail(&e))?;
+        Ok(Self { model, settings: Settings::default() })
+    }
+}
+
+impl Meter for DiagnosisMeter {
+    fn snr(&self, effect: &Entry, with: &Recorded, without: &Recorded) -> Result<f64, ConcealError> {
+        let Some(mechanism) = effect.accepted.first().filter(|_| effect.class != Class::Random) else {
+            return ForceMeter::default().snr(effect, with, without);
+        };
+        // Both need the channels of the case, or the same model would see two different seas.
+        let (a, b) = (runs(without, with), runs(with, with));
+        signal(&self.model, &a, &b, mechanism, &self.settings)
+            .map_err(|e| ConcealError::Meter { message: e.to_string() })
+    }
+}
+
+/// The runs to train on, as the filter takes them, with the environment channels of `sea`.
+fn runs(recorded: &Recorded, sea: &Recorded) -> Vec<Run> {
+    let train = (0..recorded.plans.len()).filter(|i| !recorded.plans[*i].test);
+    train
+        .map(|i| {
+            let (plan, track) = (&recorded.plans[i], &recorded.tracks[i]);
+            let channel = |name: &str, row: usize| {
+                let (_, values) = sea.tracks[i].channels.iter().find(|(h, _)| h.split(' ').next() == Some(name))?;
+                values.get(row).copied()
+            };
+            let inputs = track.orders.iter().enumerate().map(|(row, order)| {
+                let mut at = Inputs::actuators(plan.clock + row as f64 * PERIOD, order.n, order.delta);
+                // Speed and direction FROM become components of where it goes TO.
+                let towards = |speed: &str, direction: &str| {
+                    let (size, from) = (channel(speed, row)?, channel(direction, row)? + PI);
+                    Some((size, [from.cos(), from.sin()]))
+                };
+                if let Some((speed, to)) = towards("wind_speed", "wind_direction") {
+                    at.wind = to.map(|c| c * speed);
+                }
+                if let Some((height, to)) = towards("wave_height", "wave_direction") {
+                    at.waves = to.map(|c| c * height * height);
+                }
+                if let (Some(starboard), Some(port)) = (channel("bank_starboard", row), channel("bank_port", row)) {
+                    at.bank = 1.0 / starboard - 1.0 / port;
+                }
+                at.thruster = channel("thruster", row).unwrap_or_default();
+                at
+            });
+            let measured: Vec<[f64; 6]> = recorded.rows[i].iter().map(|r| r.unwrap_or([f64::NAN; 6])).collect();
+            Run {
+                name: plan.name.clone(),
+                session: format!("day {}", plan.session + 1),
+                manoeuvre: plan.manoeuvre.to_owned(),
+                dt: PERIOD,
+                inputs: inputs.collect(),
+                initial: measured.first().copied().unwrap_or_default(),
+                measured,
+                channels: [true; 6],
+                disturbed: Vec::new(),
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conceal::craft::Family;
+    use crate::conceal::{Case, Spec, Strength};
+
+    #[test]
+    fn a_stronger_effect_has_a_higher_ratio_and_no_effect_has_none() {
+        let meter = DiagnosisMeter::new().unwrap();
+        let of = |size: f64| {
+            let effects = vec![("heading_bias".to_owned(), Strength::Size(size))];
+            Case::make(&Spec { effects, ..Spec::null(Family::Hd, 4) }, &meter).unwrap()
+        };
+        let (none, weak, strong) = (of(0.0), of(0.002), of(0.004));
+        let entry = weak.effects[0].entry;
+        let ratio = |case: &Case| meter.snr(entry, &case.recorded, &none.recorded).unwrap();
+        assert_eq!(ratio(&none), 0.0);
+        assert!((ratio(&strong) / ratio(&weak) - 2.0).abs() < 0.1, "{} {}", ratio(&strong), ratio(&weak));
+    }
+}
