@@ -1,0 +1,41 @@
+//! Judges one diagnosis: opens the seal of a concealed case and scores the `diagnosis.json` that was written before.
+//! It neither makes cases nor diagnoses them.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use trimtab_experiments::conceal::judge::{Diagnosis, judge};
+use trimtab_experiments::conceal::{ConcealError, seal};
+
+/// Prints the scores of a diagnosis as one CSV row with its header.
+#[derive(Parser)]
+struct Arguments {
+    /// Folder of the case, with `study/` and `sealed/`.
+    case: PathBuf,
+    /// The diagnosis.
+    diagnosis: PathBuf,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(row) => {
+            print!("{row}");
+            ExitCode::SUCCESS
+        }
+        Err(e) => {
+            eprintln!("judge: {e}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<String, ConcealError> {
+    let diagnosis = Diagnosis::read(&arguments.diagnosis)?;
+    let score = judge(&seal::open(&arguments.case)?, &diagnosis);
+    let fail = |e: &dyn std::fmt::Display| ConcealError::Content { path: "the row".into(), message: e.to_string() };
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.serialize(score).map_err(|e| fail(&e))?;
+    let bytes = writer.into_inner().map_err(|e| fail(&e))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
