@@ -1,0 +1,160 @@
+"""Sparse regression on smoothed residual accelerations, as a peer of the diagnosis on the same recordings.
+
+It is what a user would do with PySINDy today: differentiate, take out what the base model's terms can explain, and let STLSQ pick
+among columns. It is given more than a user would have: columns made for each mechanism, and kinematic equations for the sensors.
+It is not part of the product and no test needs it.
+
+    python3 -m venv venv && venv/bin/pip install pysindy
+    venv/bin/python experiments/peers/sindy.py CASE
+
+CASE is a folder with study/study.toml, as `conceal` and `campaign --keep` write it. Prints the name of the mechanism whose columns
+carry most of what STLSQ kept, or "nothing".
+"""
+
+import csv
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pysindy as ps
+
+WINDOW = 11  # rows of the Savitzky-Golay filter: 22 s
+THRESHOLDS = (0.05, 0.1, 0.2, 0.4)
+
+
+def read(path):
+    """Columns of a recording by name, on an even grid; short dropouts are bridged by straight lines."""
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))
+    names = [h.split(" ")[0] for h in rows[0]]
+    data = np.array([[float(v) if v else np.nan for v in r] for r in rows[1:]])
+    t = data[:, 0]
+    step = np.median(np.diff(t))
+    grid = np.arange(t[0], t[-1] + 0.5 * step, step)
+    return {name: np.interp(grid, t, data[:, i]) for i, name in enumerate(names)}
+
+
+def features(run):
+    """Targets, base columns and mechanism columns of one run, by equation."""
+    t = run["t"]
+    slope = ps.SmoothedFiniteDifference(smoother_kws={"window_length": WINDOW, "polyorder": 3})
+    rate = {k: slope._differentiate(run[k][:, None], t)[:, 0] for k in ("x", "y", "psi", "u", "v", "r", "n", "delta")}
+    u, v, r, psi, n, d = (run[k] for k in ("u", "v", "r", "psi", "n", "delta"))
+    speed = np.hypot(u, v)
+    thrust = n * np.abs(n)
+    cos, sin = np.cos(psi), np.sin(psi)
+    astern = np.where(n < 0, thrust, 0.0)
+    none = np.zeros_like(u)
+    one = np.ones_like(u)
+    heading = np.unwrap(psi)
+    lateral = [speed * v, u * r, speed * r, v * abs(v), v * abs(r), r * abs(r), thrust, one * u * u,
+               thrust * d, u * abs(u) * d, thrust * d * d, u * abs(u) * d * d, d**3 * u * abs(u)]
+    base = {
+        "X": [u, u * u, u**3, v * r, r * r, thrust, n * u, u * abs(u) * d * d, thrust * d * d, thrust * d],
+        "Y": lateral,
+        "N": lateral,
+        "east": [], "north": [], "turn": [],
+    }
+    north, east = u * cos - v * sin, u * sin + v * cos
+    targets = {
+        "X": rate["u"], "Y": rate["v"], "N": rate["r"],
+        "north": rate["x"] - north, "east": rate["y"] - east, "turn": np.gradient(heading, t) - r,
+    }
+    lag = np.gradient(d, t)
+    mechanisms = {
+        "current": {"X": [speed * cos, speed * sin], "Y": [speed * cos, speed * sin], "N": [speed * cos, speed * sin]},
+        "mean_wind": {"X": [cos, sin], "Y": [cos, sin], "N": [np.cos(2 * psi), np.sin(2 * psi)]},
+        "propeller_walk_astern": {"Y": [astern], "N": [astern]},
+        "wake_drift": {"X": [thrust * np.minimum((v / np.maximum(speed, 0.5)) ** 2, 1.0)]},
+        "engine_lag": {"X": [np.abs(n) * np.gradient(n, t)]},
+        "rudder_lag": {"Y": [lag * thrust, lag * u * abs(u)], "N": [lag * thrust, lag * u * abs(u)]},
+        "rudder_stall": {"Y": [np.where(abs(d) > 0.45, thrust * d, 0.0)], "N": [np.where(abs(d) > 0.45, thrust * d, 0.0)]},
+        "crossflow": {"Y": [abs(v) ** 3 * np.sign(v), abs(r) * v * abs(v)], "N": [abs(v) * v * abs(r), r * v * v]},
+        "sternway": {"Y": [np.where(u < 0, u * v, 0.0)], "N": [np.where(u < 0, u * v, 0.0)], "X": [np.where(u < 0, u * u, 0.0)]},
+        "roll": {"Y": [np.gradient(speed**3 * r, t)], "N": [np.gradient(speed**3 * r, t)]},
+        "heading_bias": {"north": [-east], "east": [north]},
+        "log_scale": {"north": [-north], "east": [-east]},
+        "sway_log_bias": {"north": [sin], "east": [-cos]},
+        "antenna": {"north": [-r * sin, -r * cos], "east": [r * cos, -r * sin]},
+        "time_skew": {"north": [np.gradient(north, t)], "east": [np.gradient(east, t)]},
+        "water_log": {"north": [one, none], "east": [none, one]},
+        "yaw_rate_bias": {"turn": [one]},
+    }
+    if "thruster" in run:
+        side = run["thruster"] / (1 + (u / 1.3) ** 2)
+        mechanisms["thruster"] = {"Y": [side], "N": [side]}
+    if "bank_starboard" in run:
+        close = u * u * (1 / run["bank_starboard"] - 1 / run["bank_port"])
+        mechanisms["bank"] = {"Y": [close], "N": [close]}
+    if "wind_speed" in run:
+        along = run["wind_speed"] ** 2 * np.cos(run["wind_direction"] - psi)
+        across = run["wind_speed"] ** 2 * np.sin(run["wind_direction"] - psi)
+        mechanisms["wind"] = {"X": [along], "Y": [across], "N": [across, along * across]}
+    if "wave_height" in run:
+        angle = run["wave_direction"] - psi
+        high = run["wave_height"] ** 2
+        mechanisms["waves"] = {"X": [high * np.cos(angle)], "Y": [high * np.sin(angle)], "N": [high * np.sin(angle)]}
+    return targets, base, mechanisms
+
+
+def stack(runs, equation):
+    """Target, base columns and candidate columns of one equation over all runs, with the candidates' names."""
+    names = [m for m, columns in runs[0][2].items() for _ in columns.get(equation, [])]
+    target = np.concatenate([targets[equation] for targets, _, _ in runs])
+    base = np.hstack([np.ones((len(target), 0 if equation in ("north", "east", "turn") else 1)),
+                      *[np.concatenate([b[equation][i] for _, b, _ in runs])[:, None] for i in range(len(runs[0][1][equation]))]])
+    pick = [(m, i) for m, columns in runs[0][2].items() for i in range(len(columns.get(equation, [])))]
+    columns = [np.concatenate([mechanisms[m][equation][i] for _, _, mechanisms in runs]) for m, i in pick]
+    return target, base, np.array(columns).T, names
+
+
+def without(base, values):
+    """What is left of `values` when the base columns are projected out."""
+    if base.shape[1] == 0:
+        return values
+    return values - base @ np.linalg.lstsq(base, values, rcond=None)[0]
+
+
+def name(train, held_out):
+    """The mechanism with the largest retained contribution, the threshold chosen on held-out runs for each equation."""
+    weight = {}
+    for equation in ("X", "Y", "N", "north", "east", "turn"):
+        target, base, columns, names = stack(train, equation)
+        if columns.size == 0:
+            continue
+        target, columns = without(base, target), without(base, columns)
+        scale, unit = target.std(), columns.std(axis=0)
+        live = unit > 1e-9
+        columns, names, unit = columns[:, live], [n for n, k in zip(names, live) if k], unit[live]
+        held_target, held_base, held_columns, _ = stack(held_out, equation)
+        held_target, held_columns = without(held_base, held_target), without(held_base, held_columns)[:, live]
+        best, kept = np.inf, None
+        for threshold in THRESHOLDS:
+            optimizer = ps.STLSQ(threshold=threshold, alpha=1e-6)
+            optimizer.fit(columns / unit, (target / scale)[:, None])
+            coefficients = optimizer.coef_[0]
+            error = np.mean((held_target / scale - held_columns / unit @ coefficients) ** 2)
+            # A sparser law wins when it is as good within one per cent.
+            if error < best * (1.01 if kept is not None and np.count_nonzero(coefficients) < np.count_nonzero(kept) else 1.0):
+                best, kept = error, coefficients
+        for mechanism, c in zip(names, kept):
+            weight[mechanism] = weight.get(mechanism, 0.0) + c * c
+    weight = {m: w for m, w in weight.items() if w > 0}
+    return max(weight, key=weight.get) if weight else "nothing"
+
+
+def main():
+    """Reads a case and prints one name."""
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    study = Path(sys.argv[1]) / "study" / "study.toml"
+    runs = tomllib.loads(study.read_text())["runs"]
+    sides = {"train": [], "test": []}
+    for run in runs:
+        sides[run["split"]].append(features(read(study.with_name(run["file"]))))
+    print(name(sides["train"], sides["test"]))
+
+
+if __name__ == "__main__":
+    main()
