@@ -55,6 +55,23 @@ fn run_case(set: &[(&str, f64)], sessions: &[&str], seed: u64) -> Diagnosis {
 
 #[test]
 fn explore() {
-    run_case(&[("antenna.x", 5.0)], &[], 8);
-    run_case(&[("current.north", 0.1)], &[], 1);
+    let which: u64 = std::env::var("CASE").ok().and_then(|c| c.parse().ok()).unwrap_or(0);
+    let size: f64 = std::env::var("SIZE").ok().and_then(|c| c.parse().ok()).unwrap_or(1.0);
+    let seed: u64 = std::env::var("SEED").ok().and_then(|c| c.parse().ok()).unwrap_or(1);
+    match which {
+        0 => run_case(&[], &[], seed),
+        1 => run_case(&[("current.north", 0.1 * size)], &[], seed),
+        2 => run_case(&[("mean_wind.north", 6.0 * size), ("mean_wind.east", -5.0 * size)], &[], seed),
+        3 => run_case(&[("heading_bias.bias", 0.0175 * size)], &[], seed),
+        4 => run_case(&[("rudder_lag.time", 2.0 * size)], &[], seed),
+        5 => run_case(&[("propeller_walk.astern", -0.04 * size)], &[], seed),
+        6 => run_case(&[("shallow.ratio", 0.5 * size)], &["s2", "s3"], seed),
+        7 => run_case(&[("current.east", 0.1 * size), ("heading_bias.bias", 0.01 * size)], &[], seed),
+        8 => run_case(&[("antenna.x", 5.0 * size)], &[], seed),
+        9 => run_case(&[("rudder_offset.offset", 0.03 * size)], &[], seed),
+        10 => run_case(&[("log_scale.error", 0.03 * size)], &[], seed),
+        11 => run_case(&[("time_skew.position", 1.0 * size)], &[], seed),
+        12 => run_case(&[("crossflow.drag", 0.5 * size)], &[], seed),
+        _ => run_case(&[("engine_lag.time", 8.0 * size)], &[], seed),
+    };
 }

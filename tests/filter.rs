@@ -8,7 +8,7 @@ mod support;
 use rayon::prelude::*;
 use support::{STAR, model, runs, truth_noise};
 use trimtab::diagnose::evidence::{Evidence, RunEvidence};
-use trimtab::diagnose::filter::{Column, Filter, Probe};
+use trimtab::diagnose::filter::{Column, Filter, Probe, Wanted};
 use trimtab::diagnose::noise::{NoisePrior, fit_noise, guess};
 use trimtab::model::{ELEVEN, Model};
 use trimtab::simulate::{Integration, Method};
@@ -34,7 +34,8 @@ fn scores_at_the_truth_are_as_large_as_their_information() {
     let columns = columns(&model, &names);
     let filter = Filter::new(&model, RK4, &columns);
     let start = std::time::Instant::now();
-    let passes: Vec<_> = runs(&model, &noise, 60, 7).par_iter().map(|r| filter.pass(r, &noise, None, false)).collect();
+    let passes: Vec<_> =
+        runs(&model, &noise, 60, 7).par_iter().map(|r| filter.pass(r, &noise, Wanted::default())).collect();
     println!("60 runs in {:?}", start.elapsed());
     // Standardised total scores by column: standard normal if the filter is right.
     let mut squares = Vec::new();
@@ -84,7 +85,8 @@ fn noise_is_recovered_and_the_fisher_step_finds_the_parameters() {
     for round in 0..6 {
         let clock = std::time::Instant::now();
         let filter = Filter::new(&model, RK4, &columns);
-        let passes: Vec<_> = data.par_iter().map(|r| filter.pass(r, &estimate, None, true)).collect();
+        let passes: Vec<_> =
+            data.par_iter().map(|r| filter.pass(r, &estimate, Wanted { tangent: true, ..Wanted::default() })).collect();
         let evidence = Evidence::new(
             passes
                 .iter()
@@ -120,4 +122,34 @@ fn noise_is_recovered_and_the_fisher_step_finds_the_parameters() {
     }
     let i = model.index("rudder.lift1").unwrap();
     assert!((model.parameters[i].value - 3.193).abs() < 0.15);
+}
+
+#[test]
+fn with_gains_held_fixed_the_score_is_the_exact_gradient() {
+    let model = model();
+    let noise = truth_noise();
+    let data = runs(&model, &noise, 4, 3);
+    let names = ["rudder.lift1", "resistance.linear", "hull.Yv", "flow.wake"];
+    let columns = columns(&model, &names);
+    for run in &data {
+        let filter = Filter::new(&model, RK4, &columns);
+        let gains = filter.pass(run, &noise, Wanted { gains: true, ..Wanted::default() }).gains.unwrap();
+        let frozen = Wanted { frozen: Some(&gains), exact: true, ..Wanted::default() };
+        let objective = |model: &trimtab::model::Model| -> f64 {
+            let pass = Filter::new(model, RK4, &[]).pass(run, &noise, frozen);
+            pass.innovations.iter().flatten().filter(|e| e.is_finite()).map(|e| 0.5 * e * e).sum()
+        };
+        let score = filter.pass(run, &noise, frozen).score;
+        for (c, column) in columns.iter().enumerate() {
+            let step = 1e-4 * column.scale;
+            let at = |side: f64| {
+                let mut moved = model.clone();
+                moved.parameters[column.parameter].value += side * step;
+                objective(&moved)
+            };
+            let difference = (at(1.0) - at(-1.0)) / 2e-4;
+            let error = (score[c] + difference).abs();
+            assert!(error < 1e-5 * (1.0 + difference.abs()), "{}: {} against {}", names[c], -score[c], difference);
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Before any physics is claimed: are the recordings consistent with themselves, and is the integration step fine enough?
 //! It judges data and numerics only.
 
-use super::filter::{Filter, Run};
+use super::filter::{Filter, Run, Wanted};
 use super::noise::Noise;
 use crate::model::Model;
 use crate::simulate::{Integration, Method};
@@ -152,7 +152,7 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
     }
     let log_likelihood = |integration: Integration| -> (f64, Vec<Vec<[f64; 6]>>) {
         let filter = Filter::new(model, integration, &[]);
-        let passes: Vec<_> = runs.par_iter().map(|r| filter.pass(r, noise, None, false)).collect();
+        let passes: Vec<_> = runs.par_iter().map(|r| filter.pass(r, noise, Wanted::default())).collect();
         (passes.iter().map(|p| p.log_likelihood).sum(), passes.into_iter().map(|p| p.innovations).collect())
     };
     let (value, innovations) = log_likelihood(integration);

@@ -9,6 +9,7 @@ use super::locate::{EquationShare, Location, RegionTest, Window, locate};
 use super::mechanism::{Candidate, Kind, candidates};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::{HeldOut, prove};
+use super::refit::refit;
 use super::screen::{Row, Screen, screen};
 use crate::model::{Model, ModelError, Prior};
 use crate::simulate::{Integration, Method};
@@ -531,6 +532,13 @@ pub fn diagnose(
             accepted.push(entry);
             current = found;
             backward(&mut accepted, &mut current, &null, integration, &runs, &list, &prior, settings);
+        }
+    }
+    if !accepted.is_empty() {
+        progress("refitting the whole model through Ipopt");
+        // Without Ipopt's answer the estimate by Fisher scoring stands.
+        if let Ok(refitted) = refit(&current, integration, &runs) {
+            current = refitted;
         }
     }
     progress("checking what is left");

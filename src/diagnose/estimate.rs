@@ -2,7 +2,7 @@
 //! likelihood, in turn. Which parameters are free, and what is concluded, is decided elsewhere.
 
 use super::evidence::{Base, Evidence, RunEvidence};
-use super::filter::{Column, Filter, Pass, Run};
+use super::filter::{Column, Filter, Pass, Run, Wanted};
 use super::noise::{Noise, NoisePrior, fit_noise};
 use crate::model::{Model, Prior};
 use crate::simulate::Integration;
@@ -106,7 +106,7 @@ pub fn passes(
     tangent: bool,
 ) -> Vec<Pass> {
     let filter = Filter::new(model, integration, columns);
-    runs.par_iter().map(|r| filter.pass(r, noise, None, tangent)).collect()
+    runs.par_iter().map(|r| filter.pass(r, noise, Wanted { tangent, ..Wanted::default() })).collect()
 }
 
 /// Scores and information of passes over runs.

@@ -112,6 +112,8 @@ pub struct Pass {
     pub force_sd: Vec<[f64; 3]>,
     /// The linearisation, where asked for.
     pub tangent: Option<Tangent>,
+    /// The gains, where asked for.
+    pub gains: Option<Gains>,
 }
 
 /// The step maps of a run, linearised along its filtered path.
@@ -127,6 +129,31 @@ pub struct Tangent {
     pub gamma: Vec<[[f64; 3]; STATES]>,
     /// What the sensors report at the point of linearisation, less the state.
     pub offset: Vec<[f64; STATES]>,
+}
+
+/// The gains of a filter along one run: with them held fixed, the innovations are a smooth function of the parameters whose
+/// derivative is exactly what the sensitivities say.
+#[derive(Clone, Debug, Default)]
+pub struct Gains {
+    /// Innovation variance by sample and channel; NaN where the channel was not used.
+    variance: Vec<[f64; STATES]>,
+    /// Gain by sample and channel.
+    gain: Vec<[[f64; Z]; STATES]>,
+}
+
+/// What a pass is asked for beyond scores.
+#[derive(Clone, Copy, Default)]
+pub struct Wanted<'a> {
+    /// Forces added as further columns: how many, and their values.
+    pub basis: Option<(usize, ForceBasis<'a>)>,
+    /// Store the linearised step maps.
+    pub tangent: bool,
+    /// Store the gains.
+    pub gains: bool,
+    /// Use these gains instead of computing them.
+    pub frozen: Option<&'a Gains>,
+    /// Differentiate the parameters through every stage of the step, instead of by the trapezoidal rule over it.
+    pub exact: bool,
 }
 
 /// A model prepared for passes over many runs with the same columns.
@@ -187,9 +214,8 @@ impl<'a> Filter<'a> {
     }
 
     /// Passes over one run.
-    ///
-    /// `basis` adds columns for forces that act as given over each step. `keep_tangent` stores the linearisation.
-    pub fn pass(&self, run: &Run, noise: &Noise, basis: Option<(usize, ForceBasis)>, keep_tangent: bool) -> Pass {
+    pub fn pass(&self, run: &Run, noise: &Noise, wanted: Wanted) -> Pass {
+        let basis = wanted.basis;
         let parameters = self.columns.len();
         let extra = basis.map_or(0, |(n, _)| n);
         let width = parameters + extra;
@@ -212,14 +238,15 @@ impl<'a> Filter<'a> {
             innovations: Vec::with_capacity(run.measured.len()),
             filtered: Vec::with_capacity(run.measured.len()),
             force_sd: Vec::with_capacity(run.measured.len()),
-            tangent: keep_tangent.then(Tangent::default),
+            tangent: wanted.tangent.then(Tangent::default),
+            gains: wanted.gains.then(Gains::default),
         };
         let mut rows = vec![0.0; STATES * width];
         let mut forces = Vec::with_capacity(extra);
         let mut weighted: Vec<f64> = Vec::new();
         let mut rates_now = vec![0.0; 3 * width];
         let mut rates_next = vec![0.0; 3 * width];
-        if parameters > 0 {
+        if parameters > 0 && !wanted.exact {
             self.rate_columns(&seeded, 0, &run.initial, &[0.0; 3], width, &mut rates_now);
         }
         let a_force = (-run.dt / noise.force_time).exp();
@@ -234,6 +261,7 @@ impl<'a> Filter<'a> {
                 t.offset.push(std::array::from_fn(|j| report[j] - state[j]));
             }
             let mut innovation = [f64::NAN; STATES];
+            let mut kept = ([f64::NAN; STATES], [[0.0; Z]; STATES]);
             let reference = z;
             for j in 0..STATES {
                 let y = run.measured[k][j];
@@ -261,9 +289,15 @@ impl<'a> Filter<'a> {
                 for l in 0..STATES {
                     s += h[j][l] * ph[l];
                 }
+                if let Some(frozen) = wanted.frozen {
+                    s = frozen.variance[k][j];
+                    if !s.is_finite() {
+                        continue;
+                    }
+                }
                 let sigma = s.sqrt();
                 innovation[j] = e / sigma;
-                if e.abs() > GATE * sigma {
+                if wanted.frozen.is_none() && e.abs() > GATE * sigma {
                     pass.outliers += 1;
                     pass.log_likelihood -= 0.5 * GATE * GATE + sigma.ln() + 0.5 * (2.0 * std::f64::consts::PI).ln();
                     continue;
@@ -286,15 +320,19 @@ impl<'a> Filter<'a> {
                     let root = inverse.sqrt();
                     weighted.extend(row.iter().map(|v| v * root));
                 }
+                kept.0[j] = s;
                 for i in 0..Z {
-                    let gain = ph[i] / s;
+                    let gain = wanted.frozen.map_or(ph[i] / s, |f| f.gain[k][j][i]);
+                    kept.1[j][i] = gain;
                     z[i] += gain * e;
                     if width > 0 && gain != 0.0 {
                         axpy(&mut d[i * width..(i + 1) * width], -gain, &rows[j * width..(j + 1) * width]);
                     }
-                    for l in 0..=i {
-                        p[i][l] -= gain * ph[l];
-                        p[l][i] = p[i][l];
+                    if wanted.frozen.is_none() {
+                        for l in 0..=i {
+                            p[i][l] -= gain * ph[l];
+                            p[l][i] = p[i][l];
+                        }
                     }
                 }
             }
@@ -304,6 +342,10 @@ impl<'a> Filter<'a> {
                 let block = DMatrix::from_column_slice(width, rows, &weighted);
                 pass.information.gemm(1.0, &block, &block.transpose(), 1.0);
                 weighted.clear();
+            }
+            if let Some(g) = &mut pass.gains {
+                g.variance.push(kept.0);
+                g.gain.push(kept.1);
             }
             pass.innovations.push(innovation);
             pass.filtered.push(z);
@@ -340,21 +382,25 @@ impl<'a> Filter<'a> {
                 for i in 0..STATES {
                     axpy(&mut moved[(9 + i) * width..(10 + i) * width], rho[i], &d[(9 + i) * width..(10 + i) * width]);
                 }
-                // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any
-                // predictable sensitivity leaves the score unbiased, so that this costs no more than a little power.
-                let faded = push.map(|w| w * a_force);
-                self.rate_columns(&seeded, k + 1, &image, &faded, width, &mut rates_next);
-                let half = 0.5 * run.dt;
-                for i in 0..STATES {
-                    let row = &mut moved[i * width..i * width + parameters];
-                    for l in 0..3 {
-                        axpy(row, half * a[i][3 + l], &rates_now[l * width..l * width + parameters]);
+                if wanted.exact {
+                    self.step_columns(&seeded, k, run.dt, &state, &push, &mut moved, width);
+                } else {
+                    // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any
+                    // predictable sensitivity leaves the score unbiased, so that this costs no more than a little power.
+                    let faded = push.map(|w| w * a_force);
+                    self.rate_columns(&seeded, k + 1, &image, &faded, width, &mut rates_next);
+                    let half = 0.5 * run.dt;
+                    for i in 0..STATES {
+                        let row = &mut moved[i * width..i * width + parameters];
+                        for l in 0..3 {
+                            axpy(row, half * a[i][3 + l], &rates_now[l * width..l * width + parameters]);
+                        }
+                        if i >= 3 {
+                            axpy(row, half, &rates_next[(i - 3) * width..(i - 3) * width + parameters]);
+                        }
                     }
-                    if i >= 3 {
-                        axpy(row, half, &rates_next[(i - 3) * width..(i - 3) * width + parameters]);
-                    }
+                    std::mem::swap(&mut rates_now, &mut rates_next);
                 }
-                std::mem::swap(&mut rates_now, &mut rates_next);
             }
             d = moved;
             if let Some(t) = &mut pass.tangent {
@@ -373,7 +419,9 @@ impl<'a> Filter<'a> {
             for i in 0..STATES {
                 z[9 + i] *= rho[i];
             }
-            p = predict(&p, &a, &gamma, a_force, &rho, noise, run.boost(k));
+            if wanted.frozen.is_none() {
+                p = predict(&p, &a, &gamma, a_force, &rho, noise, run.boost(k));
+            }
         }
         pass
     }
@@ -437,6 +485,31 @@ impl<'a> Filter<'a> {
                 let (high, low) = (f(&probe.high), f(&probe.low));
                 for i in 0..3 {
                     out[i * width + probe.column] = (high[3 + i] - low[3 + i]) * probe.weight;
+                }
+            }
+        }
+    }
+
+    /// Adds the exact derivative of the step map with respect to the parameters to the sensitivities.
+    fn step_columns(
+        &self,
+        seeded: &[Seeded],
+        k: usize,
+        dt: f64,
+        state: &[f64; STATES],
+        push: &[f64; 3],
+        moved: &mut [f64],
+        width: usize,
+    ) {
+        for (chunk, seed) in self.chunks.iter().zip(seeded).filter(|(_, seed)| seed.tangents) {
+            let x: [Gradient; STATES] = state.map(Gradient::constant);
+            let [fx, fy, fn_] = push.map(Gradient::constant);
+            let force = Force { x: fx, y: fy, n: fn_ };
+            let (now, next) = (seed.instant(k), seed.instant(k + 1));
+            let y = step(&chunk.view, &seed.theta, self.integration, dt, &x, &now, &next, &force);
+            for i in 0..STATES {
+                for (lane, c) in chunk.columns.clone().enumerate() {
+                    moved[i * width + c] += y[i].eps[lane];
                 }
             }
         }

@@ -3,7 +3,7 @@
 
 use super::estimate::{Estimate, base_of, restrictions};
 use super::evidence::{Base, Evidence, RunEvidence, chi_squared_p, pick};
-use super::filter::{Column, Filter, Pass, Run};
+use super::filter::{Column, Filter, Pass, Run, Wanted};
 use crate::model::Model;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
@@ -126,8 +126,10 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
             }
         }
     };
-    let passes: Vec<Pass> =
-        runs.par_iter().map(|r| filter.pass(r, &found.noise, Some((extra, &basis)), false)).collect();
+    let passes: Vec<Pass> = runs
+        .par_iter()
+        .map(|r| filter.pass(r, &found.noise, Wanted { basis: Some((extra, &basis)), ..Wanted::default() }))
+        .collect();
     let evidence = super::estimate::evidence(runs, &passes, &restrictions(&found.free));
     let base = base_of(&evidence, model, &found.free);
     let base_step = base.step();

@@ -14,6 +14,7 @@ pub mod locate;
 pub mod mechanism;
 pub mod noise;
 pub mod prove;
+pub mod refit;
 pub mod screen;
 
 pub use conclude::{Diagnosis, Finding, Settings, Verdict, diagnose, signal};

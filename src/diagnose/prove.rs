@@ -1,7 +1,7 @@
 //! The proof: models against each other on runs that no earlier step has touched, in free simulation and in likelihood.
 //! It fits nothing.
 
-use super::filter::{Filter, Run};
+use super::filter::{Filter, Run, Wanted};
 use super::noise::Noise;
 use crate::model::Model;
 use crate::simulate::{Integration, Scenario, simulate};
@@ -62,7 +62,7 @@ pub fn score(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
     let scored: Vec<(RunScore, f64, f64)> = runs
         .par_iter()
         .map(|r| {
-            let pass = filter.pass(r, noise, None, false);
+            let pass = filter.pass(r, noise, Wanted::default());
             let (mut sum, mut count) = (0.0, 0.0);
             for e in pass.innovations.iter().flatten().filter(|e| e.is_finite() && e.abs() < super::filter::GATE) {
                 sum += e * e;

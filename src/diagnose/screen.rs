@@ -2,8 +2,8 @@
 //! have had their say. It ranks and corrects for multiplicity; it does not refit and does not conclude.
 
 use super::estimate::{Estimate, base_of, evidence, restrictions};
-use super::evidence::{Base, Evidence, Test, UNSEEN, chi_squared_p, pick};
-use super::filter::{Column, Filter, Pass, Probe, Run};
+use super::evidence::{Base, Evidence, Test, UNSEEN, pick};
+use super::filter::{Column, Filter, Pass, Probe, Run, Wanted};
 use super::mechanism::Candidate;
 use crate::model::Model;
 use crate::simulate::Integration;
@@ -134,7 +134,7 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
     let symmetric = block("symmetric");
     let asymmetric = block("asymmetric");
     let filter = Filter::new(model, integration, &columns);
-    let passes: Vec<Pass> = runs.par_iter().map(|r| filter.pass(r, &found.noise, None, false)).collect();
+    let passes: Vec<Pass> = runs.par_iter().map(|r| filter.pass(r, &found.noise, Wanted::default())).collect();
     let evidence = evidence(runs, &passes, &restrictions(&found.free));
     let base = base_of(&evidence, model, &found.free);
     let widened = widen(&evidence, &base, &symmetric);
@@ -235,7 +235,9 @@ fn row(
             tests.push((Some(group), test, opinion));
         }
     }
-    let looks = tests.len().max(1) as f64;
+    // A group of sessions was chosen to look best: it pays for every way to part them.
+    let partings = 2f64.powi(sessions.len().saturating_sub(1).min(60) as i32) - 1.0;
+    let kinds = if tests.len() > 1 { 2.0 } else { 1.0 };
     let possible = |t: &Test| {
         let error: Vec<f64> = (0..columns.len()).map(|i| t.covariance[(i, i)].max(0.0).sqrt()).collect();
         candidate.admissible(model, t.amplitude.as_slice(), &error)
@@ -245,7 +247,8 @@ fn row(
     for t in tests {
         let better = best.as_ref().is_none_or(|b| {
             let (new, old) = (t.1.statistic - t.1.degrees as f64, b.1.statistic - b.1.degrees as f64);
-            (possible(&t.1) && !possible(&b.1) && new > 0.0) || (new > old + 6.0 && (possible(&t.1) || !possible(&b.1)))
+            (possible(&t.1) && !possible(&b.1) && new > 0.0)
+                || (new > old + 6.0 + 2.0 * partings.max(1.0).ln() && (possible(&t.1) || !possible(&b.1)))
         });
         if better {
             best = Some(t);
@@ -256,7 +259,11 @@ fn row(
     let amplitude: Vec<f64> = test.amplitude.iter().copied().collect();
     Row {
         candidate: index,
-        p: if visible { (test.p * looks).min(1.0) } else { 1.0 },
+        p: if visible {
+            (test.p * kinds * if chosen.is_some() { partings.max(1.0) } else { 1.0 }).min(1.0)
+        } else {
+            1.0
+        },
         size: candidate.size(&amplitude),
         admissible: possible(&test),
         visible: visible && (chosen.is_some() || !candidate.mechanism.needs_reference),
@@ -288,9 +295,4 @@ fn groups(contrast: &Test, sessions: &[String], k: usize) -> Vec<Vec<String>> {
     let Some(cut) = cut else { return Vec::new() };
     let named = |part: &[(f64, usize)]| part.iter().map(|(_, i)| sessions[*i].clone()).collect::<Vec<_>>();
     vec![named(&order[..cut]), named(&order[cut..])]
-}
-
-/// The p-value of a test that may use `looks` looks.
-pub fn corrected(test: &Test, looks: usize) -> f64 {
-    (chi_squared_p(test.statistic, test.degrees) * looks as f64).min(1.0)
 }

@@ -1,0 +1,162 @@
+//! The refit of an accepted model through Ipopt: weighted least squares on the filter's innovations with its gains held fixed,
+//! inside the parameters' bounds. Gains and noise come from the estimate; which mechanisms are in it is decided elsewhere.
+//!
+//! With gains fixed, `sum e^2/s` is a smooth function of the parameters, its gradient is exactly the score of an exact pass and
+//! its Gauss-Newton Hessian the information. The filter's gains are then computed anew and the problem solved again.
+
+use super::estimate::{Estimate, base_of, evidence, restrictions};
+use super::evidence::Base;
+use super::filter::{Column, Filter, Gains, Pass, Run, Wanted};
+use crate::fit::ipopt::{IpoptError, Nlp, Options, Solution, solve};
+use crate::model::Model;
+use crate::simulate::Integration;
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+struct Refit<'a> {
+    found: &'a Estimate,
+    integration: Integration,
+    runs: &'a [Run],
+    gains: &'a [Gains],
+    columns: Vec<Column>,
+    cached: Option<Point>,
+}
+
+/// Objective, gradient and Gauss-Newton Hessian at a point.
+struct Point {
+    x: Vec<f64>,
+    value: f64,
+    gradient: Vec<f64>,
+    hessian: DMatrix<f64>,
+}
+
+impl Refit<'_> {
+    fn model_at(&self, x: &[f64]) -> Model {
+        let mut model = self.found.model.clone();
+        for (f, x) in self.found.free.iter().zip(x) {
+            f.set(&mut model, x * f.column.scale);
+        }
+        model
+    }
+
+    /// The point at `x`, in one pass, kept for the callbacks at the same point.
+    fn at(&mut self, x: &[f64]) -> Option<&Point> {
+        if self.cached.as_ref().is_none_or(|c| c.x != x) {
+            let model = self.model_at(x);
+            let filter = Filter::new(&model, self.integration, &self.columns);
+            let passes: Vec<Pass> = self
+                .runs
+                .par_iter()
+                .zip(self.gains)
+                .map(|(r, g)| {
+                    let wanted = Wanted { frozen: Some(g), exact: true, ..Wanted::default() };
+                    filter.pass(r, &self.found.noise, wanted)
+                })
+                .collect();
+            let mut value = 0.0;
+            for e in passes.iter().flat_map(|p| p.innovations.iter().flatten()).filter(|e| !e.is_nan()) {
+                value += 0.5 * e * e;
+            }
+            let e = evidence(self.runs, &passes, &restrictions(&self.found.free));
+            let Base { score, .. } = base_of(&e, &model, &self.found.free);
+            let mut hessian = e.total.information;
+            for (i, f) in self.found.free.iter().enumerate() {
+                if let Some(prior) = f.prior {
+                    let away = (f.value(&model) - prior.mean) / prior.sd;
+                    value += 0.5 * away * away;
+                    hessian[(i, i)] += (f.column.scale / prior.sd).powi(2);
+                }
+            }
+            if !value.is_finite() {
+                return None;
+            }
+            let gradient = score.iter().map(|s| -s).collect();
+            self.cached = Some(Point { x: x.to_vec(), value, gradient, hessian });
+        }
+        self.cached.as_ref()
+    }
+}
+
+impl Nlp for Refit<'_> {
+    fn variables(&self) -> usize {
+        self.columns.len()
+    }
+    fn constraints(&self) -> usize {
+        0
+    }
+    fn variable_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
+        for (i, f) in self.found.free.iter().enumerate() {
+            let p = &self.found.model.parameters[f.column.parameter];
+            // An addition in some sessions is bounded by what the sum may be.
+            let common = if f.sessions.is_some() { p.value } else { 0.0 };
+            let (a, b) = ((p.lower - common) / f.column.scale, (p.upper - common) / f.column.scale);
+            (lower[i], upper[i]) = (a.min(b), a.max(b));
+        }
+    }
+    fn constraint_bounds(&self, _lower: &mut [f64], _upper: &mut [f64]) {}
+    fn start(&self, x: &mut [f64]) {
+        for (x, f) in x.iter_mut().zip(&self.found.free) {
+            *x = f.value(&self.found.model) / f.column.scale;
+        }
+    }
+    fn objective(&mut self, x: &[f64]) -> Option<f64> {
+        self.at(x).map(|c| c.value)
+    }
+    fn gradient(&mut self, x: &[f64], gradient: &mut [f64]) -> bool {
+        self.at(x).map(|c| gradient.copy_from_slice(&c.gradient)).is_some()
+    }
+    fn constraint_values(&mut self, _x: &[f64], _values: &mut [f64]) -> bool {
+        true
+    }
+    fn jacobian_structure(&self) -> Vec<(usize, usize)> {
+        Vec::new()
+    }
+    fn jacobian_values(&mut self, _x: &[f64], _values: &mut [f64]) -> bool {
+        true
+    }
+    fn hessian_structure(&self) -> Vec<(usize, usize)> {
+        (0..self.columns.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).collect()
+    }
+    fn hessian_values(&mut self, x: &[f64], factor: f64, _multipliers: &[f64], values: &mut [f64]) -> bool {
+        let n = self.columns.len();
+        self.at(x)
+            .map(|c| {
+                let mut k = 0;
+                for i in 0..n {
+                    for j in 0..=i {
+                        values[k] = factor * c.hessian[(i, j)];
+                        k += 1;
+                    }
+                }
+            })
+            .is_some()
+    }
+}
+
+/// Refits the free parameters of an estimate through Ipopt, with gains computed once at its values.
+///
+/// The estimate comes back with the refitted model and its likelihood when Ipopt improved it, and unchanged otherwise.
+///
+/// # Errors
+/// When Ipopt cannot be started at all; a solve that does not converge is not an error but changes nothing.
+pub fn refit(found: &Estimate, integration: Integration, runs: &[Run]) -> Result<Estimate, IpoptError> {
+    let filter = Filter::new(&found.model, integration, &[]);
+    let wanted = Wanted { gains: true, ..Wanted::default() };
+    let gains: Vec<Gains> =
+        runs.par_iter().map(|r| filter.pass(r, &found.noise, wanted).gains.unwrap_or_default()).collect();
+    let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
+    let mut problem = Refit { found, integration, runs, gains: &gains, columns, cached: None };
+    let options = Options { tolerance: 1e-3, max_iterations: 8, ..Options::default() };
+    let Solution { x, .. } = solve(&mut problem, &options)?;
+    let model = problem.model_at(&x);
+    let after = Filter::new(&model, integration, &[]);
+    let by_run: Vec<f64> =
+        runs.par_iter().map(|r| after.pass(r, &found.noise, Wanted::default()).log_likelihood).collect();
+    let log_prior: f64 =
+        found.free.iter().filter_map(|f| f.prior.map(|p| -0.5 * ((f.value(&model) - p.mean) / p.sd).powi(2))).sum();
+    let log_posterior = by_run.iter().sum::<f64>() + log_prior;
+    if log_posterior < found.log_posterior {
+        return Ok(found.clone());
+    }
+    Ok(Estimate { model, log_posterior, by_run, ..found.clone() })
+}
