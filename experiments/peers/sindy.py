@@ -14,6 +14,7 @@ carry most of what STLSQ kept, or "nothing".
 import csv
 import sys
 import tomllib
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -124,7 +125,7 @@ def name(train, held_out):
         if columns.size == 0:
             continue
         target, columns = without(base, target), without(base, columns)
-        scale, unit = target.std(), columns.std(axis=0)
+        scale, unit = np.sqrt(np.mean(target**2)), np.sqrt(np.mean(columns**2, axis=0))
         live = unit > 1e-9
         columns, names, unit = columns[:, live], [n for n, k in zip(names, live) if k], unit[live]
         held_target, held_base, held_columns, _ = stack(held_out, equation)
@@ -146,6 +147,8 @@ def name(train, held_out):
 
 def main():
     """Reads a case and prints one name."""
+    # STLSQ warns whenever a threshold removes every column, which here is an answer.
+    warnings.filterwarnings("ignore", message="Sparsity parameter is too big")
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     study = Path(sys.argv[1]) / "study" / "study.toml"
