@@ -382,7 +382,7 @@ const NUISANCE: [&str; 31] = [
 ];
 
 /// The free parameters of the base: those of the model, and the nuisances with their priors.
-fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParameter> {
+pub(super) fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParameter> {
     let column =
         |parameter: usize| Column { parameter, scale: model.parameters[parameter].scale, probe: Probe::Tangent };
     let mut free: Vec<FreeParameter> =
@@ -1221,54 +1221,4 @@ fn headline(verdict: Verdict, findings: &[Finding], admission: &Admission, surro
         Verdict::Insufficient => "These recordings cannot answer: too few runs.".into(),
         Verdict::NothingMissing => "Nothing is missing that these data could show.".into(),
     }
-}
-
-/// The signal-to-noise ratio of a change between two sets of runs as a mechanism's test would see it: the square root of the
-/// noncentrality after parameters, nuisances, initial states and noise have had their say.
-///
-/// `without` and `with` hold the same runs with and without the effect, with the same noise. Used to grade the strength of
-/// concealed effects. Returns 0 for a mechanism that is not in the catalogue.
-///
-/// # Errors
-/// As for [`diagnose`].
-pub fn signal(
-    model: &Model,
-    without: &[Run],
-    with: &[Run],
-    mechanism: &str,
-    settings: &Settings,
-) -> Result<f64, ModelError> {
-    let mut full = model.clone();
-    for term in CATALOGUE {
-        full.add_term(term.info().name)?;
-    }
-    let integration = Integration { method: Method::Rk4, substeps: settings.substeps.max(1) };
-    let free = base_parameters(&full, settings.nuisance);
-    let first = guess(without, &full);
-    let prior = NoisePrior::around(&first);
-    let null = estimate(&full, integration, without, &free, &first, &prior, FIRST);
-    let list: Vec<Candidate> = candidates(&full, &[]).into_iter().filter(|c| c.mechanism.name == mechanism).collect();
-    let Some(candidate) = list.first() else { return Ok(0.0) };
-    let mut columns: Vec<Column> = free.iter().map(|f| f.column).collect();
-    columns.extend(&candidate.columns);
-    let of = |runs: &[Run]| evidence(runs, &passes(&null.model, integration, &columns, runs, &null.noise, false), &[]);
-    let (a, b) = (of(without), of(with));
-    let mut difference = a.clone();
-    difference.total.score = &b.total.score - &a.total.score;
-    for (name, s) in &mut difference.sessions {
-        if let Some(other) = b.sessions.get(name) {
-            s.score = &other.score - &s.score;
-        }
-    }
-    let n = free.len();
-    let own: Vec<usize> = (n..columns.len()).collect();
-    let base = base_of(&difference, &null.model, &free);
-    // The prior's pull belongs to the estimate, not to the difference.
-    let base = super::evidence::Base { score: DVector::from_fn(n, |i, _| difference.total.score[i]), ..base };
-    let test = if candidate.mechanism.needs_reference {
-        difference.contrast(&base, &own).unwrap_or_else(|| difference.test(&base, &own))
-    } else {
-        difference.test(&base, &own)
-    };
-    Ok(test.statistic.max(0.0).sqrt())
 }

@@ -16,5 +16,7 @@ pub mod noise;
 pub mod prove;
 pub mod refit;
 pub mod screen;
+pub mod signal;
 
-pub use conclude::{Diagnosis, Finding, Settings, Verdict, diagnose, signal};
+pub use conclude::{Diagnosis, Finding, Settings, Verdict, diagnose};
+pub use signal::Signal;

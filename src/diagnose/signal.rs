@@ -1,0 +1,93 @@
+//! How strong an effect is, as the diagnosis would see it: the yardstick by which concealed effects are graded.
+//! It decides nothing and names nothing.
+
+use super::conclude::{Settings, base_parameters};
+use super::estimate::{Effort, Estimate, base_of, estimate, evidence, passes, restrictions};
+use super::evidence::{Base, Evidence};
+use super::filter::{Column, Run};
+use super::mechanism::{Candidate, candidates};
+use super::noise::{NoisePrior, guess};
+use crate::model::{Model, ModelError};
+use crate::simulate::{Integration, Method};
+use crate::terms::CATALOGUE;
+use nalgebra::DVector;
+
+/// Enough for a yardstick: noise within a few per cent.
+const EFFORT: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
+
+/// The base model fitted to runs without an effect, ready to measure the same runs with it.
+pub struct Signal {
+    null: Estimate,
+    integration: Integration,
+    candidates: Vec<Candidate>,
+    columns: Vec<Column>,
+    offsets: Vec<usize>,
+    without: Evidence,
+}
+
+impl Signal {
+    /// Fits the base model and its noise to runs without the effect.
+    ///
+    /// # Errors
+    /// When the catalogue's terms cannot be added to the model.
+    pub fn new(model: &Model, without: &[Run], settings: &Settings) -> Result<Self, ModelError> {
+        let mut full = model.clone();
+        for term in CATALOGUE {
+            full.add_term(term.info().name)?;
+        }
+        let integration = Integration { method: Method::Rk4, substeps: settings.substeps.max(1) };
+        let free = base_parameters(&full, settings.nuisance);
+        let first = guess(without, &full);
+        let null = estimate(&full, integration, without, &free, &first, &NoisePrior::around(&first), EFFORT);
+        let candidates = candidates(&full, &[]);
+        let mut columns: Vec<Column> = free.iter().map(|f| f.column).collect();
+        let mut offsets = Vec::new();
+        for c in &candidates {
+            offsets.push(columns.len());
+            columns.extend(&c.columns);
+        }
+        let p = passes(&null.model, integration, &columns, without, &null.noise, false);
+        let evidence = evidence(without, &p, &restrictions(&free));
+        Ok(Self { null, integration, candidates, columns, offsets, without: evidence })
+    }
+
+    /// Signal-to-noise ratio of the change from the runs without to the same runs with the effect (same noise), along a
+    /// mechanism: the square root of the noncentrality of its test after parameters, nuisances, initial states and noise have
+    /// had their say. 0 for a mechanism that is not in the catalogue.
+    ///
+    /// For a mechanism that needs a reference, the test is the one between sessions.
+    pub fn ratio(&self, with: &[Run], mechanism: &str) -> f64 {
+        let Some(index) = self.candidates.iter().position(|c| c.mechanism.name == mechanism) else { return 0.0 };
+        let candidate = &self.candidates[index];
+        let free = self.null.free.len();
+        let own: Vec<usize> = (self.offsets[index]..self.offsets[index] + candidate.columns.len()).collect();
+        let columns: Vec<Column> = self.columns[..free].iter().chain(&candidate.columns).copied().collect();
+        let p = passes(&self.null.model, self.integration, &columns, with, &self.null.noise, false);
+        let changed = evidence(with, &p, &restrictions(&self.null.free));
+        let mut difference = self.without.clone();
+        // Columns of this pass among those of the first one.
+        let place: Vec<usize> = (0..free).chain(own.iter().copied()).collect();
+        let subtract = |from: &DVector<f64>, new: &DVector<f64>| {
+            let mut out = from.clone();
+            for (j, c) in place.iter().enumerate() {
+                out[*c] = new[j] - from[*c];
+            }
+            out
+        };
+        difference.total.score = subtract(&self.without.total.score, &changed.total.score);
+        for (name, s) in &mut difference.sessions {
+            if let Some(other) = changed.sessions.get(name) {
+                s.score = subtract(&s.score, &other.score);
+            }
+        }
+        let base = base_of(&difference, &self.null.model, &self.null.free);
+        // The prior's pull belongs to the estimate, not to the difference.
+        let base = Base { score: DVector::from_fn(free, |i, _| difference.total.score[i]), ..base };
+        let test = if candidate.mechanism.needs_reference {
+            difference.contrast(&base, &own).unwrap_or_else(|| difference.test(&base, &own))
+        } else {
+            difference.test(&base, &own)
+        };
+        test.statistic.max(0.0).sqrt()
+    }
+}
