@@ -2,8 +2,8 @@
 //! It decides nothing about the data: ranges and ticks come from `axis`, layers from `marks`, pixels from `canvas`.
 
 use super::axis::{self, Axis, Ruler, Scale};
-use super::canvas::{Anchor, Canvas, Px, Rect, Type, text_width};
-use super::figure::{Figure, FigureError, Legend, Mark, Panel};
+use super::canvas::{Anchor, Canvas, Px, Rect, Run, Type, text_width};
+use super::figure::{Figure, Legend, Mark, Panel};
 use super::legend::Strip;
 use super::marks::{Bins, cell_color, extents, has_data, heatmap, is_grouped, is_span};
 use super::palette::Color;
@@ -16,14 +16,9 @@ const MINOR: Color = Color::rgb(241, 241, 241);
 const EDGE: f32 = 24.0;
 /// Between the axis and its tick labels, px.
 const TICK_GAP: f32 = 14.0;
-/// Slope of category labels too long to stand flat, rad.
-const SLANT: f32 = 0.7;
 
-/// Draws a figure on the sheet that `sheet(width, height)` gives.
-pub(super) fn render(
-    figure: &Figure,
-    sheet: impl Fn(u32, u32) -> Result<Canvas, FigureError>,
-) -> Result<Canvas, FigureError> {
+/// The sheet of a figure.
+pub(super) fn draw(figure: &Figure) -> Canvas {
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let rows: Vec<&[Panel]> = figure.panels.chunks(columns).collect();
     let (cell_w, cell_h) = (figure.panel_width.max(300) as f32, figure.panel_height.max(200) as f32);
@@ -41,11 +36,11 @@ pub(super) fn render(
 
     let layout: Vec<(f32, Vec<Cell<'_>>)> = lay_out(figure, &rows, columns, cell_w, cell_h);
     let height = top + layout.iter().map(|row| row.0).sum::<f32>() + EDGE;
-    let mut canvas = sheet(width.ceil() as u32, height.ceil() as u32)?;
+    let mut canvas = Canvas::new(width.ceil() as u32, height.ceil() as u32);
 
     for (i, line) in title.iter().enumerate() {
         let y = EDGE + (i as f32 + 0.5) * TITLE * LEADING;
-        canvas.text(line, (EDGE, y), Anchor::Start, 0.0, bold(TITLE));
+        canvas.text(line, (EDGE, y), Anchor::Start, Run::Across, bold(TITLE));
     }
     shared.draw(&mut canvas, (EDGE, strip_top));
     for (row_height, cells) in layout {
@@ -54,7 +49,7 @@ pub(super) fn render(
         }
         top += row_height;
     }
-    Ok(canvas)
+    canvas
 }
 
 /// Space around a plot for titles and labels, px.
@@ -163,7 +158,7 @@ impl Cell<'_> {
         let strip_top = plot.top - 12.0 - self.strip_height;
         for (i, line) in title.iter().enumerate() {
             let y = strip_top - title_height + (i as f32 + 0.5) * HEADING * LEADING;
-            canvas.text(line, (plot.left, y), Anchor::Start, 0.0, bold(HEADING));
+            canvas.text(line, (plot.left, y), Anchor::Start, Run::Across, bold(HEADING));
         }
         self.strip.draw(canvas, (plot.left, strip_top));
         frame.draw(canvas, self.panel);
@@ -177,7 +172,7 @@ fn title_lines(panel: &Panel, width: f32) -> Vec<String> {
 /// How the labels of categories along x stand.
 enum Standing {
     Flat(Vec<Vec<String>>),
-    Turned { angle: f32, labels: Vec<String>, stride: usize },
+    Upright { labels: Vec<Vec<String>>, stride: usize },
 }
 
 /// The axes of a panel on its plot rectangle.
@@ -225,14 +220,12 @@ impl Frame {
         if flat.iter().all(|(_, whole)| *whole) {
             return Standing::Flat(flat.into_iter().map(|(lines, _)| lines).collect());
         }
-        let longest = 0.8 * self.plot.height().max(220.0);
-        let labels = labels.iter().map(|l| cut(l, TICK, false, longest)).collect();
-        if slot >= 42.0 {
-            Standing::Turned { angle: -SLANT, labels, stride: 1 }
-        } else {
-            let stride = (28.0 / slot).ceil().max(1.0) as usize;
-            Standing::Turned { angle: -std::f32::consts::FRAC_PI_2, labels, stride }
-        }
+        let pitch = TICK * LEADING;
+        let lines = (slot / pitch).floor().clamp(1.0, 2.0) as usize;
+        // One line may be long; of two, each is at most half of that.
+        let longest = 0.95 * self.plot.height().max(220.0) / lines as f32;
+        let labels = labels.iter().map(|l| fit_lines(l, TICK, false, longest, lines).0).collect();
+        Standing::Upright { labels, stride: (pitch / slot).ceil().max(1.0) as usize }
     }
 
     /// Category labels along y: their lines, and every how many are shown.
@@ -272,14 +265,7 @@ impl Frame {
                 let lines = lines.iter().map(Vec::len).max().unwrap_or(1);
                 bottom += (lines as f32 - 1.0) * TICK * LEADING + TICK * 0.7;
             }
-            Some(Standing::Turned { angle, labels, .. }) => {
-                let (sin, cos) = (-angle).sin_cos();
-                bottom += widest(&mut labels.iter()) * sin + TICK * 0.4;
-                let slot = self.plot.width() / labels.len().max(1) as f32;
-                for (i, label) in labels.iter().enumerate() {
-                    left = left.max(text_width(label, TICK, false) * cos - (i as f32 + 0.5) * slot + 12.0);
-                }
-            }
+            Some(Standing::Upright { labels, .. }) => bottom += widest(&mut labels.iter().flatten()) - TICK * 0.5,
         }
         let x_label = fit_lines(&panel.x.label, LABEL, false, self.plot.width(), 2).0;
         bottom += x_label.len() as f32 * LABEL * LEADING + 16.0;
@@ -310,7 +296,7 @@ impl Frame {
         self.x_axis(canvas, &panel.x);
         self.y_axis(canvas, &panel.y);
         if !panel.layers.iter().any(has_data) {
-            canvas.text("no data", plot.center(), Anchor::Middle, 0.0, Type { color: FRAME, ..ink(HEADING) });
+            canvas.text("no data", plot.center(), Anchor::Middle, Run::Across, Type { color: FRAME, ..ink(HEADING) });
         }
         for layer in &panel.layers {
             if let Mark::Text((x, y)) = layer.mark
@@ -323,7 +309,13 @@ impl Frame {
                     s if s > 0.67 => (Anchor::End, -10.0),
                     _ => (Anchor::Middle, 0.0),
                 };
-                canvas.text(&layer.name, (at.0 + gap, at.1), anchor, 0.0, Type { color: layer.color, ..ink(NOTE) });
+                canvas.text(
+                    &layer.name,
+                    (at.0 + gap, at.1),
+                    anchor,
+                    Run::Across,
+                    Type { color: layer.color, ..ink(NOTE) },
+                );
             }
         }
         if let Some((name, range)) = heatmap(panel) {
@@ -359,7 +351,7 @@ impl Frame {
                 for (v, label) in &self.x.ticks {
                     let Some(x) = self.x.fraction(*v).map(|f| self.px(f)) else { continue };
                     canvas.stroke(&[(x, bottom), (x, bottom + 7.0)], 1.5, &[], FRAME);
-                    canvas.text(label, (x, middle), Anchor::Middle, 0.0, ink(TICK));
+                    canvas.text(label, (x, middle), Anchor::Middle, Run::Across, ink(TICK));
                 }
             }
             Some(Standing::Flat(labels)) => {
@@ -368,28 +360,31 @@ impl Frame {
                     let Some(x) = self.x.fraction(i as f64).map(|f| self.px(f)) else { continue };
                     for (k, line) in lines.iter().enumerate() {
                         let y = middle + k as f32 * TICK * LEADING;
-                        canvas.text(line, (x, y), Anchor::Middle, 0.0, ink(TICK));
+                        canvas.text(line, (x, y), Anchor::Middle, Run::Across, ink(TICK));
                     }
                 }
                 below += (most as f32 - 1.0) * TICK * LEADING;
             }
-            Some(Standing::Turned { angle, labels, stride }) => {
+            Some(Standing::Upright { labels, stride }) => {
                 let mut longest: f32 = 0.0;
-                for (i, label) in labels.iter().enumerate().step_by(stride) {
+                for (i, lines) in labels.iter().enumerate().step_by(stride) {
                     let Some(x) = self.x.fraction(i as f64).map(|f| self.px(f)) else { continue };
-                    canvas.text(label, (x + 5.0, bottom + TICK_GAP), Anchor::End, angle, ink(TICK));
-                    longest = longest.max(text_width(label, TICK, false));
+                    for (k, line) in lines.iter().enumerate() {
+                        let x = x + (k as f32 - 0.5 * (lines.len() as f32 - 1.0)) * TICK * LEADING;
+                        canvas.text(line, (x, bottom + TICK_GAP), Anchor::End, Run::Up, ink(TICK));
+                        longest = longest.max(text_width(line, TICK, false));
+                    }
                 }
-                below = bottom + TICK_GAP + longest * (-angle).sin() + 0.9 * TICK;
+                below = bottom + TICK_GAP + longest;
             }
         }
         let lines = fit_lines(&axis.label, LABEL, false, self.plot.width(), 2).0;
         for (i, line) in lines.iter().enumerate() {
             let y = below + 10.0 + (i as f32 + 0.5) * LABEL * LEADING;
-            canvas.text(line, (0.5 * (left + right), y), Anchor::Middle, 0.0, ink(LABEL));
+            canvas.text(line, (0.5 * (left + right), y), Anchor::Middle, Run::Across, ink(LABEL));
         }
         if let Some(factor) = &self.x.factor {
-            canvas.text(factor, (right, below + 10.0 + 0.5 * LABEL * LEADING), Anchor::End, 0.0, ink(TICK));
+            canvas.text(factor, (right, below + 10.0 + 0.5 * LABEL * LEADING), Anchor::End, Run::Across, ink(TICK));
         }
     }
 
@@ -402,7 +397,7 @@ impl Frame {
                 let Some(y) = self.y.fraction(i as f64).map(|f| self.py(f)) else { continue };
                 for (k, line) in lines.iter().enumerate() {
                     let y = y + (k as f32 - 0.5 * (lines.len() as f32 - 1.0)) * TICK * LEADING;
-                    canvas.text(line, (left - TICK_GAP, y), Anchor::End, 0.0, ink(TICK));
+                    canvas.text(line, (left - TICK_GAP, y), Anchor::End, Run::Across, ink(TICK));
                     widest = widest.max(text_width(line, TICK, false));
                 }
             }
@@ -410,18 +405,17 @@ impl Frame {
             for (v, label) in &self.y.ticks {
                 let Some(y) = self.y.fraction(*v).map(|f| self.py(f)) else { continue };
                 canvas.stroke(&[(left - 7.0, y), (left, y)], 1.5, &[], FRAME);
-                canvas.text(label, (left - TICK_GAP, y), Anchor::End, 0.0, ink(TICK));
+                canvas.text(label, (left - TICK_GAP, y), Anchor::End, Run::Across, ink(TICK));
                 widest = widest.max(text_width(label, TICK, false));
             }
         }
         let lines = fit_lines(&axis.label, LABEL, false, self.plot.height(), 2).0;
         for (i, line) in lines.iter().rev().enumerate() {
             let x = left - TICK_GAP - widest - 8.0 - (i as f32 + 0.5) * LABEL * LEADING;
-            let turn = -std::f32::consts::FRAC_PI_2;
-            canvas.text(line, (x, 0.5 * (top + bottom)), Anchor::Middle, turn, ink(LABEL));
+            canvas.text(line, (x, 0.5 * (top + bottom)), Anchor::Middle, Run::Up, ink(LABEL));
         }
         if let Some(factor) = &self.y.factor {
-            canvas.text(factor, (left - 8.0, top - 24.0), Anchor::End, 0.0, ink(TICK));
+            canvas.text(factor, (left - 8.0, top - 24.0), Anchor::End, Run::Across, ink(TICK));
         }
     }
 
@@ -442,7 +436,7 @@ impl Frame {
             let Some(f) = ruler.fraction(*v) else { continue };
             let y = bar.bottom - f as f32 * bar.height();
             canvas.stroke(&[(bar.right, y), (bar.right + 6.0, y)], 1.5, &[], FRAME);
-            canvas.text(label, (bar.right + 12.0, y), Anchor::Start, 0.0, ink(TICK));
+            canvas.text(label, (bar.right + 12.0, y), Anchor::Start, Run::Across, ink(TICK));
             widest = widest.max(text_width(label, TICK, false));
         }
         let name = match &ruler.factor {
@@ -451,7 +445,7 @@ impl Frame {
         };
         let name = cut(&name, TICK, false, bar.height());
         let at = (bar.right + 12.0 + widest + 22.0, bar.center().1);
-        canvas.text(&name, at, Anchor::Middle, -std::f32::consts::FRAC_PI_2, ink(TICK));
+        canvas.text(&name, at, Anchor::Middle, Run::Up, ink(TICK));
     }
 }
 

@@ -2,7 +2,6 @@
 //! How they are laid out and drawn is in `draw`; what they show is the caller's.
 
 use super::axis::Axis;
-use super::canvas::Canvas;
 use super::draw;
 use super::marks::lies;
 use super::palette::Color;
@@ -22,6 +21,9 @@ pub enum FigureError {
         /// Height, px.
         height: u32,
     },
+    /// plotters could not draw a part of it.
+    #[error("the figure could not be drawn: {0}; rebuild from a clean checkout")]
+    Drawing(String),
     /// The PNG encoder failed.
     #[error("the figure could not be encoded as PNG: {0}")]
     Png(#[from] png::EncodingError),
@@ -428,17 +430,18 @@ impl Figure {
     /// The figure as PNG, meant to be shown at half its size in px.
     ///
     /// # Errors
-    /// [`FigureError::TooLarge`] above 200 million pixels; [`FigureError::Font`] and [`FigureError::Png`] if the program is damaged.
+    /// [`FigureError::TooLarge`] above 40 million pixels; [`FigureError::Font`], [`FigureError::Drawing`] and
+    /// [`FigureError::Png`] if the program is damaged.
     pub fn png(&self) -> Result<Vec<u8>, FigureError> {
-        draw::render(self, Canvas::pixels)?.into_png()
+        draw::draw(self).into_png()
     }
 
     /// The figure as an SVG document without external references.
     ///
     /// # Errors
-    /// [`FigureError::Font`] if the program is damaged.
+    /// [`FigureError::Font`] and [`FigureError::Drawing`] if the program is damaged.
     pub fn svg(&self) -> Result<String, FigureError> {
-        Ok(draw::render(self, Canvas::svg)?.into_svg())
+        draw::draw(self).into_svg()
     }
 
     /// The data behind the figure, one row for each point: `panel,series,kind,x,y,z,lo,hi`.
@@ -642,7 +645,7 @@ mod tests {
     fn a_panel_without_data_says_so() {
         let says = |layers: Vec<Layer>| {
             let svg = Figure::new("").with(Panel::default().with_all(layers)).svg().unwrap();
-            svg.contains(">no data<")
+            svg.contains("\nno data\n")
         };
         assert!(says(vec![]));
         assert!(says(vec![Layer::line("a", TRUTH, [(1.0, NAN), (NAN, 2.0)]), Layer::h_line("limit", TRUTH, 3.0)]));
@@ -658,7 +661,7 @@ mod tests {
                 .with(Panel::default().with(Layer::line("", BLUE, points)))
                 .svg()
                 .unwrap();
-            svg.lines().filter(|l| l.starts_with("<polyline") && l.contains("#0072b2")).count()
+            svg.lines().filter(|l| l.starts_with("<polyline") && l.contains("#0072B2")).count()
         };
         assert_eq!(lines(vec![(0.0, 1.0), (1.0, 2.0), (2.0, 3.0), (3.0, 1.0)]), 1);
         assert_eq!(lines(vec![(0.0, 1.0), (1.0, 2.0), (1.5, NAN), (2.0, 3.0), (3.0, 1.0)]), 2);

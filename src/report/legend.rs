@@ -1,7 +1,7 @@
 //! The legend: a strip that names the series with a sample of each, and never lies over the data.
 //! Which strips a figure has and where they go is decided in `draw`.
 
-use super::canvas::{Anchor, Canvas, Px, Rect, text_width};
+use super::canvas::{Anchor, Canvas, Px, Rect, Run, text_width};
 use super::figure::{Layer, Mark};
 use super::marks::{arrow, dashes, draw_marker, hull, softened, whisker};
 use super::style::{LABEL, cut, ink};
@@ -67,7 +67,7 @@ impl<'a> Strip<'a> {
                 for layer in &entry.layers {
                     sample(canvas, layer, (x, y));
                 }
-                canvas.text(&entry.name, (x + SWATCH + 12.0, y), Anchor::Start, 0.0, ink(LABEL));
+                canvas.text(&entry.name, (x + SWATCH + 12.0, y), Anchor::Start, Run::Across, ink(LABEL));
                 x += entry.width;
             }
         }

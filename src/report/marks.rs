@@ -2,7 +2,7 @@
 //! Axes, titles and legends are not its business: it is given a frame that turns values into pixels.
 
 use super::axis::{Extent, Scale, drawable};
-use super::canvas::{Anchor, Canvas, Px, Rect, Type, text_width};
+use super::canvas::{Anchor, Canvas, Px, Rect, Run, Type, text_width};
 use super::draw::Frame;
 use super::figure::{Layer, Mark, Marker, Panel, Stroke};
 use super::palette::{self, Color};
@@ -220,7 +220,7 @@ impl Frame {
                     .find(|&s| text_width(&text, s, false) < rect.width() - 6.0 && rect.height() > 1.2 * s);
                 if let Some(size) = size.filter(|_| annotate && self.plot.contains(rect.center())) {
                     let color = if color.luminance() > 0.35 { INK } else { Color::rgb(255, 255, 255) };
-                    canvas.text(&text, rect.center(), Anchor::Middle, 0.0, Type { size, bold: false, color });
+                    canvas.text(&text, rect.center(), Anchor::Middle, Run::Across, Type { size, bold: false, color });
                 }
             }
         }

@@ -9,6 +9,7 @@ mod html;
 mod legend;
 mod marks;
 mod palette;
+mod render;
 mod style;
 mod table;
 
