@@ -24,6 +24,14 @@ fn ship_a() -> Model {
         .unwrap_or_else(|e| unreachable!("{e}"))
 }
 
+fn path(states: &[[f64; 6]]) -> f64 {
+    states.windows(2).map(|s| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1])).sum()
+}
+
+fn mean_speed(states: &[[f64; 6]]) -> f64 {
+    states.iter().map(|s| s[3].hypot(s[4])).sum::<f64>() / states.len() as f64
+}
+
 /// Runs of the model with p*, ahead and astern, with the rudder weaving, and a disturbance that no parameter explains.
 fn recordings(dt: f64) -> Vec<FitRun> {
     let mut truth = ship_a();
@@ -40,7 +48,7 @@ fn recordings(dt: f64) -> Vec<FitRun> {
             let initial = [0.0, 0.0, phase, 3.3 + 2.0 * (2.1 * phase).sin(), 0.0, 0.0];
             let scenario = Scenario { dt, inputs: inputs.clone(), initial };
             let mut measured = simulate(&truth, &truth.values(), Integration::default(), &scenario).states;
-            let weights = weights(&truth.ship, dt, &measured, [true; 6], 0.0314);
+            let weights = weights(&truth.ship, path(&measured), mean_speed(&measured), 0.0314);
             for (k, m) in measured.iter_mut().enumerate() {
                 m[0] += (0.1 * k as f64 + phase).sin();
                 m[1] += (0.1 * k as f64 + 2.0 * phase).cos();

@@ -1,6 +1,8 @@
 //! The fit against problems whose answer is known: recordings made by the model itself, toys computed by hand.
 //! It tests the promises of a fit, not the quality of any model.
 
+#![allow(clippy::unwrap_used)]
+
 use std::f64::consts::TAU;
 use std::path::Path;
 use trimtab::fit::cost::weights;
@@ -38,10 +40,18 @@ const MANOEUVRES: [(&str, f64, Helm); 10] = [
     ("gentle zigzag", 4.0, |t| (2.5, 0.17 * (TAU * t / 120.0).sin().signum())),
     ("crash stop", 6.0, |t| (if t < 20.0 { 3.3 } else { -2.5 }, 0.05 * (t / 15.0).sin())),
     ("acceleration", 1.0, |t| (3.5, 0.1 * (t / 30.0).sin())),
-    ("steps of speed", 4.5, |t| (if (t / 60.0) as usize % 2 == 0 { 3.8 } else { 1.2 }, 0.0)),
+    ("steps of speed", 4.5, |t| (if (TAU * t / 120.0).sin() >= 0.0 { 3.8 } else { 1.2 }, 0.0)),
     ("astern", 0.5, |t| (-1.5, 0.2 * (t / 40.0).cos())),
     ("coasting", 5.0, |t| (0.4, 0.3 * (t / 25.0).sin())),
 ];
+
+fn path(states: &[[f64; 6]]) -> f64 {
+    states.windows(2).map(|s| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1])).sum()
+}
+
+fn mean_speed(states: &[[f64; 6]]) -> f64 {
+    states.iter().map(|s| s[3].hypot(s[4])).sum::<f64>() / states.len() as f64
+}
 
 /// Noise-free recordings of the manoeuvres; lengths differ, so that lanes have to be padded.
 fn recordings(truth: &Model, dt: f64, samples: usize) -> Vec<FitRun> {
@@ -63,7 +73,7 @@ fn recordings(truth: &Model, dt: f64, samples: usize) -> Vec<FitRun> {
             session: "pond".into(),
             start_time: 0.0,
             dt,
-            weights: weights(&truth.ship, dt, &trajectory.states, channels, 0.0314),
+            weights: weights(&truth.ship, path(&trajectory.states), mean_speed(&trajectory.states), 0.0314),
             inputs,
             measured: trajectory.states,
             measured_channels: channels,

@@ -12,6 +12,7 @@
 
 use super::FitError;
 use crate::model::{BASE, Model};
+use crate::recording::Window;
 use crate::ship::Ship;
 use crate::simulate::{self, Integration, Scenario, absurd_speed, simulate, step};
 use crate::state::{Force, Inputs, STATES, State};
@@ -50,29 +51,31 @@ pub struct FitRun {
     pub weights: [f64; STATES],
 }
 
-/// The diagonal of W for a run: `1/L, 1/L, 1/pi, 1/U, 1/U, 1/r_max`.
+/// The diagonal of W for a run of a given path length \[m\] and mean speed \[m/s\]: `1/L, 1/L, 1/pi, 1/U, 1/U, 1/r_max`.
 ///
-/// L and U are those of the measured run, from positions and velocities where they were measured and from each other where
-/// not. A run that hardly moves would weigh without limit: L counts as at least a tenth of the ship's length and U as at
-/// least the ship's small speed, 0.002 sqrt(g Lpp).
-pub fn weights(
-    ship: &Ship,
-    dt: f64,
-    measured: &[[f64; STATES]],
-    channels: [bool; STATES],
-    max_yaw_rate: f64,
-) -> [f64; STATES] {
-    let finite = |values: [f64; 2]| values.iter().all(|v| v.is_finite()).then(|| values[0].hypot(values[1]));
-    let duration = dt * measured.len().saturating_sub(1) as f64;
-    let speeds: Vec<f64> = measured.iter().filter_map(|s| finite([s[3], s[4]])).collect();
-    let mean = speeds.iter().sum::<f64>() / (speeds.len().max(1) as f64);
-    let path: f64 = measured.windows(2).filter_map(|w| finite([w[1][0] - w[0][0], w[1][1] - w[0][1]])).sum();
-    let (positions, velocities) = (channels[0] && channels[1], channels[3]);
-    let length = if positions { path } else { mean * duration };
-    let speed = if velocities || duration == 0.0 { mean } else { path / duration };
-    let length = length.max(0.1 * ship.hull.lpp);
-    let speed = speed.max(ship.small_speed());
-    [1.0 / length, 1.0 / length, 1.0 / PI, 1.0 / speed, 1.0 / speed, 1.0 / max_yaw_rate]
+/// A run that hardly moves would weigh without limit: L counts as at least a tenth of the ship's length and U as at least the
+/// ship's small speed, 0.002 sqrt(g Lpp).
+pub fn weights(ship: &Ship, path_length: f64, mean_speed: f64, max_yaw_rate: f64) -> [f64; STATES] {
+    let length = 1.0 / path_length.max(0.1 * ship.hull.lpp);
+    let speed = 1.0 / mean_speed.max(ship.small_speed());
+    [length, length, 1.0 / PI, speed, speed, 1.0 / max_yaw_rate]
+}
+
+impl FitRun {
+    /// The run of a window, weighted for a ship and a reference yaw rate r_max \[rad/s\].
+    pub fn of(window: &Window, ship: &Ship, max_yaw_rate: f64) -> Self {
+        Self {
+            name: window.run.clone(),
+            session: window.session.clone(),
+            start_time: window.start_time,
+            dt: window.dt,
+            inputs: window.inputs.clone(),
+            measured: window.measured.clone(),
+            measured_channels: window.measured_channels,
+            initial: window.initial,
+            weights: weights(ship, window.path_length(), window.mean_speed(), max_yaw_rate),
+        }
+    }
 }
 
 /// Where the derivatives of the trajectories come from.
