@@ -1,7 +1,7 @@
 //! Tables and numbers as text: one table type for the terminal and for HTML, and number formatting that never prints NaN.
 //! It decides how values read, not which values are worth reporting.
 
-use comfy_table::{CellAlignment, ContentArrangement, presets};
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, presets};
 use std::fmt;
 
 /// What stands where there is no value.
@@ -119,7 +119,7 @@ fn reads_as_number(cell: &str) -> bool {
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut table = comfy_table::Table::new();
-        table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+        table.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
         if let Some(width) = self.width {
             table.set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
         }
