@@ -2,6 +2,7 @@
 //! the physics it lacks.
 
 pub mod check;
+pub mod demo;
 pub mod diagnose;
 pub mod error;
 pub mod evaluate;

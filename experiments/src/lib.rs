@@ -2,4 +2,5 @@
 //! It is not part of the product: the library never sees it, and each table or figure is a binary of its own.
 
 pub mod conceal;
+pub mod demo;
 pub mod truth;

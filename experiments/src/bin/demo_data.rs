@@ -1,0 +1,14 @@
+//! Writes the data that `trimtab demo` embeds into the library's `src/demo`.
+//! It changes nothing else; the tests check that what is committed is what this writes.
+
+use std::path::Path;
+
+fn main() -> std::io::Result<()> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/demo");
+    std::fs::create_dir_all(&folder)?;
+    for (name, text) in trimtab_experiments::demo::files() {
+        std::fs::write(folder.join(name), &text)?;
+        println!("{name}: {} bytes", text.len());
+    }
+    Ok(())
+}
