@@ -21,21 +21,25 @@
 //! A simulation that diverges has no deviation. It is counted, counts as worse than any that does not, and the other numbers
 //! are of the trajectories that neither model diverges on.
 
+use crate::fit::FitRun;
 use crate::model::Model;
 use crate::recording::{Split, Window};
+use crate::ship::Ship;
 use crate::simulate::{Integration, Scenario, Trajectory, simulate};
 use crate::state::{STATE_NAMES, STATES, State};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::PI;
+use std::path::PathBuf;
 use trimtab_ad::smooth::wrap_angle;
 
 /// Settings of an evaluation, the section `[evaluate]` of a study.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct EvaluationSettings {
+    /// Model file of the baseline, relative to the study.
+    pub baseline: Option<PathBuf>,
     /// Bootstrap resamples behind the intervals.
     pub resamples: usize,
     /// Seed of the bootstrap.
@@ -44,7 +48,7 @@ pub struct EvaluationSettings {
 
 impl Default for EvaluationSettings {
     fn default() -> Self {
-        Self { resamples: 2000, seed: 1 }
+        Self { baseline: None, resamples: 2000, seed: 1 }
     }
 }
 
@@ -111,7 +115,7 @@ pub struct Comparison {
     pub duration: f64,
     /// Under the baseline.
     pub baseline: Outcome,
-    /// Under the model that is judged.
+    /// Under the fitted model.
     pub fitted: Outcome,
 }
 
@@ -153,7 +157,7 @@ pub struct Named {
     pub run: String,
     /// Start of the window in the recording \[s\].
     pub start_time: f64,
-    /// Its outcome under the model that is judged.
+    /// Its outcome under the fitted model.
     pub fitted: Outcome,
     /// And under the baseline.
     pub baseline: Outcome,
@@ -170,12 +174,12 @@ pub struct Summary {
     pub trajectories: usize,
     /// Trajectories on which the baseline diverged.
     pub diverged_baseline: usize,
-    /// Trajectories on which the judged model diverged.
+    /// Trajectories on which the fitted model diverged.
     pub diverged_fitted: usize,
     /// Mean of MD of the baseline for x, y, psi, u, v, r.
     #[serde(serialize_with = "by_dimension")]
     pub md_baseline: [Option<Estimate>; STATES],
-    /// Mean of MD of the judged model.
+    /// Mean of MD of the fitted model.
     #[serde(serialize_with = "by_dimension")]
     pub md_fitted: [Option<Estimate>; STATES],
     /// Improvement of each mean MD \[-\].
@@ -184,7 +188,7 @@ pub struct Summary {
     /// Mean cVDM of the baseline \[%\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cvdm_baseline: Option<Estimate>,
-    /// Mean cVDM of the judged model \[%\].
+    /// Mean cVDM of the fitted model \[%\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cvdm_fitted: Option<Estimate>,
     /// cVDM improvement \[-\].
@@ -204,7 +208,7 @@ pub struct Summary {
     pub runs_better: usize,
     /// Runs whose mean cVDM is higher.
     pub runs_worse: usize,
-    /// The trajectory with the highest cVDM of the judged model.
+    /// The trajectory with the highest cVDM of the fitted model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub worst: Option<Named>,
     /// The trajectory that lost most on the baseline, if any did.
@@ -217,7 +221,7 @@ pub struct Summary {
 pub struct Evaluation {
     /// Name of the baseline.
     pub baseline: String,
-    /// Name of the model that is judged.
+    /// Name of the fitted model.
     pub fitted: String,
     /// Every trajectory, in the order of the windows.
     pub trajectories: Vec<Comparison>,
@@ -264,20 +268,9 @@ pub fn predict_all(model: &Model, windows: &[Window], integration: Integration) 
     windows.par_iter().map(|w| predict(model, w, integration)).collect()
 }
 
-/// Factors on |dx|, |dy|, |dpsi|, |du|, |dv|, |dr| in cVDM, before the 100 %: 1/L, 1/L, 1/pi, 1/U, 1/U, 1/r_max.
-///
-/// A ship that hardly moves would weigh without limit: L counts as at least a tenth of the ship's length and U as at least
-/// its small speed, as in the cost of a fit. 0 for channels that were not measured.
-fn weights(window: &Window, model: &Model, max_yaw_rate: f64) -> [f64; STATES] {
-    let ship = &model.ship;
-    let length = 1.0 / window.path_length().max(0.1 * ship.hull.lpp);
-    let speed = 1.0 / window.mean_speed().max(ship.small_speed());
-    let weights = [length, length, 1.0 / PI, speed, speed, 1.0 / max_yaw_rate];
-    std::array::from_fn(|i| if window.measured_channels[i] { weights[i] } else { 0.0 })
-}
-
-/// The outcome of a prediction, with the weights of the six dimensions in cVDM.
-fn outcome(window: &Window, predicted: &Trajectory, weights: &[f64; STATES]) -> Outcome {
+/// The outcome of a prediction of a window; `max_yaw_rate` is r_max \[rad/s\].
+pub fn outcome(window: &Window, predicted: &Trajectory, ship: &Ship, max_yaw_rate: f64) -> Outcome {
+    let weights = FitRun::of(window, ship, max_yaw_rate).weights;
     let diverged = |sample: usize| Outcome::Diverged { diverged_after: sample as f64 * window.dt };
     if let Some(sample) = predicted.diverged_at {
         return diverged(sample);
@@ -291,7 +284,8 @@ fn outcome(window: &Window, predicted: &Trajectory, weights: &[f64; STATES]) -> 
         }
     }
     let md = sums.map(|s| s / steps.max(1) as f64);
-    let cvdm = (0..STATES).map(|i| 100.0 * md[i] * weights[i]).sum::<f64>();
+    let measured = (0..STATES).filter(|&i| window.measured_channels[i]);
+    let cvdm = measured.map(|i| 100.0 * md[i] * weights[i]).sum::<f64>();
     // A sensor term with absurd parameters can report what no number holds, from a simulation that ran through.
     if !cvdm.is_finite() {
         return diverged(0);
@@ -332,7 +326,7 @@ pub fn compare(
     max_yaw_rate: f64,
     (baseline, fitted): (&Trajectory, &Trajectory),
 ) -> Comparison {
-    let weights = weights(window, model, max_yaw_rate);
+    let ship = &model.ship;
     Comparison {
         run: window.run.clone(),
         session: window.session.clone(),
@@ -340,8 +334,8 @@ pub fn compare(
         split: window.split,
         start_time: window.start_time,
         duration: window.duration(),
-        baseline: outcome(window, baseline, &weights),
-        fitted: outcome(window, fitted, &weights),
+        baseline: outcome(window, baseline, ship, max_yaw_rate),
+        fitted: outcome(window, fitted, ship, max_yaw_rate),
     }
 }
 
@@ -360,7 +354,11 @@ fn summaries(trajectories: &[Comparison], settings: &EvaluationSettings) -> Vec<
         let mut names: Vec<String> = of(Split::Test).map(key).collect();
         names.sort();
         names.dedup();
-        if names.len() > 1 {
+        // Where every run is a session of its own, sessions would only repeat the runs.
+        let mut runs: Vec<&String> = of(Split::Test).map(|t| &t.run).collect();
+        runs.sort();
+        runs.dedup();
+        if (2..runs.len().max(3)).contains(&names.len()) {
             for name in names {
                 let members = of(Split::Test).filter(|t| key(t) == name).collect();
                 add(format!("{kind}: {name}"), members);
@@ -487,9 +485,9 @@ impl<'a> Bootstrap<'a> {
 mod tests {
     use super::*;
     use crate::recording::Environment;
-    use crate::ship::Ship;
     use crate::state::Inputs;
     use crate::terms::Form;
+    use std::f64::consts::PI;
     use std::path::Path;
 
     const R_MAX: f64 = 0.0314;

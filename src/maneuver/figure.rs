@@ -6,7 +6,7 @@ use super::{Ended, Side, Stopping, Track, Trial, Turning, Zigzag};
 use crate::report::{Axis, BLUE, Color, Figure, GREY, Layer, Panel, Table, VERMILLION, east_north, fixed};
 use crate::ship::Ship;
 
-/// Colour of a side: green to starboard, red to port, as a ship's lights are.
+/// Colour of a side.
 fn color(side: Side) -> Color {
     match side {
         Side::Starboard => BLUE,
@@ -16,6 +16,8 @@ fn color(side: Side) -> Color {
 
 /// About this many points of a curve are drawn.
 const POINTS: usize = 600;
+/// Tables of measures are this wide in a terminal.
+const WIDTH: u16 = 110;
 /// About this many ship outlines on a track.
 const OUTLINES: usize = 14;
 
@@ -40,7 +42,7 @@ fn track_panel<'a, M: 'a>(title: &str, ship: &Ship, trials: impl Iterator<Item =
             if k > 0 {
                 sailed += track.distance(k - 1, k);
             }
-            if sailed >= next {
+            if sailed >= next || k + 1 == track.len() {
                 let [x, y, psi, ..] = track.states[k];
                 poses.push([x, y, psi]);
                 next += spacing;
@@ -74,22 +76,29 @@ pub fn turning_figure(ship: &Ship, trials: &[Trial<Turning>]) -> Figure {
         .with(time_panel("drift angle beta [deg]", trials, |t, k| (-t.states[k][4]).atan2(t.states[k][3]).to_degrees()))
 }
 
-/// Zigzags: for each the track, and heading with rudder over time.
+/// Zigzags, a row for each pair of angles: heading and rudder over time with either side first, and both tracks.
 pub fn zigzag_figure(ship: &Ship, trials: &[Trial<Zigzag>]) -> Figure {
-    let mut figure = Figure::new(format!("{}: zigzags", ship.name)).columns(2).panel_size(900, 520);
-    for trial in trials {
-        let one = std::slice::from_ref(trial);
-        let heading = over_time(trial, |t, k| t.states[k][2].to_degrees());
-        let rudder = over_time(trial, |t, k| t.delta[k].to_degrees());
-        let limit = trial.measures.heading.to_degrees();
-        let angles = Panel::new(&trial.name, Axis::new("time [s]"), Axis::new("heading, rudder [deg]"))
-            .with(Layer::h_line("heading of execute", GREY, limit).dotted())
-            .with(Layer::h_line("heading of execute", GREY, -limit).dotted().unlisted())
-            .with(Layer::line("heading psi", color(trial.side), heading))
-            .with(Layer::line("rudder delta", color(trial.side).mix(GREY, 0.4), rudder).dashed());
-        figure = figure.with(angles).with(time_panel("speed U [m/s]", one, Track::speed));
+    let same = |a: &Trial<Zigzag>, b: &Trial<Zigzag>| a.measures.heading == b.measures.heading;
+    let mut figure = Figure::new(format!("{}: zigzags", ship.name)).columns(3).panel_size(720, 520);
+    for row in trials.chunk_by(same) {
+        for trial in row {
+            let heading = over_time(trial, |t, k| t.states[k][2].to_degrees());
+            let rudder = over_time(trial, |t, k| t.delta[k].to_degrees());
+            let limit = trial.measures.heading.to_degrees();
+            let first = format!("heading, {} first", trial.side.word());
+            figure = figure.with(
+                Panel::new(&trial.name, Axis::new("time [s]"), Axis::new("heading, rudder [deg]"))
+                    .with(Layer::h_line("heading of execute", GREY, limit).dotted())
+                    .with(Layer::h_line("heading of execute", GREY, -limit).dotted().unlisted())
+                    .with(Layer::line("rudder", GREY, rudder).dashed())
+                    .with(Layer::line(first, color(trial.side), heading)),
+            );
+        }
+        let mut tracks = track_panel("tracks", ship, row.iter());
+        tracks.layers = tracks.layers.into_iter().map(Layer::unlisted).collect();
+        figure = figure.with(tracks);
     }
-    figure.legend(crate::report::Legend::EachPanel)
+    figure
 }
 
 /// A crash stop: track, speed, propeller rate and heading.
@@ -137,7 +146,7 @@ pub fn turning_table(ship: &Ship, trials: &[Trial<Turning>]) -> Table {
             optional(m.time_180, 1.0, 1),
         ]);
     }
-    table
+    table.wrapped(WIDTH)
 }
 
 /// Zigzags, a row a trial.
@@ -164,7 +173,7 @@ pub fn zigzag_table(ship: &Ship, trials: &[Trial<Zigzag>]) -> Table {
             optional(m.period, 1.0, 1),
         ]);
     }
-    table
+    table.wrapped(WIDTH)
 }
 
 /// A crash stop as a table of one row.
@@ -186,7 +195,7 @@ pub fn stopping_table(ship: &Ship, trial: &Trial<Stopping>) -> Table {
         optional(m.heading_change.map(f64::to_degrees), 1.0, 1),
         optional(m.time, 1.0, 1),
     ]);
-    table
+    table.wrapped(WIDTH)
 }
 
 /// The IMO criteria beside the measures, a row a criterion.

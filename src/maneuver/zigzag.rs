@@ -17,7 +17,8 @@ pub struct Zigzag {
     pub approach_speed: f64,
     /// Times of the executes, from the first \[s\].
     pub executes: Vec<f64>,
-    /// Overshoot angles, first to last \[rad\]: how far heading runs past `heading` after each execute but the first.
+    /// Overshoot angles, first to last \[rad\]: how far heading runs past `heading` after each execute but the first, from
+    /// the course midway between the headings at the second and the third.
     pub overshoots: Vec<f64>,
     /// Distance sailed along the track until heading has changed by `heading` \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -46,11 +47,17 @@ pub fn zigzag(track: &Track, executes: &[usize], heading: f64) -> Zigzag {
 
     let turned = |s: &[f64; 6]| side * (s[2] - course);
     let answered = track.first_above(first, heading, turned);
+    // The rudder is put over at equal headings to either side of the course that is steered, which lies midway: a ship that
+    // was not quite on it at the first execute is measured as the others are.
+    let steered = match later {
+        [second, third, ..] => 0.5 * (track.states[*second][2] + track.states[*third][2]),
+        _ => course,
+    };
     // An overshoot is complete once the ship has turned back: at the next execute, or past a peak within the track.
     let overshoots = later.iter().enumerate().filter_map(|(i, &from)| {
         let towards = if i % 2 == 0 { side } else { -side };
         let to = later.get(i + 1).copied().unwrap_or(track.len() - 1);
-        let beyond = |k: usize| towards * (track.states[k][2] - course) - heading;
+        let beyond = |k: usize| towards * (track.states[k][2] - steered) - heading;
         let peak = (from..=to).max_by(|&a, &b| beyond(a).total_cmp(&beyond(b)))?;
         (peak < to).then(|| beyond(peak).max(0.0))
     });

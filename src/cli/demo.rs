@@ -1,0 +1,126 @@
+//! `trimtab demo`: a complete study, from recordings to a fitted model, in seconds and without any file of the user's.
+//! It only does what the other commands do, and leaves the study behind so that they can be tried on it.
+
+use super::Answer;
+use super::error::CliError;
+use super::load::{Loaded, StudyArgs};
+use super::output::{Output, OutputArgs};
+use super::{evaluate, fit};
+use serde::Serialize;
+use std::path::PathBuf;
+use trimtab::demo;
+use trimtab::evaluate::Evaluation;
+use trimtab::fit::Fit;
+use trimtab::maneuver::figure::{turning_figure, turning_table};
+use trimtab::maneuver::{Side, turning_trial};
+use trimtab::recording::Split;
+use trimtab::report::{DASH, Table, interval, sig};
+
+const LONG: &str = "\
+Does the whole job on an example that is built in: forty recordings of a coastal container ship of 85 m (made by a \
+    simulator that knows more physics than the model has), a model with eleven unknown parameters, a fit to 32 of the runs, \
+    and a judgement on the other 8 against a published baseline. The study is written to the folder, ready to be copied.";
+
+const AFTER: &str = "\
+Example:
+  trimtab demo --out tour
+  trimtab maneuver zigzag tour/study.toml --model tour/results/fitted.toml --out tour/zigzag
+
+JSON: result.folder, result.fit (as of `trimtab fit`), result.evaluation (as of `trimtab evaluate`).";
+
+/// Does the whole job on a built-in example
+#[derive(Debug, clap::Args)]
+#[command(long_about = LONG, after_long_help = AFTER)]
+pub struct Args {
+    /// Folder for study and results; made if need be.
+    #[arg(long, value_name = "DIR", default_value = "trimtab-demo")]
+    out: PathBuf,
+    /// Print the result as one JSON object, and nothing else, to standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    folder: &'a PathBuf,
+    fit: &'a Fit,
+    evaluation: &'a Evaluation,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<Answer, CliError> {
+    let study = args.out.join("study.toml");
+    let mut written = 0;
+    for (name, text) in demo::files() {
+        let path = args.out.join(name);
+        let fail = |source| CliError::Write { path: path.clone(), source };
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(fail)?;
+        }
+        std::fs::write(&path, text).map_err(fail)?;
+        written += 1;
+    }
+    let results = OutputArgs { out: Some(args.out.join("results")), json: args.json };
+    let mut output = Output::new("demo", &results)?;
+    let loaded = Loaded::new(&StudyArgs { study: study.clone(), model: None })?;
+    let train = loaded.windows_of(Split::Train)?;
+    let test = loaded.windows_of(Split::Test)?;
+    let fit = fit::fit_windows(&loaded, &loaded.model, &train)?;
+    fit::write(&mut output, &loaded.model, &fit, &train)?;
+    let baseline = evaluate::baseline(&loaded, None)?;
+    let evaluation = evaluate::judge(&loaded, &baseline, &fit.model, &test)?;
+    let integration = loaded.fit_settings()?.integration;
+    evaluate::write(&mut output, &evaluation, [&baseline, &fit.model], &test, integration)?;
+
+    let settings = loaded.maneuver_settings()?;
+    let theta = fit.model.values();
+    let ship = &fit.model.ship;
+    let mut turns = String::new();
+    // A fit that went wrong may leave a ship that holds no speed: the demo then goes without turning circles.
+    if let Ok(approach) = settings.approach(&fit.model, &theta) {
+        let trials =
+            Side::BOTH.map(|side| turning_trial(&fit.model, &theta, &approach, side, settings.turning_angle()));
+        output.figure("turning", || turning_figure(ship, &trials))?;
+        turns = format!(
+            "\n\n3. Turning circles of the fitted ship at {:.0} m/s\n\n{}\n",
+            approach.speed,
+            turning_table(ship, &trials)
+        );
+    }
+    let (dir, model) = (args.out.display(), args.out.join("results/fitted.toml"));
+    let (study, model) = (study.display(), model.display());
+    let text = format!(
+        "Wrote an example study to {dir} ({written} files): {} and 40 recordings of 4 minutes.\n\n\
+         1. Fitted the model to {} runs, from the paper's initial guess\n\n{}\n\n{}\n\n\
+         2. Judged it on the {} runs kept aside\n\n{}{turns}\n\
+         Look at {dir}/results: tracks.png, curves.png, improvement.png, turning.png, fit.txt\n\
+         Try next:\n  \
+         trimtab check {study}\n  \
+         trimtab maneuver zigzag {study} --model {model} --out {dir}/zigzag\n  \
+         trimtab terms\n\
+         For your own ship copy {dir} and replace ship.toml, runs.csv and the recordings.",
+        ship.name,
+        train.len(),
+        fit.brief(),
+        parameters(&fit),
+        test.len(),
+        evaluate::text(&loaded.study.name, &evaluation),
+    );
+    output.finish(&text, &Report { folder: &args.out, fit: &fit, evaluation: &evaluation })?;
+    Ok(if fit.converged { Answer::Yes } else { Answer::No })
+}
+
+/// The estimates; the whole report is in a file.
+fn parameters(fit: &Fit) -> Table {
+    let mut table = Table::new(["parameter", "symbol", "unit", "start", "estimate", "95 % interval"]);
+    for e in &fit.estimates {
+        let range = match (e.interval, e.standard_error) {
+            (_, Some(0.0)) => "held by constraints".into(),
+            (Some([low, high]), _) => interval(low, high, 3),
+            (None, _) => DASH.into(),
+        };
+        let row = [e.name.clone(), e.symbol.into(), e.unit.into(), sig(e.start, 4), sig(e.value, 4), range];
+        table.row(row);
+    }
+    table
+}

@@ -1,0 +1,360 @@
+//! `trimtab evaluate`: how well a model predicts the runs that were kept aside, beside a baseline.
+//! The measures and their definitions are the library's; here they are laid out.
+
+use super::Answer;
+use super::error::CliError;
+use super::load::{Loaded, StudyArgs};
+use super::output::{Output, OutputArgs, csv_text, progress};
+use std::path::PathBuf;
+use trimtab::evaluate::{Comparison, Estimate, Evaluation, Outcome, Summary, evaluate, predict};
+use trimtab::model::Model;
+use trimtab::recording::{Split, Window};
+use trimtab::report::{Axis, BASELINE, DASH, FITTED, Figure, GREY, Layer, Panel, RECORDED, Table, east_north, sig};
+use trimtab::simulate::Integration;
+use trimtab::state::STATE_NAMES;
+
+const LONG: &str = "\
+Simulates the recordings of a study with two models and compares both with what was measured, on the test runs above all: \
+    mean deviation (MD) of each dimension, cVDM (all dimensions in one number, percent), how much the fitted model improves on \
+    the baseline, and on how many runs. Intervals are 95 % bootstrap intervals over runs.
+
+The fitted model is --model, or the study's. The baseline is --baseline, or `baseline` in [evaluate] of the study, or the \
+    study's model. Where they are the same model, its deviations are printed without a comparison.";
+
+const AFTER: &str = "\
+Example:
+  trimtab fit study.toml --out results
+  trimtab evaluate study.toml --model results/fitted.toml --baseline published.toml --out results
+
+Measures: MD = mean |simulated - measured|; cVDM = 100 x mean of |dx|/L + |dy|/L + |dpsi|/pi + |du|/U + |dv|/U + |dr|/r_max \
+    with path length L and mean speed U of each run; mARI = median over trajectories of the mean relative improvement over the \
+    six dimensions; consistency = 1 - Var(cVDM)/Var(cVDM of the baseline). A simulation that diverges is counted as worse than \
+    any that does not, and left out of the means.
+
+With --out: evaluate.json, trajectories.csv, summary.csv, improvement.png, cvdm.png, tracks.png, each with its CSV.
+JSON: result.baseline, result.fitted (names), result.summaries[] with group (test, train, then `manoeuvre: ...` and \
+    `session: ...` of test), runs, trajectories, md_baseline, md_fitted, md_improvement (x, y, psi, u, v, r), cvdm_baseline, \
+    cvdm_fitted [%], cvdm_improvement, mari, consistency [-] (each value and ci95), better, worse, runs_better, runs_worse, \
+    diverged_baseline, diverged_fitted, worst, most_worsened; result.trajectories[] with run, split, baseline and fitted (md, \
+    cvdm, or diverged_after [s]). A number that does not exist is absent.";
+
+/// Judges a model on the runs kept aside, against a baseline
+#[derive(Debug, clap::Args)]
+#[command(long_about = LONG, after_long_help = AFTER)]
+pub struct Args {
+    #[command(flatten)]
+    study: StudyArgs,
+    /// Model file of the baseline.
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<Answer, CliError> {
+    let mut output = Output::new("evaluate", &args.output)?;
+    let loaded = Loaded::new(&args.study)?;
+    let baseline = baseline(&loaded, args.baseline.as_ref())?;
+    let windows = loaded.windows()?.windows;
+    if !windows.iter().any(|w| w.split == Split::Test) {
+        loaded.windows_of(Split::Test)?;
+    }
+    let evaluation = judge(&loaded, &baseline, &loaded.model, &windows)?;
+    let integration = loaded.fit_settings()?.integration;
+    write(&mut output, &evaluation, [&baseline, &loaded.model], &windows, integration)?;
+    output.finish(&text(&loaded.study.name, &evaluation), &evaluation)?;
+    Ok(Answer::Yes)
+}
+
+/// The baseline: the file given, else that of the study, else the study's model.
+pub fn baseline(loaded: &Loaded, given: Option<&PathBuf>) -> Result<Model, CliError> {
+    let folder = loaded.study.path.parent().map(PathBuf::from).unwrap_or_default();
+    let listed = loaded.evaluation_settings()?.baseline.map(|b| folder.join(b));
+    loaded.other_model(&given.cloned().or(listed).unwrap_or_else(|| loaded.study.model.clone()))
+}
+
+/// Judges a model with the settings of the study.
+pub fn judge(loaded: &Loaded, baseline: &Model, model: &Model, windows: &[Window]) -> Result<Evaluation, CliError> {
+    let fit = loaded.fit_settings()?;
+    let settings = loaded.evaluation_settings()?;
+    let bar = progress(format!("evaluating {} windows", windows.len()));
+    let evaluation = evaluate(baseline, model, windows, fit.integration, fit.max_yaw_rate, &settings);
+    bar.finish_and_clear();
+    Ok(evaluation)
+}
+
+fn number(e: Option<Estimate>, scale: f64) -> String {
+    e.map_or_else(|| DASH.into(), |e| sig(e.value * scale, 3))
+}
+
+fn with_interval(e: Option<Estimate>, scale: f64) -> String {
+    let interval = e
+        .and_then(|e| e.ci95)
+        .map_or(String::new(), |[lo, hi]| format!(" [{}, {}]", sig(lo * scale, 3), sig(hi * scale, 3)));
+    number(e, scale) + &interval
+}
+
+/// Degrees for heading and yaw rate.
+fn dimension(i: usize) -> (f64, &'static str) {
+    let units = ["m", "m", "deg", "m/s", "m/s", "deg/s"];
+    (if i == 2 || i == 5 { 180.0 / std::f64::consts::PI } else { 1.0 }, units[i])
+}
+
+/// The evaluation as text.
+pub fn text(study: &str, evaluation: &Evaluation) -> String {
+    let mut text = String::new();
+    let Some(main) = evaluation.summaries.first() else {
+        return format!("{study}: no trajectory to judge.");
+    };
+    let compared = main.md_baseline != main.md_fitted || main.cvdm_baseline != main.cvdm_fitted;
+    let (baseline, fitted) = (&evaluation.baseline, &evaluation.fitted);
+    let counts = |s: &Summary| format!("{} runs, {} trajectories", s.runs, s.trajectories);
+    if compared {
+        text += &format!(
+            "{study}: `{fitted}` against the baseline `{baseline}`, {} runs: {}\n\n",
+            main.group,
+            counts(main)
+        );
+        let mut table = Table::new(["", "baseline", "fitted", "improvement [%]"]);
+        for i in 0..STATE_NAMES.len() {
+            let (scale, unit) = dimension(i);
+            table.row([
+                format!("MD {} [{unit}]", STATE_NAMES[i]),
+                number(main.md_baseline[i], scale),
+                number(main.md_fitted[i], scale),
+                with_interval(main.md_improvement[i], 100.0),
+            ]);
+        }
+        table.row([
+            "cVDM [%]".to_owned(),
+            with_interval(main.cvdm_baseline, 1.0),
+            with_interval(main.cvdm_fitted, 1.0),
+            with_interval(main.cvdm_improvement, 100.0),
+        ]);
+        table.row(["mARI".into(), String::new(), String::new(), with_interval(main.mari, 100.0)]);
+        table.row(["consistency".into(), String::new(), String::new(), with_interval(main.consistency, 100.0)]);
+        text += &format!("{table}\n\n");
+        text += &format!(
+            "Better on {} of {} trajectories, worse on {}; better on {} of {} runs, worse on {}.\n",
+            main.better, main.trajectories, main.worse, main.runs_better, main.runs, main.runs_worse
+        );
+        if let Some(w) = &main.most_worsened {
+            text += &format!("Most worsened: {} ({} against {}).\n", w.run, cvdm(&w.fitted), cvdm(&w.baseline));
+        }
+    } else {
+        text += &format!("{study}: deviations of `{fitted}`, {} runs: {}\n\n", main.group, counts(main));
+        let mut table = Table::new(["", "mean", "95 % interval"]);
+        for i in 0..STATE_NAMES.len() {
+            let (scale, unit) = dimension(i);
+            table.row([
+                format!("MD {} [{unit}]", STATE_NAMES[i]),
+                number(main.md_fitted[i], scale),
+                interval(main.md_fitted[i], scale),
+            ]);
+        }
+        table.row(["cVDM [%]".to_owned(), number(main.cvdm_fitted, 1.0), interval(main.cvdm_fitted, 1.0)]);
+        text += &format!("{table}\n\nGive --model or --baseline to compare two models.\n");
+    }
+    if let Some(w) = &main.worst {
+        text += &format!("Worst run: {} ({}).\n", w.run, cvdm(&w.fitted));
+    }
+    for (name, count) in [(baseline, main.diverged_baseline), (fitted, main.diverged_fitted)] {
+        if count > 0 {
+            let left = "the means above leave these trajectories out";
+            text += &format!("`{name}` diverged on {count} of {} trajectories; {left}.\n", main.trajectories);
+        }
+    }
+    if evaluation.summaries.len() > 1 {
+        text += &format!("\n{}", groups(&evaluation.summaries, compared));
+    }
+    text
+}
+
+fn interval(e: Option<Estimate>, scale: f64) -> String {
+    e.and_then(|e| e.ci95)
+        .map_or_else(|| DASH.into(), |[lo, hi]| format!("[{}, {}]", sig(lo * scale, 3), sig(hi * scale, 3)))
+}
+
+fn cvdm(outcome: &Outcome) -> String {
+    match outcome {
+        Outcome::Simulated(d) => format!("cVDM {} %", sig(d.cvdm, 3)),
+        Outcome::Diverged { diverged_after } => format!("diverged after {diverged_after:.0} s"),
+    }
+}
+
+fn groups(summaries: &[Summary], compared: bool) -> Table {
+    let mut table = if compared {
+        Table::new([
+            "group",
+            "runs",
+            "cVDM baseline [%]",
+            "cVDM fitted [%]",
+            "improvement [%]",
+            "mARI [%]",
+            "better",
+            "worse",
+        ])
+    } else {
+        Table::new(["group", "runs", "cVDM [%]"])
+    };
+    for s in summaries {
+        let mut row = vec![s.group.clone(), s.runs.to_string()];
+        if compared {
+            row.push(number(s.cvdm_baseline, 1.0));
+        }
+        row.push(number(s.cvdm_fitted, 1.0));
+        if compared {
+            row.push(number(s.cvdm_improvement, 100.0));
+            row.push(number(s.mari, 100.0));
+            row.push(s.better.to_string());
+            row.push(s.worse.to_string());
+        }
+        table.row(row);
+    }
+    table
+}
+
+/// Writes the files of an evaluation.
+pub fn write(
+    output: &mut Output,
+    evaluation: &Evaluation,
+    models: [&Model; 2],
+    windows: &[Window],
+    integration: Integration,
+) -> Result<(), CliError> {
+    output.file("trajectories.csv", &trajectories(&evaluation.trajectories)?)?;
+    output.file("summary.csv", &summary(&evaluation.summaries)?)?;
+    let test: Vec<&Comparison> = evaluation.trajectories.iter().filter(|t| t.split == Split::Test).collect();
+    if let Some(main) = evaluation.summaries.first() {
+        output.figure("improvement", || improvement(main))?;
+    }
+    output.figure("cvdm", || cvdm_figure(&test))?;
+    output.figure("tracks", || tracks(evaluation, models, windows, integration))
+}
+
+fn trajectories(comparisons: &[Comparison]) -> Result<Vec<u8>, CliError> {
+    let mut header: Vec<String> =
+        ["run", "session", "manoeuvre", "split", "start_time", "duration", "model", "cvdm"].map(str::to_owned).to_vec();
+    header.extend(STATE_NAMES.iter().map(|n| format!("md_{n}")));
+    header.push("diverged_after".into());
+    let rows = comparisons.iter().flat_map(|c| {
+        [("baseline", &c.baseline), ("fitted", &c.fitted)].map(|(which, outcome)| {
+            let split = if c.split == Split::Test { "test" } else { "train" };
+            let mut row = vec![c.run.clone(), c.session.clone(), c.manoeuvre.clone(), split.into()];
+            row.extend([c.start_time.to_string(), c.duration.to_string(), which.into()]);
+            let deviation = outcome.deviation();
+            row.push(deviation.map_or(String::new(), |d| d.cvdm.to_string()));
+            row.extend((0..6).map(|i| deviation.and_then(|d| d.md[i]).map_or(String::new(), |m| m.to_string())));
+            row.push(match outcome {
+                Outcome::Diverged { diverged_after } => diverged_after.to_string(),
+                Outcome::Simulated(_) => String::new(),
+            });
+            row
+        })
+    });
+    csv_text(&header.iter().map(String::as_str).collect::<Vec<_>>(), rows)
+}
+
+fn summary(summaries: &[Summary]) -> Result<Vec<u8>, CliError> {
+    let header = ["group", "measure", "value", "low95", "high95"];
+    let rows = summaries.iter().flat_map(|s| {
+        let named = [
+            ("cvdm_baseline", s.cvdm_baseline),
+            ("cvdm_fitted", s.cvdm_fitted),
+            ("cvdm_improvement", s.cvdm_improvement),
+            ("mari", s.mari),
+            ("consistency", s.consistency),
+        ];
+        let named = named.into_iter().map(|(n, e)| (n.to_owned(), e));
+        let kinds = [("baseline", &s.md_baseline), ("fitted", &s.md_fitted), ("improvement", &s.md_improvement)];
+        let md = kinds
+            .into_iter()
+            .flat_map(|(kind, md)| (0..6).map(move |i| (format!("md_{}_{kind}", STATE_NAMES[i]), md[i])));
+        let estimates = named.chain(md).filter_map(|(name, e)| Some((name, e?)));
+        let rows = estimates.map(|(name, e)| {
+            let [lo, hi] = e.ci95.map_or([String::new(), String::new()], |ci| ci.map(|c| c.to_string()));
+            [s.group.clone(), name, e.value.to_string(), lo, hi]
+        });
+        let counts = [("runs", s.runs), ("trajectories", s.trajectories), ("better", s.better), ("worse", s.worse)];
+        let diverged = [("diverged_baseline", s.diverged_baseline), ("diverged_fitted", s.diverged_fitted)];
+        let counts = counts.into_iter().chain(diverged);
+        rows.chain(counts.map(|(n, v)| [s.group.clone(), n.into(), v.to_string(), String::new(), String::new()]))
+            .collect::<Vec<_>>()
+    });
+    csv_text(&header, rows)
+}
+
+/// Improvement of each dimension's MD, of cVDM and of mARI, with intervals.
+fn improvement(s: &Summary) -> Figure {
+    let names = STATE_NAMES.iter().map(|n| format!("MD {n}")).chain(["cVDM", "mARI", "consistency"].map(str::to_owned));
+    let estimates = s.md_improvement.iter().copied().chain([s.cvdm_improvement, s.mari, s.consistency]);
+    let bars = estimates.map(|e| {
+        let value = e.map_or(f64::NAN, |e| 100.0 * e.value);
+        let [lo, hi] = e.and_then(|e| e.ci95).map_or([value, value], |ci| ci.map(|c| 100.0 * c));
+        (value, lo, hi)
+    });
+    let axis = Axis::categories("", names);
+    let title = format!("Improvement on the baseline, {} runs (95 % intervals)", s.group);
+    Figure::new(title).panel_size(1200, 620).legend(trimtab::report::Legend::Off).with(
+        Panel::new("", axis, Axis::new("improvement [%]").including(0.0))
+            .with(Layer::bars_with_intervals("improvement", FITTED, bars))
+            .with(Layer::h_line("none", GREY, 0.0)),
+    )
+}
+
+/// cVDM of each test trajectory under both models.
+fn cvdm_figure(test: &[&Comparison]) -> Figure {
+    let pairs = test.iter().filter_map(|c| Some((c.baseline.deviation()?.cvdm, c.fitted.deviation()?.cvdm)));
+    let pairs: Vec<(f64, f64)> = pairs.collect();
+    let largest = pairs.iter().map(|(a, b)| a.max(*b)).fold(1.0, f64::max) * 1.05;
+    let panel = Panel::new(
+        "",
+        Axis::new("cVDM of the baseline [%]").range(0.0, largest),
+        Axis::new("cVDM of the fitted model [%]").range(0.0, largest),
+    );
+    Figure::new("cVDM of each test trajectory").panel_size(900, 860).with(
+        panel.with(Layer::line("equal", GREY, [(0.0, 0.0), (largest, largest)]).dashed()).with(Layer::scatter(
+            "trajectory (below the line: better)",
+            FITTED,
+            pairs,
+        )),
+    )
+}
+
+/// Tracks of test trajectories, recorded and under both models: best, median and worst of the fitted model.
+fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Window], integration: Integration) -> Figure {
+    let mut order: Vec<usize> = (0..windows.len()).filter(|&i| windows[i].split == Split::Test).collect();
+    let size = |i: usize| evaluation.trajectories[i].fitted.deviation().map_or(f64::INFINITY, |d| d.cvdm);
+    order.sort_by(|&a, &b| size(a).total_cmp(&size(b)));
+    let middle = order.len() / 2;
+    let named = [("best", order.first()), ("median", order.get(middle)), ("worst", order.last())];
+    let mut chosen: Vec<(&str, usize)> = named.iter().filter_map(|(n, i)| Some((*n, **(i.as_ref()?)))).collect();
+    chosen.dedup_by_key(|c| c.1);
+    let mut figure = Figure::new("Test runs: recorded, baseline and fitted").columns(3).panel_size(680, 600);
+    let ship = &models[0].ship;
+    let mut below = Vec::new();
+    for (word, i) in chosen {
+        let w = &windows[i];
+        let shown = [
+            ("recorded", RECORDED, w.measured.clone()),
+            ("baseline", BASELINE, predict(models[0], w, integration).states),
+            ("fitted", FITTED, predict(models[1], w, integration).states),
+        ];
+        let mut track = Panel::track(format!("{word}: {}, {}", w.run, cvdm(&evaluation.trajectories[i].fitted)));
+        let mut heading = Panel::new("", Axis::new("time [s]"), Axis::new("heading psi [deg]"));
+        for (name, color, states) in shown {
+            let stride = (states.len() / 6).max(1);
+            let poses = states.iter().step_by(stride).map(|s| [s[0], s[1], s[2]]).collect::<Vec<_>>();
+            track = track
+                .with(Layer::line(name, color, states.iter().map(|s| east_north(s[0], s[1]))))
+                .with(Layer::hulls(name, color, poses, ship.hull.lpp, ship.hull.breadth).unlisted().width(1.5));
+            let psi = states.iter().enumerate().map(|(k, s)| (k as f64 * w.dt, s[2].to_degrees()));
+            heading = heading.with(Layer::line(name, color, psi));
+        }
+        figure = figure.with(track);
+        below.push(heading);
+    }
+    let columns = below.len().max(1);
+    figure.columns(columns).with_all(below)
+}

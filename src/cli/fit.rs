@@ -1,0 +1,147 @@
+//! `trimtab fit`: fits the free parameters of a study's model to its training runs, and reports what was found and how surely.
+//! The fit is the library's; here it is asked for, watched and written down.
+
+use super::Answer;
+use super::error::CliError;
+use super::load::{Loaded, StudyArgs};
+use super::output::{Output, OutputArgs, csv_text, progress};
+use trimtab::fit::{Fit, FitRun, FitSettings, fit};
+use trimtab::model::Model;
+use trimtab::recording::{Split, Window};
+use trimtab::report::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
+use trimtab::terms::resistance::Resistance;
+use trimtab::terms::rudder::Rudder;
+
+const LONG: &str = "\
+Fits the free parameters of the model to the training runs of the study: weighted nonlinear least squares through the \
+    simulation, with exact gradients, under the constraints of [fit.constraints]. Which parameters are free, their bounds and \
+    priors are in the model file; without any setting they are the paper's eleven (p0 to p10).
+
+The report gives every estimate with standard error and 95 % interval, the constraints that hold the fit back, what the \
+    data do not determine, and how the solver ended.";
+
+const AFTER: &str = "\
+Example:
+  trimtab fit study.toml --out results
+  trimtab evaluate study.toml --model results/fitted.toml
+
+With --out: fitted.toml (a model file with the estimates, which every command takes as --model), fit.json, fit.txt (the \
+    report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end).
+JSON: result.converged, result.status, result.estimates[] (name, symbol, unit, start, value, standard_error, interval, \
+    at_bound), result.start_cost, result.cost, result.prior_cost, result.residual_variance, result.active[] (sentence, rule), \
+    result.undetermined[] (words, standard_deviation), result.covariance_gauss_newton, result.covariance_sandwich, \
+    result.correlations (rows of numbers in the order of the estimates, null where the data do not determine a parameter), \
+    result.runs, result.recordings, result.residuals, result.iterations, result.counts, result.seconds, result.settings.
+
+Exit code 1 if the fit did not converge; its result is written all the same.";
+
+/// Fits the model of a study to its training runs
+#[derive(Debug, clap::Args)]
+#[command(long_about = LONG, after_long_help = AFTER)]
+pub struct Args {
+    #[command(flatten)]
+    study: StudyArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<Answer, CliError> {
+    let mut output = Output::new("fit", &args.output)?;
+    let loaded = Loaded::new(&args.study)?;
+    let windows = loaded.windows_of(Split::Train)?;
+    let fit = fit_windows(&loaded, &loaded.model, &windows)?;
+    write(&mut output, &loaded.model, &fit, &windows)?;
+    let mut text = fit.report();
+    if !output.has_folder() {
+        text += "\nGive --out DIR to keep the fitted model as a file.";
+    }
+    output.finish(&text, &fit)?;
+    Ok(if fit.converged { Answer::Yes } else { Answer::No })
+}
+
+/// What a fit adds to the name of its model.
+const FITTED_NAME: &str = ", fitted";
+
+/// Fits a model to windows with the settings of the study.
+pub fn fit_windows(loaded: &Loaded, start: &Model, windows: &[Window]) -> Result<Fit, CliError> {
+    let settings: FitSettings = loaded.fit_settings()?;
+    let runs: Vec<FitRun> = windows.iter().map(|w| FitRun::of(w, &start.ship, settings.max_yaw_rate)).collect();
+    let bar = progress(format!("fitting to {} windows", runs.len()));
+    let result = fit(start, &runs, &settings, &mut |p| {
+        bar.set_message(format!("fitting: iteration {}, cost {:.5}", p.iteration, p.cost));
+        true
+    });
+    bar.finish_and_clear();
+    let mut fit = result.map_err(|error| CliError::Fit { path: loaded.study.path.clone(), error })?;
+    if !start.name.ends_with(FITTED_NAME) {
+        fit.model.name += FITTED_NAME;
+    }
+    Ok(fit)
+}
+
+/// Writes the files of a fit.
+pub fn write(output: &mut Output, start: &Model, fit: &Fit, windows: &[Window]) -> Result<(), CliError> {
+    output.file("fitted.toml", model_text(&fit.model)?.as_bytes())?;
+    output.file("fit.txt", fit.report().as_bytes())?;
+    let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+    let rows = fit.estimates.iter().map(|e| {
+        let [low, high] = e.interval.map_or([None, None], |i| i.map(Some));
+        [
+            e.name.clone(),
+            e.symbol.into(),
+            e.unit.into(),
+            e.start.to_string(),
+            e.value.to_string(),
+            number(e.standard_error),
+            number(low),
+            number(high),
+            e.at_bound.unwrap_or_default().to_owned(),
+        ]
+    });
+    let header = ["parameter", "symbol", "unit", "start", "estimate", "standard_error", "low95", "high95", "at_bound"];
+    output.file("parameters.csv", &csv_text(&header, rows)?)?;
+    output.figure("curves", || curves(&[("start", GREY, start), ("fitted", FITTED, &fit.model)], windows))
+}
+
+/// A model as the text of a model file.
+pub fn model_text(model: &Model) -> Result<String, CliError> {
+    let text =
+        toml::to_string(&model.to_file()).map_err(|e| CliError::Format { format: "TOML", message: e.to_string() })?;
+    Ok(format!("# Written by trimtab {}; use it with --model.\n{text}", env!("CARGO_PKG_VERSION")))
+}
+
+/// R(u) over the recorded speeds, c_L and c_D over the angles of attack at which the curves hold.
+pub fn curves(models: &[(&str, Color, &Model)], windows: &[Window]) -> Figure {
+    let speeds = windows.iter().flat_map(|w| &w.measured).map(|s| s[3]);
+    let (low, high) = speeds.fold((0.0_f64, 1.0_f64), |(a, b), u| (a.min(u), b.max(u)));
+    let over = |from: f64, to: f64| (0..=120).map(move |i| from + (to - from) * f64::from(i) / 120.0);
+    let layers = |f: &dyn Fn(&Model) -> Vec<(f64, f64)>| {
+        models.iter().map(|(name, color, model)| Layer::line(*name, *color, f(model))).collect::<Vec<_>>()
+    };
+    let resistance = |m: &Model| {
+        let theta = m.values();
+        over(low, high).map(|u| (u, Resistance::curve(m.part("resistance", &theta), u) * 1e-3)).collect()
+    };
+    let rudder = |m: &Model, curve: fn(&[f64], f64) -> f64| {
+        let theta = m.values();
+        let p = m.part("rudder", &theta).to_vec();
+        over(-45.0, 45.0).map(|a| (a, curve(&p, a.to_radians()))).collect()
+    };
+    let panel = |x: &str, y: &str| Panel::new("", Axis::new(x), Axis::new(y));
+    let limit = |y: f64| Layer::h_line("constraint", LIMIT, y).dotted();
+    Figure::new("Curves of the model")
+        .columns(3)
+        .panel_size(720, 560)
+        .with(panel("surge velocity u [m/s]", "resistance R [kN]").with_all(layers(&resistance)))
+        .with(
+            panel("angle of attack [deg]", "lift coefficient c_L [-]")
+                .with_all(layers(&|m| rudder(m, Rudder::lift_polynomial::<f64>)))
+                .with_all([limit(1.0), limit(-1.0).unlisted()]),
+        )
+        .with(
+            panel("angle of attack [deg]", "drag coefficient c_D [-]")
+                .with_all(layers(&|m| rudder(m, Rudder::drag_polynomial::<f64>)))
+                .with(limit(0.0)),
+        )
+}

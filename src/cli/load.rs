@@ -1,0 +1,119 @@
+//! From a study's path to what commands work on: ship, model, settings and windows.
+//! It reads and checks; it computes nothing.
+
+use super::error::CliError;
+use super::output::progress;
+use serde::de::DeserializeOwned;
+use std::path::{Path, PathBuf};
+use trimtab::error::suggestion;
+use trimtab::evaluate::EvaluationSettings;
+use trimtab::fit::FitSettings;
+use trimtab::maneuver::ManeuverSettings;
+use trimtab::model::{Model, ModelError};
+use trimtab::recording::{Split, Window, Windows};
+use trimtab::ship::Ship;
+use trimtab::study::Study;
+
+/// Arguments of every command on a study.
+#[derive(Clone, Debug, clap::Args)]
+pub struct StudyArgs {
+    /// The study: a TOML file that names ship, model and recordings.
+    #[arg(value_name = "STUDY")]
+    pub study: PathBuf,
+    /// Model file to use instead of the study's, such as the `fitted.toml` written by `trimtab fit --out`.
+    #[arg(long, value_name = "FILE")]
+    pub model: Option<PathBuf>,
+}
+
+/// A study with its ship and model.
+pub struct Loaded {
+    /// The study.
+    pub study: Study,
+    /// The model, with its ship.
+    pub model: Model,
+}
+
+impl Loaded {
+    /// Reads study, ship and model.
+    pub fn new(args: &StudyArgs) -> Result<Self, CliError> {
+        let study = Study::read(&args.study)?;
+        let path = args.model.clone().unwrap_or_else(|| study.model.clone());
+        let model = read_model(&path, Ship::read(&study.ship)?)?;
+        Ok(Self { study, model })
+    }
+
+    /// Another model of the same ship.
+    pub fn other_model(&self, path: &Path) -> Result<Model, CliError> {
+        read_model(path, self.model.ship.clone())
+    }
+
+    /// The recordings, cut into windows.
+    pub fn windows(&self) -> Result<Windows, CliError> {
+        let bar = progress(format!("reading {} recordings", self.study.runs.len()));
+        let windows = self.study.windows(self.model.ship.hull.draught);
+        bar.finish_and_clear();
+        Ok(windows?)
+    }
+
+    /// The windows of one split, of which there must be some.
+    pub fn windows_of(&self, split: Split) -> Result<Vec<Window>, CliError> {
+        let mut windows = self.windows()?.windows;
+        windows.retain(|w| w.split == split);
+        if windows.is_empty() {
+            let (word, verb) = match split {
+                Split::Train => ("train", "fit to"),
+                Split::Test => ("test", "judge by"),
+            };
+            return Err(CliError::Nothing {
+                path: self.study.path.clone(),
+                message: format!(
+                    "there is no run to {verb}; mark one with `split = \"{word}\"`, or set a [split] rule"
+                ),
+            });
+        }
+        Ok(windows)
+    }
+
+    /// Table `[fit]`.
+    pub fn fit_settings(&self) -> Result<FitSettings, CliError> {
+        self.table("fit", &self.study.fit)
+    }
+
+    /// Table `[evaluate]`.
+    pub fn evaluation_settings(&self) -> Result<EvaluationSettings, CliError> {
+        self.table("evaluate", &self.study.evaluate)
+    }
+
+    /// Table `[maneuver]`.
+    pub fn maneuver_settings(&self) -> Result<ManeuverSettings, CliError> {
+        self.table("maneuver", &self.study.maneuver)
+    }
+
+    /// A table of the study as settings.
+    fn table<T: DeserializeOwned>(&self, name: &'static str, table: &toml::Table) -> Result<T, CliError> {
+        table.clone().try_into().map_err(|e: toml::de::Error| {
+            let message = e.message().trim().replace('\n', " ");
+            // serde writes: unknown field `found`, expected one of `a`, `b`
+            let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+            let unknown = message.starts_with("unknown ");
+            let (found, known) = quoted.split_first().map_or(("", &[][..]), |(f, k)| (*f, k));
+            let near = if unknown { suggestion(found, known.iter().copied()) } else { String::new() };
+            let key =
+                if unknown { found } else { table.keys().find(|k| message.contains(*k)).map_or("", String::as_str) };
+            CliError::Table {
+                path: self.study.path.clone(),
+                line: self.study.line_of(name, key),
+                table: name,
+                message: format!("{message}{near}"),
+            }
+        })
+    }
+}
+
+fn read_model(path: &Path, ship: Ship) -> Result<Model, CliError> {
+    Model::read(path, ship).map_err(|error| {
+        // These name their file themselves.
+        let named = matches!(error, ModelError::Read { .. } | ModelError::Parse { .. });
+        CliError::Model { path: (!named).then(|| path.to_owned()), error }
+    })
+}

@@ -1,0 +1,104 @@
+//! The command line: one file a command, and what they share (arguments, loading, output, exit codes).
+//! What a command computes is the library's.
+
+mod check;
+mod demo;
+mod error;
+mod evaluate;
+mod fit;
+mod load;
+mod maneuver;
+mod output;
+mod simulate;
+mod terms;
+
+use clap::{Parser, Subcommand};
+use error::CliError;
+use std::process::ExitCode;
+
+/// How a command that could run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// Done: exit code 0.
+    Yes,
+    /// It ran, but the answer is no (did not converge, a check failed): exit code 1.
+    No,
+}
+
+const AFTER_HELP: &str = "\
+Begin with
+  trimtab demo                       a complete example in seconds; leaves a study to copy
+  trimtab check STUDY                are the recordings fit to be used?
+  trimtab fit STUDY --out results    fit the model; writes results/fitted.toml
+  trimtab evaluate STUDY --model results/fitted.toml
+                                     judge it on the runs that were kept aside
+
+A STUDY is a TOML file that names ship, model and recordings; `trimtab demo` writes one with comments.
+
+Exit codes
+  0  done
+  1  it ran, but the answer is no: did not converge, a check failed
+  2  it could not run: one message on standard error says why and what to do";
+
+/// Fits an interpretable manoeuvring model to recordings of a ship, and finds the physics it lacks.
+#[derive(Debug, Parser)]
+#[command(name = "trimtab", version, after_help = AFTER_HELP, max_term_width = 100)]
+struct Cli {
+    /// Threads to compute on; as many as there are processors when not given. Results do not depend on it.
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Check(check::Args),
+    Simulate(simulate::Args),
+    Fit(fit::Args),
+    Evaluate(evaluate::Args),
+    Maneuver(maneuver::Args),
+    Terms(terms::Args),
+    Demo(demo::Args),
+}
+
+/// Runs the command that the process was given.
+pub fn run() -> ExitCode {
+    let cli = Cli::parse();
+    match execute(&cli) {
+        Ok(Answer::Yes) => ExitCode::SUCCESS,
+        Ok(Answer::No) => ExitCode::from(1),
+        // Whoever read our output has enough of it, as in `trimtab terms | head`.
+        Err(CliError::Closed) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("trimtab: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn execute(cli: &Cli) -> Result<Answer, CliError> {
+    if let Some(threads) = cli.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
+    }
+    match &cli.command {
+        Command::Check(args) => check::run(args),
+        Command::Simulate(args) => simulate::run(args),
+        Command::Fit(args) => fit::run(args),
+        Command::Evaluate(args) => evaluate::run(args),
+        Command::Maneuver(args) => maneuver::run(args),
+        Command::Terms(args) => terms::run(args),
+        Command::Demo(args) => demo::run(args),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Cli;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+}

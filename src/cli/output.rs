@@ -1,0 +1,164 @@
+//! Where results go: text or JSON to standard output, files to the folder given with `--out`.
+//! Nothing else ever writes to standard output; progress and errors go to standard error.
+
+use super::error::CliError;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use trimtab::report::Figure;
+
+/// Arguments that every command with results has.
+#[derive(Clone, Debug, clap::Args)]
+pub struct OutputArgs {
+    /// Folder for files: tables as CSV, figures as PNG with the CSV behind them, the result as JSON. Made if need be.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print the result as one JSON object, and nothing else, to standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Collects the results of a command.
+pub struct Output {
+    command: &'static str,
+    json: bool,
+    folder: Option<PathBuf>,
+    files: Vec<PathBuf>,
+}
+
+impl Output {
+    /// Opens the output of a command and makes its folder, so that a long computation does not fail at its end.
+    pub fn new(command: &'static str, args: &OutputArgs) -> Result<Self, CliError> {
+        if let Some(folder) = &args.out {
+            std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
+        }
+        Ok(Self { command, json: args.json, folder: args.out.clone(), files: Vec::new() })
+    }
+
+    /// Whether files are wanted.
+    pub fn has_folder(&self) -> bool {
+        self.folder.is_some()
+    }
+
+    /// Writes a file in the folder, if there is one; `name` may have folders of its own.
+    pub fn file(&mut self, name: impl AsRef<Path>, bytes: &[u8]) -> Result<(), CliError> {
+        let Some(folder) = &self.folder else { return Ok(()) };
+        let path = folder.join(name);
+        let fail = |source| CliError::Write { path: path.clone(), source };
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent).map_err(fail)?;
+        }
+        std::fs::write(&path, bytes).map_err(fail)?;
+        self.files.push(path);
+        Ok(())
+    }
+
+    /// Draws a figure into the folder, if there is one.
+    pub fn figure(&mut self, stem: &str, figure: impl FnOnce() -> Figure) -> Result<(), CliError> {
+        if let Some(folder) = &self.folder {
+            self.files.extend(figure().save(&folder.join(stem))?);
+        }
+        Ok(())
+    }
+
+    /// Ends the command: prints `text`, or the result as JSON; writes the JSON into the folder too.
+    ///
+    /// Object members without a value are left out, so that `null` stands only in arrays, for entries that do not exist.
+    pub fn finish(mut self, text: &str, result: &impl Serialize) -> Result<(), CliError> {
+        let mut members = Map::new();
+        members.insert("command".into(), json!(self.command));
+        members.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
+        members.insert("result".into(), without_nulls(serde_json::to_value(result)?));
+        let name = format!("{}.json", self.command.replace(' ', "_"));
+        let saved = serde_json::to_string_pretty(&members)? + "\n";
+        self.file(name, saved.as_bytes())?;
+        if self.json {
+            members.insert("files".into(), json!(self.files));
+            return print(&(serde_json::to_string_pretty(&members)? + "\n"));
+        }
+        let mut text = text.trim_end().to_owned() + "\n";
+        if let Some(folder) = &self.folder {
+            let names = self.files.iter().map(|f| f.strip_prefix(folder).unwrap_or(f).display().to_string());
+            text += &format!("\nWritten to {}: {}\n", folder.display(), abridged(names.collect()));
+        }
+        print(&text)
+    }
+}
+
+/// File names as a sentence; of many in one folder only their number.
+fn abridged(names: Vec<String>) -> String {
+    let (deep, mut shown): (Vec<String>, Vec<String>) = names.into_iter().partition(|n| n.contains('/'));
+    let mut folders: Vec<&str> = deep.iter().filter_map(|n| n.split('/').next()).collect();
+    folders.sort_unstable();
+    folders.dedup();
+    for folder in folders {
+        let count = deep.iter().filter(|n| n.split('/').next() == Some(folder)).count();
+        shown.push(format!("{folder}/ ({count} files)"));
+    }
+    shown.join(", ")
+}
+
+/// A JSON value without object members that are null.
+fn without_nulls(value: Value) -> Value {
+    match value {
+        Value::Object(members) => Value::Object(
+            members.into_iter().filter(|(_, v)| !v.is_null()).map(|(k, v)| (k, without_nulls(v))).collect(),
+        ),
+        Value::Array(entries) => Value::Array(entries.into_iter().map(without_nulls).collect()),
+        other => other,
+    }
+}
+
+/// Prints to standard output.
+pub fn print(text: &str) -> Result<(), CliError> {
+    let mut stdout = std::io::stdout().lock();
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|e| match e.kind() {
+        ErrorKind::BrokenPipe => CliError::Closed,
+        _ => CliError::Stdout(e),
+    })
+}
+
+/// A line on standard error that says what is going on, while it lasts; nothing unless that is a terminal.
+pub fn progress(doing: impl Into<String>) -> ProgressBar {
+    let bar = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
+        bar.set_style(style);
+    }
+    bar.set_message(doing.into());
+    bar.enable_steady_tick(Duration::from_millis(120));
+    bar
+}
+
+/// CSV text of a header and rows of fields.
+pub fn csv_text<R: IntoIterator<Item = String>>(
+    header: &[&str],
+    rows: impl IntoIterator<Item = R>,
+) -> Result<Vec<u8>, CliError> {
+    let fail = |message: String| CliError::Format { format: "CSV", message };
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header).map_err(|e| fail(e.to_string()))?;
+    for row in rows {
+        writer.write_record(row.into_iter().collect::<Vec<String>>()).map_err(|e| fail(e.to_string()))?;
+    }
+    writer.into_inner().map_err(|e| fail(e.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn members_without_a_value_are_left_out_and_array_entries_stay() {
+        let value = json!({"a": null, "b": [1.0, null, {"c": null, "d": 2}], "e": f64::NAN});
+        assert_eq!(without_nulls(value), json!({"b": [1.0, null, {"d": 2}]}));
+    }
+
+    #[test]
+    fn many_files_in_a_folder_are_counted() {
+        let names = ["a.csv", "runs/1.csv", "runs/2.csv"].map(str::to_owned).to_vec();
+        assert_eq!(abridged(names), "a.csv, runs/ (2 files)");
+    }
+}

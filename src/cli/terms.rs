@@ -1,0 +1,78 @@
+//! `trimtab terms`: the catalogue of physical effects, with equation, source and parameters.
+//! The catalogue and its listing are the library's; here they are printed.
+
+use super::Answer;
+use super::error::CliError;
+use super::output::{Output, OutputArgs, csv_text};
+use serde::Serialize;
+use std::path::PathBuf;
+use trimtab::error::suggestion;
+use trimtab::ship::Ship;
+use trimtab::terms::CATALOGUE;
+use trimtab::terms::listing::{Entry, listing, summary};
+
+const LONG: &str = "\
+Lists every physical effect (term) that a model can be made of: what it is, its equation and source, the recorded channels \
+    it needs, and its parameters with unit, bounds and meaning. Every model has the terms flow, hull, resistance, propeller and \
+    rudder; any other is added by naming it under `terms` in a model file. Parameters are set there by their dotted name, as \
+    in `\"rudder.lift1\" = { value = 2.7, free = true }`.";
+
+const AFTER: &str = "\
+Examples:
+  trimtab terms                        all terms, one line each
+  trimtab terms rudder wind            two of them in full
+  trimtab terms hull --ship ship.toml  with the values that a ship's particulars imply
+
+With --out: terms.json, parameters.csv.
+JSON: result.terms[] with name, title, group, base (every model has it), equation, source, needs[], and parameters[] with \
+    name, symbol, unit, about, lower, upper (absent: no bound), one_sided (makes port and starboard differ), and with --ship \
+    default, scale (a change that matters), spread (standard deviation of what is known beforehand; absent: nothing is).";
+
+/// Lists the physical effects a model can be made of
+#[derive(Debug, clap::Args)]
+#[command(long_about = LONG, after_long_help = AFTER)]
+pub struct Args {
+    /// Terms to show in full.
+    #[arg(value_name = "TERM")]
+    names: Vec<String>,
+    /// Ship file, for values that depend on the ship.
+    #[arg(long, value_name = "FILE")]
+    ship: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+#[derive(Serialize)]
+struct Listing {
+    terms: Vec<Entry>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<Answer, CliError> {
+    let mut output = Output::new("terms", &args.output)?;
+    let ship = args.ship.as_deref().map(Ship::read).transpose()?;
+    let known = || CATALOGUE.iter().map(|t| t.info().name);
+    if let Some(name) = args.names.iter().find(|n| !known().any(|k| k == **n)) {
+        let near = suggestion(name, known());
+        return Err(CliError::Argument(format!("unknown term `{name}`{near}; `trimtab terms` lists them")));
+    }
+    let mut terms = listing(None, ship.as_ref());
+    terms.retain(|t| args.names.is_empty() || args.names.iter().any(|n| n == t.name));
+    let text = if args.names.is_empty() && ship.is_none() {
+        format!("{}\n\n`trimtab terms NAME` shows equation, source and parameters of one.", summary(&terms))
+    } else {
+        terms.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
+    };
+    output.file("parameters.csv", &parameters(&terms)?)?;
+    output.finish(&text, &Listing { terms })?;
+    Ok(Answer::Yes)
+}
+
+fn parameters(terms: &[Entry]) -> Result<Vec<u8>, CliError> {
+    let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+    let rows = terms.iter().flat_map(|t| &t.parameters).map(|p| {
+        let values = [p.default, p.lower, p.upper].map(number);
+        [p.name.clone(), p.symbol.into(), p.unit.into()].into_iter().chain(values).chain([p.about.to_owned()])
+    });
+    csv_text(&["parameter", "symbol", "unit", "default", "lower", "upper", "about"], rows)
+}

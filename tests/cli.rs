@@ -1,0 +1,437 @@
+//! The command line as a user meets it: what each command prints and writes, its exit codes, and its messages.
+//! What the numbers are worth is tested where they are computed.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+/// A small study in a folder of its own: eight runs of the demo, cut to 40 steps.
+struct Study {
+    folder: TempDir,
+}
+
+impl Study {
+    fn new() -> Self {
+        let study = Self { folder: tempfile::tempdir().unwrap() };
+        let files = trimtab::demo::files();
+        let runs = &files.iter().find(|(name, _)| name == "runs.csv").unwrap().1;
+        let (mut listed, mut test, mut train) = (String::from("file,name,manoeuvre,split\n"), 0, 0);
+        for line in runs.lines().skip(1) {
+            let count = if line.ends_with("test") { &mut test } else { &mut train };
+            if *count < 4 {
+                *count += 1;
+                listed += &format!("{line}\n");
+            }
+        }
+        for (name, text) in &files {
+            if name == "runs.csv" {
+                study.write(name, &listed);
+            } else if !name.starts_with("recordings/") {
+                study.write(name, text);
+            } else if listed.contains(name.as_str()) {
+                study.write(name, &text.lines().take(42).map(|l| format!("{l}\n")).collect::<String>());
+            }
+        }
+        study
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        let path = self.path(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+
+    fn edit(&self, name: &str, from: &str, to: &str) {
+        let text = std::fs::read_to_string(self.path(name)).unwrap();
+        assert!(text.contains(from), "{from} is not in {name}");
+        self.write(name, &text.replace(from, to));
+    }
+
+    fn append(&self, name: &str, text: &str) {
+        let before = std::fs::read_to_string(self.path(name)).unwrap();
+        self.write(name, &format!("{before}{text}"));
+    }
+
+    /// Runs trimtab in the folder.
+    fn run(&self, arguments: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_trimtab")).args(arguments).current_dir(self.folder.path()).output().unwrap()
+    }
+
+    /// Runs trimtab, which must do it; gives standard output.
+    fn does(&self, arguments: &[&str]) -> String {
+        let output = self.run(arguments);
+        let (out, err) = (text(&output.stdout), text(&output.stderr));
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {err}");
+        assert_eq!(err, "", "{arguments:?}");
+        out
+    }
+
+    /// Runs trimtab with `--json`.
+    fn json(&self, arguments: &[&str]) -> Value {
+        let out = self.does(&[arguments, &["--json"]].concat());
+        let value: Value = serde_json::from_str(&out).unwrap();
+        no_empty_members(&value, &arguments.join(" "));
+        value
+    }
+
+    /// Runs trimtab, which must refuse with one message and exit code 2; gives the message.
+    fn refuses(&self, arguments: &[&str]) -> String {
+        let output = self.run(arguments);
+        let err = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {err}");
+        assert_eq!(text(&output.stdout), "", "{arguments:?}");
+        assert!(err.starts_with("trimtab: ") && err.lines().count() == 1, "{err}");
+        err
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// No member of an object is null: what does not exist is absent.
+fn no_empty_members(value: &Value, place: &str) {
+    match value {
+        Value::Object(members) => members.iter().for_each(|(k, v)| {
+            assert!(!v.is_null(), "{place}.{k} is null");
+            no_empty_members(v, &format!("{place}.{k}"));
+        }),
+        Value::Array(entries) => entries.iter().for_each(|v| no_empty_members(v, place)),
+        _ => {}
+    }
+}
+
+/// The value at a path of members and indices.
+fn at<'a>(value: &'a Value, path: &str) -> &'a Value {
+    let pointer = format!("/{}", path.replace('.', "/"));
+    value.pointer(&pointer).unwrap_or_else(|| panic!("no {path} in {value:#}"))
+}
+
+fn contains_all(message: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(message.contains(part), "`{part}` is not in: {message}");
+    }
+}
+
+const COMMANDS: [&[&str]; 9] = [
+    &["check"],
+    &["simulate"],
+    &["fit"],
+    &["evaluate"],
+    &["maneuver", "turning"],
+    &["maneuver", "zigzag"],
+    &["maneuver", "stopping"],
+    &["terms"],
+    &["demo"],
+];
+
+#[test]
+fn every_command_has_help_with_an_example() {
+    let study = Study::new();
+    let overview = study.does(&["--help"]);
+    for command in COMMANDS {
+        assert!(overview.contains(command[0]), "{command:?}");
+        let help = study.does(&[command, &["--help"]].concat());
+        contains_all(&help, &["Example", &format!("trimtab {}", command.join(" ")), "JSON", "--json"]);
+        assert!(help.lines().all(|l| l.chars().count() <= 100), "{help}");
+        assert!(!study.does(&[command, &["-h"]].concat()).is_empty());
+    }
+    assert!(study.does(&["--version"]).starts_with("trimtab "));
+}
+
+#[test]
+fn every_command_writes_its_files() {
+    let study = Study::new();
+    let expected: [(&[&str], &[&str]); 8] = [
+        (&["check", "study.toml"], &["check.json", "channels.csv", "issues.csv"]),
+        (&["simulate", "study.toml"], &["simulate.json", "tracks.png", "trajectories/ship_a_001.csv"]),
+        (&["fit", "study.toml"], &["fit.json", "fitted.toml", "fit.txt", "parameters.csv", "curves.png", "curves.csv"]),
+        (
+            &["evaluate", "study.toml"],
+            &["evaluate.json", "trajectories.csv", "summary.csv", "improvement.png", "tracks.png"],
+        ),
+        (&["maneuver", "turning", "study.toml"], &["maneuver_turning.json", "turning.png", "turning_measures.csv"]),
+        (&["maneuver", "zigzag", "study.toml"], &["maneuver_zigzag.json", "zigzag.png", "zigzag.csv"]),
+        (&["maneuver", "stopping", "study.toml"], &["maneuver_stopping.json", "stopping.png"]),
+        (&["terms"], &["terms.json", "parameters.csv"]),
+    ];
+    for (arguments, files) in expected {
+        let out = study.does(&[arguments, &["--out", "results/deep"]].concat());
+        assert!(!out.contains("NaN") && !out.contains("inf "), "{out}");
+        for file in files {
+            let path = study.path("results/deep").join(file);
+            assert!(path.metadata().is_ok_and(|m| m.len() > 20), "{arguments:?} did not write {file}");
+        }
+    }
+    // What was fitted serves every other command.
+    for command in [&["simulate"][..], &["evaluate"], &["fit"], &["maneuver", "turning"]] {
+        study.does(&[command, &["study.toml", "--model", "results/deep/fitted.toml"]].concat());
+    }
+}
+
+#[test]
+fn a_simulated_trajectory_reads_as_a_recording() {
+    let study = Study::new();
+    study.does(&["simulate", "study.toml", "--out", "simulated"]);
+    let files: Vec<String> = std::fs::read_dir(study.path("simulated/trajectories"))
+        .unwrap()
+        .map(|f| f.unwrap().file_name().into_string().unwrap())
+        .collect();
+    assert_eq!(files.len(), 8);
+    for file in files {
+        std::fs::copy(study.path("simulated/trajectories").join(&file), study.path("recordings").join(&file)).unwrap();
+    }
+    // The model fits its own simulation without any deviation.
+    let value = study.json(&["evaluate", "study.toml", "--baseline", "baseline.toml"]);
+    let test = at(&value, "result.summaries.0");
+    assert!(at(test, "cvdm_fitted.value").as_f64().unwrap() < 1e-6);
+    assert_eq!(at(test, "better"), 4);
+}
+
+#[test]
+fn json_stands_alone_and_has_the_documented_keys() {
+    let study = Study::new();
+    let value = study.json(&["fit", "study.toml", "--out", "results"]);
+    assert_eq!(at(&value, "command"), "fit");
+    for key in ["converged", "status", "estimates.0.name", "estimates.0.value", "cost", "active", "runs", "iterations"]
+    {
+        at(&value, &format!("result.{key}"));
+    }
+    assert_eq!(at(&value, "result.estimates").as_array().unwrap().len(), 11);
+    assert!(at(&value, "files").as_array().unwrap().len() >= 5);
+
+    let value = study.json(&["evaluate", "study.toml", "--model", "results/fitted.toml"]);
+    assert_eq!(
+        (at(&value, "result.baseline"), at(&value, "result.fitted")),
+        (&"published baseline".into(), &"ship A, fitted".into())
+    );
+    for key in [
+        "cvdm_baseline.value",
+        "cvdm_improvement.ci95.1",
+        "mari.value",
+        "consistency.value",
+        "md_fitted.psi.value",
+        "worst.run",
+    ] {
+        at(&value, &format!("result.summaries.0.{key}"));
+    }
+    assert_eq!(at(&value, "result.trajectories").as_array().unwrap().len(), 8);
+    at(&value, "result.trajectories.0.fitted.cvdm");
+
+    let value = study.json(&["check", "study.toml"]);
+    assert_eq!(at(&value, "result.recordings").as_array().unwrap().len(), 8);
+    let value = study.json(&["simulate", "study.toml"]);
+    at(&value, "result.runs.0.md.psi");
+    let value = study.json(&["maneuver", "turning", "study.toml"]);
+    for key in
+        ["approach.n", "trials.0.measures.advance", "trials.1.measures.steady.drift", "trials.0.criteria.0.verdict"]
+    {
+        at(&value, &format!("result.{key}"));
+    }
+    let value = study.json(&["maneuver", "zigzag", "study.toml"]);
+    assert_eq!(at(&value, "result.trials").as_array().unwrap().len(), 4);
+    at(&value, "result.trials.0.measures.overshoots.1");
+    let value = study.json(&["maneuver", "stopping", "study.toml"]);
+    at(&value, "result.trials.0.measures.track_reach");
+    let value = study.json(&["terms", "rudder", "--ship", "ship.toml"]);
+    assert_eq!(at(&value, "result.terms.0.parameters.1.name"), "rudder.lift1");
+}
+
+#[test]
+fn one_thread_and_two_give_the_same_bits() {
+    let study = Study::new();
+    let runs = ["1", "2"].map(|threads| {
+        let out = format!("threads_{threads}");
+        study.does(&["fit", "study.toml", "--out", &out, "--threads", threads]);
+        let model = format!("{out}/fitted.toml");
+        let evaluation = study.does(&["evaluate", "study.toml", "--model", &model, "--json", "--threads", threads]);
+        let fitted = std::fs::read_to_string(study.path(&model)).unwrap();
+        let curves = std::fs::read_to_string(study.path(&out).join("parameters.csv")).unwrap();
+        (evaluation, fitted, curves)
+    });
+    assert_eq!(runs[0], runs[1]);
+}
+
+#[test]
+fn a_fit_that_does_not_converge_says_so_with_exit_code_1() {
+    let study = Study::new();
+    study.edit("study.toml", "[fit]", "[fit]\nmax_iterations = 1");
+    let output = study.run(&["fit", "study.toml", "--out", "results", "--json"]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(at(&value, "result.converged"), false);
+    assert!(study.path("results/fitted.toml").is_file());
+}
+
+#[test]
+fn a_recording_with_a_fault_fails_the_check_with_exit_code_1() {
+    let study = Study::new();
+    study.append("recordings/ship_a_002.csv", "80,1,1,1,1,1,1,1,1\n");
+    let output = study.run(&["check", "study.toml"]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    let message = study.refuses(&["fit", "study.toml"]);
+    contains_all(&message, &["ship_a_002.csv:43", "time 80 s"]);
+}
+
+#[test]
+fn a_study_that_is_not_there_is_named() {
+    let study = Study::new();
+    for command in ["check", "simulate", "fit", "evaluate"] {
+        let message = study.refuses(&[command, "nowhere.toml"]);
+        contains_all(&message, &["nowhere.toml", "cannot read the study", "check the path"]);
+    }
+    study.refuses(&["maneuver", "turning", "nowhere.toml"]);
+}
+
+#[test]
+fn unknown_keys_are_named_with_line_and_a_near_name() {
+    let study = Study::new();
+    study.edit("study.toml", "[fit]", "[fit]\ntolerence = 1e-6");
+    let message = study.refuses(&["fit", "study.toml"]);
+    contains_all(&message, &["study.toml:13", "[fit]", "`tolerence`", "did you mean `tolerance`?"]);
+    let study = Study::new();
+    study.edit("study.toml", "ship = ", "shipp = ");
+    contains_all(&study.refuses(&["check", "study.toml"]), &["study.toml:3", "`shipp`", "did you mean `ship`?"]);
+    let study = Study::new();
+    study.edit("study.toml", "speed = 6.0", "speed = \"fast\"");
+    contains_all(&study.refuses(&["maneuver", "turning", "study.toml"]), &["study.toml:", "[maneuver]"]);
+}
+
+#[test]
+fn faults_of_the_ship_file_are_named() {
+    let study = Study::new();
+    std::fs::remove_file(study.path("ship.toml")).unwrap();
+    contains_all(&study.refuses(&["fit", "study.toml"]), &["ship.toml", "cannot read the ship file", "check the path"]);
+    for (mass, expected) in [("-3.359e6", "must be a positive number"), ("3359", "is the mass in kg?")] {
+        let study = Study::new();
+        study.edit("ship.toml", "mass = 3.359e6", &format!("mass = {mass}"));
+        contains_all(&study.refuses(&["fit", "study.toml"]), &["ship.toml:9", "hull.mass", expected]);
+    }
+    let study = Study::new();
+    study.edit("ship.toml", "mass = 3.359e6\n", "");
+    contains_all(&study.refuses(&["fit", "study.toml"]), &["ship.toml:", "missing field `mass`", "SI units"]);
+}
+
+#[test]
+fn faults_of_the_model_file_are_named() {
+    let study = Study::new();
+    study.edit("model.toml", "\"rudder.lift1\"", "\"rudder.lft1\"");
+    let message = study.refuses(&["fit", "study.toml"]);
+    contains_all(
+        &message,
+        &["model.toml:13", "unknown parameter `rudder.lft1`", "did you mean `rudder.lift1`?", "trimtab terms"],
+    );
+    let study = Study::new();
+    study.append("model.toml", "\"hull.Yvdot\" = { value = 3.359e6 }\n");
+    contains_all(&study.refuses(&["fit", "study.toml"]), &["model.toml", "mass matrix is singular", "hull.Yvdot"]);
+    let study = Study::new();
+    study.edit("model.toml", "form = \"paper\"", "form = \"paper\"\nterms = [\"curent\"]");
+    contains_all(&study.refuses(&["fit", "study.toml"]), &["model.toml:", "unknown term `curent`", "`current`?"]);
+    contains_all(
+        &study.refuses(&["fit", "study.toml", "--model", "none.toml"]),
+        &["none.toml", "cannot read the model file"],
+    );
+}
+
+#[test]
+fn constraints_that_contradict_each_other_are_named() {
+    let study = Study::new();
+    study.append("study.toml", "\n[fit.constraints.drag]\nupper = 0.01\n\n[fit.constraints.drag_zero]\nlower = 0.04\n");
+    contains_all(&study.refuses(&["fit", "study.toml"]), &["study.toml", "contradict each other", "drag", "relax"]);
+}
+
+#[test]
+fn a_simulation_that_diverges_is_named() {
+    let study = Study::new();
+    study.edit("model.toml", "value = 34187.03", "value = -1e9");
+    contains_all(&study.refuses(&["fit", "study.toml"]), &["study.toml", "diverges", "start from parameters"]);
+    let output = study.run(&["simulate", "study.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    contains_all(&text(&output.stderr), &["run `ship_a_001`", "diverged", "substeps"]);
+    contains_all(&text(&output.stdout), &["diverged after"]);
+    // For an evaluation it is a result: the model is worse, and no number is spoiled.
+    let value = study.json(&["evaluate", "study.toml"]);
+    assert_eq!(at(&value, "result.summaries.0.diverged_fitted"), 4);
+    assert_eq!(at(&value, "result.summaries.0.worse"), 4);
+    contains_all(&study.does(&["evaluate", "study.toml"]), &["diverged on 4 of 4"]);
+}
+
+#[test]
+fn a_study_without_test_runs_cannot_be_evaluated() {
+    let study = Study::new();
+    study.edit("runs.csv", ",test", ",train");
+    contains_all(
+        &study.refuses(&["evaluate", "study.toml"]),
+        &["study.toml", "no run to judge by", "split = \"test\""],
+    );
+}
+
+#[test]
+fn trials_that_cannot_be_approached_say_why() {
+    let study = Study::new();
+    let message = study.refuses(&["maneuver", "turning", "study.toml", "--speed", "-3"]);
+    contains_all(&message, &["speed", "positive"]);
+    study.edit("study.toml", "[maneuver]", "[maneuver]\nastern_rpm = 90.0");
+    contains_all(&study.refuses(&["maneuver", "stopping", "study.toml"]), &["astern_rpm", "must be negative"]);
+}
+
+#[test]
+fn an_unknown_term_is_refused_with_a_near_name() {
+    let study = Study::new();
+    contains_all(&study.refuses(&["terms", "ruder"]), &["unknown term `ruder`", "`rudder`?"]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_named() {
+    let study = Study::new();
+    contains_all(&study.refuses(&["terms", "--out", "study.toml"]), &["study.toml", "cannot write", "--out"]);
+}
+
+#[test]
+fn wrong_usage_has_exit_code_2() {
+    let study = Study::new();
+    for arguments in [&[][..], &["fti", "study.toml"], &["fit"], &["fit", "study.toml", "--threads", "0"]] {
+        let output = study.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(!output.stderr.is_empty());
+    }
+}
+
+#[test]
+fn a_reader_that_closes_its_end_is_no_fault() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_trimtab"))
+        .args(["terms", "--json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""));
+}
+
+#[test]
+fn the_demo_leaves_a_study_and_beats_its_baseline() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |arguments: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_trimtab")).args(arguments).current_dir(folder.path()).output().unwrap()
+    };
+    let output = run(&["demo", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let test = at(&value, "result.evaluation.summaries.0");
+    assert_eq!(at(test, "runs"), 8);
+    assert!(at(test, "cvdm_improvement.ci95.0").as_f64().unwrap() > 0.3, "{test:#}");
+    for file in ["study.toml", "results/tracks.png", "results/turning.png", "results/fitted.toml"] {
+        assert!(folder.path().join("trimtab-demo").join(file).is_file(), "{file}");
+    }
+    let output = run(&["check", "trimtab-demo/study.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
+    assert!(Path::new(&folder.path().join("trimtab-demo/recordings")).is_dir());
+}
