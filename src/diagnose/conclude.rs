@@ -402,6 +402,10 @@ const FIRST: Effort = Effort { rounds: 8, noise_rounds: 3, noise_iterations: 8, 
 const REFIT: Effort = Effort { rounds: 4, noise_rounds: 0, noise_iterations: 0, noise_runs: 10 };
 const SETTLE: Effort = Effort { rounds: 3, noise_rounds: 1, noise_iterations: 4, noise_runs: 10 };
 
+/// A window must stand out this far (twice the gain in log-likelihood) to be called an event: the ship's own forces in another
+/// form make windows up to about 40 in manoeuvres like crash stops.
+const EVENT: f64 = 60.0;
+
 /// A mechanism with what it costs and brings.
 struct Accepted {
     candidate: usize,
@@ -494,7 +498,8 @@ pub fn diagnose(
 
     // A strong event in time inflates the noise and gets a hull's name: explain it first.
     let mut pushes: Vec<Window> = Vec::new();
-    let local: Vec<Window> = location.windows.iter().filter(|w| is_local(w, &runs)).cloned().collect();
+    let local: Vec<Window> =
+        location.windows.iter().filter(|w| is_local(w, &runs) && w.statistic > EVENT).cloned().collect();
     let push_gain: f64 = local.iter().map(|w| w.statistic - 20.0).sum();
     let best_gain = first.rows.iter().find(|r| acceptable(r, &list, settings)).map_or(0.0, |r| r.test.statistic);
     if !blocked && !settings.withhold.iter().any(|w| w == "push") && push_gain > 0.0 && push_gain > best_gain {
@@ -552,7 +557,7 @@ pub fn diagnose(
     let adequacy_after = last.as_ref().map_or(adequacy_before, adequacy);
     if pushes.is_empty() && !blocked {
         let left = location_after.as_ref().unwrap_or(&location);
-        pushes = left.windows.iter().filter(|w| is_local(w, &runs)).cloned().collect();
+        pushes = left.windows.iter().filter(|w| is_local(w, &runs) && w.statistic > EVENT).cloned().collect();
     }
     let named_something = !accepted.is_empty() || !pushes.is_empty();
     let unlisted = !blocked && !named_something && adequacy_after.asymmetric < 1e-4;

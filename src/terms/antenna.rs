@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["x", "y"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.2,
+        floor: 0.02,
         look_alikes: &["time_skew"],
         trial: "a turn on the spot",
     }],

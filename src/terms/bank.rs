@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["suction", "moment"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.1,
+        floor: 0.01,
         look_alikes: &[],
         trial: "the same track close to the bank and in midstream",
     }],

@@ -43,7 +43,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["drag"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.2,
+        floor: 0.05,
         look_alikes: &["shallow", "hull_nonlinear"],
         trial: "drifting sideways and turning on the spot",
     }],

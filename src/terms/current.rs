@@ -25,7 +25,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["north", "east"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.2,
+        floor: 0.02,
         look_alikes: &["tide", "mean_wind", "earth_force", "log_scale", "water_log"],
         trial: "a stop and drift, then slow turns through all headings",
     }],

@@ -27,7 +27,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["time"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.3,
+        floor: 0.03,
         look_alikes: &["loading", "thrust_loss"],
         trial: "quick changes of propeller rate, and record the shaft",
     }],

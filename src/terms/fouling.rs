@@ -25,7 +25,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["fraction"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.3,
+        floor: 0.075,
         look_alikes: &["thrust_loss"],
         trial: "speed runs before and after docking",
     }],

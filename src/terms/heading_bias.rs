@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["bias"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.2,
+        floor: 0.02,
         look_alikes: &["sway_log_bias", "current"],
         trial: "reciprocal straight runs",
     }],

@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["X_vv", "X_rr", "Y_vvv", "Y_vrr", "N_vvv", "N_rrr"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.5,
+        floor: 0.125,
         look_alikes: &["crossflow"],
         trial: "turning circles at several rudder angles",
     }],

@@ -25,7 +25,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["mass", "x_g"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.5,
+        floor: 0.125,
         look_alikes: &["munk", "fouling", "engine_lag"],
         trial: "accelerations at known thrust",
     }],

@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["error"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.1,
+        floor: 0.01,
         look_alikes: &["current", "water_log"],
         trial: "reciprocal runs over a measured mile",
     }],

@@ -30,7 +30,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["north", "east"],
         probe: Probe::Odd,
         needs_reference: false,
-        floor: 0.1,
+        floor: 0.01,
         look_alikes: &["earth_force", "wave_drift", "current"],
         trial: "drifting stopped on several headings, and record the wind",
     }],

@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["factor"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.3,
+        floor: 0.075,
         look_alikes: &["loading", "shallow"],
         trial: "pull-out from a turn with rudder amidships",
     }],

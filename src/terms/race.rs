@@ -25,7 +25,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["change"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.3,
+        floor: 0.075,
         look_alikes: &["rudder_stall", "wake_drift"],
         trial: "rudder steps at rest with the propeller ahead, and coasting",
     }],

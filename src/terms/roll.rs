@@ -32,7 +32,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["sway", "yaw"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.5,
+        floor: 0.125,
         look_alikes: &["munk", "loading"],
         trial: "zigzags at high speed, and record the roll",
     }],

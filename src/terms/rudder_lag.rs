@@ -49,7 +49,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["time"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.5,
+        floor: 0.05,
         look_alikes: &["rudder_rate", "time_skew"],
         trial: "zigzags with quick rudder orders, and record the rudder itself",
     }],

@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["offset"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.2,
+        floor: 0.05,
         look_alikes: &["propeller_walk_ahead"],
         trial: "straight runs before and after the rudder is set",
     }],

@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["inverse"],
         probe: Probe::Forward,
         needs_reference: false,
-        floor: 0.3,
+        floor: 0.03,
         look_alikes: &["rudder_lag"],
         trial: "rudder hard over from hard over, and record the rudder itself",
     }],

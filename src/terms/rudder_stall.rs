@@ -25,7 +25,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["loss"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.3,
+        floor: 0.075,
         look_alikes: &["crossflow", "rudder_rate"],
         trial: "turning circles at 20, 30 and 35 degrees of rudder",
     }],

@@ -35,7 +35,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["ratio"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.1,
+        floor: 0.025,
         look_alikes: &["crossflow", "munk", "loading"],
         trial: "the same turning circle in deep and in shallow water",
     }],

@@ -25,7 +25,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["share"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.2,
+        floor: 0.05,
         look_alikes: &["propeller_walk_astern"],
         trial: "steering with sternway",
     }],

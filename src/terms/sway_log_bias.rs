@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["bias"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.1,
+        floor: 0.01,
         look_alikes: &["heading_bias", "current"],
         trial: "reciprocal straight runs",
     }],

@@ -25,7 +25,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["fraction"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.2,
+        floor: 0.05,
         look_alikes: &["fouling"],
         trial: "bollard pull and speed runs before and after",
     }],

@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["gain"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.1,
+        floor: 0.01,
         look_alikes: &["push"],
         trial: "thruster alone, at rest and at slow speed",
     }],

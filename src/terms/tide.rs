@@ -29,7 +29,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["north_sin", "north_cos", "east_sin", "east_cos"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.2,
+        floor: 0.02,
         look_alikes: &["current"],
         trial: "the same runs again three and six hours later",
     }],

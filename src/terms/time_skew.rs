@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["position", "heading"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.2,
+        floor: 0.02,
         look_alikes: &["antenna", "rudder_lag"],
         trial: "zigzags, and check the clocks",
     }],

@@ -25,7 +25,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["relief", "asymmetry"],
         probe: Probe::Tangent,
         needs_reference: true,
-        floor: 0.2,
+        floor: 0.05,
         look_alikes: &["race", "hull_nonlinear"],
         trial: "turning circles at several propeller rates",
     }],

@@ -26,7 +26,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["share"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.3,
+        floor: 0.03,
         look_alikes: &["current", "log_scale"],
         trial: "reciprocal runs in the current",
     }],

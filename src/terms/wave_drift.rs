@@ -30,7 +30,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["north", "east"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.2,
+        floor: 0.02,
         look_alikes: &["mean_wind", "earth_force", "current"],
         trial: "drifting stopped on several headings, and record the waves",
     }],

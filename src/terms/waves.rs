@@ -35,7 +35,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["drag", "side", "yaw"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.1,
+        floor: 0.01,
         look_alikes: &["wave_drift", "wind"],
         trial: "slow runs on all headings in higher waves",
     }],

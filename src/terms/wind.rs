@@ -64,7 +64,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["drag", "side", "yaw"],
         probe: Probe::Tangent,
         needs_reference: false,
-        floor: 0.1,
+        floor: 0.01,
         look_alikes: &["mean_wind", "earth_force", "wave_drift"],
         trial: "slow runs on all headings in more wind",
     }],
