@@ -127,7 +127,6 @@ fn sail(a: &Arguments, plan: &[Planned], results: &Path) -> Result<(), ConcealEr
     let writer = Mutex::new(csv::WriterBuilder::new().has_headers(header).from_writer(file));
     let failed = Mutex::new(None);
     let next = AtomicUsize::new(0);
-    let meter = DiagnosisMeter::new()?;
     let bar = ProgressBar::new(plan.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{pos}/{len} {wide_bar} {eta} {msg}") {
         bar.set_style(style);
@@ -135,6 +134,16 @@ fn sail(a: &Arguments, plan: &[Planned], results: &Path) -> Result<(), ConcealEr
     std::thread::scope(|scope| {
         for _ in 0..a.workers.max(1) {
             scope.spawn(|| {
+                // A meter of its own: it keeps what it fitted last, and two cases at a time would take turns.
+                let meter = match DiagnosisMeter::new() {
+                    Ok(meter) => meter,
+                    Err(e) => {
+                        if let Ok(mut slot) = failed.lock() {
+                            *slot = Some(e);
+                        }
+                        return;
+                    }
+                };
                 while let Some(case) = plan.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let score = one(a, case, &meter);
                     bar.set_message(case.key.clone());

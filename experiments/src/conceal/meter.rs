@@ -16,8 +16,8 @@ use super::effects::{Class, Entry};
 use super::strength::{ForceMeter, Meter};
 use super::{ConcealError, Recorded, seal};
 
-/// The ratio of the first accepted mechanism's test on the runs to train on. Effects outside the catalogue are graded by
-/// [`ForceMeter`].
+/// The ratio of the first accepted mechanism that has a test, on the runs to train on. Effects without one (gusts, pushes, those
+/// outside the catalogue) are graded by [`ForceMeter`].
 pub struct DiagnosisMeter {
     model: Model,
     settings: Settings,
@@ -40,9 +40,10 @@ impl DiagnosisMeter {
 
 impl Meter for DiagnosisMeter {
     fn snr(&self, effect: &Entry, with: &Recorded, without: &Recorded) -> Result<f64, ConcealError> {
-        let Some(mechanism) = effect.accepted.first().filter(|_| effect.class != Class::Random) else {
-            return ForceMeter::default().snr(effect, with, without);
-        };
+        let force = || ForceMeter::default().snr(effect, with, without);
+        if effect.class == Class::Random {
+            return force();
+        }
         // Both need the channels of the case, or the same model would see two different seas.
         let (a, b) = (runs(without, with), runs(with, with));
         // A panic elsewhere cannot leave half a value behind: it is replaced as a whole.
@@ -52,7 +53,9 @@ impl Meter for DiagnosisMeter {
                 .map_err(|e| ConcealError::Meter { message: e.to_string() })?;
             *last = Some((a, signal));
         }
-        Ok(last.as_ref().map_or(0.0, |(_, signal)| signal.ratio(&b, mechanism)))
+        let ratio = |mechanism: &&str| last.as_ref().map_or(0.0, |(_, signal)| signal.ratio(&b, mechanism));
+        // Some mechanisms have no sensitivity where they are neutral: a push without a window, a log without a current.
+        effect.accepted.iter().map(ratio).find(|r| *r > 0.0).map_or_else(force, Ok)
     }
 }
 

@@ -149,7 +149,11 @@ pub const ENTRIES: &[Entry] = &[
     sensor("log_scale", &["log_scale"], "-", 0.03, 0.5, Parameters, "constant share", |size, _| {
         Box::new(LogScale(size))
     }),
-    sensor("antenna", &["antenna"], "m", 8.0, 100.0, Parameters, "rigid-body kinematics", antenna),
+    // A fitted hull of unknown Y_r, N_v has a pivot point of its own, some metres from the antenna's.
+    Entry {
+        reference: true,
+        ..sensor("antenna", &["antenna"], "m", 8.0, 100.0, Parameters, "rigid-body kinematics", antenna)
+    },
     sensor(
         "time_skew",
         &["time_skew"],
