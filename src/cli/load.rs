@@ -5,6 +5,7 @@ use super::error::CliError;
 use super::output::progress;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
+use trimtab::diagnose::Settings;
 use trimtab::error::suggestion;
 use trimtab::evaluate::EvaluationSettings;
 use trimtab::fit::FitSettings;
@@ -82,6 +83,11 @@ impl Loaded {
     /// Table `[evaluate]`.
     pub fn evaluation_settings(&self) -> Result<EvaluationSettings, CliError> {
         self.table("evaluate", &self.study.evaluate)
+    }
+
+    /// Table `[diagnose]`.
+    pub fn diagnose_settings(&self) -> Result<Settings, CliError> {
+        self.table("diagnose", &self.study.diagnose)
     }
 
     /// Table `[maneuver]`.

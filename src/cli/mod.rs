@@ -3,6 +3,7 @@
 
 mod check;
 mod demo;
+mod diagnose;
 mod error;
 mod evaluate;
 mod fit;
@@ -32,6 +33,8 @@ Begin with
   trimtab fit STUDY --out results    fit the model; writes results/fitted.toml
   trimtab evaluate STUDY --model results/fitted.toml
                                      judge it on the runs that were kept aside
+  trimtab diagnose STUDY --out results
+                                     what physics does the model lack?
 
 A STUDY is a TOML file that names ship, model and recordings; `trimtab demo` writes one with comments.
 
@@ -57,6 +60,7 @@ enum Command {
     Simulate(simulate::Args),
     Fit(fit::Args),
     Evaluate(evaluate::Args),
+    Diagnose(diagnose::Args),
     Maneuver(maneuver::Args),
     Terms(terms::Args),
     Demo(demo::Args),
@@ -86,6 +90,7 @@ fn execute(cli: &Cli) -> Result<Answer, CliError> {
         Command::Simulate(args) => simulate::run(args),
         Command::Fit(args) => fit::run(args),
         Command::Evaluate(args) => evaluate::run(args),
+        Command::Diagnose(args) => diagnose::run(args),
         Command::Maneuver(args) => maneuver::run(args),
         Command::Terms(args) => terms::run(args),
         Command::Demo(args) => demo::run(args),

@@ -9,12 +9,14 @@ pub mod admit;
 pub mod conclude;
 pub mod estimate;
 pub mod evidence;
+pub mod figures;
 pub mod filter;
 pub mod locate;
 pub mod mechanism;
 pub mod noise;
 pub mod prove;
 pub mod refit;
+pub mod report;
 pub mod screen;
 pub mod signal;
 

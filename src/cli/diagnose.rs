@@ -1,0 +1,124 @@
+//! `trimtab diagnose`: where recordings and simulation part, which physics was left out, and the proof on unseen runs.
+//! The diagnosis, its words and its figures are the library's; here it is asked for, watched and written down.
+
+use super::Answer;
+use super::error::CliError;
+use super::fit::model_text;
+use super::load::{Loaded, StudyArgs};
+use super::output::{Output, OutputArgs, print, progress};
+use std::path::PathBuf;
+use trimtab::diagnose::filter::Run;
+use trimtab::diagnose::{Settings, Verdict, diagnose, figures, report};
+use trimtab::error::suggestion;
+use trimtab::recording::{Split, Window};
+
+const LONG: &str = "\
+Compares the recordings of a study with its model, and answers with evidence:
+  locates    in which equation, when, and in which region of state and inputs a force acts that the model lacks
+  names      which mechanism of the catalogue explains it, or which ones these data cannot tell apart
+  models     adds it, with its size in physical units, and says which parameters had been hiding it
+  proves     before against after on the test runs, which no earlier step has touched
+It says as plainly when nothing is missing, when only gusts are there, when a sensor or the integration step is to blame,
+when the catalogue does not hold it, and when the recordings cannot tell.
+
+The training runs of the study locate, name and model; its test runs only prove. Settings are in the table [diagnose] of the
+study: alpha (chance of naming anything when nothing is missing, 0.05), most (mechanisms at most, 3), withhold (mechanisms
+not to be considered), nuisance (carry unknown hull, propeller and rudder coefficients along, true), substeps (RK4 steps in
+a sample period, 1), seed (of the bootstrap).";
+
+const EXAMPLE: &str = "\
+Example:
+  trimtab diagnose study.toml --out results
+  trimtab evaluate study.toml --model results/improved.toml --baseline results/base.toml
+
+With --out: report.html (everything on one page, readable offline), diagnosis.json, improved.toml (a model file with what was
+found, which every command takes as --model), base.toml (the study's model, refitted the same way), figures/*.png with the
+CSV behind each.
+
+Exit code 0 if a verdict was reached, whichever; 1 if the recordings cannot answer (verdict `insufficient`, or a fault in
+them that must be mended first); 2 if it could not run.
+
+diagnosis.json (and --json), in SI units and radians; what does not exist or is not finite is absent:
+";
+
+/// Says what physics a model lacks, models it, and proves the gain on unseen runs
+#[derive(Debug, clap::Args)]
+#[command(long_about = LONG, after_long_help = format!("{EXAMPLE}{}", report::keys_listing()))]
+pub struct Args {
+    #[command(flatten)]
+    study: StudyArgs,
+    /// A mechanism that must not be considered; may be given several times (see `trimtab terms`).
+    #[arg(long, value_name = "NAME")]
+    withhold: Vec<String>,
+    /// Seed of the bootstrap, instead of the study's.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<Answer, CliError> {
+    let mut output = Output::new("diagnose", &args.output)?;
+    let loaded = Loaded::new(&args.study)?;
+    let settings = settings(args, loaded.diagnose_settings()?)?;
+    let windows = loaded.windows()?.windows;
+    let of = |split: Split| -> Vec<Run> {
+        windows.iter().filter(|w: &&Window| w.split == split).map(Run::from).collect()
+    };
+    let (train, held_out) = (of(Split::Train), of(Split::Test));
+    if train.is_empty() {
+        loaded.windows_of(Split::Train)?;
+    }
+    let bar = progress("diagnosing");
+    let diagnosis =
+        diagnose(&loaded.model, &train, &held_out, &settings, &|step| bar.set_message(format!("diagnosing: {step}")));
+    bar.finish_and_clear();
+    let diagnosis = diagnosis.map_err(|error| CliError::Model { path: None, error })?;
+
+    let name = &loaded.study.name;
+    let document = serde_json::to_string_pretty(&report::document(&diagnosis, name)?)? + "\n";
+    output.file("diagnosis.json", document.as_bytes())?;
+    if output.has_folder() {
+        output.file("improved.toml", model_text(&diagnosis.model)?.as_bytes())?;
+        output.file("base.toml", model_text(&diagnosis.base)?.as_bytes())?;
+        let pictures = figures::all(&diagnosis);
+        output.file("report.html", report::page(&diagnosis, name, &pictures)?.render().as_bytes())?;
+        for p in &pictures {
+            output.figure(&format!("figures/{}", p.stem), || p.figure.clone())?;
+        }
+    }
+    if args.output.json {
+        print(&document)?;
+    } else {
+        let written = args.output.out.as_ref().map_or_else(
+            || "\nGive --out DIR to keep the improved model, the figures and the report.\n".to_owned(),
+            |folder: &PathBuf| {
+                format!(
+                    "\nWritten to {}: report.html, diagnosis.json, improved.toml, base.toml, figures/\n",
+                    folder.display()
+                )
+            },
+        );
+        print(&(report::summary(&diagnosis, name) + &written))?;
+    }
+    let unanswered = diagnosis.verdict == Verdict::Insufficient || diagnosis.admission.issues.iter().any(|i| i.blocking);
+    Ok(if unanswered { Answer::No } else { Answer::Yes })
+}
+
+/// The study's settings with what the arguments say, and every withheld name checked.
+fn settings(args: &Args, mut settings: Settings) -> Result<Settings, CliError> {
+    settings.withhold.extend(args.withhold.iter().cloned());
+    settings.seed = args.seed.unwrap_or(settings.seed);
+    let known: Vec<&str> = report::mechanism_names().collect();
+    for name in &settings.withhold {
+        if !known.contains(&name.as_str()) {
+            return Err(CliError::Argument(format!(
+                "there is no mechanism `{name}` to withhold; they are {}{}",
+                known.join(", "),
+                suggestion(name, known.iter().copied())
+            )));
+        }
+    }
+    Ok(settings)
+}
