@@ -63,9 +63,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let loaded = Loaded::new(&args.study)?;
     let settings = settings(args, loaded.diagnose_settings()?)?;
     let windows = loaded.windows()?.windows;
-    let of = |split: Split| -> Vec<Run> {
-        windows.iter().filter(|w: &&Window| w.split == split).map(Run::from).collect()
-    };
+    let of =
+        |split: Split| -> Vec<Run> { windows.iter().filter(|w: &&Window| w.split == split).map(Run::from).collect() };
     let (train, held_out) = (of(Split::Train), of(Split::Test));
     if train.is_empty() {
         loaded.windows_of(Split::Train)?;
@@ -102,7 +101,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         );
         print(&(report::summary(&diagnosis, name) + &written))?;
     }
-    let unanswered = diagnosis.verdict == Verdict::Insufficient || diagnosis.admission.issues.iter().any(|i| i.blocking);
+    let unanswered =
+        diagnosis.verdict == Verdict::Insufficient || diagnosis.admission.issues.iter().any(|i| i.blocking);
     Ok(if unanswered { Answer::No } else { Answer::Yes })
 }
 

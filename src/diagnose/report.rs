@@ -6,6 +6,7 @@ use super::figures::Picture;
 use super::locate::{EquationShare, Window};
 use super::mechanism::{Kind, Mechanism};
 use crate::report::{FigureError, Page, Section, Table, fixed, sig};
+use crate::ship::Ship;
 use crate::terms::CATALOGUE;
 use serde_json::{Map, Value};
 
@@ -19,10 +20,7 @@ pub const KEYS: &[(&str, &str)] = &[
     ("schema", "layout of this document, `trimtab-diagnosis/1`; keys are only ever added to it"),
     ("study", "name of the study"),
     ("version", "version of trimtab that wrote it"),
-    (
-        "verdict",
-        "nothing_missing, named, one_of, not_in_catalogue, sensor, numerics, random (gusts), or insufficient",
-    ),
+    ("verdict", "nothing_missing, named, one_of, not_in_catalogue, sensor, numerics, random (gusts), or insufficient"),
     ("headline", "the verdict in one sentence"),
     ("findings[]", "what was found, strongest first; empty unless the verdict is named, one_of or sensor"),
     ("findings[].mechanism", "name in the catalogue; `push` for a force of limited duration"),
@@ -75,9 +73,15 @@ pub const KEYS: &[(&str, &str)] = &[
     ("admission.issues[].blocking", "whether it must be mended before any physics is concluded"),
     ("admission.integration", "method and substeps the diagnosis used"),
     ("admission.integration_error", "largest change of a standardised innovation when the step is refined eight times"),
-    ("admission.euler_gain", "log-likelihood gained by reading the recordings as explicit Euler; large for simulated data"),
+    (
+        "admission.euler_gain",
+        "log-likelihood gained by reading the recordings as explicit Euler; large for simulated data",
+    ),
     ("noise_before", "noise with the base model"),
-    ("noise_before.sensors[]", "sensor noise of position [m], heading [rad], speed [m/s], yaw rate [rad/s], in this order"),
+    (
+        "noise_before.sensors[]",
+        "sensor noise of position [m], heading [rad], speed [m/s], yaw rate [rad/s], in this order",
+    ),
     ("noise_before.sensors[].white", "standard deviation of the white part"),
     ("noise_before.sensors[].coloured", "standard deviation of the coloured part"),
     ("noise_before.sensors[].time", "its correlation time [s]"),
@@ -131,7 +135,10 @@ pub const KEYS: &[(&str, &str)] = &[
     ("confusable[].b", "the other"),
     ("confusable[].cosine", "likeness; 1 when they cannot be told apart"),
     ("adequacy_before", "tests of any smooth force law, under the base model"),
-    ("adequacy_before.symmetric", "p-value of forces with port-starboard symmetry: the ship's own forces have another form"),
+    (
+        "adequacy_before.symmetric",
+        "p-value of forces with port-starboard symmetry: the ship's own forces have another form",
+    ),
     ("adequacy_before.asymmetric", "p-value of forces without it, or fixed on the earth"),
     ("adequacy_after", "the same with the findings"),
     ("surrogate[]", "a sparse force law for what the catalogue does not hold; a stand-in, not physics"),
@@ -205,23 +212,36 @@ fn pruned(value: Value) -> Option<Value> {
     }
 }
 
-/// Factor and unit in which people read an SI unit.
-pub(super) fn human(unit: &str) -> (f64, &str) {
-    const DEGREES: f64 = 180.0 / std::f64::consts::PI;
-    match unit {
-        "N" => (1e-3, "kN"),
-        "N m" => (1e-3, "kN m"),
-        "kg" => (1e-3, "t"),
-        "rad" => (DEGREES, "deg"),
-        "rad/s" => (DEGREES, "deg/s"),
-        "-" => (1.0, ""),
-        other => (1.0, other),
-    }
+/// The units in which people read: degrees, and kN and t for a ship but N and kg for a model basin's.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Units {
+    large: bool,
 }
 
-fn with_unit(value: f64, unit: &str) -> String {
-    let (factor, unit) = human(unit);
-    format!("{} {unit}", sig(value * factor, 3)).trim_end().to_owned()
+impl Units {
+    /// The units for a ship.
+    pub(super) fn of(ship: &Ship) -> Self {
+        Self { large: ship.hull.mass > 2e4 }
+    }
+
+    /// Factor from an SI unit, and the unit it leads to.
+    pub(super) fn human(self, unit: &str) -> (f64, &str) {
+        const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+        match unit {
+            "N" if self.large => (1e-3, "kN"),
+            "N m" if self.large => (1e-3, "kN m"),
+            "kg" if self.large => (1e-3, "t"),
+            "rad" => (DEGREES, "deg"),
+            "rad/s" => (DEGREES, "deg/s"),
+            "-" => (1.0, ""),
+            other => (1.0, other),
+        }
+    }
+
+    fn text(self, value: f64, unit: &str) -> String {
+        let (factor, unit) = self.human(unit);
+        format!("{} {unit}", sig(value * factor, 3)).trim_end().to_owned()
+    }
 }
 
 fn p_value(p: f64) -> String {
@@ -320,17 +340,15 @@ fn wrapped(lead: &str, paragraph: &str) -> String {
 }
 
 fn verdict(d: &Diagnosis) -> Vec<String> {
+    let units = Units::of(&d.base.ship);
     let mut lines = vec![verdict_words(d.verdict).to_owned()];
     if d.findings.is_empty() {
         lines.push(d.headline.clone());
     }
     for f in &d.findings {
-        let where_from = if f.sessions.is_empty() {
-            String::new()
-        } else {
-            format!(" (only in {})", f.sessions.join(", "))
-        };
-        let size = size_of(f).map_or(String::new(), |s| format!(": {s}"));
+        let where_from =
+            if f.sessions.is_empty() { String::new() } else { format!(" (only in {})", f.sessions.join(", ")) };
+        let size = size_of(f, units).map_or(String::new(), |s| format!(": {s}"));
         lines.push(format!("{}{size}{where_from}; {} after correction for all that was tried", f.title, p_value(f.p)));
         if f.confidence_set.len() > 1 {
             let others: Vec<&str> = f.confidence_set.iter().map(|m| title_of(m)).collect();
@@ -352,10 +370,10 @@ fn verdict(d: &Diagnosis) -> Vec<String> {
 }
 
 /// Size and direction of a mechanism given by its components towards north and east, in the words of its kind.
-fn size_of(f: &Finding) -> Option<String> {
+fn size_of(f: &Finding, units: Units) -> Option<String> {
     let part = |suffix: &str| f.parameters.iter().find(|p| p.name.ends_with(suffix));
     let (Some(north), Some(east)) = (part(".north"), part(".east")) else {
-        let all: Vec<String> = f.parameters.iter().map(amplitude).collect();
+        let all: Vec<String> = f.parameters.iter().map(|a| amplitude(a, units)).collect();
         return (!all.is_empty()).then(|| all.join(", "));
     };
     let size = north.value.hypot(east.value);
@@ -375,7 +393,7 @@ fn size_of(f: &Finding) -> Option<String> {
             (size.sqrt(), 0.5 * error / size.sqrt(), "m significant height", format!("from {from:03.0} deg"))
         }
         _ => {
-            let (factor, unit) = human(&north.unit);
+            let (factor, unit) = units.human(&north.unit);
             (size * factor, error * factor, unit, format!("towards {towards:03.0} deg"))
         }
     };
@@ -388,11 +406,11 @@ fn size_of(f: &Finding) -> Option<String> {
     Some(format!("{} {unit} ({} to {}) {direction}", sig(magnitude, 3), sig(low, 3), sig(magnitude + 1.96 * error, 3)))
 }
 
-fn amplitude(a: &Amplitude) -> String {
-    let (factor, _) = human(&a.unit);
+fn amplitude(a: &Amplitude, units: Units) -> String {
+    let (factor, _) = units.human(&a.unit);
     let about = about(&a.name).map_or_else(|| a.name.clone(), str::to_owned);
     let [low, high] = a.ci95.map(|v| sig(v * factor, 3));
-    format!("{about} {} ({low} to {high})", with_unit(a.value, &a.unit))
+    format!("{about} {} ({low} to {high})", units.text(a.value, &a.unit))
 }
 
 /// The plain words for a parameter.
@@ -404,44 +422,45 @@ fn about(name: &str) -> Option<&'static str> {
 
 const EQUATIONS: [(&str, &str); 3] = [("X", "N"), ("Y", "N"), ("N", "N m")];
 
-fn equations(shares: [&EquationShare; 3]) -> String {
+fn equations(shares: [&EquationShare; 3], units: Units) -> String {
     EQUATIONS
         .iter()
         .zip(shares)
-        .map(|((e, unit), s)| format!("{e} {} ({})", percent(s.share), with_unit(s.rms, unit)))
+        .map(|((e, unit), s)| format!("{e} {} ({})", percent(s.share), units.text(s.rms, unit)))
         .collect::<Vec<_>>()
         .join("   ")
 }
 
-fn forces(force: &[f64; 3], error: &[f64; 3]) -> String {
+fn forces(force: &[f64; 3], error: &[f64; 3], units: Units) -> String {
     EQUATIONS
         .iter()
         .zip(force.iter().zip(error))
         .map(|((e, unit), (f, s))| {
-            let (factor, unit) = human(unit);
+            let (factor, unit) = units.human(unit);
             format!("{e} {} +- {} {unit}", sig(f * factor, 3), sig(1.96 * s * factor, 2))
         })
         .collect::<Vec<_>>()
         .join(", ")
 }
 
-fn window(w: &Window) -> String {
+fn window(w: &Window, units: Units) -> String {
     format!(
         "{} from {} to {} s: {} ({})",
         w.run,
         fixed(w.start, 0),
         fixed(w.end, 0),
-        forces(&w.force, &w.error),
+        forces(&w.force, &w.error, units),
         p_value(w.p)
     )
 }
 
 fn location(d: &Diagnosis) -> Vec<String> {
+    let units = Units::of(&d.base.ship);
     let [x, y, n] = &d.location.equations;
-    let mut lines = vec![format!("unexplained force by equation (rms): {}", equations([x, y, n]))];
+    let mut lines = vec![format!("unexplained force by equation (rms): {}", equations([x, y, n], units))];
     for f in d.findings.iter().filter(|f| f.kind != Kind::Sensor) {
         let e = &f.equations;
-        lines.push(format!("{} brings (rms): {}", f.title, equations([&e.x, &e.y, &e.n])));
+        lines.push(format!("{} brings (rms): {}", f.title, equations([&e.x, &e.y, &e.n], units)));
     }
     let pushes: Vec<&Window> = d.findings.iter().flat_map(|f| &f.windows).collect();
     let windows: Vec<&Window> = if pushes.is_empty() { d.location.windows.iter().collect() } else { pushes };
@@ -449,8 +468,13 @@ fn location(d: &Diagnosis) -> Vec<String> {
     if windows.is_empty() {
         lines.push("in time: no window stands out".to_owned());
     } else {
-        lines.push(format!("in time: {} windows in {} of {} runs stand out", windows.len(), sailed.len(), d.traces.len()));
-        lines.extend(windows.iter().take(3).map(|w| format!("  {}", window(w))));
+        lines.push(format!(
+            "in time: {} windows in {} of {} runs stand out",
+            windows.len(),
+            sailed.len(),
+            d.traces.len()
+        ));
+        lines.extend(windows.iter().take(3).map(|w| format!("  {}", window(w, units))));
     }
     let regions: Vec<_> = d.location.regions.iter().filter(|r| r.p < 0.01).collect();
     if regions.is_empty() {
@@ -461,7 +485,7 @@ fn location(d: &Diagnosis) -> Vec<String> {
             "{} ({} of samples): {} ({})",
             r.region,
             percent(r.samples),
-            forces(&r.force, &r.error),
+            forces(&r.force, &r.error, units),
             p_value(r.p)
         ));
     }
@@ -476,17 +500,13 @@ fn location(d: &Diagnosis) -> Vec<String> {
 }
 
 fn model(d: &Diagnosis) -> Vec<String> {
+    let units = Units::of(&d.base.ship);
     let mut lines = Vec::new();
     for f in &d.findings {
-        lines.extend(f.parameters.iter().map(|a| format!("{}: {}", a.name, amplitude(a))));
+        lines.extend(f.parameters.iter().map(|a| format!("{}: {}", a.name, amplitude(a, units))));
     }
     for t in &d.surrogate {
-        lines.push(format!(
-            "surrogate, not physics: {} = {} +- {}",
-            t.name,
-            sig(t.value, 3),
-            sig(1.96 * t.error, 2)
-        ));
+        lines.push(format!("surrogate, not physics: {} = {} +- {}", t.name, sig(t.value, 3), sig(1.96 * t.error, 2)));
     }
     if lines.is_empty() {
         lines.push("nothing was added; the improved model is the base model, refitted".to_owned());
@@ -511,7 +531,11 @@ fn proof(d: &Diagnosis) -> Vec<String> {
         return vec!["no runs were kept aside, so nothing is proven; mark some with `split = \"test\"`".to_owned()];
     };
     if d.findings.is_empty() {
-        return vec![format!("nothing to prove; base model, refitted, on {} unseen runs: cVDM {} %", h.runs, sig(h.before, 3))];
+        return vec![format!(
+            "nothing to prove; base model, refitted, on {} unseen runs: cVDM {} %",
+            h.runs,
+            sig(h.before, 3)
+        )];
     }
     let mut lines = vec![format!(
         "{} unseen runs: cVDM {} % before, {} % after (median improvement {}, 95 % {} to {}); {} better, {} worse",
@@ -554,6 +578,7 @@ fn adequacy_words(p: f64) -> &'static str {
 }
 
 fn still_open(d: &Diagnosis) -> Vec<String> {
+    let units = Units::of(&d.base.ship);
     let a = d.adequacy_after;
     let mut lines = vec![
         format!(
@@ -571,7 +596,7 @@ fn still_open(d: &Diagnosis) -> Vec<String> {
         .iter()
         .enumerate()
         .map(|(e, (name, unit))| {
-            let (factor, unit) = human(unit);
+            let (factor, unit) = units.human(unit);
             let (before, after) = (d.noise_before.force[e] * factor, d.noise_after.force[e] * factor);
             format!("{name} {} before, {} {unit} after", sig(before, 3), sig(after, 3))
         })
@@ -596,20 +621,20 @@ fn still_open(d: &Diagnosis) -> Vec<String> {
 }
 
 fn blind(d: &Diagnosis) -> Vec<String> {
+    let units = Units::of(&d.base.ship);
     let mut lines = Vec::new();
     let mut reasons: Vec<&str> = d.absorbed.iter().map(|a| a.by.as_str()).collect();
     reasons.sort_unstable();
     reasons.dedup();
     for reason in reasons {
-        let names: Vec<&str> =
-            d.absorbed.iter().filter(|a| a.by == reason).map(|a| title_of(&a.mechanism)).collect();
+        let names: Vec<&str> = d.absorbed.iter().filter(|a| a.by == reason).map(|a| title_of(&a.mechanism)).collect();
         lines.push(format!("hidden: {} (by {reason})", names.join(", ")));
     }
     let sizes: Vec<String> = d
         .detectable
         .iter()
         .filter(|s| s.size.is_finite())
-        .map(|s| format!("{} {}", title_of(&s.mechanism), with_unit(s.size, &s.unit)))
+        .map(|s| format!("{} {}", title_of(&s.mechanism), units.text(s.size, &s.unit)))
         .collect();
     if !sizes.is_empty() {
         lines.push(format!("would have been seen, 4 times in 5, from: {}", sizes.join("; ")));
@@ -621,10 +646,9 @@ fn blind(d: &Diagnosis) -> Vec<String> {
 }
 
 fn next_trial(d: &Diagnosis) -> Vec<String> {
-    d.next_trial.as_ref().map_or_else(
-        || vec!["none is needed for this verdict".to_owned()],
-        |t| vec![format!("{}: {}", t.trial, t.why)],
-    )
+    d.next_trial
+        .as_ref()
+        .map_or_else(|| vec!["none is needed for this verdict".to_owned()], |t| vec![format!("{}: {}", t.trial, t.why)])
 }
 
 /// The diagnosis as one page that carries its figures.
@@ -633,13 +657,14 @@ fn next_trial(d: &Diagnosis) -> Vec<String> {
 /// When a figure cannot be drawn.
 pub fn page(d: &Diagnosis, study: &str, pictures: &[Picture]) -> Result<Page, FigureError> {
     let mut page = Page::new(format!("Diagnosis: {study}")).lede(d.headline.clone()).lede(subject(d, study));
-    for (i, part) in parts(d).into_iter().enumerate() {
+    for part in parts(d) {
         let mut section = Section::new(sentence_case(part.heading)).list(&part.lines);
-        for p in pictures.iter().filter(|p| p.part == i) {
+        for p in pictures.iter().filter(|p| p.part == part.heading) {
             section = section.figure(&p.figure, &p.caption)?;
         }
         if part.heading == "MODEL" && !d.moves.is_empty() {
-            section = section.table(&moves_table(d), "The model's own parameters without and with the findings (SI units).");
+            section =
+                section.table(&moves_table(d), "The model's own parameters without and with the findings (SI units).");
         }
         page = page.section(section);
     }

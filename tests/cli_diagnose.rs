@@ -1,0 +1,194 @@
+//! `trimtab diagnose` as a user runs it: a study on disk in, verdict, documents and pictures out, and the promises between them.
+//! Whether verdicts are right is tested on the library; here one current is concealed, and what is written about it is read.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::LazyLock;
+use support::{model, runs, truth_noise};
+use trimtab::diagnose::report::KEYS;
+
+/// Runs the command in a folder.
+fn trimtab(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_trimtab")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// Writes a study of `count` runs, every fourth kept aside, of a ship in a current that its model file does not know.
+fn write_study(folder: &Path, count: usize) {
+    let base = model();
+    let mut truth = base.clone();
+    truth.add_term("current").unwrap();
+    for (name, value) in [("current.north", 0.2), ("current.east", 0.1)] {
+        let i = truth.find(name).unwrap();
+        truth.parameters[i].value = value;
+    }
+    let mut table = "file,name,session,split\n".to_owned();
+    for (i, run) in runs(&truth, &truth_noise(), count, 1).iter().enumerate() {
+        let mut rows = "t [s],x [m],y [m],psi [rad],u [m/s],v [m/s],r [rad/s],n [rps],delta [rad]\n".to_owned();
+        for (m, input) in run.measured.iter().zip(&run.inputs) {
+            let [x, y, psi, u, v, r] = m;
+            writeln!(rows, "{},{x},{y},{psi},{u},{v},{r},{},{}", input.t, input.n, input.delta).unwrap();
+        }
+        std::fs::write(folder.join(format!("{i}.csv")), rows).unwrap();
+        let split = if i % 4 == 3 { "test" } else { "train" };
+        writeln!(table, "{i}.csv,{},{},{split}", run.name, run.session).unwrap();
+    }
+    std::fs::write(folder.join("runs.csv"), table).unwrap();
+    let ship = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/ships/a.toml");
+    std::fs::copy(ship, folder.join("ship.toml")).unwrap();
+    std::fs::write(folder.join("model.toml"), toml::to_string(&base.to_file()).unwrap()).unwrap();
+    let study = "name = \"Concealed current\"\nship = \"ship.toml\"\nmodel = \"model.toml\"\ndata = \".\"\nruns = \"runs.csv\"\n\n[diagnose]\nseed = 7\n";
+    std::fs::write(folder.join("study.toml"), study).unwrap();
+}
+
+/// The study and what `diagnose --out results` made of it, computed once for all tests.
+struct Case {
+    folder: PathBuf,
+    output: Output,
+    document: Value,
+}
+
+static CASE: LazyLock<Case> = LazyLock::new(|| {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("diagnose");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    write_study(&folder, 24);
+    let output = trimtab(&folder, &["diagnose", "study.toml", "--out", "results"]);
+    assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
+    let document = std::fs::read_to_string(folder.join("results/diagnosis.json")).unwrap();
+    Case { folder, output, document: serde_json::from_str(&document).unwrap() }
+});
+
+/// Every path of a document, list entries as `[]`; what stands under a list of names or numbers is not a path.
+fn paths(value: &Value, at: &str, out: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(members) => {
+            for (key, v) in members {
+                let path = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
+                paths(v, &path, out);
+            }
+        }
+        Value::Array(entries) if entries.iter().any(Value::is_object) => {
+            entries.iter().for_each(|e| paths(e, &format!("{at}[]"), out));
+        }
+        _ => {
+            out.insert(at.to_owned());
+        }
+    }
+}
+
+#[test]
+fn a_concealed_current_is_named_with_its_size_and_proven_on_unseen_runs() {
+    let d = &CASE.document;
+    assert_eq!(d["verdict"], "named", "{}", d["headline"]);
+    let finding = &d["findings"][0];
+    assert_eq!(finding["mechanism"], "current");
+    let parameters = finding["parameters"].as_array().unwrap();
+    for (p, (name, truth)) in parameters.iter().zip([("current.north", 0.2), ("current.east", 0.1)]) {
+        assert_eq!(p["name"], name);
+        assert!((p["value"].as_f64().unwrap() - truth).abs() < 4.0 * p["error"].as_f64().unwrap(), "{p}");
+    }
+    let proof = &d["held_out"];
+    assert_eq!(proof["runs"], 6);
+    assert!(proof["after"].as_f64() < proof["before"].as_f64(), "{proof}");
+}
+
+#[test]
+fn every_key_of_the_document_is_explained_and_none_is_null() {
+    let mut found = BTreeSet::new();
+    paths(&CASE.document, "", &mut found);
+    // A key that explains a whole object or list covers what is in it, where that is explained elsewhere.
+    let elsewhere = ["settings", "noise_after", "location_after", "adequacy_after", "admission.integration"];
+    let lists = ["findings[].held_out", "findings[].equations", "findings[].windows[]", "held_out.runs_after[]"];
+    let explained = |path: &str| {
+        KEYS.iter().any(|(k, _)| *k == path || k.strip_suffix("[]") == Some(path))
+            || elsewhere.iter().chain(&lists).any(|k| path.starts_with(k))
+    };
+    let missing: Vec<&String> = found.iter().filter(|p| !explained(p)).collect();
+    assert!(missing.is_empty(), "not in KEYS: {missing:?}");
+    assert!(!CASE.document.to_string().contains("null"));
+}
+
+#[test]
+fn no_key_is_explained_that_the_document_cannot_have() {
+    let mut found = BTreeSet::new();
+    paths(&CASE.document, "", &mut found);
+    // What this case gives no cause to.
+    let absent = ["surrogate[]", "admission.issues[]", "location.windows[]", "findings[].windows[]", "absorbed[]", "next_trial", "findings[].region", "ranking[].sessions"];
+    for (key, _) in KEYS {
+        let bare = key.trim_end_matches("[]");
+        let there = found.iter().any(|p| p == bare || p.starts_with(&format!("{key}.")) || p.starts_with(&format!("{bare}.")));
+        assert!(there || absent.iter().any(|a| key.starts_with(a)), "{key} is explained but not there");
+    }
+}
+
+#[test]
+fn the_summary_has_seven_parts_in_order_and_no_missing_number() {
+    let summary = text(&CASE.output.stdout);
+    let headings = ["VERDICT", "WHERE", "MODEL", "PROOF", "STILL OPEN", "BLIND TO", "NEXT TRIAL"];
+    let places: Vec<usize> =
+        headings.iter().enumerate().map(|(i, h)| summary.find(&format!(" {} {h}", i + 1)).unwrap()).collect();
+    assert!(places.is_sorted(), "{summary}");
+    assert!(summary.contains("steady current") && summary.contains("setting towards"), "{summary}");
+    assert!(!summary.contains("NaN") && !summary.contains("inf "), "{summary}");
+    assert!(summary.lines().all(|l| l.chars().count() <= 112), "{summary}");
+}
+
+#[test]
+fn the_improved_model_is_taken_by_other_commands_and_beats_the_base() {
+    let evaluate = |model: &str| {
+        let arguments = ["evaluate", "study.toml", "--model", model, "--baseline", "results/base.toml", "--json"];
+        let output = trimtab(&CASE.folder, &arguments);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let improved = evaluate("results/improved.toml");
+    let main = &improved["result"]["summaries"][0];
+    assert!(main["cvdm_fitted"]["value"].as_f64() < main["cvdm_baseline"]["value"].as_f64(), "{main}");
+}
+
+#[test]
+fn the_report_is_one_file_that_needs_nothing_else() {
+    let page = std::fs::read_to_string(CASE.folder.join("results/report.html")).unwrap();
+    for heading in ["Verdict", "Where", "Model", "Proof", "Still open", "Blind to", "Next trial"] {
+        assert!(page.contains(&format!(">{heading}</h2>")), "{heading}");
+    }
+    let sources: Vec<&str> = page.split("src=\"").skip(1).collect();
+    assert!(sources.len() >= 6 && sources.iter().all(|s| s.starts_with("data:image/png;base64,")));
+    assert!(!page.contains("http") && !page.contains("<script") && !page.contains("NaN"));
+    for stem in ["ranking", "tracks", "forces", "pattern", "compass", "regions", "moves", "held_out", "hull_budget"] {
+        for extension in ["png", "csv"] {
+            let file = CASE.folder.join(format!("results/figures/{stem}.{extension}"));
+            assert!(file.is_file(), "{}", file.display());
+        }
+    }
+}
+
+#[test]
+fn a_mechanism_that_does_not_exist_cannot_be_withheld() {
+    let output = trimtab(&CASE.folder, &["diagnose", "study.toml", "--withhold", "curent"]);
+    assert_eq!(output.status.code(), Some(2));
+    let message = text(&output.stderr);
+    assert!(message.contains("did you mean `current`?") && output.stdout.is_empty(), "{message}");
+}
+
+#[test]
+fn too_few_runs_are_answered_with_what_to_record_and_exit_code_1() {
+    let folder = tempfile::tempdir().unwrap();
+    write_study(folder.path(), 2);
+    let output = trimtab(folder.path(), &["diagnose", "study.toml", "--json"]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    let d: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(d["verdict"], "insufficient");
+    assert!(d["next_trial"]["trial"].as_str().unwrap().contains("turning circles"));
+}
