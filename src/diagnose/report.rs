@@ -9,9 +9,10 @@ use crate::report::{FigureError, Page, Section, Table, fixed, sig};
 use crate::ship::Ship;
 use crate::terms::CATALOGUE;
 use serde_json::{Map, Value};
+use std::collections::BTreeSet;
 
 /// Width of the terminal summary \[characters\].
-const WIDTH: usize = 110;
+const WIDTH: usize = 100;
 /// Width of its left margin with number and heading.
 const MARGIN: usize = 16;
 
@@ -346,35 +347,55 @@ fn verdict(d: &Diagnosis) -> Vec<String> {
         lines.push(d.headline.clone());
     }
     for f in &d.findings {
-        let where_from =
-            if f.sessions.is_empty() { String::new() } else { format!(" (only in {})", f.sessions.join(", ")) };
-        let size = size_of(f, units).map_or(String::new(), |s| format!(": {s}"));
-        lines.push(format!("{}{size}{where_from}; {} after correction for all that was tried", f.title, p_value(f.p)));
+        let size = size_of(f, units).map_or(String::new(), |s| format!(", {s}"));
+        let sessions = sessions(d, f);
+        lines.push(format!(
+            "{}{size}{sessions}: seen, {} after correction for all that was tried",
+            f.title,
+            p_value(f.p)
+        ));
         if f.confidence_set.len() > 1 {
-            let others: Vec<&str> = f.confidence_set.iter().map(|m| title_of(m)).collect();
-            lines.push(format!("cannot tell which of: {} ({})", others.join("; "), f.why));
+            let all: Vec<&str> = f.confidence_set.iter().map(|m| title_of(m)).collect();
+            lines.push(format!("cannot tell which of: {}; {}", all.join(", "), f.why));
         } else {
-            lines.push(format!("no other mechanism of the catalogue fits in its place ({})", f.why));
+            lines.push(f.why.clone());
         }
     }
-    if d.findings.is_empty() && d.verdict != Verdict::NotInCatalogue {
-        if let Some(r) = d.ranking.first() {
-            lines.push(format!("strongest candidate, not named: {} ({} after correction)", r.title, p_value(r.p)));
-        }
+    if let (true, Some(r)) = (d.findings.is_empty(), d.ranking.first()) {
+        lines.push(format!("strongest candidate, not named: {}, {} after correction", r.title, p_value(r.p)));
     }
     for i in &d.admission.issues {
-        let word = if i.blocking { "MEND FIRST" } else { "note" };
+        let word = if i.blocking { "mend first" } else { "note" };
         lines.push(format!("{word}: {}; {}", i.text, i.next_step));
     }
     lines
+}
+
+/// In which sessions a finding acts, named by the shorter list.
+fn sessions(d: &Diagnosis, f: &Finding) -> String {
+    let all: BTreeSet<&str> = d.traces.iter().map(|t| t.session.as_str()).collect();
+    let with: BTreeSet<&str> = f.sessions.iter().map(String::as_str).collect();
+    let without: Vec<&str> = all.difference(&with).copied().collect();
+    if with.is_empty() || without.is_empty() {
+        return String::new();
+    }
+    let few = |list: &[&str]| match list {
+        [first, second, third, _, rest @ ..] => format!("{first}, {second}, {third} and {} more", rest.len() + 1),
+        _ => list.join(", "),
+    };
+    if without.len() < with.len() {
+        format!(", in all sessions but {}", few(&without))
+    } else {
+        format!(", only in {}", few(&with.into_iter().collect::<Vec<_>>()))
+    }
 }
 
 /// Size and direction of a mechanism given by its components towards north and east, in the words of its kind.
 fn size_of(f: &Finding, units: Units) -> Option<String> {
     let part = |suffix: &str| f.parameters.iter().find(|p| p.name.ends_with(suffix));
     let (Some(north), Some(east)) = (part(".north"), part(".east")) else {
-        let all: Vec<String> = f.parameters.iter().map(|a| amplitude(a, units)).collect();
-        return (!all.is_empty()).then(|| all.join(", "));
+        let [only] = f.parameters.as_slice() else { return None };
+        return Some(amplitude(only, units));
     };
     let size = north.value.hypot(east.value);
     if size <= 0.0 || !size.is_finite() {
@@ -406,11 +427,11 @@ fn size_of(f: &Finding, units: Units) -> Option<String> {
     Some(format!("{} {unit} ({} to {}) {direction}", sig(magnitude, 3), sig(low, 3), sig(magnitude + 1.96 * error, 3)))
 }
 
+/// Value and interval.
 fn amplitude(a: &Amplitude, units: Units) -> String {
     let (factor, _) = units.human(&a.unit);
-    let about = about(&a.name).map_or_else(|| a.name.clone(), str::to_owned);
     let [low, high] = a.ci95.map(|v| sig(v * factor, 3));
-    format!("{about} {} ({low} to {high})", units.text(a.value, &a.unit))
+    format!("{} ({low} to {high})", units.text(a.value, &a.unit))
 }
 
 /// The plain words for a parameter.
@@ -464,7 +485,7 @@ fn location(d: &Diagnosis) -> Vec<String> {
     }
     let pushes: Vec<&Window> = d.findings.iter().flat_map(|f| &f.windows).collect();
     let windows: Vec<&Window> = if pushes.is_empty() { d.location.windows.iter().collect() } else { pushes };
-    let sailed: std::collections::BTreeSet<&str> = windows.iter().map(|w| w.run.as_str()).collect();
+    let sailed: BTreeSet<&str> = windows.iter().map(|w| w.run.as_str()).collect();
     if windows.is_empty() {
         lines.push("in time: no window stands out".to_owned());
     } else {
@@ -474,9 +495,9 @@ fn location(d: &Diagnosis) -> Vec<String> {
             sailed.len(),
             d.traces.len()
         ));
-        lines.extend(windows.iter().take(3).map(|w| format!("  {}", window(w, units))));
+        lines.extend(windows.iter().take(3).map(|w| window(w, units)));
     }
-    let regions: Vec<_> = d.location.regions.iter().filter(|r| r.p < 0.01).collect();
+    let regions: Vec<_> = d.location.regions.iter().filter(|r| r.p < 0.01 && r.samples > 0.005).collect();
     if regions.is_empty() {
         lines.push("in state and inputs: no region stands out".to_owned());
     }
@@ -503,7 +524,10 @@ fn model(d: &Diagnosis) -> Vec<String> {
     let units = Units::of(&d.base.ship);
     let mut lines = Vec::new();
     for f in &d.findings {
-        lines.extend(f.parameters.iter().map(|a| format!("{}: {}", a.name, amplitude(a, units))));
+        lines.extend(f.parameters.iter().map(|a| {
+            let about = about(&a.name).map_or(String::new(), |words| format!(", {words}"));
+            format!("{} = {}{about}", a.name, amplitude(a, units))
+        }));
     }
     for t in &d.surrogate {
         lines.push(format!("surrogate, not physics: {} = {} +- {}", t.name, sig(t.value, 3), sig(1.96 * t.error, 2)));
@@ -634,7 +658,7 @@ fn blind(d: &Diagnosis) -> Vec<String> {
         .detectable
         .iter()
         .filter(|s| s.size.is_finite())
-        .map(|s| format!("{} {}", title_of(&s.mechanism), units.text(s.size, &s.unit)))
+        .map(|s| format!("{} {}", s.mechanism, units.text(s.size, &s.unit)))
         .collect();
     if !sizes.is_empty() {
         lines.push(format!("would have been seen, 4 times in 5, from: {}", sizes.join("; ")));
