@@ -4,8 +4,8 @@
 use super::conclude::{Diagnosis, Ranked, Trace};
 use super::report::{Units, title_of};
 use crate::report::{
-    Axis, BASELINE, FITTED, Figure, GREEN, GREY, LIMIT, Layer, Legend, Marker, ORANGE, PURPLE, Panel, RECORDED, SKY,
-    YELLOW, east_north,
+    Axis, BASELINE, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, Legend, Marker, ORANGE, PURPLE, Panel, RECORDED,
+    SKY, east_north,
 };
 use crate::ship::Ship;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -140,10 +140,16 @@ fn telling(d: &Diagnosis) -> Vec<&Trace> {
 const BEFORE: &str = "base model";
 const AFTER: &str = "with the findings";
 
+/// The unknown force along a run, at one stage of the diagnosis.
+type Series = fn(&Trace) -> &[[f64; 3]];
+/// Name, colour and force of a stage.
+type Stage = (&'static str, Color, Series);
+/// Something by which samples are sorted; `None` where it has no meaning.
+type Abscissa<'a> = &'a dyn Fn(&Trace, usize) -> Option<f64>;
+
 /// The force series that there are: before, and after where something was found.
-fn stages(d: &Diagnosis) -> Vec<(&'static str, crate::report::Color, fn(&Trace) -> &[[f64; 3]])> {
-    let mut out: Vec<(&'static str, crate::report::Color, fn(&Trace) -> &[[f64; 3]])> =
-        vec![(BEFORE, BASELINE, |t| &t.before)];
+fn stages(d: &Diagnosis) -> Vec<Stage> {
+    let mut out: Vec<Stage> = vec![(BEFORE, BASELINE, |t| &t.before)];
     if d.location_after.is_some() {
         out.push((AFTER, FITTED, |t| &t.after));
     }
@@ -229,11 +235,11 @@ fn forces(d: &Diagnosis, runs: &[&Trace]) -> Figure {
             let label = format!("{word} {name} [{unit}]");
             let mut panel = Panel::new(title, Axis::new("time [s]"), Axis::new(label).including(0.0));
             for w in d.location.windows.iter().filter(|w| w.run == t.run) {
-                panel = panel.with(Layer::v_span("window that stands out", YELLOW.faded(0.35), w.start, w.end));
+                panel = panel.with(Layer::v_span("window that stands out", SKY, w.start, w.end));
             }
             panel = panel.with(Layer::h_line("zero", GREY, 0.0).unlisted()).with(Layer::band(
                 "95 % band, base model",
-                BASELINE.faded(0.22),
+                BASELINE,
                 (0..t.time.len()).map(|k| {
                     let (time, f, half) = at(k);
                     (time, f - half, f + half)
@@ -252,8 +258,8 @@ fn forces(d: &Diagnosis, runs: &[&Trace]) -> Figure {
 /// Mean of a force in bins of something, run by run, then over runs: (middle of bin, mean, lo, hi).
 fn binned(
     d: &Diagnosis,
-    force: fn(&Trace) -> &[[f64; 3]],
-    of: &dyn Fn(&Trace, usize) -> Option<f64>,
+    force: Series,
+    of: Abscissa,
     component: &dyn Fn(&Trace, usize, &[f64; 3]) -> f64,
     width: f64,
 ) -> Vec<(f64, f64, f64, f64)> {
@@ -306,7 +312,7 @@ fn pattern(d: &Diagnosis) -> Figure {
         let [_, _, _, u, v, _] = t.state[k];
         (u.hypot(v) > slow).then(|| (-v).atan2(u.abs()).to_degrees())
     };
-    let all: [(&str, &dyn Fn(&Trace, usize) -> Option<f64>); 4] = [
+    let all: [(&str, Abscissa); 4] = [
         ("heading psi [deg]", &heading),
         ("propeller rate n [1/s]", &rate),
         ("rudder angle delta [deg]", &rudder),
@@ -357,7 +363,7 @@ fn compass(d: &Diagnosis) -> Figure {
             mean(force, 0).into_iter().zip(mean(force, 1)).map(|(n, e)| n.1.hypot(e.1)).collect::<Vec<f64>>()
         })
         .fold(0.0, f64::max);
-    let length = if large > 0.0 { 0.6 / large } else { 0.0 };
+    let length = if large > 0.0 { 0.7 / large } else { 0.0 };
     let title = format!("Force by heading of the ship; the longest arrow is {} {unit}", crate::report::sig(large, 2));
     let mut figure = Figure::new(title).columns(2).panel_size(700, 700).legend(Legend::Off);
     for (stage, color, force) in stages(d) {
@@ -372,8 +378,8 @@ fn compass(d: &Diagnosis) -> Figure {
         let circle = (0..=72).map(|i| f64::from(5 * i).to_radians().sin_cos());
         let mut panel = Panel::new(
             stage,
-            Axis::new("east").range(-1.75, 1.75).every(10.0),
-            Axis::new("north").range(-1.75, 1.75).every(10.0),
+            Axis::new("east").range(-1.4, 1.4).every(10.0),
+            Axis::new("north").range(-1.4, 1.4).every(10.0),
         );
         panel.equal_aspect = true;
         panel = panel.with(Layer::line("headings", GREY, circle).width(1.5));
@@ -389,7 +395,7 @@ fn regions(d: &Diagnosis) -> Figure {
     let units = Units::of(&d.base.ship);
     let names: Vec<String> = d.location.regions.iter().map(|r| r.region.clone()).collect();
     let mut figure = Figure::new("Mean unexplained force by region").columns(3).legend(Legend::Off);
-    figure = figure.panel_size(620, 130 + 46 * names.len() as u32);
+    figure = figure.panel_size(840, 130 + 46 * names.len() as u32);
     for (e, (name, unit, word)) in EQUATIONS.iter().enumerate() {
         let (factor, unit) = units.human(unit);
         let bars = d.location.regions.iter().map(|r| {
@@ -440,7 +446,7 @@ fn ranking(d: &Diagnosis) -> Figure {
         ("cannot be told from it", SKY),
         ("impossible sign, or too small to matter", ORANGE),
         ("the ship's own forces can explain it", PURPLE),
-        ("gone once the findings are in", GREEN),
+        ("explains something, but worse", GREEN),
         ("not seen", GREY),
     ];
     let threshold = Normal::new(0.0, 1.0).map_or(1.96, |n| -n.inverse_cdf(0.5 * d.settings.alpha));
@@ -536,7 +542,6 @@ fn levels(title: &str, label: &str, rows: impl IntoIterator<Item = (String, f64)
     let (names, values): (Vec<String>, Vec<f64>) = rows.into_iter().unzip();
     let height = 150 + 40 * names.len() as u32;
     let mut panel = Panel::new("", Axis::new(label).including(-2.5).including(2.5), Axis::categories("", names));
-    panel =
-        panel.with(Layer::v_span("within 2", GREY.faded(0.18), -2.0, 2.0)).with(Layer::bars("value", FITTED, values));
+    panel = panel.with(Layer::v_span("within 2", GREY, -2.0, 2.0)).with(Layer::bars("value", FITTED, values));
     Figure::new(title).panel_size(1100, height).legend(Legend::Off).with(panel)
 }

@@ -283,13 +283,13 @@ pub fn subject(d: &Diagnosis, study: &str) -> String {
     let a = &d.admission;
     let held_out = d.held_out.as_ref().map_or("none".to_owned(), |h| h.runs.to_string());
     format!(
-        "{study} · {} runs in {} sessions ({} samples), {held_out} held out · base model {} · {} with {} step(s) a sample",
+        "{study} · {} runs in {} sessions ({} samples), {held_out} held out · base model {} · {}, {} a sample",
         a.runs,
         a.sessions,
         a.samples,
         d.base.name,
         format!("{:?}", a.integration.method).to_uppercase(),
-        a.integration.substeps,
+        if a.integration.substeps == 1 { "one step".to_owned() } else { format!("{} steps", a.integration.substeps) },
     )
 }
 
