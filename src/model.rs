@@ -440,19 +440,22 @@ impl Model {
         }
     }
 
-    fn moment<'a, S: Scalar>(&'a self, state: &State<S>, inputs: &Inputs<S>) -> Moment<'a, S> {
-        Moment { ship: &self.ship, form: self.form, state: *state, inputs: *inputs }
+    fn moment<'a, S: Scalar>(&'a self, state: &'a State<S>, inputs: &'a Inputs<S>) -> Moment<'a, S> {
+        Moment { ship: &self.ship, form: self.form, state, inputs }
     }
 
     /// What the terms share at a moment.
     pub fn flow<S: Number>(&self, theta: &[S], state: &State<S>, inputs: &Inputs<S>) -> Flow<S> {
-        let at = self.moment(state, inputs);
+        self.flow_at(theta, &self.moment(state, inputs))
+    }
+
+    fn flow_at<S: Number>(&self, theta: &[S], at: &Moment<S>) -> Flow<S> {
         let mut adjust = Adjust::neutral();
-        adjust.current = inputs.current;
+        adjust.current = at.inputs.current;
         for t in &self.terms {
-            S::physics(t.term).adjust(&theta[t.offset..t.offset + t.len], &at, &mut adjust);
+            S::physics(t.term).adjust(&theta[t.offset..t.offset + t.len], at, &mut adjust);
         }
-        Flow::new(self.part("flow", theta), &at, adjust)
+        Flow::new(self.part("flow", theta), at, adjust)
     }
 
     /// Time derivative of the state \[x', y', psi', u', v', r'\], and the flow behind it.
@@ -468,23 +471,39 @@ impl Model {
         push: &Force<S>,
     ) -> ([S; STATES], Flow<S>) {
         let at = self.moment(state, inputs);
-        let flow = self.flow(theta, state, inputs);
+        let flow = self.flow_at(theta, &at);
+        (self.rates_in(theta, &at, &flow, push), flow)
+    }
+
+    /// [`Model::rates`] without the flow, which is large where numbers carry derivatives: for the steps of a simulation.
+    pub fn rates_alone<S: Number>(
+        &self,
+        theta: &[S],
+        state: &State<S>,
+        inputs: &Inputs<S>,
+        push: &Force<S>,
+    ) -> [S; STATES] {
+        let at = self.moment(state, inputs);
+        self.rates_in(theta, &at, &self.flow_at(theta, &at), push)
+    }
+
+    fn rates_in<S: Number>(&self, theta: &[S], at: &Moment<S>, flow: &Flow<S>, push: &Force<S>) -> [S; STATES] {
+        let state = at.state;
         let mut force = *push;
         for t in &self.terms {
-            force += S::physics(t.term).force(&theta[t.offset..t.offset + t.len], &at, &flow);
+            force += S::physics(t.term).force(&theta[t.offset..t.offset + t.len], at, flow);
         }
-        let inertia = Inertia::new(self.part("hull", theta), &flow);
+        let inertia = Inertia::new(self.part("hull", theta), flow);
         let [du, dv, dr] = inertia.solve(&force);
         let (sin, cos) = state.psi.sin_cos();
-        let rates = [
+        [
             state.u * cos - state.v * sin,
             state.u * sin + state.v * cos,
             state.r,
             du + flow.current[1] * state.r,
             dv - flow.current[0] * state.r,
             dr,
-        ];
-        (rates, flow)
+        ]
     }
 
     /// The force of each term by name at a moment (X, Y \[N\], N \[N m\]).

@@ -70,7 +70,7 @@ pub fn advance<S: Number>(
     inputs: [&Inputs<S>; 3],
     push: &Force<S>,
 ) -> [S; STATES] {
-    let f = |s: &[S; STATES], i: &Inputs<S>| model.rates(theta, &State::from_array(*s), i, push).0;
+    let f = |s: &[S; STATES], i: &Inputs<S>| model.rates_alone(theta, &State::from_array(*s), i, push);
     let moved = |k: &[S; STATES], h: f64| std::array::from_fn(|j| state[j] + k[j] * h);
     let k1 = f(state, inputs[0]);
     match method {

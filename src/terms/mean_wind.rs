@@ -53,6 +53,6 @@ impl Term for MeanWind {
 
 impl<S: Scalar> Physics<S> for MeanWind {
     fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
-        wind_load(at.ship, &at.state, [p[0], p[1]], TYPICAL.map(S::from_f64))
+        wind_load(at.ship, at.state, [p[0], p[1]], TYPICAL.map(S::from_f64))
     }
 }

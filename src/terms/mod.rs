@@ -70,9 +70,9 @@ pub struct Moment<'a, S> {
     /// Low-speed form of hull and resistance.
     pub form: Form,
     /// The state, velocities over ground.
-    pub state: State<S>,
+    pub state: &'a State<S>,
     /// Inputs at this instant.
-    pub inputs: Inputs<S>,
+    pub inputs: &'a Inputs<S>,
 }
 
 /// A term: something with a name and an equation. What it computes is in [`Physics`].

@@ -92,6 +92,6 @@ impl Term for Wind {
 
 impl<S: Scalar> Physics<S> for Wind {
     fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
-        wind_load(at.ship, &at.state, at.inputs.wind, [p[0], p[1], p[2]])
+        wind_load(at.ship, at.state, at.inputs.wind, [p[0], p[1], p[2]])
     }
 }
