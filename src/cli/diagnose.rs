@@ -14,31 +14,37 @@ use trimtab::recording::{Split, Window};
 
 const LONG: &str = "\
 Compares the recordings of a study with its model, and answers with evidence:
-  locates    in which equation, when, and in which region of state and inputs a force acts that the model lacks
-  names      which mechanism of the catalogue explains it, or which ones these data cannot tell apart
-  models     adds it, with its size in physical units, and says which parameters had been hiding it
+  locates    in which equation, when, and in which region of state and inputs a force acts that
+             the model lacks
+  names      which mechanism of the catalogue explains it, or which ones these data cannot tell
+             apart
+  models     adds it, with its size in physical units, and says which parameters had been hiding
+             it
   proves     before against after on the test runs, which no earlier step has touched
-It says as plainly when nothing is missing, when only gusts are there, when a sensor or the integration step is to blame,
-when the catalogue does not hold it, and when the recordings cannot tell.
+It says as plainly when nothing is missing, when only gusts are there, when a sensor or the
+integration step is to blame, when the catalogue does not hold it, and when the recordings
+cannot tell.
 
-The training runs of the study locate, name and model; its test runs only prove. Settings are in the table [diagnose] of the
-study: alpha (chance of naming anything when nothing is missing, 0.05), most (mechanisms at most, 3), withhold (mechanisms
-not to be considered), nuisance (carry unknown hull, propeller and rudder coefficients along, true), substeps (RK4 steps in
-a sample period, 1), seed (of the bootstrap).";
+The training runs of the study locate, name and model; its test runs only prove. Settings are in
+the table [diagnose] of the study: alpha (chance of naming anything when nothing is missing,
+0.05), most (mechanisms at most, 3), withhold (mechanisms not to be considered), nuisance (carry
+unknown hull, propeller and rudder coefficients along, true), substeps (RK4 steps in a sample
+period, 1), seed (of the bootstrap).";
 
 const EXAMPLE: &str = "\
 Example:
   trimtab diagnose study.toml --out results
   trimtab evaluate study.toml --model results/improved.toml --baseline results/base.toml
 
-With --out: report.html (everything on one page, readable offline), diagnosis.json, improved.toml (a model file with what was
-found, which every command takes as --model), base.toml (the study's model, refitted the same way), figures/*.png with the
-CSV behind each.
+With --out: report.html (everything on one page, readable offline), diagnosis.json,
+improved.toml (a model file with what was found, which every command takes as --model),
+base.toml (the study's model, refitted the same way), figures/*.png with the CSV behind each.
 
-Exit code 0 if a verdict was reached, whichever; 1 if the recordings cannot answer (verdict `insufficient`, or a fault in
-them that must be mended first); 2 if it could not run.
+Exit code 0 if a verdict was reached, whichever; 1 if the recordings cannot answer (verdict
+`insufficient`, or a fault in them that must be mended first); 2 if it could not run.
 
-diagnosis.json (and --json), in SI units and radians; what does not exist or is not finite is absent:
+diagnosis.json (and --json), in SI units and radians; what does not exist or is not finite is
+absent:
 ";
 
 /// Says what physics a model lacks, models it, and proves the gain on unseen runs
