@@ -560,7 +560,8 @@ pub fn diagnose(
         pushes = left.windows.iter().filter(|w| is_local(w, &runs) && w.statistic > EVENT).cloned().collect();
     }
     let named_something = !accepted.is_empty() || !pushes.is_empty();
-    let unlisted = !blocked && !named_something && adequacy_after.asymmetric < 1e-4;
+    // The ship's own port-starboard difference in another form reaches 1e-6 or so.
+    let unlisted = !blocked && !named_something && adequacy_after.asymmetric < 1e-8;
     let surrogate = if unlisted { surrogate(last.as_ref().unwrap_or(&first), &null.model) } else { Vec::new() };
 
     progress("proving on held-out runs");
@@ -636,8 +637,11 @@ pub fn diagnose(
 /// A mechanism may be named: seen, significant, of possible sign and worthwhile size, and not just the ship's own forces in
 /// another form.
 fn acceptable(r: &Row, list: &[Candidate], settings: &Settings) -> bool {
-    let _ = list;
-    r.visible && r.admissible && r.p < settings.alpha && r.size >= 1.0 && r.second_opinion < 0.01
+    let m = list[r.candidate].mechanism;
+    // Sessions differ in what was sailed, and a ship's forces in another form then differ between them: its own physics must
+    // stand out further.
+    let alpha = if m.needs_reference && m.kind == Kind::Ship { 0.02 * settings.alpha } else { settings.alpha };
+    r.visible && r.admissible && r.p < alpha && r.size >= 1.0 && r.second_opinion < 0.01
 }
 
 /// A window that is an event, not a state of affairs: it covers less than 70 % of its run.
@@ -694,9 +698,7 @@ fn compete(
     }
     field.retain(|(r, e, _)| {
         let k = list[r.candidate].columns.len();
-        let (statistic, value, covariance) = wald(e, integration, runs, k);
-        let error: Vec<f64> = (0..k).map(|i| covariance[(i, i)].max(0.0).sqrt()).collect();
-        let _ = error;
+        let (statistic, value, _) = wald(e, integration, runs, k);
         chi_squared_p(statistic, k) * (leaders.len().max(1) as f64) < settings.alpha
             && list[r.candidate].size(value.as_slice()) >= 1.0
     });
@@ -770,13 +772,12 @@ fn backward(
         start += k;
     }
     if let Some((i, start, k)) = drop {
-        let dropped = accepted.remove(i);
+        accepted.remove(i);
         for f in &current.free[start..start + k] {
             let neutral = (current.model.parameters[f.column.parameter].info.default)(&current.model.ship);
             let value = if f.sessions.is_some() { 0.0 } else { neutral };
             f.set(&mut current.model, value);
         }
-        let _ = dropped;
         current.free.drain(start..start + k);
         *current = estimate(&current.model, integration, runs, &current.free, &current.noise, prior, SETTLE);
     }
