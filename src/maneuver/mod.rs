@@ -109,7 +109,7 @@ pub enum Ended {
 /// One trial: how it was begun, what was sailed, and what was measured on it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Trial<M> {
-    /// In words: `turning circle, rudder 35 deg to starboard`.
+    /// In words: `turning 35 deg starboard`.
     pub name: String,
     /// First rudder.
     pub side: Side,

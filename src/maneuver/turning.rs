@@ -125,7 +125,7 @@ pub fn turning_trial(model: &Model, theta: &[f64], approach: &Approach, side: Si
     let mut measures = turning(&track, 0);
     measures.rudder = orders.delta;
     Trial {
-        name: format!("turning circle, rudder {:.0} deg to {}", angle.to_degrees(), side.word()),
+        name: format!("turning {:.0} deg {}", angle.to_degrees(), side.word()),
         side,
         approach: *approach,
         ended,
