@@ -105,7 +105,7 @@ fn noise_is_recovered_and_the_fisher_step_finds_the_parameters() {
         for (c, s) in columns.iter().zip(step.iter()) {
             model.parameters[c.parameter].value += s * c.scale;
         }
-        if round >= 1 && round < 4 {
+        if (1..4).contains(&round) {
             let clock = std::time::Instant::now();
             let tangents: Vec<_> = passes.iter().filter_map(|p| p.tangent.as_ref()).collect();
             let r: Vec<_> = data.iter().collect();

@@ -130,9 +130,10 @@ impl Evidence {
     /// Tests whether a group of columns acts differently from session to session, its common part projected out.
     ///
     /// The amplitudes are those of each session in turn (session-major), relative to the common part. `None` when there
-    /// are fewer than two sessions.
+    /// are fewer than two sessions, or more than half as many as runs.
     pub fn contrast(&self, base: &Base, columns: &[usize]) -> Option<Test> {
-        if self.sessions.len() < 2 {
+        // A session of one run is a run, not a reference.
+        if self.sessions.len() < 2 || 2 * self.sessions.len() > self.runs.len() {
             return None;
         }
         let k = columns.len();
@@ -291,8 +292,8 @@ mod tests {
     #[test]
     fn a_common_amplitude_makes_no_contrast() {
         // Both sessions see the mechanism with the same amplitude 2.
-        let runs =
-            vec![one_run("a", &[0.0, 8.0], &[1.0, 0.0, 0.0, 4.0]), one_run("b", &[0.0, 4.0], &[1.0, 0.0, 0.0, 2.0])];
+        let half = |s: &str, g: f64, h: f64| one_run(s, &[0.0, g], &[0.5, 0.0, 0.0, h]);
+        let runs = vec![half("a", 4.0, 2.0), half("a", 4.0, 2.0), half("b", 2.0, 1.0), half("b", 2.0, 1.0)];
         let e = Evidence::new(runs);
         let base = e.base(&[0], &[0.0], &[0.0]);
         let t = e.contrast(&base, &[1]).unwrap();
