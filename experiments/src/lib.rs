@@ -3,4 +3,5 @@
 
 pub mod conceal;
 pub mod demo;
+pub mod real;
 pub mod truth;

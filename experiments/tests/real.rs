@@ -1,0 +1,86 @@
+//! What is promised of the two real hulls: predictions of trials and windows that no fit has seen, against measured ones.
+//! The recordings are not part of the project; without them these tests skip and say so.
+
+// Helpers of tests may unwrap.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::path::Path;
+use trimtab::recording::Split;
+use trimtab_experiments::real::esso_osaka::{self, BASELINES};
+use trimtab_experiments::real::published::PublishedMmg;
+use trimtab_experiments::real::{Hull, RealError, is_absent, kvlcc2};
+
+/// The value, or none after saying that the recordings are absent.
+fn present<T>(result: Result<T, RealError>) -> Option<T> {
+    match result {
+        Ok(value) => Some(value),
+        Err(error) if is_absent(&error) => {
+            eprintln!("skipped: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn zigzags_of_kvlcc2_predict_her_turning_circles() {
+    let Some(outcome) = present(kvlcc2::run()) else { return };
+    assert!(outcome.fits.iter().all(|f| f.converged));
+    let [empirical, freed] = [0, 2];
+    for side in ["starboard", "port"] {
+        for (what, within) in [("advance", 0.04), ("transfer", 0.07), ("tactical diameter", 0.07)] {
+            let measure = outcome.measure(&format!("35 deg to {side}: {what} [L]")).unwrap();
+            let error = measure.error(freed).unwrap().abs();
+            assert!(error < within, "{}: {error:.3}", measure.what);
+            assert!(error < 0.5 * measure.error(empirical).unwrap().abs(), "{}: {error:.3}", measure.what);
+        }
+    }
+    // The screw turns one way only: the starboard circle is the wider one.
+    let diameter = |side: &str| outcome.measure(&format!("35 deg to {side}: tactical diameter [L]")).unwrap();
+    let (starboard, port) = (diameter("starboard"), diameter("port"));
+    assert!(starboard.measured > port.measured);
+    assert!(starboard.predicted[freed].unwrap() > port.predicted[freed].unwrap());
+}
+
+#[test]
+fn esso_osaka_fitted_to_a_few_windows_beats_both_baselines_on_unseen_runs() {
+    // Every fourth training window and the fourteen parameters: the full set is the experiment's.
+    let Some(judged) = present(esso_osaka::run(&["wind.toml"], 4)) else { return };
+    assert!(judged.fits[0].converged);
+    for baseline in 0..BASELINES {
+        let gain = judged.against(baseline, BASELINES, None).cvdm_improvement.unwrap().value;
+        assert!(gain > 0.1, "{}: {gain:.3}", judged.candidates[baseline].name);
+    }
+}
+
+#[test]
+fn published_simulator_reaches_the_recorded_speeds_and_turns_the_right_way() {
+    let Some(hull) = present(Hull::open("esso_osaka")) else { return };
+    let published = PublishedMmg::read(hull.study.runs[0].file.ancestors().nth(2).unwrap()).unwrap();
+    let mut window = hull.windows(Split::Test).unwrap().remove(0);
+    window.initial = [0.0, 0.0, 0.0, 0.05, 0.0, 0.0];
+    // Straight ahead at the rate of the faster turns, for as long as it takes.
+    let first = window.inputs[0];
+    window.inputs = vec![trimtab::state::Inputs { n: 10.0, delta: 0.0, ..first }; 600];
+    let straight = published.simulate(&window);
+    let [_, _, psi, u, v, _] = *straight.states.last().unwrap();
+    assert!(straight.diverged_at.is_none() && (0.3..0.5).contains(&u), "{u}");
+    assert!(psi.abs() < 1e-9 && v.abs() < 1e-9, "nothing pushes her to one side");
+    for side in [1.0, -1.0] {
+        window.inputs.iter_mut().for_each(|i| i.delta = 0.3 * side);
+        let turned = published.simulate(&window);
+        let [_, _, _, u, v, r] = *turned.states.last().unwrap();
+        assert!(r * side > 0.01 && v * side < 0.0 && u > 0.0, "{u} {v} {r}");
+    }
+}
+
+#[test]
+fn missing_parameters_are_named_with_their_file() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("principal_particulars.csv"), "parameter,value\nlpp, 3.0\n").unwrap();
+    std::fs::write(folder.path().join("MMG_params.csv"), "parameter,params_init\n").unwrap();
+    let error = PublishedMmg::read(folder.path()).unwrap_err().to_string();
+    assert!(error.contains("principal_particulars.csv") && error.contains("`draft`"), "{error}");
+    let error = PublishedMmg::read(Path::new("no/such/folder")).unwrap_err().to_string();
+    assert!(error.contains("cannot read the published parameters"), "{error}");
+}
