@@ -16,6 +16,9 @@ use trimtab::simulate::Trajectory;
 /// Model files that are fitted, in the order of the tables.
 pub const FITTED_MODELS: [&str; 4] = ["model.toml", "wind.toml", "freed.toml", "freed_wind.toml"];
 
+/// What a panel shows of a state at a time since the start of the window \[s\].
+type Curve = dyn Fn(f64, &[f64; 6]) -> (f64, f64);
+
 /// A model on every window.
 pub struct Candidate {
     /// Name.
@@ -195,7 +198,7 @@ impl Judged {
             of.sort_by(|a, b| cvdm(*a).total_cmp(&cvdm(*b)));
             let Some(&i) = of.get((of.len() - 1) / 2) else { continue };
             let window = &self.windows[i];
-            let series = |point: &dyn Fn(f64, &[f64; 6]) -> (f64, f64)| {
+            let series = |point: &Curve| {
                 let points = |states: &[[f64; 6]]| {
                     states.iter().enumerate().map(|(k, s)| point(k as f64 * window.dt, s)).collect::<Vec<_>>()
                 };

@@ -71,6 +71,9 @@ impl Values {
     }
 }
 
+/// A side force or turning moment of the propeller: coefficients of the set and J_s to a dimensionless force.
+type SideForce = fn(&[f64; 8], f64) -> f64;
+
 /// The published simulator. Coefficients are dimensionless with 1/2 rho L d, lengths in metres.
 #[derive(Clone, Debug)]
 pub struct PublishedMmg {
@@ -210,16 +213,15 @@ impl PublishedMmg {
         let unit = self.density * d.powi(4) * n * n;
         let pressure = 0.5 * self.density * l * self.draught;
         let [k0, k1, k2] = self.thrust;
-        let (x, tip, coefficient): (f64, f64, fn(&[f64; 8], f64) -> f64) = if n > 0.0 {
+        let (x, tip, coefficient): (f64, f64, SideForce) = if n > 0.0 {
             let j = slip * if u >= 0.0 { wake_factor } else { 1.0 };
             let x = unit * (1.0 - self.thrust_deduction) * (k0 + k1 * j + k2 * j * j);
-            let side: fn(&[f64; 8], f64) -> f64 =
-                if u >= 0.0 { |_, _| 0.0 } else { |c, j| c[5] * j * j + c[6] * j + c[7] };
+            let side: SideForce = if u >= 0.0 { |_, _| 0.0 } else { |c, j| c[5] * j * j + c[6] * j + c[7] };
             (x, n * self.pitch, side)
         } else {
             let [low, c1, c2, limit] = self.astern;
             let x = unit * if slip >= limit { c1 + c2 * slip } else { low };
-            let side: fn(&[f64; 8], f64) -> f64 = if slip < -0.35 {
+            let side: SideForce = if slip < -0.35 {
                 |c, j| c[2] + c[3] * j
             } else if slip > -0.06 {
                 |c, _| c[4]
