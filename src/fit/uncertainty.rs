@@ -128,12 +128,12 @@ mod tests {
 
     #[test]
     fn what_the_data_do_not_determine_is_named() {
-        // The data see x + y alone.
-        let h = DMatrix::from_row_slice(3, 3, &[1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 5.0]);
+        // The data see 2 x + y and w alone.
+        let h = DMatrix::from_row_slice(3, 3, &[4.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 5.0]);
         let inverse = inverse(&h, &DMatrix::identity(3, 3));
         assert_eq!(inverse.rank, 2);
         assert_eq!(inverse.determined(), [false, false, true]);
-        assert_eq!(in_words(&inverse.directions[2].1, &["x", "y", "w"]), "0.71 x - 0.71 y");
+        assert_eq!(in_words(&inverse.directions[2].1, &["x", "y", "w"]), "0.89 y - 0.45 x");
     }
 
     #[test]
