@@ -5,11 +5,12 @@ use super::captive_baseline::{rudder_points, rudder_rows};
 use super::case::Case;
 use super::{Artefact, PaperError};
 use crate::truth::captive::{Range, towing};
-use std::fmt::Write;
 use std::path::Path;
 use trimtab::fit::{CovarianceKind, Fit};
 use trimtab::model::Model;
-use trimtab::report::{Axis, BASELINE, FITTED, Figure, LIMIT, Layer, Marker, ORANGE, PURPLE, Panel, TRUTH, Table, sig};
+use trimtab::report::{
+    Axis, BASELINE, DASH, FITTED, Figure, LIMIT, Layer, Marker, ORANGE, PURPLE, Panel, TRUTH, Table, fixed, sig,
+};
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
 
@@ -165,7 +166,7 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
             let [from, to] = (curve.range)(case);
             for share in [0.25, 0.5, 0.75] {
                 let x = from + share * (to - from);
-                let of = |p: &[f64; 11]| sig(curve.line(p, x), 3);
+                let of = |p: &[f64; 11]| fixed(curve.line(p, x), 3);
                 table.row([
                     case.label().to_owned(),
                     curve.y.to_owned(),
@@ -174,13 +175,11 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
                     of(&case.captive_baseline.eleven()),
                     of(&case.published.fitted),
                     of(&case.fit.model.eleven()),
-                    sig(curve.error(&case.fit, x).map_or(f64::NAN, |e| 1.96 * e), 2),
+                    curve.error(&case.fit, x).map_or(DASH.into(), |e| fixed(1.96 * e, 3)),
                 ]);
             }
         }
     }
     figure.save(&out.join("figure2"))?;
-    let mut text = String::new();
-    let _ = writeln!(text, "{table}");
-    Ok(text)
+    Ok(format!("{table}\n"))
 }

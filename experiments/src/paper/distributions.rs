@@ -8,7 +8,7 @@ use super::{Artefact, PaperError};
 use std::path::Path;
 use trimtab::evaluate::{Comparison, Outcome};
 use trimtab::recording::Split;
-use trimtab::report::{Axis, BASELINE, FITTED, Figure, Layer, ORANGE, Panel, Table, sig};
+use trimtab::report::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel, Table, sig};
 use trimtab::state::STATES;
 
 /// Error distributions.
@@ -18,6 +18,8 @@ pub static DISTRIBUTIONS: Artefact = Artefact {
     make,
 };
 
+/// Which of the two outcomes of a comparison.
+type Which = fn(&Comparison) -> &Outcome;
 /// A quantity of a run's outcome; absent where the simulation diverged.
 type Quantity = Box<dyn Fn(&Outcome) -> Option<f64>>;
 
@@ -44,7 +46,7 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
     let mut rows = Vec::new();
     for case in cases {
         let [published, captive] = case.baselines().map(|(model, _)| case.evaluate(model).trajectories);
-        let models: [(&str, trimtab::report::Color, &[Comparison], fn(&Comparison) -> &Outcome); 3] = [
+        let models: [(&str, Color, &[Comparison], Which); 3] = [
             ("baseline, published p~", BASELINE, &published, |c| &c.baseline),
             ("baseline, captive tests", ORANGE, &captive, |c| &c.baseline),
             ("fitted", FITTED, &published, |c| &c.fitted),

@@ -18,12 +18,20 @@ pub static TABLE1: Artefact = Artefact {
 
 const PARTS: [(Split, &str); 2] = [(Split::Train, "train"), (Split::Test, "test")];
 
+/// What the panel of a channel shows: ours and the paper's.
+#[derive(Default)]
+struct Channel {
+    label: String,
+    ranges: [Vec<(f64, f64)>; 2],
+    means: [Vec<(f64, f64)>; 2],
+}
+
 fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
     let mut table = Table::new(["ship", "part", "channel", "min", "paper", "max", "paper", "mean", "paper"]);
     let mut rows = Vec::new();
     // One panel a channel; categories are ship and part.
     let mut groups = Vec::new();
-    let mut panels: Vec<(String, [Vec<(f64, f64)>; 2], [Vec<(f64, f64)>; 2])> = Vec::new();
+    let mut panels: Vec<Channel> = Vec::new();
     let mut text = String::new();
     for case in cases {
         for (split, part) in PARTS {
@@ -61,12 +69,12 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
                     cell(paper.mean),
                 ]);
                 if panels.len() <= i {
-                    panels.push((format!("{name} [{unit}]"), Default::default(), Default::default()));
+                    panels.push(Channel { label: format!("{name} [{unit}]"), ..Channel::default() });
                 }
                 for (which, (spread, shift)) in [(ours, -0.14), (paper, 0.14)].into_iter().enumerate() {
                     let x = slot + shift;
-                    panels[i].1[which].extend([(x, spread.min), (x, spread.max), (x, f64::NAN)]);
-                    panels[i].2[which].extend(spread.mean.map(|mean| (x, mean)));
+                    panels[i].ranges[which].extend([(x, spread.min), (x, spread.max), (x, f64::NAN)]);
+                    panels[i].means[which].extend(spread.mean.map(|mean| (x, mean)));
                 }
             }
         }
@@ -84,7 +92,7 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
     }
     let header = ["ship", "part", "channel", "unit", "min", "paper_min", "max", "paper_max", "mean", "paper_mean"];
     save(out, "table1_values", header, rows)?;
-    let panels = panels.into_iter().map(|(label, ranges, means)| {
+    let panels = panels.into_iter().map(|Channel { label, ranges, means }| {
         let mut panel = Panel::new("", Axis::categories("", groups.clone()), Axis::new(label));
         for (which, (name, color)) in [("ours", FITTED), ("paper", GREY)].into_iter().enumerate() {
             panel = panel
