@@ -125,6 +125,45 @@ mod index {
 }
 
 impl<S: Scalar> Flow<S> {
+    /// A flow of plain numbers, as one without derivatives.
+    pub fn constant(f: &Flow<f64>) -> Self {
+        let c = S::from_f64;
+        let a = &f.adjust;
+        Self {
+            u: c(f.u),
+            v: c(f.v),
+            r: c(f.r),
+            speed: c(f.speed),
+            abs_u: c(f.abs_u),
+            abs_v: c(f.abs_v),
+            abs_r: c(f.abs_r),
+            current: f.current.map(c),
+            advance: c(f.advance),
+            thrust: c(f.thrust),
+            propulsion: c(f.propulsion),
+            rudder_u: c(f.rudder_u),
+            rudder_v: c(f.rudder_v),
+            adjust: Adjust {
+                current: a.current.map(c),
+                wake: c(a.wake),
+                wake_relief: c(a.wake_relief),
+                wake_asymmetry: c(a.wake_asymmetry),
+                thrust: c(a.thrust),
+                race: c(a.race),
+                resistance: c(a.resistance),
+                sway: c(a.sway),
+                yaw_static: c(a.yaw_static),
+                rotary: c(a.rotary),
+                added_mass: c(a.added_mass),
+                mass: c(a.mass),
+                x_g: c(a.x_g),
+                roll: a.roll.map(c),
+                sternway: c(a.sternway),
+                stall: c(a.stall),
+            },
+        }
+    }
+
     /// Flow at a moment, from the parameters `p` of the term `flow` and what other terms adjusted.
     ///
     /// Propeller (all quadrants, continuous through n = 0 and u = 0):

@@ -506,6 +506,16 @@ impl Model {
         ]
     }
 
+    /// The terms' force together, in a flow that is known (X, Y \[N\], N \[N m\]).
+    pub fn force<S: Number>(&self, theta: &[S], state: &State<S>, inputs: &Inputs<S>, flow: &Flow<S>) -> Force<S> {
+        let at = self.moment(state, inputs);
+        let mut force = Force::zero();
+        for t in &self.terms {
+            force += S::physics(t.term).force(&theta[t.offset..t.offset + t.len], &at, flow);
+        }
+        force
+    }
+
     /// The force of each term by name at a moment (X, Y \[N\], N \[N m\]).
     pub fn contributions(
         &self,

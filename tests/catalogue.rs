@@ -6,10 +6,12 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use trimtab::flow::Flow;
 use trimtab::model::{BASE, Model};
 use trimtab::parameter::Parity;
 use trimtab::ship::Ship;
 use trimtab::state::{Force, Inputs, STATES, State};
+use trimtab::terms::hull::Inertia;
 use trimtab::terms::listing::{listing, summary};
 use trimtab::terms::{CATALOGUE, CHUNK, Curvature, Form, Gradient, GradientLanes, Lanes, NumDual, Number};
 use trimtab_ad::Scalar;
@@ -221,6 +223,44 @@ fn every_term_is_finite_with_finite_derivatives_everywhere() {
             }
         }
     }
+}
+
+#[test]
+fn a_parameter_that_acts_by_force_alone_changes_no_output_any_other_way() {
+    let mut seen = BTreeSet::new();
+    for term in names() {
+        let model = probed(term);
+        for (i, p) in model.parameters.iter().enumerate() {
+            let (owner, _) = p.name.split_once('.').unwrap();
+            let first = model.parameters.iter().position(|q| q.name.split('.').next() == Some(owner)).unwrap();
+            if owner != term || !trimtab::terms::find(term).unwrap().acts_by_force_alone(i - first) {
+                continue;
+            }
+            seen.insert(term);
+            for at in generic() {
+                let x = with_parameters(&model, &at);
+                let y = outputs(&model, &gradient_variables(&x, POINT + i));
+                // The same derivative with the flow and the inertia as plain numbers.
+                let (state, inputs) = (State::from_array(std::array::from_fn(|j| at[j])), inputs_of(&at));
+                let flow = model.flow(&x[POINT..], &state, &inputs);
+                let seeded = gradient_variables(&x, POINT + i);
+                let force = model.force(
+                    &seeded[POINT..],
+                    &State::constant(&state.to_array()),
+                    &Inputs::constant(&inputs),
+                    &Flow::constant(&flow),
+                );
+                let change = Force { x: force.x.eps[0], y: force.y.eps[0], n: force.n.eps[0] };
+                let rates = Inertia::new(model.part("hull", &x[POINT..]), &flow).solve(&change);
+                let expected = |o: usize| if (3..6).contains(&o) { rates[o - 3] } else { 0.0 };
+                for (o, y) in y.iter().enumerate().filter(|(o, _)| !(STATES..12).contains(o)) {
+                    let scale = y.eps[0].abs().max(expected(o).abs()).max(1e-12);
+                    assert!((y.eps[0] - expected(o)).abs() < 1e-9 * scale, "{}: output {o} at {at:?}", p.name);
+                }
+            }
+        }
+    }
+    assert!(seen.len() > 15 && seen.contains("hull") && !seen.contains("current"), "{seen:?}");
 }
 
 #[test]

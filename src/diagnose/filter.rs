@@ -7,10 +7,12 @@
 //! `g = sum d_k' S_k^-1 e_k` is a martingale: unbiased at the truth whatever is left out of `d_k`.
 
 use super::noise::{GROUP_OF, Noise};
+use crate::flow::Flow;
 use crate::model::Model;
 use crate::recording::Window;
-use crate::simulate::{Integration, step};
+use crate::simulate::{Integration, Method, step};
 use crate::state::{Force, Inputs, STATES, State};
+use crate::terms::hull::Inertia;
 use crate::terms::{CHUNK, Gradient, Group, find};
 use nalgebra::{DMatrix, DVector};
 
@@ -167,11 +169,25 @@ pub struct Filter<'a> {
     senses: bool,
 }
 
+/// Up to [`CHUNK`] columns that are differentiated together.
 struct Chunk {
+    /// The active terms and those that own the columns.
     view: Model,
-    columns: std::ops::Range<usize>,
-    drives: bool,
-    senses: bool,
+    /// The terms that own the columns, alone.
+    owners: Model,
+    columns: Vec<usize>,
+    reach: Reach,
+}
+
+/// What a parameter can change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Reach {
+    /// Anything: inputs, inertia, what other terms work with.
+    Everything,
+    /// The force of its own term and nothing else.
+    Force,
+    /// What the sensors report and nothing else.
+    Sensors,
 }
 
 /// Innovations larger than this many standard deviations are set aside as outliers.
@@ -194,18 +210,32 @@ impl<'a> Filter<'a> {
         let active: Vec<&str> =
             model.term_names().into_iter().filter(|t| crate::model::BASE.contains(t) || !neutral(t)).collect();
         let base = model.restricted(|t| active.contains(&t));
-        let term_of = |c: &Column| model.parameters[c.parameter].name.split('.').next().unwrap_or("").to_string();
-        let chunks = (0..columns.len())
-            .step_by(CHUNK)
-            .map(|start| {
-                let range = start..(start + CHUNK).min(columns.len());
-                let owners: Vec<String> = columns[range.clone()].iter().map(term_of).collect();
-                let sensor = |o: &String| find(o).is_some_and(|t| t.info().group == Group::Sensor);
+        let owner = |c: usize| model.parameters[columns[c].parameter].name.split('.').next().unwrap_or("").to_string();
+        let reach = |c: usize| {
+            let Some(term) = find(&owner(c)) else { return Reach::Everything };
+            let prefix = format!("{}.", term.info().name);
+            let first = model.parameters.iter().position(|p| p.name.starts_with(&prefix)).unwrap_or(0);
+            if term.info().group == Group::Sensor {
+                Reach::Sensors
+            } else if term.acts_by_force_alone(columns[c].parameter - first) {
+                Reach::Force
+            } else {
+                Reach::Everything
+            }
+        };
+        // Columns of like reach together, those of one term side by side.
+        let mut order: Vec<(Reach, usize)> = (0..columns.len()).map(|c| (reach(c), c)).collect();
+        order.sort_by_key(|(reach, c)| (*reach, columns[*c].parameter, *c));
+        let chunks = order
+            .chunk_by(|a, b| a.0 == b.0)
+            .flat_map(|alike| alike.chunks(CHUNK))
+            .map(|chunk| {
+                let owners: Vec<String> = chunk.iter().map(|(_, c)| owner(*c)).collect();
                 Chunk {
                     view: model.restricted(|t| active.contains(&t) || owners.iter().any(|o| o == t)),
-                    senses: owners.iter().any(sensor),
-                    drives: owners.iter().any(|o| !crate::model::BASE.contains(&o.as_str())),
-                    columns: range,
+                    owners: model.restricted(|t| owners.iter().any(|o| o == t)),
+                    columns: chunk.iter().map(|(_, c)| *c).collect(),
+                    reach: chunk[0].0,
                 }
             })
             .collect();
@@ -247,8 +277,12 @@ impl<'a> Filter<'a> {
         let mut rates_now = vec![0.0; 3 * width];
         let mut rates_next = vec![0.0; 3 * width];
         if parameters > 0 && !wanted.exact {
-            self.rate_columns(&seeded, 0, &run.initial, &[0.0; 3], width, &mut rates_now);
+            self.rate_columns(&seeded, &series, 0, &run.initial, &[0.0; 3], width, &mut rates_now);
         }
+        // The accelerations' Jacobian at both ends of a step carries the linearisation over it.
+        let smooth = self.integration == Integration { method: Method::Rk4, substeps: 1 } && !wanted.exact;
+        let mut slope =
+            if smooth { self.slope(&constants, &run.initial, &[0.0; 3], &series[0]) } else { Slope::default() };
         let a_force = (-run.dt / noise.force_time).exp();
         let rho: [f64; STATES] = std::array::from_fn(|j| (-run.dt / noise.sensors[GROUP_OF[j]].time).exp());
         for k in 0..run.measured.len() {
@@ -256,7 +290,7 @@ impl<'a> Filter<'a> {
             let state: [f64; STATES] = std::array::from_fn(|j| z[j]);
             // What the sensors report, and how that changes with state and parameters.
             let (report, h) = self.report(&constants, &state, now);
-            let sensing = self.sensing_columns(&seeded, &state, k);
+            let sensing = self.sensing_columns(&seeded, &theta, &state, now);
             if let Some(t) = &mut pass.tangent {
                 t.offset.push(std::array::from_fn(|j| report[j] - state[j]));
             }
@@ -312,8 +346,10 @@ impl<'a> Filter<'a> {
                             axpy(row, h[j][l], &d[l * width..(l + 1) * width]);
                         }
                     }
-                    for (c, value) in sensing.iter().flat_map(|(c, v)| c.clone().zip(v[j].iter())) {
-                        row[c] += value;
+                    for (columns, report) in &sensing {
+                        for (c, value) in columns.iter().zip(&report[j].eps) {
+                            row[*c] += value;
+                        }
                     }
                     let inverse = 1.0 / s;
                     axpy(pass.score.as_mut_slice(), e * inverse, row);
@@ -357,7 +393,16 @@ impl<'a> Filter<'a> {
             let state: [f64; STATES] = std::array::from_fn(|j| z[j]);
             let push = [z[6], z[7], z[8]];
             let next = &series[k + 1];
-            let (image, a, gamma) = self.linearise(&constants, run.dt, &state, &push, now, next);
+            let (image, a, gamma) = if smooth {
+                let force = Force { x: push[0], y: push[1], n: push[2] };
+                let image = step(&self.base, &theta, self.integration, run.dt, &state, now, next, &force);
+                let end = self.slope(&constants, &image, &push, next);
+                let (a, gamma) = carry(&slope, &end, run.dt);
+                slope = end;
+                (image, a, gamma)
+            } else {
+                self.linearise(&constants, run.dt, &state, &push, now, next)
+            };
             forces.clear();
             if let Some((_, f)) = basis {
                 f(k, &State::from_array(state), now, &mut forces);
@@ -383,12 +428,12 @@ impl<'a> Filter<'a> {
                     axpy(&mut moved[(9 + i) * width..(10 + i) * width], rho[i], &d[(9 + i) * width..(10 + i) * width]);
                 }
                 if wanted.exact {
-                    self.step_columns(&seeded, k, run.dt, &state, &push, &mut moved, width);
+                    self.step_columns(&seeded, &series, k, run.dt, &state, &push, &mut moved, width);
                 } else {
                     // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any
                     // predictable sensitivity leaves the score unbiased, so that this costs no more than a little power.
                     let faded = push.map(|w| w * a_force);
-                    self.rate_columns(&seeded, k + 1, &image, &faded, width, &mut rates_next);
+                    self.rate_columns(&seeded, &series, k + 1, &image, &faded, width, &mut rates_next);
                     let half = 0.5 * run.dt;
                     for i in 0..STATES {
                         let row = &mut moved[i * width..i * width + parameters];
@@ -455,37 +500,75 @@ impl<'a> Filter<'a> {
         )
     }
 
+    /// The Jacobian of the state's rates with respect to state and force.
+    fn slope(&self, theta: &[Gradient], state: &[f64; STATES], push: &[f64; 3], inputs: &Inputs<f64>) -> Slope {
+        let x: [Gradient; STATES] = std::array::from_fn(|j| Gradient::variable(state[j], j));
+        let [fx, fy, fn_]: [Gradient; 3] = std::array::from_fn(|j| Gradient::variable(push[j], STATES + j));
+        let force = Force { x: fx, y: fy, n: fn_ };
+        let rates = self.base.rates_alone(theta, &State::from_array(x), &Inputs::constant(inputs), &force);
+        rates.map(|v| std::array::from_fn(|j| v.eps[j]))
+    }
+
     /// Derivatives of the accelerations (u', v', r') with respect to the parameters, row by row, at sample `k`.
     fn rate_columns(
         &self,
         seeded: &[Seeded],
+        series: &[Inputs<f64>],
         k: usize,
         state: &[f64; STATES],
         push: &[f64; 3],
         width: usize,
         out: &mut [f64],
     ) {
+        let x = State::from_array(*state);
+        // Where a parameter changes its own term's force only, the flow and the inertia are numbers.
+        let local = self.chunks.iter().any(|c| c.reach == Reach::Force).then(|| {
+            let flow = self.base.flow(&seeded[0].values, &x, &series[k]);
+            let inertia = Inertia::new(self.base.part("hull", &seeded[0].values), &flow);
+            (flow, Flow::constant(&flow), inertia)
+        });
+        let lifted = State::from_array(state.map(Gradient::constant));
         for (chunk, seed) in self.chunks.iter().zip(seeded) {
-            if seed.tangents {
-                let x = State::from_array(state.map(Gradient::constant));
-                let [fx, fy, fn_] = push.map(Gradient::constant);
-                let force = Force { x: fx, y: fy, n: fn_ };
-                let (rates, _) = chunk.view.rates(&seed.theta, &x, &seed.instant(k), &force);
-                for i in 0..3 {
-                    for (lane, c) in chunk.columns.clone().enumerate() {
-                        out[i * width + c] = rates[3 + i].eps[lane];
+            match (chunk.reach, &local) {
+                (Reach::Force, Some((flow, constant, inertia))) => {
+                    if seed.tangents {
+                        let inputs = Inputs::constant(&series[k]);
+                        let f = chunk.owners.force(&seed.theta, &lifted, &inputs, constant);
+                        for (lane, c) in chunk.columns.iter().enumerate() {
+                            let [fx, fy, fn_] = [f.x.eps[lane], f.y.eps[lane], f.n.eps[lane]];
+                            let rates = inertia.solve(&Force { x: fx, y: fy, n: fn_ });
+                            (0..3).for_each(|i| out[i * width + c] = rates[i]);
+                        }
+                    }
+                    for probe in &seed.probes {
+                        let f = |side: &Side| chunk.owners.force(&side.theta, &x, &series[k], flow);
+                        let (high, low) = (f(&probe.high), f(&probe.low));
+                        let difference = Force { x: high.x - low.x, y: high.y - low.y, n: high.n - low.n };
+                        let rates = inertia.solve(&difference);
+                        (0..3).for_each(|i| out[i * width + probe.column] = rates[i] * probe.weight);
                     }
                 }
-            }
-            for probe in &seed.probes {
-                let f = |side: &Side| {
-                    let force = Force { x: push[0], y: push[1], n: push[2] };
-                    chunk.view.rates(&side.theta, &State::from_array(*state), &side.series[k], &force).0
-                };
-                let (high, low) = (f(&probe.high), f(&probe.low));
-                for i in 0..3 {
-                    out[i * width + probe.column] = (high[3 + i] - low[3 + i]) * probe.weight;
+                (Reach::Everything, _) => {
+                    if seed.tangents {
+                        let [fx, fy, fn_] = push.map(Gradient::constant);
+                        let force = Force { x: fx, y: fy, n: fn_ };
+                        let rates = chunk.view.rates_alone(&seed.theta, &lifted, &seed.instant(k), &force);
+                        for i in 0..3 {
+                            for (lane, c) in chunk.columns.iter().enumerate() {
+                                out[i * width + c] = rates[3 + i].eps[lane];
+                            }
+                        }
+                    }
+                    for probe in &seed.probes {
+                        let force = Force { x: push[0], y: push[1], n: push[2] };
+                        let f = |side: &Side| chunk.view.rates_alone(&side.theta, &x, &side.series[k], &force);
+                        let (high, low) = (f(&probe.high), f(&probe.low));
+                        for i in 0..3 {
+                            out[i * width + probe.column] = (high[3 + i] - low[3 + i]) * probe.weight;
+                        }
+                    }
                 }
+                _ => {}
             }
         }
     }
@@ -494,6 +577,7 @@ impl<'a> Filter<'a> {
     fn step_columns(
         &self,
         seeded: &[Seeded],
+        series: &[Inputs<f64>],
         k: usize,
         dt: f64,
         state: &[f64; STATES],
@@ -501,14 +585,19 @@ impl<'a> Filter<'a> {
         moved: &mut [f64],
         width: usize,
     ) {
-        for (chunk, seed) in self.chunks.iter().zip(seeded).filter(|(_, seed)| seed.tangents) {
+        let acts = |(chunk, seed): &(&Chunk, &Seeded)| chunk.reach != Reach::Sensors && seed.tangents;
+        for (chunk, seed) in self.chunks.iter().zip(seeded).filter(acts) {
             let x: [Gradient; STATES] = state.map(Gradient::constant);
             let [fx, fy, fn_] = push.map(Gradient::constant);
             let force = Force { x: fx, y: fy, n: fn_ };
-            let (now, next) = (seed.instant(k), seed.instant(k + 1));
+            let instant = |k: usize| match chunk.reach {
+                Reach::Everything => seed.instant(k),
+                _ => Inputs::constant(&series[k]),
+            };
+            let (now, next) = (instant(k), instant(k + 1));
             let y = step(&chunk.view, &seed.theta, self.integration, dt, &x, &now, &next, &force);
             for i in 0..STATES {
-                for (lane, c) in chunk.columns.clone().enumerate() {
+                for (lane, c) in chunk.columns.iter().enumerate() {
                     moved[i * width + c] += y[i].eps[lane];
                 }
             }
@@ -533,31 +622,68 @@ impl<'a> Filter<'a> {
         (y.map(|v| v.re), y.map(|v| std::array::from_fn(|j| v.eps[j])))
     }
 
-    /// Derivatives of the report with respect to the sensor parameters: column range and values by channel.
-    fn sensing_columns(
-        &self,
+    /// Derivatives of the report with respect to the sensor parameters, by chunk: its columns, and the report by channel.
+    fn sensing_columns<'s>(
+        &'s self,
         seeded: &[Seeded],
+        theta: &[f64],
         state: &[f64; STATES],
-        k: usize,
-    ) -> Vec<(std::ops::Range<usize>, [Vec<f64>; STATES])> {
-        let mut out = Vec::new();
-        for (chunk, seed) in self.chunks.iter().zip(seeded) {
-            if !chunk.senses {
-                continue;
-            }
-            let x = State::from_array(state.map(Gradient::constant));
-            let inputs = seed.instant(k);
-            let (rates, flow) = chunk.view.rates(&seed.theta, &x, &inputs, &Force::zero());
-            let y = chunk.view.measure(&seed.theta, &x, &inputs, &rates, &flow);
-            let count = chunk.columns.len();
-            out.push((chunk.columns.clone(), y.map(|v| v.eps[..count].to_vec())));
+        inputs: &Inputs<f64>,
+    ) -> Vec<(&'s [usize], [Gradient; STATES])> {
+        if self.chunks.iter().all(|c| c.reach != Reach::Sensors) {
+            return Vec::new();
         }
-        out
+        let (rates, flow) = self.base.rates(theta, &State::from_array(*state), inputs, &Force::zero());
+        let (rates, flow) = (rates.map(Gradient::constant), Flow::constant(&flow));
+        let (x, inputs) = (State::from_array(state.map(Gradient::constant)), Inputs::constant(inputs));
+        let report = |(chunk, seed): (&'s Chunk, &Seeded)| {
+            (chunk.columns.as_slice(), chunk.view.measure(&seed.theta, &x, &inputs, &rates, &flow))
+        };
+        self.chunks.iter().zip(seeded).filter(|(c, _)| c.reach == Reach::Sensors).map(report).collect()
     }
+}
+
+/// Jacobian of the six rates with respect to the six states and the three forces.
+type Slope = [[f64; STATES + 3]; STATES];
+
+/// The Jacobians of a step from those of the rates at its ends: RK4 on the variational equation, whose slope in the middle is
+/// the mean of the ends'.
+fn carry(start: &Slope, end: &Slope, h: f64) -> ([[f64; STATES]; STATES], [[f64; 3]; STATES]) {
+    const W: usize = STATES + 3;
+    let middle: Slope = std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (start[i][j] + end[i][j])));
+    // The rate of [d state / d state, d state / d force] where it has reached `at`.
+    let rate = |j: &Slope, at: &Slope| -> Slope {
+        std::array::from_fn(|i| {
+            let mut row = [0.0; W];
+            for l in 0..STATES {
+                for c in 0..W {
+                    row[c] += j[i][l] * at[l][c];
+                }
+            }
+            for c in 0..3 {
+                row[STATES + c] += j[i][STATES + c];
+            }
+            row
+        })
+    };
+    let mut identity = [[0.0; W]; STATES];
+    (0..STATES).for_each(|i| identity[i][i] = 1.0);
+    let moved =
+        |k: &Slope, h: f64| -> Slope { std::array::from_fn(|i| std::array::from_fn(|c| identity[i][c] + h * k[i][c])) };
+    let k1 = rate(start, &identity);
+    let k2 = rate(&middle, &moved(&k1, 0.5 * h));
+    let k3 = rate(&middle, &moved(&k2, 0.5 * h));
+    let k4 = rate(end, &moved(&k3, h));
+    let at = |i: usize, c: usize| identity[i][c] + h / 6.0 * (k1[i][c] + 2.0 * (k2[i][c] + k3[i][c]) + k4[i][c]);
+    (
+        std::array::from_fn(|i| std::array::from_fn(|c| at(i, c))),
+        std::array::from_fn(|i| std::array::from_fn(|c| at(i, STATES + c))),
+    )
 }
 
 /// A chunk's parameters with their seeds, for one run.
 struct Seeded {
+    values: Vec<f64>,
     theta: Vec<Gradient>,
     series: Option<Vec<Inputs<Gradient>>>,
     plain: Vec<Inputs<f64>>,
@@ -582,13 +708,18 @@ impl Seeded {
         let mut dual: Vec<Gradient> = theta.iter().map(|t| Gradient::constant(*t)).collect();
         let mut probes = Vec::new();
         let mut tangents = false;
-        for (lane, c) in chunk.columns.clone().enumerate() {
-            let Column { parameter, scale, probe } = columns[c];
+        let everything = chunk.reach == Reach::Everything;
+        let driven = |theta: &[f64]| {
+            let mut series = if everything { run.inputs.clone() } else { Vec::new() };
+            chunk.view.drive(theta, run.dt, &mut series);
+            series
+        };
+        for (lane, c) in chunk.columns.iter().enumerate() {
+            let Column { parameter, scale, probe } = columns[*c];
             let side = |amount: f64| {
                 let mut theta = theta.to_vec();
                 theta[parameter] += amount;
-                let mut series = run.inputs.clone();
-                chunk.view.drive(&theta, run.dt, &mut series);
+                let series = driven(&theta);
                 Side { theta, series }
             };
             match probe {
@@ -596,18 +727,16 @@ impl Seeded {
                     tangents = true;
                     dual[parameter].eps[lane] = scale;
                 }
-                Probe::Odd => probes.push(Probed { column: c, high: side(scale), low: side(-scale), weight: 0.5 }),
-                Probe::Forward => probes.push(Probed { column: c, high: side(scale), low: side(0.0), weight: 1.0 }),
+                Probe::Odd => probes.push(Probed { column: *c, high: side(scale), low: side(-scale), weight: 0.5 }),
+                Probe::Forward => probes.push(Probed { column: *c, high: side(scale), low: side(0.0), weight: 1.0 }),
             }
         }
-        let mut plain = run.inputs.clone();
-        chunk.view.drive(theta, run.dt, &mut plain);
-        let series = (chunk.drives && tangents).then(|| {
+        let series = (everything && tangents).then(|| {
             let mut s: Vec<Inputs<Gradient>> = run.inputs.iter().map(Inputs::constant).collect();
             chunk.view.drive(&dual, run.dt, &mut s);
             s
         });
-        Self { theta: dual, series, plain, tangents, probes }
+        Self { values: theta.to_vec(), theta: dual, series, plain: driven(theta), tangents, probes }
     }
 
     fn instant(&self, k: usize) -> Inputs<Gradient> {

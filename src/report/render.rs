@@ -58,7 +58,7 @@ pub(super) fn png(sheet: &Canvas) -> Result<Vec<u8>, FigureError> {
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Balanced);
+    encoder.set_compression(png::Compression::Fast);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&rgb)?;
     writer.finish()?;
@@ -87,8 +87,10 @@ fn pixels(sheet: &Canvas) -> Result<Vec<u8>, FigureError> {
         });
         bitmap_shape(&BitMapBackend::with_buffer(&mut samples, size).into_drawing_area(), shape)?;
         if let Some((backdrop, rows, alpha)) = backdrop {
+            // In 256ths, so that whole rows are blended at a time.
+            let share = (alpha * 256.0).round() as u16;
             for (new, old) in samples[rows].iter_mut().zip(backdrop) {
-                *new = (f32::from(old) + (f32::from(*new) - f32::from(old)) * alpha).round() as u8;
+                *new = ((u16::from(old) * (256 - share) + u16::from(*new) * share + 128) >> 8) as u8;
             }
         }
     }

@@ -41,6 +41,10 @@ impl Term for Asymmetric {
     fn info(&self) -> &'static TermInfo {
         &INFO
     }
+
+    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
+        true
+    }
 }
 
 impl<S: Scalar> Physics<S> for Asymmetric {

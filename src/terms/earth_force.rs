@@ -40,6 +40,10 @@ impl Term for EarthForce {
     fn info(&self) -> &'static TermInfo {
         &INFO
     }
+
+    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
+        true
+    }
 }
 
 impl<S: Scalar> Physics<S> for EarthForce {

@@ -124,6 +124,11 @@ impl Term for Hull {
     fn info(&self) -> &'static TermInfo {
         &INFO
     }
+
+    fn acts_by_force_alone(&self, parameter: usize) -> bool {
+        // The first eight are masses, inertia and added masses.
+        parameter >= 8
+    }
 }
 
 impl<S: Scalar> Physics<S> for Hull {

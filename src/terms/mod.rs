@@ -79,6 +79,12 @@ pub struct Moment<'a, S> {
 pub trait Term: Sync {
     /// What is known of the term.
     fn info(&self) -> &'static TermInfo;
+
+    /// Whether its parameter of that index changes this term's own force and nothing else: neither inertia, nor inputs, nor
+    /// what other terms work with. Sensitivities to such a parameter cost one term instead of all; when in doubt, `false`.
+    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
+        false
+    }
 }
 
 /// What a term computes, generic over the number. Every method defaults to "no effect".

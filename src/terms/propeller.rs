@@ -27,6 +27,10 @@ impl Term for Propeller {
     fn info(&self) -> &'static TermInfo {
         &INFO
     }
+
+    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
+        true
+    }
 }
 
 impl<S: Scalar> Physics<S> for Propeller {

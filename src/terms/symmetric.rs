@@ -74,6 +74,10 @@ impl Term for Symmetric {
     fn info(&self) -> &'static TermInfo {
         &INFO
     }
+
+    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
+        true
+    }
 }
 
 fn dot<S: Scalar, const N: usize>(p: &[S], monomials: &[S; N]) -> S {

@@ -49,6 +49,10 @@ impl Term for WaveDrift {
     fn info(&self) -> &'static TermInfo {
         &INFO
     }
+
+    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
+        true
+    }
 }
 
 impl<S: Scalar> Physics<S> for WaveDrift {

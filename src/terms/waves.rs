@@ -59,6 +59,10 @@ impl Term for Waves {
     fn info(&self) -> &'static TermInfo {
         &INFO
     }
+
+    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
+        true
+    }
 }
 
 impl<S: Scalar> Physics<S> for Waves {
