@@ -7,8 +7,9 @@
 use std::path::Path;
 use trimtab::recording::Split;
 use trimtab_experiments::real::esso_osaka::{self, BASELINES};
+use trimtab_experiments::real::kinematics::Agreement;
 use trimtab_experiments::real::published::PublishedMmg;
-use trimtab_experiments::real::{Hull, RealError, is_absent, kvlcc2};
+use trimtab_experiments::real::{Hull, RealError, is_absent, kvlcc2, kvlcc2_diagnosed};
 
 /// The value, or none after saying that the recordings are absent.
 fn present<T>(result: Result<T, RealError>) -> Option<T> {
@@ -71,6 +72,31 @@ fn published_simulator_reaches_the_recorded_speeds_and_turns_the_right_way() {
         let turned = published.simulate(&window);
         let [_, _, _, u, v, r] = *turned.states.last().unwrap();
         assert!(r * side > 0.01 && v * side < 0.0 && u > 0.0, "{u} {v} {r}");
+    }
+}
+
+#[test]
+fn a_calm_basin_is_not_given_wind_and_a_late_gyro_is_found() {
+    let Some((case, kinematics)) = present(kvlcc2_diagnosed::as_recorded()) else { return };
+    let findings = &case.diagnosis.findings;
+    for f in findings {
+        assert!(!kvlcc2_diagnosed::NOT_IN_A_BASIN.contains(&f.mechanism.as_str()), "{}", f.mechanism);
+    }
+    // The heading leads the yaw rate in every recording, the turning circles among them, which were not diagnosed.
+    let lead = findings.iter().flat_map(|f| &f.parameters).find(|p| p.name == "time_skew.heading").unwrap();
+    assert_eq!(kinematics.len(), 6);
+    for a in &kinematics {
+        assert!((-lead.value - a.rate_delay).abs() < 0.1, "{}: {:.3} and {:.3} s", a.run, -lead.value, a.rate_delay);
+    }
+}
+
+#[test]
+fn velocities_of_esso_osaka_lag_her_positions_alike_in_every_recording() {
+    let Some(hull) = present(Hull::open("esso_osaka")) else { return };
+    let agreements = Agreement::of_study(&hull, 20.0).unwrap();
+    assert_eq!(agreements.len(), hull.study.runs.len());
+    for a in &agreements {
+        assert!((0.9..1.0).contains(&a.velocity_delay), "{}: {:.3} s", a.run, a.velocity_delay);
     }
 }
 

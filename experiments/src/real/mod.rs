@@ -1,8 +1,12 @@
 //! The two real hulls: what their experiments share, from study files to fitted models and numbers to compare.
 //! Recordings are read where their users keep them; only what is derived from them (errors, measures, pictures) is written.
 
+pub mod diagnosis;
 pub mod esso_osaka;
+pub mod esso_osaka_diagnosed;
+pub mod kinematics;
 pub mod kvlcc2;
+pub mod kvlcc2_diagnosed;
 pub mod published;
 
 use std::path::{Path, PathBuf};

@@ -1,0 +1,44 @@
+//! Diagnoses Esso Osaka without her wind, compares what is found with the anemometer that was withheld, then gives her the wind.
+//! The recordings are not part of the project: the study file says where they are looked for.
+
+use std::process::ExitCode;
+use trimtab_experiments::real::diagnosis::{findings_table, pulls_table, steps_table};
+use trimtab_experiments::real::kinematics::table;
+use trimtab_experiments::real::{RealError, esso_osaka_diagnosed, figures, write_csv, write_png};
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("diagnose_esso_osaka: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run() -> Result<(), RealError> {
+    let found = esso_osaka_diagnosed::run()?;
+    let kinematics = table(&found.kinematics);
+    let findings = findings_table(&found.cases);
+    let (recordings, left) = (pulls_table(&found.pulls), pulls_table(&found.left));
+    let by_session = pulls_table(&found.by_session);
+    let steps = steps_table(&found.steps);
+    println!("What the recordings' kinematics say, without a model:\n{kinematics}");
+    for case in &found.cases {
+        println!("{}: {}", case.name, case.diagnosis.headline);
+    }
+    println!("{findings}\nQuestions asked one by one:\n{steps}");
+    println!("An earth-fixed force in each session, blind, and the anemometer:\n{by_session}");
+    println!("In each recording:\n{recordings}");
+    println!("What is left of it in each session once the measured wind is in the model:\n{left}");
+    println!("{}", found.agreement());
+    println!("{}\n{}", found.load(), found.walk());
+    let folder = figures();
+    write_csv(&folder.join("diagnose_esso_osaka.csv"), &findings)?;
+    write_csv(&folder.join("diagnose_esso_osaka_kinematics.csv"), &kinematics)?;
+    write_csv(&folder.join("diagnose_esso_osaka_sessions.csv"), &by_session)?;
+    write_csv(&folder.join("diagnose_esso_osaka_recordings.csv"), &recordings)?;
+    write_csv(&folder.join("diagnose_esso_osaka_left.csv"), &left)?;
+    write_csv(&folder.join("diagnose_esso_osaka_steps.csv"), &steps)?;
+    write_png(&folder.join("diagnose_esso_osaka.png"), &found.figure())
+}

@@ -1,0 +1,34 @@
+//! Diagnoses KVLCC2 from her zigzags in a calm basin and proves on her turning circles.
+//! The recordings are not part of the project: the study file says where they are looked for.
+
+use std::process::ExitCode;
+use trimtab_experiments::real::diagnosis::{findings_table, steps_table};
+use trimtab_experiments::real::kinematics::table;
+use trimtab_experiments::real::{RealError, figures, kvlcc2_diagnosed, write_csv, write_png};
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("diagnose_kvlcc2: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run() -> Result<(), RealError> {
+    let found = kvlcc2_diagnosed::run()?;
+    let kinematics = table(&found.kinematics);
+    let (findings, steps) = (findings_table(&found.cases), steps_table(&found.steps));
+    println!("What the recordings' kinematics say, without a model:\n{kinematics}");
+    for case in &found.cases {
+        println!("{}: {}", case.name, case.diagnosis.headline);
+    }
+    println!("{findings}\nAdded to a mirror-symmetric ship, one by one:\n{steps}");
+    println!("{}\n{}", found.basin(), found.screw());
+    let folder = figures();
+    write_csv(&folder.join("diagnose_kvlcc2.csv"), &findings)?;
+    write_csv(&folder.join("diagnose_kvlcc2_kinematics.csv"), &kinematics)?;
+    write_csv(&folder.join("diagnose_kvlcc2_steps.csv"), &steps)?;
+    write_png(&folder.join("diagnose_kvlcc2.png"), &found.figure())
+}

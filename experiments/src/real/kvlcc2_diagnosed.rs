@@ -1,0 +1,203 @@
+//! KVLCC2, diagnosed: tests in a calm basin, in which no wind, current or waves may be found, and a single screw, whose
+//! asymmetry may. The zigzags are diagnosed and the turning circles only prove.
+
+use super::diagnosis::{Answer, Case, Frame, Step, runs};
+use super::kinematics::{Agreement, Mend, median};
+use super::{Hull, RealError};
+use trimtab::diagnose::Settings;
+use trimtab::diagnose::filter::Run;
+use trimtab::model::Model;
+use trimtab::recording::Split;
+use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED, fixed, sig};
+
+/// Over this the changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
+const SPAN: f64 = 40.0;
+
+/// Parameters of the base model in which port and starboard differ: a mirror-symmetric ship has none of them.
+pub const ONE_SIDED: [&str; 5] =
+    ["propeller.side_force", "rudder.lift0", "rudder.lift2", "rudder.drag1", "flow.asymmetry"];
+
+/// Mechanisms that a calm basin does not have.
+pub const NOT_IN_A_BASIN: [&str; 8] =
+    ["wind", "mean_wind", "current", "tide", "waves", "wave_drift", "earth_force", "push"];
+
+/// What the experiment gives.
+pub struct Diagnosed {
+    /// Of each recording.
+    pub kinematics: Vec<Agreement>,
+    /// Diagnoses.
+    pub cases: Vec<Case>,
+    /// Questions asked one by one.
+    pub steps: Vec<Step>,
+    /// Asymmetry of the flow at the rudder with its standard error, starting from a mirror-symmetric ship.
+    pub asymmetry: (f64, f64),
+}
+
+/// The diagnosis of the zigzags as they were recorded, and what the kinematics of every recording say.
+///
+/// # Errors
+/// [`RealError`].
+pub fn as_recorded() -> Result<(Case, Vec<Agreement>), RealError> {
+    let hull = Hull::open("kvlcc2")?;
+    let (train, test) = (runs(&hull, Split::Train)?, runs(&hull, Split::Test)?);
+    let case = Case::new("as recorded", &hull.model("model.toml")?, &train, &test, &Settings::default())?;
+    Ok((case, Agreement::of_study(&hull, SPAN)?))
+}
+
+/// Runs everything.
+///
+/// # Errors
+/// [`RealError`].
+pub fn run() -> Result<Diagnosed, RealError> {
+    let hull = Hull::open("kvlcc2")?;
+    let (first, kinematics) = as_recorded()?;
+    let settings = Settings::default();
+    let (train, test) = (runs(&hull, Split::Train)?, runs(&hull, Split::Test)?);
+    let eleven = hull.model("model.toml")?;
+    let mut cases = vec![first];
+
+    // The zigzags alone say how to mend: the turning circles are kept for the proof.
+    let seen = || kinematics.iter().filter(|a| train.iter().any(|r| r.name.starts_with(&a.run)));
+    let mend = Mend {
+        rate_delay: median(seen().map(|a| a.rate_delay)),
+        rate_bias: median(seen().map(|a| a.rate_bias)),
+        ..Mend::default()
+    };
+    let mended = |runs: &[Run]| runs.iter().filter_map(|r| mend.applied(r)).collect::<Vec<_>>();
+    let (train, test) = (mended(&train), mended(&test));
+    cases.push(Case::new("gyro mended", &eleven, &train, &test, &settings)?);
+    cases.push(Case::new("gyro mended, mirror-symmetric ship", &symmetric(&eleven)?, &train, &test, &settings)?);
+    let best = hull.fitted(&hull.model("freed.toml")?, &hull.windows(Split::Train)?)?.model;
+    cases.push(Case::new("best model without its asymmetry", &symmetric(&best)?, &train, &test, &settings)?);
+
+    // The same ship with the turning circles to learn from, in which sides differ most, and the 20/20 zigzags kept for the proof.
+    let whole = [runs(&hull, Split::Train)?, runs(&hull, Split::Test)?].concat();
+    let (late, early): (Vec<Run>, Vec<Run>) = mended(&whole).into_iter().partition(|r| r.name.contains("20/20"));
+    cases.push(Case::new("circles seen, mirror-symmetric ship", &symmetric(&eleven)?, &early, &late, &settings)?);
+
+    // One question at a time on a mirror-symmetric ship, with everything else estimated along.
+    let mut frame = Frame::new(&cases[2].diagnosis)?;
+    let asymmetry = frame.model.find("flow.asymmetry")?;
+    frame.model.parameters[asymmetry].value = 0.0;
+    frame.free.retain(|f| f.column.parameter != asymmetry);
+    let ask = |names: &[&str]| Ok::<_, RealError>(frame.ask(&train, &frame.parameters(names, None)?));
+    let flow = ask(&["flow.asymmetry"])?;
+    let sided = ask(&ONE_SIDED)?;
+    let walk = ask(&["propeller_walk.ahead"])?;
+    let current = ask(&["current.north", "current.east"])?;
+    let force = ask(&["earth_force.north", "earth_force.east"])?;
+    let step = |name: &str, answer: &Answer| frame.step(name, &frame.model, answer, &test);
+    let steps = vec![
+        step("asymmetry of the flow at the rudder", &flow),
+        step("all one-sided parameters", &sided),
+        step("propeller walk ahead", &walk),
+        step("steady current", &current),
+        step("a force fixed on the earth", &force),
+    ];
+    Ok(Diagnosed { kinematics, asymmetry: flow.first(), cases, steps })
+}
+
+/// The model of a ship whose port and starboard sides are alike, and are held alike.
+fn symmetric(model: &Model) -> Result<Model, RealError> {
+    let mut out = model.clone();
+    for name in ONE_SIDED {
+        let i = out.find(name)?;
+        let p = &mut out.parameters[i];
+        (p.value, p.free, p.prior) = (0.0, false, None);
+    }
+    Ok(out)
+}
+
+impl Diagnosed {
+    /// Mechanisms named in any case that a calm basin does not have.
+    pub fn impossible(&self) -> Vec<String> {
+        let named = |c: &Case| {
+            let of = c.diagnosis.findings.iter().filter(|f| NOT_IN_A_BASIN.contains(&f.mechanism.as_str()));
+            of.map(|f| format!("{} ({})", f.mechanism, c.name)).collect::<Vec<_>>()
+        };
+        self.cases.iter().flat_map(named).collect()
+    }
+
+    /// What was found of the single screw, in words.
+    pub fn screw(&self) -> String {
+        let (value, error) = self.asymmetry;
+        let budget = self.cases.iter().filter_map(|c| {
+            let b = c.diagnosis.hull_budget.iter().find(|b| b.name == "flow.asymmetry")?;
+            Some(format!("{} {}", c.name, sig(b.value, 2)))
+        });
+        format!(
+            "Asymmetry of the flow at the rudder, from a mirror-symmetric ship: {} +- {} (95 %); the captive tests have -0.1225. \
+             In the hull error budget: {}.",
+            sig(value, 2),
+            sig(1.96 * error, 2),
+            budget.collect::<Vec<_>>().join("; ")
+        )
+    }
+
+    /// Sensors as found and as the kinematics have them, the ranking, and what the steps are worth on the turning circles.
+    pub fn figure(&self) -> Figure {
+        let amplitude =
+            |name: &str| self.cases[0].diagnosis.findings.iter().flat_map(|f| &f.parameters).find(|p| p.name == name);
+        let count = self.kinematics.len() as f64;
+        let places = |values: &dyn Fn(&Agreement) -> f64| {
+            self.kinematics.iter().enumerate().map(|(i, a)| (i as f64 + 1.0, values(a))).collect::<Vec<_>>()
+        };
+        let sensor = |title: &str, axis: &str, name: &str, sign: f64, unit: f64, values: &dyn Fn(&Agreement) -> f64| {
+            let mut panel = Panel::new(
+                title,
+                Axis::new("recording (4 zigzags, 2 turning circles)").range(0.0, count + 1.0).every(1.0),
+                Axis::new(axis).including(0.0),
+            );
+            if let Some(p) = amplitude(name) {
+                let mut ends = [sign * unit * p.ci95[0], sign * unit * p.ci95[1]];
+                ends.sort_by(f64::total_cmp);
+                panel = panel
+                    .with(Layer::h_span("diagnosed from the zigzags, 95 %", FITTED, ends[0], ends[1]))
+                    .with(Layer::h_line("diagnosed from the zigzags", FITTED, sign * unit * p.value));
+            }
+            panel.with(Layer::scatter("kinematics of each recording", RECORDED, places(values)))
+        };
+        let bars: Vec<f64> = self.steps.iter().map(|s| s.gain.0.max(0.0)).collect();
+        let names = ["flow at rudder", "all one-sided", "walk ahead", "current", "earth force"];
+        let gains = Panel::new(
+            "what a mirror-symmetric ship lacks",
+            Axis::categories("", names),
+            Axis::new("twice the gain in log-likelihood").including(0.0),
+        )
+        .with(Layer::bars("statistic on the zigzags", FITTED, bars));
+        let held = |f: &dyn Fn(&Step) -> f64| self.steps.iter().map(f).collect::<Vec<_>>();
+        let proof = Panel::new(
+            "turning circles, held out",
+            Axis::categories("", names),
+            Axis::new("median cVDM [%]").including(0.0),
+        )
+        .with(Layer::bars("mirror-symmetric", BASELINE, held(&|s| s.held_out.before)))
+        .with(Layer::bars("with what the label names", GREEN, held(&|s| s.held_out.after)));
+        Figure::new("KVLCC2: what the diagnosis finds in a calm basin")
+            .columns(2)
+            .panel_size(900, 600)
+            .with(sensor("heading reported before the yaw rate", "lead [s]", "time_skew.heading", -1.0, 1.0, &|a| {
+                a.rate_delay
+            }))
+            .with(sensor(
+                "bias of the rate gyro",
+                "bias [deg/s]",
+                "yaw_rate_bias.bias",
+                1.0,
+                1.0_f64.to_degrees(),
+                &|a| a.rate_bias.to_degrees(),
+            ))
+            .with(gains)
+            .with(proof)
+    }
+
+    /// What was concluded of the basin, in words.
+    pub fn basin(&self) -> String {
+        let found = self.impossible();
+        if found.is_empty() {
+            format!("No wind, current, wave or push was named in {} diagnoses.", fixed(self.cases.len() as f64, 0))
+        } else {
+            format!("Named although a calm basin has none: {}.", found.join(", "))
+        }
+    }
+}
