@@ -96,7 +96,7 @@ pub fn run() -> Result<Diagnosed, RealError> {
     })
 }
 
-/// What to mend in each recording: velocities that lag the positions they are derived from are left out, positions that were
+/// What to mend in each recording: velocities, which lag the positions by a second, are left out, positions that were
 /// held are left out, windows over jumps of the receiver are left out, and the gyro is put in time and freed from its bias.
 fn mends(hull: &Hull, kinematics: &[Agreement]) -> Result<Vec<(String, Mend)>, RealError> {
     let mut out = Vec::new();

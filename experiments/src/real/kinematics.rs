@@ -134,7 +134,7 @@ pub fn table(agreements: &[Agreement]) -> Table {
 /// What a recording's own kinematics say must be mended in its windows before a model is asked.
 #[derive(Clone, Debug, Default)]
 pub struct Mend {
-    /// Recorded velocities are no measurement of their own: leave them out.
+    /// Recorded velocities are late or no measurement of their own: leave them out.
     pub no_velocity: bool,
     /// Stretches in which position and heading were held, not measured \[s\].
     pub held: Vec<(f64, f64)>,
