@@ -7,7 +7,7 @@
 use super::estimate::{Estimate, base_of, evidence, restrictions};
 use super::evidence::Base;
 use super::filter::{Column, Filter, Gains, Pass, Run, Wanted};
-use crate::fit::ipopt::{IpoptError, Nlp, Options, Solution, solve};
+use crate::fit::ipopt::{IpoptError, Nlp, OptionValue, Options, Solution, solve};
 use crate::model::Model;
 use crate::simulate::Integration;
 use nalgebra::DMatrix;
@@ -39,24 +39,43 @@ impl Refit<'_> {
         model
     }
 
+    /// Passes with the gains held fixed, and the objective's part that they make: half the sum of squared innovations.
+    fn passes(&self, model: &Model, columns: &[Column]) -> (Vec<Pass>, f64) {
+        let filter = Filter::new(model, self.integration, columns);
+        let passes: Vec<Pass> = self
+            .runs
+            .par_iter()
+            .zip(self.gains)
+            .map(|(r, g)| {
+                let wanted = Wanted { frozen: Some(g), exact: true, ..Wanted::default() };
+                filter.pass(r, &self.found.noise, wanted)
+            })
+            .collect();
+        let mut value = 0.0;
+        for e in passes.iter().flat_map(|p| p.innovations.iter().flatten()).filter(|e| !e.is_nan()) {
+            value += 0.5 * e * e;
+        }
+        (passes, value)
+    }
+
+    /// The objective alone, without sensitivities: most of what a line search asks for.
+    fn value_at(&self, x: &[f64]) -> Option<f64> {
+        if let Some(known) = self.cached.as_ref().filter(|c| c.x == x) {
+            return Some(known.value);
+        }
+        let model = self.model_at(x);
+        let (_, mut value) = self.passes(&model, &[]);
+        for f in &self.found.free {
+            value += f.prior.map_or(0.0, |prior| 0.5 * ((f.value(&model) - prior.mean) / prior.sd).powi(2));
+        }
+        value.is_finite().then_some(value)
+    }
+
     /// The point at `x`, in one pass, kept for the callbacks at the same point.
     fn at(&mut self, x: &[f64]) -> Option<&Point> {
         if self.cached.as_ref().is_none_or(|c| c.x != x) {
             let model = self.model_at(x);
-            let filter = Filter::new(&model, self.integration, &self.columns);
-            let passes: Vec<Pass> = self
-                .runs
-                .par_iter()
-                .zip(self.gains)
-                .map(|(r, g)| {
-                    let wanted = Wanted { frozen: Some(g), exact: true, ..Wanted::default() };
-                    filter.pass(r, &self.found.noise, wanted)
-                })
-                .collect();
-            let mut value = 0.0;
-            for e in passes.iter().flat_map(|p| p.innovations.iter().flatten()).filter(|e| !e.is_nan()) {
-                value += 0.5 * e * e;
-            }
+            let (passes, mut value) = self.passes(&model, &self.columns);
             let e = evidence(self.runs, &passes, &restrictions(&self.found.free));
             let Base { score, .. } = base_of(&e, &model, &self.found.free);
             let mut hessian = e.total.information;
@@ -100,7 +119,7 @@ impl Nlp for Refit<'_> {
         }
     }
     fn objective(&mut self, x: &[f64]) -> Option<f64> {
-        self.at(x).map(|c| c.value)
+        self.value_at(x)
     }
     fn gradient(&mut self, x: &[f64], gradient: &mut [f64]) -> bool {
         self.at(x).map(|c| gradient.copy_from_slice(&c.gradient)).is_some()
@@ -133,6 +152,24 @@ impl Nlp for Refit<'_> {
     }
 }
 
+/// The estimate is near the optimum: Ipopt starts there with its barrier nearly gone, where it would otherwise step back from
+/// the bounds and lower the barrier anew. The objective is in units of log-likelihood and a column's scale is far above its standard
+/// error: gradients below the tolerance promise less than a hundredth of a unit.
+fn options() -> Options {
+    let number = |name: &str, value: f64| (name.to_owned(), OptionValue::Number(value));
+    Options {
+        tolerance: 0.5,
+        max_iterations: 8,
+        extra: vec![
+            number("mu_init", 1e-7),
+            number("bound_push", 1e-9),
+            number("bound_frac", 1e-9),
+            ("nlp_scaling_method".to_owned(), OptionValue::Text("none".to_owned())),
+        ],
+        ..Options::default()
+    }
+}
+
 /// Refits the free parameters of an estimate through Ipopt, with gains computed once at its values.
 ///
 /// The estimate comes back with the refitted model and its likelihood when Ipopt improved it, and unchanged otherwise.
@@ -146,8 +183,7 @@ pub fn refit(found: &Estimate, integration: Integration, runs: &[Run]) -> Result
         runs.par_iter().map(|r| filter.pass(r, &found.noise, wanted).gains.unwrap_or_default()).collect();
     let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
     let mut problem = Refit { found, integration, runs, gains: &gains, columns, cached: None };
-    let options = Options { tolerance: 1e-3, max_iterations: 8, ..Options::default() };
-    let Solution { x, .. } = solve(&mut problem, &options)?;
+    let Solution { x, .. } = solve(&mut problem, &options())?;
     let model = problem.model_at(&x);
     let after = Filter::new(&model, integration, &[]);
     let by_run: Vec<f64> =
