@@ -417,7 +417,7 @@ struct Accepted {
 }
 
 /// The free parameters of a candidate, started where the screen points.
-fn candidate_parameters(c: &Candidate, sessions: &Option<Vec<String>>) -> Vec<FreeParameter> {
+pub(super) fn candidate_parameters(c: &Candidate, sessions: &Option<Vec<String>>) -> Vec<FreeParameter> {
     c.columns
         .iter()
         .map(|col| FreeParameter {
@@ -429,7 +429,7 @@ fn candidate_parameters(c: &Candidate, sessions: &Option<Vec<String>>) -> Vec<Fr
 }
 
 /// Sets a candidate's parameters to the amplitudes that the screen estimates.
-fn start_at(model: &mut Model, c: &Candidate, sessions: &Option<Vec<String>>, amplitude: &DVector<f64>) {
+pub(super) fn start_at(model: &mut Model, c: &Candidate, sessions: &Option<Vec<String>>, amplitude: &DVector<f64>) {
     let norm = amplitude.norm().max(1e-12);
     // An effect quadratic in its amplitude grows with the square: undo that for the start.
     let factor = if c.mechanism.probe == Probe::Odd { 1.0 / norm.sqrt() } else { 1.0 };

@@ -55,7 +55,7 @@ impl FreeParameter {
     }
 
     /// Precision of the prior, and the pull of the prior on the score, in units of the column.
-    fn prior_terms(&self, model: &Model) -> (f64, f64) {
+    pub(super) fn prior_terms(&self, model: &Model) -> (f64, f64) {
         self.prior.map_or((0.0, 0.0), |prior| {
             let precision = (self.column.scale / prior.sd).powi(2);
             let away = (self.value(model) - prior.mean) / self.column.scale;

@@ -138,9 +138,9 @@ pub struct Tangent {
 #[derive(Clone, Debug, Default)]
 pub struct Gains {
     /// Innovation variance by sample and channel; NaN where the channel was not used.
-    variance: Vec<[f64; STATES]>,
+    pub variance: Vec<[f64; STATES]>,
     /// Gain by sample and channel.
-    gain: Vec<[[f64; Z]; STATES]>,
+    pub gain: Vec<[[f64; Z]; STATES]>,
 }
 
 /// What a pass is asked for beyond scores.

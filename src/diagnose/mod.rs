@@ -6,6 +6,7 @@
 //! models on held-out runs ([`prove`]). [`diagnose`] runs them in order and concludes.
 
 pub mod admit;
+pub mod baseline;
 pub mod conclude;
 pub mod estimate;
 pub mod evidence;

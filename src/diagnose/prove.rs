@@ -128,6 +128,15 @@ pub fn median(values: &[f64]) -> f64 {
     }
 }
 
+/// A run that diverges counts as this far off \[%\], not as missing.
+const DIVERGED: f64 = 1e4;
+
+/// Median cVDM \[%\] of a model's free simulations of runs.
+pub fn median_distance(model: &Model, integration: Integration, runs: &[Run]) -> f64 {
+    let of = |r: &Run| distances(model, integration, r).map_or(DIVERGED, |d| d.0);
+    median(&runs.par_iter().map(of).collect::<Vec<_>>())
+}
+
 /// Compares two models on held-out runs.
 pub fn prove(
     before: (&Model, &Noise),
@@ -137,8 +146,6 @@ pub fn prove(
     runs: &[Run],
     seed: u64,
 ) -> HeldOut {
-    // A run that diverges counts as far off, not as missing.
-    const DIVERGED: f64 = 1e4;
     let (runs_before, white_before) = score(before.0, integration, before.1, runs);
     let (runs_after, white_after) = score(after.0, integration, after.1, runs);
     let value = |s: &RunScore| s.cvdm.unwrap_or(DIVERGED);
@@ -165,10 +172,7 @@ pub fn prove(
         worse: improvements.iter().filter(|i| **i < 0.0).count(),
         worst_run: worst.map(|(i, _)| runs[i].name.clone()),
         worst_improvement: worst.map(|(_, v)| *v),
-        generic: generic.map(|g| {
-            let (scores, _) = score(g, integration, before.1, runs);
-            median(&scores.iter().map(value).collect::<Vec<_>>())
-        }),
+        generic: generic.map(|g| median_distance(g, integration, runs)),
         log_likelihood_gain: runs_after.iter().map(|s| s.log_likelihood).sum::<f64>()
             - runs_before.iter().map(|s| s.log_likelihood).sum::<f64>(),
         whiteness: [white_before, white_after],

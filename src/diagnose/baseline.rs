@@ -1,0 +1,270 @@
+//! What a user would do otherwise, and the best that could be done: the yardsticks the diagnosis is measured against.
+//! None of it is part of a diagnosis: it names by other rules ([`Refitted`]) or is told the answer ([`oracle`]).
+
+use super::conclude::{Settings, base_parameters, candidate_parameters, start_at};
+use super::estimate::{Effort, Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
+use super::evidence::Evidence;
+use super::filter::{Column, Filter, Gains, Pass, Run, Wanted, Z};
+use super::mechanism::{Candidate, candidates};
+use super::noise::{Noise, NoisePrior, guess};
+use super::prove::median_distance;
+use super::refit::refit;
+use super::screen::screen;
+use crate::model::{Model, ModelError};
+use crate::simulate::{Integration, Method};
+use crate::state::STATES;
+use crate::terms::CATALOGUE;
+use rayon::prelude::*;
+
+/// The model refitted to whole trajectories: its own free parameters by least squares, every residual taken as independent of
+/// every other. This is the paper's way to improve a model, without its constraints.
+///
+/// Minus twice the log-likelihood is, up to a constant, `sum_j n_j ln(sum_k e_kj^2 / n_j)` over the measured channels j, with the
+/// residuals e of free simulations from the first measured state.
+#[derive(Clone, Debug)]
+pub struct Refitted {
+    /// The model, every term of the catalogue in it at neutral values.
+    pub model: Model,
+    /// Mean square residual by channel \[unit of the channel squared\].
+    pub variance: [f64; STATES],
+    /// Number of scalar measurements.
+    pub used: usize,
+    free: Vec<FreeParameter>,
+    integration: Integration,
+    noise: Noise,
+}
+
+/// What the Bayesian information criterion says of one mechanism added to the refitted model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BicGain {
+    /// The mechanism.
+    pub mechanism: String,
+    /// Amplitudes that the trajectories can see.
+    pub degrees: usize,
+    /// How far the criterion falls: `N ln(RSS_0/RSS_1) - k ln N`; the mechanism is worth having when this is positive.
+    pub gain: f64,
+}
+
+/// Free simulations and their derivatives.
+struct Trajectories {
+    passes: Vec<Pass>,
+    variance: [f64; STATES],
+    used: [f64; STATES],
+}
+
+impl Trajectories {
+    /// Simulates all runs. A filter whose gains are zero never corrects its state: its innovations are the residuals of the
+    /// free simulation, its scores and information those of least squares with residuals of these variances.
+    fn new(filter: &Filter, runs: &[Run], noise: &Noise, variance: &[f64; STATES], exact: bool) -> Self {
+        let passes: Vec<Pass> = runs
+            .par_iter()
+            .map(|r| {
+                let samples = r.measured.len();
+                let open = Gains { variance: vec![*variance; samples], gain: vec![[[0.0; Z]; STATES]; samples] };
+                filter.pass(r, noise, Wanted { frozen: Some(&open), exact, ..Wanted::default() })
+            })
+            .collect();
+        let (mut sums, mut used) = ([0.0; STATES], [0.0; STATES]);
+        for innovation in passes.iter().flat_map(|p| &p.innovations) {
+            for j in (0..STATES).filter(|j| !innovation[*j].is_nan()) {
+                sums[j] += innovation[j] * innovation[j];
+                used[j] += 1.0;
+            }
+        }
+        let mean = |j: usize| if used[j] > 0.0 { variance[j] * sums[j] / used[j] } else { variance[j] };
+        // A channel that is met exactly would outweigh all others.
+        let variance = std::array::from_fn(|j| mean(j).max(1e-12));
+        Self { passes, variance, used }
+    }
+
+    /// Minus twice the log-likelihood at the variances that fit best; infinite when a simulation diverged.
+    fn misfit(&self) -> f64 {
+        let sum: f64 = (0..STATES).map(|j| self.used[j] * self.variance[j].ln()).sum();
+        // Residuals that are not a number were not counted: the likelihood tells.
+        if self.passes.iter().all(|p| p.log_likelihood.is_finite()) { sum } else { f64::INFINITY }
+    }
+
+    fn evidence(&self, runs: &[Run], free: &[FreeParameter]) -> Evidence {
+        evidence(runs, &self.passes, &restrictions(free))
+    }
+}
+
+impl Refitted {
+    /// Refits the free parameters of a model by the method of Levenberg and Marquardt. `None` when the model as given runs
+    /// away in a free simulation, so that there is nothing to start from.
+    ///
+    /// # Errors
+    /// When the catalogue's terms cannot be added to the model.
+    pub fn new(model: &Model, runs: &[Run], settings: &Settings) -> Result<Option<Self>, ModelError> {
+        let mut model = complete(model)?;
+        let integration = integration_of(settings);
+        let free = base_parameters(&model, false);
+        let columns: Vec<Column> = free.iter().map(|f| f.column).collect();
+        // A pass asks for noise, but with the gains given it changes nothing.
+        let noise = guess(runs, &model);
+        let at = |m: &Model, variance: &[f64; STATES]| {
+            Trajectories::new(&Filter::new(m, integration, &columns), runs, &noise, variance, true)
+        };
+        // Twice, so that the scores are in units of the residuals there are.
+        let first = at(&model, &[1.0; STATES]);
+        let mut current = at(&model, &first.variance);
+        let mut damping = 1e-3;
+        for _ in 0..30 {
+            if !current.misfit().is_finite() {
+                return Ok(None);
+            }
+            let e = current.evidence(runs, &free);
+            let damped = free.iter().enumerate().map(|(i, f)| {
+                let (precision, pull) = f.prior_terms(&model);
+                (precision + damping * e.total.information[(i, i)], pull)
+            });
+            let (precision, pull): (Vec<f64>, Vec<f64>) = damped.unzip();
+            let step = e.base(&(0..free.len()).collect::<Vec<_>>(), &precision, &pull).step();
+            let mut trial = model.clone();
+            for (f, s) in free.iter().zip(step.iter()) {
+                f.set(&mut trial, f.value(&model) + s * f.column.scale);
+            }
+            let next = at(&trial, &current.variance);
+            let gain = current.misfit() - next.misfit();
+            if gain > 0.0 {
+                (model, current) = (trial, next);
+                damping = f64::max(0.2 * damping, 1e-9);
+            } else {
+                damping *= 10.0;
+            }
+            // A step that changes the likelihood by less changes no decision.
+            if (gain > 0.0 && gain < 0.1) || damping > 1e6 {
+                break;
+            }
+        }
+        let used = current.used.iter().sum::<f64>() as usize;
+        Ok(Some(Self { variance: current.variance, model, used, free, integration, noise }))
+    }
+
+    /// Every mechanism of the catalogue by its gain in the Bayesian information criterion, best first: each added alone, with
+    /// one amplitude in all sessions, by linear least squares in its amplitudes with the free parameters along.
+    pub fn ranking(&self, runs: &[Run], withhold: &[String]) -> Vec<BicGain> {
+        let list: Vec<Candidate> =
+            candidates(&self.model, withhold).into_iter().filter(|c| c.mechanism.applies(runs)).collect();
+        let mut columns: Vec<Column> = self.free.iter().map(|f| f.column).collect();
+        let mut groups = Vec::new();
+        for c in &list {
+            groups.push((columns.len()..columns.len() + c.columns.len()).collect::<Vec<usize>>());
+            columns.extend(&c.columns);
+        }
+        let filter = Filter::new(&self.model, self.integration, &columns);
+        let simulated = Trajectories::new(&filter, runs, &self.noise, &self.variance, false);
+        let e = simulated.evidence(runs, &self.free);
+        let base = base_of(&e, &self.model, &self.free);
+        // In units of their own mean squares the residuals' sum of squares is their number.
+        let n = self.used as f64;
+        let mut out: Vec<BicGain> = list
+            .iter()
+            .zip(&groups)
+            .map(|(c, group)| {
+                let test = e.test(&base, group);
+                let left = (n - test.statistic).max(1.0);
+                let gain = n * (n / left).ln() - test.degrees as f64 * n.ln();
+                BicGain { mechanism: c.mechanism.name.into(), degrees: test.degrees, gain }
+            })
+            .filter(|g| g.degrees > 0)
+            .collect();
+        out.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        out
+    }
+
+    /// Median cVDM \[%\] on held-out runs, as the diagnosis' proof measures it.
+    pub fn held_out(&self, runs: &[Run]) -> f64 {
+        median_distance(&self.model, self.integration, runs)
+    }
+}
+
+/// A mechanism that the oracle is told of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Told {
+    /// Its name in the catalogue.
+    pub mechanism: String,
+    /// Sessions in which it acts; `None` for all.
+    pub sessions: Option<Vec<String>>,
+}
+
+/// Only what a mechanism is then started from: its parameters and the noise are estimated again with it.
+const START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
+
+/// Told the answer, it has only this one fit to make.
+const FINISH: Effort = Effort { rounds: 8, noise_rounds: 2, noise_iterations: 6, noise_runs: 10 };
+
+/// Median cVDM \[%\] on held-out runs, as the diagnosis' proof measures it, of a model that was told which mechanisms act, and in
+/// which sessions: estimated and refitted as the diagnosis does with what it finds. How far the held-out error can fall when the name
+/// is right. `None` when the catalogue lacks one of them.
+///
+/// # Errors
+/// When the catalogue's terms cannot be added to the model.
+pub fn oracle(
+    model: &Model,
+    runs: &[Run],
+    held_out: &[Run],
+    settings: &Settings,
+    told: &[Told],
+) -> Result<Option<f64>, ModelError> {
+    let full = complete(model)?;
+    let integration = integration_of(settings);
+    let list = candidates(&full, &[]);
+    let of = |t: &Told| list.iter().find(|c| c.mechanism.name == t.mechanism);
+    let Some(chosen) = told.iter().map(of).collect::<Option<Vec<_>>>() else { return Ok(None) };
+    let first = guess(runs, &full);
+    let prior = NoisePrior::around(&first);
+    let free = base_parameters(&full, settings.nuisance);
+    let mut current = estimate(&full, integration, runs, &free, &first, &prior, START);
+    for (told, candidate) in told.iter().zip(chosen) {
+        let start = started(&current, integration, runs, candidate, &told.sessions);
+        let mut free = current.free.clone();
+        free.extend(candidate_parameters(candidate, &told.sessions));
+        current = estimate(&start, integration, runs, &free, &current.noise, &prior, FINISH);
+    }
+    // Without Ipopt's answer the estimate by Fisher scoring stands, as it does in a diagnosis.
+    if let Ok(refitted) = refit(&current, integration, runs) {
+        current = refitted;
+    }
+    Ok(Some(median_distance(&current.model, integration, held_out)))
+}
+
+/// The model with a mechanism at the amplitudes that a linear step from the estimate gives, and everything else moved along.
+fn started(
+    found: &Estimate,
+    integration: Integration,
+    runs: &[Run],
+    candidate: &Candidate,
+    sessions: &Option<Vec<String>>,
+) -> Model {
+    let alone = std::slice::from_ref(candidate);
+    let s = screen(found, integration, runs, alone);
+    let columns = s.columns(alone, 0);
+    let test = match sessions {
+        None => s.evidence.test(&s.base, &columns),
+        Some(names) => {
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            s.evidence.test_in(&s.base, &columns, &names, false)
+        }
+    };
+    let shift = s.base_shift(&columns, sessions, &test.amplitude);
+    let mut model = found.model.clone();
+    for (f, d) in found.free.iter().zip(shift.iter()) {
+        f.set(&mut model, f.value(&found.model) + d * f.column.scale);
+    }
+    start_at(&mut model, candidate, sessions, &test.amplitude);
+    model
+}
+
+/// The model with every term of the catalogue.
+fn complete(model: &Model) -> Result<Model, ModelError> {
+    let mut full = model.clone();
+    for term in CATALOGUE {
+        full.add_term(term.info().name)?;
+    }
+    Ok(full)
+}
+
+fn integration_of(settings: &Settings) -> Integration {
+    Integration { method: Method::Rk4, substeps: settings.substeps.max(1) }
+}

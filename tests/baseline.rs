@@ -1,0 +1,94 @@
+//! The yardsticks of the diagnosis: the refit of trajectories, the criterion on them, and the oracle, where the truth is known.
+//! How they compare with the diagnosis on concealed cases is the campaign's to say.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use support::{model, runs, truth_noise};
+use trimtab::diagnose::Settings;
+use trimtab::diagnose::baseline::{Refitted, Told, oracle};
+use trimtab::diagnose::filter::Run;
+use trimtab::diagnose::noise::Noise;
+use trimtab::diagnose::prove::median_distance;
+use trimtab::model::Model;
+use trimtab::simulate::{Integration, Method};
+
+/// The base model with a current.
+fn drifting() -> Model {
+    let mut truth = model();
+    truth.add_term("current").unwrap();
+    let i = truth.find("current.north").unwrap();
+    truth.parameters[i].value = 0.15;
+    truth
+}
+
+/// Sensors alone, white: what least squares on trajectories takes for granted.
+fn calm() -> Noise {
+    let mut noise = truth_noise();
+    noise.force = [0.0; 3];
+    noise.sensors.iter_mut().for_each(|s| s.coloured = 0.0);
+    noise
+}
+
+/// The model with every free parameter off by a tenth.
+fn off(mut model: Model) -> Model {
+    for i in model.free() {
+        model.parameters[i].value *= 1.1;
+    }
+    model
+}
+
+fn refitted(model: &Model, runs: &[Run]) -> Refitted {
+    Refitted::new(model, runs, &Settings::default()).unwrap().unwrap()
+}
+
+#[test]
+fn a_refit_from_elsewhere_ends_where_one_from_the_truth_ends() {
+    let data = runs(&model(), &calm(), 16, 11);
+    let (train, held_out) = data.split_at(12);
+    let (near, far) = (refitted(&model(), train), refitted(&off(model()), train));
+    let misfit = |fit: &Refitted| fit.used as f64 / 6.0 * fit.variance.iter().map(|v| v.ln()).sum::<f64>();
+    assert!((misfit(&far) - misfit(&near)).abs() < 1.0, "{} {}", misfit(&far), misfit(&near));
+    let integration = Integration { method: Method::Rk4, substeps: 1 };
+    let (truth, before) =
+        (median_distance(&model(), integration, held_out), median_distance(&off(model()), integration, held_out));
+    assert!(far.held_out(held_out) < truth + 0.2 * (before - truth), "{} {truth} {before}", far.held_out(held_out));
+}
+
+#[test]
+fn the_criterion_names_an_effect_in_a_calm_and_nothing_without_one() {
+    let best = |truth: &Model| {
+        let data = runs(truth, &calm(), 12, 5);
+        refitted(&model(), &data).ranking(&data, &[]).remove(0)
+    };
+    let found = best(&drifting());
+    assert_eq!((found.mechanism.as_str(), found.degrees, found.gain > 100.0), ("current", 2, true), "{found:?}");
+    assert!(best(&model()).gain < 0.1 * found.gain);
+}
+
+#[test]
+fn the_criterion_takes_gusts_for_physics() {
+    let data = runs(&model(), &truth_noise(), 12, 5);
+    let ranking = refitted(&model(), &data).ranking(&data, &[]);
+    assert!(ranking[0].gain > 0.0, "residuals that are not independent are counted as if they were: {:?}", ranking[0]);
+    assert!(ranking.windows(2).all(|w| w[0].gain >= w[1].gain));
+    let without = refitted(&model(), &data).ranking(&data, &[ranking[0].mechanism.clone()]);
+    assert_eq!(without[0], ranking[1]);
+}
+
+#[test]
+fn the_oracle_improves_unseen_runs_and_is_silent_about_what_the_catalogue_lacks() {
+    let data = runs(&drifting(), &truth_noise(), 16, 7);
+    let of = |name: &str, sessions: Option<Vec<String>>| {
+        let told = Told { mechanism: name.into(), sessions };
+        oracle(&model(), &data[..12], &data[12..], &Settings::default(), &[told]).unwrap()
+    };
+    let everywhere = of("current", None).unwrap();
+    let untold = refitted(&model(), &data[..12]).held_out(&data[12..]);
+    assert!(everywhere < 0.8 * untold, "{everywhere} {untold}");
+    // Told that it acts where the held-out runs were not sailed, it has nothing to offer them.
+    let elsewhere = of("current", Some(vec!["s0".into(), "s1".into(), "s2".into()])).unwrap();
+    assert!(everywhere < 0.8 * elsewhere, "{everywhere} {elsewhere}");
+    assert!(of("kraken", None).is_none());
+}
