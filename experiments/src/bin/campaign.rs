@@ -1,21 +1,19 @@
-//! Runs the campaign of concealed cases: conceal, diagnose in a process of its own, judge, one row a case; then the summary.
+//! Runs the campaign of concealed cases, one row of results a case, and summarises them against the targets.
 //! Finished cases are in the results file and are not run again, so that an interrupted campaign goes on where it stopped.
 
 use std::collections::BTreeSet;
 use std::fs::OpenOptions;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode, Stdio};
+use std::process::ExitCode;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use trimtab_experiments::conceal::ConcealError;
 use trimtab_experiments::conceal::campaign::{self, Planned, SEED};
-use trimtab_experiments::conceal::judge::{Diagnosis, Score, baseline_right, judge};
-use trimtab_experiments::conceal::meter::DiagnosisMeter;
-use trimtab_experiments::conceal::strength::Meter;
-use trimtab_experiments::conceal::{Case, ConcealError, Strength, seal};
+use trimtab_experiments::conceal::judge::Score;
+use trimtab_experiments::conceal::runner::Runner;
 
 /// Makes, diagnoses and judges concealed cases, and compares the scores with the targets.
 #[derive(Parser)]
@@ -44,9 +42,12 @@ struct Arguments {
     /// Longest time for one diagnosis \[s\].
     #[arg(long, default_value_t = 300)]
     limit: u64,
-    /// Keep the folders of the cases, for the baselines in `experiments/peers` and for looking.
+    /// Keep the folders of the cases, for looking.
     #[arg(long)]
     keep: bool,
+    /// The diagnosis alone, without the baselines.
+    #[arg(long)]
+    alone: bool,
     /// Also ask sparse regression: this Python has PySINDy (see experiments/peers).
     #[arg(long, value_name = "PYTHON")]
     sindy: Option<PathBuf>,
@@ -114,10 +115,6 @@ fn read(path: &Path) -> Result<Vec<Score>, ConcealError> {
 
 /// Runs the cases of `plan` and appends a row for each as it is finished.
 fn sail(a: &Arguments, plan: &[Planned], results: &Path) -> Result<(), ConcealError> {
-    if !a.tool.is_file() {
-        let message = "the program that diagnoses is not there; `cargo build --release`, or give --tool";
-        return Err(content(&a.tool, &message));
-    }
     let header = !results.exists();
     let file = OpenOptions::new()
         .create(true)
@@ -125,126 +122,27 @@ fn sail(a: &Arguments, plan: &[Planned], results: &Path) -> Result<(), ConcealEr
         .open(results)
         .map_err(|source| ConcealError::File { path: results.to_owned(), source })?;
     let writer = Mutex::new(csv::WriterBuilder::new().has_headers(header).from_writer(file));
-    let failed = Mutex::new(None);
-    let next = AtomicUsize::new(0);
     let bar = ProgressBar::new(plan.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{pos}/{len} {wide_bar} {eta} {msg}") {
         bar.set_style(style);
     }
-    std::thread::scope(|scope| {
-        for _ in 0..a.workers.max(1) {
-            scope.spawn(|| {
-                // A meter of its own: it keeps what it fitted last, and two cases at a time would take turns.
-                let meter = match DiagnosisMeter::new() {
-                    Ok(meter) => meter,
-                    Err(e) => {
-                        if let Ok(mut slot) = failed.lock() {
-                            *slot = Some(e);
-                        }
-                        return;
-                    }
-                };
-                while let Some(case) = plan.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let score = one(a, case, &meter);
-                    bar.set_message(case.key.clone());
-                    bar.inc(1);
-                    let written = writer.lock().map(|mut w| w.serialize(&score).and_then(|()| Ok(w.flush()?)));
-                    if let (Ok(Err(e)), Ok(mut slot)) = (written, failed.lock()) {
-                        *slot = Some(content(results, &e));
-                        return;
-                    }
-                }
-            });
-        }
+    let runner = Runner {
+        tool: a.tool.clone(),
+        limit: Duration::from_secs(a.limit),
+        folder: a.out.join("cases"),
+        keep: a.keep,
+        baselines: !a.alone,
+        sindy: a.sindy.clone(),
+    };
+    let outcome = runner.all(plan, a.workers, &|score| {
+        bar.set_message(score.case.clone());
+        bar.inc(1);
+        // A panic in another thread cannot leave half a row: the writer keeps whole ones.
+        let mut writer = writer.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        writer.serialize(&score).and_then(|()| Ok(writer.flush()?)).map_err(|e| content(results, &e))
     });
     bar.finish_and_clear();
-    match failed.into_inner() {
-        Ok(Some(e)) => Err(e),
-        _ => Ok(()),
-    }
-}
-
-/// One case from start to score; what goes wrong becomes the row's error.
-fn one(a: &Arguments, planned: &Planned, meter: &dyn Meter) -> Score {
-    let folder = a.out.join("cases").join(planned.key.replace('/', "_"));
-    let outcome = attempt(a, planned, meter, &folder);
-    if !a.keep {
-        // Left behind only when the system refuses; the next call writes over it.
-        let _ = std::fs::remove_dir_all(&folder);
-    }
-    let mut score = outcome.unwrap_or_else(|e| Score {
-        family: planned.spec.family.name().to_owned(),
-        effects: planned.spec.effects.iter().map(|e| e.0.as_str()).collect::<Vec<_>>().join("+"),
-        background: planned.spec.background.name().to_owned(),
-        design: planned.spec.design.name().to_owned(),
-        contrast: planned.spec.contrast,
-        seed: planned.spec.seed,
-        error: e.to_string(),
-        ..Score::default()
-    });
-    score.case.clone_from(&planned.key);
-    score.arm = planned.arm.to_owned();
-    score.snr_asked = planned.spec.effects.iter().find_map(|(_, s)| match s {
-        Strength::Snr(snr) => Some(*snr),
-        _ => None,
-    });
-    score
-}
-
-fn attempt(a: &Arguments, planned: &Planned, meter: &dyn Meter, folder: &Path) -> Result<Score, ConcealError> {
-    let study = Case::make(&planned.spec, meter)?.write(folder)?;
-    let answer = folder.join("answer");
-    let began = Instant::now();
-    let mut command = Command::new(&a.tool);
-    command.arg("--threads").arg("1").arg("diagnose").arg(&study).arg("--out").arg(&answer);
-    finish(command, &a.tool, Duration::from_secs(a.limit))?;
-    let seconds = began.elapsed().as_secs_f64();
-    let diagnosis = Diagnosis::read(&answer.join("diagnosis.json"))?;
-    let manifest = seal::open(folder)?;
-    let mut score = judge(&manifest, &diagnosis);
-    score.seconds = Some(seconds);
-    if let Some(python) = &a.sindy {
-        let mut command = Command::new(python);
-        command.arg("experiments/peers/sindy.py").arg(folder);
-        let said = finish(command, python, Duration::from_secs(a.limit))?;
-        score.sindy_named = said.lines().last().unwrap_or_default().trim().to_owned();
-        score.sindy_right = Some(baseline_right(&manifest, &score.sindy_named));
-    }
-    Ok(score)
-}
-
-/// Runs a command to its end, at most `limit`; gives what it printed. Exit code 1 is an answer, not a failure.
-fn finish(mut command: Command, program: &Path, limit: Duration) -> Result<String, ConcealError> {
-    let file = |source| ConcealError::File { path: program.to_owned(), source };
-    // Output goes through files: a pipe that nobody reads would stop a talkative program.
-    let temporary = || tempfile::tempfile().map_err(file);
-    let (mut out, mut err) = (temporary()?, temporary()?);
-    let copy = |f: &std::fs::File| f.try_clone().map(Stdio::from).map_err(file);
-    let mut child = command.stdin(Stdio::null()).stdout(copy(&out)?).stderr(copy(&err)?).spawn().map_err(file)?;
-    let began = Instant::now();
-    let status = loop {
-        if let Some(status) = child.try_wait().map_err(file)? {
-            break status;
-        }
-        if began.elapsed() > limit {
-            child.kill().map_err(file)?;
-            child.wait().map_err(file)?;
-            return Err(content(program, &format!("stopped after {} s", limit.as_secs())));
-        }
-        std::thread::sleep(Duration::from_millis(10));
-    };
-    let text = |f: &mut std::fs::File| -> Result<String, ConcealError> {
-        use std::io::{Read, Seek, SeekFrom};
-        let mut text = String::new();
-        f.seek(SeekFrom::Start(0)).map_err(file)?;
-        f.read_to_string(&mut text).map_err(file)?;
-        Ok(text)
-    };
-    if matches!(status.code(), Some(0 | 1)) {
-        return text(&mut out);
-    }
-    let last = text(&mut err)?;
-    Err(content(program, &format!("{status}: {}", last.lines().last().unwrap_or_default())))
+    outcome
 }
 
 fn summarise(a: &Arguments, scores: &[Score]) -> Result<(), ConcealError> {

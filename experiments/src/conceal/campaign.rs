@@ -1,10 +1,12 @@
 //! The campaign: which cases are made, the table of their scores, and what the table says against the targets.
-//! Making, diagnosing and judging a case is the binary's work; nothing here runs anything.
+//! Making, diagnosing and judging a case is the runner's work; nothing here runs anything.
 
 use std::collections::BTreeSet;
 
 use serde::Serialize;
-use trimtab::report::{Axis, BLUE, Color, Figure, GREEN, GREY, LIMIT, Layer, ORANGE, Panel, Table};
+use trimtab::report::{
+    Axis, BASELINE, BLUE, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, ORACLE, ORANGE, PURPLE, Panel, SKY, Table,
+};
 
 use super::craft::Family;
 use super::design::Design;
@@ -229,6 +231,54 @@ fn reached(score: &Score) -> bool {
     }
 }
 
+/// A way to answer what is missing.
+struct Way {
+    name: &'static str,
+    color: Color,
+    /// Whether it named the effect, or nothing on a null; unknown where it was not asked.
+    right: fn(&Score) -> Option<bool>,
+}
+
+/// What the diagnosis itself is called beside the others.
+const DIAGNOSIS: &str = "diagnosis";
+
+/// The diagnosis, and what a user would do otherwise.
+const WAYS: [Way; 3] = [
+    Way { name: DIAGNOSIS, color: FITTED, right: named_right },
+    Way { name: "iid BIC", color: PURPLE, right: |s| s.bic_right },
+    Way { name: "sparse regression", color: GREY, right: |s| s.sindy_right },
+];
+
+/// A model to predict unseen runs with.
+struct Predictor {
+    name: &'static str,
+    target: &'static str,
+    color: Color,
+    score: fn(&Score) -> Option<f64>,
+}
+
+/// From the paper's way to the best that could be reached.
+const MODELS: [Predictor; 4] = [
+    Predictor {
+        name: "refit only, the paper's way",
+        target: "(baseline)",
+        color: BASELINE,
+        score: |s| s.refit_held_out,
+    },
+    Predictor { name: "base model of the diagnosis", target: "-", color: SKY, score: |s| s.base_held_out },
+    Predictor { name: "with what it named", target: "-", color: FITTED, score: |s| s.named_held_out },
+    Predictor { name: "oracle", target: "(bound)", color: ORACLE, score: |s| s.oracle_held_out },
+];
+
+/// Whether the diagnosis named the effect first, seen or not; on a null, whether it raised no alarm.
+fn named_right(score: &Score) -> Option<bool> {
+    match (score.false_alarm, score.detected) {
+        (Some(alarm), _) => Some(!alarm),
+        (None, Some(false)) => Some(false),
+        (None, _) => score.first_right,
+    }
+}
+
 /// The table of the summary, line by line against the targets.
 pub fn summary(all: &[Score]) -> Vec<Line> {
     let scores: Vec<Score> = all.iter().filter(|s| s.error.is_empty()).cloned().collect();
@@ -319,28 +369,27 @@ pub fn summary(all: &[Score]) -> Vec<Line> {
         Share::of(arm("pooled").map(|s| s.wrong_confident)),
         &at_most(0.1),
     );
-    share(
-        "effect in some sessions only: first name right",
-        "-",
-        Share::of(arm("contrast").map(|s| if s.detected == Some(false) { Some(false) } else { s.first_right })),
-        &|_| true,
-    );
+    share("effect in some sessions only: first name right", "-", Share::of(arm("contrast").map(named_right)), &|_| {
+        true
+    });
     share(
         "designs that cannot tell: wrong confident name",
         "<= 10 %",
         Share::of(arm("design").map(|s| s.wrong_confident)),
         &at_most(0.1),
     );
-    // A baseline is right when it names the effect on a case that has one, and nothing on a null.
-    for (name, right) in [
-        ("iid BIC", (|s: &Score| s.bic_right) as fn(&Score) -> Option<bool>),
-        ("sparse regression", |s: &Score| s.sindy_right),
-    ] {
-        let wrong = |s: &Score| right(s).map(|r| !r);
-        share(&format!("{name}: false alarms on all nulls"), "(baseline)", Share::of(arm("null").map(wrong)), &|_| {
-            true
-        });
-        share(&format!("{name}: right name at SNR 12"), "(baseline)", Share::of(twelve().map(right)), &|_| true);
+    for (family, of) in [("hd", "nulls of the HD family"), ("mmg", "nulls of the MMG family")] {
+        for way in &WAYS[1..] {
+            let wrong = null(family).filter(|s| s.background != "euler").map(|s| (way.right)(s).map(|r| !r));
+            share(&format!("false alarms, {of}: {}", way.name), "(baseline)", Share::of(wrong), &|_| true);
+        }
+    }
+    for snr in [6.0, 12.0] {
+        for way in &WAYS {
+            let right = single(scores, None, snr).map(way.right);
+            let target = if way.name == DIAGNOSIS { "-" } else { "(baseline)" };
+            share(&format!("right name, seen or not, at SNR {snr}: {}", way.name), target, Share::of(right), &|_| true);
+        }
     }
     let mut number = |what: &str, target: &str, found: Option<f64>, met: &dyn Fn(f64) -> bool| {
         let met = found.map(met);
@@ -360,14 +409,12 @@ pub fn summary(all: &[Score]) -> Vec<Line> {
         median(twelve().map(|s| s.gap_closed)),
         &at_least(0.9),
     );
-    number(
-        "median held-out score, refit only, at SNR 12",
-        "(baseline)",
-        median(twelve().map(|s| s.refit_held_out)),
-        &|_| true,
-    );
-    number("median held-out score, with what was named", "-", median(twelve().map(|s| s.named_held_out)), &|_| true);
-    number("median held-out score, oracle", "(bound)", median(twelve().map(|s| s.oracle_held_out)), &|_| true);
+    // The same cases in all four rows: those of which the oracle could be told.
+    let compared = || twelve().filter(|s| s.oracle_held_out.is_some());
+    for model in &MODELS {
+        let what = format!("median held-out cVDM at SNR 12 [%]: {}", model.name);
+        number(&what, model.target, median(compared().map(model.score)), &|_| true);
+    }
     number("median time of a diagnosis [s]", "<= 5", median(scores.iter().map(|s| s.seconds)), &at_most(5.0));
     number("cases without a score", "0", Some((all.len() - scores.len()) as f64), &at_most(0.0));
     lines
@@ -401,6 +448,7 @@ pub fn table(lines: &[Line]) -> Table {
 /// Detection and first names against strength, both families, and false alarms by background.
 pub fn figure(scores: &[Score]) -> Figure {
     let steps = [3.0, 6.0, 12.0, 24.0];
+    let strength = || Axis::new("signal-to-noise ratio").log().range(2.5, 30.0);
     let curve = |name: &str, color: Color, family: &'static str, of: fn(&Score) -> Option<bool>| {
         let point = |snr: f64| {
             let s = Share::of(single(scores, Some(family), snr).map(of))?;
@@ -411,47 +459,69 @@ pub fn figure(scores: &[Score]) -> Figure {
         [line, Layer::errors(name, color, points).unlisted()]
     };
     let panel = |title: &str, of: fn(&Score) -> Option<bool>| {
-        let x = Axis::new("signal-to-noise ratio").log().range(2.5, 30.0);
-        let mut panel = Panel::new(title, x, Axis::new("share of cases").range(0.0, 1.0));
+        let mut panel = Panel::new(title, strength(), Axis::new("share of cases").range(0.0, 1.0));
         for (name, color, family) in [("HD truth", BLUE, "hd"), ("MMG truth", ORANGE, "mmg")] {
             panel = panel.with_all(curve(name, color, family, of));
         }
         panel
     };
     let names: BTreeSet<&str> = scores.iter().filter(|s| s.arm == "null").map(|s| s.background.as_str()).collect();
-    let bars = |family: &str, of: fn(&Score) -> Option<bool>| -> Vec<(f64, f64, f64)> {
+    let bars = |family: Option<&str>, right: fn(&Score) -> Option<bool>| -> Vec<(f64, f64, f64)> {
         let share = |name: &&str| {
-            let here = scores.iter().filter(|s| s.arm == "null" && s.background == *name && s.family == family);
-            let s = Share::of(here.map(of));
+            let here = scores.iter().filter(|s| s.arm == "null" && s.background == *name);
+            let here = here.filter(|s| family.is_none_or(|f| s.family == f));
+            let s = Share::of(here.map(|s| right(s).map(|r| !r)));
             s.map_or((f64::NAN, f64::NAN, f64::NAN), |s| (s.value(), s.low, s.high))
         };
         names.iter().map(share).collect()
     };
-    let alarms = Panel::new(
+    let mut alarms = Panel::new(
         "false alarms on nulls",
         Axis::categories("background", names.iter().copied()),
         Axis::new("share of cases").range(0.0, 1.0),
     )
-    .with(Layer::bars_with_intervals("HD truth", BLUE, bars("hd", |s| s.false_alarm)))
-    .with(Layer::bars_with_intervals("MMG truth", ORANGE, bars("mmg", |s| s.false_alarm)))
-    .with(Layer::bars_with_intervals("iid BIC, HD truth", GREY, bars("hd", |s| s.bic_right.map(|r| !r))))
-    .with(Layer::h_line("target", LIMIT, 0.05));
+    .with(Layer::bars_with_intervals("HD truth", BLUE, bars(Some("hd"), named_right)))
+    .with(Layer::bars_with_intervals("MMG truth", ORANGE, bars(Some("mmg"), named_right)));
+    for way in &WAYS[1..] {
+        let wrong = bars(None, way.right);
+        if wrong.iter().any(|b| b.0.is_finite()) {
+            alarms = alarms.with(Layer::bars_with_intervals(format!("{}, both", way.name), way.color, wrong));
+        }
+    }
+    let alarms = alarms.with(Layer::h_line("target", LIMIT, 0.05));
     let sets = |snr: f64| single(scores, None, snr).map(|s| s.in_set);
     let set_points: Vec<_> =
         steps.into_iter().filter_map(|snr| Share::of(sets(snr)).map(|s| (snr, s.value(), s.low, s.high))).collect();
-    let set = Panel::new(
-        "truth in the confidence set",
-        Axis::new("signal-to-noise ratio").log().range(2.5, 30.0),
-        Axis::new("share of cases").range(0.0, 1.0),
-    )
-    .with(Layer::line("both families", GREEN, set_points.iter().map(|p| (p.0, p.1))))
-    .with(Layer::errors("both families", GREEN, set_points).unlisted());
+    let set = Panel::new("truth in the confidence set", strength(), Axis::new("share of cases").range(0.0, 1.0))
+        .with(Layer::line("both families", GREEN, set_points.iter().map(|p| (p.0, p.1))))
+        .with(Layer::errors("both families", GREEN, set_points).unlisted());
+    let mut ways =
+        Panel::new("right name, seen or not, both families", strength(), Axis::new("share of cases").range(0.0, 1.0));
+    for way in &WAYS {
+        let at =
+            |snr: f64| Share::of(single(scores, None, snr).map(way.right)).map(|s| (snr, s.value(), s.low, s.high));
+        let points: Vec<_> = steps.into_iter().filter_map(at).collect();
+        ways = ways
+            .with(Layer::line(way.name, way.color, points.iter().map(|p| (p.0, p.1))))
+            .with(Layer::errors(way.name, way.color, points).unlisted());
+    }
+    let mut errors = Panel::new("error on unseen runs, median", strength(), Axis::new("cVDM [%]").including(0.0));
+    for model in &MODELS {
+        // The same cases for all: those of which the oracle could be told.
+        let at = |snr: f64| {
+            let cases = single(scores, None, snr).filter(|s| s.oracle_held_out.is_some());
+            median(cases.map(model.score)).map(|value| (snr, value))
+        };
+        errors = errors.with(Layer::line(model.name, model.color, steps.into_iter().filter_map(at)));
+    }
     Figure::new("Concealed effects: what was found")
         .columns(2)
         .with(panel("something is missing: seen", |s| s.detected))
         .with(panel("first name right, given seen", |s| s.first_right))
         .with(set)
         .with(alarms)
+        .with(ways)
+        .with(errors)
 }
 
 #[cfg(test)]
@@ -498,11 +568,20 @@ mod tests {
             error: error.into(),
             ..Score::default()
         };
+        let compared = Score {
+            bic_right: Some(false),
+            refit_held_out: Some(3.0),
+            named_held_out: Some(2.0),
+            oracle_held_out: Some(1.0),
+            ..score("single", None, Some(true), "")
+        };
         let lines = summary(&[
             score("null", Some(false), None, ""),
             score("null", Some(true), None, ""),
             score("null", Some(true), None, "diagnose failed"),
-            score("single", None, Some(true), ""),
+            compared,
+            // Not seen, and nobody else was asked.
+            Score { detected: Some(false), refit_held_out: Some(90.0), ..score("single", None, None, "") },
         ]);
         let find = |what: &str| lines.iter().find(|l| l.what == what).and_then(|l| l.found);
         assert!(
@@ -510,6 +589,16 @@ mod tests {
         );
         let name = "first name right, given detection, at SNR 12, HD";
         assert!(matches!(find(name), Some(Found::Share(s)) if (s.hits, s.of) == (1, 1)));
+        let counts = |what: &str| match find(what) {
+            Some(Found::Share(s)) => (s.hits, s.of),
+            _ => (0, 0),
+        };
+        assert_eq!(counts("right name, seen or not, at SNR 12: diagnosis"), (1, 2));
+        assert_eq!(counts("right name, seen or not, at SNR 12: iid BIC"), (0, 1));
+        assert_eq!(counts("right name, seen or not, at SNR 12: sparse regression"), (0, 0));
+        let of = |name: &str| find(&format!("median held-out cVDM at SNR 12 [%]: {name}"));
+        assert_eq!(of("refit only, the paper's way"), Some(Found::Number(3.0)));
+        assert_eq!((of("with what it named"), of("oracle")), (Some(Found::Number(2.0)), Some(Found::Number(1.0))));
         assert_eq!(find("cases without a score"), Some(Found::Number(1.0)));
     }
 }

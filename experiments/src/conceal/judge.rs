@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::ConcealError;
+use super::baselines::Baselines;
 use super::craft::Family;
 use super::seal::{Answer, Manifest};
 
@@ -84,7 +85,7 @@ struct HeldOut {
     after: Option<Number>,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 struct Finding {
     mechanism: String,
     #[serde(default)]
@@ -97,18 +98,6 @@ struct Finding {
     held_out: Option<HeldOut>,
 }
 
-#[derive(Debug, Clone, Deserialize)]
-struct Bic {
-    mechanism: Option<String>,
-}
-
-#[derive(Debug, Clone, Default, Deserialize)]
-struct Baselines {
-    refit_only: Option<Number>,
-    iid_bic: Option<Bic>,
-    oracle: Option<Number>,
-}
-
 /// What a diagnosis said, as far as it is judged.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Diagnosis {
@@ -119,7 +108,19 @@ pub struct Diagnosis {
     windows: Vec<FoundWindow>,
     held_out: Option<HeldOut>,
     #[serde(default)]
-    baselines: Option<Baselines>,
+    admission: Admission,
+}
+
+#[derive(Debug, Clone, Default, Deserialize)]
+struct Admission {
+    #[serde(default)]
+    issues: Vec<Issue>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+struct Issue {
+    #[serde(default)]
+    blocking: bool,
 }
 
 impl Diagnosis {
@@ -189,7 +190,7 @@ pub struct Score {
     pub size_error: Option<f64>,
     /// The true size lies in the 90 % interval.
     pub covered: Option<bool>,
-    /// Share of the held-out gap between refit and oracle that was closed.
+    /// Share of the held-out gap between the diagnosis' base model and the oracle that was closed.
     pub gap_closed: Option<f64>,
     /// One name was given with confidence, and it is neither right nor near.
     pub wrong_confident: Option<bool>,
@@ -201,8 +202,10 @@ pub struct Score {
     pub exact: Option<bool>,
     /// Names given that describe the truth family itself.
     pub structural: usize,
-    /// Held-out score of the refitted base model.
+    /// Held-out score of the refit of trajectories, the paper's way: median cVDM \[%\].
     pub refit_held_out: Option<f64>,
+    /// Of the base model that the diagnosis estimated, hull and propeller coefficients along.
+    pub base_held_out: Option<f64>,
     /// Of the model with what was named.
     pub named_held_out: Option<f64>,
     /// Of the oracle.
@@ -236,8 +239,16 @@ fn verdict_key(verdict: &str) -> String {
     .to_owned()
 }
 
+/// What a diagnosis says by refusing to conclude: that its audit found the recordings at fault.
+const AUDIT: &str = "audit";
+
 /// Scores a diagnosis against the manifest of its case.
 pub fn judge(manifest: &Manifest, diagnosis: &Diagnosis) -> Score {
+    let mut diagnosis = diagnosis.clone();
+    if diagnosis.findings.is_empty() && diagnosis.admission.issues.iter().any(|i| i.blocking) {
+        diagnosis.findings.push(Finding { mechanism: AUDIT.to_owned(), ..Finding::default() });
+    }
+    let diagnosis = &diagnosis;
     let answers = &manifest.answers;
     let accepts = |name: &str| answers.iter().any(|a| a.accepted.iter().any(|n| n == name));
     let structural = |name: &str| manifest.structure.iter().any(|n| n == name) && !accepts(name);
@@ -270,11 +281,6 @@ pub fn judge(manifest: &Manifest, diagnosis: &Diagnosis) -> Score {
         ..Score::default()
     };
     held_out(diagnosis, first, &mut score);
-    if let Some(bic) = diagnosis.baselines.as_ref().and_then(|b| b.iid_bic.as_ref()) {
-        let name = bic.mechanism.as_deref().unwrap_or("nothing");
-        score.bic_named = name.to_owned();
-        score.bic_right = Some(baseline_right(manifest, name));
-    }
     if null {
         let euler = verdict_key(&manifest.expected) == "numerics";
         let alarming = own.iter().any(|f| !(euler && numerics(&f.mechanism)));
@@ -420,17 +426,25 @@ fn overlap(truth: &[(String, f64, f64)], found: &[&FoundWindow]) -> f64 {
 fn held_out(diagnosis: &Diagnosis, first: Option<&Finding>, score: &mut Score) {
     let of_finding = diagnosis.findings.last().or(first).and_then(|f| f.held_out.as_ref());
     let last = diagnosis.held_out.as_ref().or(of_finding);
-    let baselines = diagnosis.baselines.clone().unwrap_or_default();
-    let before = last.and_then(|h| h.before.as_ref()).and_then(Number::get);
-    score.refit_held_out = baselines.refit_only.as_ref().and_then(Number::get).or(before);
-    // What was not improved is as good as the refit.
-    score.named_held_out = last.and_then(|h| h.after.as_ref()).and_then(Number::get).or(score.refit_held_out);
-    score.oracle_held_out = baselines.oracle.as_ref().and_then(Number::get);
-    if let (Some(refit), Some(named), Some(oracle)) =
-        (score.refit_held_out, score.named_held_out, score.oracle_held_out)
-        && refit - oracle > 0.02 * refit.abs()
-    {
-        score.gap_closed = Some((refit - named) / (refit - oracle));
+    score.base_held_out = last.and_then(|h| h.before.as_ref()).and_then(Number::get);
+    // What was not improved is as good as the base.
+    score.named_held_out = last.and_then(|h| h.after.as_ref()).and_then(Number::get).or(score.base_held_out);
+}
+
+impl Score {
+    /// Adds what the baselines say of the same case.
+    pub fn compare(&mut self, manifest: &Manifest, baselines: &Baselines) {
+        self.refit_held_out = baselines.refit;
+        self.oracle_held_out = baselines.oracle;
+        if let Some(name) = &baselines.bic {
+            self.bic_named.clone_from(name);
+            self.bic_right = Some(baseline_right(manifest, name));
+        }
+        if let (Some(base), Some(named), Some(oracle)) = (self.base_held_out, self.named_held_out, self.oracle_held_out)
+            && base - oracle > 0.02 * base.abs()
+        {
+            self.gap_closed = Some((base - named) / (base - oracle));
+        }
     }
 }
 
@@ -492,10 +506,10 @@ mod tests {
                 ],
                 "held_out": {"before": 2.0, "after": 1.1, "improvement": 0.45},
             }],
-            "baselines": {"refit_only": 2.0, "oracle": {"held_out": 1.0}, "iid_bic": {"mechanism": "wind"}},
             "absorbed": [], "detectable": [],
         }));
-        let s = judge(&manifest(vec![answer("current", &["current", "tide"])], Family::Hd), &diagnosis);
+        let manifest = manifest(vec![answer("current", &["current", "tide"])], Family::Hd);
+        let mut s = judge(&manifest, &diagnosis);
         assert_eq!(
             (s.detected, s.first_right, s.in_set, s.right_equation),
             (Some(true), Some(true), Some(true), Some(true))
@@ -504,7 +518,10 @@ mod tests {
         assert!((s.window_iou.unwrap() - 40.0 / 60.0).abs() < 1e-12);
         assert!((s.size_error.unwrap() - 0.1).abs() < 1e-12);
         assert_eq!(s.covered, Some(true));
+        assert_eq!((s.gap_closed, s.bic_right), (None, None));
+        s.compare(&manifest, &Baselines { refit: Some(3.0), bic: Some("wind".into()), oracle: Some(1.0) });
         assert!((s.gap_closed.unwrap() - 0.9).abs() < 1e-12);
+        assert_eq!((s.refit_held_out, s.base_held_out, s.named_held_out), (Some(3.0), Some(2.0), Some(1.1)));
         assert_eq!((s.bic_named.as_str(), s.bic_right, s.verdict_right), ("wind", Some(false), Some(true)));
     }
 
@@ -582,6 +599,18 @@ mod tests {
         assert_eq!(judge(&m, &said(named("rudder_offset"))).absorbed_named, Some(true));
         let s = judge(&m, &said(json!({"verdict": "ABSORBED", "findings": []})));
         assert_eq!((s.absorbed_named, s.verdict_right), (Some(false), Some(true)));
+    }
+
+    #[test]
+    fn a_refusal_by_the_audit_is_an_answer_to_a_faulty_sensor_and_an_alarm_on_a_null() {
+        let refusal = said(json!({"verdict": "sensor", "findings": [],
+            "admission": {"issues": [{"text": "r does not turn psi", "blocking": true}]}}));
+        let m = manifest(vec![answer("sign_error", &["sign_error", "audit"])], Family::Hd);
+        let s = judge(&m, &refusal);
+        assert_eq!((s.detected, s.first_right, s.verdict_right), (Some(true), Some(true), Some(true)));
+        assert_eq!(judge(&manifest(vec![], Family::Hd), &refusal).false_alarm, Some(true));
+        let m = manifest(vec![answer("current", &["current"])], Family::Hd);
+        assert_eq!(judge(&m, &refusal).wrong_confident, Some(true));
     }
 
     #[test]

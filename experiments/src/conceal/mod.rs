@@ -5,6 +5,7 @@
 //! [`Case::write`] writes `study/` (all that the diagnosis may see) and `sealed/manifest.json` (what the judge opens afterwards).
 //! Random streams are split by purpose, so that a case with and without its effect has the same ship, plans, gusts and noise.
 
+pub mod baselines;
 pub mod campaign;
 pub mod craft;
 pub mod design;
@@ -12,6 +13,7 @@ pub mod effects;
 pub mod judge;
 pub mod meter;
 pub mod noise;
+pub mod runner;
 pub mod sail;
 pub mod seal;
 pub mod statistics;

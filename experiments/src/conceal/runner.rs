@@ -1,0 +1,211 @@
+//! One case after another, from plan to score: conceal and seal, diagnose in a process of its own, open the seal, judge.
+//! Which cases there are is the plan's to say, and what their scores amount to is the summary's.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use super::baselines::{self, Wanted};
+use super::campaign::Planned;
+use super::judge::{Diagnosis, Score, baseline_right, judge};
+use super::meter::DiagnosisMeter;
+use super::strength::Meter;
+use super::{Case, ConcealError, Strength, seal};
+
+/// The script of sparse regression.
+const SINDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peers/sindy.py");
+
+/// How cases are run.
+#[derive(Debug, Clone)]
+pub struct Runner {
+    /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --out DIR`.
+    pub tool: PathBuf,
+    /// Longest time for one diagnosis.
+    pub limit: Duration,
+    /// Folder for the cases while they run.
+    pub folder: PathBuf,
+    /// Keep them.
+    pub keep: bool,
+    /// Ask the baselines too.
+    pub baselines: bool,
+    /// Ask sparse regression too, with this Python.
+    pub sindy: Option<PathBuf>,
+}
+
+impl Runner {
+    /// Runs cases, `workers` at a time, and hands out each score as it comes, in no fixed order.
+    ///
+    /// # Errors
+    /// When there is no program or no meter, or what `each` fails with; a case that fails is a score with its error.
+    pub fn all(
+        &self,
+        plan: &[Planned],
+        workers: usize,
+        each: &(dyn Fn(Score) -> Result<(), ConcealError> + Sync),
+    ) -> Result<(), ConcealError> {
+        if !self.tool.is_file() {
+            let message = "the program that diagnoses is not there; `cargo build --release`, or give its place";
+            return Err(ConcealError::Content { path: self.tool.clone(), message: message.to_owned() });
+        }
+        let next = AtomicUsize::new(0);
+        let failed: Mutex<Option<ConcealError>> = Mutex::new(None);
+        let work = || -> Result<(), ConcealError> {
+            // A meter of its own: it keeps what it fitted last, and two cases at a time would take turns.
+            let meter = DiagnosisMeter::new()?;
+            while let Some(planned) = plan.get(next.fetch_add(1, Ordering::Relaxed)) {
+                each(self.one(planned, &meter))?;
+            }
+            Ok(())
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..workers.max(1) {
+                scope.spawn(|| {
+                    if let Err(e) = work() {
+                        // The others stop too.
+                        next.store(plan.len(), Ordering::Relaxed);
+                        *failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(e);
+                    }
+                });
+            }
+        });
+        failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).map_or(Ok(()), Err)
+    }
+
+    /// One case from start to score; what goes wrong becomes the row's error.
+    pub fn one(&self, planned: &Planned, meter: &dyn Meter) -> Score {
+        let folder = self.folder.join(planned.key.replace('/', "_"));
+        let outcome = self.attempt(planned, meter, &folder);
+        if !self.keep {
+            // Left behind only when the system refuses; the next call writes over it.
+            let _ = std::fs::remove_dir_all(&folder);
+        }
+        let mut score = outcome.unwrap_or_else(|e| Score {
+            family: planned.spec.family.name().to_owned(),
+            effects: planned.spec.effects.iter().map(|e| e.0.as_str()).collect::<Vec<_>>().join("+"),
+            background: planned.spec.background.name().to_owned(),
+            design: planned.spec.design.name().to_owned(),
+            contrast: planned.spec.contrast,
+            seed: planned.spec.seed,
+            error: e.to_string(),
+            ..Score::default()
+        });
+        score.case.clone_from(&planned.key);
+        score.arm = planned.arm.to_owned();
+        score.snr_asked = planned.spec.effects.iter().find_map(|(_, s)| match s {
+            Strength::Snr(snr) => Some(*snr),
+            _ => None,
+        });
+        score
+    }
+
+    fn attempt(&self, planned: &Planned, meter: &dyn Meter, folder: &Path) -> Result<Score, ConcealError> {
+        // Sealed before the diagnosis begins, opened after it has ended.
+        let study = Case::make(&planned.spec, meter)?.write(folder)?;
+        let answer = folder.join("answer");
+        let began = Instant::now();
+        let mut command = Command::new(&self.tool);
+        command.arg("--threads").arg("1").arg("diagnose").arg(&study).arg("--out").arg(&answer);
+        finish(command, &self.tool, self.limit)?;
+        let seconds = began.elapsed().as_secs_f64();
+        let diagnosis = Diagnosis::read(&answer.join("diagnosis.json"))?;
+        let manifest = seal::open(folder)?;
+        let mut score = judge(&manifest, &diagnosis);
+        score.seconds = Some(seconds);
+        let wanted = Wanted::on(planned);
+        if self.baselines {
+            score.compare(&manifest, &baselines::ask(&study, &manifest, wanted)?);
+        }
+        if let Some(python) = self.sindy.as_ref().filter(|_| wanted.rivals) {
+            // Numerical libraries would start a thread a processor for each of the workers.
+            let mut command = Command::new(python);
+            command.arg(SINDY).arg(folder).env("OMP_NUM_THREADS", "1").env("OPENBLAS_NUM_THREADS", "1");
+            let said = finish(command, python, self.limit)?;
+            score.sindy_named = said.lines().last().unwrap_or_default().trim().to_owned();
+            score.sindy_right = Some(baseline_right(&manifest, &score.sindy_named));
+        }
+        Ok(score)
+    }
+}
+
+/// Runs a command to its end, at most `limit`; gives what it printed. Exit code 1 is an answer, not a failure.
+fn finish(mut command: Command, program: &Path, limit: Duration) -> Result<String, ConcealError> {
+    let file = |source| ConcealError::File { path: program.to_owned(), source };
+    let fail = |message: String| ConcealError::Content { path: program.to_owned(), message };
+    // Output goes through files: a pipe that nobody reads would stop a talkative program.
+    let temporary = || tempfile::tempfile().map_err(file);
+    let (mut out, mut err) = (temporary()?, temporary()?);
+    let copy = |f: &std::fs::File| f.try_clone().map(Stdio::from).map_err(file);
+    let mut child = command.stdin(Stdio::null()).stdout(copy(&out)?).stderr(copy(&err)?).spawn().map_err(file)?;
+    let began = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().map_err(file)? {
+            break status;
+        }
+        if began.elapsed() > limit {
+            child.kill().map_err(file)?;
+            child.wait().map_err(file)?;
+            return Err(fail(format!("stopped after {} s", limit.as_secs())));
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    };
+    let text = |f: &mut std::fs::File| -> Result<String, ConcealError> {
+        use std::io::{Read, Seek, SeekFrom};
+        let mut text = String::new();
+        f.seek(SeekFrom::Start(0)).map_err(file)?;
+        f.read_to_string(&mut text).map_err(file)?;
+        Ok(text)
+    };
+    if matches!(status.code(), Some(0 | 1)) {
+        return text(&mut out);
+    }
+    let last = text(&mut err)?;
+    Err(fail(format!("{status}: {}", last.lines().last().unwrap_or_default())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shell(script: &str) -> Command {
+        let mut command = Command::new("sh");
+        command.arg("-c").arg(script);
+        command
+    }
+
+    #[test]
+    fn a_program_that_answers_no_has_answered_and_one_that_fails_says_why() {
+        let of = |script: &str| finish(shell(script), Path::new("sh"), Duration::from_secs(20));
+        assert_eq!(of("echo no; exit 1").unwrap(), "no\n");
+        let e = of("echo first >&2; echo last >&2; exit 2").unwrap_err().to_string();
+        assert!(e.contains("exit status: 2") && e.ends_with("last"), "{e}");
+    }
+
+    #[test]
+    fn a_program_that_does_not_end_is_stopped() {
+        let e = finish(shell("exec sleep 60"), Path::new("sh"), Duration::ZERO).unwrap_err().to_string();
+        assert!(e.contains("stopped after"), "{e}");
+    }
+
+    #[test]
+    fn a_case_that_cannot_be_diagnosed_is_a_score_with_its_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let runner = Runner {
+            tool: "false".into(),
+            limit: Duration::from_secs(20),
+            folder: folder.path().to_owned(),
+            keep: false,
+            baselines: false,
+            sindy: None,
+        };
+        let plan = crate::conceal::campaign::plan(1);
+        let score = runner.one(&plan[0], &crate::conceal::strength::ForceMeter::default());
+        assert_eq!((score.case.as_str(), score.arm.as_str(), score.detected), (plan[0].key.as_str(), "null", None));
+        assert!(score.error.contains("diagnosis.json"), "{}", score.error);
+        // What it left behind is gone, and without a program nothing is begun.
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        let missing = Runner { tool: folder.path().join("none"), ..runner };
+        assert!(missing.all(&plan[..1], 1, &|_| Ok(())).is_err());
+    }
+}
