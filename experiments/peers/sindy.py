@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 import pysindy as ps
+from scipy.signal import savgol_filter
 
 WINDOW = 11  # rows of the Savitzky-Golay filter: 22 s
 THRESHOLDS = (0.05, 0.1, 0.2, 0.4)
@@ -96,6 +97,13 @@ def features(run):
         angle = run["wave_direction"] - psi
         high = run["wave_height"] ** 2
         mechanisms["waves"] = {"X": [high * np.cos(angle)], "Y": [high * np.sin(angle)], "N": [high * np.sin(angle)]}
+    # What is compared with a smoothed derivative is smoothed alike, or whatever is fast is found to be missing.
+    smooth = lambda columns: [savgol_filter(c, WINDOW, 3) for c in columns]
+    base = {equation: smooth(columns) for equation, columns in base.items()}
+    mechanisms = {m: {e: smooth(c) for e, c in by.items()} for m, by in mechanisms.items()}
+    # Velocities are targets where they are compared with the rates of position.
+    for equation in ("north", "east", "turn"):
+        targets[equation] = savgol_filter(targets[equation], WINDOW, 3)
     return targets, base, mechanisms
 
 
@@ -118,29 +126,37 @@ def without(base, values):
 
 
 def name(train, held_out):
-    """The mechanism with the largest retained contribution, the threshold chosen on held-out runs for each equation."""
+    """The mechanism that explains most of the targets' variance, the threshold chosen on held-out runs for each equation."""
     weight = {}
     for equation in ("X", "Y", "N", "north", "east", "turn"):
         target, base, columns, names = stack(train, equation)
         if columns.size == 0:
             continue
+        whole = np.sqrt(np.mean(columns**2, axis=0))
         target, columns = without(base, target), without(base, columns)
         scale, unit = np.sqrt(np.mean(target**2)), np.sqrt(np.mean(columns**2, axis=0))
-        live = unit > 1e-9
+        # What the base can mimic all but a hundredth of is noise once it is scaled up again.
+        live = unit > np.maximum(0.1 * whole, 1e-9)
+        if not live.any():
+            continue
         columns, names, unit = columns[:, live], [n for n, k in zip(names, live) if k], unit[live]
         held_target, held_base, held_columns, _ = stack(held_out, equation)
         held_target, held_columns = without(held_base, held_target), without(held_base, held_columns)[:, live]
-        best, kept = np.inf, None
+        # To keep nothing is a law too.
+        best, kept = np.mean((held_target / scale) ** 2), np.zeros(len(names))
         for threshold in THRESHOLDS:
             optimizer = ps.STLSQ(threshold=threshold, alpha=1e-6)
             optimizer.fit(columns / unit, (target / scale)[:, None])
             coefficients = optimizer.coef_[0]
             error = np.mean((held_target / scale - held_columns / unit @ coefficients) ** 2)
             # A sparser law wins when it is as good within one per cent.
-            if error < best * (1.01 if kept is not None and np.count_nonzero(coefficients) < np.count_nonzero(kept) else 1.0):
+            if error < best * (1.01 if np.count_nonzero(coefficients) < np.count_nonzero(kept) else 1.0):
                 best, kept = error, coefficients
-        for mechanism, c in zip(names, kept):
-            weight[mechanism] = weight.get(mechanism, 0.0) + c * c
+        for mechanism in set(names):
+            own = [i for i, n in enumerate(names) if n == mechanism]
+            # Jointly: two columns that cancel each other explain nothing.
+            explained = np.mean((columns[:, own] / unit[own] @ kept[own]) ** 2)
+            weight[mechanism] = weight.get(mechanism, 0.0) + explained
     weight = {m: w for m, w in weight.items() if w > 0}
     return max(weight, key=weight.get) if weight else "nothing"
 
