@@ -1,0 +1,98 @@
+//! The concealed cases of every push: 40 of the campaign's, diagnosed by the program in a process of its own, and judged.
+//! What the tool is worth is the whole campaign's to say; here a change that breaks it must not pass.
+
+// Helpers of tests may unwrap.
+#![allow(clippy::unwrap_used)]
+
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::Mutex;
+use std::time::Duration;
+
+use trimtab_experiments::conceal::campaign::{SEED, ci_slice, plan};
+use trimtab_experiments::conceal::judge::Score;
+use trimtab_experiments::conceal::runner::Runner;
+
+/// False alarms among the 12 nulls.
+const MOST_FALSE_ALARMS: usize = 4;
+/// Effects seen among the 13 single ones at a signal-to-noise ratio of 12.
+const FEWEST_SEEN: usize = 10;
+/// Of these, with the right name first.
+const FEWEST_RIGHT: usize = 9;
+/// Of these, with a right name in the confidence set.
+const FEWEST_IN_SET: usize = 9;
+/// Effects, of 3, named though nothing in the recordings can show them.
+const MOST_ABSORBED: usize = 1;
+/// Cases of any kind with one name given in confidence that is neither right nor near.
+const MOST_WRONG: usize = 2;
+/// Pairs and triples, of 3, with at least one right name and none wrong.
+const FEWEST_COMPOUND: usize = 1;
+
+/// The program, built when it is not there yet.
+fn program() -> PathBuf {
+    // target/release/deps/concealed-...: two up.
+    let test = std::env::current_exe().unwrap();
+    let folder = test.ancestors().nth(2).unwrap();
+    let program = folder.join(format!("trimtab{}", std::env::consts::EXE_SUFFIX));
+    if !program.is_file() {
+        let release: &[&str] = if folder.ends_with("debug") { &[] } else { &["--release"] };
+        let built = Command::new(env!("CARGO"))
+            .args(["build", "--package", "trimtab", "--bin", "trimtab", "--target-dir"])
+            .arg(folder.parent().unwrap())
+            .args(release)
+            .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+            .status()
+            .unwrap();
+        assert!(built.success(), "the program could not be built: {built}");
+    }
+    program
+}
+
+/// How many of the cases a question applies to say yes; the keys of those that say no.
+fn count(scores: &[Score], of: impl Fn(&Score) -> Option<bool>) -> (usize, Vec<String>) {
+    let no = scores.iter().filter(|s| of(s) == Some(false)).map(|s| format!("{} ({})", s.case, s.named));
+    (scores.iter().filter(|s| of(s) == Some(true)).count(), no.collect())
+}
+
+#[test]
+fn forty_concealed_cases_are_judged_well_enough() {
+    let folder = tempfile::tempdir().unwrap();
+    let runner = Runner {
+        tool: program(),
+        limit: Duration::from_secs(300),
+        folder: folder.path().to_owned(),
+        keep: false,
+        baselines: false,
+        sindy: None,
+    };
+    let cases = ci_slice(&plan(SEED));
+    let scores = Mutex::new(Vec::new());
+    let workers = std::thread::available_parallelism().map_or(1, usize::from);
+    runner
+        .all(&cases, workers, &|score| {
+            scores.lock().unwrap().push(score);
+            Ok(())
+        })
+        .unwrap();
+    let scores = scores.into_inner().unwrap();
+    assert_eq!(scores.len(), 40);
+    let failed: Vec<String> = scores.iter().filter(|s| !s.error.is_empty()).map(|s| s.error.clone()).collect();
+    assert!(failed.is_empty(), "without a score: {failed:?}");
+
+    let single: Vec<Score> = scores.iter().filter(|s| s.arm == "single").cloned().collect();
+    let (quiet, alarms) = count(&scores, |s| s.false_alarm.map(|a| !a));
+    assert_eq!(quiet + alarms.len(), 12);
+    assert!(alarms.len() <= MOST_FALSE_ALARMS, "false alarms: {alarms:?}");
+    let (seen, missed) = count(&single, |s| s.detected);
+    assert!(seen >= FEWEST_SEEN, "missed: {missed:?}");
+    let (right, wrong) = count(&single, |s| s.first_right);
+    assert!(right >= FEWEST_RIGHT, "misnamed: {wrong:?}");
+    let (in_set, outside) = count(&single, |s| s.in_set);
+    assert!(in_set >= FEWEST_IN_SET, "outside the confidence set: {outside:?}");
+    let (_, named) = count(&scores, |s| s.absorbed_named.map(|n| !n));
+    assert!(named.len() <= MOST_ABSORBED, "named though nothing can show it: {named:?}");
+    let (_, wrong) = count(&scores, |s| s.wrong_confident.map(|w| !w));
+    assert!(wrong.len() <= MOST_WRONG, "wrong and confident: {wrong:?}");
+    let (pairs, spoilt) = count(&scores, |s| s.some_right_none_wrong);
+    assert!(pairs >= FEWEST_COMPOUND, "pairs and triples: {spoilt:?}");
+}
