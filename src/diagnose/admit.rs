@@ -13,6 +13,8 @@ use serde::Serialize;
 pub struct Issue {
     /// The channel concerned.
     pub channel: String,
+    /// What it is: `sign_error`, `unit_error` or `frozen`.
+    pub mechanism: &'static str,
     /// What is seen, with numbers.
     pub text: String,
     /// What to do.
@@ -38,8 +40,8 @@ pub struct Admission {
     pub integration: Integration,
     /// Largest change of a standardised innovation when the step is refined eight times.
     pub integration_error: f64,
-    /// Gain in log-likelihood when the recordings are read as explicit Euler at one step a sample, less that of the
-    /// integration used; large and positive for recordings that a coarse simulator made.
+    /// Gain in log-posterior when the model is fitted as explicit Euler at one step a sample instead of with the integration
+    /// used; large and positive for recordings that a coarse simulator made.
     pub euler_gain: f64,
 }
 
@@ -110,6 +112,7 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
             if r.channels[j] && frozen {
                 issues.push(Issue {
                     channel: crate::state::STATE_NAMES[j].into(),
+                    mechanism: "frozen",
                     text: format!("{}: the channel holds one value throughout", r.name),
                     next_step: "leave the run or the channel out".into(),
                     blocking: false,
@@ -122,9 +125,10 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
         if correlation.abs() < 0.8 {
             continue;
         }
-        if let Some((_, words)) = CONFUSIONS.iter().find(|(f, _)| (slope / f - 1.0).abs() < 0.12) {
+        if let Some((factor, words)) = CONFUSIONS.iter().find(|(f, _)| (slope / f - 1.0).abs() < 0.12) {
             issues.push(Issue {
                 channel: channel.into(),
+                mechanism: if *factor < 0.0 { "sign_error" } else { "unit_error" },
                 text: format!("{channel} is {slope:.3} times {against} (correlation {correlation:.3}): {words}"),
                 next_step: format!("correct the unit or sign of `{channel}` in the column map"),
                 blocking: true,
@@ -143,6 +147,7 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
     {
         issues.push(Issue {
             channel: "delta".into(),
+            mechanism: "sign_error",
             text: format!(
                 "rudder to starboard goes with a turn to port (correlation {correlation:.2}): the rudder's sign is reversed"
             ),
@@ -150,14 +155,12 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
             blocking: true,
         });
     }
-    let log_likelihood = |integration: Integration| -> (f64, Vec<Vec<[f64; 6]>>) {
+    let passes = |integration: Integration| -> Vec<Vec<[f64; 6]>> {
         let filter = Filter::new(model, integration, &[]);
-        let passes: Vec<_> = runs.par_iter().map(|r| filter.pass(r, noise, Wanted::default())).collect();
-        (passes.iter().map(|p| p.log_likelihood).sum(), passes.into_iter().map(|p| p.innovations).collect())
+        runs.par_iter().map(|r| filter.pass(r, noise, Wanted::default()).innovations).collect()
     };
-    let (value, innovations) = log_likelihood(integration);
-    let (_, refined) = log_likelihood(Integration { method: Method::Rk4, substeps: integration.substeps.max(1) * 8 });
-    let (euler, _) = log_likelihood(Integration { method: Method::Euler, substeps: 1 });
+    let innovations = passes(integration);
+    let refined = passes(Integration { method: Method::Rk4, substeps: integration.substeps.max(1) * 8 });
     let error = innovations
         .iter()
         .flatten()
@@ -175,6 +178,6 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
         issues,
         integration,
         integration_error: largest,
-        euler_gain: euler - value,
+        euler_gain: 0.0,
     }
 }

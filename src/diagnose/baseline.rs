@@ -1,14 +1,14 @@
 //! What a user would do otherwise, and the best that could be done: the yardsticks the diagnosis is measured against.
 //! None of it is part of a diagnosis: it names by other rules ([`Refitted`]) or is told the answer ([`oracle`]).
 
-use super::conclude::{Settings, base_parameters, candidate_parameters, start_at};
+use super::compete::enter;
+use super::conclude::{Settings, base_parameters};
 use super::estimate::{Effort, Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
 use super::evidence::Evidence;
 use super::filter::{Column, Filter, Gains, Pass, Run, Wanted, Z};
 use super::mechanism::{Candidate, candidates};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::median_distance;
-use super::refit::refit;
 use super::screen::screen;
 use crate::model::{Model, ModelError};
 use crate::simulate::{Integration, Method};
@@ -217,14 +217,8 @@ pub fn oracle(
     let free = base_parameters(&full, settings.nuisance);
     let mut current = estimate(&full, integration, runs, &free, &first, &prior, START);
     for (told, candidate) in told.iter().zip(chosen) {
-        let start = started(&current, integration, runs, candidate, &told.sessions);
-        let mut free = current.free.clone();
-        free.extend(candidate_parameters(candidate, &told.sessions));
+        let (start, free) = started(&current, integration, runs, candidate, &told.sessions);
         current = estimate(&start, integration, runs, &free, &current.noise, &prior, FINISH);
-    }
-    // Without Ipopt's answer the estimate by Fisher scoring stands, as it does in a diagnosis.
-    if let Ok(refitted) = refit(&current, integration, runs) {
-        current = refitted;
     }
     Ok(Some(median_distance(&current.model, integration, held_out)))
 }
@@ -236,7 +230,7 @@ fn started(
     runs: &[Run],
     candidate: &Candidate,
     sessions: &Option<Vec<String>>,
-) -> Model {
+) -> (Model, Vec<FreeParameter>) {
     let alone = std::slice::from_ref(candidate);
     let s = screen(found, integration, runs, alone);
     let columns = s.columns(alone, 0);
@@ -247,13 +241,7 @@ fn started(
             s.evidence.test_in(&s.base, &columns, &names, false)
         }
     };
-    let shift = s.base_shift(&columns, sessions, &test.amplitude);
-    let mut model = found.model.clone();
-    for (f, d) in found.free.iter().zip(shift.iter()) {
-        f.set(&mut model, f.value(&found.model) + d * f.column.scale);
-    }
-    start_at(&mut model, candidate, sessions, &test.amplitude);
-    model
+    enter(&s, alone, 0, sessions, &test.amplitude, found, integration, runs, &found.noise)
 }
 
 /// The model with every term of the catalogue.

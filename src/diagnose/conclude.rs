@@ -2,10 +2,12 @@
 //! and says what was found, what cannot be told, and what would have been seen. The arithmetic is in the other files.
 
 use super::admit::{Admission, admit};
-use super::estimate::{Effort, Estimate, FreeParameter, base_of, estimate, evidence, passes, restrictions};
-use super::evidence::chi_squared_p;
+use super::compete::{
+    Accepted, Arena, REFIT, SETTLE, Wald, acceptable, acceptable_beside, backward, compete, positions, wald,
+};
+use super::estimate::{Effort, Estimate, FreeParameter, estimate, log_posterior};
 use super::filter::{Column, Probe, Run};
-use super::locate::{EquationShare, Location, RegionTest, Window, locate};
+use super::locate::{EquationShare, Location, Push, RegionTest, Window, locate};
 use super::mechanism::{Candidate, Kind, candidates};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::{HeldOut, prove};
@@ -14,7 +16,6 @@ use super::screen::{Row, Screen, screen};
 use crate::model::{Model, ModelError, Prior};
 use crate::simulate::{Integration, Method};
 use crate::terms::CATALOGUE;
-use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::collections::BTreeMap;
@@ -39,7 +40,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { alpha: 0.05, most: 3, withhold: Vec::new(), nuisance: true, substeps: 1, seed: 20250226 }
+        Self { alpha: 0.01, most: 3, withhold: Vec::new(), nuisance: true, substeps: 1, seed: 20250226 }
     }
 }
 
@@ -398,62 +399,29 @@ pub(super) fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParamete
     free
 }
 
-const FIRST: Effort = Effort { rounds: 8, noise_rounds: 3, noise_iterations: 8, noise_runs: 10 };
-const REFIT: Effort = Effort { rounds: 4, noise_rounds: 0, noise_iterations: 0, noise_runs: 10 };
-const SETTLE: Effort = Effort { rounds: 3, noise_rounds: 1, noise_iterations: 4, noise_runs: 10 };
-
-/// A window must stand out this far (twice the gain in log-likelihood) to be called an event: the ship's own forces in another
-/// form make windows up to about 40 in manoeuvres like crash stops.
-const EVENT: f64 = 60.0;
-
-/// A mechanism with what it costs and brings.
-struct Accepted {
-    candidate: usize,
-    sessions: Option<Vec<String>>,
-    statistic: f64,
-    p: f64,
-    set: Vec<usize>,
-    why: String,
+/// Whether a push is an event: the same force in many runs is soon beyond chance, in one or two it must stand out far, as the
+/// ship's own forces in another form make such windows in manoeuvres like crash stops.
+fn is_event(push: &Push) -> bool {
+    let needed = match push.windows.len() {
+        0..=2 => ALONE,
+        3 => 100.0,
+        4 => 60.0,
+        _ => 30.0,
+    };
+    push.statistic > needed
 }
 
-/// The free parameters of a candidate, started where the screen points.
-pub(super) fn candidate_parameters(c: &Candidate, sessions: &Option<Vec<String>>) -> Vec<FreeParameter> {
-    c.columns
-        .iter()
-        .map(|col| FreeParameter {
-            column: Column { probe: Probe::Tangent, ..*col },
-            sessions: sessions.clone(),
-            prior: None,
-        })
-        .collect()
-}
+/// The statistic that a push in one or two runs, or beside a mechanism, must reach to be called an event.
+const ALONE: f64 = 250.0;
 
-/// Sets a candidate's parameters to the amplitudes that the screen estimates.
-pub(super) fn start_at(model: &mut Model, c: &Candidate, sessions: &Option<Vec<String>>, amplitude: &DVector<f64>) {
-    let norm = amplitude.norm().max(1e-12);
-    // An effect quadratic in its amplitude grows with the square: undo that for the start.
-    let factor = if c.mechanism.probe == Probe::Odd { 1.0 / norm.sqrt() } else { 1.0 };
-    for (p, a) in candidate_parameters(c, sessions).iter().zip(amplitude.iter()) {
-        let value = a * factor * p.column.scale;
-        p.set(model, value + if sessions.is_none() { p.value(model) } else { 0.0 });
-    }
-}
+/// Forces that break symmetry or stand on the earth are missing from the catalogue below this p-value: the ship's own
+/// port-starboard difference in another form reaches 1e-6 or so.
+const UNLISTED: f64 = 1e-8;
 
-/// Wald statistic of the last `k` free parameters of an estimate, with their covariance.
-fn wald(found: &Estimate, integration: Integration, runs: &[Run], k: usize) -> (f64, DVector<f64>, DMatrix<f64>) {
-    let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
-    let p = passes(&found.model, integration, &columns, runs, &found.noise, false);
-    let e = evidence(runs, &p, &restrictions(&found.free));
-    let base = base_of(&e, &found.model, &found.free);
-    let n = found.free.len();
-    let covariance = base.inverse.view((n - k, n - k), (k, k)).into_owned();
-    let value = DVector::from_fn(k, |i, _| {
-        let f = &found.free[n - k + i];
-        f.value(&found.model) / f.column.scale
-    });
-    let statistic = covariance.clone().try_inverse().map_or(0.0, |inv| (value.transpose() * inv * &value)[(0, 0)]);
-    (statistic, value, covariance)
-}
+/// A fit does not win back more than this in log-posterior.
+const EULER_HOPELESS: f64 = 1000.0;
+
+const FIRST: Effort = Effort { rounds: 8, noise_rounds: 4, noise_iterations: 14, noise_runs: 12 };
 
 /// Diagnoses a model against recordings.
 ///
@@ -481,10 +449,20 @@ pub fn diagnose(
     let mut null = estimate(&full, integration, runs, &free, &first_noise, &prior, FIRST);
     progress("auditing recordings and integration step");
     let mut admission = admit(&null.model, integration, &null.noise, runs);
-    let numerics = admission.euler_gain > 15.0;
-    if numerics {
-        integration = Integration { method: Method::Euler, substeps: 1 };
-        null = estimate(&null.model, integration, runs, &free, &null.noise, &prior, SETTLE);
+    // Both readings with parameters of their own: a fit bends them to hide the error of a step.
+    let coarse = Integration { method: Method::Euler, substeps: 1 };
+    let unfitted = log_posterior(&null.model, coarse, runs, &free, &null.noise) - null.log_posterior;
+    let mut euler = None;
+    admission.euler_gain = unfitted;
+    if unfitted > -EULER_HOPELESS {
+        let fitted = estimate(&null.model, coarse, runs, &free, &null.noise, &prior, REFIT);
+        admission.euler_gain = fitted.log_posterior - null.log_posterior;
+        euler = Some(fitted).filter(|_| admission.euler_gain > 15.0);
+    }
+    let numerics = euler.is_some();
+    if let Some(euler) = euler {
+        integration = coarse;
+        null = estimate(&euler.model, integration, runs, &free, &euler.noise, &prior, SETTLE);
         admission.integration = integration;
     }
     let list: Vec<Candidate> =
@@ -497,16 +475,19 @@ pub fn diagnose(
     let blocked = admission.issues.iter().any(|i| i.blocking);
 
     // A strong event in time inflates the noise and gets a hull's name: explain it first.
-    let mut pushes: Vec<Window> = Vec::new();
-    let local: Vec<Window> =
-        location.windows.iter().filter(|w| is_local(w, &runs) && w.statistic > EVENT).cloned().collect();
-    let push_gain: f64 = local.iter().map(|w| w.statistic - 20.0).sum();
+    let mut pushes: Option<Push> = None;
     let best_gain = first.rows.iter().find(|r| acceptable(r, &list, settings)).map_or(0.0, |r| r.test.statistic);
-    if !blocked && !settings.withhold.iter().any(|w| w == "push") && push_gain > 0.0 && push_gain > best_gain {
-        pushes = local;
-        for w in &pushes {
+    // What a smooth law of state and heading would explain.
+    let smooth = |s: &Screen| s.asymmetric_test.statistic - s.asymmetric_test.degrees as f64;
+    let may_push = !blocked && !settings.withhold.iter().any(|w| w == "push");
+    if may_push
+        && let Some(push) =
+            location.push.as_ref().filter(|p| is_event(p) && p.statistic > (2.0 * best_gain).max(smooth(&first)))
+    {
+        for w in &push.windows {
             runs[w.index].disturbed.push(w.samples);
         }
+        pushes = Some(push.clone());
         null = estimate(&null.model, integration, &runs, &free, &null.noise, &prior, SETTLE);
         first = screen(&null, integration, &runs, &list);
         let again = locate(&null, integration, &runs);
@@ -515,6 +496,7 @@ pub fn diagnose(
 
     let mut current = null.clone();
     let mut accepted: Vec<Accepted> = Vec::new();
+    let arena = Arena { integration, runs: &runs, list: &list, prior: &prior, settings };
     if !blocked {
         for step in 0..settings.most {
             let latest;
@@ -524,19 +506,16 @@ pub fn diagnose(
                 latest = screen(&current, integration, &runs, &list);
                 &latest
             };
-            let taken: Vec<usize> = accepted.iter().map(|a| a.candidate).collect();
-            let leaders: Vec<&Row> =
-                s.rows.iter().filter(|r| !taken.contains(&r.candidate) && acceptable(r, &list, settings)).collect();
+            // A push that was found first is a finding already.
+            let alone = step == 0 && pushes.is_none();
+            let may = |r: &&Row| acceptable(r, &list, settings) && (alone || acceptable_beside(r, &accepted, &list));
+            let leaders: Vec<&Row> = s.rows.iter().filter(may).collect();
             let Some(leader) = leaders.first() else { break };
             progress(&format!("refitting with {}", list[leader.candidate].mechanism.title));
-            let Some((entry, found)) =
-                compete(s, &leaders, leader, &current, integration, &runs, &list, &prior, settings)
-            else {
-                break;
-            };
+            let Some((entry, found)) = compete(s, &leaders, &current, arena) else { break };
             accepted.push(entry);
             current = found;
-            backward(&mut accepted, &mut current, &null, integration, &runs, &list, &prior, settings);
+            backward(&mut accepted, &mut current, arena);
         }
     }
     if !accepted.is_empty() {
@@ -547,21 +526,31 @@ pub fn diagnose(
         }
     }
     progress("checking what is left");
-    let (last, location_after) = if accepted.is_empty() {
-        (None, None)
-    } else {
-        (Some(screen(&current, integration, &runs, &list)), Some(locate(&current, integration, &runs)))
-    };
+    let mut last = (!accepted.is_empty()).then(|| screen(&current, integration, &runs, &list));
+    // A name that leaves more unexplained than it explains, in forces that break symmetry or stand on the earth, is the nearest
+    // thing in the catalogue and not what is missing.
+    let explained: f64 = accepted.iter().map(|a| a.statistic).sum();
+    if let Some(left) = last.as_ref().map(|s| &s.asymmetric_test)
+        && left.p < UNLISTED
+        && left.statistic - left.degrees as f64 > explained
+    {
+        accepted.clear();
+        current = null.clone();
+        last = None;
+    }
+    let location_after = last.is_some().then(|| locate(&current, integration, &runs));
     let adequacy = |s: &Screen| Adequacy { symmetric: s.symmetric_test.p, asymmetric: s.asymmetric_test.p };
     let adequacy_before = adequacy(&first);
     let adequacy_after = last.as_ref().map_or(adequacy_before, adequacy);
-    if pushes.is_empty() && !blocked {
+    if pushes.is_none() && may_push {
         let left = location_after.as_ref().unwrap_or(&location);
-        pushes = left.windows.iter().filter(|w| is_local(w, &runs) && w.statistic > EVENT).cloned().collect();
+        // Beside a mechanism, a push must be beyond what the form of that mechanism leaves behind.
+        let law = smooth(last.as_ref().unwrap_or(&first));
+        let stands = |p: &Push| is_event(p) && p.statistic > law && (accepted.is_empty() || p.statistic > ALONE);
+        pushes = left.push.clone().filter(stands);
     }
-    let named_something = !accepted.is_empty() || !pushes.is_empty();
-    // The ship's own port-starboard difference in another form reaches 1e-6 or so.
-    let unlisted = !blocked && !named_something && adequacy_after.asymmetric < 1e-8;
+    let named_something = !accepted.is_empty() || pushes.is_some();
+    let unlisted = !blocked && !named_something && adequacy_after.asymmetric < UNLISTED;
     let surrogate = if unlisted { surrogate(last.as_ref().unwrap_or(&first), &null.model) } else { Vec::new() };
 
     progress("proving on held-out runs");
@@ -577,8 +566,9 @@ pub fn diagnose(
         )
     });
 
-    let mut findings = describe(&accepted, &current, integration, &runs, &list, &location, &first);
-    findings.extend(push_findings(&pushes, &location));
+    let mut findings = if blocked { sensor_findings(&admission) } else { Vec::new() };
+    findings.extend(describe(&accepted, &current, integration, &runs, &list, &location, &first));
+    findings.extend(pushes.as_ref().map(|p| push_finding(p, &location)));
     if let Some(f) = findings.first_mut() {
         f.held_out.clone_from(&proof);
     }
@@ -632,155 +622,6 @@ pub fn diagnose(
         model: trimmed(&current.model, model, &current.free),
         base: trimmed(&null.model, model, &null.free),
     })
-}
-
-/// A mechanism may be named: seen, significant, of possible sign and worthwhile size, and not just the ship's own forces in
-/// another form.
-fn acceptable(r: &Row, list: &[Candidate], settings: &Settings) -> bool {
-    let m = list[r.candidate].mechanism;
-    // Sessions differ in what was sailed, and a ship's forces in another form then differ between them: its own physics must
-    // stand out further.
-    let alpha = if m.needs_reference && m.kind == Kind::Ship { 0.02 * settings.alpha } else { settings.alpha };
-    r.visible && r.admissible && r.p < alpha && r.size >= 1.0 && r.second_opinion < 0.01
-}
-
-/// A window that is an event, not a state of affairs: it covers less than 70 % of its run.
-fn is_local(w: &Window, runs: &[Run]) -> bool {
-    let length = runs[w.index].measured.len() as f64;
-    ((w.samples.1 - w.samples.0) as f64) < 0.7 * length
-}
-
-/// Refits the leader and its rivals, and returns the best with its confidence set.
-fn compete(
-    s: &Screen,
-    leaders: &[&Row],
-    leader: &Row,
-    current: &Estimate,
-    integration: Integration,
-    runs: &[Run],
-    list: &[Candidate],
-    prior: &NoisePrior,
-    settings: &Settings,
-) -> Option<(Accepted, Estimate)> {
-    let refit = |r: &Row, noise: &Noise, effort: Effort| {
-        let c = &list[r.candidate];
-        let mut model = current.model.clone();
-        // The base moves along with the mechanism: take both from the quadratic model.
-        let columns = s.columns(list, r.candidate);
-        let shift = s.base_shift(&columns, &r.sessions, &r.test.amplitude);
-        for (f, d) in current.free.iter().zip(shift.iter()) {
-            f.set(&mut model, f.value(&current.model) + d * f.column.scale);
-        }
-        start_at(&mut model, c, &r.sessions, &r.test.amplitude);
-        let mut free = current.free.clone();
-        free.extend(candidate_parameters(c, &r.sessions));
-        estimate(&model, integration, runs, &free, noise, prior, effort)
-    };
-    let lead = refit(leader, &current.noise, SETTLE);
-    // A rival whose promised gain is far below the leader's does not overtake it.
-    let gain_needed = leader.test.statistic - f64::max(40.0, 0.15 * leader.test.statistic);
-    let mut rivals: Vec<&Row> = leaders
-        .iter()
-        .copied()
-        .filter(|r| r.candidate != leader.candidate && r.test.statistic > gain_needed)
-        .filter(|r| s.likeness(list, leader.candidate, r.candidate) > 0.3)
-        .collect();
-    rivals.truncate(3);
-    let mut field: Vec<(&Row, Estimate, f64)> = Vec::new();
-    let value = |e: &Estimate, r: &Row| e.log_posterior - r.test.degrees as f64;
-    let v = value(&lead, leader);
-    let noise = lead.noise;
-    field.push((leader, lead, v));
-    for r in rivals {
-        let e = refit(r, &noise, REFIT);
-        let v = value(&e, r);
-        field.push((r, e, v));
-    }
-    field.retain(|(r, e, _)| {
-        let k = list[r.candidate].columns.len();
-        let (statistic, value, _) = wald(e, integration, runs, k);
-        chi_squared_p(statistic, k) * (leaders.len().max(1) as f64) < settings.alpha
-            && list[r.candidate].size(value.as_slice()) >= 1.0
-    });
-    field.sort_by(|a, b| b.2.total_cmp(&a.2));
-    let best = field.first()?.2;
-    let set: Vec<usize> = field.iter().filter(|(_, _, v)| best - v < 3.0).map(|(r, _, _)| r.candidate).collect();
-    let why = if set.len() > 1 {
-        let alike: Vec<String> = set[1..]
-            .iter()
-            .map(|c| format!("{} (likeness {:.2})", list[*c].mechanism.title, s.likeness(list, set[0], *c)))
-            .collect();
-        format!("these fit within 3 units of log-likelihood of each other: {}", alike.join(", "))
-    } else if let Some((r, _, v)) = field.get(1) {
-        format!("next best, {}, fits {:.0} units of log-likelihood worse", list[r.candidate].mechanism.title, best - v)
-    } else {
-        "no other mechanism of the catalogue comes near".into()
-    };
-    let (r, e, _) = field.swap_remove(0);
-    // The leader's noise was estimated with it; a rival that won deserves the same.
-    let e = if r.candidate == leader.candidate {
-        e
-    } else {
-        estimate(&e.model, integration, runs, &e.free, &e.noise, prior, SETTLE)
-    };
-    let entry = Accepted {
-        candidate: r.candidate,
-        sessions: r.sessions.clone(),
-        statistic: 2.0 * (e.log_posterior - current.log_posterior).max(0.5 * r.test.statistic),
-        p: r.p,
-        set,
-        why,
-    };
-    Some((entry, e))
-}
-
-/// Drops accepted mechanisms that a later one made needless.
-fn backward(
-    accepted: &mut Vec<Accepted>,
-    current: &mut Estimate,
-    null: &Estimate,
-    integration: Integration,
-    runs: &[Run],
-    list: &[Candidate],
-    prior: &NoisePrior,
-    settings: &Settings,
-) {
-    if accepted.len() < 2 {
-        return;
-    }
-    let base = null.free.len();
-    let columns: Vec<Column> = current.free.iter().map(|f| f.column).collect();
-    let p = passes(&current.model, integration, &columns, runs, &current.noise, false);
-    let e = evidence(runs, &p, &restrictions(&current.free));
-    let inverse = base_of(&e, &current.model, &current.free).inverse;
-    let mut start = base;
-    let mut drop = None;
-    for (i, a) in accepted.iter().enumerate() {
-        let k = list[a.candidate].columns.len();
-        let covariance = inverse.view((start, start), (k, k)).into_owned();
-        let value = DVector::from_fn(k, |j, _| {
-            let f = &current.free[start + j];
-            f.value(&current.model) / f.column.scale
-        });
-        let statistic = covariance.try_inverse().map_or(0.0, |inv| (value.transpose() * inv * &value)[(0, 0)]);
-        let needless =
-            chi_squared_p(statistic, k) > 0.1 * settings.alpha || list[a.candidate].size(value.as_slice()) < 1.0;
-        if needless && i + 1 < accepted.len() {
-            drop = Some((i, start, k));
-            break;
-        }
-        start += k;
-    }
-    if let Some((i, start, k)) = drop {
-        accepted.remove(i);
-        for f in &current.free[start..start + k] {
-            let neutral = (current.model.parameters[f.column.parameter].info.default)(&current.model.ship);
-            let value = if f.sessions.is_some() { 0.0 } else { neutral };
-            f.set(&mut current.model, value);
-        }
-        current.free.drain(start..start + k);
-        *current = estimate(&current.model, integration, runs, &current.free, &current.noise, prior, SETTLE);
-    }
 }
 
 /// Whether the unknown force is a material part of the forces on the ship.
@@ -939,23 +780,22 @@ fn describe(
     location: &Location,
     s: &Screen,
 ) -> Vec<Finding> {
-    let total: usize = accepted.iter().map(|a| list[a.candidate].columns.len()).sum();
-    if total == 0 {
+    if accepted.is_empty() {
         return Vec::new();
     }
-    let (_, value, covariance) = wald(found, integration, runs, total);
-    let mut start = 0;
+    let all = wald(found, integration, runs);
     let mut out = Vec::new();
     for a in accepted {
         let c = &list[a.candidate];
+        let Wald { value, covariance } = all.part(&positions(&found.free, c, &a.sessions));
         let parameters = c
             .columns
             .iter()
             .enumerate()
             .map(|(i, col)| {
                 let p = &found.model.parameters[col.parameter];
-                let v = value[start + i] * col.scale;
-                let error = covariance[(start + i, start + i)].max(0.0).sqrt() * col.scale;
+                let v = value[i] * col.scale;
+                let error = covariance[(i, i)].max(0.0).sqrt() * col.scale;
                 Amplitude {
                     name: c.names[i].clone(),
                     value: v,
@@ -965,7 +805,6 @@ fn describe(
                 }
             })
             .collect();
-        start += c.columns.len();
         out.push(Finding {
             mechanism: c.mechanism.name.into(),
             title: c.mechanism.title.into(),
@@ -1054,43 +893,63 @@ fn signature(c: &Candidate, s: &Screen) -> String {
     words
 }
 
-fn push_findings(pushes: &[Window], location: &Location) -> Vec<Finding> {
-    if pushes.is_empty() {
-        return Vec::new();
-    }
-    let count = pushes.len() as f64;
-    let mean: [f64; 3] = std::array::from_fn(|e| pushes.iter().map(|w| w.force[e]).sum::<f64>() / count);
-    let error: [f64; 3] =
-        std::array::from_fn(|e| pushes.iter().map(|w| w.error[e].powi(2)).sum::<f64>().sqrt() / count);
+/// What the audit of the recordings already shows to be wrong: a unit or a sign.
+fn sensor_findings(admission: &Admission) -> Vec<Finding> {
+    admission
+        .issues
+        .iter()
+        .filter(|i| i.blocking)
+        .map(|i| Finding {
+            mechanism: i.mechanism.into(),
+            title: format!("{} of `{}`", if i.mechanism == "sign_error" { "the sign" } else { "the unit" }, i.channel),
+            kind: Kind::Sensor,
+            confidence_set: vec![i.mechanism.into()],
+            why: i.text.clone(),
+            sessions: Vec::new(),
+            statistic: 0.0,
+            p: 0.0,
+            equations: Equations::default(),
+            windows: Vec::new(),
+            region: None,
+            signature: "no force: channels contradict each other by a factor that units or signs explain".into(),
+            parameters: Vec::new(),
+            held_out: None,
+        })
+        .collect()
+}
+
+fn push_finding(push: &Push, location: &Location) -> Finding {
     let names = [("push.x", "N"), ("push.y", "N"), ("push.n", "N m")];
-    vec![Finding {
+    Finding {
         mechanism: "push".into(),
         title: "a push for a limited time (tug, thruster, line)".into(),
         kind: Kind::Environment,
         confidence_set: vec!["push".into()],
-        why: "the unknown force stands in short windows of time and is absent outside them".into(),
+        why: "the same unknown force stands in windows of time, is absent outside them, and no smooth law of the ship's state \
+              gives it"
+            .into(),
         sessions: Vec::new(),
-        statistic: pushes.iter().map(|w| w.statistic).sum(),
-        p: pushes.iter().map(|w| w.p).fold(1.0, f64::min),
+        statistic: push.statistic,
+        p: push.windows.iter().map(|w| w.p).fold(1.0, f64::min),
         equations: location.equations.into(),
-        windows: pushes.to_vec(),
+        windows: push.windows.clone(),
         region: None,
         signature: "time-local".into(),
         parameters: (0..3)
             .map(|e| Amplitude {
                 name: names[e].0.into(),
-                value: mean[e],
+                value: push.force[e],
                 unit: names[e].1.into(),
-                error: error[e],
-                ci95: [mean[e] - 1.96 * error[e], mean[e] + 1.96 * error[e]],
+                error: push.error[e],
+                ci95: [push.force[e] - 1.96 * push.error[e], push.force[e] + 1.96 * push.error[e]],
             })
             .collect(),
         held_out: None,
-    }]
+    }
 }
 
 fn moves(null: &Estimate, found: &Estimate, integration: Integration, runs: &[Run], user: &Model) -> Vec<Move> {
-    let (_, _, covariance) = wald(found, integration, runs, found.free.len());
+    let Wald { covariance, .. } = wald(found, integration, runs);
     null.free
         .iter()
         .enumerate()

@@ -134,10 +134,28 @@ pub fn restrictions(free: &[FreeParameter]) -> Vec<Option<Vec<String>>> {
 
 /// The base block of free parameters that are the first columns of the evidence.
 pub fn base_of(evidence: &Evidence, model: &Model, free: &[FreeParameter]) -> Base {
+    damped(evidence, model, free, 0.0)
+}
+
+/// The base block as if each parameter were held where it is with that precision, in units of its column.
+fn damped(evidence: &Evidence, model: &Model, free: &[FreeParameter], damping: f64) -> Base {
     let terms: Vec<(f64, f64)> = free.iter().map(|f| f.prior_terms(model)).collect();
     let columns: Vec<usize> = (0..free.len()).collect();
-    let (precision, pull): (Vec<f64>, Vec<f64>) = terms.into_iter().unzip();
+    let (mut precision, pull): (Vec<f64>, Vec<f64>) = terms.into_iter().unzip();
+    precision.iter_mut().for_each(|p| *p += damping);
     evidence.base(&columns, &precision, &pull)
+}
+
+/// Log-likelihood plus log-prior of a model.
+pub fn log_posterior(
+    model: &Model,
+    integration: Integration,
+    runs: &[Run],
+    free: &[FreeParameter],
+    noise: &Noise,
+) -> f64 {
+    let likelihood: f64 = passes(model, integration, &[], runs, noise, false).iter().map(|p| p.log_likelihood).sum();
+    likelihood + free.iter().map(|f| f.log_prior(model)).sum::<f64>()
 }
 
 /// Fits the free parameters and the noise, starting from the model's values.
@@ -159,35 +177,50 @@ pub fn estimate(
     let posterior = |m: &Model, p: &[Pass]| p.iter().map(|p| p.log_likelihood).sum::<f64>() + log_prior(m);
     let mut current = passes(&model, integration, &columns, runs, &noise, true);
     let mut value = posterior(&model, &current);
+    // Parameters that the data hardly determine ask for steps on which the others would founder: damping, in units of the
+    // columns' scales, holds those back and lets the rest move (Levenberg, Marquardt).
+    let mut damping = 0.0;
     for round in 0..effort.rounds {
-        let step = base_of(&evidence(runs, &current, &restrictions(free)), &model, free).step();
-        let largest = step.amax();
-        // Never more than ten scales at once: beyond that the linearisation says nothing.
-        let mut length = if largest > 10.0 { 10.0 / largest } else { 1.0 };
+        let e = evidence(runs, &current, &restrictions(free));
         let mut moved = false;
-        for _ in 0..5 {
+        let mut length: f64 = 0.0;
+        let before = value;
+        for _ in 0..6 {
+            let mut step = damped(&e, &model, free, damping).step();
+            // Never more than ten scales at once: beyond that the linearisation says nothing.
+            length = step.amax();
+            if length > 10.0 {
+                step *= 10.0 / length;
+                length = 10.0;
+            }
             let mut trial = model.clone();
             for (f, s) in free.iter().zip(step.iter()) {
-                f.set(&mut trial, f.value(&model) + length * s * f.column.scale);
+                f.set(&mut trial, f.value(&model) + s * f.column.scale);
             }
             let trial_passes = passes(&trial, integration, &columns, runs, &noise, true);
             let trial_value = posterior(&trial, &trial_passes);
             if trial_value.is_finite() && trial_value > value - 0.01 {
                 moved = true;
                 (model, current, value) = (trial, trial_passes, trial_value);
+                damping = if damping > 3.0 { 0.1 * damping } else { 0.0 };
                 break;
             }
-            length *= 0.4;
+            damping = f64::max(3.0, 10.0 * damping);
         }
-        let settled = !moved || largest * length < 0.03;
+        // A gain below this changes no verdict.
+        let settled = !moved || length < 0.03 || value - before < 0.3;
         if round < effort.noise_rounds {
             let stride = runs.len().div_ceil(effort.noise_runs.max(1)).max(1);
             let chosen: Vec<usize> = (0..runs.len()).step_by(stride).collect();
             let some: Vec<&Run> = chosen.iter().map(|i| &runs[*i]).collect();
             let tangents: Vec<_> = chosen.iter().filter_map(|i| current[*i].tangent.as_ref()).collect();
-            noise = fit_noise(&some, &tangents, &model, &noise, prior, effort.noise_iterations);
-            current = passes(&model, integration, &columns, runs, &noise, true);
-            value = posterior(&model, &current);
+            let trial = fit_noise(&some, &tangents, &model, &noise, prior, effort.noise_iterations);
+            let trial_passes = passes(&model, integration, &columns, runs, &trial, true);
+            let trial_value = posterior(&model, &trial_passes);
+            // The noise is fitted to some runs, linearised: it must serve all of them.
+            if trial_value > value {
+                (noise, current, value) = (trial, trial_passes, trial_value);
+            }
         } else if settled {
             break;
         }

@@ -4,6 +4,7 @@
 use super::estimate::{Estimate, base_of, restrictions};
 use super::evidence::{Base, Evidence, RunEvidence, chi_squared_p, pick};
 use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::screen::{basis_columns, widen};
 use crate::model::Model;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
@@ -101,6 +102,8 @@ pub struct Location {
     pub equations: [EquationShare; 3],
     /// Windows, most significant first, not overlapping within a run.
     pub windows: Vec<Window>,
+    /// The same force in windows of some runs, whether it is significant or not.
+    pub push: Option<Push>,
     /// Regions, most significant first.
     pub regions: Vec<RegionTest>,
 }
@@ -108,7 +111,11 @@ pub struct Location {
 /// Tests constant forces in every window of every run and in every region.
 pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Location {
     let model = &found.model;
-    let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
+    let mut columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
+    let free = columns.len();
+    for term in ["symmetric", "asymmetric"] {
+        columns.extend(basis_columns(model, term).into_iter().map(|(_, column)| column));
+    }
     let filter = Filter::new(model, integration, &columns);
     let longest = runs.iter().map(|r| r.measured.len()).max().unwrap_or(0);
     let blocks = longest.div_ceil(BLOCK);
@@ -132,7 +139,9 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
         .collect();
     let evidence = super::estimate::evidence(runs, &passes, &restrictions(&found.free));
     let base = base_of(&evidence, model, &found.free);
-    let base_step = base.step();
+    // A force that comes back with the ship's state is no event: what a smooth force law can mimic is taken out of the windows.
+    let widened = widen(&evidence, &base, &(free..columns.len()).collect::<Vec<_>>());
+    let step = widened.step();
     let looked_at: f64 = runs
         .iter()
         .map(|r| {
@@ -140,14 +149,20 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
             0.5 * b * (b + 1.0)
         })
         .sum();
-    let mut windows: Vec<Window> = runs
+    let blocks_of: Vec<Blocks> = runs
         .par_iter()
         .zip(&evidence.runs)
+        .map(|(run, e)| Blocks::new(run, e, &widened, &step, columns.len()))
+        .collect();
+    let mut windows: Vec<Window> = runs
+        .par_iter()
+        .zip(&blocks_of)
         .enumerate()
-        .flat_map_iter(|(index, (run, e))| {
-            scan(run, index, e, &base, &base_step, columns.len(), looked_at, &found.noise.force)
+        .flat_map_iter(|(index, (run, b))| {
+            scan(b, looked_at).into_iter().map(move |s| window(run, index, &s, looked_at, &found.noise.force))
         })
         .collect();
+    let push = common_push(runs, &blocks_of, &found.noise.force, looked_at);
     windows.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
     let mut regions: Vec<RegionTest> = REGIONS
         .iter()
@@ -175,7 +190,7 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
         .collect();
     regions.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
     let equations = equation_shares(&passes, &evidence, &base, columns.len(), blocks, &found.noise.force);
-    Location { equations, windows, regions }
+    Location { equations, windows, push, regions }
 }
 
 /// Share of each equation in the block-wise force evidence, and the filtered force's root mean square.
@@ -211,6 +226,49 @@ fn equation_shares(
     })
 }
 
+/// Running sums of a run's block-wise force evidence after the base, so that every span of blocks costs the same.
+struct Blocks {
+    count: usize,
+    score: Vec<Vector3<f64>>,
+    information: Vec<Matrix3<f64>>,
+}
+
+impl Blocks {
+    fn new(run: &Run, e: &RunEvidence, base: &Base, base_step: &DVector<f64>, first: usize) -> Self {
+        let count = run.measured.len().div_ceil(BLOCK);
+        let columns: Vec<usize> = (first..first + 3 * count).collect();
+        let cross = pick(&e.information, &columns, &base.columns);
+        let h: DMatrix<f64> = pick(&e.information, &columns, &columns) - &cross * &base.inverse * cross.transpose();
+        let g = DVector::from_fn(columns.len(), |i, _| e.score[columns[i]]) - &cross * base_step;
+        let w = count + 1;
+        let mut score = vec![Vector3::zeros(); w];
+        let mut information = vec![Matrix3::zeros(); w * w];
+        for i in 0..count {
+            score[i + 1] = score[i] + Vector3::from_fn(|a, _| g[3 * i + a]);
+            for j in 0..count {
+                information[(i + 1) * w + j + 1] = Matrix3::from_fn(|a, b| h[(3 * i + a, 3 * j + b)])
+                    + information[i * w + j + 1]
+                    + information[(i + 1) * w + j]
+                    - information[i * w + j];
+            }
+        }
+        Self { count, score, information }
+    }
+
+    /// Score of a constant force in blocks `from..to`, and its information.
+    fn span(&self, from: usize, to: usize) -> (Vector3<f64>, Matrix3<f64>) {
+        let w = self.count + 1;
+        let h = self.information[to * w + to] - self.information[from * w + to] - self.information[to * w + from]
+            + self.information[from * w + from];
+        (self.score[to] - self.score[from], (h + h.transpose()) * 0.5)
+    }
+
+    fn spans(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let count = self.count;
+        (0..count).flat_map(move |from| (from + 1..=count).map(move |to| (from, to)))
+    }
+}
+
 /// Blocks `from..to` of a run with the constant force that fits there.
 struct Span {
     statistic: f64,
@@ -220,72 +278,147 @@ struct Span {
     inverse: Matrix3<f64>,
 }
 
-/// The significant windows of one run, greedily, not overlapping.
-fn scan(
-    run: &Run,
-    index: usize,
-    e: &RunEvidence,
-    base: &Base,
-    base_step: &DVector<f64>,
-    first: usize,
-    looked_at: f64,
-    unit: &[f64; 3],
-) -> Vec<Window> {
-    let blocks = run.measured.len().div_ceil(BLOCK);
-    let columns: Vec<usize> = (first..first + 3 * blocks).collect();
-    let cross = pick(&e.information, &columns, &base.columns);
-    let h: DMatrix<f64> = pick(&e.information, &columns, &columns) - &cross * &base.inverse * cross.transpose();
-    let g = DVector::from_fn(columns.len(), |i, _| e.score[columns[i]]) - &cross * base_step;
-    // Two-dimensional running sums of the 3 x 3 blocks, so that every window costs the same.
-    let at = |i: usize, j: usize| Matrix3::from_fn(|a, b| h[(3 * i + a, 3 * j + b)]);
-    let mut sums = vec![Matrix3::zeros(); (blocks + 1) * (blocks + 1)];
-    for i in 0..blocks {
-        for j in 0..blocks {
-            sums[(i + 1) * (blocks + 1) + j + 1] =
-                at(i, j) + sums[i * (blocks + 1) + j + 1] + sums[(i + 1) * (blocks + 1) + j]
-                    - sums[i * (blocks + 1) + j];
-        }
+fn window(run: &Run, index: usize, s: &Span, looked_at: f64, unit: &[f64; 3]) -> Window {
+    let samples = (s.from * BLOCK, (s.to * BLOCK).min(run.measured.len() - 1));
+    Window {
+        run: run.name.clone(),
+        session: run.session.clone(),
+        start: run.inputs[samples.0].t,
+        end: run.inputs[samples.1].t,
+        force: std::array::from_fn(|a| s.estimate[a] * unit[a]),
+        error: std::array::from_fn(|a| s.inverse[(a, a)].max(0.0).sqrt() * unit[a]),
+        statistic: s.statistic,
+        p: (chi_squared_p(s.statistic, 3) * looked_at).min(1.0),
+        index,
+        samples,
     }
+}
+
+/// The significant windows of one run, greedily, not overlapping.
+fn scan(blocks: &Blocks, looked_at: f64) -> Vec<Span> {
     let mut candidates: Vec<Span> = Vec::new();
-    for from in 0..blocks {
-        let mut score = Vector3::zeros();
-        for to in from + 1..=blocks {
-            score += Vector3::from_fn(|a, _| g[3 * (to - 1) + a]);
-            let w = blocks + 1;
-            let information = sums[to * w + to] - sums[from * w + to] - sums[to * w + from] + sums[from * w + from];
-            let symmetric = (information + information.transpose()) * 0.5;
-            let Some(inverse) = symmetric.try_inverse() else { continue };
-            if symmetric.diagonal().min() < 1e-6 {
-                continue;
-            }
-            let estimate = inverse * score;
-            let statistic = score.dot(&estimate);
-            if statistic.is_finite() && chi_squared_p(statistic, 3) * looked_at < 0.01 {
-                candidates.push(Span { statistic, from, to, estimate, inverse });
-            }
+    for (from, to) in blocks.spans() {
+        let (score, information) = blocks.span(from, to);
+        let Some(inverse) = information.try_inverse() else { continue };
+        if information.diagonal().min() < 1e-6 {
+            continue;
+        }
+        let estimate = inverse * score;
+        let statistic = score.dot(&estimate);
+        if statistic.is_finite() && chi_squared_p(statistic, 3) * looked_at < 0.01 {
+            candidates.push(Span { statistic, from, to, estimate, inverse });
         }
     }
     candidates.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
-    let mut taken: Vec<(usize, usize)> = Vec::new();
-    let mut out = Vec::new();
-    for Span { statistic, from, to, estimate, inverse } in candidates {
-        if taken.iter().any(|(a, b)| from < *b && *a < to) || out.len() == 3 {
-            continue;
+    let mut out: Vec<Span> = Vec::new();
+    for c in candidates {
+        if out.len() < 3 && out.iter().all(|s| c.from >= s.to || s.from >= c.to) {
+            out.push(c);
         }
-        taken.push((from, to));
-        let samples = (from * BLOCK, (to * BLOCK).min(run.measured.len() - 1));
-        out.push(Window {
-            run: run.name.clone(),
-            session: run.session.clone(),
-            start: run.inputs[samples.0].t,
-            end: run.inputs[samples.1].t,
-            force: std::array::from_fn(|a| estimate[a] * unit[a]),
-            error: std::array::from_fn(|a| inverse[(a, a)].max(0.0).sqrt() * unit[a]),
-            statistic,
-            p: (chi_squared_p(statistic, 3) * looked_at).min(1.0),
-            index,
-            samples,
-        });
     }
     out
+}
+
+/// The same force in windows of some runs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Push {
+    /// The force: X, Y \[N\], N \[N m\].
+    pub force: [f64; 3],
+    /// Standard errors.
+    pub error: [f64; 3],
+    /// Twice the gain in log-likelihood, less twice the logarithm of the number of windows each was chosen from.
+    pub statistic: f64,
+    /// When it acts.
+    pub windows: Vec<Window>,
+}
+
+/// Looks for one force that acts in unknown windows of unknown runs: alternately the windows in which the force gains most,
+/// and the force that fits them best, from several starts.
+fn common_push(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f64) -> Option<Push> {
+    // The best span of every run is a start.
+    let mut starts: Vec<Span> = blocks
+        .iter()
+        .filter_map(|b| {
+            b.spans()
+                .filter(|(from, to)| (to - from) as f64 <= 0.7 * b.count as f64)
+                .filter_map(|(from, to)| {
+                    let (score, information) = b.span(from, to);
+                    let inverse = information.try_inverse()?;
+                    let estimate = inverse * score;
+                    let statistic = score.dot(&estimate);
+                    (information.diagonal().min() > 1e-6 && statistic.is_finite()).then_some(Span {
+                        statistic,
+                        from,
+                        to,
+                        estimate,
+                        inverse,
+                    })
+                })
+                .max_by(|a, b| a.statistic.total_cmp(&b.statistic))
+        })
+        .collect();
+    starts.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
+    starts.truncate(8);
+    let chosen = |force: &Vector3<f64>| -> Vec<(usize, usize, usize, f64)> {
+        let mut out = Vec::new();
+        for (index, b) in blocks.iter().enumerate() {
+            let price = 2.0 * (0.5 * (b.count * (b.count + 1)) as f64).ln();
+            let best = b
+                .spans()
+                .filter(|(from, to)| (to - from) as f64 <= 0.7 * b.count as f64)
+                .map(|(from, to)| {
+                    let (score, information) = b.span(from, to);
+                    (from, to, 2.0 * score.dot(force) - force.dot(&(information * force)))
+                })
+                .max_by(|a, b| a.2.total_cmp(&b.2));
+            if let Some((from, to, gain)) = best.filter(|b| b.2 > price) {
+                out.push((index, from, to, gain - price));
+            }
+        }
+        out
+    };
+    let mut best: Option<(f64, Vector3<f64>, Matrix3<f64>, Vec<(usize, usize, usize, f64)>)> = None;
+    for start in starts {
+        let mut force = start.estimate;
+        let mut inverse = start.inverse;
+        let mut spans = chosen(&force);
+        for _ in 0..4 {
+            let (mut score, mut information) = (Vector3::zeros(), Matrix3::zeros());
+            for (index, from, to, _) in &spans {
+                let (g, h) = blocks[*index].span(*from, *to);
+                score += g;
+                information += h;
+            }
+            let Some(i) = information.try_inverse() else { break };
+            (inverse, force) = (i, i * score);
+            spans = chosen(&force);
+        }
+        let statistic: f64 = spans.iter().map(|s| s.3).sum();
+        if best.as_ref().is_none_or(|b| statistic > b.0) {
+            best = Some((statistic, force, inverse, spans));
+        }
+    }
+    let (statistic, force, inverse, spans) = best?;
+    let windows = spans
+        .iter()
+        .filter_map(|(index, from, to, _)| {
+            let (score, information) = blocks[*index].span(*from, *to);
+            let inverse = information.try_inverse()?;
+            let estimate = inverse * score;
+            let statistic = score.dot(&estimate);
+            Some(window(
+                &runs[*index],
+                *index,
+                &Span { statistic, from: *from, to: *to, estimate, inverse },
+                looked_at,
+                unit,
+            ))
+        })
+        .collect();
+    Some(Push {
+        force: std::array::from_fn(|a| force[a] * unit[a]),
+        error: std::array::from_fn(|a| inverse[(a, a)].max(0.0).sqrt() * unit[a]),
+        statistic,
+        windows,
+    })
 }

@@ -31,6 +31,8 @@ pub struct Mechanism {
     pub kind: Kind,
     /// Names of its parameters within its term.
     pub parameters: &'static [&'static str],
+    /// Names of coefficients of its term that are not known exactly once it acts: freed with it, with their priors.
+    pub companions: &'static [&'static str],
     /// How the sensitivity is taken at the neutral point.
     pub probe: Probe,
     /// True when unknown hull, propeller and rudder coefficients can mimic it, so that only a reference session shows it.

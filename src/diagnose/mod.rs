@@ -7,6 +7,7 @@
 
 pub mod admit;
 pub mod baseline;
+mod compete;
 pub mod conclude;
 pub mod estimate;
 pub mod evidence;

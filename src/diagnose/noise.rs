@@ -89,7 +89,15 @@ impl NoisePrior {
     }
 
     fn log_density(&self, v: &[f64; NOISE_PARAMETERS]) -> f64 {
-        (0..NOISE_PARAMETERS).map(|i| -0.5 * ((v[i] - self.centre[i]) / self.spread[i]).powi(2)).sum()
+        (0..NOISE_PARAMETERS)
+            .map(|i| {
+                // The scatter of a channel is all of its white noise, or the floor below which it is exact: a filtered channel
+                // (a smoothed gyro) must not become infinitely exact.
+                let white = i < 12 && i % 3 == 0 && v[i] < self.centre[i];
+                let spread = if white { 0.05 } else { self.spread[i] };
+                -0.5 * ((v[i] - self.centre[i]) / spread).powi(2)
+            })
+            .sum()
     }
 }
 

@@ -153,13 +153,13 @@ impl Nlp for Refit<'_> {
 }
 
 /// The estimate is near the optimum: Ipopt starts there with its barrier nearly gone, where it would otherwise step back from
-/// the bounds and lower the barrier anew. The objective is in units of log-likelihood and a column's scale is far above its standard
+/// the bounds and lower the barrier anew; a few Gauss-Newton steps are all that is left to do. The objective is in units of log-likelihood and a column's scale is far above its standard
 /// error: gradients below the tolerance promise less than a hundredth of a unit.
 fn options() -> Options {
     let number = |name: &str, value: f64| (name.to_owned(), OptionValue::Number(value));
     Options {
         tolerance: 0.5,
-        max_iterations: 8,
+        max_iterations: 3,
         extra: vec![
             number("mu_init", 1e-7),
             number("bound_push", 1e-9),

@@ -69,6 +69,7 @@ pub const KEYS: &[(&str, &str)] = &[
     ("admission.heading_spread", "0 all on one heading, 1 headings all round"),
     ("admission.issues[]", "what is wrong or odd with the recordings"),
     ("admission.issues[].channel", "the channel"),
+    ("admission.issues[].mechanism", "sign_error, unit_error or frozen"),
     ("admission.issues[].text", "what is seen"),
     ("admission.issues[].next_step", "what to do"),
     ("admission.issues[].blocking", "whether it must be mended before any physics is concluded"),

@@ -102,7 +102,7 @@ impl Screen {
     }
 }
 
-fn basis_columns(model: &Model, term: &str) -> Vec<(String, Column)> {
+pub(super) fn basis_columns(model: &Model, term: &str) -> Vec<(String, Column)> {
     let prefix = format!("{term}.");
     model
         .parameters
@@ -171,7 +171,7 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
 
 /// The base widened by the symmetric basis under a shrinkage prior, whose common variance is chosen by its marginal
 /// likelihood: nothing when the data do not ask for it.
-fn widen(evidence: &Evidence, base: &Base, symmetric: &[usize]) -> Base {
+pub(super) fn widen(evidence: &Evidence, base: &Base, symmetric: &[usize]) -> Base {
     let h = &evidence.total.information;
     let cross = pick(h, symmetric, &base.columns);
     let own = pick(h, symmetric, symmetric) - &cross * &base.inverse * cross.transpose();

@@ -24,6 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "an antenna that is not where it is taken to be",
         kind: Kind::Sensor,
         parameters: &["x", "y"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.02,

@@ -41,6 +41,7 @@ static INFO: TermInfo = TermInfo {
         title: "cross-flow drag at large drift",
         kind: Kind::Ship,
         parameters: &["drag"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.05,

@@ -23,6 +23,7 @@ static INFO: TermInfo = TermInfo {
         title: "steady current",
         kind: Kind::Environment,
         parameters: &["north", "east"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.02,

@@ -24,6 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "a force fixed on the earth",
         kind: Kind::Environment,
         parameters: &["north", "east"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.02,

@@ -25,6 +25,7 @@ static INFO: TermInfo = TermInfo {
         title: "engine lag",
         kind: Kind::Actuator,
         parameters: &["time"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.03,

@@ -23,6 +23,7 @@ static INFO: TermInfo = TermInfo {
         title: "hull fouling",
         kind: Kind::Ship,
         parameters: &["fraction"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.075,

@@ -24,6 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "further hull nonlinearity",
         kind: Kind::Ship,
         parameters: &["X_vv", "X_rr", "Y_vvv", "Y_vrr", "N_vvv", "N_rrr"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.125,

@@ -23,6 +23,7 @@ static INFO: TermInfo = TermInfo {
         title: "another loading condition (mass, trim)",
         kind: Kind::Ship,
         parameters: &["mass", "x_g"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.125,

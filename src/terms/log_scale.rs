@@ -24,6 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "a scale error of the speed log",
         kind: Kind::Sensor,
         parameters: &["error"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.01,

@@ -20,7 +20,7 @@ static INFO: TermInfo = TermInfo {
     name: "mean_wind",
     title: "unmeasured mean wind",
     group: Group::Environment,
-    equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the same in still air; c_x = 0.7, c_y = 0.8, c_n = 0.1",
+    equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the same in still air; c_x, c_y, c_n typical unless fitted",
     source: "cosine and sine form, C_X = -c_x cos g, C_Y = c_y sin g, C_N = c_n sin 2g, as in public MMG codes; middle of the ranges given there",
     needs: &[],
     mechanisms: &[Mechanism {
@@ -28,6 +28,7 @@ static INFO: TermInfo = TermInfo {
         title: "wind that was not recorded",
         kind: Kind::Environment,
         parameters: &["north", "east"],
+        companions: &["drag", "side", "yaw"],
         probe: Probe::Odd,
         needs_reference: false,
         floor: 0.01,
@@ -42,6 +43,21 @@ static INFO: TermInfo = TermInfo {
             .scale(|s| 0.17 * size::speed(s))
             .bounds(-40.0, 40.0)
             .odd(),
+        ParameterInfo::new("drag", "c_x", "-", "longitudinal load coefficient, typically 0.5 to 0.9")
+            .default(|_| TYPICAL[0])
+            .scale(|_| 0.2)
+            .spread(|_| 0.2)
+            .bounds(0.0, 2.0),
+        ParameterInfo::new("side", "c_y", "-", "lateral load coefficient, typically 0.7 to 0.95")
+            .default(|_| TYPICAL[1])
+            .scale(|_| 0.2)
+            .spread(|_| 0.2)
+            .bounds(0.0, 2.0),
+        ParameterInfo::new("yaw", "c_n", "-", "yaw load coefficient, typically 0.05 to 0.2")
+            .default(|_| TYPICAL[2])
+            .scale(|_| 0.1)
+            .spread(|_| 0.1)
+            .bounds(-0.5, 0.5),
     ],
 };
 
@@ -57,6 +73,6 @@ impl Term for MeanWind {
 
 impl<S: Scalar> Physics<S> for MeanWind {
     fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
-        wind_load(at.ship, at.state, [p[0], p[1]], TYPICAL.map(S::from_f64))
+        wind_load(at.ship, at.state, [p[0], p[1]], [p[2], p[3], p[4]])
     }
 }

@@ -24,6 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "unstable yaw moment of drift",
         kind: Kind::Ship,
         parameters: &["factor"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.075,

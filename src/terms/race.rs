@@ -23,6 +23,7 @@ static INFO: TermInfo = TermInfo {
         title: "propeller race on the rudder",
         kind: Kind::Ship,
         parameters: &["change"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.075,

@@ -30,6 +30,7 @@ static INFO: TermInfo = TermInfo {
         title: "roll coupled into yaw",
         kind: Kind::Ship,
         parameters: &["sway", "yaw"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.125,

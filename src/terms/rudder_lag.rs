@@ -47,6 +47,7 @@ static INFO: TermInfo = TermInfo {
         title: "rudder lag",
         kind: Kind::Actuator,
         parameters: &["time"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.05,

@@ -24,6 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "rudder zero offset",
         kind: Kind::Actuator,
         parameters: &["offset"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.05,

@@ -24,6 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "rudder rate limit",
         kind: Kind::Actuator,
         parameters: &["inverse"],
+        companions: &[],
         probe: Probe::Forward,
         needs_reference: false,
         floor: 0.03,

@@ -23,6 +23,7 @@ static INFO: TermInfo = TermInfo {
         title: "rudder stall",
         kind: Kind::Ship,
         parameters: &["loss"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.075,

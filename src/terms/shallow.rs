@@ -33,6 +33,7 @@ static INFO: TermInfo = TermInfo {
         title: "shallow water",
         kind: Kind::Environment,
         parameters: &["ratio"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.025,

@@ -23,6 +23,7 @@ static INFO: TermInfo = TermInfo {
         title: "hull forces that change sign astern",
         kind: Kind::Ship,
         parameters: &["share"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.05,

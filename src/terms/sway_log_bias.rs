@@ -24,6 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "a bias of the sway log",
         kind: Kind::Sensor,
         parameters: &["bias"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.01,

@@ -24,6 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "bow thruster",
         kind: Kind::Environment,
         parameters: &["gain"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.01,

@@ -27,6 +27,7 @@ static INFO: TermInfo = TermInfo {
         title: "tidal current",
         kind: Kind::Environment,
         parameters: &["north_sin", "north_cos", "east_sin", "east_cos"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.02,

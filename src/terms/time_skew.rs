@@ -24,6 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "channels recorded at different times",
         kind: Kind::Sensor,
         parameters: &["position", "heading"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.02,

@@ -23,6 +23,7 @@ static INFO: TermInfo = TermInfo {
         title: "wake that changes with drift",
         kind: Kind::Ship,
         parameters: &["relief", "asymmetry"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.05,

@@ -24,6 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "a speed log that reads through the water",
         kind: Kind::Sensor,
         parameters: &["share"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.03,

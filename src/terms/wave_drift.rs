@@ -20,7 +20,7 @@ static INFO: TermInfo = TermInfo {
     name: "wave_drift",
     title: "unmeasured wave drift",
     group: Group::Environment,
-    equation: "X = 1/16 rho g L H_s^2 c_x cos chi, Y = 1/16 rho g L H_s^2 c_y sin chi, N = 1/16 rho g L^2 H_s^2 c_n sin chi; chi from the bow to where the waves travel; c_x = 0.07, c_y = 1.0, c_n = 0.06",
+    equation: "X = 1/16 rho g L H_s^2 c_x cos chi, Y = 1/16 rho g L H_s^2 c_y sin chi, N = 1/16 rho g L^2 H_s^2 c_n sin chi; chi from the bow to where the waves travel; c_x, c_y, c_n typical unless fitted",
     source: "Daidola's mean drift with its coefficients for waves half as long as the ship",
     needs: &[],
     mechanisms: &[Mechanism {
@@ -28,6 +28,7 @@ static INFO: TermInfo = TermInfo {
         title: "wave drift of waves that were not recorded",
         kind: Kind::Environment,
         parameters: &["north", "east"],
+        companions: &["ahead", "abeam", "yaw"],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.02,
@@ -42,6 +43,21 @@ static INFO: TermInfo = TermInfo {
             .scale(|s| 3.5e-5 * s.hull.lpp * s.hull.lpp)
             .bounds(-100.0, 100.0)
             .odd(),
+        ParameterInfo::new("ahead", "c_x", "-", "longitudinal drift coefficient")
+            .default(|_| TYPICAL[0])
+            .scale(|_| 0.05)
+            .spread(|_| 0.05)
+            .bounds(0.0, 1.0),
+        ParameterInfo::new("abeam", "c_y", "-", "lateral drift coefficient")
+            .default(|_| TYPICAL[1])
+            .scale(|_| 0.3)
+            .spread(|_| 0.3)
+            .bounds(0.0, 3.0),
+        ParameterInfo::new("yaw", "c_n", "-", "yaw drift coefficient")
+            .default(|_| TYPICAL[2])
+            .scale(|_| 0.06)
+            .spread(|_| 0.06)
+            .bounds(-0.5, 0.5),
     ],
 };
 
@@ -57,6 +73,6 @@ impl Term for WaveDrift {
 
 impl<S: Scalar> Physics<S> for WaveDrift {
     fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
-        drift_load(at.ship, at.state.psi, [p[0], p[1]], TYPICAL.map(S::from_f64))
+        drift_load(at.ship, at.state.psi, [p[0], p[1]], [p[2], p[3], p[4]])
     }
 }

@@ -33,6 +33,7 @@ static INFO: TermInfo = TermInfo {
         title: "wave drift, as the waves were recorded",
         kind: Kind::Environment,
         parameters: &["drag", "side", "yaw"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.01,

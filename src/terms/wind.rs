@@ -62,6 +62,7 @@ static INFO: TermInfo = TermInfo {
         title: "wind, as the anemometer recorded it",
         kind: Kind::Environment,
         parameters: &["drag", "side", "yaw"],
+        companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.01,

@@ -21,7 +21,7 @@ struct Arguments {
     /// Folder for the results (`cases.csv`, `summary.csv`, the figure) and for cases while they run.
     #[arg(long, default_value = "figures/concealed")]
     out: PathBuf,
-    /// The program that diagnoses, called as `TOOL diagnose STUDY --out DIR`.
+    /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json`.
     #[arg(long, default_value = "target/release/trimtab")]
     tool: PathBuf,
     /// Cases at a time.
@@ -96,6 +96,8 @@ fn run(a: &Arguments) -> Result<(), ConcealError> {
     if !a.summary {
         let done: BTreeSet<String> = read(&results)?.into_iter().map(|s| s.case).collect();
         plan.retain(|c| !done.contains(&c.key));
+        // The first of every kind, then the second: a campaign that is not finished is a fair sample of the whole.
+        plan.sort_by_key(|c| c.key.rsplit('/').next().and_then(|i| i.parse::<usize>().ok()));
         plan.truncate(a.most.unwrap_or(usize::MAX));
         if !plan.is_empty() {
             sail(a, &plan, &results)?;

@@ -20,7 +20,7 @@ const SINDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peers/sindy.py");
 /// How cases are run.
 #[derive(Debug, Clone)]
 pub struct Runner {
-    /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --out DIR`.
+    /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json`.
     pub tool: PathBuf,
     /// Longest time for one diagnosis.
     pub limit: Duration,
@@ -103,13 +103,14 @@ impl Runner {
     fn attempt(&self, planned: &Planned, meter: &dyn Meter, folder: &Path) -> Result<Score, ConcealError> {
         // Sealed before the diagnosis begins, opened after it has ended.
         let study = Case::make(&planned.spec, meter)?.write(folder)?;
-        let answer = folder.join("answer");
+        let answer = folder.join("diagnosis.json");
         let began = Instant::now();
         let mut command = Command::new(&self.tool);
-        command.arg("--threads").arg("1").arg("diagnose").arg(&study).arg("--out").arg(&answer);
-        finish(command, &self.tool, self.limit)?;
+        command.arg("--threads").arg("1").arg("diagnose").arg(&study).arg("--json");
+        let said = finish(command, &self.tool, self.limit)?;
         let seconds = began.elapsed().as_secs_f64();
-        let diagnosis = Diagnosis::read(&answer.join("diagnosis.json"))?;
+        std::fs::write(&answer, said).map_err(|source| ConcealError::File { path: answer.clone(), source })?;
+        let diagnosis = Diagnosis::read(&answer)?;
         let manifest = seal::open(folder)?;
         let mut score = judge(&manifest, &diagnosis);
         score.seconds = Some(seconds);

@@ -1,0 +1,294 @@
+//! Which mechanism explains the data best: refits the leaders of a screen with everything else free, compares them, and keeps
+//! every one that the data allow. What is tested, and what is said of the outcome, is decided elsewhere.
+
+use super::conclude::Settings;
+use super::estimate::{
+    Effort, Estimate, FreeParameter, base_of, estimate, evidence, log_posterior, passes, restrictions,
+};
+use super::evidence::{chi_squared_p, pick};
+use super::filter::{Column, Probe, Run};
+use super::mechanism::{Candidate, Kind};
+use super::noise::{Noise, NoisePrior};
+use super::screen::{Row, Screen};
+use crate::model::{Model, Prior};
+use crate::simulate::Integration;
+use nalgebra::{DMatrix, DVector};
+
+/// A refit at given noise.
+pub(super) const REFIT: Effort = Effort { rounds: 3, noise_rounds: 0, noise_iterations: 0, noise_runs: 10 };
+/// A refit with the noise estimated along.
+pub(super) const SETTLE: Effort = Effort { rounds: 3, noise_rounds: 1, noise_iterations: 4, noise_runs: 10 };
+
+/// Log-likelihood that a further parameter must bring to be worth having.
+const PRICE: f64 = 2.0;
+
+/// Mechanisms closer than this in log-likelihood are not told apart.
+const CLOSE: f64 = 3.0;
+/// Share of the gain of a force that the form of its law may cost.
+const FORM_UNKNOWN: f64 = 0.1;
+
+/// A mechanism with what it costs and brings.
+pub(super) struct Accepted {
+    /// Index into the candidates.
+    pub candidate: usize,
+    /// Sessions in which it acts; `None` for all.
+    pub sessions: Option<Vec<String>>,
+    /// Twice the gain in log-likelihood.
+    pub statistic: f64,
+    /// Corrected p-value.
+    pub p: f64,
+    /// Candidates that the data allow in its place, itself first.
+    pub set: Vec<usize>,
+    /// Why the set is what it is.
+    pub why: String,
+}
+
+/// The circumstances of a competition.
+#[derive(Clone, Copy)]
+pub(super) struct Arena<'a> {
+    pub integration: Integration,
+    pub runs: &'a [Run],
+    pub list: &'a [Candidate],
+    pub prior: &'a NoisePrior,
+    pub settings: &'a Settings,
+}
+
+/// The free parameters of a candidate.
+fn candidate_parameters(c: &Candidate, sessions: &Option<Vec<String>>) -> Vec<FreeParameter> {
+    c.columns
+        .iter()
+        .map(|col| FreeParameter {
+            column: Column { probe: Probe::Tangent, ..*col },
+            sessions: sessions.clone(),
+            prior: None,
+        })
+        .collect()
+}
+
+/// Coefficients that are not known exactly once a candidate acts: free, with their priors.
+fn companions(c: &Candidate, model: &Model, free: &[FreeParameter]) -> Vec<FreeParameter> {
+    c.mechanism
+        .companions
+        .iter()
+        .filter_map(|name| model.index(&format!("{}.{name}", c.term)))
+        .filter(|i| free.iter().all(|f| f.column.parameter != *i))
+        .map(|parameter| {
+            let p = &model.parameters[parameter];
+            let column = Column { parameter, scale: p.scale, probe: Probe::Tangent };
+            let sd = (p.info.spread)(&model.ship);
+            FreeParameter::common(column, Some(Prior { mean: p.value, sd: if sd.is_finite() { sd } else { p.scale } }))
+        })
+        .collect()
+}
+
+/// Where a candidate's parameters stand among the free ones.
+pub(super) fn positions(free: &[FreeParameter], c: &Candidate, sessions: &Option<Vec<String>>) -> Vec<usize> {
+    c.columns
+        .iter()
+        .filter_map(|col| {
+            free.iter()
+                .position(|f| f.column.parameter == col.parameter && f.prior.is_none() && f.sessions == *sessions)
+        })
+        .collect()
+}
+
+/// Sets a candidate's parameters to amplitudes in units of their scales, on top of what they are.
+fn start_at(model: &mut Model, c: &Candidate, sessions: &Option<Vec<String>>, amplitude: &DVector<f64>) {
+    for (p, a) in candidate_parameters(c, sessions).iter().zip(amplitude.iter()) {
+        let value = a * p.column.scale;
+        p.set(model, value + if sessions.is_none() { p.value(model) } else { 0.0 });
+    }
+}
+
+/// Values of some free parameters of an estimate, with their covariance, in units of their columns.
+pub(super) struct Wald {
+    pub value: DVector<f64>,
+    pub covariance: DMatrix<f64>,
+}
+
+impl Wald {
+    /// Squared distance from zero in units of the covariance.
+    pub fn statistic(&self) -> f64 {
+        let inverse = self.covariance.clone().try_inverse();
+        inverse.map_or(0.0, |inverse| (self.value.transpose() * inverse * &self.value)[(0, 0)])
+    }
+
+    /// The part that concerns some of the parameters.
+    pub fn part(&self, of: &[usize]) -> Self {
+        Self { value: DVector::from_fn(of.len(), |i, _| self.value[of[i]]), covariance: pick(&self.covariance, of, of) }
+    }
+}
+
+/// All free parameters of an estimate with their covariance.
+pub(super) fn wald(found: &Estimate, integration: Integration, runs: &[Run]) -> Wald {
+    let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
+    let p = passes(&found.model, integration, &columns, runs, &found.noise, false);
+    let e = evidence(runs, &p, &restrictions(&found.free));
+    let covariance = base_of(&e, &found.model, &found.free).inverse;
+    let value = |f: &FreeParameter| f.value(&found.model) / f.column.scale;
+    Wald { value: DVector::from_iterator(found.free.len(), found.free.iter().map(value)), covariance }
+}
+
+/// A mechanism may be named: seen, significant, of possible sign and worthwhile size, and not just the ship's own forces in
+/// another form.
+pub(super) fn acceptable(r: &Row, list: &[Candidate], settings: &Settings) -> bool {
+    let m = list[r.candidate].mechanism;
+    // Sessions differ in what was sailed, and a ship's forces in another form then differ between them: its own physics must
+    // stand out further.
+    let alpha = if m.needs_reference && m.kind == Kind::Ship { 0.02 * settings.alpha } else { settings.alpha };
+    r.visible && r.admissible && r.p < alpha && r.size >= 1.0 && r.second_opinion < 0.01
+}
+
+/// Whether a further mechanism may be named beside those that are: it must be beyond doubt, and more than what an imperfect
+/// form of an earlier one leaves behind.
+pub(super) fn acceptable_beside(r: &Row, taken: &[Accepted], list: &[Candidate]) -> bool {
+    let m = list[r.candidate].mechanism;
+    let leftover = |a: &Accepted| {
+        let first = list[a.candidate].mechanism;
+        let alike = first.look_alikes.contains(&m.name) || m.look_alikes.contains(&first.name);
+        // Changes of the ship's own forces between sessions: the form of the first cannot be told from a second.
+        let same_parting = a.sessions.is_some() && r.sessions.is_some() && m.needs_reference && first.needs_reference;
+        same_parting || (alike && r.test.statistic < 0.4 * a.statistic)
+    };
+    r.p < 1e-6 && taken.iter().all(|a| a.candidate != r.candidate && !leftover(a))
+}
+
+/// The model with a mechanism at the amplitudes of a screen, everything else moved along as far as the quadratic model holds,
+/// and what is free then: what was, the mechanism's companions, and its own parameters.
+pub(super) fn enter(
+    s: &Screen,
+    list: &[Candidate],
+    candidate: usize,
+    sessions: &Option<Vec<String>>,
+    amplitude: &DVector<f64>,
+    current: &Estimate,
+    integration: Integration,
+    runs: &[Run],
+    noise: &Noise,
+) -> (Model, Vec<FreeParameter>) {
+    let c = &list[candidate];
+    let shift = s.base_shift(&s.columns(list, candidate), sessions, amplitude);
+    let at = |length: f64, share: f64| {
+        let mut model = current.model.clone();
+        for (f, d) in current.free.iter().zip(shift.iter()) {
+            f.set(&mut model, f.value(&current.model) + length * d * f.column.scale);
+        }
+        start_at(&mut model, c, sessions, &(amplitude * share));
+        let value = log_posterior(&model, integration, runs, &current.free, noise);
+        (model, value)
+    };
+    let mut starts = vec![at(1.0, 1.0), at(0.3, 0.3), at(0.1, 0.1)];
+    if c.mechanism.probe == Probe::Odd {
+        // An effect quadratic in its amplitude grows with the square.
+        starts.push(at(1.0, 1.0 / amplitude.norm().max(1e-12).sqrt()));
+    }
+    let best = starts.into_iter().reduce(|a, b| if b.1 > a.1 { b } else { a });
+    let model = best.map_or_else(|| current.model.clone(), |(model, _)| model);
+    let mut free = current.free.clone();
+    free.extend(companions(c, &model, &free));
+    free.extend(candidate_parameters(c, sessions));
+    (model, free)
+}
+
+/// Refits the leader and its rivals, and returns the best with its confidence set.
+pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: Arena) -> Option<(Accepted, Estimate)> {
+    let Arena { integration, runs, list, prior, settings } = arena;
+    let leader = *leaders.first()?;
+    let refit = |r: &Row, noise: &Noise, effort: Effort| {
+        let (model, free) =
+            enter(s, list, r.candidate, &r.sessions, &r.test.amplitude, current, integration, runs, noise);
+        estimate(&model, integration, runs, &free, noise, prior, effort)
+    };
+    let lead = refit(leader, &current.noise, SETTLE);
+    // A rival whose promised gain is far below the leader's does not overtake it.
+    let gain_needed = leader.test.statistic - f64::max(60.0, 0.3 * leader.test.statistic);
+    let mut rivals: Vec<&Row> = leaders
+        .iter()
+        .copied()
+        .filter(|r| r.candidate != leader.candidate && r.test.statistic > gain_needed)
+        // What acts in some sessions only is alike by what those sessions sailed.
+        .filter(|r| r.sessions.is_some() || s.likeness(list, leader.candidate, r.candidate) > 0.3)
+        .collect();
+    rivals.truncate(3);
+    let mut field: Vec<(&Row, Estimate, f64)> = Vec::new();
+    let value = |e: &Estimate, r: &Row| e.log_posterior - PRICE * r.test.degrees as f64;
+    let v = value(&lead, leader);
+    let noise = lead.noise;
+    field.push((leader, lead, v));
+    for r in rivals {
+        let e = refit(r, &noise, REFIT);
+        let v = value(&e, r);
+        field.push((r, e, v));
+    }
+    field.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let stands = |(r, e, _): &(&Row, Estimate, f64)| {
+        let c = &list[r.candidate];
+        let w = wald(e, integration, runs).part(&positions(&e.free, c, &r.sessions));
+        // The likelihood itself must hold what the scores promised.
+        let gain = 2.0 * (e.log_posterior - current.log_posterior);
+        let statistic = w.statistic().min(gain.max(0.0));
+        chi_squared_p(statistic, c.columns.len()) * (leaders.len().max(1) as f64) < settings.alpha
+            && c.size(w.value.as_slice()) >= 1.0
+    };
+    field.retain(stands);
+    let (first, _, best) = field.first()?;
+    let best = *best;
+    // The law of a force is known only so well: a rival that explains nearly as much may have the truer form.
+    let form = FORM_UNKNOWN * (best - current.log_posterior).max(0.0);
+    let allowed = match list[first.candidate].mechanism.kind {
+        Kind::Sensor | Kind::Actuator => CLOSE,
+        Kind::Environment | Kind::Ship => form.max(CLOSE),
+    };
+    let set: Vec<usize> = field.iter().filter(|(_, _, v)| best - v < allowed).map(|(r, _, _)| r.candidate).collect();
+    let why = if set.len() > 1 {
+        let alike: Vec<String> = set[1..]
+            .iter()
+            .map(|c| format!("{} (likeness {:.2})", list[*c].mechanism.title, s.likeness(list, set[0], *c)))
+            .collect();
+        format!("these fit within {allowed:.0} units of log-likelihood of each other: {}", alike.join(", "))
+    } else if let Some((r, _, v)) = field.get(1) {
+        format!("next best, {}, fits {:.0} units of log-likelihood worse", list[r.candidate].mechanism.title, best - v)
+    } else {
+        "no other mechanism of the catalogue comes near".into()
+    };
+    let (r, e, _) = field.swap_remove(0);
+    // The leader's noise was estimated with it; a rival that won deserves the same.
+    let e = if r.candidate == leader.candidate {
+        e
+    } else {
+        estimate(&e.model, integration, runs, &e.free, &e.noise, prior, SETTLE)
+    };
+    let entry = Accepted {
+        candidate: r.candidate,
+        sessions: r.sessions.clone(),
+        statistic: 2.0 * (e.log_posterior - current.log_posterior).max(0.5 * r.test.statistic),
+        p: r.p,
+        set,
+        why,
+    };
+    Some((entry, e))
+}
+
+/// Drops an accepted mechanism that a later one made needless.
+pub(super) fn backward(accepted: &mut Vec<Accepted>, current: &mut Estimate, arena: Arena) {
+    let Arena { integration, runs, list, prior, settings } = arena;
+    if accepted.len() < 2 {
+        return;
+    }
+    let all = wald(current, integration, runs);
+    let needless = accepted[..accepted.len() - 1].iter().position(|a| {
+        let c = &list[a.candidate];
+        let w = all.part(&positions(&current.free, c, &a.sessions));
+        chi_squared_p(w.statistic(), c.columns.len()) > 0.1 * settings.alpha || c.size(w.value.as_slice()) < 1.0
+    });
+    let Some(i) = needless else { return };
+    let dropped = accepted.remove(i);
+    let mut places = positions(&current.free, &list[dropped.candidate], &dropped.sessions);
+    places.sort_unstable();
+    for at in places.into_iter().rev() {
+        let f = current.free.remove(at);
+        let neutral = (current.model.parameters[f.column.parameter].info.default)(&current.model.ship);
+        f.set(&mut current.model, if f.sessions.is_some() { 0.0 } else { neutral });
+    }
+    *current = estimate(&current.model, integration, runs, &current.free, &current.noise, prior, SETTLE);
+}
