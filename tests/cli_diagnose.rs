@@ -109,7 +109,13 @@ fn every_key_of_the_document_is_explained_and_none_is_null() {
     paths(&CASE.document, "", &mut found);
     // A key that explains a whole object or list covers what is in it, where that is explained elsewhere.
     let elsewhere = ["settings", "noise_after", "location_after", "adequacy_after", "admission.integration"];
-    let lists = ["findings[].held_out", "findings[].equations", "findings[].windows[]", "held_out.runs_after[]"];
+    let lists = [
+        "findings[].held_out",
+        "findings[].equations",
+        "findings[].windows[]",
+        "held_out.runs_after[]",
+        "location.push.windows[]",
+    ];
     let explained = |path: &str| {
         KEYS.iter().any(|(k, _)| *k == path || k.strip_suffix("[]") == Some(path))
             || elsewhere.iter().chain(&lists).any(|k| path.starts_with(k))

@@ -27,7 +27,7 @@ cannot tell.
 
 The training runs of the study locate, name and model; its test runs only prove. Settings are in
 the table [diagnose] of the study: alpha (chance of naming anything when nothing is missing,
-0.05), most (mechanisms at most, 3), withhold (mechanisms not to be considered), nuisance (carry
+0.01), most (mechanisms at most, 3), withhold (mechanisms not to be considered), nuisance (carry
 unknown hull, propeller and rudder coefficients along, true), substeps (RK4 steps in a sample
 period, 1), seed (of the bootstrap).";
 

@@ -103,6 +103,7 @@ pub struct Location {
     /// Windows, most significant first, not overlapping within a run.
     pub windows: Vec<Window>,
     /// The same force in windows of some runs, whether it is significant or not.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub push: Option<Push>,
     /// Regions, most significant first.
     pub regions: Vec<RegionTest>,

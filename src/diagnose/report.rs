@@ -104,6 +104,17 @@ pub const KEYS: &[(&str, &str)] = &[
     ("location.windows[].error", "standard errors"),
     ("location.windows[].statistic", "twice the gain in log-likelihood"),
     ("location.windows[].p", "p-value, corrected for every window of every run"),
+    (
+        "location.push",
+        "the same force in windows of some runs, as well as any can be fitted; a finding only when it stands out",
+    ),
+    ("location.push.force", "the force X, Y [N], N [N m]"),
+    ("location.push.error", "standard errors"),
+    (
+        "location.push.statistic",
+        "twice the gain in log-likelihood, less what choosing the windows would gain by chance",
+    ),
+    ("location.push.windows[]", "when it would act, as for location.windows"),
     ("location.regions[]", "regions of state and inputs, most significant first"),
     ("location.regions[].region", "the region in words"),
     ("location.regions[].samples", "share of all samples in it"),
