@@ -501,6 +501,9 @@ pub fn figure(scores: &[Score]) -> Figure {
         let at =
             |snr: f64| Share::of(single(scores, None, snr).map(way.right)).map(|s| (snr, s.value(), s.low, s.high));
         let points: Vec<_> = steps.into_iter().filter_map(at).collect();
+        if points.is_empty() {
+            continue;
+        }
         ways = ways
             .with(Layer::line(way.name, way.color, points.iter().map(|p| (p.0, p.1))))
             .with(Layer::errors(way.name, way.color, points).unlisted());
@@ -514,14 +517,15 @@ pub fn figure(scores: &[Score]) -> Figure {
         };
         errors = errors.with(Layer::line(model.name, model.color, steps.into_iter().filter_map(at)));
     }
-    Figure::new("Concealed effects: what was found")
+    let figure = Figure::new("Concealed effects: what was found")
         .columns(2)
         .with(panel("something is missing: seen", |s| s.detected))
         .with(panel("first name right, given seen", |s| s.first_right))
         .with(set)
         .with(alarms)
-        .with(ways)
-        .with(errors)
+        .with(ways);
+    // A campaign without the oracle has no such panel.
+    if scores.iter().any(|s| s.oracle_held_out.is_some()) { figure.with(errors) } else { figure }
 }
 
 #[cfg(test)]
