@@ -222,6 +222,18 @@ impl Model {
         Ok(model)
     }
 
+    /// The model with every term of the catalogue, those it lacked at their defaults.
+    ///
+    /// # Errors
+    /// Those of [`Model::add_term`].
+    pub fn complete(&self) -> Result<Self, ModelError> {
+        let mut model = self.clone();
+        for term in terms::CATALOGUE {
+            model.add_term(term.info().name)?;
+        }
+        Ok(model)
+    }
+
     /// Adds a term with its default parameters, all fixed; adding one that is there already changes nothing.
     pub fn add_term(&mut self, name: &str) -> Result<(), ModelError> {
         if self.terms.iter().any(|t| t.term.info().name == name) {

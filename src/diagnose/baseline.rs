@@ -6,14 +6,13 @@ use super::conclude::{Settings, base_parameters};
 use super::estimate::{Effort, Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
 use super::evidence::Evidence;
 use super::filter::{Column, Filter, Gains, Pass, Run, Wanted, Z};
-use super::mechanism::{Candidate, candidates};
+use super::mechanism::{Candidate, append, candidates};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::median_distance;
 use super::screen::screen;
 use crate::model::{Model, ModelError};
-use crate::simulate::{Integration, Method};
+use crate::simulate::Integration;
 use crate::state::STATES;
-use crate::terms::CATALOGUE;
 use rayon::prelude::*;
 
 /// The model refitted to whole trajectories: its own free parameters by least squares, every residual taken as independent of
@@ -96,8 +95,8 @@ impl Refitted {
     /// # Errors
     /// When the catalogue's terms cannot be added to the model.
     pub fn new(model: &Model, runs: &[Run], settings: &Settings) -> Result<Option<Self>, ModelError> {
-        let mut model = complete(model)?;
-        let integration = integration_of(settings);
+        let mut model = model.complete()?;
+        let integration = settings.integration();
         let free = base_parameters(&model, false);
         let columns: Vec<Column> = free.iter().map(|f| f.column).collect();
         // A pass asks for noise, but with the gains given it changes nothing.
@@ -147,11 +146,7 @@ impl Refitted {
         let list: Vec<Candidate> =
             candidates(&self.model, withhold).into_iter().filter(|c| c.mechanism.applies(runs)).collect();
         let mut columns: Vec<Column> = self.free.iter().map(|f| f.column).collect();
-        let mut groups = Vec::new();
-        for c in &list {
-            groups.push((columns.len()..columns.len() + c.columns.len()).collect::<Vec<usize>>());
-            columns.extend(&c.columns);
-        }
+        let groups = append(&mut columns, &list);
         let filter = Filter::new(&self.model, self.integration, &columns);
         let simulated = Trajectories::new(&filter, runs, &self.noise, &self.variance, false);
         let e = simulated.evidence(runs, &self.free);
@@ -207,8 +202,8 @@ pub fn oracle(
     settings: &Settings,
     told: &[Told],
 ) -> Result<Option<f64>, ModelError> {
-    let full = complete(model)?;
-    let integration = integration_of(settings);
+    let full = model.complete()?;
+    let integration = settings.integration();
     let list = candidates(&full, &[]);
     let of = |t: &Told| list.iter().find(|c| c.mechanism.name == t.mechanism);
     let Some(chosen) = told.iter().map(of).collect::<Option<Vec<_>>>() else { return Ok(None) };
@@ -233,26 +228,13 @@ fn started(
 ) -> (Model, Vec<FreeParameter>) {
     let alone = std::slice::from_ref(candidate);
     let s = screen(found, integration, runs, alone);
-    let columns = s.columns(alone, 0);
+    let columns = s.columns(0);
     let test = match sessions {
-        None => s.evidence.test(&s.base, &columns),
+        None => s.evidence.test(&s.base, columns),
         Some(names) => {
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            s.evidence.test_in(&s.base, &columns, &names, false)
+            s.evidence.test_in(&s.base, columns, &names, false)
         }
     };
     enter(&s, alone, 0, sessions, &test.amplitude, found, integration, runs, &found.noise)
-}
-
-/// The model with every term of the catalogue.
-fn complete(model: &Model) -> Result<Model, ModelError> {
-    let mut full = model.clone();
-    for term in CATALOGUE {
-        full.add_term(term.info().name)?;
-    }
-    Ok(full)
-}
-
-fn integration_of(settings: &Settings) -> Integration {
-    Integration { method: Method::Rk4, substeps: settings.substeps.max(1) }
 }

@@ -10,7 +10,7 @@ use super::filter::{Column, Probe, Run};
 use super::mechanism::{Candidate, Kind};
 use super::noise::{Noise, NoisePrior};
 use super::screen::{Row, Screen};
-use crate::model::{Model, Prior};
+use crate::model::Model;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
 
@@ -72,12 +72,7 @@ fn companions(c: &Candidate, model: &Model, free: &[FreeParameter]) -> Vec<FreeP
         .iter()
         .filter_map(|name| model.index(&format!("{}.{name}", c.term)))
         .filter(|i| free.iter().all(|f| f.column.parameter != *i))
-        .map(|parameter| {
-            let p = &model.parameters[parameter];
-            let column = Column { parameter, scale: p.scale, probe: Probe::Tangent };
-            let sd = (p.info.spread)(&model.ship);
-            FreeParameter::common(column, Some(Prior { mean: p.value, sd: if sd.is_finite() { sd } else { p.scale } }))
-        })
+        .map(|parameter| FreeParameter::uncertain(model, parameter))
         .collect()
 }
 
@@ -167,7 +162,7 @@ pub(super) fn enter(
     noise: &Noise,
 ) -> (Model, Vec<FreeParameter>) {
     let c = &list[candidate];
-    let shift = s.base_shift(&s.columns(list, candidate), sessions, amplitude);
+    let shift = s.base_shift(s.columns(candidate), sessions, amplitude);
     let at = |length: f64, share: f64| {
         let mut model = current.model.clone();
         for (f, d) in current.free.iter().zip(shift.iter()) {
@@ -207,7 +202,7 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
         .copied()
         .filter(|r| r.candidate != leader.candidate && r.test.statistic > gain_needed)
         // What acts in some sessions only is alike by what those sessions sailed.
-        .filter(|r| r.sessions.is_some() || s.likeness(list, leader.candidate, r.candidate) > 0.3)
+        .filter(|r| r.sessions.is_some() || s.likeness(leader.candidate, r.candidate) > 0.3)
         .collect();
     rivals.truncate(3);
     let mut field: Vec<(&Row, Estimate, f64)> = Vec::new();
@@ -243,7 +238,7 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
     let why = if set.len() > 1 {
         let alike: Vec<String> = set[1..]
             .iter()
-            .map(|c| format!("{} (likeness {:.2})", list[*c].mechanism.title, s.likeness(list, set[0], *c)))
+            .map(|c| format!("{} (likeness {:.2})", list[*c].mechanism.title, s.likeness(set[0], *c)))
             .collect();
         format!("these fit within {allowed:.0} units of log-likelihood of each other: {}", alike.join(", "))
     } else if let Some((r, _, v)) = field.get(1) {

@@ -13,9 +13,8 @@ use super::noise::{Noise, NoisePrior, guess};
 use super::prove::{HeldOut, prove};
 use super::refit::refit;
 use super::screen::{Row, Screen, screen};
-use crate::model::{Model, ModelError, Prior};
+use crate::model::{Model, ModelError};
 use crate::simulate::{Integration, Method};
-use crate::terms::CATALOGUE;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::collections::BTreeMap;
@@ -36,6 +35,13 @@ pub struct Settings {
     pub substeps: usize,
     /// Seed of the bootstrap.
     pub seed: u64,
+}
+
+impl Settings {
+    /// How steps are integrated.
+    pub fn integration(&self) -> Integration {
+        Integration { method: Method::Rk4, substeps: self.substeps.max(1) }
+    }
 }
 
 impl Default for Settings {
@@ -384,16 +390,15 @@ const NUISANCE: [&str; 31] = [
 
 /// The free parameters of the base: those of the model, and the nuisances with their priors.
 pub(super) fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParameter> {
-    let column =
-        |parameter: usize| Column { parameter, scale: model.parameters[parameter].scale, probe: Probe::Tangent };
-    let mut free: Vec<FreeParameter> =
-        model.free().into_iter().map(|i| FreeParameter::common(column(i), model.parameters[i].prior)).collect();
+    let mut free: Vec<FreeParameter> = model
+        .free()
+        .into_iter()
+        .map(|i| FreeParameter::common(Column::tangent(model, i), model.parameters[i].prior))
+        .collect();
     if nuisance {
         for name in NUISANCE {
             let Some(i) = model.index(name).filter(|i| !model.parameters[*i].free) else { continue };
-            let spread = (model.parameters[i].info.spread)(&model.ship);
-            let sd = if spread.is_finite() { spread } else { model.parameters[i].scale };
-            free.push(FreeParameter::common(column(i), Some(Prior { mean: model.parameters[i].value, sd })));
+            free.push(FreeParameter::uncertain(model, i));
         }
     }
     free
@@ -437,11 +442,8 @@ pub fn diagnose(
     settings: &Settings,
     progress: &(dyn Fn(&str) + Sync),
 ) -> Result<Diagnosis, ModelError> {
-    let mut full = model.clone();
-    for term in CATALOGUE {
-        full.add_term(term.info().name)?;
-    }
-    let mut integration = Integration { method: Method::Rk4, substeps: settings.substeps.max(1) };
+    let full = model.complete()?;
+    let mut integration = settings.integration();
     let free = base_parameters(&full, settings.nuisance);
     progress("estimating parameters and noise of the base model");
     let first_noise = guess(runs, &full);
@@ -530,9 +532,9 @@ pub fn diagnose(
     // A name that leaves more unexplained than it explains, in forces that break symmetry or stand on the earth, is the nearest
     // thing in the catalogue and not what is missing.
     let explained: f64 = accepted.iter().map(|a| a.statistic).sum();
-    if let Some(left) = last.as_ref().map(|s| &s.asymmetric_test)
-        && left.p < UNLISTED
-        && left.statistic - left.degrees as f64 > explained
+    if let Some(s) = &last
+        && s.asymmetric_test.p < UNLISTED
+        && smooth(s) > explained
     {
         accepted.clear();
         current = null.clone();
@@ -705,7 +707,7 @@ fn confusable(s: &Screen, list: &[Candidate]) -> Vec<Likeness> {
     let mut out = Vec::new();
     for (i, a) in shown.iter().enumerate() {
         for b in &shown[i + 1..] {
-            let cosine = s.likeness(list, *a, *b);
+            let cosine = s.likeness(*a, *b);
             if cosine > 0.7 {
                 out.push(Likeness { a: list[*a].mechanism.name.into(), b: list[*b].mechanism.name.into(), cosine });
             }

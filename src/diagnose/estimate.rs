@@ -25,6 +25,15 @@ impl FreeParameter {
         Self { column, sessions: None, prior }
     }
 
+    /// A coefficient that is not known exactly: common to all runs, its value the mean and its spread (its scale where it has
+    /// none) the standard deviation of its prior.
+    pub fn uncertain(model: &Model, parameter: usize) -> Self {
+        let p = &model.parameters[parameter];
+        let spread = (p.info.spread)(&model.ship);
+        let sd = if spread.is_finite() { spread } else { p.scale };
+        Self::common(Column::tangent(model, parameter), Some(Prior { mean: p.value, sd }))
+    }
+
     /// Its present value \[unit of the parameter\].
     pub fn value(&self, model: &Model) -> f64 {
         let i = self.column.parameter;
@@ -63,7 +72,8 @@ impl FreeParameter {
         })
     }
 
-    fn log_prior(&self, model: &Model) -> f64 {
+    /// Logarithm of the prior density at the present value, up to a constant.
+    pub(super) fn log_prior(&self, model: &Model) -> f64 {
         self.prior.map_or(0.0, |prior| -0.5 * ((self.value(model) - prior.mean) / prior.sd).powi(2))
     }
 }
@@ -79,8 +89,6 @@ pub struct Estimate {
     pub free: Vec<FreeParameter>,
     /// Log-likelihood plus log-prior at the estimate.
     pub log_posterior: f64,
-    /// Log-likelihood by run.
-    pub by_run: Vec<f64>,
 }
 
 /// Settings of an estimation.
@@ -225,11 +233,5 @@ pub fn estimate(
             break;
         }
     }
-    Estimate {
-        model,
-        noise,
-        free: free.to_vec(),
-        log_posterior: value,
-        by_run: current.iter().map(|p| p.log_likelihood).collect(),
-    }
+    Estimate { model, noise, free: free.to_vec(), log_posterior: value }
 }

@@ -79,6 +79,13 @@ pub struct Column {
     pub probe: Probe,
 }
 
+impl Column {
+    /// The exact derivative with respect to a parameter, in units of its scale.
+    pub fn tangent(model: &Model, parameter: usize) -> Self {
+        Self { parameter, scale: model.parameters[parameter].scale, probe: Probe::Tangent }
+    }
+}
+
 /// How the sensitivity to a parameter is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Probe {
@@ -193,10 +200,6 @@ enum Reach {
 /// Innovations larger than this many standard deviations are set aside as outliers.
 pub const GATE: f64 = 6.0;
 
-fn group_of(parameter: &str) -> Option<Group> {
-    find(parameter.split('.').next()?).map(|t| t.info().group)
-}
-
 impl<'a> Filter<'a> {
     /// Prepares passes with these columns; terms at neutral values that no column needs are left out.
     pub fn new(model: &'a Model, integration: Integration, columns: &[Column]) -> Self {
@@ -277,7 +280,7 @@ impl<'a> Filter<'a> {
         let mut rates_now = vec![0.0; 3 * width];
         let mut rates_next = vec![0.0; 3 * width];
         if parameters > 0 && !wanted.exact {
-            self.rate_columns(&seeded, &series, 0, &run.initial, &[0.0; 3], width, &mut rates_now);
+            self.rate_columns(&seeded, &theta, &series, 0, &run.initial, &[0.0; 3], width, &mut rates_now);
         }
         // The accelerations' Jacobian at both ends of a step carries the linearisation over it.
         let smooth = self.integration == Integration { method: Method::Rk4, substeps: 1 } && !wanted.exact;
@@ -433,7 +436,7 @@ impl<'a> Filter<'a> {
                     // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any
                     // predictable sensitivity leaves the score unbiased, so that this costs no more than a little power.
                     let faded = push.map(|w| w * a_force);
-                    self.rate_columns(&seeded, &series, k + 1, &image, &faded, width, &mut rates_next);
+                    self.rate_columns(&seeded, &theta, &series, k + 1, &image, &faded, width, &mut rates_next);
                     let half = 0.5 * run.dt;
                     for i in 0..STATES {
                         let row = &mut moved[i * width..i * width + parameters];
@@ -513,6 +516,7 @@ impl<'a> Filter<'a> {
     fn rate_columns(
         &self,
         seeded: &[Seeded],
+        theta: &[f64],
         series: &[Inputs<f64>],
         k: usize,
         state: &[f64; STATES],
@@ -523,8 +527,8 @@ impl<'a> Filter<'a> {
         let x = State::from_array(*state);
         // Where a parameter changes its own term's force only, the flow and the inertia are numbers.
         let local = self.chunks.iter().any(|c| c.reach == Reach::Force).then(|| {
-            let flow = self.base.flow(&seeded[0].values, &x, &series[k]);
-            let inertia = Inertia::new(self.base.part("hull", &seeded[0].values), &flow);
+            let flow = self.base.flow(theta, &x, &series[k]);
+            let inertia = Inertia::new(self.base.part("hull", theta), &flow);
             (flow, Flow::constant(&flow), inertia)
         });
         let lifted = State::from_array(state.map(Gradient::constant));
@@ -683,7 +687,6 @@ fn carry(start: &Slope, end: &Slope, h: f64) -> ([[f64; STATES]; STATES], [[f64;
 
 /// A chunk's parameters with their seeds, for one run.
 struct Seeded {
-    values: Vec<f64>,
     theta: Vec<Gradient>,
     series: Option<Vec<Inputs<Gradient>>>,
     plain: Vec<Inputs<f64>>,
@@ -736,7 +739,7 @@ impl Seeded {
             chunk.view.drive(&dual, run.dt, &mut s);
             s
         });
-        Self { values: theta.to_vec(), theta: dual, series, plain: driven(theta), tangents, probes }
+        Self { theta: dual, series, plain: driven(theta), tangents, probes }
     }
 
     fn instant(&self, k: usize) -> Inputs<Gradient> {
@@ -833,11 +836,6 @@ pub fn predict(
         out[9 + j][9 + j] += c * c * (1.0 - rho[j] * rho[j]);
     }
     out
-}
-
-/// The group a parameter's term belongs to.
-pub fn parameter_group(model: &Model, parameter: usize) -> Option<Group> {
-    group_of(&model.parameters[parameter].name)
 }
 
 // The chunk must hold the six states and the three forces at once.

@@ -88,6 +88,16 @@ impl Candidate {
     }
 }
 
+/// Appends the columns of candidates, and gives where those of each stand.
+pub fn append(columns: &mut Vec<Column>, candidates: &[Candidate]) -> Vec<Vec<usize>> {
+    let mut place = |c: &Candidate| {
+        let start = columns.len();
+        columns.extend(&c.columns);
+        (start..columns.len()).collect()
+    };
+    candidates.iter().map(&mut place).collect()
+}
+
 /// Every mechanism of the catalogue whose term is in the model, except the ones withheld.
 pub fn candidates(model: &Model, withhold: &[String]) -> Vec<Candidate> {
     let mut out = Vec::new();

@@ -4,7 +4,7 @@
 //! With gains fixed, `sum e^2/s` is a smooth function of the parameters, its gradient is exactly the score of an exact pass and
 //! its Gauss-Newton Hessian the information. The filter's gains are then computed anew and the problem solved again.
 
-use super::estimate::{Estimate, base_of, evidence, restrictions};
+use super::estimate::{Estimate, base_of, evidence, log_posterior, restrictions};
 use super::evidence::Base;
 use super::filter::{Column, Filter, Gains, Pass, Run, Wanted};
 use crate::fit::ipopt::{IpoptError, Nlp, OptionValue, Options, Solution, solve};
@@ -66,7 +66,7 @@ impl Refit<'_> {
         let model = self.model_at(x);
         let (_, mut value) = self.passes(&model, &[]);
         for f in &self.found.free {
-            value += f.prior.map_or(0.0, |prior| 0.5 * ((f.value(&model) - prior.mean) / prior.sd).powi(2));
+            value -= f.log_prior(&model);
         }
         value.is_finite().then_some(value)
     }
@@ -80,11 +80,8 @@ impl Refit<'_> {
             let Base { score, .. } = base_of(&e, &model, &self.found.free);
             let mut hessian = e.total.information;
             for (i, f) in self.found.free.iter().enumerate() {
-                if let Some(prior) = f.prior {
-                    let away = (f.value(&model) - prior.mean) / prior.sd;
-                    value += 0.5 * away * away;
-                    hessian[(i, i)] += (f.column.scale / prior.sd).powi(2);
-                }
+                value -= f.log_prior(&model);
+                hessian[(i, i)] += f.prior_terms(&model).0;
             }
             if !value.is_finite() {
                 return None;
@@ -185,14 +182,9 @@ pub fn refit(found: &Estimate, integration: Integration, runs: &[Run]) -> Result
     let mut problem = Refit { found, integration, runs, gains: &gains, columns, cached: None };
     let Solution { x, .. } = solve(&mut problem, &options())?;
     let model = problem.model_at(&x);
-    let after = Filter::new(&model, integration, &[]);
-    let by_run: Vec<f64> =
-        runs.par_iter().map(|r| after.pass(r, &found.noise, Wanted::default()).log_likelihood).collect();
-    let log_prior: f64 =
-        found.free.iter().filter_map(|f| f.prior.map(|p| -0.5 * ((f.value(&model) - p.mean) / p.sd).powi(2))).sum();
-    let log_posterior = by_run.iter().sum::<f64>() + log_prior;
+    let log_posterior = log_posterior(&model, integration, runs, &found.free, &found.noise);
     if log_posterior < found.log_posterior {
         return Ok(found.clone());
     }
-    Ok(Estimate { model, log_posterior, by_run, ..found.clone() })
+    Ok(Estimate { model, log_posterior, ..found.clone() })
 }

@@ -3,8 +3,8 @@
 
 use super::estimate::{Estimate, base_of, evidence, restrictions};
 use super::evidence::{Base, Evidence, Test, UNSEEN, pick};
-use super::filter::{Column, Filter, Pass, Probe, Run, Wanted};
-use super::mechanism::Candidate;
+use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::mechanism::{Candidate, append};
 use crate::model::Model;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -39,8 +39,8 @@ pub struct Screen {
     pub evidence: Evidence,
     /// The fitted block.
     pub base: Base,
-    /// First column of each candidate.
-    pub offsets: Vec<usize>,
+    /// Columns of each candidate.
+    groups: Vec<Vec<usize>>,
     /// Columns of the mirror-symmetric basis.
     pub symmetric: Vec<usize>,
     /// Columns of the mirror-breaking and earth-fixed basis.
@@ -59,8 +59,8 @@ pub struct Screen {
 
 impl Screen {
     /// Columns of a candidate.
-    pub fn columns(&self, candidates: &[Candidate], index: usize) -> Vec<usize> {
-        (self.offsets[index]..self.offsets[index] + candidates[index].columns.len()).collect()
+    pub fn columns(&self, index: usize) -> &[usize] {
+        &self.groups[index]
     }
 
     /// How the base moves, in units of its columns, when a group of columns takes these amplitudes.
@@ -81,13 +81,13 @@ impl Screen {
 
     /// Cosine of the smallest principal angle between two candidates once the base is projected out: 1 when the data
     /// cannot tell them apart.
-    pub fn likeness(&self, candidates: &[Candidate], a: usize, b: usize) -> f64 {
-        let (ca, cb) = (self.columns(candidates, a), self.columns(candidates, b));
+    pub fn likeness(&self, a: usize, b: usize) -> f64 {
+        let (ca, cb) = (self.columns(a), self.columns(b));
         let h = &self.evidence.total.information;
         let reduced = |r: &[usize], c: &[usize]| {
             pick(h, r, c) - pick(h, r, &self.base.columns) * &self.base.inverse * pick(h, &self.base.columns, c)
         };
-        let (aa, bb, ab) = (reduced(&ca, &ca), reduced(&cb, &cb), reduced(&ca, &cb));
+        let (aa, bb, ab) = (reduced(ca, ca), reduced(cb, cb), reduced(ca, cb));
         let white = |m: &DMatrix<f64>| {
             let e = SymmetricEigen::new((m + m.transpose()) * 0.5);
             let top = e.eigenvalues.max();
@@ -109,7 +109,7 @@ pub(super) fn basis_columns(model: &Model, term: &str) -> Vec<(String, Column)> 
         .iter()
         .enumerate()
         .filter(|(_, p)| p.name.starts_with(&prefix))
-        .map(|(parameter, p)| (p.name.clone(), Column { parameter, scale: p.scale, probe: Probe::Tangent }))
+        .map(|(parameter, p)| (p.name.clone(), Column::tangent(model, parameter)))
         .collect()
 }
 
@@ -117,11 +117,7 @@ pub(super) fn basis_columns(model: &Model, term: &str) -> Vec<(String, Column)> 
 pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidates: &[Candidate]) -> Screen {
     let model = &found.model;
     let mut columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
-    let mut offsets = Vec::new();
-    for c in candidates {
-        offsets.push(columns.len());
-        columns.extend(&c.columns);
-    }
+    let groups = append(&mut columns, candidates);
     let mut names = Vec::new();
     let mut block = |term: &str| {
         let start = columns.len();
@@ -140,10 +136,7 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
     let widened = widen(&evidence, &base, &symmetric);
     let sessions: Vec<String> = evidence.sessions.keys().cloned().collect();
     let mut rows: Vec<Row> = (0..candidates.len())
-        .map(|i| {
-            let cols: Vec<usize> = (offsets[i]..offsets[i] + candidates[i].columns.len()).collect();
-            row(&evidence, &base, &widened, model, &candidates[i], i, &cols, &sessions)
-        })
+        .map(|i| row(&evidence, &base, &widened, model, &candidates[i], i, &groups[i], &sessions))
         .collect();
     let tested = rows.iter().filter(|r| r.visible).count().max(1) as f64;
     for r in &mut rows {
@@ -158,7 +151,7 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
     Screen {
         evidence,
         base,
-        offsets,
+        groups,
         symmetric,
         asymmetric,
         basis_names: names,

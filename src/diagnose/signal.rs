@@ -5,11 +5,10 @@ use super::conclude::{Settings, base_parameters};
 use super::estimate::{Effort, Estimate, base_of, estimate, evidence, passes, restrictions};
 use super::evidence::{Base, Evidence};
 use super::filter::{Column, Run};
-use super::mechanism::{Candidate, candidates};
+use super::mechanism::{Candidate, append, candidates};
 use super::noise::{NoisePrior, guess};
 use crate::model::{Model, ModelError};
-use crate::simulate::{Integration, Method};
-use crate::terms::CATALOGUE;
+use crate::simulate::Integration;
 use nalgebra::DVector;
 
 /// Enough for a yardstick: noise within a few per cent.
@@ -21,7 +20,7 @@ pub struct Signal {
     integration: Integration,
     candidates: Vec<Candidate>,
     columns: Vec<Column>,
-    offsets: Vec<usize>,
+    groups: Vec<Vec<usize>>,
     without: Evidence,
 }
 
@@ -31,24 +30,17 @@ impl Signal {
     /// # Errors
     /// When the catalogue's terms cannot be added to the model.
     pub fn new(model: &Model, without: &[Run], settings: &Settings) -> Result<Self, ModelError> {
-        let mut full = model.clone();
-        for term in CATALOGUE {
-            full.add_term(term.info().name)?;
-        }
-        let integration = Integration { method: Method::Rk4, substeps: settings.substeps.max(1) };
+        let full = model.complete()?;
+        let integration = settings.integration();
         let free = base_parameters(&full, settings.nuisance);
         let first = guess(without, &full);
         let null = estimate(&full, integration, without, &free, &first, &NoisePrior::around(&first), EFFORT);
         let candidates = candidates(&full, &[]);
         let mut columns: Vec<Column> = free.iter().map(|f| f.column).collect();
-        let mut offsets = Vec::new();
-        for c in &candidates {
-            offsets.push(columns.len());
-            columns.extend(&c.columns);
-        }
+        let groups = append(&mut columns, &candidates);
         let p = passes(&null.model, integration, &columns, without, &null.noise, false);
         let evidence = evidence(without, &p, &restrictions(&free));
-        Ok(Self { null, integration, candidates, columns, offsets, without: evidence })
+        Ok(Self { null, integration, candidates, columns, groups, without: evidence })
     }
 
     /// Signal-to-noise ratio of the change from the runs without to the same runs with the effect (same noise), along a
@@ -60,7 +52,7 @@ impl Signal {
         let Some(index) = self.candidates.iter().position(|c| c.mechanism.name == mechanism) else { return 0.0 };
         let candidate = &self.candidates[index];
         let free = self.null.free.len();
-        let own: Vec<usize> = (self.offsets[index]..self.offsets[index] + candidate.columns.len()).collect();
+        let own = &self.groups[index];
         let columns: Vec<Column> = self.columns[..free].iter().chain(&candidate.columns).copied().collect();
         let p = passes(&self.null.model, self.integration, &columns, with, &self.null.noise, false);
         let changed = evidence(with, &p, &restrictions(&self.null.free));
@@ -84,9 +76,9 @@ impl Signal {
         // The prior's pull belongs to the estimate, not to the difference.
         let base = Base { score: DVector::from_fn(free, |i, _| difference.total.score[i]), ..base };
         let test = if candidate.mechanism.needs_reference {
-            difference.contrast(&base, &own).unwrap_or_else(|| difference.test(&base, &own))
+            difference.contrast(&base, own).unwrap_or_else(|| difference.test(&base, own))
         } else {
-            difference.test(&base, &own)
+            difference.test(&base, own)
         };
         test.statistic.max(0.0).sqrt()
     }

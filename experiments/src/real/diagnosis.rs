@@ -5,7 +5,7 @@ use super::{Hull, RealError};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use trimtab::diagnose::estimate::{Effort, FreeParameter, base_of, estimate, evidence, passes, restrictions};
 use trimtab::diagnose::evidence::Test;
-use trimtab::diagnose::filter::{Column, Probe, Run};
+use trimtab::diagnose::filter::{Column, Run};
 use trimtab::diagnose::noise::{Noise, NoisePrior};
 use trimtab::diagnose::prove::{HeldOut, prove};
 use trimtab::diagnose::{Diagnosis, Settings, diagnose};
@@ -13,7 +13,6 @@ use trimtab::model::{Model, Prior};
 use trimtab::recording::Split;
 use trimtab::report::{Table, fixed, sig};
 use trimtab::simulate::Integration;
-use trimtab::terms::CATALOGUE;
 
 /// The windows of one split as runs of the diagnosis.
 ///
@@ -148,10 +147,7 @@ impl Frame {
     /// # Errors
     /// [`RealError::Model`].
     pub fn new(diagnosis: &Diagnosis) -> Result<Self, RealError> {
-        let mut model = diagnosis.base.clone();
-        for term in CATALOGUE {
-            model.add_term(term.info().name)?;
-        }
+        let model = diagnosis.base.complete()?;
         let mut frame = Self {
             free: Vec::new(),
             noise: diagnosis.noise_before,
@@ -170,7 +166,7 @@ impl Frame {
     }
 
     fn column(&self, parameter: usize) -> Column {
-        Column { parameter, scale: self.model.parameters[parameter].scale, probe: Probe::Tangent }
+        Column::tangent(&self.model, parameter)
     }
 
     /// Free parameters of these names, in all runs or with a value of its own in each session.
