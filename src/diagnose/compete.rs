@@ -15,9 +15,9 @@ use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
 
 /// A refit at given noise.
-pub(super) const REFIT: Effort = Effort { rounds: 3, noise_rounds: 0, noise_iterations: 0, noise_runs: 10 };
+pub(super) const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0, noise_runs: 10 };
 /// A refit with the noise estimated along.
-pub(super) const SETTLE: Effort = Effort { rounds: 3, noise_rounds: 1, noise_iterations: 4, noise_runs: 10 };
+pub(super) const SETTLE: Effort = Effort { rounds: 10, noise_rounds: 1, noise_iterations: 4, noise_runs: 10 };
 
 /// Log-likelihood that a further parameter must bring to be worth having.
 const PRICE: f64 = 2.0;
@@ -87,6 +87,15 @@ pub(super) fn positions(free: &[FreeParameter], c: &Candidate, sessions: &Option
         .collect()
 }
 
+/// A candidate's amplitudes as far as they say that it acts: its companions held, as an amplitude that only counts times a
+/// coefficient is as uncertain as the coefficient and yet not nothing.
+fn presence(all: &Wald, free: &[FreeParameter], model: &Model, c: &Candidate, sessions: &Option<Vec<String>>) -> Wald {
+    let companions: Vec<Option<usize>> =
+        c.mechanism.companions.iter().map(|name| model.index(&format!("{}.{name}", c.term))).collect();
+    let held: Vec<usize> = (0..free.len()).filter(|i| companions.contains(&Some(free[*i].column.parameter))).collect();
+    all.given(&positions(free, c, sessions), &held)
+}
+
 /// Sets a candidate's parameters to amplitudes in units of their scales, on top of what they are.
 fn start_at(model: &mut Model, c: &Candidate, sessions: &Option<Vec<String>>, amplitude: &DVector<f64>) {
     for (p, a) in candidate_parameters(c, sessions).iter().zip(amplitude.iter()) {
@@ -106,6 +115,16 @@ impl Wald {
     pub fn statistic(&self) -> f64 {
         let inverse = self.covariance.clone().try_inverse();
         inverse.map_or(0.0, |inverse| (self.value.transpose() * inverse * &self.value)[(0, 0)])
+    }
+
+    /// The same with some parameters held where they are.
+    fn given(&self, of: &[usize], held: &[usize]) -> Self {
+        let mut part = self.part(of);
+        if let Some(inverse) = pick(&self.covariance, held, held).try_inverse() {
+            let cross = pick(&self.covariance, of, held);
+            part.covariance -= &cross * inverse * cross.transpose();
+        }
+        part
     }
 
     /// The part that concerns some of the parameters.
@@ -140,7 +159,7 @@ pub(super) fn acceptable_beside(r: &Row, taken: &[Accepted], list: &[Candidate])
     let m = list[r.candidate].mechanism;
     let leftover = |a: &Accepted| {
         let first = list[a.candidate].mechanism;
-        let alike = first.look_alikes.contains(&m.name) || m.look_alikes.contains(&first.name);
+        let alike = m.looks_like(first);
         // Changes of the ship's own forces between sessions: the form of the first cannot be told from a second.
         let same_parting = a.sessions.is_some() && r.sessions.is_some() && m.needs_reference && first.needs_reference;
         same_parting || (alike && r.test.statistic < 0.4 * a.statistic)
@@ -174,8 +193,9 @@ pub(super) fn enter(
     };
     let mut starts = vec![at(1.0, 1.0), at(0.3, 0.3), at(0.1, 0.1)];
     if c.mechanism.probe == Probe::Odd {
-        // An effect quadratic in its amplitude grows with the square.
+        // An effect that grows with the square of its amplitude: the slope where it was probed says little of its size.
         starts.push(at(1.0, 1.0 / amplitude.norm().max(1e-12).sqrt()));
+        starts.extend([3.0, 10.0, 30.0].map(|share| at(0.0, share)));
     }
     let best = starts.into_iter().reduce(|a, b| if b.1 > a.1 { b } else { a });
     let model = best.map_or_else(|| current.model.clone(), |(model, _)| model);
@@ -185,40 +205,103 @@ pub(super) fn enter(
     (model, free)
 }
 
+/// A mechanism that may enter, and how a screen would have it start.
+struct Contender {
+    candidate: usize,
+    sessions: Option<Vec<String>>,
+    amplitude: DVector<f64>,
+    statistic: f64,
+    p: f64,
+}
+
+impl Contender {
+    fn of(row: &Row) -> Self {
+        Self {
+            candidate: row.candidate,
+            sessions: row.sessions.clone(),
+            amplitude: row.test.amplitude.clone(),
+            statistic: row.test.statistic,
+            p: row.p,
+        }
+    }
+
+    /// A look-alike in the leader's place: where a law bends, its slope at nothing promises less than it holds, so that it is
+    /// tried in the leader's sessions whatever its own test says.
+    fn in_place_of(row: &Row, leader: &Row, s: &Screen) -> Option<Self> {
+        if row.sessions == leader.sessions {
+            return Some(Self::of(row));
+        }
+        let test = match &leader.sessions {
+            None => row.pooled.clone(),
+            Some(names) => {
+                let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                s.evidence.test_in(&s.base, s.columns(row.candidate), &names, false)
+            }
+        };
+        (test.degrees > 0).then(|| Self {
+            sessions: leader.sessions.clone(),
+            amplitude: test.amplitude,
+            statistic: test.statistic,
+            ..Self::of(row)
+        })
+    }
+}
+
+/// Most rivals that are refitted beside a leader.
+const RIVALS: usize = 3;
+
+/// Who is refitted beside the leader: look-alikes from outside the ship, and whoever promises nearly as much.
+fn rivals(s: &Screen, leaders: &[&Row], list: &[Candidate]) -> Vec<Contender> {
+    let leader = leaders[0];
+    let first = list[leader.candidate].mechanism;
+    let alike = |r: &&Row| {
+        let m = list[r.candidate].mechanism;
+        r.candidate != leader.candidate && m.kind == Kind::Environment && r.visible && m.looks_like(first)
+    };
+    let mut out: Vec<Contender> = Vec::new();
+    if first.kind == Kind::Environment {
+        out.extend(s.rows.iter().filter(alike).filter_map(|r| Contender::in_place_of(r, leader, s)));
+    }
+    // A rival whose promised gain is far below the leader's does not overtake it.
+    let gain_needed = leader.test.statistic - f64::max(60.0, 0.3 * leader.test.statistic);
+    let near = leaders[1..]
+        .iter()
+        .filter(|r| r.test.statistic > gain_needed)
+        // What acts in some sessions only is alike by what those sessions sailed.
+        .filter(|r| r.sessions.is_some() || s.likeness(leader.candidate, r.candidate) > 0.3);
+    for r in near {
+        if out.iter().all(|c| c.candidate != r.candidate) {
+            out.push(Contender::of(r));
+        }
+    }
+    out.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
+    out.truncate(RIVALS);
+    out
+}
+
 /// Refits the leader and its rivals, and returns the best with its confidence set.
 pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: Arena) -> Option<(Accepted, Estimate)> {
     let Arena { integration, runs, list, prior, settings } = arena;
     let leader = *leaders.first()?;
-    let refit = |r: &Row, noise: &Noise, effort: Effort| {
-        let (model, free) =
-            enter(s, list, r.candidate, &r.sessions, &r.test.amplitude, current, integration, runs, noise);
+    let refit = |c: &Contender, noise: &Noise, effort: Effort| {
+        let (model, free) = enter(s, list, c.candidate, &c.sessions, &c.amplitude, current, integration, runs, noise);
         estimate(&model, integration, runs, &free, noise, prior, effort)
     };
-    let lead = refit(leader, &current.noise, SETTLE);
-    // A rival whose promised gain is far below the leader's does not overtake it.
-    let gain_needed = leader.test.statistic - f64::max(60.0, 0.3 * leader.test.statistic);
-    let mut rivals: Vec<&Row> = leaders
-        .iter()
-        .copied()
-        .filter(|r| r.candidate != leader.candidate && r.test.statistic > gain_needed)
-        // What acts in some sessions only is alike by what those sessions sailed.
-        .filter(|r| r.sessions.is_some() || s.likeness(leader.candidate, r.candidate) > 0.3)
-        .collect();
-    rivals.truncate(3);
-    let mut field: Vec<(&Row, Estimate, f64)> = Vec::new();
-    let value = |e: &Estimate, r: &Row| e.log_posterior - PRICE * r.test.degrees as f64;
-    let v = value(&lead, leader);
+    let own = Contender::of(leader);
+    let lead = refit(&own, &current.noise, SETTLE);
+    let mut field: Vec<(Contender, Estimate, f64)> = Vec::new();
+    let value = |e: &Estimate, c: &Contender| e.log_posterior - PRICE * list[c.candidate].columns.len() as f64;
+    let v = value(&lead, &own);
     let noise = lead.noise;
-    field.push((leader, lead, v));
-    for r in rivals {
-        let e = refit(r, &noise, REFIT);
-        let v = value(&e, r);
+    field.push((own, lead, v));
+    for r in rivals(s, leaders, list) {
+        let e = refit(&r, &noise, REFIT);
+        let v = value(&e, &r);
         field.push((r, e, v));
     }
-    field.sort_by(|a, b| b.2.total_cmp(&a.2));
-    let stands = |(r, e, _): &(&Row, Estimate, f64)| {
+    let stands = |(r, e, _): &(Contender, Estimate, f64)| {
         let c = &list[r.candidate];
-        let w = wald(e, integration, runs).part(&positions(&e.free, c, &r.sessions));
+        let w = presence(&wald(e, integration, runs), &e.free, &e.model, c, &r.sessions);
         // The likelihood itself must hold what the scores promised.
         let gain = 2.0 * (e.log_posterior - current.log_posterior);
         let statistic = w.statistic().min(gain.max(0.0));
@@ -226,23 +309,34 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
             && c.size(w.value.as_slice()) >= 1.0
     };
     field.retain(stands);
-    let (first, _, best) = field.first()?;
-    let best = *best;
+    field.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let best = field.first()?.2;
     // The law of a force is known only so well: a rival that explains nearly as much may have the truer form.
     let form = FORM_UNKNOWN * (best - current.log_posterior).max(0.0);
-    let allowed = match list[first.candidate].mechanism.kind {
+    let allowed = |c: &Contender| match list[c.candidate].mechanism.kind {
         Kind::Sensor | Kind::Actuator => CLOSE,
         Kind::Environment | Kind::Ship => form.max(CLOSE),
     };
-    let set: Vec<usize> = field.iter().filter(|(_, _, v)| best - v < allowed).map(|(r, _, _)| r.candidate).collect();
+    let width = allowed(&field[0].0);
+    let near = |(_, _, v): &(Contender, Estimate, f64)| best - v < width;
+    // A force without a cause gives way to any cause that comes near.
+    let stands_in = |f: &(Contender, Estimate, f64)| list[f.0.candidate].mechanism.stand_in;
+    if field.iter().any(|f| near(f) && !stands_in(f)) {
+        field.retain(|f| !stands_in(f));
+    }
+    let set: Vec<usize> = field.iter().filter(|f| near(f)).map(|(c, _, _)| c.candidate).collect();
     let why = if set.len() > 1 {
         let alike: Vec<String> = set[1..]
             .iter()
             .map(|c| format!("{} (likeness {:.2})", list[*c].mechanism.title, s.likeness(set[0], *c)))
             .collect();
-        format!("these fit within {allowed:.0} units of log-likelihood of each other: {}", alike.join(", "))
+        format!("these fit within {width:.0} units of log-likelihood of each other: {}", alike.join(", "))
     } else if let Some((r, _, v)) = field.get(1) {
-        format!("next best, {}, fits {:.0} units of log-likelihood worse", list[r.candidate].mechanism.title, best - v)
+        format!(
+            "next best, {}, fits {:.0} units of log-likelihood worse",
+            list[r.candidate].mechanism.title,
+            field[0].2 - v
+        )
     } else {
         "no other mechanism of the catalogue comes near".into()
     };
@@ -255,9 +349,9 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
     };
     let entry = Accepted {
         candidate: r.candidate,
-        sessions: r.sessions.clone(),
-        statistic: 2.0 * (e.log_posterior - current.log_posterior).max(0.5 * r.test.statistic),
-        p: r.p,
+        statistic: 2.0 * (e.log_posterior - current.log_posterior).max(0.5 * r.statistic),
+        p: r.p.min(leader.p),
+        sessions: r.sessions,
         set,
         why,
     };
@@ -273,7 +367,7 @@ pub(super) fn backward(accepted: &mut Vec<Accepted>, current: &mut Estimate, are
     let all = wald(current, integration, runs);
     let needless = accepted[..accepted.len() - 1].iter().position(|a| {
         let c = &list[a.candidate];
-        let w = all.part(&positions(&current.free, c, &a.sessions));
+        let w = presence(&all, &current.free, &current.model, c, &a.sessions);
         chi_squared_p(w.statistic(), c.columns.len()) > 0.1 * settings.alpha || c.size(w.value.as_slice()) < 1.0
     });
     let Some(i) = needless else { return };

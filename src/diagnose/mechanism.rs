@@ -39,6 +39,8 @@ pub struct Mechanism {
     pub needs_reference: bool,
     /// Smallest amplitude worth naming, in units of the parameters' scales.
     pub floor: f64,
+    /// True for a force without a cause, which stands in for physics of some other form: named when no cause comes near.
+    pub stand_in: bool,
     /// Names of mechanisms that look alike on some data.
     pub look_alikes: &'static [&'static str],
     /// The trial that shows it best.
@@ -46,6 +48,11 @@ pub struct Mechanism {
 }
 
 impl Mechanism {
+    /// Whether either names the other as a look-alike.
+    pub fn looks_like(&self, other: &Self) -> bool {
+        self.look_alikes.contains(&other.name) || other.look_alikes.contains(&self.name)
+    }
+
     /// Whether recordings can possibly show it: a tide needs a good part of its period.
     pub fn applies(&self, runs: &[Run]) -> bool {
         const QUARTER_TIDE: f64 = 11_178.0;

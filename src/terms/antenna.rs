@@ -28,6 +28,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.02,
+        stand_in: false,
         look_alikes: &["time_skew"],
         trial: "a turn on the spot",
     }],

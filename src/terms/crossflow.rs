@@ -45,6 +45,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.05,
+        stand_in: false,
         look_alikes: &["shallow", "hull_nonlinear"],
         trial: "drifting sideways and turning on the spot",
     }],

@@ -28,6 +28,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.02,
+        stand_in: true,
         look_alikes: &["mean_wind", "wave_drift", "current"],
         trial: "drifting stopped on several headings",
     }],

@@ -29,6 +29,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.03,
+        stand_in: false,
         look_alikes: &["loading", "thrust_loss"],
         trial: "quick changes of propeller rate, and record the shaft",
     }],

@@ -28,6 +28,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.125,
+        stand_in: false,
         look_alikes: &["crossflow"],
         trial: "turning circles at several rudder angles",
     }],

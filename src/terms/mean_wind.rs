@@ -32,6 +32,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Odd,
         needs_reference: false,
         floor: 0.01,
+        stand_in: false,
         look_alikes: &["earth_force", "wave_drift", "current"],
         trial: "drifting stopped on several headings, and record the wind",
     }],

@@ -34,6 +34,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.125,
+        stand_in: false,
         look_alikes: &["munk", "loading"],
         trial: "zigzags at high speed, and record the roll",
     }],

@@ -51,6 +51,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.05,
+        stand_in: false,
         look_alikes: &["rudder_rate", "time_skew"],
         trial: "zigzags with quick rudder orders, and record the rudder itself",
     }],

@@ -28,6 +28,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Forward,
         needs_reference: false,
         floor: 0.03,
+        stand_in: false,
         look_alikes: &["rudder_lag"],
         trial: "rudder hard over from hard over, and record the rudder itself",
     }],

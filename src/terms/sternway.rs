@@ -27,6 +27,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.05,
+        stand_in: false,
         look_alikes: &["propeller_walk_astern"],
         trial: "steering with sternway",
     }],

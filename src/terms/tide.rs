@@ -31,6 +31,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.02,
+        stand_in: false,
         look_alikes: &["current"],
         trial: "the same runs again three and six hours later",
     }],

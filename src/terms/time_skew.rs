@@ -28,6 +28,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.02,
+        stand_in: false,
         look_alikes: &["antenna", "rudder_lag"],
         trial: "zigzags, and check the clocks",
     }],

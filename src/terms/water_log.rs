@@ -28,6 +28,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.03,
+        stand_in: false,
         look_alikes: &["current", "log_scale"],
         trial: "reciprocal runs in the current",
     }],

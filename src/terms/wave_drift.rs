@@ -32,6 +32,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.02,
+        stand_in: false,
         look_alikes: &["mean_wind", "earth_force", "current"],
         trial: "drifting stopped on several headings, and record the waves",
     }],

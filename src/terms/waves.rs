@@ -37,6 +37,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.01,
+        stand_in: false,
         look_alikes: &["wave_drift", "wind"],
         trial: "slow runs on all headings in higher waves",
     }],

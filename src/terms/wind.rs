@@ -66,6 +66,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.01,
+        stand_in: false,
         look_alikes: &["mean_wind", "earth_force", "wave_drift"],
         trial: "slow runs on all headings in more wind",
     }],

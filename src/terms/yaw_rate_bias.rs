@@ -28,6 +28,7 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.02,
+        stand_in: false,
         look_alikes: &[],
         trial: "a minute at rest",
     }],
