@@ -87,6 +87,20 @@ pub(super) fn positions(free: &[FreeParameter], c: &Candidate, sessions: &Option
         .collect()
 }
 
+/// Standard deviations of their priors that a mechanism's own coefficients may be off before it is another mechanism's force
+/// in this one's clothes.
+const PLAUSIBLE: f64 = 2.0;
+
+/// Whether a candidate's companions stayed where such coefficients are.
+fn plausible(found: &Estimate, c: &Candidate) -> bool {
+    let prefix = format!("{}.", c.term);
+    found.free.iter().all(|f| {
+        let name = found.model.parameters[f.column.parameter].name.strip_prefix(&prefix);
+        let companion = name.is_some_and(|n| c.mechanism.companions.contains(&n));
+        !companion || f.prior.is_none_or(|p| (f.value(&found.model) - p.mean).abs() <= PLAUSIBLE * p.sd)
+    })
+}
+
 /// A candidate's amplitudes as far as they say that it acts: its companions held, as an amplitude that only counts times a
 /// coefficient is as uncertain as the coefficient and yet not nothing.
 fn presence(all: &Wald, free: &[FreeParameter], model: &Model, c: &Candidate, sessions: &Option<Vec<String>>) -> Wald {
@@ -307,6 +321,7 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
         let statistic = w.statistic().min(gain.max(0.0));
         chi_squared_p(statistic, c.columns.len()) * (leaders.len().max(1) as f64) < settings.alpha
             && c.size(w.value.as_slice()) >= 1.0
+            && plausible(e, c)
     };
     field.retain(stands);
     field.sort_by(|a, b| b.2.total_cmp(&a.2));

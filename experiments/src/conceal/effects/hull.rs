@@ -118,11 +118,13 @@ pub const THRUSTER: [f64; 2] = [40_000.0, 34.0];
 impl Thruster {
     fn command(&self, run: usize, t: f64) -> f64 {
         let bursts = self.bursts.get(run).into_iter().flatten();
-        bursts
+        let ordered: f64 = bursts
             .map(|[start, length, c]| {
                 c * ramp(t, *start, start + 4.0) * (1.0 - ramp(t, start + length, start + length + 4.0))
             })
-            .sum()
+            .sum();
+        // Bursts may overlap; the lever ends at full.
+        ordered.clamp(-1.0, 1.0)
     }
 }
 
