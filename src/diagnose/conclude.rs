@@ -409,9 +409,9 @@ pub(super) fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParamete
 fn is_event(push: &Push) -> bool {
     let needed = match push.windows.len() {
         0..=2 => ALONE,
-        3 => 100.0,
-        4 => 60.0,
-        _ => 30.0,
+        3 => 150.0,
+        4 => 100.0,
+        _ => 60.0,
     };
     push.statistic > needed
 }
@@ -508,8 +508,8 @@ pub fn diagnose(
                 latest = screen(&current, integration, &runs, &list);
                 &latest
             };
-            // A push that was found first is a finding already.
-            let alone = step == 0 && pushes.is_none();
+            // A push that was found first is a finding already, and so is a coarse step.
+            let alone = step == 0 && pushes.is_none() && !numerics;
             let may = |r: &&Row| acceptable(r, &list, settings) && (alone || acceptable_beside(r, &accepted, &list));
             let leaders: Vec<&Row> = s.rows.iter().filter(may).collect();
             let Some(leader) = leaders.first() else { break };

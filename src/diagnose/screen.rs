@@ -220,7 +220,10 @@ fn row(
         tests.push((None, pooled.clone(), opinion));
     }
     if let Some(contrast) = evidence.contrast(base, columns) {
-        for group in groups(&contrast, sessions, columns.len()) {
+        let mut parts = groups(&contrast, sessions, columns.len());
+        // Where nothing else decides, what differs is what changed since the first recording.
+        parts.sort_by_key(|part| evidence.runs.first().is_some_and(|r| part.contains(&r.session)));
+        for group in parts {
             let names: Vec<&str> = group.iter().map(String::as_str).collect();
             let reference = candidate.mechanism.needs_reference;
             let test = evidence.test_in(base, columns, &names, reference);

@@ -24,7 +24,7 @@ static INFO: TermInfo = TermInfo {
         title: "bow thruster",
         kind: Kind::Environment,
         parameters: &["gain"],
-        companions: &[],
+        companions: &["half_speed"],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.01,
