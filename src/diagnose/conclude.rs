@@ -5,7 +5,7 @@ use super::admit::{Admission, admit};
 use super::compete::{
     Accepted, Arena, REFIT, SETTLE, Wald, acceptable, acceptable_beside, backward, compete, positions, wald,
 };
-use super::estimate::{Effort, Estimate, FreeParameter, estimate, log_posterior};
+use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior};
 use super::filter::{Column, Probe, Run};
 use super::locate::{EquationShare, Location, Push, RegionTest, Window, locate};
 use super::mechanism::{Candidate, Kind, candidates};
@@ -404,17 +404,20 @@ pub(super) fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParamete
     free
 }
 
-/// Whether a push is an event: the same force in many runs is soon beyond chance, in one or two it must stand out far, as the
-/// ship's own forces in another form make such windows in manoeuvres like crash stops.
-fn is_event(push: &Push) -> bool {
-    let needed = match push.windows.len() {
+/// The statistic by which a push is an event: the same force in many runs is soon beyond chance, in one or two it must stand
+/// out far, as the ship's own forces in another form make such windows in manoeuvres like crash stops.
+fn needed_statistic(windows: usize, form_holds: bool) -> f64 {
+    match windows {
         0..=2 => ALONE,
         3 => 150.0,
         4 => 100.0,
+        _ if form_holds => 30.0,
         _ => 60.0,
-    };
-    push.statistic > needed
+    }
 }
+
+/// Above this p-value of the mirror-symmetric discrepancy the ship's own forces have the form that the model gives them.
+const FORM_HOLDS: f64 = 0.05;
 
 /// The statistic that a push in one or two runs, or beside a mechanism, must reach to be called an event.
 const ALONE: f64 = 250.0;
@@ -475,6 +478,14 @@ pub fn diagnose(
     progress("testing every mechanism");
     let mut first = screen(&null, integration, &runs, &list);
     let blocked = admission.issues.iter().any(|i| i.blocking);
+
+    let form_holds = first.symmetric_test.p > FORM_HOLDS;
+    if form_holds {
+        // An event inflates the noise it must stand out of; where the ship's own forces fit, calmer runs tell the noise better.
+        let calm = Estimate { noise: calm_noise(&null, integration, &runs, &prior), ..null.clone() };
+        location.push = locate(&calm, integration, &runs).push;
+    }
+    let is_event = |push: &Push| push.statistic > needed_statistic(push.windows.len(), form_holds);
 
     // A strong event in time inflates the noise and gets a hull's name: explain it first.
     let mut pushes: Option<Push> = None;

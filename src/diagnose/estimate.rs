@@ -166,6 +166,19 @@ pub fn log_posterior(
     likelihood + free.iter().map(|f| f.log_prior(model)).sum::<f64>()
 }
 
+/// The noise of the calmer runs: what disturbs some runs only is no noise.
+pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prior: &NoisePrior) -> Noise {
+    let p = passes(&found.model, integration, &[], runs, &found.noise, true);
+    let likelihood = |i: &usize| p[*i].log_likelihood / runs[*i].measured.len() as f64;
+    let mut order: Vec<usize> = (0..runs.len()).collect();
+    order.sort_by(|a, b| likelihood(b).total_cmp(&likelihood(a)));
+    order.truncate((0.6 * runs.len() as f64).ceil() as usize);
+    order.sort_unstable();
+    let some: Vec<&Run> = order.iter().map(|i| &runs[*i]).collect();
+    let tangents: Vec<_> = order.iter().filter_map(|i| p[*i].tangent.as_ref()).collect();
+    fit_noise(&some, &tangents, &found.model, &found.noise, prior, 8)
+}
+
 /// Fits the free parameters and the noise, starting from the model's values.
 ///
 /// A step that lowers the log-posterior is halved, at most four times. Values stay inside the parameters' bounds.
