@@ -9,6 +9,7 @@ use support::{model, runs, truth_noise};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::baseline::{Refitted, Told, oracle};
 use trimtab::diagnose::filter::Run;
+use trimtab::diagnose::mechanism::Extent;
 use trimtab::diagnose::noise::Noise;
 use trimtab::diagnose::prove::median_distance;
 use trimtab::model::Model;
@@ -80,15 +81,15 @@ fn the_criterion_takes_gusts_for_physics() {
 #[test]
 fn the_oracle_improves_unseen_runs_and_is_silent_about_what_the_catalogue_lacks() {
     let data = runs(&drifting(), &truth_noise(), 16, 7);
-    let of = |name: &str, sessions: Option<Vec<String>>| {
-        let told = Told { mechanism: name.into(), sessions };
+    let of = |name: &str, extent: Extent| {
+        let told = Told { mechanism: name.into(), extent };
         oracle(&model(), &data[..12], &data[12..], &Settings::default(), &[told]).unwrap()
     };
-    let everywhere = of("current", None).unwrap();
+    let everywhere = of("current", Extent::All).unwrap();
     let untold = refitted(&model(), &data[..12]).held_out(&data[12..]);
     assert!(everywhere < 0.8 * untold, "{everywhere} {untold}");
     // Told that it acts where the held-out runs were not sailed, it has nothing to offer them.
-    let elsewhere = of("current", Some(vec!["s0".into(), "s1".into(), "s2".into()])).unwrap();
+    let elsewhere = of("current", Extent::In(vec!["s0".into(), "s1".into(), "s2".into()])).unwrap();
     assert!(everywhere < 0.8 * elsewhere, "{everywhere} {elsewhere}");
-    assert!(of("kraken", None).is_none());
+    assert!(of("kraken", Extent::All).is_none());
 }

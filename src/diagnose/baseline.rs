@@ -6,7 +6,7 @@ use super::conclude::{Settings, base_parameters};
 use super::estimate::{Effort, Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
 use super::evidence::Evidence;
 use super::filter::{Column, Filter, Gains, Pass, Run, Wanted, Z};
-use super::mechanism::{Candidate, append, candidates};
+use super::mechanism::{Candidate, Extent, append, candidates};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::median_distance;
 use super::screen::screen;
@@ -179,8 +179,8 @@ impl Refitted {
 pub struct Told {
     /// Its name in the catalogue.
     pub mechanism: String,
-    /// Sessions in which it acts; `None` for all.
-    pub sessions: Option<Vec<String>>,
+    /// Where it acts.
+    pub extent: Extent,
 }
 
 /// Only what a mechanism is then started from: its parameters and the noise are estimated again with it.
@@ -212,7 +212,7 @@ pub fn oracle(
     let free = base_parameters(&full, settings.nuisance);
     let mut current = estimate(&full, integration, runs, &free, &first, &prior, START);
     for (told, candidate) in told.iter().zip(chosen) {
-        let (start, free) = started(&current, integration, runs, candidate, &told.sessions);
+        let (start, free) = started(&current, integration, runs, candidate, &told.extent);
         current = estimate(&start, integration, runs, &free, &current.noise, &prior, FINISH);
     }
     Ok(Some(median_distance(&current.model, integration, held_out)))
@@ -224,17 +224,10 @@ fn started(
     integration: Integration,
     runs: &[Run],
     candidate: &Candidate,
-    sessions: &Option<Vec<String>>,
+    extent: &Extent,
 ) -> (Model, Vec<FreeParameter>) {
     let alone = std::slice::from_ref(candidate);
     let s = screen(found, integration, runs, alone);
-    let columns = s.columns(0);
-    let test = match sessions {
-        None => s.evidence.test(&s.base, columns),
-        Some(names) => {
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            s.evidence.test_in(&s.base, columns, &names, false)
-        }
-    };
-    enter(&s, alone, 0, sessions, &test.amplitude, found, integration, runs, &found.noise)
+    let test = s.test(0, extent);
+    enter(&s, alone, 0, extent, &test.amplitude, found, integration, runs, &found.noise)
 }

@@ -7,7 +7,7 @@ use super::estimate::{
 };
 use super::evidence::{chi_squared_p, pick};
 use super::filter::{Column, Probe, Run};
-use super::mechanism::{Candidate, Kind};
+use super::mechanism::{Candidate, Extent, Kind};
 use super::noise::{Noise, NoisePrior};
 use super::screen::{Row, Screen};
 use crate::model::Model;
@@ -31,8 +31,8 @@ const FORM_UNKNOWN: f64 = 0.1;
 pub(super) struct Accepted {
     /// Index into the candidates.
     pub candidate: usize,
-    /// Sessions in which it acts; `None` for all.
-    pub sessions: Option<Vec<String>>,
+    /// Where it acts.
+    pub extent: Extent,
     /// Twice the gain in log-likelihood.
     pub statistic: f64,
     /// Corrected p-value.
@@ -54,15 +54,15 @@ pub(super) struct Arena<'a> {
 }
 
 /// The free parameters of a candidate.
-fn candidate_parameters(c: &Candidate, sessions: &Option<Vec<String>>) -> Vec<FreeParameter> {
-    c.columns
-        .iter()
-        .map(|col| FreeParameter {
+fn candidate_parameters(c: &Candidate, extent: &Extent) -> Vec<FreeParameter> {
+    let of = |sessions: Option<Vec<String>>| {
+        c.columns.iter().map(move |col| FreeParameter {
             column: Column { probe: Probe::Tangent, ..*col },
             sessions: sessions.clone(),
             prior: None,
         })
-        .collect()
+    };
+    extent.parts().into_iter().flat_map(of).collect()
 }
 
 /// Coefficients that are not known exactly once a candidate acts: free, with their priors.
@@ -77,14 +77,11 @@ fn companions(c: &Candidate, model: &Model, free: &[FreeParameter]) -> Vec<FreeP
 }
 
 /// Where a candidate's parameters stand among the free ones.
-pub(super) fn positions(free: &[FreeParameter], c: &Candidate, sessions: &Option<Vec<String>>) -> Vec<usize> {
-    c.columns
-        .iter()
-        .filter_map(|col| {
-            free.iter()
-                .position(|f| f.column.parameter == col.parameter && f.prior.is_none() && f.sessions == *sessions)
-        })
-        .collect()
+pub(super) fn positions(free: &[FreeParameter], c: &Candidate, extent: &Extent) -> Vec<usize> {
+    let same = |f: &FreeParameter, own: &FreeParameter| {
+        f.column.parameter == own.column.parameter && f.prior.is_none() && f.sessions == own.sessions
+    };
+    candidate_parameters(c, extent).iter().filter_map(|own| free.iter().position(|f| same(f, own))).collect()
 }
 
 /// Standard deviations of their priors that a mechanism's own coefficients may be off before it is another mechanism's force
@@ -103,18 +100,18 @@ fn plausible(found: &Estimate, c: &Candidate) -> bool {
 
 /// A candidate's amplitudes as far as they say that it acts: its companions held, as an amplitude that only counts times a
 /// coefficient is as uncertain as the coefficient and yet not nothing.
-fn presence(all: &Wald, free: &[FreeParameter], model: &Model, c: &Candidate, sessions: &Option<Vec<String>>) -> Wald {
+fn presence(all: &Wald, free: &[FreeParameter], model: &Model, c: &Candidate, extent: &Extent) -> Wald {
     let companions: Vec<Option<usize>> =
         c.mechanism.companions.iter().map(|name| model.index(&format!("{}.{name}", c.term))).collect();
     let held: Vec<usize> = (0..free.len()).filter(|i| companions.contains(&Some(free[*i].column.parameter))).collect();
-    all.given(&positions(free, c, sessions), &held)
+    all.given(&positions(free, c, extent), &held)
 }
 
 /// Sets a candidate's parameters to amplitudes in units of their scales, on top of what they are.
-fn start_at(model: &mut Model, c: &Candidate, sessions: &Option<Vec<String>>, amplitude: &DVector<f64>) {
-    for (p, a) in candidate_parameters(c, sessions).iter().zip(amplitude.iter()) {
+fn start_at(model: &mut Model, c: &Candidate, extent: &Extent, amplitude: &DVector<f64>) {
+    for (p, a) in candidate_parameters(c, extent).iter().zip(amplitude.iter()) {
         let value = a * p.column.scale;
-        p.set(model, value + if sessions.is_none() { p.value(model) } else { 0.0 });
+        p.set(model, value + if p.sessions.is_none() { p.value(model) } else { 0.0 });
     }
 }
 
@@ -175,7 +172,8 @@ pub(super) fn acceptable_beside(r: &Row, taken: &[Accepted], list: &[Candidate])
         let first = list[a.candidate].mechanism;
         let alike = m.looks_like(first);
         // Changes of the ship's own forces between sessions: the form of the first cannot be told from a second.
-        let same_parting = a.sessions.is_some() && r.sessions.is_some() && m.needs_reference && first.needs_reference;
+        let same_parting =
+            a.extent != Extent::All && r.extent != Extent::All && m.needs_reference && first.needs_reference;
         same_parting || (alike && r.test.statistic < 0.4 * a.statistic)
     };
     r.p < 1e-6 && taken.iter().all(|a| a.candidate != r.candidate && !leftover(a))
@@ -187,7 +185,7 @@ pub(super) fn enter(
     s: &Screen,
     list: &[Candidate],
     candidate: usize,
-    sessions: &Option<Vec<String>>,
+    extent: &Extent,
     amplitude: &DVector<f64>,
     current: &Estimate,
     integration: Integration,
@@ -195,34 +193,39 @@ pub(super) fn enter(
     noise: &Noise,
 ) -> (Model, Vec<FreeParameter>) {
     let c = &list[candidate];
-    let shift = s.base_shift(s.columns(candidate), sessions, amplitude);
-    let at = |length: f64, share: f64| {
+    let shift = s.base_shift(s.columns(candidate), extent, amplitude);
+    let at = |length: f64, amplitude: &DVector<f64>| {
         let mut model = current.model.clone();
         for (f, d) in current.free.iter().zip(shift.iter()) {
             f.set(&mut model, f.value(&current.model) + length * d * f.column.scale);
         }
-        start_at(&mut model, c, sessions, &(amplitude * share));
+        start_at(&mut model, c, extent, amplitude);
         let value = log_posterior(&model, integration, runs, &current.free, noise);
         (model, value)
     };
-    let mut starts = vec![at(1.0, 1.0), at(0.3, 0.3), at(0.1, 0.1)];
+    let mut starts: Vec<_> = [1.0, 0.3, 0.1].map(|share| at(share, &(amplitude * share))).into();
     if c.mechanism.probe == Probe::Odd {
         // An effect that grows with the square of its amplitude: the slope where it was probed says little of its size.
-        starts.push(at(1.0, 1.0 / amplitude.norm().max(1e-12).sqrt()));
-        starts.extend([3.0, 10.0, 30.0].map(|share| at(0.0, share)));
+        let mut rooted = amplitude.clone();
+        for i in (0..amplitude.len()).step_by(c.columns.len().max(1)) {
+            let mut own = rooted.rows_mut(i, c.columns.len());
+            own /= own.norm().max(1e-12).sqrt();
+        }
+        starts.push(at(1.0, &rooted));
+        starts.extend([3.0, 10.0, 30.0].map(|share| at(0.0, &(amplitude * share))));
     }
     let best = starts.into_iter().reduce(|a, b| if b.1 > a.1 { b } else { a });
     let model = best.map_or_else(|| current.model.clone(), |(model, _)| model);
     let mut free = current.free.clone();
     free.extend(companions(c, &model, &free));
-    free.extend(candidate_parameters(c, sessions));
+    free.extend(candidate_parameters(c, extent));
     (model, free)
 }
 
 /// A mechanism that may enter, and how a screen would have it start.
 struct Contender {
     candidate: usize,
-    sessions: Option<Vec<String>>,
+    extent: Extent,
     amplitude: DVector<f64>,
     statistic: f64,
     p: f64,
@@ -232,7 +235,7 @@ impl Contender {
     fn of(row: &Row) -> Self {
         Self {
             candidate: row.candidate,
-            sessions: row.sessions.clone(),
+            extent: row.extent.clone(),
             amplitude: row.test.amplitude.clone(),
             statistic: row.test.statistic,
             p: row.p,
@@ -240,20 +243,15 @@ impl Contender {
     }
 
     /// A look-alike in the leader's place: where a law bends, its slope at nothing promises less than it holds, so that it is
-    /// tried in the leader's sessions whatever its own test says.
-    fn in_place_of(row: &Row, leader: &Row, s: &Screen) -> Option<Self> {
-        if row.sessions == leader.sessions {
+    /// tried in the leader's sessions whatever its own test says. A coefficient does not change with the day.
+    fn in_place_of(row: &Row, leader: &Row, s: &Screen, list: &[Candidate]) -> Option<Self> {
+        let by_day = matches!(leader.extent, Extent::Each(_));
+        if row.extent == leader.extent || (by_day && !list[row.candidate].mechanism.is_weather()) {
             return Some(Self::of(row));
         }
-        let test = match &leader.sessions {
-            None => row.pooled.clone(),
-            Some(names) => {
-                let names: Vec<&str> = names.iter().map(String::as_str).collect();
-                s.evidence.test_in(&s.base, s.columns(row.candidate), &names, false)
-            }
-        };
+        let test = s.test(row.candidate, &leader.extent);
         (test.degrees > 0).then(|| Self {
-            sessions: leader.sessions.clone(),
+            extent: leader.extent.clone(),
             amplitude: test.amplitude,
             statistic: test.statistic,
             ..Self::of(row)
@@ -274,7 +272,7 @@ fn rivals(s: &Screen, leaders: &[&Row], list: &[Candidate]) -> Vec<Contender> {
     };
     let mut out: Vec<Contender> = Vec::new();
     if first.kind == Kind::Environment {
-        out.extend(s.rows.iter().filter(alike).filter_map(|r| Contender::in_place_of(r, leader, s)));
+        out.extend(s.rows.iter().filter(alike).filter_map(|r| Contender::in_place_of(r, leader, s, list)));
     }
     // A rival whose promised gain is far below the leader's does not overtake it.
     let gain_needed = leader.test.statistic - f64::max(60.0, 0.3 * leader.test.statistic);
@@ -282,7 +280,7 @@ fn rivals(s: &Screen, leaders: &[&Row], list: &[Candidate]) -> Vec<Contender> {
         .iter()
         .filter(|r| r.test.statistic > gain_needed)
         // What acts in some sessions only is alike by what those sessions sailed.
-        .filter(|r| r.sessions.is_some() || s.likeness(leader.candidate, r.candidate) > 0.3);
+        .filter(|r| r.extent != Extent::All || s.likeness(leader.candidate, r.candidate) > 0.3);
     for r in near {
         if out.iter().all(|c| c.candidate != r.candidate) {
             out.push(Contender::of(r));
@@ -298,13 +296,13 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
     let Arena { integration, runs, list, prior, settings } = arena;
     let leader = *leaders.first()?;
     let refit = |c: &Contender, noise: &Noise, effort: Effort| {
-        let (model, free) = enter(s, list, c.candidate, &c.sessions, &c.amplitude, current, integration, runs, noise);
+        let (model, free) = enter(s, list, c.candidate, &c.extent, &c.amplitude, current, integration, runs, noise);
         estimate(&model, integration, runs, &free, noise, prior, effort)
     };
     let own = Contender::of(leader);
     let lead = refit(&own, &current.noise, SETTLE);
     let mut field: Vec<(Contender, Estimate, f64)> = Vec::new();
-    let value = |e: &Estimate, c: &Contender| e.log_posterior - PRICE * list[c.candidate].columns.len() as f64;
+    let value = |e: &Estimate, c: &Contender| e.log_posterior - PRICE * c.amplitude.len() as f64;
     let v = value(&lead, &own);
     let noise = lead.noise;
     field.push((own, lead, v));
@@ -315,11 +313,11 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
     }
     let stands = |(r, e, _): &(Contender, Estimate, f64)| {
         let c = &list[r.candidate];
-        let w = presence(&wald(e, integration, runs), &e.free, &e.model, c, &r.sessions);
+        let w = presence(&wald(e, integration, runs), &e.free, &e.model, c, &r.extent);
         // The likelihood itself must hold what the scores promised.
         let gain = 2.0 * (e.log_posterior - current.log_posterior);
         let statistic = w.statistic().min(gain.max(0.0));
-        chi_squared_p(statistic, c.columns.len()) * (leaders.len().max(1) as f64) < settings.alpha
+        chi_squared_p(statistic, w.value.len()) * (leaders.len().max(1) as f64) < settings.alpha
             && c.size(w.value.as_slice()) >= 1.0
             && plausible(e, c)
     };
@@ -366,7 +364,7 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
         candidate: r.candidate,
         statistic: 2.0 * (e.log_posterior - current.log_posterior).max(0.5 * r.statistic),
         p: r.p.min(leader.p),
-        sessions: r.sessions,
+        extent: r.extent,
         set,
         why,
     };
@@ -382,12 +380,12 @@ pub(super) fn backward(accepted: &mut Vec<Accepted>, current: &mut Estimate, are
     let all = wald(current, integration, runs);
     let needless = accepted[..accepted.len() - 1].iter().position(|a| {
         let c = &list[a.candidate];
-        let w = presence(&all, &current.free, &current.model, c, &a.sessions);
-        chi_squared_p(w.statistic(), c.columns.len()) > 0.1 * settings.alpha || c.size(w.value.as_slice()) < 1.0
+        let w = presence(&all, &current.free, &current.model, c, &a.extent);
+        chi_squared_p(w.statistic(), w.value.len()) > 0.1 * settings.alpha || c.size(w.value.as_slice()) < 1.0
     });
     let Some(i) = needless else { return };
     let dropped = accepted.remove(i);
-    let mut places = positions(&current.free, &list[dropped.candidate], &dropped.sessions);
+    let mut places = positions(&current.free, &list[dropped.candidate], &dropped.extent);
     places.sort_unstable();
     for at in places.into_iter().rev() {
         let f = current.free.remove(at);

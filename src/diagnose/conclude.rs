@@ -8,7 +8,7 @@ use super::compete::{
 use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior};
 use super::filter::{Column, Probe, Run};
 use super::locate::{EquationShare, Location, Push, RegionTest, Window, locate};
-use super::mechanism::{Candidate, Kind, candidates};
+use super::mechanism::{Candidate, Extent, Kind, candidates};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::{HeldOut, prove};
 use super::refit::refit;
@@ -122,6 +122,8 @@ pub struct Finding {
     pub why: String,
     /// Sessions in which it acts; empty for all.
     pub sessions: Vec<String>,
+    /// Whether each of these sessions has an amplitude of its own, `parameters` naming the session in brackets.
+    pub by_session: bool,
     /// Twice the gain in log-likelihood.
     pub statistic: f64,
     /// Corrected p-value.
@@ -153,7 +155,7 @@ pub struct Ranked {
     pub degrees: usize,
     /// Corrected p-value.
     pub p: f64,
-    /// Amplitudes \[units of the parameters\].
+    /// Amplitudes \[units of the parameters\]; one session after the other where each has its own.
     pub amplitude: Vec<f64>,
     /// Size over the smallest size worth naming.
     pub size: f64,
@@ -165,6 +167,8 @@ pub struct Ranked {
     pub second_opinion: f64,
     /// Sessions in which it acts; empty for all.
     pub sessions: Vec<String>,
+    /// Whether each of these sessions has an amplitude of its own.
+    pub by_session: bool,
 }
 
 /// A mechanism that cannot be seen, and why.
@@ -661,12 +665,13 @@ fn ranked(r: &Row, list: &[Candidate]) -> Ranked {
         statistic: r.test.statistic,
         degrees: r.test.degrees,
         p: r.p,
-        amplitude: r.test.amplitude.iter().zip(&c.columns).map(|(a, col)| a * col.scale).collect(),
+        amplitude: r.test.amplitude.iter().zip(c.columns.iter().cycle()).map(|(a, col)| a * col.scale).collect(),
         size: r.size,
         admissible: r.admissible,
         retained: r.test.retained,
         second_opinion: r.second_opinion,
-        sessions: r.sessions.clone().unwrap_or_default(),
+        sessions: r.extent.sessions().to_vec(),
+        by_session: matches!(r.extent, Extent::Each(_)),
     }
 }
 
@@ -701,7 +706,8 @@ fn detectable(s: &Screen, list: &[Candidate], settings: &Settings, model: &Model
             let c = &list[r.candidate];
             let k = c.columns.len();
             // The least visible direction decides; quadratic effects grow with the square root.
-            let mut sd = (0..k).map(|i| r.test.covariance[(i, i)].max(0.0).sqrt()).fold(0.0, f64::max) * needed;
+            let test = if matches!(r.extent, Extent::Each(_)) { &r.pooled } else { &r.test };
+            let mut sd = (0..k).map(|i| test.covariance[(i, i)].max(0.0).sqrt()).fold(0.0, f64::max) * needed;
             if c.mechanism.probe == Probe::Odd {
                 sd = sd.sqrt();
             }
@@ -800,17 +806,20 @@ fn describe(
     let mut out = Vec::new();
     for a in accepted {
         let c = &list[a.candidate];
-        let Wald { value, covariance } = all.part(&positions(&found.free, c, &a.sessions));
-        let parameters = c
-            .columns
-            .iter()
-            .enumerate()
-            .map(|(i, col)| {
+        let Wald { value, covariance } = all.part(&positions(&found.free, c, &a.extent));
+        let parameters = (0..value.len())
+            .map(|i| {
+                let k = c.columns.len();
+                let col = &c.columns[i % k];
                 let p = &found.model.parameters[col.parameter];
                 let v = value[i] * col.scale;
                 let error = covariance[(i, i)].max(0.0).sqrt() * col.scale;
+                let name = &c.names[i % k];
                 Amplitude {
-                    name: c.names[i].clone(),
+                    name: match &a.extent {
+                        Extent::Each(sessions) => format!("{name} [{}]", sessions[i / k]),
+                        Extent::All | Extent::In(_) => name.clone(),
+                    },
                     value: v,
                     unit: p.info.unit.into(),
                     error,
@@ -824,7 +833,8 @@ fn describe(
             kind: c.mechanism.kind,
             confidence_set: a.set.iter().map(|i| list[*i].mechanism.name.to_string()).collect(),
             why: a.why.clone(),
-            sessions: a.sessions.clone().unwrap_or_default(),
+            sessions: a.extent.sessions().to_vec(),
+            by_session: matches!(a.extent, Extent::Each(_)),
             statistic: a.statistic,
             p: a.p,
             equations: force_shares(c, found, runs, location),
@@ -919,6 +929,7 @@ fn sensor_findings(admission: &Admission) -> Vec<Finding> {
             confidence_set: vec![i.mechanism.into()],
             why: i.text.clone(),
             sessions: Vec::new(),
+            by_session: false,
             statistic: 0.0,
             p: 0.0,
             equations: Equations::default(),
@@ -942,6 +953,7 @@ fn push_finding(push: &Push, location: &Location) -> Finding {
               gives it"
             .into(),
         sessions: Vec::new(),
+        by_session: false,
         statistic: push.statistic,
         p: push.windows.iter().map(|w| w.p).fold(1.0, f64::min),
         equations: location.equations.into(),
@@ -1061,6 +1073,9 @@ fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) -> Opt
 
 fn headline(verdict: Verdict, findings: &[Finding], admission: &Admission, surrogate: &[SurrogateTerm]) -> String {
     let list = |f: &Finding| {
+        if f.by_session {
+            return format!("{} (another in each of {} sessions)", f.title, f.sessions.len());
+        }
         let values: Vec<String> = f
             .parameters
             .iter()

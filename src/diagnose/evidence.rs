@@ -133,24 +133,26 @@ impl Evidence {
     /// are fewer than two sessions, or more than half as many as runs.
     pub fn contrast(&self, base: &Base, columns: &[usize]) -> Option<Test> {
         // A session of one run is a run, not a reference.
-        if self.sessions.len() < 2 || 2 * self.sessions.len() > self.runs.len() {
-            return None;
-        }
+        let parted = self.sessions.len() >= 2 && 2 * self.sessions.len() <= self.runs.len();
+        parted.then(|| self.test_each(&self.extend(base, columns), columns))
+    }
+
+    /// Tests a group of columns with an amplitude of its own in each session (session-major, in the order of
+    /// [`Evidence::sessions`]), after the base has had its say.
+    pub fn test_each(&self, base: &Base, columns: &[usize]) -> Test {
         let k = columns.len();
-        let extended = self.extend(base, columns);
-        let n = base.columns.len();
         let sessions = self.sessions.len();
         let mut g = DVector::zeros(sessions * k);
         let mut h = DMatrix::zeros(sessions * k, sessions * k);
-        let mut c = DMatrix::zeros(sessions * k, n + k);
+        let mut c = DMatrix::zeros(sessions * k, base.columns.len());
         for (s, e) in self.sessions.values().enumerate() {
             for i in 0..k {
                 g[s * k + i] = e.score[columns[i]];
             }
             h.view_mut((s * k, s * k), (k, k)).copy_from(&pick(&e.information, columns, columns));
-            c.view_mut((s * k, 0), (k, n + k)).copy_from(&pick(&e.information, columns, &extended.columns));
+            c.view_mut((s * k, 0), (k, base.columns.len())).copy_from(&pick(&e.information, columns, &base.columns));
         }
-        Some(extended.test(&g, &h, &c))
+        base.test(&g, &h, &c)
     }
 }
 

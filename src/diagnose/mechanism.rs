@@ -53,12 +53,47 @@ impl Mechanism {
         self.look_alikes.contains(&other.name) || other.look_alikes.contains(&self.name)
     }
 
+    /// Whether it is a vector over the ground, which the weather makes anew every day; the others are coefficients, which stay.
+    pub fn is_weather(&self) -> bool {
+        self.parameters == ["north", "east"]
+    }
+
     /// Whether recordings can possibly show it: a tide needs a good part of its period.
     pub fn applies(&self, runs: &[Run]) -> bool {
         const QUARTER_TIDE: f64 = 11_178.0;
         let times = || runs.iter().flat_map(|r| [r.inputs.first(), r.inputs.last()]).flatten().map(|i| i.t);
         let span = times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min);
         self.name != "tide" || span > QUARTER_TIDE
+    }
+}
+
+/// In which sessions a mechanism acts, and whether with one amplitude.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// In all sessions, with one amplitude.
+    All,
+    /// In these sessions, with one amplitude; absent in the others.
+    In(Vec<String>),
+    /// In each of these sessions with an amplitude of its own.
+    Each(Vec<String>),
+}
+
+impl Extent {
+    /// The groups of sessions that share an amplitude, each as the sessions of its free parameters; `None` for all sessions.
+    pub fn parts(&self) -> Vec<Option<Vec<String>>> {
+        match self {
+            Self::All => vec![None],
+            Self::In(sessions) => vec![Some(sessions.clone())],
+            Self::Each(sessions) => sessions.iter().map(|s| Some(vec![s.clone()])).collect(),
+        }
+    }
+
+    /// The sessions it names; none for all with one amplitude.
+    pub fn sessions(&self) -> &[String] {
+        match self {
+            Self::All => &[],
+            Self::In(sessions) | Self::Each(sessions) => sessions,
+        }
     }
 }
 
@@ -78,15 +113,17 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Amplitude in units of the floor: below 1 it is not worth naming.
+    /// Amplitude (root mean square over the sessions, where each has its own) in units of the floor: below 1 it is not worth
+    /// naming.
     pub fn size(&self, amplitude: &[f64]) -> f64 {
-        amplitude.iter().map(|a| a * a).sum::<f64>().sqrt() / self.mechanism.floor
+        let parts = amplitude.len() as f64 / self.columns.len().max(1) as f64;
+        (amplitude.iter().map(|a| a * a).sum::<f64>() / parts).sqrt() / self.mechanism.floor
     }
 
     /// Whether amplitudes (in units of the scales) added to the present values stay inside the parameters' bounds, give or
     /// take twice their standard error.
     pub fn admissible(&self, model: &Model, amplitude: &[f64], error: &[f64]) -> bool {
-        self.columns.iter().zip(amplitude).zip(error).all(|((c, a), e)| {
+        self.columns.iter().cycle().zip(amplitude).zip(error).all(|((c, a), e)| {
             let p = &model.parameters[c.parameter];
             let value = p.value + a * c.scale;
             let slack = 0.5 * e * c.scale.abs();

@@ -4,7 +4,7 @@
 use super::estimate::{Estimate, base_of, evidence, restrictions};
 use super::evidence::{Base, Evidence, Test, UNSEEN, pick};
 use super::filter::{Column, Filter, Pass, Run, Wanted};
-use super::mechanism::{Candidate, append};
+use super::mechanism::{Candidate, Extent, append};
 use crate::model::Model;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -17,8 +17,8 @@ pub struct Row {
     pub candidate: usize,
     /// Test with one amplitude in all sessions.
     pub pooled: Test,
-    /// Sessions in which it acts in the test that counts; `None` for all.
-    pub sessions: Option<Vec<String>>,
+    /// Where it acts in the test that counts.
+    pub extent: Extent,
     /// The test that counts.
     pub test: Test,
     /// Corrected p-value of the test that counts.
@@ -64,19 +64,27 @@ impl Screen {
     }
 
     /// How the base moves, in units of its columns, when a group of columns takes these amplitudes.
-    pub fn base_shift(
-        &self,
-        columns: &[usize],
-        sessions: &Option<Vec<String>>,
-        amplitude: &DVector<f64>,
-    ) -> DVector<f64> {
-        let mut cross = DMatrix::zeros(columns.len(), self.base.columns.len());
-        for (name, e) in &self.evidence.sessions {
-            if sessions.as_ref().is_none_or(|s| s.contains(name)) {
-                cross += pick(&e.information, columns, &self.base.columns);
+    pub fn base_shift(&self, columns: &[usize], extent: &Extent, amplitude: &DVector<f64>) -> DVector<f64> {
+        let k = columns.len();
+        let mut pull = DVector::zeros(self.base.columns.len());
+        for (i, part) in extent.parts().iter().enumerate() {
+            for (name, e) in &self.evidence.sessions {
+                if part.as_ref().is_none_or(|s| s.contains(name)) {
+                    pull += pick(&e.information, &self.base.columns, columns) * amplitude.rows(i * k, k);
+                }
             }
         }
-        -(&self.base.inverse * (cross.transpose() * amplitude))
+        -(&self.base.inverse * pull)
+    }
+
+    /// Tests a candidate where it is taken to act, after the base has had its say.
+    pub fn test(&self, index: usize, extent: &Extent) -> Test {
+        let columns = self.columns(index);
+        match extent {
+            Extent::All => self.evidence.test(&self.base, columns),
+            Extent::In(sessions) => self.evidence.test_in(&self.base, columns, &named(sessions), false),
+            Extent::Each(_) => self.evidence.test_each(&self.base, columns),
+        }
     }
 
     /// Cosine of the smallest principal angle between two candidates once the base is projected out: 1 when the data
@@ -100,6 +108,10 @@ impl Screen {
         }
         (wa.transpose() * ab * wb).svd(false, false).singular_values.max().min(1.0)
     }
+}
+
+fn named(sessions: &[String]) -> Vec<&str> {
+    sessions.iter().map(String::as_str).collect()
 }
 
 pub(super) fn basis_columns(model: &Model, term: &str) -> Vec<(String, Column)> {
@@ -203,6 +215,11 @@ pub(super) fn widen(evidence: &Evidence, base: &Base, symmetric: &[usize]) -> Ba
     widened
 }
 
+/// What a group of sessions, or amplitudes of their own, must explain more than what is simpler.
+const CLEARLY: f64 = 6.0;
+/// The same for every further amplitude, beyond what it would explain by chance.
+const OWN_AMPLITUDE: f64 = 2.0;
+
 fn row(
     evidence: &Evidence,
     base: &Base,
@@ -214,56 +231,69 @@ fn row(
     sessions: &[String],
 ) -> Row {
     let pooled = evidence.test(base, columns);
-    let mut tests: Vec<(Option<Vec<String>>, Test, f64)> = Vec::new();
+    let mut tests: Vec<(Extent, Test, f64)> = Vec::new();
     if !candidate.mechanism.needs_reference {
         let opinion = evidence.test(widened, columns).p;
-        tests.push((None, pooled.clone(), opinion));
+        tests.push((Extent::All, pooled.clone(), opinion));
     }
     if let Some(contrast) = evidence.contrast(base, columns) {
         let mut parts = groups(&contrast, sessions, columns.len());
         // Where nothing else decides, what differs is what changed since the first recording.
         parts.sort_by_key(|part| evidence.runs.first().is_some_and(|r| part.contains(&r.session)));
         for group in parts {
-            let names: Vec<&str> = group.iter().map(String::as_str).collect();
+            let names = named(&group);
             let reference = candidate.mechanism.needs_reference;
             let test = evidence.test_in(base, columns, &names, reference);
             let opinion = evidence.test_in(widened, columns, &names, reference).p;
-            tests.push((Some(group), test, opinion));
+            tests.push((Extent::In(group), test, opinion));
+        }
+        if candidate.mechanism.is_weather() {
+            let opinion = evidence.test_each(widened, columns).p;
+            tests.push((Extent::Each(sessions.to_vec()), evidence.test_each(base, columns), opinion));
         }
     }
     // A group of sessions was chosen to look best: it pays for every way to part them.
-    let partings = 2f64.powi(sessions.len().saturating_sub(1).min(60) as i32) - 1.0;
-    let kinds = if tests.len() > 1 { 2.0 } else { 1.0 };
+    let partings = f64::max(2f64.powi(sessions.len().saturating_sub(1).min(60) as i32) - 1.0, 1.0);
+    let kinds = match tests.len() {
+        0 | 1 => 1.0,
+        _ if candidate.mechanism.is_weather() => 3.0,
+        _ => 2.0,
+    };
     let possible = |t: &Test| {
-        let error: Vec<f64> = (0..columns.len()).map(|i| t.covariance[(i, i)].max(0.0).sqrt()).collect();
+        let error: Vec<f64> = t.covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
         candidate.admissible(model, t.amplitude.as_slice(), &error)
     };
-    // The common amplitude unless a group of sessions explains clearly more.
-    let mut best: Option<(Option<Vec<String>>, Test, f64)> = None;
+    // The common amplitude unless a group of sessions explains clearly more, and either unless they differ beyond doubt.
+    let price = |extent: &Extent, more: usize| match extent {
+        Extent::All | Extent::In(_) => CLEARLY + 2.0 * partings.ln(),
+        Extent::Each(_) => CLEARLY + OWN_AMPLITUDE * more as f64,
+    };
+    let mut best: Option<(Extent, Test, f64)> = None;
     for t in tests {
         let better = best.as_ref().is_none_or(|b| {
             let (new, old) = (t.1.statistic - t.1.degrees as f64, b.1.statistic - b.1.degrees as f64);
+            let price = price(&t.0, t.1.degrees.saturating_sub(b.1.degrees));
             (possible(&t.1) && !possible(&b.1) && new > 0.0)
-                || (new > old + 6.0 + 2.0 * partings.max(1.0).ln() && (possible(&t.1) || !possible(&b.1)))
+                || (new > old + price && (possible(&t.1) || !possible(&b.1)))
         });
         if better {
             best = Some(t);
         }
     }
-    let (chosen, test, second_opinion) = best.unwrap_or((None, pooled.clone(), 1.0));
+    let (chosen, test, second_opinion) = best.unwrap_or((Extent::All, pooled.clone(), 1.0));
     let visible = test.degrees > 0 && test.retained > UNSEEN;
     let amplitude: Vec<f64> = test.amplitude.iter().copied().collect();
     Row {
         candidate: index,
         p: if visible {
-            (test.p * kinds * if chosen.is_some() { partings.max(1.0) } else { 1.0 }).min(1.0)
+            (test.p * kinds * if matches!(chosen, Extent::In(_)) { partings } else { 1.0 }).min(1.0)
         } else {
             1.0
         },
         size: candidate.size(&amplitude),
         admissible: possible(&test),
-        visible: visible && (chosen.is_some() || !candidate.mechanism.needs_reference),
-        sessions: chosen,
+        visible: visible && (chosen != Extent::All || !candidate.mechanism.needs_reference),
+        extent: chosen,
         pooled,
         test,
         second_opinion,

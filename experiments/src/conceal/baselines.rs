@@ -6,6 +6,7 @@ use std::path::Path;
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::baseline::{Refitted, Told, oracle};
 use trimtab::diagnose::filter::Run;
+use trimtab::diagnose::mechanism::Extent;
 use trimtab::model::Model;
 use trimtab::recording::Split;
 use trimtab::ship::Ship;
@@ -80,11 +81,11 @@ pub fn ask(study: &Path, manifest: &Manifest, wanted: Wanted) -> Result<Baseline
 fn told(manifest: &Manifest) -> Vec<Told> {
     let mut told = Vec::new();
     for answer in &manifest.answers {
-        let sessions = manifest.spec.contrast.then(|| answer.sessions.clone());
+        let extent = if manifest.spec.contrast { Extent::In(answer.sessions.clone()) } else { Extent::All };
         // A log through the water says nothing without the current it leaves out.
         let needed = (answer.effect == "water_log").then_some("current");
         for mechanism in needed.into_iter().chain(answer.accepted.first().map(String::as_str)) {
-            told.push(Told { mechanism: mechanism.to_owned(), sessions: sessions.clone() });
+            told.push(Told { mechanism: mechanism.to_owned(), extent: extent.clone() });
         }
     }
     told

@@ -1,0 +1,246 @@
+//! What a position receiver did that no ship can: jumps, and values held while the ship sailed on.
+//! It judges positions by themselves, before any model is asked; what a force could have done it leaves alone.
+
+use super::admit::Issue;
+use super::filter::Run;
+use crate::report::sig;
+use nalgebra::SMatrix;
+
+/// Samples on each side of a jump that tell it from motion.
+const SIDE: usize = 4;
+/// Samples from which the scatter of steps can be told.
+const ENOUGH: usize = 100;
+/// A jump is this many standard deviations of what noise and manoeuvres make of steps.
+const BEYOND_NOISE: f64 = 8.0;
+/// A jump would take this many times the acceleration of the ship's own turns, `U^2 / L`, within one sample period.
+const BEYOND_FORCE: f64 = 2.0;
+/// A receiver that held its value catches up by at least this share of what the ship sailed meanwhile.
+const CAUGHT_UP: f64 = 0.75;
+
+/// Between two samples the position went where no force takes a ship, and stayed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// The first sample after it.
+    pub sample: usize,
+    /// Its length \[m\].
+    pub length: f64,
+}
+
+/// The runs with the unknown force free where the position jumps and without what was held instead of measured, and one note a
+/// run on each. `length` is that of the ship \[m\].
+pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
+    let mut out = runs.to_vec();
+    let mut issues = Vec::new();
+    for run in &mut out {
+        let held = held(run);
+        for sample in held.iter().flat_map(|(from, to)| *from..=*to) {
+            run.measured[sample][..3].fill(f64::NAN);
+        }
+        if let Some((from, to)) = held.first() {
+            let samples: usize = held.iter().map(|(from, to)| to - from + 1).sum();
+            issues.push(Issue {
+                channel: "x, y, psi".into(),
+                mechanism: "held",
+                text: format!(
+                    "{}: position and heading repeat, and then catch up, first from {} to {} s, {samples} samples in all",
+                    run.name,
+                    sig(run.inputs[*from].t, 5),
+                    sig(run.inputs[*to].t, 5)
+                ),
+                next_step: "these samples are taken as not measured".into(),
+                blocking: false,
+            });
+        }
+    }
+    for (run, jumps) in out.iter_mut().zip(jumps(runs, length)) {
+        let Some(first) = jumps.first() else { continue };
+        run.disturbed.extend(jumps.iter().map(|j| (j.sample - 1, j.sample)));
+        let times: Vec<String> = jumps.iter().map(|j| sig(run.inputs[j.sample].t, 5)).collect();
+        let longest = jumps.iter().map(|j| j.length).fold(first.length, f64::max);
+        issues.push(Issue {
+            channel: "x, y".into(),
+            mechanism: "jump",
+            text: format!(
+                "{}: the position jumps at {} s, by up to {} m, as no force moves the ship",
+                run.name,
+                times.join(", "),
+                sig(longest, 2)
+            ),
+            next_step: "no force is read off these samples".into(),
+            blocking: false,
+        });
+    }
+    (out, issues)
+}
+
+/// Weights that read a step between the two middle samples off a row of positions, whatever parabola they lie on.
+fn weights() -> [f64; 2 * SIDE] {
+    let place = |i: usize| i as f64 + 0.5 - SIDE as f64;
+    let a = SMatrix::<f64, { 2 * SIDE }, 4>::from_fn(|i, j| match j {
+        3 => f64::from(u8::from(i >= SIDE)),
+        power => place(i).powi(power as i32),
+    });
+    let row = (a.transpose() * a).try_inverse().map_or([0.0; 4], |m| std::array::from_fn(|j| m[(3, j)]));
+    std::array::from_fn(|i| (0..4).map(|j| row[j] * a[(i, j)]).sum())
+}
+
+/// Jumps of the position, run by run.
+///
+/// A step counts where it stands out from those of all runs, whose spread is what noise and manoeuvres make, and is longer than
+/// the ship could have been carried.
+pub fn jumps(runs: &[Run], length: f64) -> Vec<Vec<Jump>> {
+    let weights = weights();
+    let step = |rows: &[[f64; 6]], c: usize| -> f64 { rows.iter().zip(&weights).map(|(m, w)| w * m[c]).sum() };
+    // Of each run, with the sample after the step; NaN where one of the samples is.
+    let steps_of = |run: &Run| -> Vec<[f64; 2]> {
+        let both = run.channels[0] && run.channels[1];
+        let rows = if both { run.measured.as_slice() } else { &[] };
+        rows.windows(2 * SIDE).map(|rows| [step(rows, 0), step(rows, 1)]).collect()
+    };
+    let steps: Vec<Vec<[f64; 2]>> = runs.iter().map(steps_of).collect();
+    let mut sizes: Vec<f64> = steps.iter().flatten().flatten().map(|s| s.abs()).filter(|s| s.is_finite()).collect();
+    if sizes.len() < ENOUGH {
+        return vec![Vec::new(); runs.len()];
+    }
+    sizes.sort_by(f64::total_cmp);
+    // The median of a normal variable's size is 0.6745 of its standard deviation.
+    let noise = BEYOND_NOISE * sizes[sizes.len() / 2] / 0.6745;
+    let (mut squares, mut count) = (0.0, 0.0);
+    for run in runs {
+        for rows in run.measured.windows(2 * SIDE) {
+            let (a, b) = (&rows[0], &rows[2 * SIDE - 1]);
+            let speed = (b[0] - a[0]).hypot(b[1] - a[1]) / ((2 * SIDE - 1) as f64 * run.dt);
+            if speed.is_finite() {
+                squares += speed * speed;
+                count += 1.0;
+            }
+        }
+    }
+    let acceleration = squares / f64::max(count, 1.0) / length;
+    let of = |(run, steps): (&Run, &Vec<[f64; 2]>)| {
+        let least = noise.max(BEYOND_FORCE * acceleration * run.dt * run.dt);
+        let mut out: Vec<Jump> = Vec::new();
+        for (i, s) in steps.iter().enumerate() {
+            let jump = Jump { sample: i + SIDE, length: s[0].hypot(s[1]) };
+            if jump.length.is_nan() || jump.length <= least {
+                continue;
+            }
+            match out.last_mut() {
+                // A jump shows in its neighbours too.
+                Some(last) if jump.sample - last.sample <= SIDE => {
+                    if jump.length > last.length {
+                        *last = jump;
+                    }
+                }
+                _ => out.push(jump),
+            }
+        }
+        out
+    };
+    runs.iter().zip(&steps).map(of).collect()
+}
+
+/// Stretches of samples that repeat position and heading to the last bit and end with a leap to where the ship has sailed.
+fn held(run: &Run) -> Vec<(usize, usize)> {
+    let m = &run.measured;
+    let moved = |a: usize, b: usize| (m[b][0] - m[a][0]).hypot(m[b][1] - m[a][1]);
+    let repeats = |k: usize| m[k][..3] == m[k - 1][..3];
+    let mut out = Vec::new();
+    let mut k = 2;
+    while k + 1 < m.len() {
+        let from = k;
+        while k + 1 < m.len() && repeats(k) {
+            k += 1;
+        }
+        let (before, periods) = (moved(from - 2, from - 1), (k - from + 1) as f64);
+        if k > from && before > 0.0 && moved(k - 1, k) >= CAUGHT_UP * periods * before {
+            out.push((from, k - 1));
+        }
+        k += 1;
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::Inputs;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    const LENGTH: f64 = 3.0;
+
+    /// Runs of 60 s at 0.4 m/s on circles of two ship lengths, positions within 6 mm, a force of one `U^2 / L` from half-way.
+    fn circles() -> Vec<Run> {
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let (dt, speed) = (0.5, 0.4);
+        let acceleration = speed * speed / LENGTH;
+        let run = |i: usize| {
+            let mut noise = || rng.random_range(-0.006..0.006);
+            let at = |k: usize| {
+                let (t, rate) = (dt * k as f64, speed / (2.0 * LENGTH));
+                let pushed = 0.5 * acceleration * (t - 30.0).max(0.0).powi(2);
+                let radius = speed / rate;
+                [radius * (rate * t).sin() + pushed, radius * (1.0 - (rate * t).cos()), rate * t]
+            };
+            let place = |k: usize| {
+                let [x, y, psi] = at(k);
+                [x + noise(), y + noise(), psi, speed, 0.0, 0.0]
+            };
+            let measured: Vec<[f64; 6]> = (0..121).map(place).collect();
+            Run {
+                name: format!("run {i}"),
+                session: "a".into(),
+                manoeuvre: String::new(),
+                dt,
+                inputs: (0..121).map(|k| Inputs::actuators(dt * f64::from(k), 10.0, 0.1)).collect(),
+                initial: measured[0],
+                measured,
+                channels: [true; 6],
+                disturbed: Vec::new(),
+            }
+        };
+        (0..8).map(run).collect()
+    }
+
+    #[test]
+    fn neither_noise_nor_a_sudden_force_is_a_jump() {
+        let (runs, issues) = settled(&circles(), LENGTH);
+        assert!(issues.is_empty(), "{issues:?}");
+        assert!(runs.iter().all(|r| r.disturbed.is_empty()));
+    }
+
+    #[test]
+    fn a_jump_is_found_between_its_samples_and_its_force_set_free() {
+        let mut runs = circles();
+        for m in &mut runs[3].measured[70..] {
+            m[1] += 0.09;
+        }
+        let found = jumps(&runs, LENGTH);
+        assert_eq!(found.iter().map(Vec::len).sum::<usize>(), 1, "{found:?}");
+        assert_eq!(found[3][0].sample, 70);
+        assert!((found[3][0].length - 0.09).abs() < 0.03, "{found:?}");
+        let (runs, issues) = settled(&runs, LENGTH);
+        assert!(runs[3].boost(69) > 1.0 && runs[3].boost(60) == 1.0);
+        assert_eq!(issues.len(), 1);
+        assert!(issues[0].mechanism == "jump" && !issues[0].blocking && issues[0].text.contains("run 3"), "{issues:?}");
+    }
+
+    #[test]
+    fn what_was_held_is_not_measured_and_a_ship_at_rest_is() {
+        let mut runs = circles();
+        for k in 41..44 {
+            let last = runs[2].measured[40];
+            runs[2].measured[k][..3].copy_from_slice(&last[..3]);
+        }
+        let rest = runs[5].measured[100];
+        for m in &mut runs[5].measured[100..] {
+            *m = rest;
+        }
+        let (runs, issues) = settled(&runs, LENGTH);
+        let missing = |r: &Run| (0..r.measured.len()).filter(|k| r.measured[*k][0].is_nan()).collect::<Vec<_>>();
+        assert_eq!(missing(&runs[2]), [41, 42, 43]);
+        assert!(missing(&runs[5]).is_empty());
+        assert!(issues.iter().any(|i| i.mechanism == "held" && i.text.contains("run 2")), "{issues:?}");
+    }
+}
