@@ -450,8 +450,10 @@ fn ranking(d: &Diagnosis) -> Figure {
         ("not seen", GREY),
     ];
     let threshold = Normal::new(0.0, 1.0).map_or(1.96, |n| -n.inverse_cdf(0.5 * d.settings.alpha));
-    let labels = rows.iter().map(|r| {
-        if r.sessions.is_empty() { r.title.clone() } else { format!("{} ({})", r.title, r.sessions.join(", ")) }
+    let labels = rows.iter().map(|r| match r.sessions.len() {
+        0 => r.title.clone(),
+        _ if r.by_session => format!("{} (each session its own)", r.title),
+        _ => format!("{} ({})", r.title, r.sessions.join(", ")),
     });
     let mut panel = Panel::new(
         "",

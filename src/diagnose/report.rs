@@ -9,12 +9,14 @@ use crate::report::{FigureError, Page, Section, Table, fixed, sig};
 use crate::ship::Ship;
 use crate::terms::CATALOGUE;
 use serde_json::{Map, Value};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Width of the terminal summary \[characters\].
 const WIDTH: usize = 100;
 /// Width of its left margin with number and heading.
 const MARGIN: usize = 16;
+/// Notes of one kind that are said in full.
+const NOTES: usize = 2;
 
 /// Every key of the JSON document with its meaning; `[]` stands for any entry of a list.
 pub const KEYS: &[(&str, &str)] = &[
@@ -29,7 +31,8 @@ pub const KEYS: &[(&str, &str)] = &[
     ("findings[].kind", "environment, ship, actuator or sensor"),
     ("findings[].confidence_set[]", "every mechanism these data allow in its place, itself first"),
     ("findings[].why", "why the set is what it is"),
-    ("findings[].sessions[]", "sessions in which it acts; empty for all"),
+    ("findings[].sessions[]", "sessions in which it acts; empty for all with one amplitude"),
+    ("findings[].by_session", "whether each of these sessions has an amplitude of its own, as weather does"),
     ("findings[].statistic", "twice the gain in log-likelihood"),
     ("findings[].p", "p-value, corrected for every mechanism that was tried"),
     ("findings[].equations", "the force it brings, as for location.equations"),
@@ -37,7 +40,10 @@ pub const KEYS: &[(&str, &str)] = &[
     ("findings[].region", "where in state and inputs the force stood out"),
     ("findings[].signature", "how it behaves, in words"),
     ("findings[].parameters[]", "its parameters"),
-    ("findings[].parameters[].name", "dotted name, as in model files"),
+    (
+        "findings[].parameters[].name",
+        "dotted name, as in model files; with the session in brackets where each has its own: `mean_wind.north [day 1]`",
+    ),
     ("findings[].parameters[].value", "estimate [unit]"),
     ("findings[].parameters[].unit", "SI unit; `-` for none"),
     ("findings[].parameters[].error", "standard error [unit]"),
@@ -69,7 +75,10 @@ pub const KEYS: &[(&str, &str)] = &[
     ("admission.heading_spread", "0 all on one heading, 1 headings all round"),
     ("admission.issues[]", "what is wrong or odd with the recordings"),
     ("admission.issues[].channel", "the channel"),
-    ("admission.issues[].mechanism", "sign_error, unit_error or frozen"),
+    (
+        "admission.issues[].mechanism",
+        "sign_error, unit_error, frozen, held (repeated samples) or jump (of the position)",
+    ),
     ("admission.issues[].text", "what is seen"),
     ("admission.issues[].next_step", "what to do"),
     ("admission.issues[].blocking", "whether it must be mended before any physics is concluded"),
@@ -135,6 +144,7 @@ pub const KEYS: &[(&str, &str)] = &[
     ("ranking[].retained", "share of its information left after parameters and unknown coefficients"),
     ("ranking[].second_opinion", "p-value with a free mirror-symmetric force as rival"),
     ("ranking[].sessions[]", "sessions in which it acts; empty for all"),
+    ("ranking[].by_session", "whether each of these sessions has an amplitude of its own"),
     ("absorbed[]", "mechanisms that these data and this model can never show"),
     ("absorbed[].mechanism", "name"),
     ("absorbed[].retained", "share of information left"),
@@ -359,7 +369,13 @@ fn verdict(d: &Diagnosis) -> Vec<String> {
         lines.push(d.headline.clone());
     }
     for f in &d.findings {
-        let size = size_of(f, units).map_or(String::new(), |s| format!(", {s}"));
+        let size = match &f.sessions {
+            each if f.by_session => {
+                let of = |s: &String| Some(format!("{s} {}", size_of(f, Some(s.as_str()), units)?));
+                format!(": {}", each.iter().filter_map(of).collect::<Vec<_>>().join("; "))
+            }
+            _ => size_of(f, None, units).map_or(String::new(), |s| format!(", {s}")),
+        };
         let sessions = sessions(d, f);
         lines.push(format!(
             "{}{size}{sessions}: seen, {} after correction for all that was tried",
@@ -376,10 +392,17 @@ fn verdict(d: &Diagnosis) -> Vec<String> {
     if let (true, Some(r)) = (d.findings.is_empty(), d.ranking.first()) {
         lines.push(format!("strongest candidate, not named: {}, {} after correction", r.title, p_value(r.p)));
     }
+    let mut said: BTreeMap<&str, usize> = BTreeMap::new();
     for i in &d.admission.issues {
         let word = if i.blocking { "mend first" } else { "note" };
-        lines.push(format!("{word}: {}; {}", i.text, i.next_step));
+        let before = said.entry(i.mechanism).or_default();
+        *before += 1;
+        if i.blocking || *before <= NOTES {
+            lines.push(format!("{word}: {}; {}", i.text, i.next_step));
+        }
     }
+    let more = said.into_iter().filter(|(_, count)| *count > NOTES);
+    lines.extend(more.map(|(what, count)| format!("note: {} more runs with `{what}`", count - NOTES)));
     lines
 }
 
@@ -388,7 +411,7 @@ fn sessions(d: &Diagnosis, f: &Finding) -> String {
     let all: BTreeSet<&str> = d.traces.iter().map(|t| t.session.as_str()).collect();
     let with: BTreeSet<&str> = f.sessions.iter().map(String::as_str).collect();
     let without: Vec<&str> = all.difference(&with).copied().collect();
-    if with.is_empty() || without.is_empty() {
+    if f.by_session || with.is_empty() || without.is_empty() {
         return String::new();
     }
     let few = |list: &[&str]| match list {
@@ -402,9 +425,11 @@ fn sessions(d: &Diagnosis, f: &Finding) -> String {
     }
 }
 
-/// Size and direction of a mechanism given by its components towards north and east, in the words of its kind.
-fn size_of(f: &Finding, units: Units) -> Option<String> {
-    let part = |suffix: &str| f.parameters.iter().find(|p| p.name.ends_with(suffix));
+/// Size and direction of a mechanism given by its components towards north and east (in one session, where each has its own),
+/// in the words of its kind.
+fn size_of(f: &Finding, session: Option<&str>, units: Units) -> Option<String> {
+    let tail = session.map_or(String::new(), |s| format!(" [{s}]"));
+    let part = |suffix: &str| f.parameters.iter().find(|p| p.name.ends_with(&format!("{suffix}{tail}")));
     let (Some(north), Some(east)) = (part(".north"), part(".east")) else {
         let [only] = f.parameters.as_slice() else { return None };
         return Some(amplitude(only, units));
@@ -448,7 +473,7 @@ fn amplitude(a: &Amplitude, units: Units) -> String {
 
 /// The plain words for a parameter.
 fn about(name: &str) -> Option<&'static str> {
-    let (term, parameter) = name.split_once('.')?;
+    let (term, parameter) = name.split_once(" [").map_or(name, |(name, _)| name).split_once('.')?;
     let info = CATALOGUE.iter().map(|t| t.info()).find(|i| i.name == term)?;
     info.parameters.iter().find(|p| p.name == parameter).map(|p| p.about)
 }
