@@ -62,6 +62,66 @@ fn a_rudder_offset_in_every_session_cannot_be_seen() {
     assert!(d.findings.is_empty());
 }
 
+/// Like `case`, with the current another in each session: north and east \[m/s\].
+fn another_each_session(currents: &[(&str, [f64; 2])], seed: u64) -> Diagnosis {
+    let base = model();
+    let mut truth = base.clone();
+    truth.add_term("current").unwrap();
+    for (session, current) in currents {
+        let list = truth.sessions.entry((*session).to_string()).or_default();
+        for (name, value) in ["current.north", "current.east"].iter().zip(current) {
+            list.push((truth.parameters.iter().position(|p| p.name == *name).unwrap(), *value));
+        }
+    }
+    let data = runs(&truth, &truth_noise(), 40, seed);
+    diagnose(&base, &data[..30], &data[30..], &Settings::default(), &|_| ()).unwrap()
+}
+
+#[test]
+fn a_current_that_is_another_in_every_session_is_found_in_each() {
+    let currents = [("s0", [0.12, 0.0]), ("s1", [0.0, 0.12]), ("s2", [-0.12, 0.03]), ("s3", [0.03, -0.12])];
+    let d = another_each_session(&currents, 11);
+    let found = &d.findings[0];
+    assert!(found.mechanism == "current" && found.by_session, "{}", d.headline);
+    assert_eq!(found.sessions, ["s0", "s1", "s2", "s3"]);
+    for (session, current) in currents {
+        for (part, truth) in ["north", "east"].iter().zip(current) {
+            let estimate = value(&d, &format!("current.{part} [{session}]"));
+            assert!((estimate - truth).abs() < 0.03, "{part} in {session}: {estimate} for {truth}");
+        }
+    }
+    let proof = d.held_out.unwrap();
+    assert!(proof.after < proof.before && proof.log_likelihood_gain > 20.0, "{proof:?}");
+    // The improved model holds each session's own.
+    assert_eq!(d.model.sessions.len(), 4);
+}
+
+#[test]
+fn a_current_that_is_the_same_in_every_session_is_not_split() {
+    let same = ["s0", "s1", "s2", "s3"].map(|s| (s, [0.08, -0.06]));
+    let d = another_each_session(&same, 12);
+    let found = &d.findings[0];
+    assert!(found.mechanism == "current" && !found.by_session && found.sessions.is_empty(), "{}", d.headline);
+    assert!((value(&d, "current.north") - 0.08).abs() < 0.02 && (value(&d, "current.east") + 0.06).abs() < 0.02);
+}
+
+#[test]
+fn a_receiver_that_jumps_is_no_push() {
+    let mut data = runs(&model(), &truth_noise(), 30, 101);
+    for (i, run) in data.iter_mut().enumerate().filter(|(i, _)| i % 3 == 0) {
+        let (psi, at) = (run.measured[60][2], 50 + i);
+        // Ahead, as a clock that slips would have it, which is what a push from astern does.
+        for m in &mut run.measured[at..] {
+            m[0] += 12.0 * psi.cos();
+            m[1] += 12.0 * psi.sin();
+        }
+    }
+    let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
+    assert!(d.findings.is_empty(), "{}", d.headline);
+    let jumped = d.admission.issues.iter().filter(|i| i.mechanism == "jump" && !i.blocking);
+    assert_eq!(jumped.count(), 10);
+}
+
 #[test]
 fn one_thread_and_two_give_the_same_bits() {
     let of = |threads: usize| {

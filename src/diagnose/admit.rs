@@ -13,7 +13,7 @@ use serde::Serialize;
 pub struct Issue {
     /// The channel concerned.
     pub channel: String,
-    /// What it is: `sign_error`, `unit_error` or `frozen`.
+    /// What it is: `sign_error`, `unit_error`, `frozen`, `held` or `jump`.
     pub mechanism: &'static str,
     /// What is seen, with numbers.
     pub text: String,

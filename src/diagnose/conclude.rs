@@ -11,6 +11,7 @@ use super::locate::{EquationShare, Location, Push, RegionTest, Window, locate};
 use super::mechanism::{Candidate, Extent, Kind, candidates};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::{HeldOut, prove};
+use super::receiver::settled;
 use super::refit::refit;
 use super::screen::{Row, Screen, screen};
 use crate::model::{Model, ModelError};
@@ -450,6 +451,9 @@ pub fn diagnose(
     progress: &(dyn Fn(&str) + Sync),
 ) -> Result<Diagnosis, ModelError> {
     let full = model.complete()?;
+    let (sound, odd) = settled(runs, full.ship.hull.lpp);
+    let (sound_held_out, _) = settled(held_out, full.ship.hull.lpp);
+    let (runs, held_out) = (sound.as_slice(), sound_held_out.as_slice());
     let mut integration = settings.integration();
     let free = base_parameters(&full, settings.nuisance);
     progress("estimating parameters and noise of the base model");
@@ -458,6 +462,7 @@ pub fn diagnose(
     let mut null = estimate(&full, integration, runs, &free, &first_noise, &prior, FIRST);
     progress("auditing recordings and integration step");
     let mut admission = admit(&null.model, integration, &null.noise, runs);
+    admission.issues.extend(odd);
     // Both readings with parameters of their own: a fit bends them to hide the error of a step.
     let coarse = Integration { method: Method::Euler, substeps: 1 };
     let unfitted = log_posterior(&null.model, coarse, runs, &free, &null.noise) - null.log_posterior;

@@ -17,6 +17,7 @@ pub mod locate;
 pub mod mechanism;
 pub mod noise;
 pub mod prove;
+pub mod receiver;
 pub mod refit;
 pub mod report;
 pub mod screen;

@@ -170,7 +170,7 @@ mod tests {
 
     const LENGTH: f64 = 3.0;
 
-    /// Runs of 60 s at 0.4 m/s on circles of two ship lengths, positions within 6 mm, a force of one `U^2 / L` from half-way.
+    /// Runs of 60 s at 0.4 m/s on circles of two ship lengths, positions within 6 mm, with a force of one `U^2 / L` for 3 s.
     fn circles() -> Vec<Run> {
         let mut rng = ChaCha8Rng::seed_from_u64(5);
         let (dt, speed) = (0.5, 0.4);
@@ -179,7 +179,8 @@ mod tests {
             let mut noise = || rng.random_range(-0.006..0.006);
             let at = |k: usize| {
                 let (t, rate) = (dt * k as f64, speed / (2.0 * LENGTH));
-                let pushed = 0.5 * acceleration * (t - 30.0).max(0.0).powi(2);
+                let square = |t: f64| t.max(0.0).powi(2);
+                let pushed = 0.5 * acceleration * (square(t - 30.0) - square(t - 33.0));
                 let radius = speed / rate;
                 [radius * (rate * t).sin() + pushed, radius * (1.0 - (rate * t).cos()), rate * t]
             };
