@@ -73,10 +73,12 @@ pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
     (out, issues)
 }
 
-/// Weights that read a step between the two middle samples off a row of positions, whatever parabola they lie on.
-fn weights() -> [f64; 2 * SIDE] {
+/// Weights that read a step between the two middle samples off a row of positions, whatever parabola they lie on, one of them
+/// left out where asked.
+fn weights(left_out: Option<usize>) -> [f64; 2 * SIDE] {
     let place = |i: usize| i as f64 + 0.5 - SIDE as f64;
     let a = SMatrix::<f64, { 2 * SIDE }, 4>::from_fn(|i, j| match j {
+        _ if left_out == Some(i) => 0.0,
         3 => f64::from(u8::from(i >= SIDE)),
         power => place(i).powi(power as i32),
     });
@@ -89,8 +91,14 @@ fn weights() -> [f64; 2 * SIDE] {
 /// A step counts where it stands out from those of all runs, whose spread is what noise and manoeuvres make, and is longer than
 /// the ship could have been carried.
 pub fn jumps(runs: &[Run], length: f64) -> Vec<Vec<Jump>> {
-    let weights = weights();
-    let step = |rows: &[[f64; 6]], c: usize| -> f64 { rows.iter().zip(&weights).map(|(m, w)| w * m[c]).sum() };
+    let all = weights(None);
+    let without: [[f64; 2 * SIDE]; 2 * SIDE] = std::array::from_fn(|i| weights(Some(i)));
+    let by = |weights: &[f64], rows: &[[f64; 6]], c: usize| -> f64 {
+        rows.iter().zip(weights).filter(|(_, w)| **w != 0.0).map(|(m, w)| w * m[c]).sum()
+    };
+    let step = |rows: &[[f64; 6]], c: usize| by(&all, rows, c);
+    // A jump stays: without any one sample it is there still, where a single wild fix is not.
+    let stays = |rows: &[[f64; 6]], least: f64| without.iter().all(|w| by(w, rows, 0).hypot(by(w, rows, 1)) > least);
     // Of each run, with the sample after the step; NaN where one of the samples is.
     let steps_of = |run: &Run| -> Vec<[f64; 2]> {
         let both = run.channels[0] && run.channels[1];
@@ -122,7 +130,8 @@ pub fn jumps(runs: &[Run], length: f64) -> Vec<Vec<Jump>> {
         let mut out: Vec<Jump> = Vec::new();
         for (i, s) in steps.iter().enumerate() {
             let jump = Jump { sample: i + SIDE, length: s[0].hypot(s[1]) };
-            if jump.length.is_nan() || jump.length <= least {
+            let rows = &run.measured[i..i + 2 * SIDE];
+            if jump.length.is_nan() || jump.length <= least || !stays(rows, 0.5 * jump.length) {
                 continue;
             }
             match out.last_mut() {
@@ -225,6 +234,16 @@ mod tests {
         assert!(runs[3].boost(69) > 1.0 && runs[3].boost(60) == 1.0);
         assert_eq!(issues.len(), 1);
         assert!(issues[0].mechanism == "jump" && !issues[0].blocking && issues[0].text.contains("run 3"), "{issues:?}");
+    }
+
+    #[test]
+    fn a_single_wild_fix_is_no_jump() {
+        let mut runs = circles();
+        for (run, sample, error) in [(1, 20, 0.3), (1, 90, -2.0), (4, 57, 15.0)] {
+            runs[run].measured[sample][0] += error;
+        }
+        let found = jumps(&runs, LENGTH);
+        assert!(found.iter().all(Vec::is_empty), "{found:?}");
     }
 
     #[test]
