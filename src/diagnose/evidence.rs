@@ -44,6 +44,20 @@ pub struct Test {
     pub retained: f64,
 }
 
+impl Test {
+    /// The test of `k` columns of which the data say nothing that is a number.
+    fn blind(k: usize) -> Self {
+        Self {
+            statistic: 0.0,
+            degrees: 0,
+            p: 1.0,
+            amplitude: DVector::zeros(k),
+            covariance: DMatrix::zeros(k, k),
+            retained: 0.0,
+        }
+    }
+}
+
 /// Directions with less than this share of their information left are not seen at all.
 pub const UNSEEN: f64 = 0.01;
 
@@ -178,6 +192,9 @@ impl Base {
         let reduced = own - cross * &self.inverse * cross.transpose();
         let effective = score - cross * self.step();
         let k = score.len();
+        if !effective.iter().chain(reduced.iter()).all(|v| v.is_finite()) {
+            return Test::blind(k);
+        }
         // In units in which each column alone carries information 1.
         let unit: Vec<f64> = (0..k).map(|i| 1.0 / own[(i, i)].max(f64::MIN_POSITIVE).sqrt()).collect();
         let scaled = DMatrix::from_fn(k, k, |i, j| 0.5 * (reduced[(i, j)] + reduced[(j, i)]) * unit[i] * unit[j]);
@@ -215,7 +232,7 @@ fn retained_share(reduced: &DMatrix<f64>, own: &DMatrix<f64>) -> f64 {
     let k = own.nrows();
     let eigen = SymmetricEigen::new(own.clone());
     let largest = eigen.eigenvalues.max();
-    if largest <= 0.0 {
+    if largest.is_nan() || largest <= 0.0 {
         return 0.0;
     }
     let kept: Vec<usize> = (0..k).filter(|i| eigen.eigenvalues[*i] > 1e-9 * largest).collect();
@@ -289,6 +306,13 @@ mod tests {
         let t = e.test(&base, &[1]);
         assert!((t.statistic - 4.0).abs() < 1e-12 && (t.amplitude[0] - 6.0 / 9.0).abs() < 1e-12);
         assert!((t.retained - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_no_number_is_not_seen() {
+        let e = Evidence::new(vec![one_run("a", &[5.0, f64::NAN], &[4.0, f64::NAN, f64::NAN, f64::NAN])]);
+        let t = e.test(&e.base(&[0], &[0.0], &[0.0]), &[1]);
+        assert_eq!((t.degrees, t.p, t.retained), (0, 1.0, 0.0));
     }
 
     #[test]

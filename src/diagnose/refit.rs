@@ -55,6 +55,10 @@ impl Refit<'_> {
         for e in passes.iter().flat_map(|p| p.innovations.iter().flatten()).filter(|e| !e.is_nan()) {
             value += 0.5 * e * e;
         }
+        // A model that left the numbers has no innovations at all, and would look perfect.
+        if !passes.iter().flat_map(|p| p.filtered.iter().flatten()).all(|z| z.is_finite()) {
+            value = f64::INFINITY;
+        }
         (passes, value)
     }
 
@@ -150,8 +154,9 @@ impl Nlp for Refit<'_> {
 }
 
 /// The estimate is near the optimum: Ipopt starts there with its barrier nearly gone, where it would otherwise step back from
-/// the bounds and lower the barrier anew; a few Gauss-Newton steps are all that is left to do. The objective is in units of log-likelihood and a column's scale is far above its standard
-/// error: gradients below the tolerance promise less than a hundredth of a unit.
+/// the bounds and lower the barrier anew; a few Gauss-Newton steps are all that is left to do. The objective is in units of
+/// log-likelihood and a column's scale is far above its standard error: gradients below the tolerance promise less than a
+/// hundredth of a unit.
 fn options() -> Options {
     let number = |name: &str, value: f64| (name.to_owned(), OptionValue::Number(value));
     Options {
@@ -183,7 +188,7 @@ pub fn refit(found: &Estimate, integration: Integration, runs: &[Run]) -> Result
     let Solution { x, .. } = solve(&mut problem, &options())?;
     let model = problem.model_at(&x);
     let log_posterior = log_posterior(&model, integration, runs, &found.free, &found.noise);
-    if log_posterior < found.log_posterior {
+    if log_posterior.is_nan() || log_posterior < found.log_posterior {
         return Ok(found.clone());
     }
     Ok(Estimate { model, log_posterior, ..found.clone() })
