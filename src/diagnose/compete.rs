@@ -7,6 +7,7 @@ use super::estimate::{
 };
 use super::evidence::{chi_squared_p, pick};
 use super::filter::{Column, Probe, Run};
+use super::forces::undoes;
 use super::mechanism::{Candidate, Extent, Kind};
 use super::noise::{Noise, NoisePrior};
 use super::screen::{Row, Screen};
@@ -320,6 +321,7 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
         chi_squared_p(statistic, w.value.len()) * (leaders.len().max(1) as f64) < settings.alpha
             && c.size(w.value.as_slice()) >= 1.0
             && plausible(e, c)
+            && !undoes(c, e, runs)
     };
     field.retain(stands);
     field.sort_by(|a, b| b.2.total_cmp(&a.2));

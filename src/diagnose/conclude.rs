@@ -7,6 +7,7 @@ use super::compete::{
 };
 use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior};
 use super::filter::{Column, Probe, Run};
+use super::forces::forces_of;
 use super::locate::{EquationShare, Location, Push, RegionTest, Window, locate};
 use super::mechanism::{Candidate, Extent, Kind, candidates};
 use super::noise::{Noise, NoisePrior, guess};
@@ -859,42 +860,15 @@ fn force_shares(c: &Candidate, found: &Estimate, runs: &[Run], location: &Locati
     if c.mechanism.kind == Kind::Sensor {
         return location.equations.into();
     }
-    let mut without = found.model.clone();
-    for col in &c.columns {
-        let p = &mut without.parameters[col.parameter];
-        p.value = (p.info.default)(&without.ship);
-        for list in without.sessions.values_mut() {
-            list.retain(|(i, _)| *i != col.parameter);
-        }
-    }
+    let own: Vec<usize> = c.columns.iter().map(|col| col.parameter).collect();
+    let forces = forces_of(&found.model, &own, runs);
     let mut sums = [0.0; 3];
-    let mut count: f64 = 0.0;
-    for r in runs {
-        let (with, bare) = (found.model.values_in(&r.session), without.values_in(&r.session));
-        let (mut a, mut b) = (r.inputs.clone(), r.inputs.clone());
-        found.model.drive(&with, r.dt, &mut a);
-        without.drive(&bare, r.dt, &mut b);
-        for ((m, i), j) in r.measured.iter().zip(&a).zip(&b).step_by(4) {
-            if m.iter().any(|v| !v.is_finite()) {
-                continue;
-            }
-            let state = crate::state::State::from_array(*m);
-            let zero = crate::state::Force::zero();
-            let (x, f) = found.model.rates(&with, &state, i, &zero);
-            let (y, _) = without.rates(&bare, &state, j, &zero);
-            let inertia = crate::terms::hull::Inertia::new(found.model.part("hull", &with), &f);
-            let d = [x[3] - y[3], x[4] - y[4], x[5] - y[5]];
-            let force = [
-                inertia.surge * d[0],
-                inertia.sway * d[1] + inertia.sway_yaw * d[2],
-                inertia.yaw_sway * d[1] + inertia.yaw * d[2],
-            ];
-            for e in 0..3 {
-                sums[e] += force[e] * force[e];
-            }
-            count += 1.0;
+    for f in &forces {
+        for e in 0..3 {
+            sums[e] += f[e] * f[e];
         }
     }
+    let count = forces.len() as f64;
     let l = found.model.ship.hull.lpp;
     let rms: [f64; 3] = std::array::from_fn(|e| (sums[e] / count.max(1.0)).sqrt());
     // A moment counts by the force pair at a quarter of the length.

@@ -12,7 +12,9 @@ pub mod conclude;
 pub mod estimate;
 pub mod evidence;
 pub mod figures;
+
 pub mod filter;
+mod forces;
 pub mod locate;
 pub mod mechanism;
 pub mod noise;
