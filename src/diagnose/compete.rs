@@ -66,15 +66,9 @@ fn candidate_parameters(c: &Candidate, extent: &Extent) -> Vec<FreeParameter> {
     extent.parts().into_iter().flat_map(of).collect()
 }
 
-/// Coefficients that are not known exactly once a candidate acts: free, with their priors.
-fn companions(c: &Candidate, model: &Model, free: &[FreeParameter]) -> Vec<FreeParameter> {
-    c.mechanism
-        .companions
-        .iter()
-        .filter_map(|name| model.index(&format!("{}.{name}", c.term)))
-        .filter(|i| free.iter().all(|f| f.column.parameter != *i))
-        .map(|parameter| FreeParameter::uncertain(model, parameter))
-        .collect()
+/// Where the model holds the coefficients that are not known exactly once a candidate acts.
+fn companions(c: &Candidate, model: &Model) -> Vec<usize> {
+    c.mechanism.companions.iter().filter_map(|name| model.index(&format!("{}.{name}", c.term))).collect()
 }
 
 /// Where a candidate's parameters stand among the free ones.
@@ -91,20 +85,16 @@ const PLAUSIBLE: f64 = 2.0;
 
 /// Whether a candidate's companions stayed where such coefficients are.
 fn plausible(found: &Estimate, c: &Candidate) -> bool {
-    let prefix = format!("{}.", c.term);
-    found.free.iter().all(|f| {
-        let name = found.model.parameters[f.column.parameter].name.strip_prefix(&prefix);
-        let companion = name.is_some_and(|n| c.mechanism.companions.contains(&n));
-        !companion || f.prior.is_none_or(|p| (f.value(&found.model) - p.mean).abs() <= PLAUSIBLE * p.sd)
-    })
+    let companions = companions(c, &found.model);
+    let stayed = |f: &FreeParameter| f.prior.is_none_or(|p| (f.value(&found.model) - p.mean).abs() <= PLAUSIBLE * p.sd);
+    found.free.iter().all(|f| !companions.contains(&f.column.parameter) || stayed(f))
 }
 
 /// A candidate's amplitudes as far as they say that it acts: its companions held, as an amplitude that only counts times a
 /// coefficient is as uncertain as the coefficient and yet not nothing.
 fn presence(all: &Wald, free: &[FreeParameter], model: &Model, c: &Candidate, extent: &Extent) -> Wald {
-    let companions: Vec<Option<usize>> =
-        c.mechanism.companions.iter().map(|name| model.index(&format!("{}.{name}", c.term))).collect();
-    let held: Vec<usize> = (0..free.len()).filter(|i| companions.contains(&Some(free[*i].column.parameter))).collect();
+    let companions = companions(c, model);
+    let held: Vec<usize> = (0..free.len()).filter(|i| companions.contains(&free[*i].column.parameter)).collect();
     all.given(&positions(free, c, extent), &held)
 }
 
@@ -218,7 +208,12 @@ pub(super) fn enter(
     let best = starts.into_iter().reduce(|a, b| if b.1 > a.1 { b } else { a });
     let model = best.map_or_else(|| current.model.clone(), |(model, _)| model);
     let mut free = current.free.clone();
-    free.extend(companions(c, &model, &free));
+    // Uncertain once it acts, and free with what is known of them.
+    for parameter in companions(c, &model) {
+        if free.iter().all(|f| f.column.parameter != parameter) {
+            free.push(FreeParameter::uncertain(&model, parameter));
+        }
+    }
     free.extend(candidate_parameters(c, extent));
     (model, free)
 }
@@ -328,11 +323,10 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
     let best = field.first()?.2;
     // The law of a force is known only so well: a rival that explains nearly as much may have the truer form.
     let form = FORM_UNKNOWN * (best - current.log_posterior).max(0.0);
-    let allowed = |c: &Contender| match list[c.candidate].mechanism.kind {
+    let width = match list[field[0].0.candidate].mechanism.kind {
         Kind::Sensor | Kind::Actuator => CLOSE,
         Kind::Environment | Kind::Ship => form.max(CLOSE),
     };
-    let width = allowed(&field[0].0);
     let near = |(_, _, v): &(Contender, Estimate, f64)| best - v < width;
     // A force without a cause gives way to any cause that comes near.
     let stands_in = |f: &(Contender, Estimate, f64)| list[f.0.candidate].mechanism.stand_in;

@@ -143,13 +143,7 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
     // A force that comes back with the ship's state is no event: what a smooth force law can mimic is taken out of the windows.
     let widened = widen(&evidence, &base, &(free..columns.len()).collect::<Vec<_>>());
     let step = widened.step();
-    let looked_at: f64 = runs
-        .iter()
-        .map(|r| {
-            let b = r.measured.len().div_ceil(BLOCK) as f64;
-            0.5 * b * (b + 1.0)
-        })
-        .sum();
+    let looked_at: f64 = runs.iter().map(|r| choices(r.measured.len().div_ceil(BLOCK))).sum();
     let blocks_of: Vec<Blocks> = runs
         .par_iter()
         .zip(&evidence.runs)
@@ -264,10 +258,30 @@ impl Blocks {
         (self.score[to] - self.score[from], (h + h.transpose()) * 0.5)
     }
 
+    /// The constant force that fits blocks `from..to` best.
+    fn fit(&self, from: usize, to: usize) -> Option<Span> {
+        let (score, information) = self.span(from, to);
+        let inverse = information.try_inverse()?;
+        let estimate = inverse * score;
+        let least = information.diagonal().min();
+        Some(Span { statistic: score.dot(&estimate), from, to, estimate, inverse, least })
+    }
+
     fn spans(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let count = self.count;
         (0..count).flat_map(move |from| (from + 1..=count).map(move |to| (from, to)))
     }
+
+    /// Spans that leave a good part of the run without the force.
+    fn local_spans(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let most = 0.7 * self.count as f64;
+        self.spans().filter(move |(from, to)| (to - from) as f64 <= most)
+    }
+}
+
+/// Spans of a run of `blocks` blocks.
+fn choices(blocks: usize) -> f64 {
+    0.5 * (blocks * (blocks + 1)) as f64
 }
 
 /// Blocks `from..to` of a run with the constant force that fits there.
@@ -277,6 +291,15 @@ struct Span {
     to: usize,
     estimate: Vector3<f64>,
     inverse: Matrix3<f64>,
+    /// Least information on one component of the force.
+    least: f64,
+}
+
+impl Span {
+    /// Whether the data see every component of the force.
+    fn seen(&self) -> bool {
+        self.least >= 1e-6 && self.statistic.is_finite()
+    }
 }
 
 fn window(run: &Run, index: usize, s: &Span, looked_at: f64, unit: &[f64; 3]) -> Window {
@@ -297,19 +320,9 @@ fn window(run: &Run, index: usize, s: &Span, looked_at: f64, unit: &[f64; 3]) ->
 
 /// The significant windows of one run, greedily, not overlapping.
 fn scan(blocks: &Blocks, looked_at: f64) -> Vec<Span> {
-    let mut candidates: Vec<Span> = Vec::new();
-    for (from, to) in blocks.spans() {
-        let (score, information) = blocks.span(from, to);
-        let Some(inverse) = information.try_inverse() else { continue };
-        if information.diagonal().min() < 1e-6 {
-            continue;
-        }
-        let estimate = inverse * score;
-        let statistic = score.dot(&estimate);
-        if statistic.is_finite() && chi_squared_p(statistic, 3) * looked_at < 0.01 {
-            candidates.push(Span { statistic, from, to, estimate, inverse });
-        }
-    }
+    let significant = |s: &Span| s.seen() && chi_squared_p(s.statistic, 3) * looked_at < 0.01;
+    let mut candidates: Vec<Span> =
+        blocks.spans().filter_map(|(from, to)| blocks.fit(from, to)).filter(significant).collect();
     candidates.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
     let mut out: Vec<Span> = Vec::new();
     for c in candidates {
@@ -340,22 +353,8 @@ fn common_push(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f64)
     let mut starts: Vec<Span> = blocks
         .iter()
         .filter_map(|b| {
-            b.spans()
-                .filter(|(from, to)| (to - from) as f64 <= 0.7 * b.count as f64)
-                .filter_map(|(from, to)| {
-                    let (score, information) = b.span(from, to);
-                    let inverse = information.try_inverse()?;
-                    let estimate = inverse * score;
-                    let statistic = score.dot(&estimate);
-                    (information.diagonal().min() > 1e-6 && statistic.is_finite()).then_some(Span {
-                        statistic,
-                        from,
-                        to,
-                        estimate,
-                        inverse,
-                    })
-                })
-                .max_by(|a, b| a.statistic.total_cmp(&b.statistic))
+            let fits = b.local_spans().filter_map(|(from, to)| b.fit(from, to)).filter(Span::seen);
+            fits.max_by(|a, b| a.statistic.total_cmp(&b.statistic))
         })
         .collect();
     starts.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
@@ -363,10 +362,9 @@ fn common_push(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f64)
     let chosen = |force: &Vector3<f64>| -> Vec<(usize, usize, usize, f64)> {
         let mut out = Vec::new();
         for (index, b) in blocks.iter().enumerate() {
-            let price = 2.0 * (0.5 * (b.count * (b.count + 1)) as f64).ln();
+            let price = 2.0 * choices(b.count).ln();
             let best = b
-                .spans()
-                .filter(|(from, to)| (to - from) as f64 <= 0.7 * b.count as f64)
+                .local_spans()
                 .map(|(from, to)| {
                     let (score, information) = b.span(from, to);
                     (from, to, 2.0 * score.dot(force) - force.dot(&(information * force)))
@@ -403,17 +401,7 @@ fn common_push(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f64)
     let windows = spans
         .iter()
         .filter_map(|(index, from, to, _)| {
-            let (score, information) = blocks[*index].span(*from, *to);
-            let inverse = information.try_inverse()?;
-            let estimate = inverse * score;
-            let statistic = score.dot(&estimate);
-            Some(window(
-                &runs[*index],
-                *index,
-                &Span { statistic, from: *from, to: *to, estimate, inverse },
-                looked_at,
-                unit,
-            ))
+            Some(window(&runs[*index], *index, &blocks[*index].fit(*from, *to)?, looked_at, unit))
         })
         .collect();
     Some(Push {
