@@ -343,7 +343,7 @@ pub struct Diagnosis {
 }
 
 fn traces(runs: &[Run], before: &Screen, after: Option<&Screen>) -> Vec<Trace> {
-    let force = |z: &[f64; super::filter::Z]| [z[6], z[7], z[8]];
+    let force = |z: &[f64; super::covariance::Z]| [z[6], z[7], z[8]];
     runs.iter()
         .enumerate()
         .map(|(i, r)| Trace {
@@ -432,6 +432,9 @@ const ALONE: f64 = 250.0;
 /// port-starboard difference in another form reaches 1e-6 or so.
 const UNLISTED: f64 = 1e-8;
 
+/// Where a mechanism leaves less than this share of what windows of time explained, they were its traces.
+const MIMICKED: f64 = 0.5;
+
 /// A fit does not win back more than this in log-posterior.
 const EULER_HOPELESS: f64 = 1000.0;
 
@@ -490,10 +493,13 @@ pub fn diagnose(
     let blocked = admission.issues.iter().any(|i| i.blocking);
 
     let form_holds = first.symmetric_test.p > FORM_HOLDS;
+    // An event inflates the noise it must stand out of; where the ship's own forces fit, calmer runs tell the noise better.
+    let push_of = |found: &Estimate, runs: &[Run]| {
+        let calm = || Estimate { noise: calm_noise(found, integration, runs, &prior), ..found.clone() };
+        locate(&if form_holds { calm() } else { found.clone() }, integration, runs).push
+    };
     if form_holds {
-        // An event inflates the noise it must stand out of; where the ship's own forces fit, calmer runs tell the noise better.
-        let calm = Estimate { noise: calm_noise(&null, integration, &runs, &prior), ..null.clone() };
-        location.push = locate(&calm, integration, &runs).push;
+        location.push = push_of(&null, &runs);
     }
     let is_event = |push: &Push| push.statistic > needed_statistic(push.windows.len(), form_holds);
 
@@ -503,18 +509,28 @@ pub fn diagnose(
     // What a smooth law of state and heading would explain.
     let smooth = |s: &Screen| s.asymmetric_test.statistic - s.asymmetric_test.degrees as f64;
     let may_push = !blocked && !settings.withhold.iter().any(|w| w == "push");
+    let mut opening: Option<Option<(Accepted, Estimate)>> = None;
     if may_push
         && let Some(push) =
             location.push.as_ref().filter(|p| is_event(p) && p.statistic > (2.0 * best_gain).max(smooth(&first)))
     {
-        for w in &push.windows {
-            runs[w.index].disturbed.push(w.samples);
+        let arena = Arena { integration, runs: &runs, list: &list, prior: &prior, settings };
+        let may = |r: &Row| acceptable(r, &list, settings);
+        let rival = if numerics { None } else { contest(&first, &null, arena, &may, progress) };
+        let left = rival.as_ref().map(|(_, found)| push_of(found, &runs));
+        let mimicked = left.is_some_and(|left| left.map_or(0.0, |p| p.statistic) < MIMICKED * push.statistic);
+        if mimicked {
+            opening = Some(rival);
+        } else {
+            for w in &push.windows {
+                runs[w.index].disturbed.push(w.samples);
+            }
+            pushes = Some(push.clone());
+            null = estimate(&null.model, integration, &runs, &free, &null.noise, &prior, SETTLE);
+            first = screen(&null, integration, &runs, &list);
+            let again = locate(&null, integration, &runs);
+            location.regions = again.regions;
         }
-        pushes = Some(push.clone());
-        null = estimate(&null.model, integration, &runs, &free, &null.noise, &prior, SETTLE);
-        first = screen(&null, integration, &runs, &list);
-        let again = locate(&null, integration, &runs);
-        location.regions = again.regions;
     }
 
     let mut current = null.clone();
@@ -531,11 +547,9 @@ pub fn diagnose(
             };
             // A push that was found first is a finding already, and so is a coarse step.
             let alone = step == 0 && pushes.is_none() && !numerics;
-            let may = |r: &&Row| acceptable(r, &list, settings) && (alone || acceptable_beside(r, &accepted, &list));
-            let leaders: Vec<&Row> = s.rows.iter().filter(may).collect();
-            let Some(leader) = leaders.first() else { break };
-            progress(&format!("refitting with {}", list[leader.candidate].mechanism.title));
-            let Some((entry, found)) = compete(s, &leaders, &current, arena) else { break };
+            let may = |r: &Row| acceptable(r, &list, settings) && (alone || acceptable_beside(r, &accepted, &list));
+            let outcome = opening.take().unwrap_or_else(|| contest(s, &current, arena, &may, progress));
+            let Some((entry, found)) = outcome else { break };
             accepted.push(entry);
             current = found;
             backward(&mut accepted, &mut current, arena);
@@ -645,6 +659,19 @@ pub fn diagnose(
         model: trimmed(&current.model, model, &current.free),
         base: trimmed(&null.model, model, &null.free),
     })
+}
+
+/// Refits the leaders among the mechanisms that may be named, and returns the best with its confidence set.
+fn contest(
+    s: &Screen,
+    current: &Estimate,
+    arena: Arena,
+    may: &dyn Fn(&Row) -> bool,
+    progress: &dyn Fn(&str),
+) -> Option<(Accepted, Estimate)> {
+    let leaders: Vec<&Row> = s.rows.iter().filter(|r| may(r)).collect();
+    progress(&format!("refitting with {}", arena.list[leaders.first()?.candidate].mechanism.title));
+    compete(s, &leaders, current, arena)
 }
 
 /// Whether the unknown force is a material part of the forces on the ship.

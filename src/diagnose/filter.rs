@@ -6,7 +6,8 @@
 //! `d_k = H D_k + dh/dp`, `D_{k+1} = F_k (D_k - G_k d_k) + df/dp`, so that `d_k` depends on the past alone and
 //! `g = sum d_k' S_k^-1 e_k` is a martingale: unbiased at the truth whatever is left out of `d_k`.
 
-use super::noise::{GROUP_OF, Noise};
+use super::covariance::{Discrete, Z, initial, predict};
+use super::noise::Noise;
 use crate::flow::Flow;
 use crate::model::Model;
 use crate::recording::Window;
@@ -15,11 +16,6 @@ use crate::state::{Force, Inputs, STATES, State};
 use crate::terms::hull::Inertia;
 use crate::terms::{CHUNK, Gradient, Group, find};
 use nalgebra::{DMatrix, DVector};
-
-/// Length of the filter state.
-pub const Z: usize = 15;
-/// A square matrix over the filter state.
-pub type Square = [[f64; Z]; Z];
 
 /// One run as the filter needs it.
 #[derive(Clone, Debug)]
@@ -260,7 +256,8 @@ impl<'a> Filter<'a> {
 
         let mut z = [0.0; Z];
         z[..STATES].copy_from_slice(&run.initial);
-        let mut p = initial_covariance(noise, self.model);
+        let noise = Discrete::new(noise, run.dt);
+        let mut p = initial(&noise, self.model);
         let mut d = vec![0.0; Z * width];
         let mut pass = Pass {
             log_likelihood: 0.0,
@@ -286,8 +283,6 @@ impl<'a> Filter<'a> {
         let smooth = self.integration == Integration { method: Method::Rk4, substeps: 1 } && !wanted.exact;
         let mut slope =
             if smooth { self.slope(&constants, &run.initial, &[0.0; 3], &series[0]) } else { Slope::default() };
-        let a_force = (-run.dt / noise.force_time).exp();
-        let rho: [f64; STATES] = std::array::from_fn(|j| (-run.dt / noise.sensors[GROUP_OF[j]].time).exp());
         for k in 0..run.measured.len() {
             let now = &series[k];
             let state: [f64; STATES] = std::array::from_fn(|j| z[j]);
@@ -305,7 +300,6 @@ impl<'a> Filter<'a> {
                 if !run.channels[j] || !y.is_finite() {
                     continue;
                 }
-                let sensor = &noise.sensors[GROUP_OF[j]];
                 // Measurement row: the state through h, and this channel's coloured noise.
                 let mut predicted = report[j] + z[9 + j];
                 for i in 0..STATES {
@@ -322,7 +316,7 @@ impl<'a> Filter<'a> {
                     }
                     sum
                 });
-                let mut s = sensor.white * sensor.white + ph[9 + j];
+                let mut s = noise.white[j] + ph[9 + j];
                 for l in 0..STATES {
                     s += h[j][l] * ph[l];
                 }
@@ -425,17 +419,17 @@ impl<'a> Filter<'a> {
                     }
                 }
                 for i in 0..3 {
-                    axpy(&mut moved[(6 + i) * width..(7 + i) * width], a_force, &d[(6 + i) * width..(7 + i) * width]);
+                    axpy(&mut moved[(6 + i) * width..(7 + i) * width], noise.fade, &d[(6 + i) * width..(7 + i) * width]);
                 }
                 for i in 0..STATES {
-                    axpy(&mut moved[(9 + i) * width..(10 + i) * width], rho[i], &d[(9 + i) * width..(10 + i) * width]);
+                    axpy(&mut moved[(9 + i) * width..(10 + i) * width], noise.rho[i], &d[(9 + i) * width..(10 + i) * width]);
                 }
                 if wanted.exact {
                     self.step_columns(&seeded, &series, k, run.dt, &state, &push, &mut moved, width);
                 } else {
                     // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any
                     // predictable sensitivity leaves the score unbiased, so that this costs no more than a little power.
-                    let faded = push.map(|w| w * a_force);
+                    let faded = push.map(|w| w * noise.fade);
                     self.rate_columns(&seeded, &theta, &series, k + 1, &image, &faded, width, &mut rates_next);
                     let half = 0.5 * run.dt;
                     for i in 0..STATES {
@@ -462,13 +456,13 @@ impl<'a> Filter<'a> {
             }
             z[..STATES].copy_from_slice(&image);
             for i in 0..3 {
-                z[6 + i] *= a_force;
+                z[6 + i] *= noise.fade;
             }
             for i in 0..STATES {
-                z[9 + i] *= rho[i];
+                z[9 + i] *= noise.rho[i];
             }
             if wanted.frozen.is_none() {
-                p = predict(&p, &a, &gamma, a_force, &rho, noise, run.boost(k));
+                predict(&mut p, &a, &gamma, &noise, run.boost(k));
             }
         }
         pass
@@ -753,89 +747,6 @@ fn axpy(y: &mut [f64], a: f64, x: &[f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += a * x;
     }
-}
-
-/// Wide on the ship's state (the run's own start is unknown), stationary on the unknown force and the coloured sensors.
-pub fn initial_covariance(noise: &Noise, model: &Model) -> Square {
-    let mut p = [[0.0; Z]; Z];
-    let l = model.ship.hull.lpp;
-    let speed = (9.80665 * l).sqrt();
-    let wide = [0.5 * l, 0.5 * l, 0.2, 0.05 * speed, 0.05 * speed, 0.1 * speed / l];
-    for (i, w) in wide.iter().enumerate() {
-        p[i][i] = w * w;
-    }
-    for i in 0..3 {
-        p[6 + i][6 + i] = noise.force[i] * noise.force[i];
-    }
-    for j in 0..STATES {
-        let c = noise.sensors[GROUP_OF[j]].coloured;
-        p[9 + j][9 + j] = c * c;
-    }
-    p
-}
-
-/// `F P F' + Q` with the block structure of the filter state.
-pub fn predict(
-    p: &Square,
-    a: &[[f64; STATES]; STATES],
-    gamma: &[[f64; 3]; STATES],
-    a_force: f64,
-    rho: &[f64; STATES],
-    noise: &Noise,
-    boost: f64,
-) -> Square {
-    let mut fp = [[0.0; Z]; Z];
-    for i in 0..STATES {
-        for l in 0..STATES {
-            for c in 0..Z {
-                fp[i][c] += a[i][l] * p[l][c];
-            }
-        }
-        for l in 0..3 {
-            for c in 0..Z {
-                fp[i][c] += gamma[i][l] * p[6 + l][c];
-            }
-        }
-    }
-    for i in 0..3 {
-        for c in 0..Z {
-            fp[6 + i][c] = a_force * p[6 + i][c];
-        }
-    }
-    for i in 0..STATES {
-        for c in 0..Z {
-            fp[9 + i][c] = rho[i] * p[9 + i][c];
-        }
-    }
-    let mut out = [[0.0; Z]; Z];
-    for i in 0..Z {
-        for j in 0..=i {
-            let v = if j < STATES {
-                let mut sum = 0.0;
-                for l in 0..STATES {
-                    sum += fp[i][l] * a[j][l];
-                }
-                for l in 0..3 {
-                    sum += fp[i][6 + l] * gamma[j][l];
-                }
-                sum
-            } else if j < 9 {
-                fp[i][j] * a_force
-            } else {
-                fp[i][j] * rho[j - 9]
-            };
-            out[i][j] = v;
-            out[j][i] = v;
-        }
-    }
-    for i in 0..3 {
-        out[6 + i][6 + i] += boost * noise.force[i] * noise.force[i] * (1.0 - a_force * a_force);
-    }
-    for j in 0..STATES {
-        let c = noise.sensors[GROUP_OF[j]].coloured;
-        out[9 + j][9 + j] += c * c * (1.0 - rho[j] * rho[j]);
-    }
-    out
 }
 
 // The chunk must hold the six states and the three forces at once.

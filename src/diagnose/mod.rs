@@ -9,6 +9,7 @@ pub mod admit;
 pub mod baseline;
 mod compete;
 pub mod conclude;
+pub mod covariance;
 pub mod estimate;
 pub mod evidence;
 pub mod figures;

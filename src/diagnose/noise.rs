@@ -1,12 +1,14 @@
 //! The noise model behind every statement of the diagnosis: what sensors add, and the force nobody modelled.
 //! It says nothing of the ship; its numbers are estimated by maximum likelihood in `fit_noise`.
 
-use super::filter::{GATE, Run, Tangent, Z, initial_covariance, predict};
+use super::covariance::{Discrete, Z, initial, predict};
+use super::filter::{GATE, Run, Tangent};
 use crate::model::Model;
 use crate::state::STATES;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::Serialize;
+use trimtab_ad::{Lanes, Scalar};
 
 /// Measured channels share their noise in groups: position, heading, speed, yaw rate.
 pub const GROUPS: [&str; 4] = ["position", "heading", "speed", "yaw rate"];
@@ -101,34 +103,33 @@ impl NoisePrior {
     }
 }
 
-/// Log-likelihood of one run under the linearised step maps: a Kalman filter without sensitivities.
-pub fn log_likelihood(run: &Run, tangent: &Tangent, noise: &Noise, model: &Model) -> f64 {
-    let mut z = [0.0; Z];
-    z[..STATES].copy_from_slice(&run.initial);
-    let mut p = initial_covariance(noise, model);
-    let a_force = (-run.dt / noise.force_time).exp();
-    let rho: [f64; STATES] = std::array::from_fn(|j| (-run.dt / noise.sensors[GROUP_OF[j]].time).exp());
-    let mut total = 0.0;
+/// Log-likelihood of one run under the linearised step maps, for a noise or for eight at once: a Kalman filter without
+/// sensitivities.
+fn log_likelihood<S: Scalar>(run: &Run, tangent: &Tangent, noise: &Discrete<S>, model: &Model) -> S {
+    let mut z = [S::zero(); Z];
+    (0..STATES).for_each(|i| z[i] = S::from_f64(run.initial[i]));
+    let mut p = initial(noise, model);
+    let mut total = S::zero();
     for k in 0..run.measured.len() {
         for j in 0..STATES {
             let y = run.measured[k][j];
             if !run.channels[j] || !y.is_finite() {
                 continue;
             }
-            let white = noise.sensors[GROUP_OF[j]].white;
-            let mut e = y - tangent.offset[k][j] - z[j] - z[9 + j];
+            let mut e = -(z[j] + z[9 + j]) + (y - tangent.offset[k][j]);
             if j == 2 {
                 e = trimtab_ad::smooth::wrap_angle(e);
             }
-            let ph: [f64; Z] = std::array::from_fn(|i| p[i][j] + p[i][9 + j]);
-            let s = white * white + ph[j] + ph[9 + j];
-            if e * e > GATE * GATE * s {
-                total -= 0.5 * (GATE * GATE + s.ln());
-                continue;
-            }
-            total -= 0.5 * (e * e / s + s.ln());
+            let ph: [S; Z] = std::array::from_fn(|i| p[j][i] + p[9 + j][i]);
+            let s = noise.white[j] + ph[j] + ph[9 + j];
+            // An outlier counts as if it were at the gate, and teaches nothing.
+            let square = e * e / s;
+            let gate = S::from_f64(GATE * GATE);
+            let outlier = gate.less(square);
+            total = total - (S::select(outlier, gate, square) + s.ln()) * 0.5;
+            let inverse = S::select(outlier, S::zero(), S::one() / s);
             for i in 0..Z {
-                let gain = ph[i] / s;
+                let gain = ph[i] * inverse;
                 z[i] += gain * e;
                 for l in 0..=i {
                     p[i][l] -= gain * ph[l];
@@ -139,29 +140,29 @@ pub fn log_likelihood(run: &Run, tangent: &Tangent, noise: &Noise, model: &Model
         if k + 1 == run.measured.len() {
             break;
         }
-        z = move_mean(&z, tangent, k, a_force, &rho);
-        p = predict(&p, &tangent.a[k], &tangent.gamma[k], a_force, &rho, noise, run.boost(k));
+        z = move_mean(&z, tangent, k, noise);
+        predict(&mut p, &tangent.a[k], &tangent.gamma[k], noise, run.boost(k));
     }
     total
 }
 
 /// The mean one sample later under the linearised step map.
-fn move_mean(z: &[f64; Z], tangent: &Tangent, k: usize, a_force: f64, rho: &[f64; STATES]) -> [f64; Z] {
-    let mut next = [0.0; Z];
+fn move_mean<S: Scalar>(z: &[S; Z], tangent: &Tangent, k: usize, noise: &Discrete<S>) -> [S; Z] {
+    let mut next = [S::zero(); Z];
     for i in 0..STATES {
-        next[i] = tangent.image[k][i];
+        next[i] = S::from_f64(tangent.image[k][i]);
         for l in 0..STATES {
-            next[i] += tangent.a[k][i][l] * (z[l] - tangent.state[k][l]);
+            next[i] += (z[l] - tangent.state[k][l]) * tangent.a[k][i][l];
         }
         for l in 0..3 {
-            next[i] += tangent.gamma[k][i][l] * z[6 + l];
+            next[i] += z[6 + l] * tangent.gamma[k][i][l];
         }
     }
     for i in 0..3 {
-        next[6 + i] = a_force * z[6 + i];
+        next[6 + i] = noise.fade * z[6 + i];
     }
     for j in 0..STATES {
-        next[9 + j] = rho[j] * z[9 + j];
+        next[9 + j] = noise.rho[j] * z[9 + j];
     }
     next
 }
@@ -181,20 +182,28 @@ pub fn fit_noise(
     const N: usize = NOISE_PARAMETERS;
     let objective = |v: &[f64; N]| -> f64 {
         let noise = Noise::from_log(v);
-        let parts: Vec<f64> =
-            runs.par_iter().zip(tangents.par_iter()).map(|(r, t)| log_likelihood(r, t, &noise, model)).collect();
+        let part = |(r, t): (&&Run, &&Tangent)| log_likelihood(r, t, &Discrete::new(&noise, r.dt), model);
+        let parts: Vec<f64> = runs.par_iter().zip(tangents.par_iter()).map(part).collect();
         -(parts.iter().sum::<f64>() + prior.log_density(v))
     };
     let gradient = |v: &[f64; N], f: f64| -> [f64; N] {
-        let values: Vec<f64> = (0..N)
-            .into_par_iter()
-            .map(|i| {
-                let mut w = *v;
-                w[i] += STEP;
-                objective(&w)
+        let nudged: [[f64; N]; N] = std::array::from_fn(|i| {
+            let mut w = *v;
+            w[i] += STEP;
+            w
+        });
+        let noises = nudged.map(|w| Noise::from_log(&w));
+        let part = |(r, t): (&&Run, &&Tangent)| -> [Lanes; N / Lanes::LANES] {
+            std::array::from_fn(|block| {
+                let some = std::array::from_fn(|lane| Discrete::new(&noises[block * Lanes::LANES + lane], r.dt));
+                log_likelihood(r, t, &Discrete::side_by_side(&some), model)
             })
-            .collect();
-        std::array::from_fn(|i| (values[i] - f) / STEP)
+        };
+        let parts: Vec<_> = runs.par_iter().zip(tangents.par_iter()).map(part).collect();
+        std::array::from_fn(|i| {
+            let likelihood: f64 = parts.iter().map(|p| p[i / Lanes::LANES].lane(i % Lanes::LANES)).sum();
+            (-(likelihood + prior.log_density(&nudged[i])) - f) / STEP
+        })
     };
     let mut v = start.to_log();
     let mut f = objective(&v);
