@@ -3,9 +3,9 @@
 
 use super::compete::enter;
 use super::conclude::{Settings, base_parameters};
+use super::covariance::Z;
 use super::estimate::{Effort, Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
 use super::evidence::Evidence;
-use super::covariance::Z;
 use super::filter::{Column, Filter, Gains, Pass, Run, Wanted};
 use super::mechanism::{Candidate, Extent, append, candidates};
 use super::noise::{Noise, NoisePrior, guess};

@@ -16,6 +16,7 @@ use crate::state::{Force, Inputs, STATES, State};
 use crate::terms::hull::Inertia;
 use crate::terms::{CHUNK, Gradient, Group, find};
 use nalgebra::{DMatrix, DVector};
+use trimtab_ad::Scalar;
 
 /// One run as the filter needs it.
 #[derive(Clone, Debug)]
@@ -277,7 +278,7 @@ impl<'a> Filter<'a> {
         let mut rates_now = vec![0.0; 3 * width];
         let mut rates_next = vec![0.0; 3 * width];
         if parameters > 0 && !wanted.exact {
-            self.rate_columns(&seeded, &theta, &series, 0, &run.initial, &[0.0; 3], width, &mut rates_now);
+            self.rate_columns(&seeded, &theta, &series, (0, 0.0), &run.initial, &[0.0; 3], width, &mut rates_now);
         }
         // The accelerations' Jacobian at both ends of a step carries the linearisation over it.
         let smooth = self.integration == Integration { method: Method::Rk4, substeps: 1 } && !wanted.exact;
@@ -390,15 +391,20 @@ impl<'a> Filter<'a> {
             let state: [f64; STATES] = std::array::from_fn(|j| z[j]);
             let push = [z[6], z[7], z[8]];
             let next = &series[k + 1];
-            let (image, a, gamma) = if smooth {
-                let force = Force { x: push[0], y: push[1], n: push[2] };
-                let image = step(&self.base, &theta, self.integration, run.dt, &state, now, next, &force);
+            let force = Force { x: push[0], y: push[1], n: push[2] };
+            let image = step(&self.base, &theta, self.integration, run.dt, &state, now, next, &force);
+            let mut exact = Variation::default();
+            let (a, gamma) = if wanted.frozen.is_some() && width == 0 && !wanted.tangent {
+                Default::default()
+            } else if smooth {
                 let end = self.slope(&constants, &image, &push, next);
-                let (a, gamma) = carry(&slope, &end, run.dt);
+                let carried = carry(&slope, &end, run.dt);
                 slope = end;
-                (image, a, gamma)
+                carried
             } else {
-                self.linearise(&constants, run.dt, &state, &push, now, next)
+                let through = if wanted.exact { seeded.as_slice() } else { &[] };
+                exact = self.variation(through, &constants, &theta, &series, k, run.dt, &state, &push, width);
+                exact.jacobians()
             };
             forces.clear();
             if let Some((_, f)) = basis {
@@ -419,18 +425,26 @@ impl<'a> Filter<'a> {
                     }
                 }
                 for i in 0..3 {
-                    axpy(&mut moved[(6 + i) * width..(7 + i) * width], noise.fade, &d[(6 + i) * width..(7 + i) * width]);
+                    axpy(
+                        &mut moved[(6 + i) * width..(7 + i) * width],
+                        noise.fade,
+                        &d[(6 + i) * width..(7 + i) * width],
+                    );
                 }
                 for i in 0..STATES {
-                    axpy(&mut moved[(9 + i) * width..(10 + i) * width], noise.rho[i], &d[(9 + i) * width..(10 + i) * width]);
+                    axpy(
+                        &mut moved[(9 + i) * width..(10 + i) * width],
+                        noise.rho[i],
+                        &d[(9 + i) * width..(10 + i) * width],
+                    );
                 }
                 if wanted.exact {
-                    self.step_columns(&seeded, &series, k, run.dt, &state, &push, &mut moved, width);
+                    (0..STATES).for_each(|i| axpy(&mut moved[i * width..(i + 1) * width], 1.0, exact.parameters(i)));
                 } else {
                     // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any
                     // predictable sensitivity leaves the score unbiased, so that this costs no more than a little power.
                     let faded = push.map(|w| w * noise.fade);
-                    self.rate_columns(&seeded, &theta, &series, k + 1, &image, &faded, width, &mut rates_next);
+                    self.rate_columns(&seeded, &theta, &series, (k + 1, 0.0), &image, &faded, width, &mut rates_next);
                     let half = 0.5 * run.dt;
                     for i in 0..STATES {
                         let row = &mut moved[i * width..i * width + parameters];
@@ -468,35 +482,6 @@ impl<'a> Filter<'a> {
         pass
     }
 
-    /// The step map and its Jacobians with respect to state and force.
-    fn linearise(
-        &self,
-        theta: &[Gradient],
-        dt: f64,
-        state: &[f64; STATES],
-        push: &[f64; 3],
-        now: &Inputs<f64>,
-        next: &Inputs<f64>,
-    ) -> ([f64; STATES], [[f64; STATES]; STATES], [[f64; 3]; STATES]) {
-        let x: [Gradient; STATES] = std::array::from_fn(|j| Gradient::variable(state[j], j));
-        let w: [Gradient; 3] = std::array::from_fn(|j| Gradient::variable(push[j], STATES + j));
-        let y = step(
-            &self.base,
-            theta,
-            self.integration,
-            dt,
-            &x,
-            &Inputs::constant(now),
-            &Inputs::constant(next),
-            &Force { x: w[0], y: w[1], n: w[2] },
-        );
-        (
-            y.map(|v| v.re),
-            y.map(|v| std::array::from_fn(|j| v.eps[j])),
-            y.map(|v| std::array::from_fn(|j| v.eps[STATES + j])),
-        )
-    }
-
     /// The Jacobian of the state's rates with respect to state and force.
     fn slope(&self, theta: &[Gradient], state: &[f64; STATES], push: &[f64; 3], inputs: &Inputs<f64>) -> Slope {
         let x: [Gradient; STATES] = std::array::from_fn(|j| Gradient::variable(state[j], j));
@@ -506,22 +491,77 @@ impl<'a> Filter<'a> {
         rates.map(|v| std::array::from_fn(|j| v.eps[j]))
     }
 
-    /// Derivatives of the accelerations (u', v', r') with respect to the parameters, row by row, at sample `k`.
+    /// The exact derivatives of the step map with respect to state, force and (where any are seeded) parameters: every stage of
+    /// the method carries the variational equation along.
+    fn variation(
+        &self,
+        seeded: &[Seeded],
+        constants: &[Gradient],
+        theta: &[f64],
+        series: &[Inputs<f64>],
+        k: usize,
+        dt: f64,
+        state: &[f64; STATES],
+        push: &[f64; 3],
+        width: usize,
+    ) -> Variation {
+        let force = Force { x: push[0], y: push[1], n: push[2] };
+        let width = if seeded.is_empty() { 0 } else { width };
+        let count = self.integration.substeps.max(1);
+        let h = dt / count as f64;
+        let mut columns = vec![0.0; 3 * width];
+        // Rates of the state and of its derivatives, where both have reached `at` and `v` a fraction of the period later.
+        let mut rates = |at: &[f64; STATES], v: &Variation, fraction: f64| {
+            let inputs = instant(series, (k, fraction));
+            let slope = self.slope(constants, at, push, &inputs);
+            if width > 0 {
+                self.rate_columns(seeded, theta, series, (k, fraction), at, push, width, &mut columns);
+            }
+            let rates = self.base.rates_alone(theta, &State::from_array(*at), &inputs, &force);
+            (rates, v.rate(&slope, &columns))
+        };
+        let mut x = *state;
+        let mut v = Variation::start(width);
+        for i in 0..count {
+            let at = |offset: f64| (i as f64 + offset) / count as f64;
+            let (k1, v1) = rates(&x, &v, at(0.0));
+            match self.integration.method {
+                Method::Euler => {
+                    x = moved(&x, h, &k1);
+                    v = v.moved(h, &v1);
+                }
+                Method::Rk4 => {
+                    let (k2, v2) = rates(&moved(&x, 0.5 * h, &k1), &v.moved(0.5 * h, &v1), at(0.5));
+                    let (k3, v3) = rates(&moved(&x, 0.5 * h, &k2), &v.moved(0.5 * h, &v2), at(0.5));
+                    let (k4, v4) = rates(&moved(&x, h, &k3), &v.moved(h, &v3), at(1.0));
+                    for (weight, k, w) in [(1.0, &k1, &v1), (2.0, &k2, &v2), (2.0, &k3, &v3), (1.0, &k4, &v4)] {
+                        x = moved(&x, weight * h / 6.0, k);
+                        v = v.moved(weight * h / 6.0, w);
+                    }
+                }
+            }
+        }
+        v
+    }
+
+    /// Derivatives of the accelerations (u', v', r') with respect to the parameters, row by row, at an
+    /// instant: a sample and a fraction of the period after it.
     fn rate_columns(
         &self,
         seeded: &[Seeded],
         theta: &[f64],
         series: &[Inputs<f64>],
-        k: usize,
+        when: (usize, f64),
         state: &[f64; STATES],
         push: &[f64; 3],
         width: usize,
         out: &mut [f64],
     ) {
         let x = State::from_array(*state);
+        let now = instant(series, when);
         // Where a parameter changes its own term's force only, the flow and the inertia are numbers.
         let local = self.chunks.iter().any(|c| c.reach == Reach::Force).then(|| {
-            let flow = self.base.flow(theta, &x, &series[k]);
+            let flow = self.base.flow(theta, &x, &now);
             let inertia = Inertia::new(self.base.part("hull", theta), &flow);
             (flow, Flow::constant(&flow), inertia)
         });
@@ -530,7 +570,7 @@ impl<'a> Filter<'a> {
             match (chunk.reach, &local) {
                 (Reach::Force, Some((flow, constant, inertia))) => {
                     if seed.tangents {
-                        let inputs = Inputs::constant(&series[k]);
+                        let inputs = Inputs::constant(&now);
                         let f = chunk.owners.force(&seed.theta, &lifted, &inputs, constant);
                         for (lane, c) in chunk.columns.iter().enumerate() {
                             let [fx, fy, fn_] = [f.x.eps[lane], f.y.eps[lane], f.n.eps[lane]];
@@ -539,7 +579,7 @@ impl<'a> Filter<'a> {
                         }
                     }
                     for probe in &seed.probes {
-                        let f = |side: &Side| chunk.owners.force(&side.theta, &x, &series[k], flow);
+                        let f = |side: &Side| chunk.owners.force(&side.theta, &x, &now, flow);
                         let (high, low) = (f(&probe.high), f(&probe.low));
                         let difference = Force { x: high.x - low.x, y: high.y - low.y, n: high.n - low.n };
                         let rates = inertia.solve(&difference);
@@ -550,7 +590,7 @@ impl<'a> Filter<'a> {
                     if seed.tangents {
                         let [fx, fy, fn_] = push.map(Gradient::constant);
                         let force = Force { x: fx, y: fy, n: fn_ };
-                        let rates = chunk.view.rates_alone(&seed.theta, &lifted, &seed.instant(k), &force);
+                        let rates = chunk.view.rates_alone(&seed.theta, &lifted, &seed.instant(when), &force);
                         for i in 0..3 {
                             for (lane, c) in chunk.columns.iter().enumerate() {
                                 out[i * width + c] = rates[3 + i].eps[lane];
@@ -559,7 +599,8 @@ impl<'a> Filter<'a> {
                     }
                     for probe in &seed.probes {
                         let force = Force { x: push[0], y: push[1], n: push[2] };
-                        let f = |side: &Side| chunk.view.rates_alone(&side.theta, &x, &side.series[k], &force);
+                        let f =
+                            |side: &Side| chunk.view.rates_alone(&side.theta, &x, &instant(&side.series, when), &force);
                         let (high, low) = (f(&probe.high), f(&probe.low));
                         for i in 0..3 {
                             out[i * width + probe.column] = (high[3 + i] - low[3 + i]) * probe.weight;
@@ -567,37 +608,6 @@ impl<'a> Filter<'a> {
                     }
                 }
                 _ => {}
-            }
-        }
-    }
-
-    /// Adds the exact derivative of the step map with respect to the parameters to the sensitivities.
-    fn step_columns(
-        &self,
-        seeded: &[Seeded],
-        series: &[Inputs<f64>],
-        k: usize,
-        dt: f64,
-        state: &[f64; STATES],
-        push: &[f64; 3],
-        moved: &mut [f64],
-        width: usize,
-    ) {
-        let acts = |(chunk, seed): &(&Chunk, &Seeded)| chunk.reach != Reach::Sensors && seed.tangents;
-        for (chunk, seed) in self.chunks.iter().zip(seeded).filter(acts) {
-            let x: [Gradient; STATES] = state.map(Gradient::constant);
-            let [fx, fy, fn_] = push.map(Gradient::constant);
-            let force = Force { x: fx, y: fy, n: fn_ };
-            let instant = |k: usize| match chunk.reach {
-                Reach::Everything => seed.instant(k),
-                _ => Inputs::constant(&series[k]),
-            };
-            let (now, next) = (instant(k), instant(k + 1));
-            let y = step(&chunk.view, &seed.theta, self.integration, dt, &x, &now, &next, &force);
-            for i in 0..STATES {
-                for (lane, c) in chunk.columns.iter().enumerate() {
-                    moved[i * width + c] += y[i].eps[lane];
-                }
             }
         }
     }
@@ -638,6 +648,79 @@ impl<'a> Filter<'a> {
             (chunk.columns.as_slice(), chunk.view.measure(&seed.theta, &x, &inputs, &rates, &flow))
         };
         self.chunks.iter().zip(seeded).filter(|(c, _)| c.reach == Reach::Sensors).map(report).collect()
+    }
+}
+
+/// Inputs at a sample, or a fraction of the period after it, where they are linear.
+fn instant<S: Scalar>(series: &[Inputs<S>], (k, fraction): (usize, f64)) -> Inputs<S> {
+    if fraction == 0.0 { series[k] } else { series[k].between(&series[k + 1], fraction) }
+}
+
+/// `x + h k`.
+fn moved(x: &[f64; STATES], h: f64, k: &[f64; STATES]) -> [f64; STATES] {
+    std::array::from_fn(|j| x[j] + h * k[j])
+}
+
+/// Derivatives of the state at some instant with respect to where the step began: state, force, then parameters, row by row.
+#[derive(Clone, Debug, Default)]
+struct Variation {
+    width: usize,
+    rows: Vec<f64>,
+}
+
+impl Variation {
+    /// What stands before the parameters.
+    const FIXED: usize = STATES + 3;
+
+    /// At the start of a step.
+    fn start(parameters: usize) -> Self {
+        let width = Self::FIXED + parameters;
+        let mut rows = vec![0.0; STATES * width];
+        (0..STATES).for_each(|i| rows[i * width + i] = 1.0);
+        Self { width, rows }
+    }
+
+    fn row(&self, i: usize) -> &[f64] {
+        &self.rows[i * self.width..(i + 1) * self.width]
+    }
+
+    /// Its rate, from the Jacobian of the rates and the parameters' own part in the accelerations.
+    fn rate(&self, slope: &Slope, columns: &[f64]) -> Self {
+        let width = self.width;
+        let parameters = width - Self::FIXED;
+        let mut rows = vec![0.0; STATES * width];
+        for (i, row) in rows.chunks_exact_mut(width).enumerate() {
+            for l in 0..STATES {
+                axpy(row, slope[i][l], self.row(l));
+            }
+            for l in STATES..Self::FIXED {
+                row[l] += slope[i][l];
+            }
+            if i >= 3 {
+                axpy(&mut row[Self::FIXED..], 1.0, &columns[(i - 3) * parameters..(i - 2) * parameters]);
+            }
+        }
+        Self { width, rows }
+    }
+
+    /// After moving for `h` \[s\] at a rate.
+    fn moved(&self, h: f64, rate: &Self) -> Self {
+        let mut out = self.clone();
+        axpy(&mut out.rows, h, &rate.rows);
+        out
+    }
+
+    /// With respect to the state and to the force.
+    fn jacobians(&self) -> ([[f64; STATES]; STATES], [[f64; 3]; STATES]) {
+        (
+            std::array::from_fn(|i| std::array::from_fn(|j| self.row(i)[j])),
+            std::array::from_fn(|i| std::array::from_fn(|j| self.row(i)[STATES + j])),
+        )
+    }
+
+    /// Row `i` with respect to the parameters.
+    fn parameters(&self, i: usize) -> &[f64] {
+        &self.row(i)[Self::FIXED..]
     }
 }
 
@@ -736,8 +819,8 @@ impl Seeded {
         Self { theta: dual, series, plain: driven(theta), tangents, probes }
     }
 
-    fn instant(&self, k: usize) -> Inputs<Gradient> {
-        self.series.as_ref().map_or_else(|| Inputs::constant(&self.plain[k]), |s| s[k])
+    fn instant(&self, when: (usize, f64)) -> Inputs<Gradient> {
+        self.series.as_ref().map_or_else(|| Inputs::constant(&instant(&self.plain, when)), |s| instant(s, when))
     }
 }
 

@@ -126,7 +126,7 @@ fn log_likelihood<S: Scalar>(run: &Run, tangent: &Tangent, noise: &Discrete<S>, 
             let square = e * e / s;
             let gate = S::from_f64(GATE * GATE);
             let outlier = gate.less(square);
-            total = total - (S::select(outlier, gate, square) + s.ln()) * 0.5;
+            total -= (S::select(outlier, gate, square) + s.ln()) * 0.5;
             let inverse = S::select(outlier, S::zero(), S::one() / s);
             for i in 0..Z {
                 let gain = ph[i] * inverse;
