@@ -268,6 +268,8 @@ pub struct SurrogateTerm {
 /// The unknown force along one run, as the filter estimates it.
 #[derive(Clone, Debug)]
 pub struct Trace {
+    /// Index of the run.
+    pub index: usize,
     /// The run.
     pub run: String,
     /// Its session.
@@ -346,15 +348,16 @@ fn traces(runs: &[Run], before: &Screen, after: Option<&Screen>) -> Vec<Trace> {
     let force = |z: &[f64; super::covariance::Z]| [z[6], z[7], z[8]];
     runs.iter()
         .enumerate()
-        .map(|(i, r)| Trace {
+        .map(|(index, r)| Trace {
+            index,
             run: r.name.clone(),
             session: r.session.clone(),
             time: r.inputs.iter().map(|i| i.t).collect(),
-            state: before.passes[i].filtered.iter().map(|z| [z[0], z[1], z[2], z[3], z[4], z[5]]).collect(),
+            state: before.passes[index].filtered.iter().map(|z| [z[0], z[1], z[2], z[3], z[4], z[5]]).collect(),
             inputs: r.inputs.iter().map(|i| [i.n, i.delta]).collect(),
-            before: before.passes[i].filtered.iter().map(force).collect(),
-            after: after.unwrap_or(before).passes[i].filtered.iter().map(force).collect(),
-            sd: before.passes[i].force_sd.clone(),
+            before: before.passes[index].filtered.iter().map(force).collect(),
+            after: after.unwrap_or(before).passes[index].filtered.iter().map(force).collect(),
+            sd: before.passes[index].force_sd.clone(),
         })
         .collect()
 }

@@ -234,7 +234,7 @@ fn forces(d: &Diagnosis, runs: &[&Trace]) -> Figure {
             let at = |k: usize| (t.time[k], t.before[k][e] * factor, 1.96 * t.sd[k][e] * factor);
             let label = format!("{word} {name} [{unit}]");
             let mut panel = Panel::new(title, Axis::new("time [s]"), Axis::new(label).including(0.0));
-            for w in d.location.windows.iter().filter(|w| w.run == t.run) {
+            for w in d.location.windows.iter().filter(|w| w.index == t.index) {
                 panel = panel.with(Layer::v_span("window that stands out", SKY, w.start, w.end));
             }
             panel = panel.with(Layer::h_line("zero", GREY, 0.0).unlisted()).with(Layer::band(

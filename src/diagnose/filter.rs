@@ -21,8 +21,10 @@ use trimtab_ad::Scalar;
 /// One run as the filter needs it.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// Name of the recording (and window).
+    /// Name of the recording and of the window in it.
     pub name: String,
+    /// Name of the recording.
+    pub recording: String,
     /// Session it belongs to.
     pub session: String,
     /// What was sailed.
@@ -53,6 +55,7 @@ impl From<&Window> for Run {
     fn from(w: &Window) -> Self {
         Self {
             name: format!("{} {:.0} s", w.run, w.start_time),
+            recording: w.run.clone(),
             session: w.session.clone(),
             manoeuvre: w.manoeuvre.clone(),
             dt: w.dt,

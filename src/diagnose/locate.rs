@@ -18,7 +18,7 @@ const BLOCK: usize = 5;
 /// A time window in which a force acts that the model does not have.
 #[derive(Clone, Debug, Serialize)]
 pub struct Window {
-    /// The run.
+    /// The recording.
     pub run: String,
     /// Its session.
     pub session: String,
@@ -305,7 +305,7 @@ impl Span {
 fn window(run: &Run, index: usize, s: &Span, looked_at: f64, unit: &[f64; 3]) -> Window {
     let samples = (s.from * BLOCK, (s.to * BLOCK).min(run.measured.len() - 1));
     Window {
-        run: run.name.clone(),
+        run: run.recording.clone(),
         session: run.session.clone(),
         start: run.inputs[samples.0].t,
         end: run.inputs[samples.1].t,

@@ -200,6 +200,7 @@ mod tests {
             let measured: Vec<[f64; 6]> = (0..121).map(place).collect();
             Run {
                 name: format!("run {i}"),
+                recording: format!("run {i}"),
                 session: "a".into(),
                 manoeuvre: String::new(),
                 dt,

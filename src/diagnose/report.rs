@@ -105,7 +105,7 @@ pub const KEYS: &[(&str, &str)] = &[
     ("location.equations[].rms", "root mean square [N; N m for N]"),
     ("location.equations[].sigma", "standard deviation of the unknown force in the noise model [N; N m]"),
     ("location.windows[]", "windows of time in which a force stands out, most significant first"),
-    ("location.windows[].run", "the run"),
+    ("location.windows[].run", "the recording, as the study names it"),
     ("location.windows[].session", "its session"),
     ("location.windows[].start", "first second, on the recording's clock [s]"),
     ("location.windows[].end", "last second [s]"),
@@ -522,7 +522,7 @@ fn location(d: &Diagnosis) -> Vec<String> {
     }
     let pushes: Vec<&Window> = d.findings.iter().flat_map(|f| &f.windows).collect();
     let windows: Vec<&Window> = if pushes.is_empty() { d.location.windows.iter().collect() } else { pushes };
-    let sailed: BTreeSet<&str> = windows.iter().map(|w| w.run.as_str()).collect();
+    let sailed: BTreeSet<usize> = windows.iter().map(|w| w.index).collect();
     if windows.is_empty() {
         lines.push("in time: no window stands out".to_owned());
     } else {

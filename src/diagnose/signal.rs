@@ -4,18 +4,21 @@
 use super::conclude::{Settings, base_parameters};
 use super::estimate::{Effort, Estimate, base_of, estimate, evidence, passes, restrictions};
 use super::evidence::{Base, Evidence};
-use super::filter::{Column, Run};
+use super::filter::{Column, Filter, Pass, Run, Wanted};
 use super::mechanism::{Candidate, append, candidates};
 use super::noise::{NoisePrior, guess};
 use crate::model::{Model, ModelError};
 use crate::simulate::Integration;
+use crate::state::{Inputs, State};
 use nalgebra::DVector;
+use rayon::prelude::*;
 
 /// Enough for a yardstick: noise within a few per cent.
 const EFFORT: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
 
 /// The base model fitted to runs without an effect, ready to measure the same runs with it.
 pub struct Signal {
+    runs: Vec<Run>,
     null: Estimate,
     integration: Integration,
     candidates: Vec<Candidate>,
@@ -40,7 +43,7 @@ impl Signal {
         let groups = append(&mut columns, &candidates);
         let p = passes(&null.model, integration, &columns, without, &null.noise, false);
         let evidence = evidence(without, &p, &restrictions(&free));
-        Ok(Self { null, integration, candidates, columns, groups, without: evidence })
+        Ok(Self { runs: without.to_vec(), null, integration, candidates, columns, groups, without: evidence })
     }
 
     /// Signal-to-noise ratio of the change from the runs without to the same runs with the effect (same noise), along a
@@ -72,14 +75,39 @@ impl Signal {
                 s.score = subtract(&s.score, &other.score);
             }
         }
-        let base = base_of(&difference, &self.null.model, &self.null.free);
-        // The prior's pull belongs to the estimate, not to the difference.
-        let base = Base { score: DVector::from_fn(free, |i, _| difference.total.score[i]), ..base };
+        let base = self.base(&difference);
         let test = if candidate.mechanism.needs_reference {
             difference.contrast(&base, own).unwrap_or_else(|| difference.test(&base, own))
         } else {
             difference.test(&base, own)
         };
         test.statistic.max(0.0).sqrt()
+    }
+    /// The same for one constant force (X, Y, N) in windows of some runs: index of the run, first and last sample.
+    pub fn ratio_in(&self, with: &[Run], windows: &[(usize, usize, usize)]) -> f64 {
+        let free = self.null.free.len();
+        let filter = Filter::new(&self.null.model, self.integration, &self.columns[..free]);
+        let seen = |runs: &[Run]| {
+            let pass = |(index, run): (usize, &Run)| {
+                let basis = |k: usize, _: &State<f64>, _: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
+                    let on = windows.iter().any(|(i, from, to)| *i == index && (*from..=*to).contains(&k));
+                    let unit = |e: usize| if on { self.null.noise.force[e] } else { 0.0 };
+                    out.extend([[unit(0), 0.0, 0.0], [0.0, unit(1), 0.0], [0.0, 0.0, unit(2)]]);
+                };
+                filter.pass(run, &self.null.noise, Wanted { basis: Some((3, &basis)), ..Wanted::default() })
+            };
+            let p: Vec<Pass> = runs.par_iter().enumerate().map(pass).collect();
+            evidence(runs, &p, &restrictions(&self.null.free))
+        };
+        let mut difference = seen(&self.runs);
+        difference.total.score = seen(with).total.score - &difference.total.score;
+        let test = difference.test(&self.base(&difference), &[free, free + 1, free + 2]);
+        test.statistic.max(0.0).sqrt()
+    }
+
+    /// What parameters and nuisances take of a difference. The prior's pull belongs to the estimate, not to it.
+    fn base(&self, difference: &Evidence) -> Base {
+        let base = base_of(difference, &self.null.model, &self.null.free);
+        Base { score: DVector::from_fn(self.null.free.len(), |i, _| difference.total.score[i]), ..base }
     }
 }

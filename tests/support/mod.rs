@@ -105,6 +105,7 @@ pub fn runs(model: &Model, noise: &Noise, count: usize, seed: u64) -> Vec<Run> {
             }
             Run {
                 name: format!("run {i}"),
+                recording: format!("run {i}"),
                 session,
                 manoeuvre: String::new(),
                 dt,

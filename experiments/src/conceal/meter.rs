@@ -16,8 +16,8 @@ use super::effects::{Class, Entry};
 use super::strength::{ForceMeter, Meter};
 use super::{ConcealError, Recorded, seal};
 
-/// The ratio of the first accepted mechanism that has a test, on the runs to train on. Effects without one (gusts, pushes, those
-/// outside the catalogue) are graded by [`ForceMeter`].
+/// The ratio of the first accepted mechanism that has a test, on the runs to train on; of one force in their windows where effects
+/// have windows. Effects without a test (gusts, those outside the catalogue) are graded by [`ForceMeter`].
 pub struct DiagnosisMeter {
     model: Model,
     settings: Settings,
@@ -53,10 +53,22 @@ impl Meter for DiagnosisMeter {
                 .map_err(|e| ConcealError::Meter { message: e.to_string() })?;
             *last = Some((a, signal));
         }
+        let windows = windows(with);
+        if let Some((_, signal)) = last.as_ref().filter(|_| !windows.is_empty()) {
+            return Ok(signal.ratio_in(&b, &windows));
+        }
         let ratio = |mechanism: &&str| last.as_ref().map_or(0.0, |(_, signal)| signal.ratio(&b, mechanism));
-        // Some mechanisms have no sensitivity where they are neutral: a push without a window, a log without a current.
+        // Some mechanisms have no sensitivity where they are neutral: a log without a current.
         effect.accepted.iter().map(ratio).find(|r| *r > 0.0).map_or_else(force, Ok)
     }
+}
+
+/// When effects of limited duration acted: index among the runs to train on, first and last row.
+fn windows(recorded: &Recorded) -> Vec<(usize, usize, usize)> {
+    let train: Vec<usize> = (0..recorded.plans.len()).filter(|i| !recorded.plans[*i].test).collect();
+    let row = |t: f64| (t / PERIOD).round().max(0.0) as usize;
+    let place = |run: usize| train.iter().position(|i| *i == run);
+    recorded.windows.iter().filter_map(|(run, start, end)| Some((place(*run)?, row(*start), row(*end)))).collect()
 }
 
 /// Whether two sets of runs hold the same numbers, missing ones included.
@@ -97,6 +109,7 @@ fn runs(recorded: &Recorded, sea: &Recorded) -> Vec<Run> {
             let measured: Vec<[f64; 6]> = recorded.rows[i].iter().map(|r| r.unwrap_or([f64::NAN; 6])).collect();
             Run {
                 name: plan.name.clone(),
+                recording: plan.name.clone(),
                 session: format!("day {}", plan.session + 1),
                 manoeuvre: plan.manoeuvre.to_owned(),
                 dt: PERIOD,

@@ -214,6 +214,8 @@ pub struct Recorded {
     pub tracks: Vec<Track>,
     /// The noisy rows of each run.
     pub rows: Vec<Rows>,
+    /// When effects of limited duration acted.
+    pub windows: Vec<effects::Window>,
 }
 
 /// A case, made and not yet written.
@@ -343,7 +345,14 @@ fn record(spec: &Spec, effects: Vec<Active>) -> Recorded {
     let tracks: Vec<Track> = plans.iter().enumerate().map(sailed).collect();
     let noisy = |(i, t): (usize, &Track)| noise.apply(&t.reported, &mut rng(spec.seed, stream::NOISE + i as u64));
     let rows = tracks.iter().enumerate().map(noisy).collect();
-    Recorded { plans, tracks, rows }
+    let acted = |e: &Active| {
+        let in_session = |w: &effects::Window| {
+            plans.get(w.0).is_some_and(|plan| e.sessions.get(plan.session).copied().unwrap_or(false))
+        };
+        e.physics.windows().into_iter().filter(in_session).collect::<Vec<_>>()
+    };
+    let windows = world.effects.iter().flat_map(acted).collect();
+    Recorded { plans, tracks, rows, windows }
 }
 
 #[cfg(test)]

@@ -39,7 +39,7 @@ pub struct Answer {
     pub force: Option<[f64; 3]>,
     /// Its share by equation, X, Y, N, the moment divided by a quarter of the length; absent for sensors.
     pub equations: Option<[f64; 3]>,
-    /// Runs and times on the recordings' clock \[s\] in which it acts, for effects of limited duration.
+    /// Runs, of those to train on, and times on the recordings' clock \[s\] in which it acts, for effects of limited duration.
     pub windows: Vec<(String, f64, f64)>,
 }
 
@@ -208,7 +208,7 @@ impl Case {
                     .into_iter()
                     .filter(|w| {
                         let plan = self.recorded.plans.get(w.0);
-                        plan.is_some_and(|p| e.sessions.get(p.session).copied().unwrap_or(false))
+                        plan.is_some_and(|p| !p.test && e.sessions.get(p.session).copied().unwrap_or(false))
                     })
                     .map(|(run, start, end)| {
                         let plan = &self.recorded.plans[run];

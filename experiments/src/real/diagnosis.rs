@@ -247,8 +247,7 @@ pub fn sessions(runs: &[Run]) -> Vec<String> {
 
 /// The runs with each recording a session of its own.
 pub fn by_recording(runs: &[Run]) -> Vec<Run> {
-    let recording = |r: &Run| r.name.split(' ').next().unwrap_or_default().to_owned();
-    runs.iter().map(|r| Run { session: recording(r), ..r.clone() }).collect()
+    runs.iter().map(|r| Run { session: r.recording.clone(), ..r.clone() }).collect()
 }
 
 /// An earth-fixed force in one session, beside what the anemometer recorded.
