@@ -120,6 +120,47 @@ fn a_receiver_that_jumps_is_no_push() {
     assert!(d.findings.is_empty(), "{}", d.headline);
     let jumped = d.admission.issues.iter().filter(|i| i.mechanism == "jump" && !i.blocking);
     assert_eq!(jumped.count(), 10);
+    assert_eq!(d.admission.runs, 40);
+}
+
+/// Thirty runs, in every fourth of which a force acts from 80 to 140 s.
+fn pushed(force: [f64; 3]) -> Diagnosis {
+    let mut truth = model();
+    truth.add_term("push").unwrap();
+    for (name, value) in ["push.x", "push.y", "push.n", "push.start", "push.end"]
+        .into_iter()
+        .zip([force[0], force[1], force[2], 80.0, 140.0])
+    {
+        let i = truth.find(name).unwrap();
+        truth.parameters[i].value = value;
+    }
+    let (with, mut data) = (runs(&truth, &truth_noise(), 30, 101), runs(&model(), &truth_noise(), 30, 101));
+    for (i, run) in data.iter_mut().enumerate() {
+        if i % 4 == 1 {
+            *run = with[i].clone();
+        }
+        run.name = format!("{} 0 s", run.recording);
+    }
+    diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap()
+}
+
+#[test]
+fn a_push_is_named_with_its_windows_by_recording() {
+    let d = pushed([0.0, 5e4, 1e6]);
+    assert_eq!(d.findings.first().map(|f| f.mechanism.as_str()), Some("push"), "{}", d.headline);
+    let windows = &d.findings[0].windows;
+    let right = |w: &&trimtab::diagnose::locate::Window| {
+        let number: usize = w.run.trim_start_matches("run ").parse().unwrap();
+        number % 4 == 1 && (w.start - 80.0).abs() <= 20.0 && (w.end - 140.0).abs() <= 20.0
+    };
+    assert!(windows.len() >= 6 && windows.iter().filter(right).count() + 1 >= windows.len(), "{windows:?}");
+}
+
+#[test]
+fn how_much_of_a_push_is_across_the_keel_is_told() {
+    let share = |force: [f64; 3]| pushed(force).location.push.unwrap().sideways;
+    let (across, along) = (share([0.0, 3e4, 6e5]), share([-4e4, 0.0, 0.0]));
+    assert!(across > 0.9 && along < 0.1, "{across} {along}");
 }
 
 #[test]

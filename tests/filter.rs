@@ -7,9 +7,10 @@ mod support;
 
 use rayon::prelude::*;
 use support::{STAR, model, runs, truth_noise};
+use trimtab::diagnose::estimate::{Effort, estimate};
 use trimtab::diagnose::evidence::{Evidence, RunEvidence};
-use trimtab::diagnose::filter::{Column, Filter, Probe, Wanted};
-use trimtab::diagnose::noise::{NoisePrior, fit_noise, guess};
+use trimtab::diagnose::filter::{Column, Filter, GATE, Probe, Wanted};
+use trimtab::diagnose::noise::{NOISE_PARAMETERS, Noise, NoisePrior, SensorNoise, fit_noise, guess};
 use trimtab::model::{ELEVEN, Model};
 use trimtab::simulate::{Integration, Method};
 
@@ -109,7 +110,7 @@ fn noise_is_recovered_and_the_fisher_step_finds_the_parameters() {
             let clock = std::time::Instant::now();
             let tangents: Vec<_> = passes.iter().filter_map(|p| p.tangent.as_ref()).collect();
             let r: Vec<_> = data.iter().collect();
-            estimate = fit_noise(&r, &tangents, &model, &estimate, &prior, 12);
+            estimate = fit_noise(&r, &tangents, &model, &estimate, &prior, GATE, 12);
             println!("noise in {:?}: {estimate:?}", clock.elapsed());
         }
     }
@@ -122,6 +123,59 @@ fn noise_is_recovered_and_the_fisher_step_finds_the_parameters() {
     }
     let i = model.index("rudder.lift1").unwrap();
     assert!((model.parameters[i].value - 3.193).abs() < 0.15);
+}
+
+#[test]
+fn fitted_noise_is_the_most_likely_one() {
+    let (model, truth) = (model(), truth_noise());
+    let data = runs(&model, &truth, 12, 31);
+    let filter = Filter::new(&model, RK4, &[]);
+    let start = guess(&data, &model);
+    let prior = NoisePrior::around(&start);
+    let pass = |noise: &Noise| -> Vec<_> {
+        data.iter().map(|r| filter.pass(r, noise, Wanted { tangent: true, ..Wanted::default() })).collect()
+    };
+    let mut noise = start;
+    for _ in 0..3 {
+        let passes = pass(&noise);
+        let tangents: Vec<_> = passes.iter().filter_map(|p| p.tangent.as_ref()).collect();
+        noise = fit_noise(&data.iter().collect::<Vec<_>>(), &tangents, &model, &noise, &prior, GATE, 20);
+    }
+    let likelihood = |noise: &Noise| pass(noise).iter().map(|p| p.log_likelihood).sum::<f64>();
+    let best = likelihood(&noise);
+    assert!(best > likelihood(&start) && best > likelihood(&truth) - 1.0);
+    // The weak beliefs move it a little.
+    for i in 0..NOISE_PARAMETERS {
+        for factor in [0.8f64, 1.25] {
+            let mut v = noise.to_log();
+            v[i] += factor.ln();
+            let beside = likelihood(&Noise::from_log(&v));
+            assert!(beside < best + 0.5, "parameter {i} times {factor}: {beside} over {best}");
+        }
+    }
+}
+
+#[test]
+fn a_noise_that_is_far_too_small_at_first_is_found_all_the_same() {
+    let (model, truth) = (model(), truth_noise());
+    let data = runs(&model, &truth, 12, 32);
+    let mut start = guess(&data, &model);
+    for s in &mut start.sensors {
+        (s.white, s.coloured) = (0.05 * s.white, 0.05 * s.coloured);
+    }
+    start.force = start.force.map(|f| 0.01 * f);
+    let aside = |noise: &Noise| -> usize {
+        let filter = Filter::new(&model, RK4, &[]);
+        data.iter().map(|r| filter.pass(r, noise, Wanted::default()).outliers).sum()
+    };
+    assert!(aside(&start) > 1000, "{}", aside(&start));
+    let effort = Effort { rounds: 4, noise_rounds: 4, noise_iterations: 14, noise_runs: 12 };
+    let found = estimate(&model, RK4, &data, &[], &start, &NoisePrior::around(&start), effort).noise;
+    assert!(aside(&found) < 10, "{}", aside(&found));
+    for (found, truth) in found.sensors.iter().zip(truth.sensors) {
+        let total = |s: &SensorNoise| s.white.hypot(s.coloured);
+        assert!((total(found) / total(&truth)).ln().abs() < 0.3, "{found:?} for {truth:?}");
+    }
 }
 
 #[test]

@@ -425,6 +425,10 @@ fn needed_statistic(windows: usize, form_holds: bool) -> f64 {
     }
 }
 
+/// Along the keel a ship's own thrust and resistance in another form make such windows too: where that form is in doubt, a push
+/// must hold at least this share of its evidence across.
+const SIDEWAYS: f64 = 0.5;
+
 /// Above this p-value of the mirror-symmetric discrepancy the ship's own forces have the form that the model gives them.
 const FORM_HOLDS: f64 = 0.05;
 
@@ -504,7 +508,9 @@ pub fn diagnose(
     if form_holds {
         location.push = push_of(&null, &runs);
     }
-    let is_event = |push: &Push| push.statistic > needed_statistic(push.windows.len(), form_holds);
+    let is_event = |push: &Push| {
+        push.statistic > needed_statistic(push.windows.len(), form_holds) && (form_holds || push.sideways > SIDEWAYS)
+    };
 
     // A strong event in time inflates the noise and gets a hull's name: explain it first.
     let mut pushes: Option<Push> = None;

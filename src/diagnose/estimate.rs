@@ -2,7 +2,7 @@
 //! likelihood, in turn. Which parameters are free, and what is concluded, is decided elsewhere.
 
 use super::evidence::{Base, Evidence, RunEvidence};
-use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::filter::{Column, Filter, GATE, Pass, Run, Wanted};
 use super::noise::{Noise, NoisePrior, fit_noise};
 use crate::model::{Model, Prior};
 use crate::simulate::Integration;
@@ -104,6 +104,18 @@ pub struct Effort {
     pub noise_runs: usize,
 }
 
+/// Share of measurements set aside as outliers above which they are none.
+const MANY: f64 = 0.03;
+
+/// A noise that some runs prefer is refused by all when it costs them more than this in log-likelihood.
+const REFUSED: f64 = 10.0;
+
+/// Share of the measurements that passes set aside as outliers.
+fn aside(passes: &[Pass]) -> f64 {
+    let (outliers, used) = passes.iter().fold((0, 0), |(o, u), p| (o + p.outliers, u + p.used));
+    outliers as f64 / (outliers + used).max(1) as f64
+}
+
 /// One pass over all runs.
 pub fn passes(
     model: &Model,
@@ -176,7 +188,7 @@ pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prio
     order.sort_unstable();
     let some: Vec<&Run> = order.iter().map(|i| &runs[*i]).collect();
     let tangents: Vec<_> = order.iter().filter_map(|i| p[*i].tangent.as_ref()).collect();
-    fit_noise(&some, &tangents, &found.model, &found.noise, prior, 8)
+    fit_noise(&some, &tangents, &found.model, &found.noise, prior, GATE, 8)
 }
 
 /// Fits the free parameters and the noise, starting from the model's values.
@@ -231,16 +243,26 @@ pub fn estimate(
         // A gain below this changes no verdict.
         let settled = !moved || length < 0.03 || value - before < 0.3;
         if round < effort.noise_rounds {
-            let stride = runs.len().div_ceil(effort.noise_runs.max(1)).max(1);
-            let chosen: Vec<usize> = (0..runs.len()).step_by(stride).collect();
-            let some: Vec<&Run> = chosen.iter().map(|i| &runs[*i]).collect();
-            let tangents: Vec<_> = chosen.iter().filter_map(|i| current[*i].tangent.as_ref()).collect();
-            let trial = fit_noise(&some, &tangents, &model, &noise, prior, effort.noise_iterations);
-            let trial_passes = passes(&model, integration, &columns, runs, &trial, true);
-            let trial_value = posterior(&model, &trial_passes);
-            // The noise is fitted to some runs, linearised: it must serve all of them.
-            if trial_value > value {
-                (noise, current, value) = (trial, trial_passes, trial_value);
+            // The noise is fitted to some runs, linearised: where it does not serve all of them, it is fitted to all.
+            for most in [effort.noise_runs.min(runs.len()), runs.len()] {
+                let stride = runs.len().div_ceil(most.max(1)).max(1);
+                let chosen: Vec<usize> = (0..runs.len()).step_by(stride).collect();
+                let some: Vec<&Run> = chosen.iter().map(|i| &runs[*i]).collect();
+                let tangents: Vec<_> = chosen.iter().filter_map(|i| current[*i].tangent.as_ref()).collect();
+                // Where much is set aside the noise is too small by far, and a gate hides that: everything counts first.
+                let gates = if aside(&current) > MANY { &[f64::INFINITY, GATE][..] } else { &[GATE] };
+                let trial = gates.iter().fold(noise, |noise, gate| {
+                    fit_noise(&some, &tangents, &model, &noise, prior, *gate, effort.noise_iterations)
+                });
+                let trial_passes = passes(&model, integration, &columns, runs, &trial, true);
+                let trial_value = posterior(&model, &trial_passes);
+                if trial_value > value {
+                    (noise, current, value) = (trial, trial_passes, trial_value);
+                    break;
+                }
+                if value - trial_value < REFUSED {
+                    break;
+                }
             }
         } else if settled {
             break;

@@ -342,6 +342,8 @@ pub struct Push {
     pub error: [f64; 3],
     /// Twice the gain in log-likelihood, less twice the logarithm of the number of windows each was chosen from.
     pub statistic: f64,
+    /// Share of the evidence for it that sway force and yaw moment hold by themselves, 0 to 1.
+    pub sideways: f64,
     /// When it acts.
     pub windows: Vec<Window>,
 }
@@ -404,7 +406,11 @@ fn common_push(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f64)
             Some(window(&runs[*index], *index, &blocks[*index].fit(*from, *to)?, looked_at, unit))
         })
         .collect();
+    // With the surge force free, against all three.
+    let across = inverse.fixed_view::<2, 2>(1, 1).into_owned().try_inverse()?;
+    let (side, all) = (force.fixed_rows::<2>(1).into_owned(), inverse.try_inverse()?);
     Some(Push {
+        sideways: side.dot(&(across * side)) / force.dot(&(all * force)).max(f64::MIN_POSITIVE),
         force: std::array::from_fn(|a| force[a] * unit[a]),
         error: std::array::from_fn(|a| inverse[(a, a)].max(0.0).sqrt() * unit[a]),
         statistic,

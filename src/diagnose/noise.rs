@@ -2,10 +2,10 @@
 //! It says nothing of the ship; its numbers are estimated by maximum likelihood in `fit_noise`.
 
 use super::covariance::{Discrete, Z, initial, predict};
-use super::filter::{GATE, Run, Tangent};
+use super::filter::{Run, Tangent};
 use crate::model::Model;
 use crate::state::STATES;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 use serde::Serialize;
 use trimtab_ad::{Lanes, Scalar};
@@ -90,52 +90,75 @@ impl NoisePrior {
         Self { centre: guess.to_log(), spread }
     }
 
+    /// Distance of a logarithm from its belief, and the spread of that belief.
+    ///
+    /// The scatter of a channel is all of its white noise, or the floor below which it is exact: a filtered channel (a smoothed
+    /// gyro) must not become infinitely exact.
+    fn away(&self, v: &[f64; NOISE_PARAMETERS], i: usize) -> (f64, f64) {
+        let away = v[i] - self.centre[i];
+        let white = i < 12 && i % 3 == 0 && away < 0.0;
+        (away, if white { 0.05 } else { self.spread[i] })
+    }
+
     fn log_density(&self, v: &[f64; NOISE_PARAMETERS]) -> f64 {
-        (0..NOISE_PARAMETERS)
-            .map(|i| {
-                // The scatter of a channel is all of its white noise, or the floor below which it is exact: a filtered channel
-                // (a smoothed gyro) must not become infinitely exact.
-                let white = i < 12 && i % 3 == 0 && v[i] < self.centre[i];
-                let spread = if white { 0.05 } else { self.spread[i] };
-                -0.5 * ((v[i] - self.centre[i]) / spread).powi(2)
-            })
-            .sum()
+        let of = |i: usize| {
+            let (away, spread) = self.away(v, i);
+            -0.5 * (away / spread).powi(2)
+        };
+        (0..NOISE_PARAMETERS).map(of).sum()
+    }
+
+    /// Its slope, and its precision as a diagonal matrix.
+    fn score(&self, v: &[f64; N]) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        let precision = SVector::from_fn(|i, _| self.away(v, i).1.powi(-2));
+        (SVector::from_fn(|i, _| -self.away(v, i).0 * precision[i]), SMatrix::from_diagonal(&precision))
     }
 }
 
-/// Log-likelihood of one run under the linearised step maps, for a noise or for eight at once: a Kalman filter without
-/// sensitivities.
-fn log_likelihood<S: Scalar>(run: &Run, tangent: &Tangent, noise: &Discrete<S>, model: &Model) -> S {
+/// An innovation with its variance.
+#[derive(Clone, Copy)]
+struct Innovation<S> {
+    error: S,
+    variance: S,
+}
+
+/// Innovations of one run under the linearised step maps, for a noise or for eight at once: a Kalman filter without
+/// sensitivities. What lies beyond `gate` standard deviations is an outlier, from which the filter learns nothing.
+fn innovations<S: Scalar>(
+    run: &Run,
+    tangent: &Tangent,
+    noise: &Discrete<S>,
+    model: &Model,
+    gate: f64,
+) -> Vec<Innovation<S>> {
+    let mut out = Vec::with_capacity(run.measured.len() * STATES);
+    let gate = S::from_f64(gate * gate);
     let mut z = [S::zero(); Z];
     (0..STATES).for_each(|i| z[i] = S::from_f64(run.initial[i]));
     let mut p = initial(noise, model);
-    let mut total = S::zero();
     for k in 0..run.measured.len() {
         for j in 0..STATES {
             let y = run.measured[k][j];
             if !run.channels[j] || !y.is_finite() {
                 continue;
             }
-            let mut e = -(z[j] + z[9 + j]) + (y - tangent.offset[k][j]);
+            let mut error = -(z[j] + z[9 + j]) + (y - tangent.offset[k][j]);
             if j == 2 {
-                e = trimtab_ad::smooth::wrap_angle(e);
+                error = trimtab_ad::smooth::wrap_angle(error);
             }
             let ph: [S; Z] = std::array::from_fn(|i| p[j][i] + p[9 + j][i]);
-            let s = noise.white[j] + ph[j] + ph[9 + j];
-            // An outlier counts as if it were at the gate, and teaches nothing.
-            let square = e * e / s;
-            let gate = S::from_f64(GATE * GATE);
-            let outlier = gate.less(square);
-            total -= (S::select(outlier, gate, square) + s.ln()) * 0.5;
-            let inverse = S::select(outlier, S::zero(), S::one() / s);
+            let variance = noise.white[j] + ph[j] + ph[9 + j];
+            let outlier = (gate * variance).less(error * error);
+            let inverse = S::select(outlier, S::zero(), S::one() / variance);
             for i in 0..Z {
                 let gain = ph[i] * inverse;
-                z[i] += gain * e;
+                z[i] += gain * error;
                 for l in 0..=i {
                     p[i][l] -= gain * ph[l];
                     p[l][i] = p[i][l];
                 }
             }
+            out.push(Innovation { error, variance });
         }
         if k + 1 == run.measured.len() {
             break;
@@ -143,7 +166,13 @@ fn log_likelihood<S: Scalar>(run: &Run, tangent: &Tangent, noise: &Discrete<S>, 
         z = move_mean(&z, tangent, k, noise);
         predict(&mut p, &tangent.a[k], &tangent.gamma[k], noise, run.boost(k));
     }
-    total
+    out
+}
+
+/// Log-likelihood of innovations: an outlier counts as if it were at the gate.
+fn log_likelihood(innovations: &[Innovation<f64>], gate: f64) -> f64 {
+    let one = |i: &Innovation<f64>| (i.error * i.error / i.variance).min(gate * gate) + i.variance.ln();
+    -0.5 * innovations.iter().map(one).sum::<f64>()
 }
 
 /// The mean one sample later under the linearised step map.
@@ -167,7 +196,46 @@ fn move_mean<S: Scalar>(z: &[S; Z], tangent: &Tangent, k: usize, noise: &Discret
     next
 }
 
-/// Maximises the log-likelihood over the noise, by BFGS on the logarithms with differences for gradients.
+/// Score and information of the noise's logarithms in one run, from innovations at a noise and at noises nudged by [`NUDGE`]:
+/// `g_i = sum (e^2/s - 1) s_i / (2 s) - e e_i / s`, `H_ij = sum s_i s_j / (2 s^2) + e_i e_j / s`, with `e_i`, `s_i` the
+/// derivatives of innovation and variance (Gupta & Mehra 1974, IEEE Trans. Autom. Control 19). Outliers have no part in it.
+fn noise_score(
+    at: &[Innovation<f64>],
+    nudged: &[Vec<Innovation<Lanes>>; BLOCKS],
+    gate: f64,
+) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+    let (mut score, mut information) = (SVector::<f64, N>::zeros(), SMatrix::<f64, N, N>::zeros());
+    for (m, Innovation { error, variance }) in at.iter().enumerate() {
+        let square = error * error / variance;
+        if square > gate * gate {
+            continue;
+        }
+        let slope = |of: fn(&Innovation<Lanes>) -> Lanes, from: f64, unit: f64| {
+            let blocks: [[f64; Lanes::LANES]; BLOCKS] =
+                std::array::from_fn(|b| ((of(&nudged[b][m]) - from) * (unit / NUDGE)).to_array());
+            SVector::<f64, N>::from_fn(|i, _| blocks[i / Lanes::LANES][i % Lanes::LANES])
+        };
+        // In units of the standard deviation, and of the variance times the square root of 2.
+        let errors = slope(|i| i.error, *error, 1.0 / variance.sqrt());
+        let variances = slope(|i| i.variance, *variance, std::f64::consts::FRAC_1_SQRT_2 / variance);
+        score += variances * ((square - 1.0) * std::f64::consts::FRAC_1_SQRT_2) - errors * (error / variance.sqrt());
+        information.ger(1.0, &errors, &errors, 1.0);
+        information.ger(1.0, &variances, &variances, 1.0);
+    }
+    (score, information)
+}
+
+/// How far the logarithms are nudged for derivatives.
+const NUDGE: f64 = 0.01;
+const N: usize = NOISE_PARAMETERS;
+const BLOCKS: usize = N / Lanes::LANES;
+/// The furthest that a logarithm moves in one step.
+const LONGEST: f64 = 1.5;
+/// A noise that promises less than this in log-likelihood is as good.
+const ENOUGH: f64 = 0.05;
+
+/// Maximises the log-likelihood over the noise, by Fisher scoring on the logarithms, damped where a step does not hold what it
+/// promises. Innovations beyond `gate` standard deviations are outliers.
 ///
 /// The sums over runs are taken in order, so that the result does not depend on the number of threads.
 pub fn fit_noise(
@@ -176,74 +244,64 @@ pub fn fit_noise(
     model: &Model,
     start: &Noise,
     prior: &NoisePrior,
+    gate: f64,
     iterations: usize,
 ) -> Noise {
-    const STEP: f64 = 0.02;
-    const N: usize = NOISE_PARAMETERS;
-    let objective = |v: &[f64; N]| -> f64 {
+    let of = |v: &[f64; N]| -> Vec<Vec<Innovation<f64>>> {
         let noise = Noise::from_log(v);
-        let part = |(r, t): (&&Run, &&Tangent)| log_likelihood(r, t, &Discrete::new(&noise, r.dt), model);
-        let parts: Vec<f64> = runs.par_iter().zip(tangents.par_iter()).map(part).collect();
-        -(parts.iter().sum::<f64>() + prior.log_density(v))
+        let one = |(r, t): (&&Run, &&Tangent)| innovations(r, t, &Discrete::new(&noise, r.dt), model, gate);
+        runs.par_iter().zip(tangents.par_iter()).map(one).collect()
     };
-    let gradient = |v: &[f64; N], f: f64| -> [f64; N] {
-        let nudged: [[f64; N]; N] = std::array::from_fn(|i| {
-            let mut w = *v;
-            w[i] += STEP;
-            w
-        });
-        let noises = nudged.map(|w| Noise::from_log(&w));
-        let part = |(r, t): (&&Run, &&Tangent)| -> [Lanes; N / Lanes::LANES] {
-            std::array::from_fn(|block| {
-                let some = std::array::from_fn(|lane| Discrete::new(&noises[block * Lanes::LANES + lane], r.dt));
-                log_likelihood(r, t, &Discrete::side_by_side(&some), model)
-            })
-        };
-        let parts: Vec<_> = runs.par_iter().zip(tangents.par_iter()).map(part).collect();
-        std::array::from_fn(|i| {
-            let likelihood: f64 = parts.iter().map(|p| p[i / Lanes::LANES].lane(i % Lanes::LANES)).sum();
-            (-(likelihood + prior.log_density(&nudged[i])) - f) / STEP
-        })
+    let posterior = |v: &[f64; N], innovations: &[Vec<Innovation<f64>>]| -> f64 {
+        innovations.iter().map(|i| log_likelihood(i, gate)).sum::<f64>() + prior.log_density(v)
     };
     let mut v = start.to_log();
-    let mut f = objective(&v);
-    let mut g = DVector::from_column_slice(&gradient(&v, f));
-    let mut inverse = DMatrix::<f64>::identity(N, N) * (0.5 / g.amax().max(1.0));
+    let mut at = of(&v);
+    let mut value = posterior(&v, &at);
+    let mut damping = 0.0;
     for _ in 0..iterations {
-        let mut direction = -(&inverse * &g);
-        let longest = direction.amax();
-        if longest > 1.5 {
-            direction *= 1.5 / longest;
+        let nudged: [Noise; N] = std::array::from_fn(|i| {
+            let mut w = v;
+            w[i] += NUDGE;
+            Noise::from_log(&w)
+        });
+        let one = |((r, t), i): ((&&Run, &&Tangent), &Vec<Innovation<f64>>)| {
+            let blocks = std::array::from_fn(|block| {
+                let some = std::array::from_fn(|lane| Discrete::new(&nudged[block * Lanes::LANES + lane], r.dt));
+                innovations(r, t, &Discrete::side_by_side(&some), model, gate)
+            });
+            noise_score(i, &blocks, gate)
+        };
+        let parts: Vec<_> = runs.par_iter().zip(tangents.par_iter()).zip(at.par_iter()).map(one).collect();
+        let (mut score, mut information) = prior.score(&v);
+        for (s, h) in &parts {
+            score += s;
+            information += h;
         }
-        let slope = direction.dot(&g);
-        if slope > -0.05 {
-            break;
-        }
-        let mut length = 1.0;
-        let mut accepted = None;
+        let mut moved = false;
         for _ in 0..6 {
-            let w: [f64; N] = std::array::from_fn(|i| v[i] + length * direction[i]);
-            let value = objective(&w);
-            if value.is_finite() && value <= f + 1e-4 * length * slope {
-                accepted = Some((w, value));
+            let mut damped = information;
+            (0..N).for_each(|i| damped[(i, i)] *= 1.0 + damping);
+            let Some(mut step) = damped.cholesky().map(|c| c.solve(&score)) else { break };
+            if 0.5 * score.dot(&step) < ENOUGH {
                 break;
             }
-            length *= 0.35;
+            let longest = step.amax();
+            if longest > LONGEST {
+                step *= LONGEST / longest;
+            }
+            let w: [f64; N] = std::array::from_fn(|i| v[i] + step[i]);
+            let trial = of(&w);
+            let reached = posterior(&w, &trial);
+            if reached.is_finite() && reached > value {
+                (v, at, value) = (w, trial, reached);
+                damping = if damping > 0.1 { 0.1 * damping } else { 0.0 };
+                moved = true;
+                break;
+            }
+            damping = f64::max(0.1, 10.0 * damping);
         }
-        let Some((w, value)) = accepted else { break };
-        let next = DVector::from_column_slice(&gradient(&w, value));
-        let (s, y) = (&direction * length, &next - &g);
-        let sy = s.dot(&y);
-        if sy > 1e-10 {
-            let rho = 1.0 / sy;
-            let hy = &inverse * &y;
-            let yhy = y.dot(&hy);
-            inverse +=
-                (&s * s.transpose()) * (rho * (1.0 + rho * yhy)) - (&hy * s.transpose() + &s * hy.transpose()) * rho;
-        }
-        let gain = f - value;
-        (v, f, g) = (w, value, next);
-        if gain < 0.05 {
+        if !moved {
             break;
         }
     }

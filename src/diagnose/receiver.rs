@@ -26,8 +26,8 @@ pub struct Jump {
     pub length: f64,
 }
 
-/// The runs with the unknown force free where the position jumps and without what was held instead of measured, and one note a
-/// run on each. `length` is that of the ship \[m\].
+/// The runs parted where the position jumps and without what was held instead of measured, and one note a run on each. `length`
+/// is that of the ship \[m\].
 pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
     let mut out = runs.to_vec();
     let mut issues = Vec::new();
@@ -52,9 +52,12 @@ pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
             });
         }
     }
-    for (run, jumps) in out.iter_mut().zip(jumps(runs, length)) {
-        let Some(first) = jumps.first() else { continue };
-        run.disturbed.extend(jumps.iter().map(|j| (j.sample - 1, j.sample)));
+    let mut parted = Vec::with_capacity(out.len());
+    for (run, jumps) in out.into_iter().zip(jumps(runs, length)) {
+        let Some(first) = jumps.first() else {
+            parted.push(run);
+            continue;
+        };
         let times: Vec<String> = jumps.iter().map(|j| sig(run.inputs[j.sample].t, 5)).collect();
         let longest = jumps.iter().map(|j| j.length).fold(first.length, f64::max);
         issues.push(Issue {
@@ -66,11 +69,32 @@ pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
                 times.join(", "),
                 sig(longest, 2)
             ),
-            next_step: "no force is read off these samples".into(),
+            next_step: "the run is parted there: no force is read off the jump".into(),
             blocking: false,
         });
+        parted.extend(parts(&run, &jumps));
     }
-    (out, issues)
+    (parted, issues)
+}
+
+/// A run in pieces, each with a start of its own; what is too short to say anything is left out.
+fn parts(run: &Run, jumps: &[Jump]) -> Vec<Run> {
+    let mut edges = vec![0];
+    edges.extend(jumps.iter().map(|j| j.sample));
+    edges.push(run.measured.len());
+    let part = |edge: &[usize]| {
+        let (from, to) = (edge[0], edge[1]);
+        // Where a channel is not measured at the edge, the last value before it stands in.
+        let last = |c: usize| run.measured[..=from].iter().rev().map(|m| m[c]).find(|v| v.is_finite());
+        (to - from >= 2 * SIDE).then(|| Run {
+            name: format!("{} {} s", run.recording, sig(run.inputs[from].t, 5)),
+            inputs: run.inputs[from..to].to_vec(),
+            measured: run.measured[from..to].to_vec(),
+            initial: if from == 0 { run.initial } else { std::array::from_fn(|c| last(c).unwrap_or(run.initial[c])) },
+            ..run.clone()
+        })
+    };
+    edges.windows(2).filter_map(part).collect()
 }
 
 /// Weights that read a step between the two middle samples off a row of positions, whatever parabola they lie on, one of them
@@ -218,11 +242,11 @@ mod tests {
     fn neither_noise_nor_a_sudden_force_is_a_jump() {
         let (runs, issues) = settled(&circles(), LENGTH);
         assert!(issues.is_empty(), "{issues:?}");
-        assert!(runs.iter().all(|r| r.disturbed.is_empty()));
+        assert_eq!(runs.len(), 8);
     }
 
     #[test]
-    fn a_jump_is_found_between_its_samples_and_its_force_set_free() {
+    fn a_jump_is_found_between_its_samples_and_the_run_parted_there() {
         let mut runs = circles();
         for m in &mut runs[3].measured[70..] {
             m[1] += 0.09;
@@ -232,7 +256,11 @@ mod tests {
         assert_eq!(found[3][0].sample, 70);
         assert!((found[3][0].length - 0.09).abs() < 0.03, "{found:?}");
         let (runs, issues) = settled(&runs, LENGTH);
-        assert!(runs[3].boost(69) > 1.0 && runs[3].boost(60) == 1.0);
+        assert_eq!(runs.len(), 9);
+        let [before, after] = [&runs[3], &runs[4]];
+        assert!(before.measured.len() == 70 && after.measured.len() == 51 && after.inputs.len() == 51);
+        assert!(before.recording == "run 3" && after.recording == "run 3" && before.name != after.name);
+        assert!(after.initial == after.measured[0] && after.inputs[0].t == before.inputs[69].t + before.dt);
         assert_eq!(issues.len(), 1);
         assert!(issues[0].mechanism == "jump" && !issues[0].blocking && issues[0].text.contains("run 3"), "{issues:?}");
     }

@@ -142,4 +142,19 @@ mod tests {
         assert_eq!(ratio(&none), 0.0);
         assert!((ratio(&strong) / ratio(&weak) - 2.0).abs() < 0.1, "{} {}", ratio(&strong), ratio(&weak));
     }
+
+    #[test]
+    fn a_push_is_graded_in_its_windows_by_what_nothing_else_can_mimic() {
+        let meter = DiagnosisMeter::new().unwrap();
+        let of = |size: f64| {
+            let effects = vec![("push".to_owned(), Strength::Size(size))];
+            Case::make(&Spec { effects, ..Spec::null(Family::Hd, 4) }, &meter).unwrap()
+        };
+        let (none, weak, strong) = (of(0.0), of(4e3), of(8e3));
+        let entry = weak.effects[0].entry;
+        let ratio = |case: &Case| meter.snr(entry, &case.recorded, &none.recorded).unwrap();
+        assert!((ratio(&strong) / ratio(&weak) - 2.0).abs() < 0.3, "{} {}", ratio(&strong), ratio(&weak));
+        let unprojected = ForceMeter::default().snr(entry, &strong.recorded, &none.recorded).unwrap();
+        assert!(ratio(&strong) < unprojected, "{} {unprojected}", ratio(&strong));
+    }
 }
