@@ -413,10 +413,10 @@ pub(super) fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParamete
     free
 }
 
-/// The statistic by which a push is an event: the same force in many runs is soon beyond chance, in one or two it must stand
-/// out far, as the ship's own forces in another form make such windows in manoeuvres like crash stops.
-fn needed_statistic(windows: usize, form_holds: bool) -> f64 {
-    match windows {
+/// The statistic by which a push is an event: the same force in many recordings is soon beyond chance, in one or two it must
+/// stand out far, as the ship's own forces in another form make such windows in manoeuvres like crash stops.
+fn needed_statistic(recordings: usize, form_holds: bool) -> f64 {
+    match recordings {
         0..=2 => ALONE,
         3 => 150.0,
         4 => 100.0,
@@ -509,7 +509,7 @@ pub fn diagnose(
         location.push = push_of(&null, &runs);
     }
     let is_event = |push: &Push| {
-        push.statistic > needed_statistic(push.windows.len(), form_holds) && (form_holds || push.sideways > SIDEWAYS)
+        push.statistic > needed_statistic(push.recordings(), form_holds) && (form_holds || push.sideways > SIDEWAYS)
     };
 
     // A strong event in time inflates the noise and gets a hull's name: explain it first.

@@ -11,6 +11,7 @@ use crate::state::{Inputs, State};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// Samples in one block of the time scan.
 const BLOCK: usize = 5;
@@ -346,6 +347,13 @@ pub struct Push {
     pub sideways: f64,
     /// When it acts.
     pub windows: Vec<Window>,
+}
+
+impl Push {
+    /// How many recordings it acts in: windows of one recording are no evidence apart.
+    pub fn recordings(&self) -> usize {
+        self.windows.iter().map(|w| w.run.as_str()).collect::<BTreeSet<_>>().len()
+    }
 }
 
 /// Looks for one force that acts in unknown windows of unknown runs: alternately the windows in which the force gains most,

@@ -56,7 +56,12 @@ pub fn run() -> Result<Diagnosed, RealError> {
     let (train, test) = (mended(&train, &mends), mended(&test, &mends));
     let (blind, blind_test) = (without_wind(&train), without_wind(&test));
     cases.push(Case::new("mended, wind withheld", &calm, &blind, &blind_test, &settings)?);
-    let frame = Frame::new(&cases[1].diagnosis)?;
+    // The recorded rudder jumps from side to side in a tenth of a second: it is the order. A limit that is named is taken into the
+    // model, as its user would, and everything asked again.
+    if let Some(limited) = with_rudder_limit(&calm, &cases[1])? {
+        cases.push(Case::new("rudder's limit in, wind withheld", &limited, &blind, &blind_test, &settings)?);
+    }
+    let frame = Frame::new(&cases[cases.len() - 1].diagnosis)?;
 
     let fitted = hull.fitted(&hull.model("freed_wind.toml")?, &hull.windows(Split::Train)?)?;
     let windless = without_term(&fitted.model, "wind")?;
@@ -94,6 +99,19 @@ pub fn run() -> Result<Diagnosed, RealError> {
         cases,
         steps,
     })
+}
+
+/// The model with the limit of the rudder's rate that a diagnosis named, free to move; `None` when it named none.
+fn with_rudder_limit(model: &Model, case: &Case) -> Result<Option<Model>, RealError> {
+    const NAME: &str = "rudder_rate.inverse";
+    let named = case.diagnosis.findings.iter().flat_map(|f| &f.parameters).find(|p| p.name == NAME);
+    let Some(value) = named.map(|p| p.value) else { return Ok(None) };
+    let mut out = model.clone();
+    out.add_term("rudder_rate")?;
+    let i = out.find(NAME)?;
+    let p = &mut out.parameters[i];
+    (p.value, p.free) = (value, true);
+    Ok(Some(out))
 }
 
 /// What to mend in each recording: velocities, which lag the positions by a second, are left out, positions that were
