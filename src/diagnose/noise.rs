@@ -96,7 +96,7 @@ impl NoisePrior {
     /// gyro) must not become infinitely exact.
     fn away(&self, v: &[f64; NOISE_PARAMETERS], i: usize) -> (f64, f64) {
         let away = v[i] - self.centre[i];
-        let white = i < 12 && i % 3 == 0 && away < 0.0;
+        let white = i < 12 && i.is_multiple_of(3) && away < 0.0;
         (away, if white { 0.05 } else { self.spread[i] })
     }
 
