@@ -14,7 +14,7 @@ use trimtab_experiments::conceal::judge::Score;
 use trimtab_experiments::conceal::runner::Runner;
 
 /// False alarms among the 12 nulls.
-const MOST_FALSE_ALARMS: usize = 3;
+const MOST_FALSE_ALARMS: usize = 1;
 /// Effects seen among the 13 single ones at a signal-to-noise ratio of 12.
 const FEWEST_SEEN: usize = 10;
 /// Of these, with the right name first.
@@ -24,7 +24,7 @@ const FEWEST_IN_SET: usize = 10;
 /// Cases of any kind with one name given in confidence that is neither right nor near.
 const MOST_WRONG: usize = 2;
 /// Pairs and triples, of 3, with at least one right name and none wrong.
-const FEWEST_COMPOUND: usize = 1;
+const FEWEST_COMPOUND: usize = 2;
 
 /// The program, built when it is not there yet.
 fn program() -> PathBuf {

@@ -119,6 +119,7 @@ pub const KEYS: &[(&str, &str)] = &[
     ),
     ("location.push.force", "the force X, Y [N], N [N m]"),
     ("location.push.error", "standard errors"),
+    ("location.push.sideways", "share of the evidence that sway force and yaw moment hold by themselves, 0 to 1"),
     (
         "location.push.statistic",
         "twice the gain in log-likelihood, less what choosing the windows would gain by chance",
