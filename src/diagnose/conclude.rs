@@ -502,8 +502,8 @@ pub fn diagnose(
     let form_holds = first.symmetric_test.p > FORM_HOLDS;
     // An event inflates the noise it must stand out of; where the ship's own forces fit, calmer runs tell the noise better.
     let push_of = |found: &Estimate, runs: &[Run]| {
-        let calm = || Estimate { noise: calm_noise(found, integration, runs, &prior), ..found.clone() };
-        locate(&if form_holds { calm() } else { found.clone() }, integration, runs).push
+        let noise = if form_holds { calm_noise(found, integration, runs, &prior) } else { found.noise };
+        locate(&Estimate { noise, ..found.clone() }, integration, runs).push
     };
     if form_holds {
         location.push = push_of(&null, &runs);
@@ -518,7 +518,7 @@ pub fn diagnose(
     // What a smooth law of state and heading would explain.
     let smooth = |s: &Screen| s.asymmetric_test.statistic - s.asymmetric_test.degrees as f64;
     let may_push = !blocked && !settings.withhold.iter().any(|w| w == "push");
-    let mut opening: Option<Option<(Accepted, Estimate)>> = None;
+    let mut opening: Option<(Accepted, Estimate)> = None;
     if may_push
         && let Some(push) =
             location.push.as_ref().filter(|p| is_event(p) && p.statistic > (2.0 * best_gain).max(smooth(&first)))
@@ -529,7 +529,7 @@ pub fn diagnose(
         let left = rival.as_ref().map(|(_, found)| push_of(found, &runs));
         let mimicked = left.is_some_and(|left| left.map_or(0.0, |p| p.statistic) < MIMICKED * push.statistic);
         if mimicked {
-            opening = Some(rival);
+            opening = rival;
         } else {
             for w in &push.windows {
                 runs[w.index].disturbed.push(w.samples);
@@ -557,7 +557,7 @@ pub fn diagnose(
             // A push that was found first is a finding already, and so is a coarse step.
             let alone = step == 0 && pushes.is_none() && !numerics;
             let may = |r: &Row| acceptable(r, &list, settings) && (alone || acceptable_beside(r, &accepted, &list));
-            let outcome = opening.take().unwrap_or_else(|| contest(s, &current, arena, &may, progress));
+            let outcome = opening.take().or_else(|| contest(s, &current, arena, &may, progress));
             let Some((entry, found)) = outcome else { break };
             accepted.push(entry);
             current = found;

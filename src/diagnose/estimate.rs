@@ -244,8 +244,10 @@ pub fn estimate(
         let settled = !moved || length < 0.03 || value - before < 0.3;
         if round < effort.noise_rounds {
             // The noise is fitted to some runs, linearised: where it does not serve all of them, it is fitted to all.
-            for most in [effort.noise_runs.min(runs.len()), runs.len()] {
-                let stride = runs.len().div_ceil(most.max(1)).max(1);
+            let sparse = runs.len().div_ceil(effort.noise_runs.max(1)).max(1);
+            let mut strides = vec![sparse, 1];
+            strides.dedup();
+            for stride in strides {
                 let chosen: Vec<usize> = (0..runs.len()).step_by(stride).collect();
                 let some: Vec<&Run> = chosen.iter().map(|i| &runs[*i]).collect();
                 let tangents: Vec<_> = chosen.iter().filter_map(|i| current[*i].tangent.as_ref()).collect();

@@ -83,6 +83,7 @@ impl Signal {
         };
         test.statistic.max(0.0).sqrt()
     }
+
     /// The same for one constant force (X, Y, N) in windows of some runs: index of the run, first and last sample.
     pub fn ratio_in(&self, with: &[Run], windows: &[(usize, usize, usize)]) -> f64 {
         let free = self.null.free.len();

@@ -129,13 +129,15 @@ mod tests {
     use crate::conceal::craft::Family;
     use crate::conceal::{Case, Spec, Strength};
 
+    fn case(meter: &DiagnosisMeter, effect: &str, size: f64) -> Case {
+        let effects = vec![(effect.to_owned(), Strength::Size(size))];
+        Case::make(&Spec { effects, ..Spec::null(Family::Hd, 4) }, meter).unwrap()
+    }
+
     #[test]
     fn a_stronger_effect_has_a_higher_ratio_and_no_effect_has_none() {
         let meter = DiagnosisMeter::new().unwrap();
-        let of = |size: f64| {
-            let effects = vec![("heading_bias".to_owned(), Strength::Size(size))];
-            Case::make(&Spec { effects, ..Spec::null(Family::Hd, 4) }, &meter).unwrap()
-        };
+        let of = |size: f64| case(&meter, "heading_bias", size);
         let (none, weak, strong) = (of(0.0), of(0.002), of(0.004));
         let entry = weak.effects[0].entry;
         let ratio = |case: &Case| meter.snr(entry, &case.recorded, &none.recorded).unwrap();
@@ -146,10 +148,7 @@ mod tests {
     #[test]
     fn a_push_is_graded_in_its_windows_by_what_nothing_else_can_mimic() {
         let meter = DiagnosisMeter::new().unwrap();
-        let of = |size: f64| {
-            let effects = vec![("push".to_owned(), Strength::Size(size))];
-            Case::make(&Spec { effects, ..Spec::null(Family::Hd, 4) }, &meter).unwrap()
-        };
+        let of = |size: f64| case(&meter, "push", size);
         let (none, weak, strong) = (of(0.0), of(4e3), of(8e3));
         let entry = weak.effects[0].entry;
         let ratio = |case: &Case| meter.snr(entry, &case.recorded, &none.recorded).unwrap();

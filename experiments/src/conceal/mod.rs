@@ -214,7 +214,7 @@ pub struct Recorded {
     pub tracks: Vec<Track>,
     /// The noisy rows of each run.
     pub rows: Vec<Rows>,
-    /// When effects of limited duration acted.
+    /// When effects of limited duration acted, in the runs to train on.
     pub windows: Vec<effects::Window>,
 }
 
@@ -345,13 +345,7 @@ fn record(spec: &Spec, effects: Vec<Active>) -> Recorded {
     let tracks: Vec<Track> = plans.iter().enumerate().map(sailed).collect();
     let noisy = |(i, t): (usize, &Track)| noise.apply(&t.reported, &mut rng(spec.seed, stream::NOISE + i as u64));
     let rows = tracks.iter().enumerate().map(noisy).collect();
-    let acted = |e: &Active| {
-        let in_session = |w: &effects::Window| {
-            plans.get(w.0).is_some_and(|plan| e.sessions.get(plan.session).copied().unwrap_or(false))
-        };
-        e.physics.windows().into_iter().filter(in_session).collect::<Vec<_>>()
-    };
-    let windows = world.effects.iter().flat_map(acted).collect();
+    let windows = world.effects.iter().flat_map(|e| e.windows(&plans)).collect();
     Recorded { plans, tracks, rows, windows }
 }
 

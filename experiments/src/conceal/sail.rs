@@ -6,7 +6,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::craft::{Craft, Tweak};
 use super::design::{Helmsman, PERIOD, Plan, STEPS};
-use super::effects::{Entry, Instant, Physics};
+use super::effects::{Entry, Instant, Physics, Window};
 use crate::truth::{Inputs, State};
 
 /// Inner steps in one row interval: 0.25 s each.
@@ -24,6 +24,19 @@ pub struct Active {
     pub physics: Box<dyn Physics>,
     /// For every session, whether it acts there.
     pub sessions: Vec<bool>,
+}
+
+impl Active {
+    /// Whether it acts in a session.
+    pub fn acts_in(&self, session: usize) -> bool {
+        self.sessions.get(session).copied().unwrap_or(false)
+    }
+
+    /// When it acts in the runs that a diagnosis is given, where its time is limited.
+    pub fn windows(&self, plans: &[Plan]) -> Vec<Window> {
+        let given = |w: &Window| plans.get(w.0).is_some_and(|p| !p.test && self.acts_in(p.session));
+        self.physics.windows().into_iter().filter(given).collect()
+    }
 }
 
 /// How the truth is integrated.
@@ -114,7 +127,7 @@ struct Step<'a> {
 impl Step<'_> {
     fn acting(&self) -> impl Iterator<Item = (usize, &Active)> {
         let session = self.plan.session;
-        self.world.effects.iter().enumerate().filter(move |(_, e)| e.sessions.get(session).copied().unwrap_or(false))
+        self.world.effects.iter().enumerate().filter(move |(_, e)| e.acts_in(session))
     }
 
     fn instant(&self, t: f64, state: &State, inputs: &Inputs, water: [f64; 3], effect: usize) -> Instant<'_> {
@@ -299,7 +312,7 @@ pub fn sail(world: &World, plan: &Plan, index: usize, rng: ChaCha8Rng) -> Track 
 fn report(world: &World, plan: &Plan, track: &mut Track, fine: &Fine<'_>) {
     for (row, state) in track.truth.iter().enumerate() {
         let mut y = state.to_array();
-        for e in world.effects.iter().filter(|e| e.sessions.get(plan.session).copied().unwrap_or(false)) {
+        for e in world.effects.iter().filter(|e| e.acts_in(plan.session)) {
             e.physics.measure(plan.clock + row as f64 * PERIOD, row, fine, &mut y);
         }
         track.reported.push(y);

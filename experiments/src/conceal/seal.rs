@@ -203,13 +203,8 @@ impl Case {
                 force: (!sensor).then(|| square.map(f64::sqrt)),
                 equations: (!sensor && total > 0.0).then(|| weighed.map(|w| w / total)),
                 windows: e
-                    .physics
-                    .windows()
+                    .windows(&self.recorded.plans)
                     .into_iter()
-                    .filter(|w| {
-                        let plan = self.recorded.plans.get(w.0);
-                        plan.is_some_and(|p| !p.test && e.sessions.get(p.session).copied().unwrap_or(false))
-                    })
                     .map(|(run, start, end)| {
                         let plan = &self.recorded.plans[run];
                         (plan.name.clone(), plan.clock + start, plan.clock + end)
