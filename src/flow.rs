@@ -46,8 +46,10 @@ pub struct Adjust<S> {
     pub roll: [S; 2],
     /// Share (0 paper form, 1 fore-aft consistent form) of the sternway correction \[-\].
     pub sternway: S,
-    /// Angle of attack beyond which rudder lift is lost, as a lift fraction lost at 40 degrees \[-\].
+    /// Fraction of the rudder's lift that is lost beyond stall \[-\].
     pub stall: S,
+    /// Angle of attack at which it begins to be lost \[rad\].
+    pub stall_onset: S,
 }
 
 impl<S: Scalar> Adjust<S> {
@@ -71,6 +73,7 @@ impl<S: Scalar> Adjust<S> {
             roll: [zero; 2],
             sternway: zero,
             stall: zero,
+            stall_onset: zero,
         }
     }
 }
@@ -160,6 +163,7 @@ impl<S: Scalar> Flow<S> {
                 roll: a.roll.map(c),
                 sternway: c(a.sternway),
                 stall: c(a.stall),
+                stall_onset: c(a.stall_onset),
             },
         }
     }

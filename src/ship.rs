@@ -129,6 +129,13 @@ pub struct PropellerParticulars {
     /// Thrust rotating astern at rest over thrust ahead at rest \[-\]; about 0.72 to 0.77 for a fixed-pitch propeller.
     #[serde(default = "default_astern")]
     pub astern: f64,
+    /// Whether the propeller turns anticlockwise ahead, seen from aft: it walks to the other side.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub left_handed: bool,
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 fn default_astern() -> f64 {

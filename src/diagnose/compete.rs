@@ -113,6 +113,12 @@ pub(super) struct Wald {
 }
 
 impl Wald {
+    /// All free parameters of an estimate.
+    pub fn of(found: &Estimate, covariance: DMatrix<f64>) -> Self {
+        let value = |f: &FreeParameter| f.value(&found.model) / f.column.scale;
+        Self { value: DVector::from_iterator(found.free.len(), found.free.iter().map(value)), covariance }
+    }
+
     /// Squared distance from zero in units of the covariance.
     pub fn statistic(&self) -> f64 {
         let inverse = self.covariance.clone().try_inverse();
@@ -140,9 +146,7 @@ pub(super) fn wald(found: &Estimate, integration: Integration, runs: &[Run]) -> 
     let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
     let p = passes(&found.model, integration, &columns, runs, &found.noise, false);
     let e = evidence(runs, &p, &restrictions(&found.free));
-    let covariance = base_of(&e, &found.model, &found.free).inverse;
-    let value = |f: &FreeParameter| f.value(&found.model) / f.column.scale;
-    Wald { value: DVector::from_iterator(found.free.len(), found.free.iter().map(value)), covariance }
+    Wald::of(found, base_of(&e, &found.model, &found.free).inverse)
 }
 
 /// A mechanism may be named: seen, significant, of possible sign and worthwhile size, and not just the ship's own forces in

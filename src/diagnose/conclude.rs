@@ -8,7 +8,7 @@ use super::compete::{
 use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior};
 use super::filter::{Column, Probe, Run};
 use super::forces::forces_of;
-use super::locate::{EquationShare, Location, Push, RegionTest, Window, locate};
+use super::locate::{EquationShare, Location, Place, Push, RegionTest, Window, locate};
 use super::mechanism::{Candidate, Extent, Kind, candidates};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::{HeldOut, prove};
@@ -429,6 +429,19 @@ fn needed_statistic(recordings: usize, form_holds: bool) -> f64 {
 /// must hold at least this share of its evidence across.
 const SIDEWAYS: f64 = 0.5;
 
+/// A push across the keel whose mirror image holds at least this share of its evidence is no push: it comes to both sides, as
+/// what the ship's own motion brings does.
+const MIRRORED: f64 = 0.3;
+
+/// In at most so many recordings a push cannot be told from the ship's own forces in a state that no other recording visits.
+const FEW_RECORDINGS: usize = 2;
+
+/// A force goes with the place below this p-value.
+const PLACED: f64 = 1e-6;
+
+/// Weather that leaves more than this share of what it explains behind, in forces that go with the place, is none.
+const PLACED_SHARE: f64 = 0.5;
+
 /// Above this p-value of the mirror-symmetric discrepancy the ship's own forces have the form that the model gives them.
 const FORM_HOLDS: f64 = 0.05;
 
@@ -509,7 +522,9 @@ pub fn diagnose(
         location.push = push_of(&null, &runs);
     }
     let is_event = |push: &Push| {
-        push.statistic > needed_statistic(push.recordings(), form_holds) && (form_holds || push.sideways > SIDEWAYS)
+        let across = push.sideways > SIDEWAYS;
+        push.statistic > needed_statistic(push.recordings(), form_holds)
+            && if across { push.mirrored < MIRRORED } else { form_holds }
     };
 
     // A strong event in time inflates the noise and gets a hull's name: explain it first.
@@ -584,7 +599,16 @@ pub fn diagnose(
         current = null.clone();
         last = None;
     }
-    let location_after = last.is_some().then(|| locate(&current, integration, &runs));
+    let mut location_after = last.is_some().then(|| locate(&current, integration, &runs));
+    // Weather is the same wherever the ship sails: what leaves more behind that goes with the place is something else.
+    let local = |l: &Location| l.place.as_ref().filter(|p| p.p < PLACED).map(|p| p.statistic - p.degrees as f64);
+    let weather = |a: &Accepted| list[a.candidate].mechanism.is_weather();
+    let placed = accepted.iter().any(weather) && location_after.as_ref().and_then(local).is_some_and(|l| l > PLACED_SHARE * explained);
+    if placed {
+        accepted.clear();
+        current = null.clone();
+        (last, location_after) = (None, None);
+    }
     let adequacy = |s: &Screen| Adequacy { symmetric: s.symmetric_test.p, asymmetric: s.asymmetric_test.p };
     let adequacy_before = adequacy(&first);
     let adequacy_after = last.as_ref().map_or(adequacy_before, adequacy);
@@ -595,9 +619,17 @@ pub fn diagnose(
         let stands = |p: &Push| is_event(p) && p.statistic > law && (accepted.is_empty() || p.statistic > ALONE);
         pushes = left.push.clone().filter(stands);
     }
+    let lone = pushes.take_if(|p| p.recordings() <= FEW_RECORDINGS);
     let named_something = !accepted.is_empty() || pushes.is_some();
-    let unlisted = !blocked && !named_something && adequacy_after.asymmetric < UNLISTED;
-    let surrogate = if unlisted { surrogate(last.as_ref().unwrap_or(&first), &null.model) } else { Vec::new() };
+    let unlisted = if blocked || named_something {
+        None
+    } else if placed {
+        location.place.as_ref().map(Unlisted::Place)
+    } else if let Some(event) = &lone {
+        Some(Unlisted::Event(event))
+    } else {
+        (adequacy_after.asymmetric < UNLISTED).then(|| Unlisted::Law(surrogate(&first, &null.model)))
+    };
 
     progress("proving on held-out runs");
     let generic = generic_model(&first, &null);
@@ -613,7 +645,9 @@ pub fn diagnose(
     });
 
     let mut findings = if blocked { sensor_findings(&admission) } else { Vec::new() };
-    findings.extend(describe(&accepted, &current, integration, &runs, &list, &location, &first));
+    if let Some(last) = &last {
+        findings.extend(describe(&accepted, &current, &runs, &list, &location, &first, last));
+    }
     findings.extend(pushes.as_ref().map(|p| push_finding(p, &location)));
     if let Some(f) = findings.first_mut() {
         f.held_out.clone_from(&proof);
@@ -631,7 +665,7 @@ pub fn diagnose(
         }
     } else if numerics {
         Verdict::Numerics
-    } else if unlisted {
+    } else if unlisted.is_some() {
         Verdict::NotInCatalogue
     } else if few {
         Verdict::Insufficient
@@ -640,7 +674,8 @@ pub fn diagnose(
     } else {
         Verdict::NothingMissing
     };
-    let headline = headline(verdict, &findings, &admission, &surrogate);
+    let headline = headline(verdict, &findings, &admission, unlisted.as_ref());
+    let surrogate = if let Some(Unlisted::Law(terms)) = unlisted { terms } else { Vec::new() };
     let detectable = detectable(&first, &list, settings, &full);
     Ok(Diagnosis {
         schema: "trimtab-diagnosis/1",
@@ -668,6 +703,49 @@ pub fn diagnose(
         model: trimmed(&current.model, model, &current.free),
         base: trimmed(&null.model, model, &null.free),
     })
+}
+
+/// What is missing and not in the catalogue, as far as it can be told.
+enum Unlisted<'a> {
+    /// A law of state and inputs, with a surrogate for it.
+    Law(Vec<SurrogateTerm>),
+    /// A force for some time in one or two recordings.
+    Event(&'a Push),
+    /// A force in one part of the water.
+    Place(&'a Place),
+}
+
+impl Unlisted<'_> {
+    fn headline(&self) -> String {
+        let sig = |v: f64| crate::report::sig(v, 3);
+        match self {
+            Self::Law(surrogate) => {
+                let terms: Vec<&str> = surrogate.iter().map(|t| t.name.as_str()).collect();
+                let terms = terms.join(", ");
+                format!("Something is missing that the catalogue does not hold; a surrogate for it (not physics): {terms}.")
+            }
+            Self::Event(push) => {
+                let one = |w: &Window| format!("{} from {:.0} to {:.0} s", w.run, w.start, w.end);
+                let windows: Vec<String> = push.windows.iter().map(one).collect();
+                let [x, y, n] = push.force.map(sig);
+                format!(
+                    "Something acts for a time that the catalogue does not hold: X = {x} N, Y = {y} N, N = {n} N m in {}; a push, \
+                     or the ship's own forces in a state that no other recording visits.",
+                    windows.join(" and ")
+                )
+            }
+            Self::Place(place) => {
+                let [south, north] = place.north.map(|v| v.round());
+                let [west, east] = place.east.map(|v| v.round());
+                let [to_north, to_east] = place.force.map(sig);
+                format!(
+                    "Something is missing that the catalogue does not hold, and it goes with the place: strongest from {south} to \
+                     {north} m north and {west} to {east} m east, {to_north} N to north and {to_east} N to east there beyond what \
+                     acts everywhere."
+                )
+            }
+        }
+    }
 }
 
 /// Refits the leaders among the mechanisms that may be named, and returns the best with its confidence set.
@@ -835,16 +913,15 @@ fn surrogate(s: &Screen, model: &Model) -> Vec<SurrogateTerm> {
 fn describe(
     accepted: &[Accepted],
     found: &Estimate,
-    integration: Integration,
     runs: &[Run],
     list: &[Candidate],
     location: &Location,
-    s: &Screen,
+    before: &Screen,
+    after: &Screen,
 ) -> Vec<Finding> {
-    if accepted.is_empty() {
-        return Vec::new();
-    }
-    let all = wald(found, integration, runs);
+    // The ship's other forces, too, have some other form: intervals hold what that may do to a parameter.
+    let n = found.free.len();
+    let all = Wald::of(found, after.loosest.inverse.view((0, 0), (n, n)).into_owned());
     let mut out = Vec::new();
     for a in accepted {
         let c = &list[a.candidate];
@@ -882,7 +959,7 @@ fn describe(
             equations: force_shares(c, found, runs, location),
             windows: Vec::new(),
             region: strongest_region(&location.regions),
-            signature: signature(c, s),
+            signature: signature(c, before),
             parameters,
             held_out: None,
         });
@@ -1086,7 +1163,7 @@ fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) -> Opt
     }
 }
 
-fn headline(verdict: Verdict, findings: &[Finding], admission: &Admission, surrogate: &[SurrogateTerm]) -> String {
+fn headline(verdict: Verdict, findings: &[Finding], admission: &Admission, unlisted: Option<&Unlisted>) -> String {
     let list = |f: &Finding| {
         if f.by_session {
             return format!("{} (another in each of {} sessions)", f.title, f.sessions.len());
@@ -1118,13 +1195,7 @@ fn headline(verdict: Verdict, findings: &[Finding], admission: &Admission, surro
                               model at one step a sample."
                 .into()
         }
-        Verdict::NotInCatalogue => {
-            let terms: Vec<&str> = surrogate.iter().map(|t| t.name.as_str()).collect();
-            format!(
-                "Something is missing that the catalogue does not hold; a surrogate for it (not physics): {}.",
-                terms.join(", ")
-            )
-        }
+        Verdict::NotInCatalogue => unlisted.map_or(String::new(), Unlisted::headline),
         Verdict::Random => "Force is there that the model lacks, but nothing about it repeats: gusts.".into(),
         Verdict::Insufficient => "These recordings cannot answer: too few runs.".into(),
         Verdict::NothingMissing => "Nothing is missing that these data could show.".into(),

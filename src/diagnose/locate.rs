@@ -11,6 +11,7 @@ use crate::state::{Inputs, State};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
+use statrs::statistics::{Data, OrderStatistics};
 use std::collections::BTreeSet;
 
 /// Samples in one block of the time scan.
@@ -96,6 +97,63 @@ const REGIONS: [(&str, Predicate); 12] = [
     ("heading west", |_, s, _| quadrant(s, 3)),
 ];
 
+/// A force fixed on the earth that is another in one part of the water than in the rest.
+#[derive(Clone, Debug, Serialize)]
+pub struct Place {
+    /// Southern and northern limit of the part where it stands out most \[m\].
+    pub north: [f64; 2],
+    /// Western and eastern limit \[m\].
+    pub east: [f64; 2],
+    /// Force there, less what acts everywhere: north, east \[N\].
+    pub force: [f64; 2],
+    /// Standard errors.
+    pub error: [f64; 2],
+    /// Twice the gain in log-likelihood of a force of its own in each of [`PARTS`] x [`PARTS`] parts over one that is the same everywhere.
+    pub statistic: f64,
+    /// Degrees of freedom.
+    pub degrees: usize,
+    /// p-value.
+    pub p: f64,
+}
+
+/// Parts into which the water sailed is divided each way.
+pub const PARTS: usize = 3;
+
+/// The water that was sailed, in parts.
+struct Chart {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Chart {
+    /// Of all measured positions but the outermost two per cent each way.
+    fn of(runs: &[Run]) -> Option<Self> {
+        let limits = |axis: usize| {
+            let all = runs.iter().flat_map(|r| &r.measured).map(|m| m[axis]).filter(|v| v.is_finite());
+            let mut all = Data::new(all.collect::<Vec<f64>>());
+            (all.quantile(0.02), all.quantile(0.98))
+        };
+        let ((south, north), (west, east)) = (limits(0), limits(1));
+        (north > south && east > west).then_some(Self { low: [south, west], high: [north, east] })
+    }
+
+    /// Which part a position is in; the outermost parts reach as far as one likes.
+    fn part(&self, position: [f64; 2]) -> usize {
+        let [i, j]: [usize; 2] = std::array::from_fn(|a| {
+            let share = (position[a] - self.low[a]) / (self.high[a] - self.low[a]);
+            ((share * PARTS as f64) as usize).min(PARTS - 1)
+        });
+        i * PARTS + j
+    }
+
+    /// Limits of a part along an axis.
+    fn limits(&self, part: usize, axis: usize) -> [f64; 2] {
+        let i = if axis == 0 { part / PARTS } else { part % PARTS } as f64;
+        let width = (self.high[axis] - self.low[axis]) / PARTS as f64;
+        [self.low[axis] + i * width, self.low[axis] + (i + 1.0) * width]
+    }
+}
+
 /// What the location step found.
 #[derive(Clone, Debug, Serialize)]
 pub struct Location {
@@ -108,6 +166,9 @@ pub struct Location {
     pub push: Option<Push>,
     /// Regions, most significant first.
     pub regions: Vec<RegionTest>,
+    /// Whether an earth-fixed force goes with the place.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub place: Option<Place>,
 }
 
 /// Tests constant forces in every window of every run and in every region.
@@ -121,7 +182,11 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
     let filter = Filter::new(model, integration, &columns);
     let longest = runs.iter().map(|r| r.measured.len()).max().unwrap_or(0);
     let blocks = longest.div_ceil(BLOCK);
-    let extra = 3 * (blocks + REGIONS.len());
+    let chart = Chart::of(runs);
+    // Blocks of time, regions, and parts of the water.
+    let parts = 3 * (blocks + REGIONS.len());
+    let everywhere = parts + 2 * PARTS * PARTS;
+    let extra = everywhere + 2;
     let basis = |k: usize, s: &State<f64>, i: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
         out.resize(extra, [0.0; 3]);
         for e in 0..3 {
@@ -132,6 +197,15 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
                 if inside(model, s, i) {
                     out[3 * (blocks + j) + e] = f;
                 }
+            }
+        }
+        if let Some(chart) = &chart {
+            let at = parts + 2 * chart.part([s.x, s.y]);
+            let (sin, cos) = s.psi.sin_cos();
+            let unit = found.noise.force[1];
+            for at in [at, everywhere] {
+                out[at] = [unit * cos, -unit * sin, 0.0];
+                out[at + 1] = [unit * sin, unit * cos, 0.0];
             }
         }
     };
@@ -186,7 +260,31 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
         .collect();
     regions.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
     let equations = equation_shares(&passes, &evidence, &base, columns.len(), blocks, &found.noise.force);
-    Location { equations, windows, push, regions }
+    let place = chart.and_then(|c| place(&c, &evidence, &widened, columns.len() + parts, found.noise.force[1]));
+    Location { equations, windows, push, regions, place }
+}
+
+/// Tests whether an earth-fixed force is another in each part of the water.
+fn place(chart: &Chart, evidence: &Evidence, base: &Base, first: usize, unit: f64) -> Option<Place> {
+    let own: Vec<usize> = (first..first + 2 * PARTS * PARTS).collect();
+    // What is the same everywhere is the weather.
+    let weather = first + own.len();
+    let test = evidence.test(&evidence.extend(base, &[weather, weather + 1]), &own);
+    let weight = |part: usize| {
+        let a = |i: usize| test.amplitude[2 * part + i].powi(2) / test.covariance[(2 * part + i, 2 * part + i)];
+        a(0) + a(1)
+    };
+    let part = (0..PARTS * PARTS).filter(|p| weight(*p).is_finite()).max_by(|a, b| weight(*a).total_cmp(&weight(*b)))?;
+    let at = |i: usize| 2 * part + i;
+    Some(Place {
+        north: chart.limits(part, 0),
+        east: chart.limits(part, 1),
+        force: std::array::from_fn(|i| test.amplitude[at(i)] * unit),
+        error: std::array::from_fn(|i| test.covariance[(at(i), at(i))].max(0.0).sqrt() * unit),
+        statistic: test.statistic,
+        degrees: test.degrees,
+        p: test.p,
+    })
 }
 
 /// Share of each equation in the block-wise force evidence, and the filtered force's root mean square.
@@ -345,6 +443,9 @@ pub struct Push {
     pub statistic: f64,
     /// Share of the evidence for it that sway force and yaw moment hold by themselves, 0 to 1.
     pub sideways: f64,
+    /// Evidence for its mirror image (the same surge force, sway force and yaw moment to the other side) in windows of its own,
+    /// as a share of its own evidence: what the ship's motion brings comes to both sides, a push from outside does not.
+    pub mirrored: f64,
     /// When it acts.
     pub windows: Vec<Window>,
 }
@@ -408,6 +509,7 @@ fn common_push(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f64)
         }
     }
     let (statistic, force, inverse, spans) = best?;
+    let image: f64 = chosen(&Vector3::new(force[0], -force[1], -force[2])).iter().map(|s| s.3).sum();
     let windows = spans
         .iter()
         .filter_map(|(index, from, to, _)| {
@@ -419,6 +521,7 @@ fn common_push(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f64)
     let (side, all) = (force.fixed_rows::<2>(1).into_owned(), inverse.try_inverse()?);
     Some(Push {
         sideways: side.dot(&(across * side)) / force.dot(&(all * force)).max(f64::MIN_POSITIVE),
+        mirrored: image / statistic.max(f64::MIN_POSITIVE),
         force: std::array::from_fn(|a| force[a] * unit[a]),
         error: std::array::from_fn(|a| inverse[(a, a)].max(0.0).sqrt() * unit[a]),
         statistic,

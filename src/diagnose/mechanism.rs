@@ -1,6 +1,7 @@
 //! What the diagnosis can name: a mechanism is a group of parameters of one term, with the words and cautions that go with it.
 //! The list itself is in the terms' files, beside the physics.
 
+use super::evidence::Test;
 use super::filter::{Column, Probe, Run};
 use crate::model::Model;
 use crate::terms::{CATALOGUE, Group};
@@ -120,17 +121,23 @@ impl Candidate {
         (amplitude.iter().map(|a| a * a).sum::<f64>() / parts).sqrt() / self.mechanism.floor
     }
 
-    /// Whether amplitudes (in units of the scales) added to the present values stay inside the parameters' bounds, give or
-    /// take twice their standard error.
-    pub fn admissible(&self, model: &Model, amplitude: &[f64], error: &[f64]) -> bool {
-        self.columns.iter().cycle().zip(amplitude).zip(error).all(|((c, a), e)| {
+    /// Whether the amplitudes of a test, added to the present values, are possible: kept inside the parameters' bounds they
+    /// hold most of what they promise. A law that bends may well promise more than there can be.
+    pub fn admissible(&self, model: &Model, test: &Test) -> bool {
+        let beyond = |(i, a): (usize, &f64)| {
+            let c = &self.columns[i % self.columns.len()];
             let p = &model.parameters[c.parameter];
             let value = p.value + a * c.scale;
-            let slack = 0.5 * e * c.scale.abs();
-            value >= p.lower - slack && value <= p.upper + slack
-        })
+            let error = test.covariance[(i, i)].max(0.0).sqrt() * c.scale.abs();
+            let away = value - value.clamp(p.lower, p.upper);
+            if away == 0.0 { 0.0 } else { (away / error).powi(2) }
+        };
+        test.amplitude.iter().enumerate().map(beyond).sum::<f64>() <= BEYOND * test.statistic.max(1.0)
     }
 }
+
+/// Share of what a test promises that amplitudes may lose when they are kept inside their bounds.
+const BEYOND: f64 = 0.25;
 
 /// Appends the columns of candidates, and gives where those of each stand.
 pub fn append(columns: &mut Vec<Column>, candidates: &[Candidate]) -> Vec<Vec<usize>> {

@@ -119,6 +119,10 @@ pub const KEYS: &[(&str, &str)] = &[
     ),
     ("location.push.force", "the force X, Y [N], N [N m]"),
     ("location.push.error", "standard errors"),
+    (
+        "location.push.mirrored",
+        "evidence for its mirror image in windows of its own, as a share of its evidence: what the ship's motion brings comes to both sides",
+    ),
     ("location.push.sideways", "share of the evidence that sway force and yaw moment hold by themselves, 0 to 1"),
     (
         "location.push.statistic",
@@ -132,6 +136,14 @@ pub const KEYS: &[(&str, &str)] = &[
     ("location.regions[].error", "standard errors"),
     ("location.regions[].statistic", "twice the gain in log-likelihood"),
     ("location.regions[].p", "p-value, corrected for the number of regions"),
+    ("location.place", "whether an earth-fixed force is another in each of nine parts of the water; absent when nothing can be said"),
+    ("location.place.north", "southern and northern limit of the part where it stands out most [m]"),
+    ("location.place.east", "western and eastern limit of it [m]"),
+    ("location.place.force", "force to north and east there, less what acts everywhere [N]"),
+    ("location.place.error", "standard errors"),
+    ("location.place.statistic", "twice the gain in log-likelihood over one force everywhere"),
+    ("location.place.degrees", "degrees of freedom"),
+    ("location.place.p", "p-value"),
     ("location_after", "the force left with the findings, as location; absent without findings"),
     ("ranking[]", "every mechanism that was tested, under the base model"),
     ("ranking[].mechanism", "name"),
@@ -143,7 +155,7 @@ pub const KEYS: &[(&str, &str)] = &[
     ("ranking[].size", "size over the smallest worth naming"),
     ("ranking[].admissible", "whether its sign is possible"),
     ("ranking[].retained", "share of its information left after parameters and unknown coefficients"),
-    ("ranking[].second_opinion", "p-value with a free mirror-symmetric force as rival"),
+    ("ranking[].second_opinion", "p-value with a free mirror-symmetric force as rival; for a sensor, with any generic force"),
     ("ranking[].sessions[]", "sessions in which it acts; empty for all"),
     ("ranking[].by_session", "whether each of these sessions has an amplitude of its own"),
     ("absorbed[]", "mechanisms that these data and this model can never show"),
@@ -548,6 +560,19 @@ fn location(d: &Diagnosis) -> Vec<String> {
             p_value(r.p)
         ));
     }
+    lines.extend(d.location.place.as_ref().filter(|p| p.p < 1e-4).map(|p| {
+        format!(
+            "by place: strongest from {} to {} m north and {} to {} m east, {} to north and {} to east beyond what acts \
+             everywhere ({})",
+            fixed(p.north[0], 0),
+            fixed(p.north[1], 0),
+            fixed(p.east[0], 0),
+            fixed(p.east[1], 0),
+            units.text(p.force[0], "N"),
+            units.text(p.force[1], "N"),
+            p_value(p.p)
+        )
+    }));
     let mut said: Vec<&str> = Vec::new();
     for f in &d.findings {
         if !said.contains(&f.signature.as_str()) {

@@ -4,7 +4,7 @@
 use super::estimate::{Estimate, base_of, evidence, restrictions};
 use super::evidence::{Base, Evidence, Test, UNSEEN, pick};
 use super::filter::{Column, Filter, Pass, Run, Wanted};
-use super::mechanism::{Candidate, Extent, append};
+use super::mechanism::{Candidate, Extent, Kind, append};
 use crate::model::Model;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -29,7 +29,8 @@ pub struct Row {
     pub admissible: bool,
     /// Whether the data can see it at all.
     pub visible: bool,
-    /// p-value (uncorrected) once a generic mirror-symmetric discrepancy of the ship's own forces may compete.
+    /// p-value (uncorrected) once a generic mirror-symmetric discrepancy of the ship's own forces may compete; for a sensor,
+    /// once any generic force may.
     pub second_opinion: f64,
 }
 
@@ -39,6 +40,8 @@ pub struct Screen {
     pub evidence: Evidence,
     /// The fitted block.
     pub base: Base,
+    /// The same with any generic force beside it, as far as the data ask for one: what is known when the form of the forces is not.
+    pub loosest: Base,
     /// Columns of each candidate.
     groups: Vec<Vec<usize>>,
     /// Columns of the mirror-symmetric basis.
@@ -147,8 +150,14 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
     let base = base_of(&evidence, model, &found.free);
     let widened = widen(&evidence, &base, &symmetric);
     let sessions: Vec<String> = evidence.sessions.keys().cloned().collect();
+    // A sensor is judged by what no force law whatever can bring.
+    let anything: Vec<usize> = symmetric.iter().chain(&asymmetric).copied().collect();
+    let loosest = widen(&evidence, &base, &anything);
     let mut rows: Vec<Row> = (0..candidates.len())
-        .map(|i| row(&evidence, &base, &widened, model, &candidates[i], i, &groups[i], &sessions))
+        .map(|i| {
+            let wide = if candidates[i].mechanism.kind == Kind::Sensor { &loosest } else { &widened };
+            row(&evidence, &base, wide, model, &candidates[i], i, &groups[i], &sessions)
+        })
         .collect();
     let tested = rows.iter().filter(|r| r.visible).count().max(1) as f64;
     for r in &mut rows {
@@ -163,6 +172,7 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
     Screen {
         evidence,
         base,
+        loosest,
         groups,
         symmetric,
         asymmetric,
@@ -259,10 +269,7 @@ fn row(
         _ if candidate.mechanism.is_weather() => 3.0,
         _ => 2.0,
     };
-    let possible = |t: &Test| {
-        let error: Vec<f64> = t.covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
-        candidate.admissible(model, t.amplitude.as_slice(), &error)
-    };
+    let possible = |t: &Test| candidate.admissible(model, t);
     // The common amplitude unless a group of sessions explains clearly more, and either unless they differ beyond doubt.
     let price = |extent: &Extent, more: usize| match extent {
         Extent::All | Extent::In(_) => CLEARLY + 2.0 * partings.ln(),

@@ -16,7 +16,8 @@ static INFO: TermInfo = TermInfo {
     name: "propeller_walk",
     title: "propeller walk",
     group: Group::Propulsion,
-    equation: "Y = w rho D^4 n^2/(1 + J^2), J = u/(n D), w = ahead for n > 0, astern for n < 0; N = x_P Y. Right-handed screw: astern < 0 (stern to port), ahead >= 0 (small)",
+    equation: "Y = w rho D^4 n^2/(1 + J^2), J = u/(n D), w = ahead for n > 0, astern <= 0 for n < 0 (stern to port); N = x_P Y; \
+               for a left-handed screw Y and N to the other side",
     source: "shape after Hachii's measurements as used in low-speed MMG models; the fade exp(-J^2) written 1/(1 + J^2), regular at n = 0",
     needs: &[],
     mechanisms: &[
@@ -56,10 +57,10 @@ static INFO: TermInfo = TermInfo {
             "astern",
             "w_b",
             "-",
-            "side force coefficient turning astern, to starboard; negative for a right-handed screw",
+            "side force coefficient turning astern, to starboard, of a right-handed screw",
         )
         .scale(|_| 0.02)
-        .bounds(-0.2, 0.2)
+        .bounds(-0.2, 0.0)
         .odd(),
     ],
 };
@@ -82,7 +83,8 @@ impl<S: Scalar> Physics<S> for PropellerWalk {
         let w = S::select(at.inputs.n.less(S::zero()), p[1], p[0]);
         let tip = at.inputs.n * at.inputs.n * (d * d);
         let fade = tip / (tip + flow.u * flow.u + 1e-2 * small * small);
-        let y = w * tip * fade * (ship.hull.water_density * d * d);
+        let side = if ship.propeller.left_handed { -1.0 } else { 1.0 };
+        let y = w * tip * fade * (side * ship.hull.water_density * d * d);
         Force { x: S::zero(), y, n: y * ship.propeller_x() }
     }
 }

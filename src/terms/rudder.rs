@@ -15,6 +15,8 @@ pub struct Rudder;
 pub const CURVE_LIMIT: f64 = 45.0 * PI / 180.0;
 /// Angle of attack from which the rudder is a flat plate \[rad\].
 pub const PLATE_LIMIT: f64 = 60.0 * PI / 180.0;
+/// Range of angles of attack over which a stalling rudder loses its lift \[rad\].
+pub const STALL_WIDTH: f64 = 6.0 * PI / 180.0;
 /// Normal-force coefficient of a flat plate across the flow \[-\].
 pub const PLATE_NORMAL: f64 = 1.2;
 
@@ -52,13 +54,13 @@ impl Rudder {
     }
     /// Lift and drag coefficients at any angle of attack `a` in (-pi, pi] \[rad\].
     ///
-    /// `stall` is the fraction of lift lost at 40 degrees, growing linearly from 25 degrees.
-    pub fn coefficients<S: Scalar>(p: &[S], a: S, stall: S) -> (S, S) {
+    /// Of the lift, the fraction `lost` goes as the angle passes `onset` \[rad\] by [`STALL_WIDTH`].
+    pub fn coefficients<S: Scalar>(p: &[S], a: S, [lost, onset]: [S; 2]) -> (S, S) {
         let inside = a.clamp(-PLATE_LIMIT, PLATE_LIMIT);
         let plate = smooth::smooth_step((a.abs() - CURVE_LIMIT) / (PLATE_LIMIT - CURVE_LIMIT));
         let (sin, cos) = a.sin_cos();
-        let lost = stall * ((inside.abs() - 25.0 * PI / 180.0).max(S::zero()) / (15.0 * PI / 180.0));
-        let lift = Self::lift_polynomial(p, inside) * (S::one() - lost);
+        let stalled = smooth::smooth_step((inside.abs() - onset) / STALL_WIDTH);
+        let lift = Self::lift_polynomial(p, inside) * (S::one() - lost * stalled);
         let drag = Self::drag_polynomial(p, inside);
         (lift + (sin * cos * PLATE_NORMAL - lift) * plate, drag + (sin * sin * PLATE_NORMAL - drag) * plate)
     }
@@ -79,7 +81,7 @@ impl<S: Scalar> Physics<S> for Rudder {
         let (u, v) = (flow.rudder_u, flow.rudder_v);
         let inflow = v.atan2(u);
         let a = smooth::wrap_angle(at.inputs.delta - inflow);
-        let (lift, drag) = Self::coefficients(p, a, flow.adjust.stall);
+        let (lift, drag) = Self::coefficients(p, a, [flow.adjust.stall, flow.adjust.stall_onset]);
         let pressure = 0.5 * at.ship.hull.water_density * at.ship.rudder.area;
         // L and D with cos g = u_R/U_R and sin g = v_R/U_R: one factor U_R is left, so that no inflow gives no force.
         let square = u * u + v * v;

@@ -15,15 +15,15 @@ static INFO: TermInfo = TermInfo {
     name: "rudder_stall",
     title: "rudder stall",
     group: Group::Rudder,
-    equation: "c_L -> c_L (1 - loss (|a| - 25 deg)/(15 deg)) for |a| > 25 deg",
-    source: "linear loss after stall onset; onset in the slipstream 27 to 40 deg",
+    equation: "c_L -> c_L (1 - loss s), s from 0 to 1 as |a| goes from onset to onset + 6 deg",
+    source: "linear lift up to stall and a drop of 20 to 40 % after it, at 27 to 40 deg in the slipstream; the smooth step is ours",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "rudder_stall",
         title: "rudder stall",
         kind: Kind::Ship,
         parameters: &["loss"],
-        companions: &[],
+        companions: &["onset"],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.075,
@@ -31,9 +31,14 @@ static INFO: TermInfo = TermInfo {
         look_alikes: &["crossflow", "rudder_rate"],
         trial: "turning circles at 20, 30 and 35 degrees of rudder",
     }],
-    parameters: &[ParameterInfo::new("loss", "k_s", "-", "fraction of lift lost at 40 degrees")
-        .scale(|_| 0.3)
-        .bounds(0.0, 1.0)],
+    parameters: &[
+        ParameterInfo::new("loss", "k_s", "-", "fraction of lift lost beyond stall").scale(|_| 0.3).bounds(0.0, 1.0),
+        ParameterInfo::new("onset", "a_s", "rad", "angle of attack at which lift begins to be lost")
+            .default(|_| 0.44)
+            .scale(|_| 0.05)
+            .spread(|_| 0.07)
+            .bounds(0.3, 0.7),
+    ],
 };
 
 impl Term for RudderStall {
@@ -45,5 +50,6 @@ impl Term for RudderStall {
 impl<S: Scalar> Physics<S> for RudderStall {
     fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
         adjust.stall += p[0];
+        adjust.stall_onset = p[1];
     }
 }
