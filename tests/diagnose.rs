@@ -123,30 +123,33 @@ fn a_receiver_that_jumps_is_no_push() {
     assert_eq!(d.admission.runs, 40);
 }
 
-/// Thirty runs, in every fourth of which a force acts from 80 to 140 s.
-fn pushed(force: [f64; 3]) -> Diagnosis {
-    let mut truth = model();
-    truth.add_term("push").unwrap();
-    for (name, value) in ["push.x", "push.y", "push.n", "push.start", "push.end"]
-        .into_iter()
-        .zip([force[0], force[1], force[2], 80.0, 140.0])
-    {
-        let i = truth.find(name).unwrap();
-        truth.parameters[i].value = value;
-    }
-    let (with, mut data) = (runs(&truth, &truth_noise(), 30, 101), runs(&model(), &truth_noise(), 30, 101));
+/// Thirty runs, in some of which a force of their own acts from 80 to 140 s.
+fn pushed(force_in: impl Fn(usize) -> Option<[f64; 3]>) -> Diagnosis {
+    let mut data = runs(&model(), &truth_noise(), 30, 101);
     for (i, run) in data.iter_mut().enumerate() {
-        if i % 4 == 1 {
-            *run = with[i].clone();
+        if let Some(force) = force_in(i) {
+            let mut truth = model();
+            truth.add_term("push").unwrap();
+            let [x, y, n] = force;
+            for (name, value) in ["x", "y", "n", "start", "end"].into_iter().zip([x, y, n, 80.0, 140.0]) {
+                let i = truth.find(&format!("push.{name}")).unwrap();
+                truth.parameters[i].value = value;
+            }
+            *run = runs(&truth, &truth_noise(), 30, 101)[i].clone();
         }
         run.name = format!("{} 0 s", run.recording);
     }
     diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap()
 }
 
+/// The same force in every fourth run.
+fn pushed_often(force: [f64; 3]) -> Diagnosis {
+    pushed(|i| (i % 4 == 1).then_some(force))
+}
+
 #[test]
 fn a_push_is_named_with_its_windows_by_recording() {
-    let d = pushed([0.0, 5e4, 1e6]);
+    let d = pushed_often([0.0, 5e4, 1e6]);
     assert_eq!(d.findings.first().map(|f| f.mechanism.as_str()), Some("push"), "{}", d.headline);
     let windows = &d.findings[0].windows;
     let right = |w: &&trimtab::diagnose::locate::Window| {
@@ -158,9 +161,52 @@ fn a_push_is_named_with_its_windows_by_recording() {
 
 #[test]
 fn how_much_of_a_push_is_across_the_keel_is_told() {
-    let share = |force: [f64; 3]| pushed(force).location.push.unwrap().sideways;
+    let share = |force: [f64; 3]| pushed_often(force).location.push.unwrap().sideways;
     let (across, along) = (share([0.0, 3e4, 6e5]), share([-4e4, 0.0, 0.0]));
     assert!(across > 0.9 && along < 0.1, "{across} {along}");
+}
+
+#[test]
+fn what_comes_to_both_sides_is_no_push() {
+    let d = pushed(|i| (i % 2 == 1).then(|| if i % 4 == 1 { [0.0, 5e4, 1e6] } else { [0.0, -5e4, -1e6] }));
+    let candidate = d.location.push.as_ref().unwrap();
+    assert!(candidate.statistic > 150.0 && candidate.mirrored > 0.5, "{candidate:?}");
+    assert!(d.findings.iter().all(|f| f.mechanism != "push"), "{}", d.headline);
+}
+
+#[test]
+fn a_force_in_one_recording_alone_is_an_event_without_a_name() {
+    let d = pushed(|i| (i == 5).then_some([0.0, 2e5, 4e6]));
+    assert_eq!((d.verdict, d.findings.len()), (Verdict::NotInCatalogue, 0), "{}", d.headline);
+    assert!(d.headline.contains("run 5 from "), "{}", d.headline);
+    let [window] = d.location.push.as_ref().unwrap().windows.as_slice() else { panic!("{:?}", d.location.push) };
+    assert!((window.start - 80.0).abs() <= 20.0 && (window.end - 140.0).abs() <= 20.0, "{window:?}");
+}
+
+#[test]
+fn a_moment_that_the_catalogue_does_not_hold_is_no_sensor() {
+    let d = case(&[("asymmetric.N_0", 3e5)], &[], 3);
+    assert_eq!((d.verdict, d.findings.len()), (Verdict::NotInCatalogue, 0), "{}", d.headline);
+}
+
+#[test]
+fn a_force_in_one_part_of_the_water_is_no_weather() {
+    let mut truth = model();
+    truth.add_term("earth_force").unwrap();
+    let north = truth.find("earth_force.north").unwrap();
+    truth.parameters[north].value = 3e4;
+    let (with, mut data) = (runs(&truth, &truth_noise(), 30, 7), runs(&model(), &truth_noise(), 30, 7));
+    for (i, run) in data.iter_mut().enumerate().filter(|(i, _)| i % 3 == 1) {
+        run.clone_from(&with[i]);
+        // Sailed elsewhere: 3 km to the east.
+        run.initial[1] += 3000.0;
+        run.measured.iter_mut().for_each(|m| m[1] += 3000.0);
+    }
+    let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
+    assert_eq!((d.verdict, d.findings.len()), (Verdict::NotInCatalogue, 0), "{}", d.headline);
+    let place = d.location.place.as_ref().unwrap();
+    assert!(place.p < 1e-10 && place.east[1] > 2000.0 && place.force[0] > 1e4, "{place:?}");
+    assert!(d.headline.contains("goes with the place"), "{}", d.headline);
 }
 
 #[test]

@@ -603,7 +603,8 @@ pub fn diagnose(
     // Weather is the same wherever the ship sails: what leaves more behind that goes with the place is something else.
     let local = |l: &Location| l.place.as_ref().filter(|p| p.p < PLACED).map(|p| p.statistic - p.degrees as f64);
     let weather = |a: &Accepted| list[a.candidate].mechanism.is_weather();
-    let placed = accepted.iter().any(weather) && location_after.as_ref().and_then(local).is_some_and(|l| l > PLACED_SHARE * explained);
+    let placed = accepted.iter().any(weather)
+        && location_after.as_ref().and_then(local).is_some_and(|l| l > PLACED_SHARE * explained);
     if placed {
         accepted.clear();
         current = null.clone();
@@ -722,7 +723,9 @@ impl Unlisted<'_> {
             Self::Law(surrogate) => {
                 let terms: Vec<&str> = surrogate.iter().map(|t| t.name.as_str()).collect();
                 let terms = terms.join(", ");
-                format!("Something is missing that the catalogue does not hold; a surrogate for it (not physics): {terms}.")
+                format!(
+                    "Something is missing that the catalogue does not hold; a surrogate for it (not physics): {terms}."
+                )
             }
             Self::Event(push) => {
                 let one = |w: &Window| format!("{} from {:.0} to {:.0} s", w.run, w.start, w.end);

@@ -266,16 +266,18 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
 
 /// Tests whether an earth-fixed force is another in each part of the water.
 fn place(chart: &Chart, evidence: &Evidence, base: &Base, first: usize, unit: f64) -> Option<Place> {
-    let own: Vec<usize> = (first..first + 2 * PARTS * PARTS).collect();
+    let sailed =
+        |part: &usize| (0..2).all(|i| evidence.total.information[(first + 2 * part + i, first + 2 * part + i)] > 1e-6);
+    let parts: Vec<usize> = (0..PARTS * PARTS).filter(sailed).collect();
+    let own: Vec<usize> = parts.iter().flat_map(|part| [first + 2 * part, first + 2 * part + 1]).collect();
     // What is the same everywhere is the weather.
-    let weather = first + own.len();
+    let weather = first + 2 * PARTS * PARTS;
     let test = evidence.test(&evidence.extend(base, &[weather, weather + 1]), &own);
-    let weight = |part: usize| {
-        let a = |i: usize| test.amplitude[2 * part + i].powi(2) / test.covariance[(2 * part + i, 2 * part + i)];
-        a(0) + a(1)
+    let weight = |j: &usize| -> f64 {
+        (2 * j..2 * j + 2).map(|i| test.amplitude[i].powi(2) / test.covariance[(i, i)].max(f64::MIN_POSITIVE)).sum()
     };
-    let part = (0..PARTS * PARTS).filter(|p| weight(*p).is_finite()).max_by(|a, b| weight(*a).total_cmp(&weight(*b)))?;
-    let at = |i: usize| 2 * part + i;
+    let strongest = (0..parts.len()).max_by(|a, b| weight(a).total_cmp(&weight(b))).filter(|_| test.degrees > 0)?;
+    let (part, at) = (parts[strongest], |i: usize| 2 * strongest + i);
     Some(Place {
         north: chart.limits(part, 0),
         east: chart.limits(part, 1),

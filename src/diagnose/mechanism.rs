@@ -176,3 +176,38 @@ pub fn candidates(model: &Model, withhold: &[String]) -> Vec<Candidate> {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::ship::Ship;
+    use crate::terms::Form;
+    use nalgebra::{DMatrix, DVector};
+    use std::path::Path;
+
+    #[test]
+    fn what_promises_a_little_more_than_there_can_be_is_possible_and_the_other_sign_is_not() {
+        let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
+        let model = Model::new(ship, "HD", Form::Regular, &[]).unwrap().complete().unwrap();
+        let all = candidates(&model, &[]);
+        let stall = all.iter().find(|c| c.mechanism.name == "rudder_stall").unwrap();
+        // All lift can be lost and no more: amplitudes in units of that, one tenth as uncertain as large.
+        let possible = |share: f64| {
+            let (a, error) = (share / stall.columns[0].scale, 0.1 * share / stall.columns[0].scale);
+            stall.admissible(
+                &model,
+                &Test {
+                    statistic: 100.0,
+                    degrees: 1,
+                    p: 0.0,
+                    amplitude: DVector::from_element(1, a),
+                    covariance: DMatrix::from_element(1, 1, error * error),
+                    retained: 1.0,
+                },
+            )
+        };
+        assert!(possible(0.5) && possible(1.3) && !possible(4.0) && !possible(-0.5));
+    }
+}

@@ -136,7 +136,10 @@ pub const KEYS: &[(&str, &str)] = &[
     ("location.regions[].error", "standard errors"),
     ("location.regions[].statistic", "twice the gain in log-likelihood"),
     ("location.regions[].p", "p-value, corrected for the number of regions"),
-    ("location.place", "whether an earth-fixed force is another in each of nine parts of the water; absent when nothing can be said"),
+    (
+        "location.place",
+        "whether an earth-fixed force is another in each of nine parts of the water; absent when nothing can be said",
+    ),
     ("location.place.north", "southern and northern limit of the part where it stands out most [m]"),
     ("location.place.east", "western and eastern limit of it [m]"),
     ("location.place.force", "force to north and east there, less what acts everywhere [N]"),
@@ -155,7 +158,10 @@ pub const KEYS: &[(&str, &str)] = &[
     ("ranking[].size", "size over the smallest worth naming"),
     ("ranking[].admissible", "whether its sign is possible"),
     ("ranking[].retained", "share of its information left after parameters and unknown coefficients"),
-    ("ranking[].second_opinion", "p-value with a free mirror-symmetric force as rival; for a sensor, with any generic force"),
+    (
+        "ranking[].second_opinion",
+        "p-value with a free mirror-symmetric force as rival; for a sensor, with any generic force",
+    ),
     ("ranking[].sessions[]", "sessions in which it acts; empty for all"),
     ("ranking[].by_session", "whether each of these sessions has an amplitude of its own"),
     ("absorbed[]", "mechanisms that these data and this model can never show"),

@@ -225,6 +225,10 @@ pub(super) fn widen(evidence: &Evidence, base: &Base, symmetric: &[usize]) -> Ba
     widened
 }
 
+/// Statistics closer than this are the same.
+const EQUAL: f64 = 0.01;
+/// Beyond so many sessions not every way to part them is tried.
+const MANY_SESSIONS: usize = 6;
 /// What a group of sessions, or amplitudes of their own, must explain more than what is simpler.
 const CLEARLY: f64 = 6.0;
 /// The same for every further amplitude, beyond what it would explain by chance.
@@ -246,15 +250,26 @@ fn row(
         let opinion = evidence.test(widened, columns).p;
         tests.push((Extent::All, pooled.clone(), opinion));
     }
+    let possible = |t: &Test| candidate.admissible(model, t);
     if let Some(contrast) = evidence.contrast(base, columns) {
+        let reference = candidate.mechanism.needs_reference;
+        let in_group = |group: Vec<String>| {
+            let test = evidence.test_in(base, columns, &named(&group), reference);
+            (group, test)
+        };
         let mut parts = groups(&contrast, sessions, columns.len());
         // Where nothing else decides, what differs is what changed since the first recording.
         parts.sort_by_key(|part| evidence.runs.first().is_some_and(|r| part.contains(&r.session)));
-        for group in parts {
-            let names = named(&group);
-            let reference = candidate.mechanism.needs_reference;
-            let test = evidence.test_in(base, columns, &names, reference);
-            let opinion = evidence.test_in(widened, columns, &names, reference).p;
+        let chosen = parts.into_iter().map(in_group).reduce(|best, next| {
+            let by_rank = possible(&next.1).cmp(&possible(&best.1));
+            if by_rank.is_gt() || (by_rank.is_eq() && next.1.statistic > best.1.statistic + EQUAL) {
+                next
+            } else {
+                best
+            }
+        });
+        if let Some((group, test)) = chosen {
+            let opinion = evidence.test_in(widened, columns, &named(&group), reference).p;
             tests.push((Extent::In(group), test, opinion));
         }
         if candidate.mechanism.is_weather() {
@@ -269,7 +284,6 @@ fn row(
         _ if candidate.mechanism.is_weather() => 3.0,
         _ => 2.0,
     };
-    let possible = |t: &Test| candidate.admissible(model, t);
     // The common amplitude unless a group of sessions explains clearly more, and either unless they differ beyond doubt.
     let price = |extent: &Extent, more: usize| match extent {
         Extent::All | Extent::In(_) => CLEARLY + 2.0 * partings.ln(),
@@ -307,11 +321,16 @@ fn row(
     }
 }
 
-/// Two ways to part the sessions where an amplitude differs most: the largest gap along the direction of greatest change.
+/// Ways to part the sessions: all of them, or where there are too many the two where an amplitude differs most, at the largest
+/// gap along the direction of greatest change.
 fn groups(contrast: &Test, sessions: &[String], k: usize) -> Vec<Vec<String>> {
     let n = sessions.len();
     if contrast.degrees == 0 {
         return Vec::new();
+    }
+    if n <= MANY_SESSIONS {
+        let chosen = |mask: usize| (0..n).filter(|i| mask >> i & 1 == 1).map(|i| sessions[i].clone()).collect();
+        return (1..(1 << n) - 1).map(chosen).collect();
     }
     let by_session: Vec<DVector<f64>> = (0..n).map(|s| contrast.amplitude.rows(s * k, k).into_owned()).collect();
     let mean = by_session.iter().fold(DVector::zeros(k), |a, b| a + b) / n as f64;

@@ -88,3 +88,35 @@ impl<S: Scalar> Physics<S> for PropellerWalk {
         Force { x: S::zero(), y, n: y * ship.propeller_x() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use crate::model::Model;
+    use crate::ship::Ship;
+    use crate::state::{Force, Inputs, State};
+    use crate::terms::Form;
+    use std::path::Path;
+
+    #[test]
+    fn a_left_handed_screw_astern_walks_the_stern_to_the_other_side() {
+        let right = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
+        let mut left = right.clone();
+        left.propeller.left_handed = true;
+        let brought = |ship: Ship| {
+            let mut model = Model::new(ship, "HD", Form::Regular, &["propeller_walk"]).unwrap();
+            let astern = model.find("propeller_walk.astern").unwrap();
+            let mut rates = |value: f64| {
+                model.parameters[astern].value = value;
+                let state = State::from_array([0.0, 0.0, 0.0, 2.0, 0.0, 0.0]);
+                model.rates(&model.values(), &state, &Inputs::actuators(0.0, -2.0, 0.0), &Force::zero()).0
+            };
+            let (with, without) = (rates(-0.02), rates(0.0));
+            [with[4] - without[4], with[5] - without[5]]
+        };
+        let (right, left) = (brought(right), brought(left));
+        // The stern to port turns the bow to starboard.
+        assert!(right[1] > 1e-6 && (right[1] + left[1]).abs() < 1e-12 && (right[0] + left[0]).abs() < 1e-12);
+    }
+}
