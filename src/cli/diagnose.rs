@@ -87,10 +87,11 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     if output.has_folder() {
         output.file("improved.toml", model_text(&diagnosis.model)?.as_bytes())?;
         output.file("base.toml", model_text(&diagnosis.base)?.as_bytes())?;
-        let pictures = figures::all(&diagnosis);
-        output.file("report.html", report::page(&diagnosis, name, &pictures)?.render().as_bytes())?;
+        let pictures = figures::all(&diagnosis)?;
+        output.file("report.html", report::page(&diagnosis, name, &pictures).render().as_bytes())?;
         for p in &pictures {
-            output.figure(&format!("figures/{}", p.stem), || p.figure.clone())?;
+            output.file(format!("figures/{}.png", p.stem), &p.png)?;
+            output.file(format!("figures/{}.csv", p.stem), p.csv.as_bytes())?;
         }
     }
     if args.output.json {

@@ -676,6 +676,7 @@ pub fn diagnose(
         Verdict::NothingMissing
     };
     let headline = headline(verdict, &findings, &admission, unlisted.as_ref());
+    let trial = unlisted.as_ref().map(Unlisted::next_trial).or_else(|| next_trial(verdict, &findings, &list));
     let surrogate = if let Some(Unlisted::Law(terms)) = unlisted { terms } else { Vec::new() };
     let detectable = detectable(&first, &list, settings, &full);
     Ok(Diagnosis {
@@ -696,7 +697,7 @@ pub fn diagnose(
         surrogate,
         moves: moves(&null, &current, integration, &runs, model),
         hull_budget: budget(&current),
-        next_trial: next_trial(verdict, &findings, &list),
+        next_trial: trial,
         held_out: proof,
         findings,
         settings: settings.clone(),
@@ -748,6 +749,24 @@ impl Unlisted<'_> {
                 )
             }
         }
+    }
+
+    fn next_trial(&self) -> NextTrial {
+        let (trial, why) = match self {
+            Self::Law(_) => (
+                "straight runs at several speeds on opposite headings, and turning circles to both sides",
+                "they part what goes with speed, with heading and with the side",
+            ),
+            Self::Event(_) => (
+                "the same manoeuvre again, twice, without help from outside",
+                "a push does not come again, the ship's own forces do",
+            ),
+            Self::Place(_) => (
+                "straight runs through that part of the water and past it, on opposite headings",
+                "they show how far it reaches and whether it turns with the ship",
+            ),
+        };
+        NextTrial { trial: trial.into(), why: why.into() }
     }
 }
 
@@ -922,9 +941,9 @@ fn describe(
     before: &Screen,
     after: &Screen,
 ) -> Vec<Finding> {
-    // The ship's other forces, too, have some other form: intervals hold what that may do to a parameter.
+    // The ship's own forces may have another form: intervals hold what that does to a parameter.
     let n = found.free.len();
-    let all = Wald::of(found, after.loosest.inverse.view((0, 0), (n, n)).into_owned());
+    let all = Wald::of(found, after.widened.inverse.view((0, 0), (n, n)).into_owned());
     let mut out = Vec::new();
     for a in accepted {
         let c = &list[a.candidate];

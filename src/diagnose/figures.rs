@@ -4,31 +4,52 @@
 use super::conclude::{Diagnosis, Ranked, Trace};
 use super::report::{Units, title_of};
 use crate::report::{
-    Axis, BASELINE, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, Legend, Marker, ORANGE, PURPLE, Panel, RECORDED,
-    SKY, east_north,
+    Axis, BASELINE, Color, FITTED, Figure, FigureError, GREEN, GREY, LIMIT, Layer, Legend, Marker, ORANGE, PURPLE,
+    Panel, RECORDED, SKY, east_north,
 };
 use crate::ship::Ship;
+use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::collections::BTreeMap;
 
-/// A figure with its file name and the part of the report it belongs to.
+/// A figure, drawn, with its file name and the part of the report it belongs to.
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// File name without extension.
     pub stem: &'static str,
+    /// Title of the figure.
+    pub title: String,
     /// What is to be seen, in one or two sentences.
-    pub caption: String,
+    pub caption: &'static str,
     /// Heading of the part of the report, as in [`super::report::parts`].
     pub part: &'static str,
-    /// The figure.
-    pub figure: Figure,
+    /// As [`Figure::png`].
+    pub png: Vec<u8>,
+    /// As [`Figure::csv`].
+    pub csv: String,
+}
+
+struct Sketch {
+    stem: &'static str,
+    part: &'static str,
+    caption: &'static str,
+    figure: Figure,
 }
 
 /// Every picture that the diagnosis gives cause to.
-#[must_use]
-pub fn all(d: &Diagnosis) -> Vec<Picture> {
-    let picture =
-        |stem, part, caption: &str, figure: Figure| Picture { stem, caption: caption.to_owned(), part, figure };
+///
+/// # Errors
+/// When a figure cannot be drawn.
+pub fn all(d: &Diagnosis) -> Result<Vec<Picture>, FigureError> {
+    let draw = |s: Sketch| {
+        let Sketch { stem, part, caption, figure } = s;
+        Ok(Picture { stem, caption, part, png: figure.png()?, csv: figure.csv()?, title: figure.title })
+    };
+    sketches(d).into_par_iter().map(draw).collect()
+}
+
+fn sketches(d: &Diagnosis) -> Vec<Sketch> {
+    let picture = |stem, part, caption, figure| Sketch { stem, part, caption, figure };
     let telling = telling(d);
     let mut out = Vec::new();
     if !d.ranking.is_empty() {

@@ -5,7 +5,7 @@ use super::conclude::{Amplitude, Diagnosis, Finding, Verdict};
 use super::figures::Picture;
 use super::locate::{EquationShare, Window};
 use super::mechanism::{Kind, Mechanism};
-use crate::report::{FigureError, Page, Section, Table, fixed, sig};
+use crate::report::{Page, Section, Table, fixed, sig};
 use crate::ship::Ship;
 use crate::terms::CATALOGUE;
 use serde_json::{Map, Value};
@@ -745,15 +745,12 @@ fn next_trial(d: &Diagnosis) -> Vec<String> {
 }
 
 /// The diagnosis as one page that carries its figures.
-///
-/// # Errors
-/// When a figure cannot be drawn.
-pub fn page(d: &Diagnosis, study: &str, pictures: &[Picture]) -> Result<Page, FigureError> {
+pub fn page(d: &Diagnosis, study: &str, pictures: &[Picture]) -> Page {
     let mut page = Page::new(format!("Diagnosis: {study}")).lede(d.headline.clone()).lede(subject(d, study));
     for part in parts(d) {
         let mut section = Section::new(sentence_case(part.heading)).list(&part.lines);
         for p in pictures.iter().filter(|p| p.part == part.heading) {
-            section = section.figure(&p.figure, &p.caption)?;
+            section = section.png(&p.png, &p.title, p.caption);
         }
         if part.heading == "MODEL" && !d.moves.is_empty() {
             section =
@@ -773,7 +770,7 @@ pub fn page(d: &Diagnosis, study: &str, pictures: &[Picture]) -> Result<Page, Fi
             format!(" · withheld: {}", d.settings.withhold.join(", "))
         }
     );
-    Ok(page.footer(footer))
+    page.footer(footer)
 }
 
 fn sentence_case(heading: &str) -> String {

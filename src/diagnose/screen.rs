@@ -40,8 +40,9 @@ pub struct Screen {
     pub evidence: Evidence,
     /// The fitted block.
     pub base: Base,
-    /// The same with any generic force beside it, as far as the data ask for one: what is known when the form of the forces is not.
-    pub loosest: Base,
+    /// The same with the mirror-symmetric basis beside it, as far as the data ask for one: what is known when the form of the
+    /// ship's own forces is not.
+    pub widened: Base,
     /// Columns of each candidate.
     groups: Vec<Vec<usize>>,
     /// Columns of the mirror-symmetric basis.
@@ -154,6 +155,7 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
     let anything: Vec<usize> = symmetric.iter().chain(&asymmetric).copied().collect();
     let loosest = widen(&evidence, &base, &anything);
     let mut rows: Vec<Row> = (0..candidates.len())
+        .into_par_iter()
         .map(|i| {
             let wide = if candidates[i].mechanism.kind == Kind::Sensor { &loosest } else { &widened };
             row(&evidence, &base, wide, model, &candidates[i], i, &groups[i], &sessions)
@@ -172,7 +174,7 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
     Screen {
         evidence,
         base,
-        loosest,
+        widened,
         groups,
         symmetric,
         asymmetric,

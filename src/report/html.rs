@@ -76,17 +76,22 @@ impl Section {
     /// # Errors
     /// As [`Figure::png`].
     pub fn figure(self, figure: &Figure, caption: &str) -> Result<Self, FigureError> {
-        let png = figure.png()?;
+        Ok(self.png(&figure.png()?, &figure.title, caption))
+    }
+
+    /// The same section with a figure that is drawn already, as [`Self::figure`].
+    #[must_use]
+    pub fn png(self, png: &[u8], title: &str, caption: &str) -> Self {
         // The width is in the PNG header, big-endian at byte 16.
         let width = png.get(16..20).and_then(|b| b.try_into().ok()).map(|b| u32::from_be_bytes(b) / 2);
-        let source = format!("data:image/png;base64,{}", STANDARD.encode(&png));
-        let says = if figure.title.is_empty() { caption } else { &figure.title };
-        Ok(self.markup(html! {
+        let source = format!("data:image/png;base64,{}", STANDARD.encode(png));
+        let says = if title.is_empty() { caption } else { title };
+        self.markup(html! {
             figure {
                 img src=(source) alt=(says) width=[width];
                 @if !caption.is_empty() { figcaption { (caption) } }
             }
-        }))
+        })
     }
 
     /// The same section with a figure as inline SVG: sharp at any size, but large when it has many points.
