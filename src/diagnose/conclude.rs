@@ -601,11 +601,11 @@ pub fn diagnose(
     }
     let mut location_after = last.is_some().then(|| locate(&current, integration, &runs));
     // Weather is the same wherever the ship sails: what leaves more behind that goes with the place is something else.
-    let local = |l: &Location| l.place.as_ref().filter(|p| p.p < PLACED).map(|p| p.statistic - p.degrees as f64);
+    let local = |p: &Place| p.p < PLACED && p.statistic - p.degrees as f64 > PLACED_SHARE * explained;
     let weather = |a: &Accepted| list[a.candidate].mechanism.is_weather();
-    let placed = accepted.iter().any(weather)
-        && location_after.as_ref().and_then(local).is_some_and(|l| l > PLACED_SHARE * explained);
-    if placed {
+    let left = location_after.as_ref().filter(|_| accepted.iter().any(weather)).and_then(|l| l.place.clone());
+    let placed = left.filter(local);
+    if placed.is_some() {
         accepted.clear();
         current = null.clone();
         (last, location_after) = (None, None);
@@ -624,8 +624,8 @@ pub fn diagnose(
     let named_something = !accepted.is_empty() || pushes.is_some();
     let unlisted = if blocked || named_something {
         None
-    } else if placed {
-        location.place.as_ref().map(Unlisted::Place)
+    } else if let Some(place) = &placed {
+        Some(Unlisted::Place(place))
     } else if let Some(event) = &lone {
         Some(Unlisted::Event(event))
     } else {
