@@ -22,7 +22,7 @@ const FEWEST_RIGHT: usize = 10;
 /// Of these, with a right name in the confidence set.
 const FEWEST_IN_SET: usize = 10;
 /// Cases of any kind with one name given in confidence that is neither right nor near.
-const MOST_WRONG: usize = 2;
+const MOST_WRONG: usize = 1;
 /// Pairs and triples, of 3, with at least one right name and none wrong.
 const FEWEST_COMPOUND: usize = 2;
 
