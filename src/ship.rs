@@ -130,12 +130,8 @@ pub struct PropellerParticulars {
     #[serde(default = "default_astern")]
     pub astern: f64,
     /// Whether the propeller turns anticlockwise ahead, seen from aft: it walks to the other side.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub left_handed: bool,
-}
-
-fn is_false(value: &bool) -> bool {
-    !value
 }
 
 fn default_astern() -> f64 {

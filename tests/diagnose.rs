@@ -124,19 +124,19 @@ fn a_receiver_that_jumps_is_no_push() {
 }
 
 /// Thirty runs, in some of which a force of their own acts from 80 to 140 s.
-fn pushed(force_in: impl Fn(usize) -> Option<[f64; 3]>) -> Diagnosis {
+fn pushed(forces: &[([f64; 3], fn(usize) -> bool)]) -> Diagnosis {
     let mut data = runs(&model(), &truth_noise(), 30, 101);
-    for (i, run) in data.iter_mut().enumerate() {
-        if let Some(force) = force_in(i) {
-            let mut truth = model();
-            truth.add_term("push").unwrap();
-            let [x, y, n] = force;
-            for (name, value) in ["x", "y", "n", "start", "end"].into_iter().zip([x, y, n, 80.0, 140.0]) {
-                let i = truth.find(&format!("push.{name}")).unwrap();
-                truth.parameters[i].value = value;
-            }
-            *run = runs(&truth, &truth_noise(), 30, 101)[i].clone();
+    for ([x, y, n], acts_in) in forces {
+        let mut truth = model();
+        truth.add_term("push").unwrap();
+        for (name, value) in ["x", "y", "n", "start", "end"].into_iter().zip([*x, *y, *n, 80.0, 140.0]) {
+            let i = truth.find(&format!("push.{name}")).unwrap();
+            truth.parameters[i].value = value;
         }
+        let with = runs(&truth, &truth_noise(), 30, 101);
+        (0..30).filter(|i| acts_in(*i)).for_each(|i| data[i].clone_from(&with[i]));
+    }
+    for run in &mut data {
         run.name = format!("{} 0 s", run.recording);
     }
     diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap()
@@ -144,7 +144,7 @@ fn pushed(force_in: impl Fn(usize) -> Option<[f64; 3]>) -> Diagnosis {
 
 /// The same force in every fourth run.
 fn pushed_often(force: [f64; 3]) -> Diagnosis {
-    pushed(|i| (i % 4 == 1).then_some(force))
+    pushed(&[(force, |i| i % 4 == 1)])
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn how_much_of_a_push_is_across_the_keel_is_told() {
 
 #[test]
 fn what_comes_to_both_sides_is_no_push() {
-    let d = pushed(|i| (i % 2 == 1).then(|| if i % 4 == 1 { [0.0, 5e4, 1e6] } else { [0.0, -5e4, -1e6] }));
+    let d = pushed(&[([0.0, 5e4, 1e6], |i| i % 4 == 1), ([0.0, -5e4, -1e6], |i| i % 4 == 3)]);
     let candidate = d.location.push.as_ref().unwrap();
     assert!(candidate.statistic > 150.0 && candidate.mirrored > 0.5, "{candidate:?}");
     assert!(d.findings.iter().all(|f| f.mechanism != "push"), "{}", d.headline);
@@ -176,7 +176,7 @@ fn what_comes_to_both_sides_is_no_push() {
 
 #[test]
 fn a_force_in_one_recording_alone_is_an_event_without_a_name() {
-    let d = pushed(|i| (i == 5).then_some([0.0, 2e5, 4e6]));
+    let d = pushed(&[([0.0, 2e5, 4e6], |i| i == 5)]);
     assert_eq!((d.verdict, d.findings.len()), (Verdict::NotInCatalogue, 0), "{}", d.headline);
     assert!(d.headline.contains("run 5 from "), "{}", d.headline);
     let [window] = d.location.push.as_ref().unwrap().windows.as_slice() else { panic!("{:?}", d.location.push) };

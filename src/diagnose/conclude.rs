@@ -591,21 +591,14 @@ pub fn diagnose(
     // A name that leaves more unexplained than it explains, in forces that break symmetry or stand on the earth, is the nearest
     // thing in the catalogue and not what is missing.
     let explained: f64 = accepted.iter().map(|a| a.statistic).sum();
-    if let Some(s) = &last
-        && s.asymmetric_test.p < UNLISTED
-        && smooth(s) > explained
-    {
-        accepted.clear();
-        current = null.clone();
-        last = None;
-    }
-    let mut location_after = last.is_some().then(|| locate(&current, integration, &runs));
+    let nearest = last.as_ref().is_some_and(|s| s.asymmetric_test.p < UNLISTED && smooth(s) > explained);
+    let mut location_after = (last.is_some() && !nearest).then(|| locate(&current, integration, &runs));
     // Weather is the same wherever the ship sails: what leaves more behind that goes with the place is something else.
     let local = |p: &Place| p.p < PLACED && p.statistic - p.degrees as f64 > PLACED_SHARE * explained;
     let weather = |a: &Accepted| list[a.candidate].mechanism.is_weather();
     let left = location_after.as_ref().filter(|_| accepted.iter().any(weather)).and_then(|l| l.place.clone());
     let placed = left.filter(local);
-    if placed.is_some() {
+    if nearest || placed.is_some() {
         accepted.clear();
         current = null.clone();
         (last, location_after) = (None, None);

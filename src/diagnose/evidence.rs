@@ -102,20 +102,19 @@ impl Evidence {
         base.test(&score, &own, &cross)
     }
 
-    /// Tests a group of columns that acts in some sessions only, after the base has had its say; with `reference` the part
-    /// common to all sessions is projected out too, so that the other sessions are the reference.
-    pub fn test_in(&self, base: &Base, columns: &[usize], sessions: &[&str], reference: bool) -> Test {
+    /// Tests a group of columns that acts in some sessions only, after the base has had its say. With the same columns in the
+    /// base ([`Evidence::extend`]) what is common to all sessions is projected out, so that the others are the reference.
+    pub fn test_in(&self, base: &Base, columns: &[usize], sessions: &[&str]) -> Test {
         let k = columns.len();
         let mut score = DVector::zeros(k);
         let mut own = DMatrix::zeros(k, k);
-        let against = if reference { self.extend(base, columns) } else { base.clone() };
-        let mut cross = DMatrix::zeros(k, against.columns.len());
+        let mut cross = DMatrix::zeros(k, base.columns.len());
         for e in self.sessions.iter().filter(|(s, _)| sessions.contains(&s.as_str())).map(|(_, e)| e) {
             score += DVector::from_fn(k, |i, _| e.score[columns[i]]);
             own += pick(&e.information, columns, columns);
-            cross += pick(&e.information, columns, &against.columns);
+            cross += pick(&e.information, columns, &base.columns);
         }
-        against.test(&score, &own, &cross)
+        base.test(&score, &own, &cross)
     }
 
     /// The base with further columns, common to all runs.

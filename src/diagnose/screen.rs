@@ -86,7 +86,7 @@ impl Screen {
         let columns = self.columns(index);
         match extent {
             Extent::All => self.evidence.test(&self.base, columns),
-            Extent::In(sessions) => self.evidence.test_in(&self.base, columns, &named(sessions), false),
+            Extent::In(sessions) => self.evidence.test_in(&self.base, columns, &named(sessions)),
             Extent::Each(_) => self.evidence.test_each(&self.base, columns),
         }
     }
@@ -254,9 +254,12 @@ fn row(
     }
     let possible = |t: &Test| candidate.admissible(model, t);
     if let Some(contrast) = evidence.contrast(base, columns) {
-        let reference = candidate.mechanism.needs_reference;
+        let against = |base: &Base| {
+            if candidate.mechanism.needs_reference { evidence.extend(base, columns) } else { base.clone() }
+        };
+        let reference = against(base);
         let in_group = |group: Vec<String>| {
-            let test = evidence.test_in(base, columns, &named(&group), reference);
+            let test = evidence.test_in(&reference, columns, &named(&group));
             (group, test)
         };
         let mut parts = groups(&contrast, sessions, columns.len());
@@ -271,7 +274,7 @@ fn row(
             }
         });
         if let Some((group, test)) = chosen {
-            let opinion = evidence.test_in(widened, columns, &named(&group), reference).p;
+            let opinion = evidence.test_in(&against(widened), columns, &named(&group)).p;
             tests.push((Extent::In(group), test, opinion));
         }
         if candidate.mechanism.is_weather() {
