@@ -25,7 +25,7 @@ use crate::fit::FitRun;
 use crate::model::Model;
 use crate::recording::{Split, Window};
 use crate::ship::Ship;
-use crate::simulate::{Integration, Scenario, Trajectory, simulate};
+use crate::simulate::{Integration, Scenario, Trajectory, driven, simulate};
 use crate::state::{STATE_NAMES, STATES, State};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -253,9 +253,8 @@ impl From<&Window> for Scenario {
 pub fn predict(model: &Model, window: &Window, integration: Integration) -> Trajectory {
     let theta = model.values_in(&window.session);
     let mut trajectory = simulate(model, &theta, integration, &Scenario::from(window));
-    let mut driven = window.inputs.clone();
-    model.drive(&theta, window.dt, &mut driven);
-    for (s, inputs) in trajectory.states.iter_mut().zip(&driven) {
+    let series = driven(model, &theta, integration, window.dt, &window.inputs);
+    for (s, inputs) in trajectory.states.iter_mut().zip(series.iter().step_by(integration.instants())) {
         let state = State::from_array(*s);
         let (rates, flow) = model.rates(&theta, &state, inputs, &crate::state::Force::zero());
         *s = model.measure(&theta, &state, inputs, &rates, &flow);

@@ -5,6 +5,7 @@ use crate::model::Model;
 use crate::state::{Force, Inputs, STATES, State};
 use crate::terms::Number;
 use serde::{Deserialize, Serialize};
+use trimtab_ad::Scalar;
 
 /// How a step is integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,6 +31,17 @@ pub struct Integration {
 impl Default for Integration {
     fn default() -> Self {
         Self { method: Method::Euler, substeps: 1 }
+    }
+}
+
+impl Integration {
+    /// Instants in a sample period at which a simulation looks at the inputs, one end included: 1 for Euler's step, 2 for RK4's.
+    pub fn instants(self) -> usize {
+        let stages = match self.method {
+            Method::Euler => 1,
+            Method::Rk4 => 2,
+        };
+        stages * self.substeps.max(1)
     }
 }
 
@@ -84,32 +96,52 @@ pub fn advance<S: Number>(
     }
 }
 
-/// Advances a state over one sample period, in sub-steps, with inputs linear between the two samples.
+/// Advances a state over one sample period, in sub-steps; `inputs` are those at its [`Integration::instants`], both ends
+/// included.
 pub fn step<S: Number>(
     model: &Model,
     theta: &[S],
     integration: Integration,
     dt: f64,
     state: &[S; STATES],
-    now: &Inputs<S>,
-    next: &Inputs<S>,
+    inputs: &[Inputs<S>],
     push: &Force<S>,
 ) -> [S; STATES] {
     let count = integration.substeps.max(1);
+    let stages = integration.instants() / count;
     let h = dt / count as f64;
-    if count == 1 && integration.method == Method::Euler {
-        return advance(model, theta, integration.method, h, state, [now, now, now], push);
-    }
     let mut state = *state;
-    for i in 0..count {
-        let at = |offset: f64| now.between(next, (i as f64 + offset) / count as f64);
-        let (start, middle, end) = match integration.method {
-            Method::Euler => (at(0.0), at(0.0), at(0.0)),
-            Method::Rk4 => (at(0.0), at(0.5), at(1.0)),
-        };
-        state = advance(model, theta, integration.method, h, &state, [&start, &middle, &end], push);
+    for i in (0..count).map(|i| i * stages) {
+        let stage = [&inputs[i], &inputs[i + stages / 2], &inputs[i + stages]];
+        state = advance(model, theta, integration.method, h, &state, stage, push);
     }
     state
+}
+
+/// Inputs that are linear between two samples, at the instants that follow the first, up to the second.
+pub fn between<S: Scalar>(now: &Inputs<S>, next: &Inputs<S>, instants: usize) -> impl Iterator<Item = Inputs<S>> {
+    let (now, next) = (*now, *next);
+    (1..=instants).map(move |i| if i == instants { next } else { now.between(&next, i as f64 / instants as f64) })
+}
+
+/// Inputs as the ship has them, at every instant at which a simulation looks at them: linear between the recorded samples, then
+/// passed through the terms that change them (actuator lag, rate limit, rudder offset). Sample `k` is at
+/// `k` [`Integration::instants`].
+pub fn driven<S: Number>(
+    model: &Model,
+    theta: &[S],
+    integration: Integration,
+    dt: f64,
+    samples: &[Inputs<S>],
+) -> Vec<Inputs<S>> {
+    let instants = integration.instants();
+    let mut series = Vec::with_capacity(samples.len() * instants);
+    series.extend(samples.first());
+    for pair in samples.windows(2) {
+        series.extend(between(&pair[0], &pair[1], instants));
+    }
+    model.drive(theta, dt / instants as f64, &mut series);
+    series
 }
 
 /// Simulates a scenario and hands every sample (index, state) to `sink`, the initial one first.
@@ -124,14 +156,15 @@ pub fn rollout<S: Number>(
     initial: &[S; STATES],
     mut sink: impl FnMut(usize, &[S; STATES]) -> bool,
 ) {
-    let mut series: Vec<Inputs<S>> = inputs.iter().map(Inputs::constant).collect();
-    model.drive(theta, dt, &mut series);
+    let samples: Vec<Inputs<S>> = inputs.iter().map(Inputs::constant).collect();
+    let series = driven(model, theta, integration, dt, &samples);
+    let instants = integration.instants();
     let mut state = *initial;
-    for k in 0..series.len() {
-        if !sink(k, &state) || k + 1 == series.len() {
+    for k in 0..inputs.len() {
+        if !sink(k, &state) || k + 1 == inputs.len() {
             return;
         }
-        state = step(model, theta, integration, dt, &state, &series[k], &series[k + 1], &Force::zero());
+        state = step(model, theta, integration, dt, &state, &series[k * instants..], &Force::zero());
     }
 }
 

@@ -11,12 +11,11 @@ use super::noise::Noise;
 use crate::flow::Flow;
 use crate::model::Model;
 use crate::recording::Window;
-use crate::simulate::{Integration, Method, step};
+use crate::simulate::{Integration, Method, driven, step};
 use crate::state::{Force, Inputs, STATES, State};
 use crate::terms::hull::Inertia;
 use crate::terms::{CHUNK, Gradient, Group, find};
 use nalgebra::{DMatrix, DVector};
-use trimtab_ad::Scalar;
 
 /// One run as the filter needs it.
 #[derive(Clone, Debug)]
@@ -254,9 +253,9 @@ impl<'a> Filter<'a> {
         let width = parameters + extra;
         let theta = self.model.values_in(&run.session);
         let constants: Vec<Gradient> = theta.iter().map(|t| Gradient::constant(*t)).collect();
-        let mut series = run.inputs.clone();
-        self.base.drive(&theta, run.dt, &mut series);
-        let seeded: Vec<Seeded> = self.chunks.iter().map(|c| Seeded::new(c, &self.columns, &theta, run)).collect();
+        let series = driven(&self.base, &theta, self.integration, run.dt, &run.inputs);
+        let instants = self.integration.instants();
+        let seeded: Vec<Seeded> = self.chunks.iter().map(|c| self.seeded(c, &theta, run)).collect();
 
         let mut z = [0.0; Z];
         z[..STATES].copy_from_slice(&run.initial);
@@ -281,14 +280,14 @@ impl<'a> Filter<'a> {
         let mut rates_now = vec![0.0; 3 * width];
         let mut rates_next = vec![0.0; 3 * width];
         if parameters > 0 && !wanted.exact {
-            self.rate_columns(&seeded, &theta, &series, (0, 0.0), &run.initial, &[0.0; 3], width, &mut rates_now);
+            self.rate_columns(&seeded, &theta, &series, 0, &run.initial, &[0.0; 3], width, &mut rates_now);
         }
         // The accelerations' Jacobian at both ends of a step carries the linearisation over it.
         let smooth = self.integration == Integration { method: Method::Rk4, substeps: 1 } && !wanted.exact;
         let mut slope =
             if smooth { self.slope(&constants, &run.initial, &[0.0; 3], &series[0]) } else { Slope::default() };
         for k in 0..run.measured.len() {
-            let now = &series[k];
+            let now = &series[k * instants];
             let state: [f64; STATES] = std::array::from_fn(|j| z[j]);
             // What the sensors report, and how that changes with state and parameters.
             let (report, h) = self.report(&constants, &state, now);
@@ -393,20 +392,21 @@ impl<'a> Filter<'a> {
             // Prediction.
             let state: [f64; STATES] = std::array::from_fn(|j| z[j]);
             let push = [z[6], z[7], z[8]];
-            let next = &series[k + 1];
+            let later = (k + 1) * instants;
             let force = Force { x: push[0], y: push[1], n: push[2] };
-            let image = step(&self.base, &theta, self.integration, run.dt, &state, now, next, &force);
+            let image = step(&self.base, &theta, self.integration, run.dt, &state, &series[k * instants..], &force);
             let mut exact = Variation::default();
             let (a, gamma) = if wanted.frozen.is_some() && width == 0 && !wanted.tangent {
                 Default::default()
             } else if smooth {
-                let end = self.slope(&constants, &image, &push, next);
+                let end = self.slope(&constants, &image, &push, &series[later]);
                 let carried = carry(&slope, &end, run.dt);
                 slope = end;
                 carried
             } else {
                 let through = if wanted.exact { seeded.as_slice() } else { &[] };
-                exact = self.variation(through, &constants, &theta, &series, k, run.dt, &state, &push, width);
+                exact =
+                    self.variation(through, &constants, &theta, &series, k * instants, run.dt, &state, &push, width);
                 exact.jacobians()
             };
             forces.clear();
@@ -447,7 +447,7 @@ impl<'a> Filter<'a> {
                     // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any
                     // predictable sensitivity leaves the score unbiased, so that this costs no more than a little power.
                     let faded = push.map(|w| w * noise.fade);
-                    self.rate_columns(&seeded, &theta, &series, (k + 1, 0.0), &image, &faded, width, &mut rates_next);
+                    self.rate_columns(&seeded, &theta, &series, later, &image, &faded, width, &mut rates_next);
                     let half = 0.5 * run.dt;
                     for i in 0..STATES {
                         let row = &mut moved[i * width..i * width + parameters];
@@ -502,7 +502,7 @@ impl<'a> Filter<'a> {
         constants: &[Gradient],
         theta: &[f64],
         series: &[Inputs<f64>],
-        k: usize,
+        from: usize,
         dt: f64,
         state: &[f64; STATES],
         push: &[f64; 3],
@@ -513,30 +513,30 @@ impl<'a> Filter<'a> {
         let count = self.integration.substeps.max(1);
         let h = dt / count as f64;
         let mut columns = vec![0.0; 3 * width];
-        // Rates of the state and of its derivatives, where both have reached `at` and `v` a fraction of the period later.
-        let mut rates = |at: &[f64; STATES], v: &Variation, fraction: f64| {
-            let inputs = instant(series, (k, fraction));
-            let slope = self.slope(constants, at, push, &inputs);
+        // Rates of the state and of its derivatives, where both have reached `at` and `v` some instants later.
+        let mut rates = |at: &[f64; STATES], v: &Variation, later: usize| {
+            let inputs = &series[from + later];
+            let slope = self.slope(constants, at, push, inputs);
             if width > 0 {
-                self.rate_columns(seeded, theta, series, (k, fraction), at, push, width, &mut columns);
+                self.rate_columns(seeded, theta, series, from + later, at, push, width, &mut columns);
             }
-            let rates = self.base.rates_alone(theta, &State::from_array(*at), &inputs, &force);
+            let rates = self.base.rates_alone(theta, &State::from_array(*at), inputs, &force);
             (rates, v.rate(&slope, &columns))
         };
         let mut x = *state;
         let mut v = Variation::start(width);
         for i in 0..count {
-            let at = |offset: f64| (i as f64 + offset) / count as f64;
-            let (k1, v1) = rates(&x, &v, at(0.0));
             match self.integration.method {
                 Method::Euler => {
+                    let (k1, v1) = rates(&x, &v, i);
                     x = moved(&x, h, &k1);
                     v = v.moved(h, &v1);
                 }
                 Method::Rk4 => {
-                    let (k2, v2) = rates(&moved(&x, 0.5 * h, &k1), &v.moved(0.5 * h, &v1), at(0.5));
-                    let (k3, v3) = rates(&moved(&x, 0.5 * h, &k2), &v.moved(0.5 * h, &v2), at(0.5));
-                    let (k4, v4) = rates(&moved(&x, h, &k3), &v.moved(h, &v3), at(1.0));
+                    let (k1, v1) = rates(&x, &v, 2 * i);
+                    let (k2, v2) = rates(&moved(&x, 0.5 * h, &k1), &v.moved(0.5 * h, &v1), 2 * i + 1);
+                    let (k3, v3) = rates(&moved(&x, 0.5 * h, &k2), &v.moved(0.5 * h, &v2), 2 * i + 1);
+                    let (k4, v4) = rates(&moved(&x, h, &k3), &v.moved(h, &v3), 2 * i + 2);
                     for (weight, k, w) in [(1.0, &k1, &v1), (2.0, &k2, &v2), (2.0, &k3, &v3), (1.0, &k4, &v4)] {
                         x = moved(&x, weight * h / 6.0, k);
                         v = v.moved(weight * h / 6.0, w);
@@ -547,21 +547,20 @@ impl<'a> Filter<'a> {
         v
     }
 
-    /// Derivatives of the accelerations (u', v', r') with respect to the parameters, row by row, at an
-    /// instant: a sample and a fraction of the period after it.
+    /// Derivatives of the accelerations (u', v', r') with respect to the parameters, row by row, at an instant.
     fn rate_columns(
         &self,
         seeded: &[Seeded],
         theta: &[f64],
         series: &[Inputs<f64>],
-        when: (usize, f64),
+        when: usize,
         state: &[f64; STATES],
         push: &[f64; 3],
         width: usize,
         out: &mut [f64],
     ) {
         let x = State::from_array(*state);
-        let now = instant(series, when);
+        let now = series[when];
         // Where a parameter changes its own term's force only, the flow and the inertia are numbers.
         let local = self.chunks.iter().any(|c| c.reach == Reach::Force).then(|| {
             let flow = self.base.flow(theta, &x, &now);
@@ -602,8 +601,7 @@ impl<'a> Filter<'a> {
                     }
                     for probe in &seed.probes {
                         let force = Force { x: push[0], y: push[1], n: push[2] };
-                        let f =
-                            |side: &Side| chunk.view.rates_alone(&side.theta, &x, &instant(&side.series, when), &force);
+                        let f = |side: &Side| chunk.view.rates_alone(&side.theta, &x, &side.series[when], &force);
                         let (high, low) = (f(&probe.high), f(&probe.low));
                         for i in 0..3 {
                             out[i * width + probe.column] = (high[3 + i] - low[3 + i]) * probe.weight;
@@ -613,6 +611,38 @@ impl<'a> Filter<'a> {
                 _ => {}
             }
         }
+    }
+
+    /// A chunk's parameters with their seeds, for one run.
+    fn seeded(&self, chunk: &Chunk, theta: &[f64], run: &Run) -> Seeded {
+        let mut dual: Vec<Gradient> = theta.iter().map(|t| Gradient::constant(*t)).collect();
+        let mut probes = Vec::new();
+        let mut tangents = false;
+        let everything = chunk.reach == Reach::Everything;
+        let samples = if everything { run.inputs.as_slice() } else { &[] };
+        let plain = |theta: &[f64]| driven(&chunk.view, theta, self.integration, run.dt, samples);
+        for (lane, c) in chunk.columns.iter().enumerate() {
+            let Column { parameter, scale, probe } = self.columns[*c];
+            let side = |amount: f64| {
+                let mut theta = theta.to_vec();
+                theta[parameter] += amount;
+                let series = plain(&theta);
+                Side { theta, series }
+            };
+            match probe {
+                Probe::Tangent => {
+                    tangents = true;
+                    dual[parameter].eps[lane] = scale;
+                }
+                Probe::Odd => probes.push(Probed { column: *c, high: side(scale), low: side(-scale), weight: 0.5 }),
+                Probe::Forward => probes.push(Probed { column: *c, high: side(scale), low: side(0.0), weight: 1.0 }),
+            }
+        }
+        let series = (everything && tangents).then(|| {
+            let samples: Vec<Inputs<Gradient>> = run.inputs.iter().map(Inputs::constant).collect();
+            driven(&chunk.view, &dual, self.integration, run.dt, &samples)
+        });
+        Seeded { theta: dual, series, plain: plain(theta), tangents, probes }
     }
 
     /// What the sensors report at a state, and the derivative with respect to the state.
@@ -652,11 +682,6 @@ impl<'a> Filter<'a> {
         };
         self.chunks.iter().zip(seeded).filter(|(c, _)| c.reach == Reach::Sensors).map(report).collect()
     }
-}
-
-/// Inputs at a sample, or a fraction of the period after it, where they are linear.
-fn instant<S: Scalar>(series: &[Inputs<S>], (k, fraction): (usize, f64)) -> Inputs<S> {
-    if fraction == 0.0 { series[k] } else { series[k].between(&series[k + 1], fraction) }
 }
 
 /// `x + h k`.
@@ -787,43 +812,8 @@ struct Probed {
 }
 
 impl Seeded {
-    fn new(chunk: &Chunk, columns: &[Column], theta: &[f64], run: &Run) -> Self {
-        let mut dual: Vec<Gradient> = theta.iter().map(|t| Gradient::constant(*t)).collect();
-        let mut probes = Vec::new();
-        let mut tangents = false;
-        let everything = chunk.reach == Reach::Everything;
-        let driven = |theta: &[f64]| {
-            let mut series = if everything { run.inputs.clone() } else { Vec::new() };
-            chunk.view.drive(theta, run.dt, &mut series);
-            series
-        };
-        for (lane, c) in chunk.columns.iter().enumerate() {
-            let Column { parameter, scale, probe } = columns[*c];
-            let side = |amount: f64| {
-                let mut theta = theta.to_vec();
-                theta[parameter] += amount;
-                let series = driven(&theta);
-                Side { theta, series }
-            };
-            match probe {
-                Probe::Tangent => {
-                    tangents = true;
-                    dual[parameter].eps[lane] = scale;
-                }
-                Probe::Odd => probes.push(Probed { column: *c, high: side(scale), low: side(-scale), weight: 0.5 }),
-                Probe::Forward => probes.push(Probed { column: *c, high: side(scale), low: side(0.0), weight: 1.0 }),
-            }
-        }
-        let series = (everything && tangents).then(|| {
-            let mut s: Vec<Inputs<Gradient>> = run.inputs.iter().map(Inputs::constant).collect();
-            chunk.view.drive(&dual, run.dt, &mut s);
-            s
-        });
-        Self { theta: dual, series, plain: driven(theta), tangents, probes }
-    }
-
-    fn instant(&self, when: (usize, f64)) -> Inputs<Gradient> {
-        self.series.as_ref().map_or_else(|| Inputs::constant(&instant(&self.plain, when)), |s| instant(s, when))
+    fn instant(&self, when: usize) -> Inputs<Gradient> {
+        self.series.as_ref().map_or_else(|| Inputs::constant(&self.plain[when]), |s| s[when])
     }
 }
 

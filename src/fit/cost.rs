@@ -667,25 +667,29 @@ impl<'a> Cost<'a> {
     ) {
         // Inputs of a whole run as dual numbers are a megabyte: they are made only where a term may change them.
         let driven: Option<Vec<Inputs<S>>> = self.driven.then(|| {
-            let mut series: Vec<_> = block.inputs.iter().map(|i| i.map(&constant)).collect();
-            self.model.drive(theta, block.dt, &mut series);
-            series
+            let samples: Vec<_> = block.inputs.iter().map(|i| i.map(&constant)).collect();
+            simulate::driven(self.model, theta, self.integration, block.dt, &samples)
         });
-        let input = |k: usize| driven.as_ref().map_or_else(|| block.inputs[k].map(&constant), |series| series[k]);
+        let instants = self.integration.instants();
         let mut state = block.initial.map(&constant);
-        let mut now = input(0);
+        let mut period = vec![block.inputs[0].map(&constant)];
         for k in 0..block.inputs.len() {
+            let next = block.inputs.get(k + 1);
+            if let (None, Some(next)) = (&driven, next) {
+                let now = period[0];
+                period.extend(simulate::between(&now, &next.map(&constant), instants));
+            }
+            let inputs = driven.as_ref().map_or(period.as_slice(), |series| &series[k * instants..]);
             if self.sensed {
                 let at = State::from_array(state);
-                let (rates, flow) = self.model.rates(theta, &at, &now, &Force::zero());
-                sink(k, &self.model.measure(theta, &at, &now, &rates, &flow));
+                let (rates, flow) = self.model.rates(theta, &at, &inputs[0], &Force::zero());
+                sink(k, &self.model.measure(theta, &at, &inputs[0], &rates, &flow));
             } else {
                 sink(k, &state);
             }
-            if k + 1 < block.inputs.len() {
-                let next = input(k + 1);
-                state = step(self.model, theta, self.integration, block.dt, &state, &now, &next, &Force::zero());
-                now = next;
+            if next.is_some() {
+                state = step(self.model, theta, self.integration, block.dt, &state, inputs, &Force::zero());
+                period.drain(..period.len() - 1);
             }
         }
     }

@@ -3,7 +3,7 @@
 
 use super::{Approach, Ended, Track};
 use crate::model::Model;
-use crate::simulate::{Integration, Method, absurd_speed, step};
+use crate::simulate::{Integration, Method, absurd_speed, driven, step};
 use crate::state::{Force, Inputs, STATES};
 
 /// Orders to rudder and engine.
@@ -35,8 +35,7 @@ pub(super) fn sail(
     let mut orders = Orders { delta: 0.0, n: approach.n };
     let mut actuators: Vec<Inputs<f64>> =
         (0..=steps).map(|k| Inputs::actuators(k as f64 * dt, approach.n, 0.0)).collect();
-    let mut driven = actuators.clone();
-    model.drive(theta, dt, &mut driven);
+    let mut series = driven(model, theta, integration, dt, &actuators);
 
     let mut track = Track::default();
     let mut state: [f64; STATES] = [0.0, 0.0, 0.0, approach.speed, 0.0, 0.0];
@@ -54,11 +53,10 @@ pub(super) fn sail(
                 actuators[i].delta = follow(actuators[i - 1].delta, orders.delta, approach.rudder_rate * dt);
                 actuators[i].n = follow(actuators[i - 1].n, orders.n, approach.engine_rate * dt);
             }
-            driven.clone_from(&actuators);
-            model.drive(theta, dt, &mut driven);
+            series = driven(model, theta, integration, dt, &actuators);
         }
         if k < steps {
-            state = step(model, theta, integration, dt, &state, &driven[k], &driven[k + 1], &Force::zero());
+            state = step(model, theta, integration, dt, &state, &series[k * integration.instants()..], &Force::zero());
             if !(state.iter().all(|s| s.is_finite()) && state[3].hypot(state[4]) < limit) {
                 return (track, Ended::Diverged { after: (k + 1) as f64 * dt });
             }
