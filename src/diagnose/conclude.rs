@@ -513,19 +513,20 @@ pub fn diagnose(
     let blocked = admission.issues.iter().any(|i| i.blocking);
 
     let form_holds = first.symmetric_test.p > FORM_HOLDS;
-    // An event inflates the noise it must stand out of; where the ship's own forces fit, calmer runs tell the noise better.
-    let push_of = |found: &Estimate, runs: &[Run]| {
-        let noise = if form_holds { calm_noise(found, integration, runs, &prior) } else { found.noise };
-        locate(&Estimate { noise, ..found.clone() }, integration, runs).push
-    };
-    if form_holds {
-        location.push = push_of(&null, &runs);
-    }
+    let null_noise = null.noise;
     let is_event = |push: &Push| {
         let across = push.sideways > SIDEWAYS;
         push.statistic > needed_statistic(push.recordings(), form_holds)
             && if across { push.mirrored < MIRRORED } else { form_holds }
     };
+    // The strongest that is an event, or else the strongest.
+    let event_of = |l: &Location| l.pushes.iter().find(|p| is_event(p)).or(l.pushes.first()).cloned();
+    // An event inflates the noise it must stand out of; where the ship's own forces fit, calmer runs tell the noise better.
+    let push_of = |found: &Estimate, runs: &[Run]| {
+        let noise = if form_holds { calm_noise(found, integration, runs, &prior) } else { null_noise };
+        event_of(&locate(&Estimate { noise, ..found.clone() }, integration, runs))
+    };
+    location.push = if form_holds { push_of(&null, &runs) } else { event_of(&location) };
 
     // A strong event in time inflates the noise and gets a hull's name: explain it first.
     let mut pushes: Option<Push> = None;
@@ -592,7 +593,11 @@ pub fn diagnose(
     // thing in the catalogue and not what is missing.
     let explained: f64 = accepted.iter().map(|a| a.statistic).sum();
     let nearest = last.as_ref().is_some_and(|s| s.asymmetric_test.p < UNLISTED && smooth(s) > explained);
-    let mut location_after = (last.is_some() && !nearest).then(|| locate(&current, integration, &runs));
+    let mut location_after = (last.is_some() && !nearest).then(|| {
+        let mut after = locate(&current, integration, &runs);
+        after.push = event_of(&after);
+        after
+    });
     // Weather is the same wherever the ship sails: what leaves more behind that goes with the place is something else.
     let local = |p: &Place| p.p < PLACED && p.statistic - p.degrees as f64 > PLACED_SHARE * explained;
     let weather = |a: &Accepted| list[a.candidate].mechanism.is_weather();

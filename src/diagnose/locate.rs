@@ -164,6 +164,9 @@ pub struct Location {
     /// The same force in windows of some runs, whether it is significant or not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub push: Option<Push>,
+    /// Every such force that the search came to, the strongest first.
+    #[serde(skip)]
+    pub pushes: Vec<Push>,
     /// Regions, most significant first.
     pub regions: Vec<RegionTest>,
     /// Whether an earth-fixed force goes with the place.
@@ -232,7 +235,7 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
             scan(b, looked_at).into_iter().map(move |s| window(run, index, &s, looked_at, &found.noise.force))
         })
         .collect();
-    let push = common_push(runs, &blocks_of, &found.noise.force, looked_at);
+    let pushes = common_pushes(runs, &blocks_of, &found.noise.force, looked_at);
     windows.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
     let mut regions: Vec<RegionTest> = REGIONS
         .iter()
@@ -261,7 +264,7 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
     regions.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
     let equations = equation_shares(&passes, &evidence, &base, columns.len(), blocks, &found.noise.force);
     let place = chart.and_then(|c| place(&c, &evidence, &widened, columns.len() + parts, found.noise.force[1]));
-    Location { equations, windows, push, regions, place }
+    Location { equations, windows, push: pushes.first().cloned(), pushes, regions, place }
 }
 
 /// Tests whether an earth-fixed force is another in each part of the water.
@@ -441,7 +444,7 @@ pub struct Push {
     pub force: [f64; 3],
     /// Standard errors.
     pub error: [f64; 3],
-    /// Twice the gain in log-likelihood, less twice the logarithm of the number of windows each was chosen from.
+    /// Twice the gain in log-likelihood, the window of each run unknown: its spans are as likely as each other beforehand.
     pub statistic: f64,
     /// Share of the evidence for it that sway force and yaw moment hold by themselves, 0 to 1.
     pub sideways: f64,
@@ -459,9 +462,12 @@ impl Push {
     }
 }
 
+/// Spans, the best of their runs, from which that search starts.
+const STARTS: usize = 12;
+
 /// Looks for one force that acts in unknown windows of unknown runs: alternately the windows in which the force gains most,
-/// and the force that fits them best, from several starts.
-fn common_push(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f64) -> Option<Push> {
+/// and the force that fits them best, from several starts. The strongest first.
+fn common_pushes(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f64) -> Vec<Push> {
     // The best span of every run is a start.
     let mut starts: Vec<Span> = blocks
         .iter()
@@ -471,25 +477,29 @@ fn common_push(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f64)
         })
         .collect();
     starts.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
-    starts.truncate(8);
+    starts.truncate(STARTS);
+    // Twice the logarithm of how much likelier a run is with the force in one of its spans, each as likely as any other, than
+    // without; and the best of them.
     let chosen = |force: &Vector3<f64>| -> Vec<(usize, usize, usize, f64)> {
         let mut out = Vec::new();
         for (index, b) in blocks.iter().enumerate() {
-            let price = 2.0 * choices(b.count).ln();
-            let best = b
+            let gains: Vec<(usize, usize, f64)> = b
                 .local_spans()
                 .map(|(from, to)| {
                     let (score, information) = b.span(from, to);
                     (from, to, 2.0 * score.dot(force) - force.dot(&(information * force)))
                 })
-                .max_by(|a, b| a.2.total_cmp(&b.2));
-            if let Some((from, to, gain)) = best.filter(|b| b.2 > price) {
-                out.push((index, from, to, gain - price));
+                .collect();
+            let Some((from, to, most)) = gains.iter().copied().max_by(|a, b| a.2.total_cmp(&b.2)) else { continue };
+            let mean = gains.iter().map(|g| (0.5 * (g.2 - most)).exp()).sum::<f64>() / gains.len() as f64;
+            let gain = most + 2.0 * mean.ln();
+            if gain > 0.0 {
+                out.push((index, from, to, gain));
             }
         }
         out
     };
-    let mut best: Option<(f64, Vector3<f64>, Matrix3<f64>, Vec<(usize, usize, usize, f64)>)> = None;
+    let mut found: Vec<Push> = Vec::new();
     for start in starts {
         let mut force = start.estimate;
         let mut inverse = start.inverse;
@@ -506,27 +516,26 @@ fn common_push(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f64)
             spans = chosen(&force);
         }
         let statistic: f64 = spans.iter().map(|s| s.3).sum();
-        if best.as_ref().is_none_or(|b| statistic > b.0) {
-            best = Some((statistic, force, inverse, spans));
+        if spans.is_empty() || found.iter().any(|p| (p.statistic - statistic).abs() < 1e-6 * statistic) {
+            continue;
         }
-    }
-    let (statistic, force, inverse, spans) = best?;
-    let image: f64 = chosen(&Vector3::new(force[0], -force[1], -force[2])).iter().map(|s| s.3).sum();
-    let windows = spans
-        .iter()
-        .filter_map(|(index, from, to, _)| {
+        // With the surge force free, against all three.
+        let across = inverse.fixed_view::<2, 2>(1, 1).into_owned().try_inverse();
+        let (Some(across), Some(all)) = (across, inverse.try_inverse()) else { continue };
+        let side = force.fixed_rows::<2>(1).into_owned();
+        let image: f64 = chosen(&Vector3::new(force[0], -force[1], -force[2])).iter().map(|s| s.3).sum();
+        let fitted = |(index, from, to, _): &(usize, usize, usize, f64)| {
             Some(window(&runs[*index], *index, &blocks[*index].fit(*from, *to)?, looked_at, unit))
-        })
-        .collect();
-    // With the surge force free, against all three.
-    let across = inverse.fixed_view::<2, 2>(1, 1).into_owned().try_inverse()?;
-    let (side, all) = (force.fixed_rows::<2>(1).into_owned(), inverse.try_inverse()?);
-    Some(Push {
-        sideways: side.dot(&(across * side)) / force.dot(&(all * force)).max(f64::MIN_POSITIVE),
-        mirrored: image / statistic.max(f64::MIN_POSITIVE),
-        force: std::array::from_fn(|a| force[a] * unit[a]),
-        error: std::array::from_fn(|a| inverse[(a, a)].max(0.0).sqrt() * unit[a]),
-        statistic,
-        windows,
-    })
+        };
+        found.push(Push {
+            sideways: side.dot(&(across * side)) / force.dot(&(all * force)).max(f64::MIN_POSITIVE),
+            mirrored: image / statistic.max(f64::MIN_POSITIVE),
+            force: std::array::from_fn(|a| force[a] * unit[a]),
+            error: std::array::from_fn(|a| inverse[(a, a)].max(0.0).sqrt() * unit[a]),
+            statistic,
+            windows: spans.iter().filter_map(fitted).collect(),
+        });
+    }
+    found.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
+    found
 }
