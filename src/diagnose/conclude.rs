@@ -418,10 +418,10 @@ pub(super) fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParamete
 fn needed_statistic(recordings: usize, form_holds: bool) -> f64 {
     match recordings {
         0..=2 => ALONE,
-        3 => 150.0,
-        4 => 100.0,
-        _ if form_holds => 30.0,
-        _ => 60.0,
+        3 => 120.0,
+        4 => 80.0,
+        _ if form_holds => 25.0,
+        _ => 40.0,
     }
 }
 

@@ -462,6 +462,9 @@ impl Push {
     }
 }
 
+/// Share of the runs that a push is taken to act in beforehand.
+const AFFECTED: f64 = 0.2;
+
 /// Spans, the best of their runs, from which that search starts.
 const STARTS: usize = 12;
 
@@ -478,58 +481,59 @@ fn common_pushes(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f6
         .collect();
     starts.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
     starts.truncate(STARTS);
-    // Twice the logarithm of how much likelier a run is with the force in one of its spans, each as likely as any other, than
-    // without; and the best of them.
-    let chosen = |force: &Vector3<f64>| -> Vec<(usize, usize, usize, f64)> {
-        let mut out = Vec::new();
+    // The spans of the runs that rather have the force than not, and twice the logarithm of how much likelier all runs are when
+    // some of them have it, in any of their spans, than when none has.
+    let chosen = |force: &Vector3<f64>| -> (Vec<(usize, usize, usize)>, f64) {
+        let mut spans = Vec::new();
+        let mut statistic = 0.0;
         for (index, b) in blocks.iter().enumerate() {
             let gains: Vec<(usize, usize, f64)> = b
                 .local_spans()
                 .map(|(from, to)| {
                     let (score, information) = b.span(from, to);
-                    (from, to, 2.0 * score.dot(force) - force.dot(&(information * force)))
+                    (from, to, score.dot(force) - 0.5 * force.dot(&(information * force)))
                 })
                 .collect();
             let Some((from, to, most)) = gains.iter().copied().max_by(|a, b| a.2.total_cmp(&b.2)) else { continue };
-            let mean = gains.iter().map(|g| (0.5 * (g.2 - most)).exp()).sum::<f64>() / gains.len() as f64;
-            let gain = most + 2.0 * mean.ln();
-            if gain > 0.0 {
-                out.push((index, from, to, gain));
+            let mean = gains.iter().map(|g| (g.2 - most).exp()).sum::<f64>() / gains.len() as f64;
+            let (with, without) = ((AFFECTED * mean).ln() + most, (1.0 - AFFECTED).ln());
+            if with > without {
+                spans.push((index, from, to));
             }
+            statistic += 2.0 * (with.max(without) + (-(with - without).abs()).exp().ln_1p());
         }
-        out
+        (spans, statistic)
     };
     let mut found: Vec<Push> = Vec::new();
     for start in starts {
         let mut force = start.estimate;
         let mut inverse = start.inverse;
-        let mut spans = chosen(&force);
+        let (mut spans, mut statistic) = chosen(&force);
         for _ in 0..4 {
             let (mut score, mut information) = (Vector3::zeros(), Matrix3::zeros());
-            for (index, from, to, _) in &spans {
+            for (index, from, to) in &spans {
                 let (g, h) = blocks[*index].span(*from, *to);
                 score += g;
                 information += h;
             }
             let Some(i) = information.try_inverse() else { break };
             (inverse, force) = (i, i * score);
-            spans = chosen(&force);
+            (spans, statistic) = chosen(&force);
         }
-        let statistic: f64 = spans.iter().map(|s| s.3).sum();
-        if spans.is_empty() || found.iter().any(|p| (p.statistic - statistic).abs() < 1e-6 * statistic) {
+        if spans.is_empty() || found.iter().any(|p| (p.statistic - statistic).abs() < 1e-6 * statistic.abs()) {
             continue;
         }
         // With the surge force free, against all three.
         let across = inverse.fixed_view::<2, 2>(1, 1).into_owned().try_inverse();
         let (Some(across), Some(all)) = (across, inverse.try_inverse()) else { continue };
         let side = force.fixed_rows::<2>(1).into_owned();
-        let image: f64 = chosen(&Vector3::new(force[0], -force[1], -force[2])).iter().map(|s| s.3).sum();
-        let fitted = |(index, from, to, _): &(usize, usize, usize, f64)| {
+        let (_, image) = chosen(&Vector3::new(force[0], -force[1], -force[2]));
+        let fitted = |(index, from, to): &(usize, usize, usize)| {
             Some(window(&runs[*index], *index, &blocks[*index].fit(*from, *to)?, looked_at, unit))
         };
         found.push(Push {
             sideways: side.dot(&(across * side)) / force.dot(&(all * force)).max(f64::MIN_POSITIVE),
-            mirrored: image / statistic.max(f64::MIN_POSITIVE),
+            mirrored: image.max(0.0) / statistic.max(f64::MIN_POSITIVE),
             force: std::array::from_fn(|a| force[a] * unit[a]),
             error: std::array::from_fn(|a| inverse[(a, a)].max(0.0).sqrt() * unit[a]),
             statistic,

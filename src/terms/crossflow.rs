@@ -1,5 +1,6 @@
 //! Cross-flow drag of the hull in strips, beyond the quadratic damping of the base model.
-//! One drag coefficient for all strips; it matters at large drift and when the ship turns on the spot.
+//! One drag coefficient for all strips, and a weight of the turning in force and moment, as hulls are measured to differ there; it
+//! matters at large drift and when the ship turns on the spot.
 
 use super::{Group, Moment, Physics, Term, TermInfo};
 use crate::diagnose::filter::Probe;
@@ -33,15 +34,15 @@ static INFO: TermInfo = TermInfo {
     name: "crossflow",
     title: "cross-flow drag at large drift",
     group: Group::Hull,
-    equation: "Y = -1/2 rho d C_D int |v + x r| (v + x r) dx, N = -1/2 rho d C_D int |v + x r| (v + x r) x dx over the length",
-    source: "strip theory with Hoerner's drag coefficients, as in Fossen's Marine Systems Simulator and Yoshimura's low-speed model; integrals in closed form",
+    equation: "Y = -1/2 rho d C_D int |v + C_rY x r| (v + C_rY x r) dx, N = -1/2 rho d C_D int |v + C_rN x r| (v + C_rN x r) x dx over the length",
+    source: "strip theory with Hoerner's drag coefficients as in Fossen's Marine Systems Simulator (weights of 1), and Yoshimura's low-speed model (2.2 and 0.8 for Esso Osaka); integrals in closed form",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "crossflow",
         title: "cross-flow drag at large drift",
         kind: Kind::Ship,
         parameters: &["drag"],
-        companions: &[],
+        companions: &["turn_force", "turn_moment"],
         probe: Probe::Tangent,
         needs_reference: true,
         floor: 0.05,
@@ -49,15 +50,22 @@ static INFO: TermInfo = TermInfo {
         look_alikes: &["shallow", "hull_nonlinear"],
         trial: "drifting sideways and turning on the spot",
     }],
-    parameters: &[ParameterInfo::new(
-        "drag",
-        "C_D",
-        "-",
-        "drag coefficient beyond the base model's; 0.6 to 1.0 in all",
-    )
-    .scale(|_| 0.2)
-    .spread(|_| 0.3)
-    .bounds(0.0, 2.0)],
+    parameters: &[
+        ParameterInfo::new("drag", "C_D", "-", "drag coefficient beyond the base model's; 0.6 to 1.0 in all")
+            .scale(|_| 0.2)
+            .spread(|_| 0.3)
+            .bounds(0.0, 2.0),
+        ParameterInfo::new("turn_force", "C_rY", "-", "weight of the turning in the sway force")
+            .default(|_| 1.0)
+            .scale(|_| 0.5)
+            .spread(|_| 0.6)
+            .bounds(0.0, 4.0),
+        ParameterInfo::new("turn_moment", "C_rN", "-", "weight of the turning in the yaw moment")
+            .default(|_| 1.0)
+            .scale(|_| 0.2)
+            .spread(|_| 0.2)
+            .bounds(0.0, 2.0),
+    ],
 };
 
 impl Term for Crossflow {
@@ -74,7 +82,8 @@ impl<S: Scalar> Physics<S> for Crossflow {
     fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
         let hull = &at.ship.hull;
         let half = 0.5 * hull.lpp;
-        let [sway, yaw] = strip_integrals(flow.v, flow.r * half);
+        let [sway, _] = strip_integrals(flow.v, p[1] * flow.r * half);
+        let [_, yaw] = strip_integrals(flow.v, p[2] * flow.r * half);
         let pressure = p[0] * (-0.5 * hull.water_density * hull.draught * half);
         Force { x: S::zero(), y: pressure * sway, n: pressure * yaw * half }
     }
