@@ -10,7 +10,7 @@ use super::filter::{Column, Probe, Run};
 use super::forces::undoes;
 use super::mechanism::{Candidate, Extent, Kind};
 use super::noise::{Noise, NoisePrior};
-use super::screen::{Row, Screen};
+use super::screen::{Row, Screen, screen};
 use crate::model::Model;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
@@ -29,6 +29,7 @@ const CLOSE: f64 = 3.0;
 const FORM_UNKNOWN: f64 = 0.1;
 
 /// A mechanism with what it costs and brings.
+#[derive(Clone)]
 pub(super) struct Accepted {
     /// Index into the candidates.
     pub candidate: usize,
@@ -384,13 +385,45 @@ pub(super) fn backward(accepted: &mut Vec<Accepted>, current: &mut Estimate, are
         chi_squared_p(w.statistic(), w.value.len()) > 0.1 * settings.alpha || c.size(w.value.as_slice()) < 1.0
     });
     let Some(i) = needless else { return };
-    let dropped = accepted.remove(i);
-    let mut places = positions(&current.free, &list[dropped.candidate], &dropped.extent);
+    let needless = accepted.remove(i);
+    let (model, free) = without(current, &list[needless.candidate], &needless.extent);
+    *current = estimate(&model, integration, runs, &free, &current.noise, prior, SETTLE);
+}
+
+/// The model and what is free in it once a mechanism is taken out.
+fn without(current: &Estimate, c: &Candidate, extent: &Extent) -> (Model, Vec<FreeParameter>) {
+    let (mut model, mut free) = (current.model.clone(), current.free.clone());
+    let mut places = positions(&free, c, extent);
     places.sort_unstable();
     for at in places.into_iter().rev() {
-        let f = current.free.remove(at);
-        let neutral = (current.model.parameters[f.column.parameter].info.default)(&current.model.ship);
-        f.set(&mut current.model, if f.sessions.is_some() { 0.0 } else { neutral });
+        let f = free.remove(at);
+        let neutral = (model.parameters[f.column.parameter].info.default)(&model.ship);
+        f.set(&mut model, if f.sessions.is_some() { 0.0 } else { neutral });
     }
-    *current = estimate(&current.model, integration, runs, &current.free, &current.noise, prior, SETTLE);
+    (model, free)
+}
+
+/// Lets every mechanism from outside the ship compete again beside those that were found after it: what it stood for alone may
+/// have another name now.
+pub(super) fn swap(accepted: &mut [Accepted], current: &mut Estimate, arena: Arena) {
+    let Arena { integration, runs, list, prior, settings } = arena;
+    let outside = |candidate: usize| list[candidate].mechanism.kind == Kind::Environment;
+    for i in 0..accepted.len().saturating_sub(1) {
+        if !outside(accepted[i].candidate) {
+            continue;
+        }
+        let (model, free) = without(current, &list[accepted[i].candidate], &accepted[i].extent);
+        let rest = estimate(&model, integration, runs, &free, &current.noise, prior, REFIT);
+        let others: Vec<Accepted> =
+            accepted.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, a)| a.clone()).collect();
+        let s = screen(&rest, integration, runs, list);
+        let may =
+            |r: &&Row| outside(r.candidate) && acceptable(r, list, settings) && acceptable_beside(r, &others, list);
+        let leaders: Vec<&Row> = s.rows.iter().filter(may).collect();
+        let Some((entry, found)) = compete(&s, &leaders, &rest, arena) else { continue };
+        if entry.candidate != accepted[i].candidate || entry.extent != accepted[i].extent {
+            *current = found;
+        }
+        accepted[i] = entry;
+    }
 }

@@ -3,7 +3,7 @@
 
 use super::admit::{Admission, admit};
 use super::compete::{
-    Accepted, Arena, REFIT, SETTLE, Wald, acceptable, acceptable_beside, backward, compete, positions, wald,
+    Accepted, Arena, REFIT, SETTLE, Wald, acceptable, acceptable_beside, backward, compete, positions, swap, wald,
 };
 use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior};
 use super::filter::{Column, Probe, Run};
@@ -579,6 +579,7 @@ pub fn diagnose(
             current = found;
             backward(&mut accepted, &mut current, arena);
         }
+        swap(&mut accepted, &mut current, arena);
     }
     if !accepted.is_empty() {
         progress("refitting the whole model through Ipopt");

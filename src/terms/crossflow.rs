@@ -58,7 +58,7 @@ static INFO: TermInfo = TermInfo {
         ParameterInfo::new("turn_force", "C_rY", "-", "weight of the turning in the sway force")
             .default(|_| 1.0)
             .scale(|_| 0.5)
-            .spread(|_| 0.6)
+            .spread(|_| 0.8)
             .bounds(0.0, 4.0),
         ParameterInfo::new("turn_moment", "C_rN", "-", "weight of the turning in the yaw moment")
             .default(|_| 1.0)
