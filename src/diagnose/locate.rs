@@ -444,7 +444,8 @@ pub struct Push {
     pub force: [f64; 3],
     /// Standard errors.
     pub error: [f64; 3],
-    /// Twice the gain in log-likelihood, the window of each run unknown: its spans are as likely as each other beforehand.
+    /// Twice the gain in log-likelihood where neither the runs nor their windows are known: beforehand a fifth of the runs have
+    /// it, in any of their spans.
     pub statistic: f64,
     /// Share of the evidence for it that sway force and yaw moment hold by themselves, 0 to 1.
     pub sideways: f64,
@@ -542,4 +543,74 @@ fn common_pushes(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f6
     }
     found.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::{Inputs, STATES};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
+
+    /// Sixteen blocks whose forces are measured with unit error each; in some runs one acts for six of them.
+    fn measured(force: [f64; 3], acts: impl Fn(usize) -> bool, seed: u64) -> (Vec<Run>, Vec<Blocks>) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let count = 16;
+        let one = |index: usize| {
+            let from = 2 + index % 8;
+            let mut blocks = Blocks { count, score: vec![Vector3::zeros()], information: Vec::new() };
+            for i in 0..count {
+                let inside = acts(index) && (from..from + 6).contains(&i);
+                let noise = Vector3::from_fn(|_, _| rng.sample(StandardNormal));
+                let step = noise + Vector3::from(force) * f64::from(u8::from(inside));
+                blocks.score.push(blocks.score[i] + step);
+            }
+            for i in 0..=count {
+                blocks.information.extend((0..=count).map(|j| Matrix3::identity() * i.min(j) as f64));
+            }
+            let run = Run {
+                name: format!("run {index} 0 s"),
+                recording: format!("run {index}"),
+                session: "one".into(),
+                manoeuvre: String::new(),
+                dt: 2.0,
+                inputs: (0..count * BLOCK).map(|k| Inputs::actuators(2.0 * k as f64, 1.0, 0.0)).collect(),
+                measured: vec![[0.0; STATES]; count * BLOCK],
+                channels: [true; STATES],
+                initial: [0.0; STATES],
+                disturbed: Vec::new(),
+            };
+            (run, blocks)
+        };
+        (0..30).map(one).unzip()
+    }
+
+    fn strongest(force: [f64; 3], acts: impl Fn(usize) -> bool, seed: u64) -> Push {
+        let (runs, blocks) = measured(force, acts, seed);
+        common_pushes(&runs, &blocks, &[1.0; 3], 1.0).swap_remove(0)
+    }
+
+    #[test]
+    fn no_push_is_made_of_noise() {
+        for seed in 0..20 {
+            let push = strongest([0.0; 3], |_| false, seed);
+            assert!(push.statistic < 12.0, "seed {seed}: {} in {} runs", push.statistic, push.recordings());
+        }
+    }
+
+    #[test]
+    fn a_weak_push_in_many_runs_is_seen_and_so_is_when() {
+        for seed in 0..5 {
+            let push = strongest([0.0, 1.6, 1.1], |i| i % 3 == 0, seed);
+            assert!(push.statistic > 40.0, "seed {seed}: {}", push.statistic);
+            assert!(push.sideways > 0.9 && push.mirrored < 0.1, "seed {seed}: {} {}", push.sideways, push.mirrored);
+            let right = |w: &&Window| {
+                let start = 2.0 * (BLOCK * (2 + w.index % 8)) as f64;
+                w.index % 3 == 0 && w.end.min(start + 60.0) - w.start.max(start) > 30.0
+            };
+            let found = push.windows.iter().filter(right).count();
+            assert!(found >= 7 && push.windows.len() <= found + 2, "seed {seed}: {found} of {}", push.windows.len());
+        }
+    }
 }
