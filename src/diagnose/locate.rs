@@ -607,7 +607,7 @@ mod tests {
             assert!(push.sideways > 0.9 && push.mirrored < 0.1, "seed {seed}: {} {}", push.sideways, push.mirrored);
             let right = |w: &&Window| {
                 let start = 2.0 * (BLOCK * (2 + w.index % 8)) as f64;
-                w.index % 3 == 0 && w.end.min(start + 60.0) - w.start.max(start) > 30.0
+                w.index.is_multiple_of(3) && w.end.min(start + 60.0) - w.start.max(start) > 30.0
             };
             let found = push.windows.iter().filter(right).count();
             assert!(found >= 7 && push.windows.len() <= found + 2, "seed {seed}: {found} of {}", push.windows.len());
