@@ -11,7 +11,7 @@ use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::noise::{GROUP_OF, Noise, SensorNoise};
 use trimtab::model::Model;
 use trimtab::ship::Ship;
-use trimtab::simulate::{Integration, Method, step};
+use trimtab::simulate::{Integration, Method, driven, step};
 use trimtab::state::{Force, Inputs, State};
 use trimtab::terms::Form;
 
@@ -72,15 +72,16 @@ pub fn runs(model: &Model, noise: &Noise, count: usize, seed: u64) -> Vec<Run> {
                 colour[c] = noise.sensors[GROUP_OF[c]].coloured * normal(&mut rng);
             }
             // What the ship really does with its orders.
-            let mut driven = inputs.clone();
-            model.drive(&theta, dt, &mut driven);
-            let fine = 8;
-            let h = dt / fine as f64;
+            let fine = Integration { method: Method::Rk4, substeps: 8 };
+            let one = Integration { substeps: 1, ..fine };
+            let series = driven(model, &theta, fine, dt, &inputs);
+            let h = dt / fine.substeps as f64;
             let mut measured = Vec::new();
             for k in 0..121 {
                 let now = State::from_array(state);
-                let (rates, flow) = model.rates(&theta, &now, &driven[k], &Force::zero());
-                let mut y = model.measure(&theta, &now, &driven[k], &rates, &flow);
+                let at = k * fine.instants();
+                let (rates, flow) = model.rates(&theta, &now, &series[at], &Force::zero());
+                let mut y = model.measure(&theta, &now, &series[at], &rates, &flow);
                 for c in 0..6 {
                     let s = noise.sensors[GROUP_OF[c]];
                     y[c] += colour[c] + s.white * normal(&mut rng);
@@ -91,12 +92,9 @@ pub fn runs(model: &Model, noise: &Noise, count: usize, seed: u64) -> Vec<Run> {
                 if k == 120 {
                     break;
                 }
-                for f in 0..fine {
-                    let at = |x: f64| driven[k].between(&driven[k + 1], x);
-                    let (a, b) = (at(f as f64 / fine as f64), at((f + 1) as f64 / fine as f64));
+                for f in 0..fine.substeps {
                     let push = Force { x: force[0], y: force[1], n: force[2] };
-                    let rk4 = Integration { method: Method::Rk4, substeps: 1 };
-                    state = step(model, &theta, rk4, h, &state, &a, &b, &push);
+                    state = step(model, &theta, one, h, &state, &series[at + f * one.instants()..], &push);
                     let rho = (-h / noise.force_time).exp();
                     for e in 0..3 {
                         force[e] = rho * force[e] + noise.force[e] * (1.0 - rho * rho).sqrt() * normal(&mut rng);
