@@ -123,6 +123,29 @@ fn a_receiver_that_jumps_is_no_push() {
     assert_eq!(d.admission.runs, 40);
 }
 
+/// Runs in some of which the compass slips by a radian half way.
+fn slipped(every: usize) -> (Diagnosis, Vec<String>) {
+    let mut data = runs(&model(), &truth_noise(), 30, 101);
+    for run in data.iter_mut().skip(1).step_by(every) {
+        run.measured[60..].iter_mut().for_each(|m| m[2] += 1.0);
+    }
+    let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
+    let lost = d.admission.issues.iter().filter(|i| i.mechanism == "lost" && !i.blocking);
+    let texts = lost.map(|i| i.text.clone()).collect();
+    (d, texts)
+}
+
+#[test]
+fn runs_that_the_model_cannot_follow_are_told() {
+    let name = |i: usize| runs(&model(), &truth_noise(), 30, 101)[i].name.clone();
+    let (d, texts) = slipped(40);
+    assert!(texts.len() == 1 && texts[0].starts_with(&name(1)), "{texts:?}");
+    assert_eq!(d.admission.runs, 30);
+    let (_, texts) = slipped(4);
+    assert!(texts.len() == 1 && texts[0].contains("of 30 runs"), "{texts:?}");
+    assert!(case(&[], &[], 11).admission.issues.iter().all(|i| i.mechanism != "lost"));
+}
+
 /// Thirty runs, in some of which a force of their own acts from 80 to 140 s.
 fn pushed(forces: &[([f64; 3], fn(usize) -> bool)]) -> Diagnosis {
     let mut data = runs(&model(), &truth_noise(), 30, 101);

@@ -1,10 +1,12 @@
 //! Before any physics is claimed: are the recordings consistent with themselves, and is the integration step fine enough?
 //! It judges data and numerics only.
 
-use super::filter::{Filter, Run, Wanted};
+use super::filter::{Filter, GATE, Pass, Run, Wanted};
 use super::noise::Noise;
 use crate::model::Model;
+use crate::report::sig;
 use crate::simulate::{Integration, Method};
+use crate::state::{STATE_NAMES, STATES};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -13,7 +15,7 @@ use serde::Serialize;
 pub struct Issue {
     /// The channel concerned.
     pub channel: String,
-    /// What it is: `sign_error`, `unit_error`, `frozen`, `held` or `jump`.
+    /// What it is: `sign_error`, `unit_error`, `frozen`, `held`, `jump` or `lost`.
     pub mechanism: &'static str,
     /// What is seen, with numbers.
     pub text: String,
@@ -43,6 +45,57 @@ pub struct Admission {
     /// Gain in log-posterior when the model is fitted as explicit Euler at one step a sample instead of with the integration
     /// used; large and positive for recordings that a coarse simulator made.
     pub euler_gain: f64,
+}
+
+/// So many measurements of a channel in a row beyond the gate are no outliers: the ship is elsewhere than the filter believes.
+const LOST: usize = 5;
+
+/// Where the ship is lost in more than this share of the runs, the model is at fault and not the recordings.
+const FEW_LOST: f64 = 0.1;
+
+/// Notes on the runs in which the filter loses the ship: what no noise does, and no force of the size that the others show. One
+/// note for all of them where they are many. The runs stay in use.
+pub fn lost(runs: &[Run], passes: &[Pass]) -> Vec<Issue> {
+    let issues: Vec<Issue> = runs.iter().zip(passes).filter_map(|(r, p)| loss(r, p)).collect();
+    if issues.len() as f64 <= FEW_LOST * runs.len() as f64 {
+        return issues;
+    }
+    let text = format!("the ship is lost in {} of {} runs, first in {}", issues.len(), runs.len(), issues[0].text);
+    let next_step =
+        "look at ship, model and units before anything that is named below: they are far from these recordings".into();
+    vec![Issue { channel: issues[0].channel.clone(), mechanism: "lost", text, next_step, blocking: false }]
+}
+
+/// Where the filter loses the ship in a run.
+fn loss(run: &Run, pass: &Pass) -> Option<Issue> {
+    let of = |c: usize| {
+        let beyond: Vec<(usize, bool)> = pass
+            .innovations
+            .iter()
+            .enumerate()
+            .filter(|(_, e)| !e[c].is_nan())
+            .map(|(k, e)| (k, e[c].abs() > GATE))
+            .collect();
+        let longest = beyond.chunk_by(|a, b| a.1 == b.1).filter(|s| s[0].1).max_by_key(|s| s.len())?;
+        (longest.len() >= LOST).then(|| (longest.len(), longest[0].0, c))
+    };
+    let (length, sample, c) = (0..STATES).filter_map(of).max_by_key(|(length, ..)| *length)?;
+    let channel = STATE_NAMES[c];
+    Some(Issue {
+        channel: channel.into(),
+        mechanism: "lost",
+        text: format!(
+            "{}: from {} s on {length} measurements of {channel} in a row lie beyond {GATE} standard deviations of \
+             what the model and the measurements before let expect",
+            run.name,
+            sig(run.inputs[sample].t, 5)
+        ),
+        next_step:
+            "look there for inputs that were not recorded, a sensor that failed or something that touched the ship; \
+                    diagnosed without this run, does the same come out?"
+                .into(),
+        blocking: false,
+    })
 }
 
 /// Slope of `y` on `x` through the origin of the means, and their correlation.
@@ -111,7 +164,7 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
             let frozen = values.len() > 20 && values.windows(2).all(|w| w[0] == w[1]);
             if r.channels[j] && frozen {
                 issues.push(Issue {
-                    channel: crate::state::STATE_NAMES[j].into(),
+                    channel: STATE_NAMES[j].into(),
                     mechanism: "frozen",
                     text: format!("{}: the channel holds one value throughout", r.name),
                     next_step: "leave the run or the channel out".into(),

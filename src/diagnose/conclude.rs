@@ -1,7 +1,7 @@
 //! From evidence to a verdict: runs the steps in order, accepts mechanisms one after the other with backward and swap checks,
 //! and says what was found, what cannot be told, and what would have been seen. The arithmetic is in the other files.
 
-use super::admit::{Admission, admit};
+use super::admit::{Admission, admit, lost};
 use super::compete::{
     Accepted, Arena, REFIT, SETTLE, Wald, acceptable, acceptable_beside, backward, compete, positions, swap, wald,
 };
@@ -510,6 +510,7 @@ pub fn diagnose(
     let mut location = locate(&null, integration, &runs);
     progress("testing every mechanism");
     let mut first = screen(&null, integration, &runs, &list);
+    admission.issues.extend(lost(&runs, &first.passes));
     let blocked = admission.issues.iter().any(|i| i.blocking);
 
     let form_holds = first.symmetric_test.p > FORM_HOLDS;
