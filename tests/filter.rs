@@ -169,7 +169,7 @@ fn a_noise_that_is_far_too_small_at_first_is_found_all_the_same() {
         data.iter().map(|r| filter.pass(r, noise, Wanted::default()).outliers).sum()
     };
     assert!(aside(&start) > 1000, "{}", aside(&start));
-    let effort = Effort { rounds: 4, noise_rounds: 4, noise_iterations: 14, noise_runs: 12 };
+    let effort = Effort { rounds: 4, noise_rounds: 4, noise_iterations: 14, noise_runs: 12, least: f64::NEG_INFINITY };
     let found = estimate(&model, RK4, &data, &[], &start, &NoisePrior::around(&start), effort).noise;
     assert!(aside(&found) < 10, "{}", aside(&found));
     for (found, truth) in found.sensors.iter().zip(truth.sensors) {

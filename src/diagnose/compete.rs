@@ -16,9 +16,11 @@ use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
 
 /// A refit at given noise.
-pub(super) const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0, noise_runs: 10 };
+pub(super) const REFIT: Effort =
+    Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0, noise_runs: 10, least: f64::NEG_INFINITY };
 /// A refit with the noise estimated along.
-pub(super) const SETTLE: Effort = Effort { rounds: 10, noise_rounds: 1, noise_iterations: 4, noise_runs: 10 };
+pub(super) const SETTLE: Effort =
+    Effort { rounds: 10, noise_rounds: 1, noise_iterations: 4, noise_runs: 10, least: f64::NEG_INFINITY };
 
 /// Log-likelihood that a further parameter must bring to be worth having.
 const PRICE: f64 = 2.0;
@@ -300,18 +302,6 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
         let (model, free) = enter(s, list, c.candidate, &c.extent, &c.amplitude, current, integration, runs, noise);
         estimate(&model, integration, runs, &free, noise, prior, effort)
     };
-    let own = Contender::of(leader);
-    let lead = refit(&own, &current.noise, SETTLE);
-    let mut field: Vec<(Contender, Estimate, f64)> = Vec::new();
-    let value = |e: &Estimate, c: &Contender| e.log_posterior - PRICE * c.amplitude.len() as f64;
-    let v = value(&lead, &own);
-    let noise = lead.noise;
-    field.push((own, lead, v));
-    for r in rivals(s, leaders, list) {
-        let e = refit(&r, &noise, REFIT);
-        let v = value(&e, &r);
-        field.push((r, e, v));
-    }
     let stands = |(r, e, _): &(Contender, Estimate, f64)| {
         let c = &list[r.candidate];
         let w = presence(&wald(e, integration, runs), &e.free, &e.model, c, &r.extent);
@@ -323,14 +313,30 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
             && plausible(e, c)
             && !undoes(c, e, runs)
     };
-    field.retain(stands);
+    // The law of a force is known only so well: a rival that explains nearly as much may have the truer form.
+    let form = |best: f64| (FORM_UNKNOWN * (best - current.log_posterior)).max(CLOSE);
+    let price = |c: &Contender| PRICE * c.amplitude.len() as f64;
+    let own = Contender::of(leader);
+    let lead = refit(&own, &current.noise, SETTLE);
+    let noise = lead.noise;
+    let v = lead.log_posterior - price(&own);
+    let first = (own, lead, v);
+    // Behind a leader that stands, a rival that stays further back than any set is wide changes nothing.
+    let (least, mut field) = if stands(&first) { (v - form(v), vec![first]) } else { (f64::NEG_INFINITY, Vec::new()) };
+    for r in rivals(s, leaders, list) {
+        let price = price(&r);
+        let e = refit(&r, &noise, Effort { least: least + price, ..REFIT });
+        let v = e.log_posterior - price;
+        let rival = (r, e, v);
+        if v < least || stands(&rival) {
+            field.push(rival);
+        }
+    }
     field.sort_by(|a, b| b.2.total_cmp(&a.2));
     let best = field.first()?.2;
-    // The law of a force is known only so well: a rival that explains nearly as much may have the truer form.
-    let form = FORM_UNKNOWN * (best - current.log_posterior).max(0.0);
     let width = match list[field[0].0.candidate].mechanism.kind {
         Kind::Sensor | Kind::Actuator => CLOSE,
-        Kind::Environment | Kind::Ship => form.max(CLOSE),
+        Kind::Environment | Kind::Ship => form(best),
     };
     let near = |(_, _, v): &(Contender, Estimate, f64)| best - v < width;
     // A force without a cause gives way to any cause that comes near.
@@ -346,11 +352,10 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
             .collect();
         format!("these fit within {width:.0} units of log-likelihood of each other: {}", alike.join(", "))
     } else if let Some((r, _, v)) = field.get(1) {
-        format!(
-            "next best, {}, fits {:.0} units of log-likelihood worse",
-            list[r.candidate].mechanism.title,
-            field[0].2 - v
-        )
+        let title = list[r.candidate].mechanism.title;
+        // Who was given up may have been further ahead than it got.
+        let (over, by) = if *v < least { ("over ", best - least) } else { ("", best - v) };
+        format!("next best, {title}, fits {over}{by:.0} units of log-likelihood worse")
     } else {
         "no other mechanism of the catalogue comes near".into()
     };

@@ -458,7 +458,8 @@ const MIMICKED: f64 = 0.5;
 /// A fit does not win back more than this in log-posterior.
 const EULER_HOPELESS: f64 = 1000.0;
 
-const FIRST: Effort = Effort { rounds: 8, noise_rounds: 4, noise_iterations: 14, noise_runs: 12 };
+const FIRST: Effort =
+    Effort { rounds: 12, noise_rounds: 4, noise_iterations: 14, noise_runs: 12, least: f64::NEG_INFINITY };
 
 /// Diagnoses a model against recordings.
 ///

@@ -1,11 +1,12 @@
 //! The best model of a given structure: parameters with priors by Fisher scoring on the filter's scores, noise by maximum
 //! likelihood, in turn. Which parameters are free, and what is concluded, is decided elsewhere.
 
-use super::evidence::{Base, Evidence, RunEvidence};
+use super::evidence::{Base, Evidence, RunEvidence, step_inside};
 use super::filter::{Column, Filter, GATE, Pass, Run, Wanted};
 use super::noise::{Noise, NoisePrior, fit_noise};
 use crate::model::{Model, Prior};
 use crate::simulate::Integration;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// A free parameter of the estimate.
@@ -63,6 +64,15 @@ impl FreeParameter {
         }
     }
 
+    /// Its least and greatest value, in units of the column.
+    pub(super) fn bounds(&self, model: &Model) -> (f64, f64) {
+        let p = &model.parameters[self.column.parameter];
+        // An addition in some sessions is bounded by what the sum may be.
+        let common = if self.sessions.is_some() { p.value } else { 0.0 };
+        let (a, b) = ((p.lower - common) / self.column.scale, (p.upper - common) / self.column.scale);
+        (a.min(b), a.max(b))
+    }
+
     /// Precision of the prior, and the pull of the prior on the score, in units of the column.
     pub(super) fn prior_terms(&self, model: &Model) -> (f64, f64) {
         self.prior.map_or((0.0, 0.0), |prior| {
@@ -102,6 +112,8 @@ pub struct Effort {
     pub noise_iterations: usize,
     /// Runs used for the noise estimate, evenly spread.
     pub noise_runs: usize,
+    /// Log-posterior that must be in reach: where even twice what the quadratic model promises ends below it, it is not sought.
+    pub least: f64,
 }
 
 /// Share of measurements set aside as outliers above which they are none.
@@ -154,16 +166,41 @@ pub fn restrictions(free: &[FreeParameter]) -> Vec<Option<Vec<String>>> {
 
 /// The base block of free parameters that are the first columns of the evidence.
 pub fn base_of(evidence: &Evidence, model: &Model, free: &[FreeParameter]) -> Base {
-    damped(evidence, model, free, 0.0)
+    let (precision, pull): (Vec<f64>, Vec<f64>) = free.iter().map(|f| f.prior_terms(model)).unzip();
+    evidence.base(&(0..free.len()).collect::<Vec<_>>(), &precision, &pull)
 }
 
-/// The base block as if each parameter were held where it is with that precision, in units of its column.
-fn damped(evidence: &Evidence, model: &Model, free: &[FreeParameter], damping: f64) -> Base {
-    let terms: Vec<(f64, f64)> = free.iter().map(|f| f.prior_terms(model)).collect();
-    let columns: Vec<usize> = (0..free.len()).collect();
-    let (mut precision, pull): (Vec<f64>, Vec<f64>) = terms.into_iter().unzip();
-    precision.iter_mut().for_each(|p| *p += damping);
-    evidence.base(&columns, &precision, &pull)
+/// The quadratic model of the log-posterior in the free parameters, in units of their columns, and how far each may go.
+struct Quadratic {
+    information: DMatrix<f64>,
+    score: DVector<f64>,
+    room: Vec<(f64, f64)>,
+}
+
+impl Quadratic {
+    fn new(Evidence { total, .. }: &Evidence, model: &Model, free: &[FreeParameter]) -> Self {
+        let (mut information, mut score) = (total.information.clone(), total.score.clone());
+        let mut room = Vec::with_capacity(free.len());
+        for (i, f) in free.iter().enumerate() {
+            let (precision, pull) = f.prior_terms(model);
+            information[(i, i)] += precision;
+            score[i] += pull;
+            let (now, (least, most)) = (f.value(model) / f.column.scale, f.bounds(model));
+            room.push((least - now, most - now));
+        }
+        Self { information, score, room }
+    }
+
+    /// The best step within bounds, as if each parameter were held where it is with the precision `damping`.
+    fn step(&self, damping: f64) -> DVector<f64> {
+        let n = self.score.len();
+        step_inside(&(&self.information + DMatrix::from_diagonal_element(n, n, damping)), &self.score, &self.room)
+    }
+
+    /// What a step adds.
+    fn promise(&self, step: &DVector<f64>) -> f64 {
+        step.dot(&(&self.score - 0.5 * &self.information * step))
+    }
 }
 
 /// Log-likelihood plus log-prior of a model.
@@ -191,9 +228,19 @@ pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prio
     fit_noise(&some, &tangents, &found.model, &found.noise, prior, GATE, 8)
 }
 
+/// A gain in log-posterior below this changes no verdict.
+const ENOUGH: f64 = 0.3;
+
+/// The least damping that is tried when a step fails; below a tenth of it there is none.
+const DAMPING: f64 = 0.3;
+
+/// A step that gains less than this share of what it promised was too long for the quadratic model.
+const TRUSTED: f64 = 0.5;
+
 /// Fits the free parameters and the noise, starting from the model's values.
 ///
-/// A step that lowers the log-posterior is halved, at most four times. Values stay inside the parameters' bounds.
+/// A step that lowers the log-posterior is tried again with more damping, at most five times. Values stay inside the parameters'
+/// bounds.
 pub fn estimate(
     start: &Model,
     integration: Integration,
@@ -211,20 +258,29 @@ pub fn estimate(
     let mut current = passes(&model, integration, &columns, runs, &noise, true);
     let mut value = posterior(&model, &current);
     // Parameters that the data hardly determine ask for steps on which the others would founder: damping, in units of the
-    // columns' scales, holds those back and lets the rest move (Levenberg, Marquardt).
+    // columns' scales, holds those back and lets the rest move (Levenberg, Marquardt). It stays while the valley bends.
     let mut damping = 0.0;
     for round in 0..effort.rounds {
-        let e = evidence(runs, &current, &restrictions(free));
+        let quadratic = Quadratic::new(&evidence(runs, &current, &restrictions(free)), &model, free);
+        // A law that bends may hold more than its slope where it starts promises: never before the first step.
+        if round > 0 && effort.least.is_finite() && value + 2.0 * quadratic.promise(&quadratic.step(0.0)) < effort.least
+        {
+            break;
+        }
         let mut moved = false;
         let mut length: f64 = 0.0;
         let before = value;
         for _ in 0..6 {
-            let mut step = damped(&e, &model, free, damping).step();
+            let mut step = quadratic.step(damping);
             // Never more than ten scales at once: beyond that the linearisation says nothing.
             length = step.amax();
             if length > 10.0 {
                 step *= 10.0 / length;
                 length = 10.0;
+            }
+            let promised = quadratic.promise(&step);
+            if promised < ENOUGH {
+                break;
             }
             let mut trial = model.clone();
             for (f, s) in free.iter().zip(step.iter()) {
@@ -234,14 +290,18 @@ pub fn estimate(
             let trial_value = posterior(&trial, &trial_passes);
             if trial_value.is_finite() && trial_value > value - 0.01 {
                 moved = true;
+                damping *= 0.3;
+                if trial_value - value < TRUSTED * promised {
+                    damping = damping.max(DAMPING);
+                } else if damping < 0.1 * DAMPING {
+                    damping = 0.0;
+                }
                 (model, current, value) = (trial, trial_passes, trial_value);
-                damping = if damping > 3.0 { 0.1 * damping } else { 0.0 };
                 break;
             }
-            damping = f64::max(3.0, 10.0 * damping);
+            damping = f64::max(DAMPING, 10.0 * damping);
         }
-        // A gain below this changes no verdict.
-        let settled = !moved || length < 0.03 || value - before < 0.3;
+        let settled = !moved || length < 0.03 || value - before < ENOUGH;
         if round < effort.noise_rounds {
             // The noise is fitted to some runs, linearised: where it does not serve all of them, it is fitted to all.
             let sparse = runs.len().div_ceil(effort.noise_runs.max(1)).max(1);

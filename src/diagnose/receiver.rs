@@ -1,10 +1,12 @@
-//! What a position receiver did that no ship can: jumps, and values held while the ship sailed on.
-//! It judges positions by themselves, before any model is asked; what a force could have done it leaves alone.
+//! What a receiver did that no ship can: jumps, values held while the ship sailed on, and a wild first fix.
+//! It judges recordings by themselves, before any model is asked; what a force could have done it leaves alone.
 
 use super::admit::Issue;
 use super::filter::Run;
+use super::prove::median;
 use crate::report::sig;
 use nalgebra::SMatrix;
+use trimtab_ad::smooth::wrap_angle;
 
 /// Samples on each side of a jump that tell it from motion.
 const SIDE: usize = 4;
@@ -74,7 +76,62 @@ pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
         });
         parted.extend(parts(&run, &jumps));
     }
+    issues.extend(from_second(&mut parted));
     (parted, issues)
+}
+
+/// Names and units of position and heading.
+const CHANNELS: [(&str, &str); 3] =
+    [("x", "m"), ("y", "m"), ("psi", "rad"), ("u", "m/s"), ("v", "m/s"), ("r", "rad/s")];
+
+/// How far a sample is from the line through the four after it; NaN where one is not measured.
+fn departure(run: &Run, k: usize, c: usize) -> f64 {
+    let ahead = |i: usize| {
+        let d = run.measured[k + i][c] - run.measured[k][c];
+        if c == 2 { wrap_angle(d) } else { d }
+    };
+    0.5 * ahead(4) - 0.5 * ahead(2) - ahead(1)
+}
+
+/// Takes runs whose first position or heading is wild from their second sample on, and notes it: a run starts from what was
+/// measured first, and a start that is off puts everything after it in doubt.
+///
+/// A first sample is wild where it stands out from how samples depart from those that follow in all runs, and the second does not.
+fn from_second(runs: &mut [Run]) -> Vec<Issue> {
+    let spread = |c: usize| {
+        let of = |run: &Run| {
+            (0..run.measured.len().saturating_sub(4)).map(|k| departure(run, k, c).abs()).collect::<Vec<f64>>()
+        };
+        let all: Vec<f64> = runs.iter().filter(|r| r.channels[c]).flat_map(of).filter(|d| d.is_finite()).collect();
+        // The median of a normal variable's size is 0.6745 of its standard deviation.
+        if all.len() < ENOUGH { f64::INFINITY } else { median(&all) / 0.6745 }
+    };
+    let spreads: [f64; 3] = std::array::from_fn(spread);
+    let mut issues = Vec::new();
+    for run in runs.iter_mut().filter(|r| r.measured.len() > 2 * SIDE) {
+        let wild = |c: &usize| {
+            let (first, second) = (departure(run, 0, *c), departure(run, 1, *c));
+            run.channels[*c] && first.abs() > BEYOND_NOISE * spreads[*c] && second.abs() < 0.5 * first.abs()
+        };
+        let Some(c) = (0..3).find(wild) else { continue };
+        let (channel, unit) = CHANNELS[c];
+        issues.push(Issue {
+            channel: channel.into(),
+            mechanism: "start",
+            text: format!(
+                "{}: the first {channel} is {} {unit} from where those after it come from",
+                run.name,
+                sig(departure(run, 0, c).abs(), 2)
+            ),
+            next_step: "the run is taken from its second sample on".into(),
+            blocking: false,
+        });
+        run.inputs.remove(0);
+        run.measured.remove(0);
+        let second = run.measured[0];
+        run.initial = std::array::from_fn(|c| if second[c].is_finite() { second[c] } else { run.initial[c] });
+    }
+    issues
 }
 
 /// A run in pieces, each with a start of its own; what is too short to say anything is left out.
@@ -273,6 +330,30 @@ mod tests {
         }
         let found = jumps(&runs, LENGTH);
         assert!(found.iter().all(Vec::is_empty), "{found:?}");
+    }
+
+    #[test]
+    fn a_wild_first_sample_is_left_out_and_an_early_manoeuvre_is_not_wild() {
+        let mut runs = circles();
+        runs[1].measured[0][1] += 2.0;
+        runs[6].measured[0][2] -= 0.1;
+        // From the first sample on this ship slows down as fast as a crash stop would have her.
+        for (k, m) in runs[4].measured.iter_mut().enumerate() {
+            let t = 0.5 * k as f64;
+            m[0] -= 0.025 * t * t;
+            m[3] -= 0.05 * t;
+        }
+        let whole = runs.clone();
+        let (runs, issues) = settled(&runs, LENGTH);
+        assert!(issues.iter().all(|i| i.mechanism == "start" && !i.blocking), "{issues:?}");
+        let told = |name: &str, channel: &str| issues.iter().any(|i| i.channel == channel && i.text.starts_with(name));
+        assert!(issues.len() == 2 && told("run 1", "y") && told("run 6", "psi"), "{issues:?}");
+        for (i, (run, whole)) in runs.iter().zip(&whole).enumerate() {
+            let from = usize::from(i == 1 || i == 6);
+            assert_eq!(run.measured, whole.measured[from..]);
+            assert_eq!(run.inputs.len(), run.measured.len());
+            assert_eq!((run.initial, run.inputs[0].t), (run.measured[0], whole.inputs[from].t), "{}", run.name);
+        }
     }
 
     #[test]

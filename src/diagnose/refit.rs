@@ -106,11 +106,7 @@ impl Nlp for Refit<'_> {
     }
     fn variable_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
         for (i, f) in self.found.free.iter().enumerate() {
-            let p = &self.found.model.parameters[f.column.parameter];
-            // An addition in some sessions is bounded by what the sum may be.
-            let common = if f.sessions.is_some() { p.value } else { 0.0 };
-            let (a, b) = ((p.lower - common) / f.column.scale, (p.upper - common) / f.column.scale);
-            (lower[i], upper[i]) = (a.min(b), a.max(b));
+            (lower[i], upper[i]) = f.bounds(&self.found.model);
         }
     }
     fn constraint_bounds(&self, _lower: &mut [f64], _upper: &mut [f64]) {}
