@@ -3,6 +3,7 @@
 
 use super::filter::{Filter, GATE, Pass, Run, Wanted};
 use super::noise::Noise;
+use super::receiver::piece;
 use crate::model::Model;
 use crate::report::sig;
 use crate::simulate::{Integration, Method};
@@ -53,49 +54,75 @@ const LOST: usize = 5;
 /// Where the ship is lost in more than this share of the runs, the model is at fault and not the recordings.
 const FEW_LOST: f64 = 0.1;
 
-/// Notes on the runs in which the filter loses the ship: what no noise does, and no force of the size that the others show. One
-/// note for all of them where they are many. The runs stay in use.
-pub fn lost(runs: &[Run], passes: &[Pass]) -> Vec<Issue> {
-    let issues: Vec<Issue> = runs.iter().zip(passes).filter_map(|(r, p)| loss(r, p)).collect();
-    if issues.len() as f64 <= FEW_LOST * runs.len() as f64 {
-        return issues;
-    }
-    let text = format!("the ship is lost in {} of {} runs, first in {}", issues.len(), runs.len(), issues[0].text);
-    let next_step =
-        "look at ship, model and units before anything that is named below: they are far from these recordings".into();
-    vec![Issue { channel: issues[0].channel.clone(), mechanism: "lost", text, next_step, blocking: false }]
+/// Measurements in a row in which the filter loses the ship.
+struct Loss {
+    channel: usize,
+    first: usize,
+    count: usize,
 }
 
-/// Where the filter loses the ship in a run.
-fn loss(run: &Run, pass: &Pass) -> Option<Issue> {
-    let of = |c: usize| {
-        let beyond: Vec<(usize, bool)> = pass
-            .innovations
-            .iter()
-            .enumerate()
-            .filter(|(_, e)| !e[c].is_nan())
-            .map(|(k, e)| (k, e[c].abs() > GATE))
-            .collect();
-        let longest = beyond.chunk_by(|a, b| a.1 == b.1).filter(|s| s[0].1).max_by_key(|s| s.len())?;
-        (longest.len() >= LOST).then(|| (longest.len(), longest[0].0, c))
-    };
-    let (length, sample, c) = (0..STATES).filter_map(of).max_by_key(|(length, ..)| *length)?;
-    let channel = STATE_NAMES[c];
-    Some(Issue {
-        channel: channel.into(),
+/// The runs without the stretches in which the filter loses the ship, and a note on each: what an input or a sensor that was not
+/// recorded does there no force of the size that the others show explains, and it would bend everything that is estimated.
+///
+/// `None` where she is lost nowhere, and where she is lost in many runs, with one note for all of them: they stay whole.
+pub fn followed(runs: &[Run], passes: &[Pass]) -> (Option<Vec<Run>>, Vec<Issue>) {
+    let losses: Vec<Option<Loss>> = runs.iter().zip(passes).map(|(r, p)| loss(r, p)).collect();
+    let lost: Vec<(&Run, &Loss)> = runs.iter().zip(&losses).filter_map(|(r, l)| Some((r, l.as_ref()?))).collect();
+    if lost.is_empty() {
+        return (None, Vec::new());
+    }
+    if lost.len() as f64 > FEW_LOST * runs.len() as f64 {
+        let (run, first) = lost[0];
+        let text = format!("the ship is lost in {} of {} runs, first in {}", lost.len(), runs.len(), told(run, first));
+        let next_step =
+            "look at ship, model and units before anything that is named below: they are far from these recordings"
+                .into();
+        let channel = STATE_NAMES[first.channel].into();
+        return (None, vec![Issue { channel, mechanism: "lost", text, next_step, blocking: false }]);
+    }
+    let issue = |(run, loss): (&Run, &Loss)| {
+        Issue {
+        channel: STATE_NAMES[loss.channel].into(),
         mechanism: "lost",
-        text: format!(
-            "{}: from {} s on {length} measurements of {channel} in a row lie beyond {GATE} standard deviations of \
-             what the model and the measurements before let expect",
-            run.name,
-            sig(run.inputs[sample].t, 5)
-        ),
-        next_step:
-            "look there for inputs that were not recorded, a sensor that failed or something that touched the ship; \
-                    diagnosed without this run, does the same come out?"
-                .into(),
+        text: told(run, loss),
+        next_step: "these samples are left out; look there for inputs that were not recorded, a sensor that failed or something \
+                    that touched the ship"
+            .into(),
         blocking: false,
-    })
+    }
+    };
+    let issues = lost.into_iter().map(issue).collect();
+    let without = |(run, loss): (&Run, &Option<Loss>)| match loss {
+        None => vec![run.clone()],
+        Some(l) => {
+            [piece(run, 0, l.first), piece(run, l.first + l.count, run.measured.len())].into_iter().flatten().collect()
+        }
+    };
+    (Some(runs.iter().zip(&losses).flat_map(without).collect()), issues)
+}
+
+/// A loss in words.
+fn told(run: &Run, loss: &Loss) -> String {
+    format!(
+        "{}: from {} s on {} measurements of {} in a row lie beyond {GATE} standard deviations of what the model and the \
+         measurements before let expect",
+        run.name,
+        sig(run.inputs[loss.first].t, 5),
+        loss.count,
+        STATE_NAMES[loss.channel]
+    )
+}
+
+/// The longest stretch of a run in which the filter loses the ship.
+fn loss(run: &Run, pass: &Pass) -> Option<Loss> {
+    let of = |channel: usize| {
+        let measured = (0..run.measured.len()).filter(|k| !pass.innovations[*k][channel].is_nan());
+        let beyond: Vec<(usize, bool)> = measured.map(|k| (k, pass.innovations[k][channel].abs() > GATE)).collect();
+        let longest = beyond.chunk_by(|a, b| a.1 == b.1).filter(|s| s[0].1).max_by_key(|s| s.len())?;
+        let (first, last) = (longest[0].0, longest[longest.len() - 1].0);
+        (longest.len() >= LOST).then_some(Loss { channel, first, count: last + 1 - first })
+    };
+    (0..STATES).filter_map(of).max_by_key(|l| l.count)
 }
 
 /// Slope of `y` on `x` through the origin of the means, and their correlation.

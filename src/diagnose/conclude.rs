@@ -1,11 +1,11 @@
 //! From evidence to a verdict: runs the steps in order, accepts mechanisms one after the other with backward and swap checks,
 //! and says what was found, what cannot be told, and what would have been seen. The arithmetic is in the other files.
 
-use super::admit::{Admission, admit, lost};
+use super::admit::{Admission, admit, followed};
 use super::compete::{
     Accepted, Arena, REFIT, SETTLE, Wald, acceptable, acceptable_beside, backward, compete, positions, swap, wald,
 };
-use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior};
+use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior, passes};
 use super::filter::{Column, Probe, Run};
 use super::forces::forces_of;
 use super::locate::{EquationShare, Location, Place, Push, RegionTest, Window, locate};
@@ -458,6 +458,9 @@ const MIMICKED: f64 = 0.5;
 /// A fit does not win back more than this in log-posterior.
 const EULER_HOPELESS: f64 = 1000.0;
 
+/// So often stretches in which the filter loses the ship are looked for.
+const LOSSES: usize = 4;
+
 const FIRST: Effort =
     Effort { rounds: 12, noise_rounds: 4, noise_iterations: 14, noise_runs: 12, least: f64::NEG_INFINITY };
 
@@ -476,15 +479,24 @@ pub fn diagnose(
     progress: &(dyn Fn(&str) + Sync),
 ) -> Result<Diagnosis, ModelError> {
     let full = model.complete()?;
-    let (sound, odd) = settled(runs, full.ship.hull.lpp);
+    let (mut sound, mut odd) = settled(runs, full.ship.hull.lpp);
     let (sound_held_out, _) = settled(held_out, full.ship.hull.lpp);
-    let (runs, held_out) = (sound.as_slice(), sound_held_out.as_slice());
     let mut integration = settings.integration();
     let free = base_parameters(&full, settings.nuisance);
     progress("estimating parameters and noise of the base model");
-    let first_noise = guess(runs, &full);
+    let first_noise = guess(&sound, &full);
     let prior = NoisePrior::around(&first_noise);
-    let mut null = estimate(&full, integration, runs, &free, &first_noise, &prior, FIRST);
+    let mut null = estimate(&full, integration, &sound, &free, &first_noise, &prior, FIRST);
+    // Without what the filter cannot follow the rest is told better, and then more may show.
+    for _ in 0..LOSSES {
+        let at = passes(&null.model, integration, &[], &sound, &null.noise, false);
+        let (kept, lost) = followed(&sound, &at);
+        odd.extend(lost);
+        let Some(kept) = kept else { break };
+        sound = kept;
+        null = estimate(&full, integration, &sound, &free, &first_noise, &prior, FIRST);
+    }
+    let (runs, held_out) = (sound.as_slice(), sound_held_out.as_slice());
     progress("auditing recordings and integration step");
     let mut admission = admit(&null.model, integration, &null.noise, runs);
     admission.issues.extend(odd);
@@ -511,7 +523,6 @@ pub fn diagnose(
     let mut location = locate(&null, integration, &runs);
     progress("testing every mechanism");
     let mut first = screen(&null, integration, &runs, &list);
-    admission.issues.extend(lost(&runs, &first.passes));
     let blocked = admission.issues.iter().any(|i| i.blocking);
 
     let form_holds = first.symmetric_test.p > FORM_HOLDS;
@@ -562,9 +573,9 @@ pub fn diagnose(
 
     let mut current = null.clone();
     let mut accepted: Vec<Accepted> = Vec::new();
-    let arena = Arena { integration, runs: &runs, list: &list, prior: &prior, settings };
     if !blocked {
         for step in 0..settings.most {
+            let arena = Arena { integration, runs: &runs, list: &list, prior: &prior, settings };
             let latest;
             let s: &Screen = if step == 0 {
                 &first
@@ -580,8 +591,17 @@ pub fn diagnose(
             accepted.push(entry);
             current = found;
             backward(&mut accepted, &mut current, arena);
+            // With more physics in it the model may follow in so many runs that where it still loses the ship is not its fault.
+            let at = passes(&current.model, integration, &[], &runs, &current.noise, false);
+            if let (Some(kept), lost) = followed(&runs, &at) {
+                admission.issues.extend(lost);
+                runs = kept;
+                let again = |e: &Estimate| estimate(&e.model, integration, &runs, &e.free, &e.noise, &prior, SETTLE);
+                (null, current) = (again(&null), again(&current));
+                first = screen(&null, integration, &runs, &list);
+            }
         }
-        swap(&mut accepted, &mut current, arena);
+        swap(&mut accepted, &mut current, Arena { integration, runs: &runs, list: &list, prior: &prior, settings });
     }
     if !accepted.is_empty() {
         progress("refitting the whole model through Ipopt");

@@ -81,8 +81,7 @@ pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
 }
 
 /// Names and units of position and heading.
-const CHANNELS: [(&str, &str); 3] =
-    [("x", "m"), ("y", "m"), ("psi", "rad"), ("u", "m/s"), ("v", "m/s"), ("r", "rad/s")];
+const CHANNELS: [(&str, &str); 3] = [("x", "m"), ("y", "m"), ("psi", "rad")];
 
 /// How far a sample is from the line through the four after it; NaN where one is not measured.
 fn departure(run: &Run, k: usize, c: usize) -> f64 {
@@ -134,24 +133,31 @@ fn from_second(runs: &mut [Run]) -> Vec<Issue> {
     issues
 }
 
-/// A run in pieces, each with a start of its own; what is too short to say anything is left out.
+/// The samples `from..to` of a run as a run of its own; `None` where they are too few to say anything.
+pub(super) fn piece(run: &Run, from: usize, to: usize) -> Option<Run> {
+    // Where a channel is not measured at the start, the last value before it stands in.
+    let last = |c: usize| run.measured[..=from].iter().rev().map(|m| m[c]).find(|v| v.is_finite());
+    (to >= from + 2 * SIDE).then(|| Run {
+        name: format!("{} {} s", run.recording, sig(run.inputs[from].t, 5)),
+        inputs: run.inputs[from..to].to_vec(),
+        measured: run.measured[from..to].to_vec(),
+        initial: if from == 0 { run.initial } else { std::array::from_fn(|c| last(c).unwrap_or(run.initial[c])) },
+        disturbed: run
+            .disturbed
+            .iter()
+            .filter(|(first, last)| *first < to && *last >= from)
+            .map(|(first, last)| (first.max(&from) - from, last.min(&(to - 1)) - from))
+            .collect(),
+        ..run.clone()
+    })
+}
+
+/// A run in pieces, each with a start of its own.
 fn parts(run: &Run, jumps: &[Jump]) -> Vec<Run> {
     let mut edges = vec![0];
     edges.extend(jumps.iter().map(|j| j.sample));
     edges.push(run.measured.len());
-    let part = |edge: &[usize]| {
-        let (from, to) = (edge[0], edge[1]);
-        // Where a channel is not measured at the edge, the last value before it stands in.
-        let last = |c: usize| run.measured[..=from].iter().rev().map(|m| m[c]).find(|v| v.is_finite());
-        (to - from >= 2 * SIDE).then(|| Run {
-            name: format!("{} {} s", run.recording, sig(run.inputs[from].t, 5)),
-            inputs: run.inputs[from..to].to_vec(),
-            measured: run.measured[from..to].to_vec(),
-            initial: if from == 0 { run.initial } else { std::array::from_fn(|c| last(c).unwrap_or(run.initial[c])) },
-            ..run.clone()
-        })
-    };
-    edges.windows(2).filter_map(part).collect()
+    edges.windows(2).filter_map(|edge| piece(run, edge[0], edge[1])).collect()
 }
 
 /// Weights that read a step between the two middle samples off a row of positions, whatever parabola they lie on, one of them

@@ -3,11 +3,13 @@
 
 use super::{Hull, RealError};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use trimtab::diagnose::admit::followed;
 use trimtab::diagnose::estimate::{Effort, FreeParameter, base_of, estimate, evidence, passes, restrictions};
 use trimtab::diagnose::evidence::Test;
 use trimtab::diagnose::filter::{Column, Run};
 use trimtab::diagnose::noise::{Noise, NoisePrior};
 use trimtab::diagnose::prove::{HeldOut, prove};
+use trimtab::diagnose::receiver::settled;
 use trimtab::diagnose::{Diagnosis, Settings, diagnose};
 use trimtab::model::{Model, Prior};
 use trimtab::recording::Split;
@@ -182,6 +184,19 @@ impl Frame {
             }
         }
         Ok(out)
+    }
+
+    /// The runs without what the diagnosis leaves out, judged without the wind: jumps of the position, and stretches in which
+    /// the model loses the ship.
+    pub fn followed(&self, runs: &[Run]) -> Vec<Run> {
+        let (mut out, _) = settled(runs, self.model.ship.hull.lpp);
+        loop {
+            let at = passes(&self.model, self.integration, &[], &without_wind(&out), &self.noise, false);
+            match followed(&out, &at) {
+                (Some(kept), _) => out = kept,
+                (None, _) => return out,
+            }
+        }
     }
 
     /// Asks what further parameters explain.

@@ -68,6 +68,8 @@ pub fn run() -> Result<Diagnosed, RealError> {
     cases.push(Case::new("best model without its wind, wind given", &windless, &train, &test, &settings)?);
 
     // One question at a time, with everything else estimated along.
+    let train = frame.followed(&train);
+    let blind = without_wind(&train);
     let names = sessions(&train);
     let force = || frame.parameters(&["earth_force.north", "earth_force.east"], Some(&names));
     let wind = || frame.parameters(&["wind.drag", "wind.side", "wind.yaw"], None);
@@ -85,7 +87,7 @@ pub fn run() -> Result<Diagnosed, RealError> {
         frame.step("calm, then propeller walk astern", still, &walked, &blind_test),
         frame.step("wind and forces, then propeller walk astern", &left.model, &all, &test),
     ];
-    let whole: Vec<Run> = by_recording(&[train.clone(), test].concat());
+    let whole: Vec<Run> = by_recording(&[train.clone(), frame.followed(&test)].concat());
     let alone = frame.parameters(&["earth_force.north", "earth_force.east"], Some(&sessions(&whole)))?;
     let each = frame.ask(&without_wind(&whole), &alone);
     let load = (0..3).map(|i| (windy.test.amplitude[i], windy.test.covariance[(i, i)].max(0.0).sqrt()));

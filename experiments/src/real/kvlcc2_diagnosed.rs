@@ -80,6 +80,7 @@ pub fn run() -> Result<Diagnosed, RealError> {
     let asymmetry = frame.model.find("flow.asymmetry")?;
     frame.model.parameters[asymmetry].value = 0.0;
     frame.free.retain(|f| f.column.parameter != asymmetry);
+    let train = frame.followed(&train);
     let ask = |names: &[&str]| Ok::<_, RealError>(frame.ask(&train, &frame.parameters(names, None)?));
     let flow = ask(&["flow.asymmetry"])?;
     let sided = ask(&ONE_SIDED)?;
