@@ -140,10 +140,29 @@ fn runs_that_the_model_cannot_follow_are_told() {
     let name = |i: usize| runs(&model(), &truth_noise(), 30, 101)[i].name.clone();
     let (d, texts) = slipped(40);
     assert!(texts.len() == 1 && texts[0].starts_with(&name(1)), "{texts:?}");
-    assert_eq!(d.admission.runs, 30);
-    let (_, texts) = slipped(4);
+    assert!((30 * 121 - 61..30 * 121 - 30).contains(&d.admission.samples), "{}", d.admission.samples);
+    let (d, texts) = slipped(4);
     assert!(texts.len() == 1 && texts[0].contains("of 30 runs"), "{texts:?}");
+    assert_eq!(d.admission.samples, 30 * 121);
     assert!(case(&[], &[], 11).admission.issues.iter().all(|i| i.mechanism != "lost"));
+}
+
+#[test]
+fn inputs_that_were_not_logged_for_a_while_are_told_and_pass_for_no_physics() {
+    let mut data = runs(&model(), &truth_noise(), 30, 101);
+    data[13].inputs[60..100].iter_mut().for_each(|i| (i.n, i.delta) = (-3.0, -0.6));
+    let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
+    assert!(d.findings.is_empty(), "{}", d.headline);
+    let lost = d.admission.issues.iter().filter(|i| i.mechanism == "lost").map(|i| i.text.as_str());
+    assert!(
+        lost.clone().count() >= 1 && lost.clone().all(|t| t.starts_with("run 13")),
+        "{:?}",
+        lost.collect::<Vec<_>>()
+    );
+    let clean = case(&[], &[], 101);
+    for (found, truth) in d.noise_before.force.iter().zip(clean.noise_before.force) {
+        assert!(*found < 1.5 * truth, "{found} for {truth}");
+    }
 }
 
 /// Thirty runs, in some of which a force of their own acts from 80 to 140 s.

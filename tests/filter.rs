@@ -7,7 +7,7 @@ mod support;
 
 use rayon::prelude::*;
 use support::{STAR, model, runs, truth_noise};
-use trimtab::diagnose::estimate::{Effort, estimate};
+use trimtab::diagnose::estimate::{Effort, FreeParameter, estimate, log_posterior};
 use trimtab::diagnose::evidence::{Evidence, RunEvidence};
 use trimtab::diagnose::filter::{Column, Filter, GATE, Probe, Wanted};
 use trimtab::diagnose::noise::{NOISE_PARAMETERS, Noise, NoisePrior, SensorNoise, fit_noise, guess};
@@ -175,6 +175,44 @@ fn a_noise_that_is_far_too_small_at_first_is_found_all_the_same() {
     for (found, truth) in found.sensors.iter().zip(truth.sensors) {
         let total = |s: &SensorNoise| s.white.hypot(s.coloured);
         assert!((total(found) / total(&truth)).ln().abs() < 0.3, "{found:?} for {truth:?}");
+    }
+}
+
+#[test]
+fn an_estimate_that_meets_a_bound_is_the_best_there_is_on_this_side_of_it() {
+    let model = model().complete().unwrap();
+    let noise = truth_noise();
+    // The ship has less than no cross-flow drag, which the model does not allow.
+    let mut truth = model.clone();
+    let drag = truth.find("crossflow.drag").unwrap();
+    truth.parameters[drag].value = -0.3;
+    let data = runs(&truth, &noise, 16, 8);
+    let mut names = ELEVEN.to_vec();
+    let hull = ["hull.Yv", "hull.Yr", "hull.Nv", "hull.Nr", "hull.Yvv", "hull.Nrr", "hull.inertia", "hull.Nrdot"];
+    names.extend(hull);
+    names.extend(["flow.wake_ratio", "flow.straightening", "crossflow.drag"]);
+    let free: Vec<FreeParameter> =
+        names.iter().map(|n| FreeParameter::uncertain(&model, model.index(n).unwrap())).collect();
+    let effort = Effort { rounds: 20, noise_rounds: 0, noise_iterations: 0, noise_runs: 1, least: f64::NEG_INFINITY };
+    let from = |start: &Model| estimate(start, RK4, &data, &free, &noise, &NoisePrior::around(&noise), effort);
+    let found = from(&model);
+    assert_eq!(found.model.parameters[drag].value, 0.0);
+    let mut elsewhere = model.clone();
+    elsewhere.parameters[drag].value = 0.4;
+    for f in &free[ELEVEN.len()..ELEVEN.len() + hull.len()] {
+        f.set(&mut elsewhere, f.value(&model) + 0.5 * f.column.scale);
+    }
+    let again = from(&elsewhere);
+    let apart = (found.log_posterior - again.log_posterior).abs();
+    assert!(apart < 1.0, "{} and {}", found.log_posterior, again.log_posterior);
+    // Nothing that a user could set by hand does better.
+    for f in &free {
+        for side in [-0.05, 0.05] {
+            let mut beside = found.model.clone();
+            f.set(&mut beside, f.value(&found.model) + side * f.column.scale);
+            let value = log_posterior(&beside, RK4, &data, &free, &noise);
+            assert!(value < found.log_posterior + 0.5, "{}: {value}", model.parameters[f.column.parameter].name);
+        }
     }
 }
 
