@@ -16,7 +16,7 @@ use serde::Serialize;
 pub struct Issue {
     /// The channel concerned.
     pub channel: String,
-    /// What it is: `sign_error`, `unit_error`, `frozen`, `held`, `jump` or `lost`.
+    /// What it is: `sign_error`, `unit_error`, `frozen`, `held`, `start`, `jump` or `lost`.
     pub mechanism: &'static str,
     /// What is seen, with numbers.
     pub text: String,

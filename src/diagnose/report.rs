@@ -77,8 +77,8 @@ pub const KEYS: &[(&str, &str)] = &[
     ("admission.issues[].channel", "the channel"),
     (
         "admission.issues[].mechanism",
-        "sign_error, unit_error, frozen, held (repeated samples), jump (of the position) or lost (measurements in a row that the model \
-         cannot follow)",
+        "sign_error, unit_error, frozen, held (repeated samples), start (a first fix that the next ones contradict), jump (of the \
+         position) or lost (measurements in a row that the model cannot follow)",
     ),
     ("admission.issues[].text", "what is seen"),
     ("admission.issues[].next_step", "what to do"),
