@@ -80,16 +80,14 @@ pub fn followed(runs: &[Run], passes: &[Pass]) -> (Option<Vec<Run>>, Vec<Issue>)
         let channel = STATE_NAMES[first.channel].into();
         return (None, vec![Issue { channel, mechanism: "lost", text, next_step, blocking: false }]);
     }
-    let issue = |(run, loss): (&Run, &Loss)| {
-        Issue {
+    let next_step = "these samples are left out; look there for inputs that were not recorded, a sensor that failed or \
+                     something that touched the ship";
+    let issue = |(run, loss): (&Run, &Loss)| Issue {
         channel: STATE_NAMES[loss.channel].into(),
         mechanism: "lost",
         text: told(run, loss),
-        next_step: "these samples are left out; look there for inputs that were not recorded, a sensor that failed or something \
-                    that touched the ship"
-            .into(),
+        next_step: next_step.into(),
         blocking: false,
-    }
     };
     let issues = lost.into_iter().map(issue).collect();
     let without = |(run, loss): (&Run, &Option<Loss>)| match loss {

@@ -185,12 +185,10 @@ pub struct Told {
 }
 
 /// Only what a mechanism is then started from: its parameters and the noise are estimated again with it.
-const START: Effort =
-    Effort { rounds: 3, noise_rounds: 2, noise_iterations: 6, noise_runs: 6, least: f64::NEG_INFINITY };
+const START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
 
 /// Told the answer, it has only this one fit to make.
-const FINISH: Effort =
-    Effort { rounds: 8, noise_rounds: 2, noise_iterations: 6, noise_runs: 10, least: f64::NEG_INFINITY };
+const FINISH: Effort = Effort { rounds: 8, noise_rounds: 2, noise_iterations: 6, noise_runs: 10 };
 
 /// Median cVDM \[%\] on held-out runs, as the diagnosis' proof measures it, of a model that was told which mechanisms act, and in
 /// which sessions: estimated and refitted as the diagnosis does with what it finds. How far the held-out error can fall when the name

@@ -3,7 +3,7 @@
 
 use super::conclude::Settings;
 use super::estimate::{
-    Effort, Estimate, FreeParameter, base_of, estimate, evidence, log_posterior, passes, restrictions,
+    Effort, Estimate, FreeParameter, base_of, estimate, estimate_above, evidence, log_posterior, passes, restrictions,
 };
 use super::evidence::{chi_squared_p, pick};
 use super::filter::{Column, Probe, Run};
@@ -16,11 +16,9 @@ use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
 
 /// A refit at given noise.
-pub(super) const REFIT: Effort =
-    Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0, noise_runs: 10, least: f64::NEG_INFINITY };
+pub(super) const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0, noise_runs: 10 };
 /// A refit with the noise estimated along.
-pub(super) const SETTLE: Effort =
-    Effort { rounds: 10, noise_rounds: 1, noise_iterations: 4, noise_runs: 10, least: f64::NEG_INFINITY };
+pub(super) const SETTLE: Effort = Effort { rounds: 10, noise_rounds: 1, noise_iterations: 4, noise_runs: 10 };
 
 /// Log-likelihood that a further parameter must bring to be worth having.
 const PRICE: f64 = 2.0;
@@ -298,9 +296,9 @@ fn rivals(s: &Screen, leaders: &[&Row], list: &[Candidate]) -> Vec<Contender> {
 pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: Arena) -> Option<(Accepted, Estimate)> {
     let Arena { integration, runs, list, prior, settings } = arena;
     let leader = *leaders.first()?;
-    let refit = |c: &Contender, noise: &Noise, effort: Effort| {
+    let refit = |c: &Contender, noise: &Noise, effort: Effort, least: f64| {
         let (model, free) = enter(s, list, c.candidate, &c.extent, &c.amplitude, current, integration, runs, noise);
-        estimate(&model, integration, runs, &free, noise, prior, effort)
+        estimate_above(least, &model, integration, runs, &free, noise, prior, effort)
     };
     let stands = |(r, e, _): &(Contender, Estimate, f64)| {
         let c = &list[r.candidate];
@@ -317,7 +315,7 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
     let form = |best: f64| (FORM_UNKNOWN * (best - current.log_posterior)).max(CLOSE);
     let price = |c: &Contender| PRICE * c.amplitude.len() as f64;
     let own = Contender::of(leader);
-    let lead = refit(&own, &current.noise, SETTLE);
+    let lead = refit(&own, &current.noise, SETTLE, f64::NEG_INFINITY);
     let noise = lead.noise;
     let v = lead.log_posterior - price(&own);
     let first = (own, lead, v);
@@ -325,7 +323,7 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
     let (least, mut field) = if stands(&first) { (v - form(v), vec![first]) } else { (f64::NEG_INFINITY, Vec::new()) };
     for r in rivals(s, leaders, list) {
         let price = price(&r);
-        let e = refit(&r, &noise, Effort { least: least + price, ..REFIT });
+        let e = refit(&r, &noise, REFIT, least + price);
         let v = e.log_posterior - price;
         let rival = (r, e, v);
         if v < least || stands(&rival) {

@@ -461,8 +461,7 @@ const EULER_HOPELESS: f64 = 1000.0;
 /// So often stretches in which the filter loses the ship are looked for.
 const LOSSES: usize = 4;
 
-const FIRST: Effort =
-    Effort { rounds: 12, noise_rounds: 4, noise_iterations: 14, noise_runs: 12, least: f64::NEG_INFINITY };
+const FIRST: Effort = Effort { rounds: 12, noise_rounds: 4, noise_iterations: 14, noise_runs: 12 };
 
 /// Diagnoses a model against recordings.
 ///

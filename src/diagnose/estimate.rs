@@ -112,8 +112,6 @@ pub struct Effort {
     pub noise_iterations: usize,
     /// Runs used for the noise estimate, evenly spread.
     pub noise_runs: usize,
-    /// Log-posterior that must be in reach: where even twice what the quadratic model promises ends below it, it is not sought.
-    pub least: f64,
 }
 
 /// Share of measurements set aside as outliers above which they are none.
@@ -250,6 +248,20 @@ pub fn estimate(
     prior: &NoisePrior,
     effort: Effort,
 ) -> Estimate {
+    estimate_above(f64::NEG_INFINITY, start, integration, runs, free, noise, prior, effort)
+}
+
+/// The same, given up where even twice what the quadratic model promises ends below a log-posterior of `least`.
+pub(super) fn estimate_above(
+    least: f64,
+    start: &Model,
+    integration: Integration,
+    runs: &[Run],
+    free: &[FreeParameter],
+    noise: &Noise,
+    prior: &NoisePrior,
+    effort: Effort,
+) -> Estimate {
     let columns: Vec<Column> = free.iter().map(|f| f.column).collect();
     let mut model = start.clone();
     let mut noise = *noise;
@@ -263,8 +275,7 @@ pub fn estimate(
     for round in 0..effort.rounds {
         let quadratic = Quadratic::new(&evidence(runs, &current, &restrictions(free)), &model, free);
         // A law that bends may hold more than its slope where it starts promises: never before the first step.
-        if round > 0 && effort.least.is_finite() && value + 2.0 * quadratic.promise(&quadratic.step(0.0)) < effort.least
-        {
+        if round > 0 && least.is_finite() && value + 2.0 * quadratic.promise(&quadratic.step(0.0)) < least {
             break;
         }
         let mut moved = false;

@@ -14,8 +14,7 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 /// Enough for a yardstick: noise within a few per cent.
-const EFFORT: Effort =
-    Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6, noise_runs: 6, least: f64::NEG_INFINITY };
+const EFFORT: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
 
 /// The base model fitted to runs without an effect, ready to measure the same runs with it.
 pub struct Signal {
