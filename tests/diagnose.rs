@@ -6,6 +6,7 @@ mod support;
 
 use support::{model, runs, truth_noise};
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
+use trimtab::parameter::Parity;
 
 /// Thirty runs to learn from and ten to prove on, of a ship that has what the base model lacks.
 fn case(set: &[(&str, f64)], sessions: &[&str], seed: u64) -> Diagnosis {
@@ -165,13 +166,21 @@ fn inputs_that_were_not_logged_for_a_while_are_told_and_pass_for_no_physics() {
     }
 }
 
+/// First and last second of a push that begins and ends within the blocks of time in which the search goes.
+const WITHIN: [f64; 2] = [84.0, 146.0];
+
 /// Thirty runs, in some of which a force of their own acts from 80 to 140 s.
 fn pushed(forces: &[([f64; 3], fn(usize) -> bool)]) -> Diagnosis {
+    pushed_for(forces, [80.0, 140.0])
+}
+
+/// The same between other seconds.
+fn pushed_for(forces: &[([f64; 3], fn(usize) -> bool)], [start, end]: [f64; 2]) -> Diagnosis {
     let mut data = runs(&model(), &truth_noise(), 30, 101);
     for ([x, y, n], acts_in) in forces {
         let mut truth = model();
         truth.add_term("push").unwrap();
-        for (name, value) in ["x", "y", "n", "start", "end"].into_iter().zip([*x, *y, *n, 80.0, 140.0]) {
+        for (name, value) in ["x", "y", "n", "start", "end"].into_iter().zip([*x, *y, *n, start, end]) {
             let i = truth.find(&format!("push.{name}")).unwrap();
             truth.parameters[i].value = value;
         }
@@ -191,14 +200,19 @@ fn pushed_often(force: [f64; 3]) -> Diagnosis {
 
 #[test]
 fn a_push_is_named_with_its_windows_by_recording() {
-    let d = pushed_often([0.0, 5e4, 1e6]);
+    let d = pushed_for(&[([0.0, 5e4, 1e6], |i| i % 4 == 1)], WITHIN);
     assert_eq!(d.findings.first().map(|f| f.mechanism.as_str()), Some("push"), "{}", d.headline);
     let windows = &d.findings[0].windows;
     let right = |w: &&trimtab::diagnose::locate::Window| {
         let number: usize = w.run.trim_start_matches("run ").parse().unwrap();
-        number % 4 == 1 && (w.start - 80.0).abs() <= 20.0 && (w.end - 140.0).abs() <= 20.0
+        number % 4 == 1 && (w.start - WITHIN[0]).abs() <= 20.0 && (w.end - WITHIN[1]).abs() <= 20.0
     };
-    assert!(windows.len() >= 6 && windows.iter().filter(right).count() + 1 >= windows.len(), "{windows:?}");
+    let found: Vec<_> = windows.iter().filter(right).collect();
+    assert!(windows.len() >= 6 && found.len() + 1 >= windows.len(), "{windows:?}");
+    // To the sample, two seconds long, and not to the block of five in which the search goes.
+    let off = |w: &&&trimtab::diagnose::locate::Window| 0.5 * ((w.start - WITHIN[0]).abs() + (w.end - WITHIN[1]).abs());
+    let mean = found.iter().map(|w| off(&w)).sum::<f64>() / found.len() as f64;
+    assert!(mean < 2.5, "edges off by {mean} s: {windows:?}");
 }
 
 #[test]
@@ -217,12 +231,14 @@ fn what_comes_to_both_sides_is_no_push() {
 }
 
 #[test]
-fn a_force_in_one_recording_alone_is_an_event_without_a_name() {
-    let d = pushed(&[([0.0, 2e5, 4e6], |i| i == 5)]);
-    assert_eq!((d.verdict, d.findings.len()), (Verdict::NotInCatalogue, 0), "{}", d.headline);
+fn a_force_in_one_recording_alone_is_a_push_or_the_ship_in_a_state_of_its_own() {
+    let d = pushed_for(&[([0.0, 2e5, 4e6], |i| i == 5)], WITHIN);
+    assert_eq!((d.verdict, d.findings.len()), (Verdict::OneOf, 1), "{}", d.headline);
+    assert_eq!(d.findings[0].confidence_set, ["push", "generic"]);
     assert!(d.headline.contains("run 5 from "), "{}", d.headline);
-    let [window] = d.location.push.as_ref().unwrap().windows.as_slice() else { panic!("{:?}", d.location.push) };
-    assert!((window.start - 80.0).abs() <= 20.0 && (window.end - 140.0).abs() <= 20.0, "{window:?}");
+    assert!(d.next_trial.is_some_and(|t| t.trial.contains("again")));
+    let [window] = d.findings[0].windows.as_slice() else { panic!("{:?}", d.findings) };
+    assert!((window.start - WITHIN[0]).abs() <= 4.0 && (window.end - WITHIN[1]).abs() <= 4.0, "{window:?}");
 }
 
 #[test]
@@ -249,6 +265,28 @@ fn a_force_in_one_part_of_the_water_is_no_weather() {
     let place = d.location.place.as_ref().unwrap();
     assert!(place.p < 1e-10 && place.east[1] > 2000.0 && place.force[0] > 1e4, "{place:?}");
     assert!(d.headline.contains("goes with the place"), "{}", d.headline);
+}
+
+#[test]
+fn a_ship_whose_sides_differ_is_told_from_one_whose_sides_are_alike() {
+    let mut alike = model();
+    for p in alike.parameters.iter_mut().filter(|p| p.info.parity == Parity::Odd) {
+        (p.value, p.free) = (0.0, false);
+    }
+    let of = |asymmetry: f64| {
+        let mut truth = alike.clone();
+        let i = truth.find("flow.asymmetry").unwrap();
+        truth.parameters[i].value = asymmetry;
+        let data = runs(&truth, &truth_noise(), 30, 13);
+        diagnose(&alike, &data, &[], &Settings::default(), &|_| ()).unwrap()
+    };
+    let (single, twin) = (of(-0.12), of(0.0));
+    // It is the ship's own and nothing is missing for it.
+    assert!(single.findings.is_empty() && twin.findings.is_empty(), "{} {}", single.headline, twin.headline);
+    let (single, twin) = (single.sides.unwrap(), twin.sides.unwrap());
+    assert!(single.p < 1e-6 && twin.p > 1e-3, "{single:?} {twin:?}");
+    let [flow] = single.parameters.as_slice() else { panic!("{single:?}") };
+    assert!(flow.name == "flow.asymmetry" && (flow.value + 0.12).abs() < 3.5 * flow.error, "{flow:?}");
 }
 
 #[test]

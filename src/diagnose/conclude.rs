@@ -8,13 +8,14 @@ use super::compete::{
 use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior, passes};
 use super::filter::{Column, Probe, Run};
 use super::forces::forces_of;
-use super::locate::{EquationShare, Location, Place, Push, RegionTest, Window, locate};
+use super::locate::{EquationShare, Location, Place, Push, RegionTest, Window, locate, sharpened};
 use super::mechanism::{Candidate, Extent, Kind, candidates};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::{HeldOut, prove};
 use super::receiver::settled;
 use super::refit::refit;
 use super::screen::{Row, Screen, screen};
+use super::sides::{Sides, sides};
 use crate::model::{Model, ModelError};
 use crate::simulate::{Integration, Method};
 use serde::{Deserialize, Serialize};
@@ -325,6 +326,9 @@ pub struct Diagnosis {
     pub surrogate: Vec<SurrogateTerm>,
     /// How far the model's own parameters moved.
     pub moves: Vec<Move>,
+    /// Whether the ship's own two sides differ.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sides: Option<Sides>,
     /// Hull error budget used.
     pub hull_budget: Vec<Budget>,
     /// Which trial to sail next.
@@ -415,12 +419,11 @@ pub(super) fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParamete
 
 /// The statistic by which a push is an event: the same force in many recordings is soon beyond chance, in one or two it must
 /// stand out far, as the ship's own forces in another form make such windows in manoeuvres like crash stops.
-fn needed_statistic(recordings: usize, form_holds: bool) -> f64 {
+fn needed_statistic(recordings: usize) -> f64 {
     match recordings {
         0..=2 => ALONE,
         3 => 120.0,
         4 => 80.0,
-        _ if form_holds => 25.0,
         _ => 40.0,
     }
 }
@@ -431,7 +434,16 @@ const SIDEWAYS: f64 = 0.5;
 
 /// A push across the keel whose mirror image holds at least this share of its evidence is no push: it comes to both sides, as
 /// what the ship's own motion brings does.
-const MIRRORED: f64 = 0.3;
+const MIRRORED: f64 = 0.2;
+
+/// What a force for a limited time is called.
+pub(super) const PUSH: &str = "push";
+
+/// The same in plain words.
+pub(super) const PUSH_TITLE: &str = "a push for a limited time (tug, thruster, line)";
+
+/// What stands in a confidence set for physics that the catalogue does not hold.
+pub(super) const GENERIC: &str = "generic";
 
 /// In at most so many recordings a push cannot be told from the ship's own forces in a state that no other recording visits.
 const FEW_RECORDINGS: usize = 2;
@@ -445,8 +457,12 @@ const PLACED_SHARE: f64 = 0.5;
 /// Above this p-value of the mirror-symmetric discrepancy the ship's own forces have the form that the model gives them.
 const FORM_HOLDS: f64 = 0.05;
 
-/// The statistic that a push in one or two runs, or beside a mechanism, must reach to be called an event.
+/// The statistic that a push in one or two recordings must reach to be called an event, or one in a few beside a mechanism.
 const ALONE: f64 = 250.0;
+
+/// In so many recordings or more what is left beside a mechanism is an event from this statistic on.
+const MANY_RECORDINGS: usize = 5;
+const BESIDE: f64 = 60.0;
 
 /// Forces that break symmetry or stand on the earth are missing from the catalogue below this p-value: the ship's own
 /// port-starboard difference in another form reaches 1e-6 or so.
@@ -528,7 +544,7 @@ pub fn diagnose(
     let null_noise = null.noise;
     let is_event = |push: &Push| {
         let across = push.sideways > SIDEWAYS;
-        push.statistic > needed_statistic(push.recordings(), form_holds)
+        push.statistic > needed_statistic(push.recordings())
             && if across { push.mirrored < MIRRORED } else { form_holds }
     };
     // The strongest that is an event, or else the strongest.
@@ -637,17 +653,20 @@ pub fn diagnose(
         let left = location_after.as_ref().unwrap_or(&location);
         // Beside a mechanism, a push must be beyond what the form of that mechanism leaves behind.
         let law = smooth(last.as_ref().unwrap_or(&first));
-        let stands = |p: &Push| is_event(p) && p.statistic > law && (accepted.is_empty() || p.statistic > ALONE);
+        let beside = |p: &Push| p.statistic > if p.recordings() >= MANY_RECORDINGS { BESIDE } else { ALONE };
+        let stands = |p: &Push| is_event(p) && p.statistic > law && (accepted.is_empty() || beside(p));
         pushes = left.push.clone().filter(stands);
     }
-    let lone = pushes.take_if(|p| p.recordings() <= FEW_RECORDINGS);
+    let few_recordings = |p: &Push| p.recordings() <= FEW_RECORDINGS;
+    // Beside a mechanism a force in one or two recordings is no finding.
+    pushes = pushes
+        .filter(|p| accepted.is_empty() || !few_recordings(p))
+        .map(|p| sharpened(&p, &current, integration, &runs));
     let named_something = !accepted.is_empty() || pushes.is_some();
     let unlisted = if blocked || named_something {
         None
     } else if let Some(place) = &placed {
         Some(Unlisted::Place(place))
-    } else if let Some(event) = &lone {
-        Some(Unlisted::Event(event))
     } else {
         (adequacy_after.asymmetric < UNLISTED).then(|| Unlisted::Law(surrogate(&first, &null.model)))
     };
@@ -716,6 +735,7 @@ pub fn diagnose(
         adequacy_after,
         surrogate,
         moves: moves(&null, &current, integration, &runs, model),
+        sides: sides(last.as_ref().unwrap_or(&first), &current, null.free.len()),
         hull_budget: budget(&current),
         next_trial: trial,
         held_out: proof,
@@ -731,8 +751,6 @@ pub fn diagnose(
 enum Unlisted<'a> {
     /// A law of state and inputs, with a surrogate for it.
     Law(Vec<SurrogateTerm>),
-    /// A force for some time in one or two recordings.
-    Event(&'a Push),
     /// A force in one part of the water.
     Place(&'a Place),
 }
@@ -746,16 +764,6 @@ impl Unlisted<'_> {
                 let terms = terms.join(", ");
                 format!(
                     "Something is missing that the catalogue does not hold; a surrogate for it (not physics): {terms}."
-                )
-            }
-            Self::Event(push) => {
-                let one = |w: &Window| format!("{} from {:.0} to {:.0} s", w.run, w.start, w.end);
-                let windows: Vec<String> = push.windows.iter().map(one).collect();
-                let [x, y, n] = push.force.map(sig);
-                format!(
-                    "Something acts for a time that the catalogue does not hold: X = {x} N, Y = {y} N, N = {n} N m in {}; a push, \
-                     or the ship's own forces in a state that no other recording visits.",
-                    windows.join(" and ")
                 )
             }
             Self::Place(place) => {
@@ -776,10 +784,6 @@ impl Unlisted<'_> {
             Self::Law(_) => (
                 "straight runs at several speeds on opposite headings, and turning circles to both sides",
                 "they part what goes with speed, with heading and with the side",
-            ),
-            Self::Event(_) => (
-                "the same manoeuvre again, twice, without help from outside",
-                "a push does not come again, the ship's own forces do",
             ),
             Self::Place(_) => (
                 "straight runs through that part of the water and past it, on opposite headings",
@@ -1078,14 +1082,20 @@ fn sensor_findings(admission: &Admission) -> Vec<Finding> {
 
 fn push_finding(push: &Push, location: &Location) -> Finding {
     let names = [("push.x", "N"), ("push.y", "N"), ("push.n", "N m")];
+    let mut confidence_set = vec![PUSH.to_owned()];
+    let mut why = "the same unknown force stands in windows of time, is absent outside them, and no smooth law of the ship's state \
+                   gives it"
+        .to_owned();
+    if push.recordings() <= FEW_RECORDINGS {
+        confidence_set.push(GENERIC.into());
+        why.push_str("; in so few recordings it may as well be the ship's own forces in a state that no other visits");
+    }
     Finding {
-        mechanism: "push".into(),
-        title: "a push for a limited time (tug, thruster, line)".into(),
+        mechanism: PUSH.into(),
+        title: PUSH_TITLE.into(),
         kind: Kind::Environment,
-        confidence_set: vec!["push".into()],
-        why: "the same unknown force stands in windows of time, is absent outside them, and no smooth law of the ship's state \
-              gives it"
-            .into(),
+        confidence_set,
+        why,
         sessions: Vec::new(),
         by_session: false,
         statistic: push.statistic,
@@ -1187,6 +1197,12 @@ fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) -> Opt
     match verdict {
         Verdict::OneOf => {
             let set = &findings.first()?.confidence_set;
+            if set.iter().any(|m| m == GENERIC) {
+                return Some(NextTrial {
+                    trial: "the same manoeuvre again, twice, without help from outside".into(),
+                    why: "a push does not come again, the ship's own forces do".into(),
+                });
+            }
             let rival = by_name(set.get(1)?)?;
             Some(NextTrial {
                 trial: rival.trial.into(),
@@ -1206,16 +1222,15 @@ fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) -> Opt
 }
 
 fn headline(verdict: Verdict, findings: &[Finding], admission: &Admission, unlisted: Option<&Unlisted>) -> String {
+    let values = |f: &Finding| {
+        let one = |p: &Amplitude| format!("{} = {} {}", p.name, crate::report::sig(p.value, 3), p.unit);
+        f.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
+    };
     let list = |f: &Finding| {
         if f.by_session {
             return format!("{} (another in each of {} sessions)", f.title, f.sessions.len());
         }
-        let values: Vec<String> = f
-            .parameters
-            .iter()
-            .map(|p| format!("{} = {} {}", p.name, crate::report::sig(p.value, 3), p.unit))
-            .collect();
-        format!("{} ({})", f.title, values.join(", "))
+        format!("{} ({})", f.title, values(f))
     };
     match verdict {
         Verdict::Named => {
@@ -1223,6 +1238,15 @@ fn headline(verdict: Verdict, findings: &[Finding], admission: &Admission, unlis
             format!("Missing physics: {}.", all.join("; and "))
         }
         Verdict::OneOf => findings.first().map_or(String::new(), |f| {
+            if f.mechanism == PUSH {
+                let one = |w: &Window| format!("{} from {:.0} to {:.0} s", w.run, w.start, w.end);
+                let windows: Vec<String> = f.windows.iter().map(one).collect();
+                return format!(
+                    "Something acts for a time: {} in {}; a push, or the ship's own forces in a state that no other recording visits.",
+                    values(f),
+                    windows.join(" and ")
+                );
+            }
             format!("Something is missing, and these data cannot tell which of: {}.", f.confidence_set.join(", "))
         }),
         Verdict::Sensor => findings.first().map_or_else(

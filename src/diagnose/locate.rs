@@ -4,6 +4,7 @@
 use super::estimate::{Estimate, base_of, restrictions};
 use super::evidence::{Base, Evidence, RunEvidence, chi_squared_p, pick};
 use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::noise::Noise;
 use super::screen::{basis_columns, widen};
 use crate::model::Model;
 use crate::simulate::Integration;
@@ -14,8 +15,15 @@ use serde::Serialize;
 use statrs::statistics::{Data, OrderStatistics};
 use std::collections::BTreeSet;
 
+/// The time scan goes in at most so many blocks a run, of at least two samples each: the evidence for a force that sets in is
+/// mostly in when it does, and a run cut more finely costs more than it tells.
+const MOST_BLOCKS: usize = 64;
+
 /// Samples in one block of the time scan.
-const BLOCK: usize = 5;
+fn block_length(runs: &[Run]) -> usize {
+    let longest = runs.iter().map(|r| r.measured.len()).max().unwrap_or(0);
+    longest.div_ceil(MOST_BLOCKS).max(2)
+}
 
 /// A time window in which a force acts that the model does not have.
 #[derive(Clone, Debug, Serialize)]
@@ -183,8 +191,9 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
         columns.extend(basis_columns(model, term).into_iter().map(|(_, column)| column));
     }
     let filter = Filter::new(model, integration, &columns);
-    let longest = runs.iter().map(|r| r.measured.len()).max().unwrap_or(0);
-    let blocks = longest.div_ceil(BLOCK);
+    let length = block_length(runs);
+    let blocks_in = |r: &Run| r.measured.len().div_ceil(length);
+    let blocks = runs.iter().map(blocks_in).max().unwrap_or(0);
     let chart = Chart::of(runs);
     // Blocks of time, regions, and parts of the water.
     let parts = 3 * (blocks + REGIONS.len());
@@ -195,7 +204,7 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
         for e in 0..3 {
             let mut f = [0.0; 3];
             f[e] = found.noise.force[e];
-            out[3 * (k / BLOCK) + e] = f;
+            out[3 * (k / length) + e] = f;
             for (j, (_, inside)) in REGIONS.iter().enumerate() {
                 if inside(model, s, i) {
                     out[3 * (blocks + j) + e] = f;
@@ -221,18 +230,18 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
     // A force that comes back with the ship's state is no event: what a smooth force law can mimic is taken out of the windows.
     let widened = widen(&evidence, &base, &(free..columns.len()).collect::<Vec<_>>());
     let step = widened.step();
-    let looked_at: f64 = runs.iter().map(|r| choices(r.measured.len().div_ceil(BLOCK))).sum();
+    let looked_at: f64 = runs.iter().map(|r| choices(blocks_in(r))).sum();
     let blocks_of: Vec<Blocks> = runs
         .par_iter()
         .zip(&evidence.runs)
-        .map(|(run, e)| Blocks::new(run, e, &widened, &step, columns.len()))
+        .map(|(run, e)| Blocks::new(length, blocks_in(run), e, &widened, &step, columns.len()))
         .collect();
     let mut windows: Vec<Window> = runs
         .par_iter()
         .zip(&blocks_of)
         .enumerate()
         .flat_map_iter(|(index, (run, b))| {
-            scan(b, looked_at).into_iter().map(move |s| window(run, index, &s, looked_at, &found.noise.force))
+            scan(b, looked_at).into_iter().map(move |s| window(run, index, length, &s, looked_at, &found.noise.force))
         })
         .collect();
     let pushes = common_pushes(runs, &blocks_of, &found.noise.force, looked_at);
@@ -327,18 +336,24 @@ fn equation_shares(
 
 /// Running sums of a run's block-wise force evidence after the base, so that every span of blocks costs the same.
 struct Blocks {
+    /// Samples in a block.
+    length: usize,
     count: usize,
     score: Vec<Vector3<f64>>,
     information: Vec<Matrix3<f64>>,
 }
 
 impl Blocks {
-    fn new(run: &Run, e: &RunEvidence, base: &Base, base_step: &DVector<f64>, first: usize) -> Self {
-        let count = run.measured.len().div_ceil(BLOCK);
+    fn new(length: usize, count: usize, e: &RunEvidence, base: &Base, base_step: &DVector<f64>, first: usize) -> Self {
         let columns: Vec<usize> = (first..first + 3 * count).collect();
         let cross = pick(&e.information, &columns, &base.columns);
         let h: DMatrix<f64> = pick(&e.information, &columns, &columns) - &cross * &base.inverse * cross.transpose();
         let g = DVector::from_fn(columns.len(), |i, _| e.score[columns[i]]) - &cross * base_step;
+        Self::sums(length, count, &g, &h)
+    }
+
+    /// Running sums of score and information, three columns a block.
+    fn sums(length: usize, count: usize, g: &DVector<f64>, h: &DMatrix<f64>) -> Self {
         let w = count + 1;
         let mut score = vec![Vector3::zeros(); w];
         let mut information = vec![Matrix3::zeros(); w * w];
@@ -351,7 +366,7 @@ impl Blocks {
                     - information[i * w + j];
             }
         }
-        Self { count, score, information }
+        Self { length, count, score, information }
     }
 
     /// Score of a constant force in blocks `from..to`, and its information.
@@ -406,8 +421,8 @@ impl Span {
     }
 }
 
-fn window(run: &Run, index: usize, s: &Span, looked_at: f64, unit: &[f64; 3]) -> Window {
-    let samples = (s.from * BLOCK, (s.to * BLOCK).min(run.measured.len() - 1));
+fn window(run: &Run, index: usize, length: usize, s: &Span, looked_at: f64, unit: &[f64; 3]) -> Window {
+    let samples = (s.from * length, (s.to * length).min(run.measured.len() - 1));
     Window {
         run: run.recording.clone(),
         session: run.session.clone(),
@@ -420,6 +435,59 @@ fn window(run: &Run, index: usize, s: &Span, looked_at: f64, unit: &[f64; 3]) ->
         index,
         samples,
     }
+}
+
+/// The same push with every edge of its windows at the sample, up to a block before or after where it was, at which its force gains
+/// most. `found` is the estimate beside which it stands.
+pub fn sharpened(push: &Push, found: &Estimate, integration: Integration, runs: &[Run]) -> Push {
+    let filter = Filter::new(&found.model, integration, &[]);
+    let force = Vector3::from_fn(|e, _| push.force[e] / found.noise.force[e]);
+    let length = block_length(runs);
+    let sharp = |w: &Window| {
+        // What the run's samples say, as if nobody knew of the push.
+        let run = Run { disturbed: Vec::new(), ..runs[w.index].clone() };
+        let (from, to) = edges(&filter, &found.noise, &run, w.samples, length, &force);
+        Window { samples: (from, to), start: run.inputs[from].t, end: run.inputs[to].t, ..w.clone() }
+    };
+    Push { windows: push.windows.par_iter().map(sharp).collect(), ..push.clone() }
+}
+
+/// First and last sample of a window whose edges are within `length` samples of these, where a force gains most.
+fn edges(
+    filter: &Filter,
+    noise: &Noise,
+    run: &Run,
+    samples: (usize, usize),
+    length: usize,
+    force: &Vector3<f64>,
+) -> (usize, usize) {
+    let (a, b) = samples;
+    let middle = a.midpoint(b);
+    let first = a.saturating_sub(length)..(a + length + 1).min(middle + 1);
+    let last = (middle + 1).max(b.saturating_sub(length))..(b + length + 1).min(run.measured.len());
+    let inside = first.len();
+    let limits: Vec<usize> = first.chain(last).collect();
+    let count = limits.len().saturating_sub(1);
+    let basis = |k: usize, _: &State<f64>, _: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
+        out.clear();
+        out.resize(3 * count, [0.0; 3]);
+        let piece = limits.partition_point(|l| *l <= k);
+        if (1..=count).contains(&piece) {
+            for e in 0..3 {
+                out[3 * (piece - 1) + e][e] = noise.force[e];
+            }
+        }
+    };
+    let Pass { score, information, .. } =
+        filter.pass(run, noise, Wanted { basis: Some((3 * count, &basis)), ..Wanted::default() });
+    let pieces = Blocks::sums(1, count, &score, &information);
+    let gain = |(from, to): &(usize, usize)| {
+        let (score, information) = pieces.span(*from, *to);
+        score.dot(force) - 0.5 * force.dot(&(information * force))
+    };
+    let choices = (0..inside).flat_map(|from| (inside..=count).map(move |to| (from, to)));
+    let best = choices.max_by(|a, b| gain(a).total_cmp(&gain(b)));
+    best.map_or(samples, |(from, to)| (limits[from], limits[to]))
 }
 
 /// The significant windows of one run, greedily, not overlapping.
@@ -530,7 +598,8 @@ fn common_pushes(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f6
         let side = force.fixed_rows::<2>(1).into_owned();
         let (_, image) = chosen(&Vector3::new(force[0], -force[1], -force[2]));
         let fitted = |(index, from, to): &(usize, usize, usize)| {
-            Some(window(&runs[*index], *index, &blocks[*index].fit(*from, *to)?, looked_at, unit))
+            let b = &blocks[*index];
+            Some(window(&runs[*index], *index, b.length, &b.fit(*from, *to)?, looked_at, unit))
         };
         found.push(Push {
             sideways: side.dot(&(across * side)) / force.dot(&(all * force)).max(f64::MIN_POSITIVE),
@@ -553,13 +622,16 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
 
+    /// Samples in a block here.
+    const LENGTH: usize = 5;
+
     /// Sixteen blocks whose forces are measured with unit error each; in some runs one acts for six of them.
     fn measured(force: [f64; 3], acts: impl Fn(usize) -> bool, seed: u64) -> (Vec<Run>, Vec<Blocks>) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let count = 16;
         let one = |index: usize| {
             let from = 2 + index % 8;
-            let mut blocks = Blocks { count, score: vec![Vector3::zeros()], information: Vec::new() };
+            let mut blocks = Blocks { length: LENGTH, count, score: vec![Vector3::zeros()], information: Vec::new() };
             for i in 0..count {
                 let inside = acts(index) && (from..from + 6).contains(&i);
                 let noise = Vector3::from_fn(|_, _| rng.sample(StandardNormal));
@@ -575,8 +647,8 @@ mod tests {
                 session: "one".into(),
                 manoeuvre: String::new(),
                 dt: 2.0,
-                inputs: (0..count * BLOCK).map(|k| Inputs::actuators(2.0 * k as f64, 1.0, 0.0)).collect(),
-                measured: vec![[0.0; STATES]; count * BLOCK],
+                inputs: (0..count * LENGTH).map(|k| Inputs::actuators(2.0 * k as f64, 1.0, 0.0)).collect(),
+                measured: vec![[0.0; STATES]; count * LENGTH],
                 channels: [true; STATES],
                 initial: [0.0; STATES],
                 disturbed: Vec::new(),
@@ -606,7 +678,7 @@ mod tests {
             assert!(push.statistic > 40.0, "seed {seed}: {}", push.statistic);
             assert!(push.sideways > 0.9 && push.mirrored < 0.1, "seed {seed}: {} {}", push.sideways, push.mirrored);
             let right = |w: &&Window| {
-                let start = 2.0 * (BLOCK * (2 + w.index % 8)) as f64;
+                let start = 2.0 * (LENGTH * (2 + w.index % 8)) as f64;
                 w.index.is_multiple_of(3) && w.end.min(start + 60.0) - w.start.max(start) > 30.0
             };
             let found = push.windows.iter().filter(right).count();

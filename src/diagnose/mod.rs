@@ -24,6 +24,7 @@ pub mod receiver;
 pub mod refit;
 pub mod report;
 pub mod screen;
+pub mod sides;
 pub mod signal;
 
 pub use conclude::{Diagnosis, Finding, Settings, Verdict, diagnose};

@@ -1,10 +1,11 @@
 //! A diagnosis in words: the numbered summary of the terminal, the JSON document with its keys explained, and the HTML page.
 //! It computes no statistics; whatever it says is in [`Diagnosis`], turned into units that people use (kN, degrees).
 
-use super::conclude::{Amplitude, Diagnosis, Finding, Verdict};
+use super::conclude::{Amplitude, Diagnosis, Finding, GENERIC, PUSH, PUSH_TITLE, Verdict};
 use super::figures::Picture;
 use super::locate::{EquationShare, Window};
 use super::mechanism::{Kind, Mechanism};
+use super::sides::Sides;
 use crate::report::{Page, Section, Table, fixed, sig};
 use crate::ship::Ship;
 use crate::terms::CATALOGUE;
@@ -29,7 +30,10 @@ pub const KEYS: &[(&str, &str)] = &[
     ("findings[].mechanism", "name in the catalogue; `push` for a force of limited duration"),
     ("findings[].title", "the same in plain words"),
     ("findings[].kind", "environment, ship, actuator or sensor"),
-    ("findings[].confidence_set[]", "every mechanism these data allow in its place, itself first"),
+    (
+        "findings[].confidence_set[]",
+        "every mechanism these data allow in its place, itself first; `generic` for one that the catalogue does not hold",
+    ),
     ("findings[].why", "why the set is what it is"),
     ("findings[].sessions[]", "sessions in which it acts; empty for all with one amplitude"),
     ("findings[].by_session", "whether each of these sessions has an amplitude of its own, as weather does"),
@@ -194,6 +198,17 @@ pub const KEYS: &[(&str, &str)] = &[
     ("moves[].after", "with them"),
     ("moves[].error", "standard error after"),
     ("moves[].moved", "difference in standard errors"),
+    (
+        "sides",
+        "whether port and starboard of the ship herself differ, as with a single screw; beside the verdict, never a finding",
+    ),
+    ("sides.statistic", "squared distance from a ship whose sides are alike, in units of its covariance"),
+    ("sides.degrees", "degrees of freedom"),
+    ("sides.p", "p-value"),
+    (
+        "sides.parameters[]",
+        "the parameters that break mirror symmetry, most significant first, as for findings[].parameters",
+    ),
     ("hull_budget[]", "how much of what was allowed for in the ship's own coefficients was used; never a finding"),
     ("hull_budget[].name", "dotted name"),
     ("hull_budget[].prior", "value expected"),
@@ -214,7 +229,7 @@ pub fn keys_listing() -> String {
 
 /// The names of all mechanisms that can be named or withheld.
 pub fn mechanism_names() -> impl Iterator<Item = &'static str> {
-    mechanisms().map(|m| m.name).chain(["push"])
+    mechanisms().map(|m| m.name).chain([PUSH])
 }
 
 fn mechanisms() -> impl Iterator<Item = &'static Mechanism> {
@@ -224,7 +239,11 @@ fn mechanisms() -> impl Iterator<Item = &'static Mechanism> {
 /// The plain words for a mechanism; its name when the catalogue does not hold it.
 #[must_use]
 pub fn title_of(name: &str) -> &str {
-    mechanisms().find(|m| m.name == name).map_or(name, |m| m.title)
+    match name {
+        PUSH => PUSH_TITLE,
+        GENERIC => "something that the catalogue does not hold",
+        _ => mechanisms().find(|m| m.name == name).map_or(name, |m| m.title),
+    }
 }
 
 /// The diagnosis as a JSON document, see [`KEYS`].
@@ -671,6 +690,24 @@ fn adequacy_words(p: f64) -> &'static str {
     }
 }
 
+/// Whether the ship's own two sides differ, and by what.
+fn own_sides(s: &Sides, units: &Units) -> String {
+    let differ = adequacy_words(s.p);
+    let clear = |a: &&Amplitude| a.value.abs() > 1.96 * a.error;
+    let by: Vec<String> = s
+        .parameters
+        .iter()
+        .filter(clear)
+        .take(3)
+        .map(|a| format!("{} {} +- {}", a.name, units.text(a.value, &a.unit), units.text(1.96 * a.error, &a.unit)))
+        .collect();
+    let by = if by.is_empty() || differ == "not seen" { String::new() } else { format!(": {}", by.join(", ")) };
+    format!(
+        "port and starboard of the ship herself differ (a single screw, a rudder off its zero): {differ} ({}){by}",
+        p_value(s.p)
+    )
+}
+
 fn still_open(d: &Diagnosis) -> Vec<String> {
     let units = Units::of(&d.base.ship);
     let a = d.adequacy_after;
@@ -700,6 +737,7 @@ fn still_open(d: &Diagnosis) -> Vec<String> {
         fixed(d.noise_after.force_time, 0),
         change.join("; ")
     ));
+    lines.extend(d.sides.as_ref().map(|s| own_sides(s, &units)));
     let mut used: Vec<_> = d.hull_budget.iter().filter(|b| b.used.is_finite()).collect();
     used.sort_by(|a, b| b.used.abs().total_cmp(&a.used.abs()));
     let beyond = used.iter().filter(|b| b.used.abs() > 2.0).count();

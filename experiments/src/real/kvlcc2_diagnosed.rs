@@ -29,8 +29,9 @@ pub struct Diagnosed {
     pub cases: Vec<Case>,
     /// Questions asked one by one.
     pub steps: Vec<Step>,
-    /// Asymmetry of the flow at the rudder with its standard error, starting from a mirror-symmetric ship.
-    pub asymmetry: (f64, f64),
+    /// Asymmetry of the flow at the rudder with its standard error, starting from a mirror-symmetric ship: from the zigzags, and
+    /// with the turning circles seen.
+    pub asymmetry: [(f64, f64); 2],
 }
 
 /// The diagnosis of the zigzags as they were recorded, and what the kinematics of every recording say.
@@ -76,26 +77,32 @@ pub fn run() -> Result<Diagnosed, RealError> {
     cases.push(Case::new("circles seen, mirror-symmetric ship", &symmetric(&eleven)?, &early, &late, &settings)?);
 
     // One question at a time on a mirror-symmetric ship, with everything else estimated along.
-    let mut frame = Frame::new(&cases[2].diagnosis)?;
+    let (mut steps, zigzags) = asked(&cases[2], &train, &test, "")?;
+    let (more, circles) = asked(&cases[4], &early, &late, ", circles seen")?;
+    steps.extend(more);
+    let asymmetry = [zigzags, circles];
+    Ok(Diagnosed { kinematics, asymmetry, cases, steps })
+}
+
+/// One question at a time of a mirror-symmetric ship as a diagnosis left her, and the asymmetry of the flow at her rudder with its
+/// standard error.
+fn asked(case: &Case, train: &[Run], test: &[Run], when: &str) -> Result<(Vec<Step>, (f64, f64)), RealError> {
+    let mut frame = Frame::new(&case.diagnosis)?;
     let asymmetry = frame.model.find("flow.asymmetry")?;
     frame.model.parameters[asymmetry].value = 0.0;
     frame.free.retain(|f| f.column.parameter != asymmetry);
-    let train = frame.followed(&train);
+    let train = frame.followed(train);
     let ask = |names: &[&str]| Ok::<_, RealError>(frame.ask(&train, &frame.parameters(names, None)?));
     let flow = ask(&["flow.asymmetry"])?;
-    let sided = ask(&ONE_SIDED)?;
-    let walk = ask(&["propeller_walk.ahead"])?;
-    let current = ask(&["current.north", "current.east"])?;
-    let force = ask(&["earth_force.north", "earth_force.east"])?;
-    let step = |name: &str, answer: &Answer| frame.step(name, &frame.model, answer, &test);
+    let step = |name: &str, answer: &Answer| frame.step(&format!("{name}{when}"), &frame.model, answer, test);
     let steps = vec![
         step("asymmetry of the flow at the rudder", &flow),
-        step("all one-sided parameters", &sided),
-        step("propeller walk ahead", &walk),
-        step("steady current", &current),
-        step("a force fixed on the earth", &force),
+        step("all one-sided parameters", &ask(&ONE_SIDED)?),
+        step("propeller walk ahead", &ask(&["propeller_walk.ahead"])?),
+        step("steady current", &ask(&["current.north", "current.east"])?),
+        step("a force fixed on the earth", &ask(&["earth_force.north", "earth_force.east"])?),
     ];
-    Ok(Diagnosed { kinematics, asymmetry: flow.first(), cases, steps })
+    Ok((steps, flow.first()))
 }
 
 /// The model of a ship whose port and starboard sides are alike, and are held alike.
@@ -121,7 +128,7 @@ impl Diagnosed {
 
     /// What was found of the single screw, in words.
     pub fn screw(&self) -> String {
-        let (value, error) = self.asymmetry;
+        let (value, error) = self.asymmetry[0];
         let budget = self.cases.iter().filter_map(|c| {
             let b = c.diagnosis.hull_budget.iter().find(|b| b.name == "flow.asymmetry")?;
             Some(format!("{} {}", c.name, sig(b.value, 2)))

@@ -1,0 +1,60 @@
+//! Whether port and starboard of the ship herself differ: what a single screw does to the flow and a rudder off its zero, as the
+//! parameters say that are carried along anyway. It is told beside the verdict and is no finding: nothing is missing for it.
+
+use super::compete::Wald;
+use super::conclude::Amplitude;
+use super::estimate::{Estimate, FreeParameter};
+use super::evidence::chi_squared_p;
+use super::screen::Screen;
+use crate::parameter::Parity;
+use serde::Serialize;
+
+/// A test of everything in the base that breaks mirror symmetry.
+#[derive(Clone, Debug, Serialize)]
+pub struct Sides {
+    /// Squared distance of all of it together from a ship whose sides are alike, in units of its covariance, no belief counted.
+    pub statistic: f64,
+    /// Degrees of freedom.
+    pub degrees: usize,
+    /// p-value.
+    pub p: f64,
+    /// The parameters, the most significant first.
+    pub parameters: Vec<Amplitude>,
+}
+
+/// Tests the parameters of the base, the first `base` free ones of the estimate, that differ between port and starboard; `None` when
+/// it has none. `s` is the screen at the estimate.
+pub(super) fn sides(s: &Screen, found: &Estimate, base: usize) -> Option<Sides> {
+    let parity = |f: &FreeParameter| found.model.parameters[f.column.parameter].info.parity;
+    let odd: Vec<usize> = (0..base).filter(|i| parity(&found.free[*i]) == Parity::Odd).collect();
+    if odd.is_empty() {
+        return None;
+    }
+    // A belief that the sides are alike is no evidence that they are.
+    let terms =
+        |(i, f): (usize, &FreeParameter)| if odd.contains(&i) { (0.0, 0.0) } else { f.prior_terms(&found.model) };
+    let (precision, pull): (Vec<f64>, Vec<f64>) = found.free.iter().enumerate().map(terms).unzip();
+    let free = s.evidence.base(&(0..found.free.len()).collect::<Vec<_>>(), &precision, &pull);
+    let step = free.step();
+    let mut all = Wald::of(found, free.inverse);
+    all.value += step;
+    let tested = all.part(&odd);
+    let amplitude = |(k, i): (usize, &usize)| {
+        let column = &found.free[*i].column;
+        let p = &found.model.parameters[column.parameter];
+        let (value, error) =
+            (tested.value[k] * column.scale, tested.covariance[(k, k)].max(0.0).sqrt() * column.scale.abs());
+        Amplitude {
+            name: p.name.clone(),
+            value,
+            unit: p.info.unit.into(),
+            error,
+            ci95: [value - 1.96 * error, value + 1.96 * error],
+        }
+    };
+    let mut parameters: Vec<Amplitude> = odd.iter().enumerate().map(amplitude).collect();
+    let weight = |a: &Amplitude| (a.value / a.error.max(f64::MIN_POSITIVE)).abs();
+    parameters.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+    let statistic = tested.statistic();
+    Some(Sides { statistic, degrees: odd.len(), p: chi_squared_p(statistic, odd.len()), parameters })
+}
