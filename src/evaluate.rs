@@ -25,8 +25,8 @@ use crate::fit::FitRun;
 use crate::model::Model;
 use crate::recording::{Split, Window};
 use crate::ship::Ship;
-use crate::simulate::{Integration, Scenario, Trajectory, driven, simulate};
-use crate::state::{STATE_NAMES, STATES, State};
+use crate::simulate::{Integration, Scenario, Trajectory, reported};
+use crate::state::{STATE_NAMES, STATES};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -249,17 +249,11 @@ impl From<&Window> for Scenario {
     }
 }
 
-/// What a model predicts the sensors to report over a window, with the parameter additions of the window's session.
+/// What a model predicts the sensors to report over a window that starts where they report its initial state, with the parameter
+/// additions of the window's session.
 pub fn predict(model: &Model, window: &Window, integration: Integration) -> Trajectory {
     let theta = model.values_in(&window.session);
-    let mut trajectory = simulate(model, &theta, integration, &Scenario::from(window));
-    let series = driven(model, &theta, integration, window.dt, &window.inputs);
-    for (s, inputs) in trajectory.states.iter_mut().zip(series.iter().step_by(integration.instants())) {
-        let state = State::from_array(*s);
-        let (rates, flow) = model.rates(&theta, &state, inputs, &crate::state::Force::zero());
-        *s = model.measure(&theta, &state, inputs, &rates, &flow);
-    }
-    trajectory
+    reported(model, &theta, integration, &Scenario::from(window), &window.measured_channels)
 }
 
 /// Predictions of every window, in order.
@@ -483,7 +477,9 @@ impl<'a> Bootstrap<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::{Cost, CostOptions, Derivatives};
     use crate::recording::Environment;
+    use crate::simulate::report;
     use crate::state::Inputs;
     use crate::terms::Form;
     use std::f64::consts::PI;
@@ -524,6 +520,52 @@ mod tests {
                 window
             })
             .collect()
+    }
+
+    #[test]
+    fn what_sensors_report_is_predicted_from_what_they_reported_first() {
+        let ship = model();
+        let mut off = ship.clone();
+        for (term, values) in [
+            ("heading_bias", [("heading_bias.bias", 0.05)].as_slice()),
+            ("log_scale", &[("log_scale.error", 0.08)]),
+            ("antenna", &[("antenna.x", 30.0), ("antenna.y", -8.0)]),
+            ("time_skew", &[("time_skew.position", 1.5)]),
+        ] {
+            off.add_term(term).unwrap();
+            off.set(values).unwrap();
+        }
+        let theta = off.values();
+        let mut windows = windows(&ship, 3);
+        for w in &mut windows {
+            for (m, inputs) in w.measured.iter_mut().zip(&w.inputs) {
+                *m = report(&off, &theta, m, inputs);
+            }
+            w.initial = w.measured[0];
+        }
+        let cvdm = |model: &Model, w: &Window| {
+            let Outcome::Simulated(d) = outcome(w, &predict(model, w, Integration::default()), &ship.ship, R_MAX)
+            else {
+                panic!("diverged")
+            };
+            d.cvdm
+        };
+        for w in &windows {
+            assert!(cvdm(&off, w) < 1e-4 && cvdm(&ship, w) > 3.0, "{} {}", cvdm(&off, w), cvdm(&ship, w));
+        }
+        // A fit sees the same: its cost has its least value, nothing, at the sensors' own errors, and is level there.
+        let at = off.find("log_scale.error").unwrap();
+        off.parameters.iter_mut().enumerate().for_each(|(i, p)| p.free = i == at);
+        let runs: Vec<FitRun> = windows.iter().map(|w| FitRun::of(w, &ship.ship, R_MAX)).collect();
+        for derivatives in [Derivatives::Lanes, Derivatives::NumDual] {
+            let options = CostOptions { derivatives, difference_step: 1e-6, integration: Integration::default() };
+            let cost = Cost::new(&off, &runs, options).unwrap();
+            let (here, there) = (cost.with_gradient(&[0.08]).unwrap(), cost.with_gradient(&[0.06]).unwrap());
+            assert!(here.value < 1e-9 && there.value > 1e-4, "{} {}", here.value, there.value);
+            let h = 1e-5;
+            let slope = (cost.value(&[0.06 + h]).unwrap() - cost.value(&[0.06 - h]).unwrap()) / (2.0 * h);
+            assert!((there.gradient[0] - slope).abs() < 1e-6 * slope.abs(), "{} {slope}", there.gradient[0]);
+        }
     }
 
     fn changed(by: f64) -> Model {

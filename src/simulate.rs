@@ -184,3 +184,50 @@ pub fn simulate(model: &Model, theta: &[f64], integration: Integration, scenario
     });
     Trajectory { dt: scenario.dt, states, diverged_at }
 }
+
+/// Rounds in which the start of a simulation is looked for.
+const START_ROUNDS: usize = 6;
+
+/// What the sensors report of a state.
+pub fn report<S: Number>(model: &Model, theta: &[S], state: &[S; STATES], inputs: &Inputs<S>) -> [S; STATES] {
+    let state = State::from_array(*state);
+    let (rates, flow) = model.rates(theta, &state, inputs, &Force::zero());
+    model.measure(theta, &state, inputs, &rates, &flow)
+}
+
+/// The state of which the sensors report `initial`, in the channels that are `measured` (1, or 0); the others are as given.
+///
+/// `x <- x + initial - h(x)`, six times: an error of the sensors by a share e leaves the share e^7 of it.
+pub fn start<S: Number>(
+    model: &Model,
+    theta: &[S],
+    inputs: &Inputs<S>,
+    initial: &[S; STATES],
+    measured: &[S; STATES],
+) -> [S; STATES] {
+    let mut x = *initial;
+    for _ in 0..START_ROUNDS {
+        let y = report(model, theta, &x, inputs);
+        x = std::array::from_fn(|j| x[j] + (initial[j] - y[j]) * measured[j]);
+    }
+    x
+}
+
+/// What the sensors report along a simulation that starts where they report the scenario's initial state, see [`start`].
+pub fn reported(
+    model: &Model,
+    theta: &[f64],
+    integration: Integration,
+    scenario: &Scenario,
+    measured: &[bool; STATES],
+) -> Trajectory {
+    let series = driven(model, theta, integration, scenario.dt, &scenario.inputs);
+    let measured = measured.map(|m| f64::from(u8::from(m)));
+    let first = series.first().map(|inputs| start(model, theta, inputs, &scenario.initial, &measured));
+    let initial = first.unwrap_or(scenario.initial);
+    let mut trajectory = simulate(model, theta, integration, &Scenario { initial, ..scenario.clone() });
+    for (s, inputs) in trajectory.states.iter_mut().zip(series.iter().step_by(integration.instants())) {
+        *s = report(model, theta, s, inputs);
+    }
+    trajectory
+}

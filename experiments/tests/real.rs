@@ -91,6 +91,18 @@ fn a_calm_basin_is_not_given_wind_and_a_late_gyro_is_found() {
 }
 
 #[test]
+fn the_sides_of_a_ship_with_one_screw_differ() {
+    let Some(hull) = present(Hull::open("kvlcc2")) else { return };
+    let kinematics = Agreement::of_study(&hull, 40.0).unwrap();
+    let case = kvlcc2_diagnosed::all_recordings(&hull, &kinematics).unwrap();
+    let sides = case.diagnosis.sides.unwrap();
+    assert!(sides.p < 1e-4, "{sides:?}");
+    // The same side force of the propeller as the turning circles show: to starboard she turns wider.
+    let propeller = sides.parameters.iter().find(|p| p.name == "propeller.side_force").unwrap();
+    assert!(propeller.ci95[0] > 0.0, "{propeller:?}");
+}
+
+#[test]
 fn velocities_of_esso_osaka_lag_her_positions_alike_in_every_recording() {
     let Some(hull) = present(Hull::open("esso_osaka")) else { return };
     let agreements = Agreement::of_study(&hull, 20.0).unwrap();

@@ -417,20 +417,23 @@ pub(super) fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParamete
     free
 }
 
-/// The statistic by which a push is an event: the same force in many recordings is soon beyond chance, in one or two it must
-/// stand out far, as the ship's own forces in another form make such windows in manoeuvres like crash stops.
-fn needed_statistic(recordings: usize) -> f64 {
+/// The statistic by which a push across the keel is an event: the same force in many recordings is soon beyond chance, in one or
+/// two it must stand out far, as the ship's own forces in another form make such windows in manoeuvres like crash stops.
+fn needed_statistic(recordings: usize, form_holds: bool) -> f64 {
     match recordings {
         0..=2 => ALONE,
         3 => 120.0,
-        4 => 80.0,
+        4 => 50.0,
+        _ if form_holds => 25.0,
         _ => 40.0,
     }
 }
 
-/// Along the keel a ship's own thrust and resistance in another form make such windows too: where that form is in doubt, a push
-/// must hold at least this share of its evidence across.
-const SIDEWAYS: f64 = 0.5;
+/// A push across the keel holds at least this share of its evidence there. Along the keel a ship's own thrust and resistance in
+/// another form make such windows too: where that form is in doubt there is no push along it, and elsewhere it must stand out far.
+const SIDEWAYS: f64 = 0.7;
+/// So many times what is needed across the keel.
+const ALONG: f64 = 2.5;
 
 /// A push across the keel whose mirror image holds at least this share of its evidence is no push: it comes to both sides, as
 /// what the ship's own motion brings does.
@@ -449,10 +452,10 @@ pub(super) const GENERIC: &str = "generic";
 const FEW_RECORDINGS: usize = 2;
 
 /// A force goes with the place below this p-value.
-const PLACED: f64 = 1e-6;
+const PLACED: f64 = 1e-4;
 
 /// Weather that leaves more than this share of what it explains behind, in forces that go with the place, is none.
-const PLACED_SHARE: f64 = 0.5;
+const PLACED_SHARE: f64 = 0.3;
 
 /// Above this p-value of the mirror-symmetric discrepancy the ship's own forces have the form that the model gives them.
 const FORM_HOLDS: f64 = 0.05;
@@ -543,9 +546,11 @@ pub fn diagnose(
     let form_holds = first.symmetric_test.p > FORM_HOLDS;
     let null_noise = null.noise;
     let is_event = |push: &Push| {
-        let across = push.sideways > SIDEWAYS;
-        push.statistic > needed_statistic(push.recordings())
-            && if across { push.mirrored < MIRRORED } else { form_holds }
+        if push.sideways > SIDEWAYS {
+            push.statistic > needed_statistic(push.recordings(), form_holds) && push.mirrored < MIRRORED
+        } else {
+            push.statistic > ALONG * needed_statistic(push.recordings(), form_holds) && form_holds
+        }
     };
     // The strongest that is an event, or else the strongest.
     let event_of = |l: &Location| l.pushes.iter().find(|p| is_event(p)).or(l.pushes.first()).cloned();

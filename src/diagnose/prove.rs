@@ -4,7 +4,7 @@
 use super::filter::{Filter, Run, Wanted};
 use super::noise::Noise;
 use crate::model::Model;
-use crate::simulate::{Integration, Scenario, simulate};
+use crate::simulate::{Integration, Scenario, reported};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -82,13 +82,14 @@ pub fn score(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
     (scored.into_iter().map(|s| s.0).collect(), sum / f64::max(count, 1.0))
 }
 
-/// cVDM \[%\] and mean distances of the free simulation of a run; `None` when the simulation diverged.
+/// cVDM \[%\] and mean distances of what the sensors would report in the free simulation of a run; `None` when the simulation
+/// diverged.
 ///
 /// `cVDM = 100/K sum_k (|dx|/L + |dy|/L + |dpsi|/pi + |du|/U + |dv|/U + |dr|/r_max)` over the measured channels, with path length L
 /// and mean speed U of the recording (Papandreou et al. 2025); r_max is 3 U / ship length.
 fn distances(model: &Model, integration: Integration, run: &Run) -> Option<(f64, [f64; 6])> {
     let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
-    let t = simulate(model, &model.values_in(&run.session), integration, &scenario);
+    let t = reported(model, &model.values_in(&run.session), integration, &scenario, &run.channels);
     if t.diverged_at.is_some() {
         return None;
     }

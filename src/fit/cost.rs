@@ -14,8 +14,8 @@ use super::FitError;
 use crate::model::{BASE, Model};
 use crate::recording::Window;
 use crate::ship::Ship;
-use crate::simulate::{self, Integration, Scenario, absurd_speed, simulate, step};
-use crate::state::{Force, Inputs, STATES, State};
+use crate::simulate::{self, Integration, Scenario, absurd_speed, step};
+use crate::state::{Force, Inputs, STATES};
 use crate::terms::{self, CHUNK, Curvature, Gradient, GradientLanes, Group, Lanes, NumDual, Number};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -142,6 +142,8 @@ struct Block<P> {
     /// Inputs of the run in each lane; a run that is over keeps its last.
     inputs: Vec<Inputs<P>>,
     initial: [P; STATES],
+    /// 1 in the channels that are measured, 0 in the others.
+    channels: [P; STATES],
     /// Measured states.
     target: Vec<[P; STATES]>,
     /// Square roots of the weights, 0 where there is nothing to compare.
@@ -332,6 +334,9 @@ impl<P: Plain> Block<P> {
             dt: in_lane(0).dt,
             inputs,
             initial: std::array::from_fn(|c| P::gather(|lane| in_lane(lane).initial[c])),
+            channels: std::array::from_fn(|c| {
+                P::gather(|lane| f64::from(u8::from(in_lane(lane).measured_channels[c])))
+            }),
             target: table(&measured),
             root: table(&weight),
             whole,
@@ -673,6 +678,10 @@ impl<'a> Cost<'a> {
         let instants = self.integration.instants();
         let mut state = block.initial.map(&constant);
         let mut period = vec![block.inputs[0].map(&constant)];
+        if self.sensed {
+            let first = driven.as_ref().map_or(&period[0], |series| &series[0]);
+            state = simulate::start(self.model, theta, first, &state, &block.channels.map(&constant));
+        }
         for k in 0..block.inputs.len() {
             let next = block.inputs.get(k + 1);
             if let (None, Some(next)) = (&driven, next) {
@@ -681,9 +690,7 @@ impl<'a> Cost<'a> {
             }
             let inputs = driven.as_ref().map_or(period.as_slice(), |series| &series[k * instants..]);
             if self.sensed {
-                let at = State::from_array(state);
-                let (rates, flow) = self.model.rates(theta, &at, &inputs[0], &Force::zero());
-                sink(k, &self.model.measure(theta, &at, &inputs[0], &rates, &flow));
+                sink(k, &simulate::report(self.model, theta, &state, &inputs[0]));
             } else {
                 sink(k, &state);
             }
@@ -699,7 +706,8 @@ impl<'a> Cost<'a> {
         self.runs.iter().find_map(|run| {
             let theta = self.theta::<f64>(&Block::of(self.model, std::slice::from_ref(run), &[0]), p, 0..0);
             let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
-            let trajectory: simulate::Trajectory = simulate(self.model, &theta, self.integration, &scenario);
+            let trajectory =
+                simulate::reported(self.model, &theta, self.integration, &scenario, &run.measured_channels);
             trajectory.diverged_at.map(|k| (run.name.clone(), run.start_time + k as f64 * run.dt))
         })
     }

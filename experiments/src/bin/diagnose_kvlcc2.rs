@@ -2,7 +2,7 @@
 //! The recordings are not part of the project: the study file says where they are looked for.
 
 use std::process::ExitCode;
-use trimtab_experiments::real::diagnosis::{findings_table, steps_table};
+use trimtab_experiments::real::diagnosis::{findings_table, sides_table, steps_table};
 use trimtab_experiments::real::kinematics::table;
 use trimtab_experiments::real::{RealError, figures, kvlcc2_diagnosed, write_csv, write_png};
 
@@ -19,16 +19,18 @@ fn main() -> ExitCode {
 fn run() -> Result<(), RealError> {
     let found = kvlcc2_diagnosed::run()?;
     let kinematics = table(&found.kinematics);
-    let (findings, steps) = (findings_table(&found.cases), steps_table(&found.steps));
+    let (findings, steps, sides) = (findings_table(&found.cases), steps_table(&found.steps), sides_table(&found.cases));
     println!("What the recordings' kinematics say, without a model:\n{kinematics}");
     for case in &found.cases {
         println!("{}: {}", case.name, case.diagnosis.headline);
     }
-    println!("{findings}\nAdded to a mirror-symmetric ship, one by one:\n{steps}");
+    println!("{findings}\nPort and starboard of the ship herself:\n{sides}");
+    println!("Added to a mirror-symmetric ship, one by one:\n{steps}");
     println!("{}\n{}", found.basin(), found.screw());
     let folder = figures();
     write_csv(&folder.join("diagnose_kvlcc2.csv"), &findings)?;
     write_csv(&folder.join("diagnose_kvlcc2_kinematics.csv"), &kinematics)?;
     write_csv(&folder.join("diagnose_kvlcc2_steps.csv"), &steps)?;
+    write_csv(&folder.join("diagnose_kvlcc2_sides.csv"), &sides)?;
     write_png(&folder.join("diagnose_kvlcc2.png"), &found.figure())
 }

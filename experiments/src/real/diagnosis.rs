@@ -4,6 +4,7 @@
 use super::{Hull, RealError};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use trimtab::diagnose::admit::followed;
+use trimtab::diagnose::conclude::Amplitude;
 use trimtab::diagnose::estimate::{Effort, FreeParameter, base_of, estimate, evidence, passes, restrictions};
 use trimtab::diagnose::evidence::Test;
 use trimtab::diagnose::filter::{Column, Run};
@@ -71,12 +72,13 @@ pub fn findings_table(cases: &[Case]) -> Table {
         "improvement [%]",
         "95 % interval",
         "better / worse",
+        "held-out log-likelihood gained",
     ]);
     for c in cases {
         let d = &c.diagnosis;
         let verdict = format!("{:?}", d.verdict);
         let held = d.held_out.as_ref().map_or_else(
-            || vec![String::new(); 5],
+            || vec![String::new(); 6],
             |h| {
                 vec![
                     fixed(h.before, 1),
@@ -84,6 +86,7 @@ pub fn findings_table(cases: &[Case]) -> Table {
                     fixed(100.0 * h.improvement, 1),
                     format!("[{}, {}]", fixed(100.0 * h.ci95[0], 1), fixed(100.0 * h.ci95[1], 1)),
                     format!("{} / {}", h.better, h.worse),
+                    fixed(h.log_likelihood_gain, 0),
                 ]
             },
         );
@@ -115,9 +118,34 @@ pub fn findings_table(cases: &[Case]) -> Table {
         for (i, row) in if rows.is_empty() { vec![none] } else { rows }.into_iter().enumerate() {
             let mut cells = vec![c.name.clone(), verdict.clone()];
             cells.extend(row);
-            cells.extend(if i == 0 { held.clone() } else { vec![String::new(); 5] });
+            cells.extend(if i == 0 { held.clone() } else { vec![String::new(); 6] });
             table.row(cells);
         }
+    }
+    table
+}
+
+/// A row a case: whether the ship's own two sides differ, and by what.
+pub fn sides_table(cases: &[Case]) -> Table {
+    let mut table = Table::new([
+        "case",
+        "statistic",
+        "degrees of freedom",
+        "p",
+        "parameters that differ between the sides (95 % interval)",
+    ]);
+    for c in cases {
+        let Some(sides) = &c.diagnosis.sides else { continue };
+        let one = |a: &Amplitude| {
+            format!("{} {} ({} to {}) {}", a.name, sig(a.value, 2), sig(a.ci95[0], 2), sig(a.ci95[1], 2), a.unit)
+        };
+        table.row([
+            c.name.clone(),
+            fixed(sides.statistic, 1),
+            sides.degrees.to_string(),
+            sig(sides.p, 2),
+            sides.parameters.iter().map(one).collect::<Vec<_>>().join("; "),
+        ]);
     }
     table
 }
@@ -225,10 +253,11 @@ impl Frame {
         Answer { test, model: found.model }
     }
 
-    /// One model against another on held-out runs.
+    /// One model against another on held-out runs, parted where positions jump.
     pub fn prove(&self, before: &Model, after: &Model, held_out: &[Run]) -> HeldOut {
         let seed = Settings::default().seed;
-        prove((before, &self.noise), (after, &self.noise), None, self.integration, held_out, seed)
+        let (held_out, _) = settled(held_out, self.model.ship.hull.lpp);
+        prove((before, &self.noise), (after, &self.noise), None, self.integration, &held_out, seed)
     }
 
     /// A question with its proof.
