@@ -438,14 +438,17 @@ fn window(run: &Run, index: usize, length: usize, s: &Span, looked_at: f64, unit
 }
 
 /// The same push with every edge of its windows at the sample, up to a block before or after where it was, at which its force gains
-/// most. `found` is the estimate beside which it stands.
+/// most. `found` is the estimate beside which it stands. A window in a run that was parted since stays as it is.
 pub fn sharpened(push: &Push, found: &Estimate, integration: Integration, runs: &[Run]) -> Push {
     let filter = Filter::new(&found.model, integration, &[]);
     let force = Vector3::from_fn(|e, _| push.force[e] / found.noise.force[e]);
     let length = block_length(runs);
     let sharp = |w: &Window| {
+        let (from, to) = w.samples;
+        let same = |r: &&Run| r.recording == w.run && to < r.inputs.len() && r.inputs[from].t == w.start;
+        let Some(run) = runs.get(w.index).filter(same) else { return w.clone() };
         // What the run's samples say, as if nobody knew of the push.
-        let run = Run { disturbed: Vec::new(), ..runs[w.index].clone() };
+        let run = Run { disturbed: Vec::new(), ..run.clone() };
         let (from, to) = edges(&filter, &found.noise, &run, w.samples, length, &force);
         Window { samples: (from, to), start: run.inputs[from].t, end: run.inputs[to].t, ..w.clone() }
     };
@@ -617,10 +620,14 @@ fn common_pushes(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f6
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::noise::guess;
+    use crate::ship::Ship;
     use crate::state::{Inputs, STATES};
+    use crate::terms::Form;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
+    use std::path::Path;
 
     /// Samples in a block here.
     const LENGTH: usize = 5;
@@ -661,6 +668,29 @@ mod tests {
     fn strongest(force: [f64; 3], acts: impl Fn(usize) -> bool, seed: u64) -> Push {
         let (runs, blocks) = measured(force, acts, seed);
         common_pushes(&runs, &blocks, &[1.0; 3], 1.0).swap_remove(0)
+    }
+
+    #[test]
+    fn windows_in_runs_that_were_parted_since_stay_as_they_are() {
+        let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
+        let model = Model::new(ship, "HD", Form::Regular, &[]).unwrap();
+        let (runs, blocks) = measured([0.0, 3.0, 2.0], |i| i == 3, 1);
+        let push = common_pushes(&runs, &blocks, &[1.0; 3], 1.0).swap_remove(0);
+        let noise = guess(&runs, &model);
+        let found = Estimate { model, noise, free: Vec::new(), log_posterior: 0.0 };
+        let windows = |runs: &[Run]| {
+            let sharp = sharpened(&push, &found, Integration::default(), runs);
+            sharp.windows.iter().map(|w| w.samples).collect::<Vec<_>>()
+        };
+        let before: Vec<_> = push.windows.iter().map(|w| w.samples).collect();
+        let mut parted = runs.clone();
+        for r in &mut parted {
+            r.inputs.drain(..20);
+            r.measured.drain(..20);
+        }
+        assert_eq!(windows(&parted), before);
+        assert_eq!(windows(&runs[..1]), before);
+        assert_eq!(windows(&runs).len(), before.len());
     }
 
     #[test]
