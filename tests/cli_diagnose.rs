@@ -157,6 +157,7 @@ fn the_summary_has_seven_parts_in_order_and_no_missing_number() {
         headings.iter().enumerate().map(|(i, h)| summary.find(&format!(" {} {h}", i + 1)).unwrap()).collect();
     assert!(places.is_sorted(), "{summary}");
     assert!(summary.contains("steady current") && summary.contains("setting towards"), "{summary}");
+    assert!(summary.contains("port and starboard of the ship herself"), "{summary}");
     assert!(!summary.contains("NaN") && !summary.contains("inf "), "{summary}");
     assert!(summary.lines().all(|l| l.chars().count() <= 104), "{summary}");
 }

@@ -621,22 +621,32 @@ fn model(d: &Diagnosis) -> Vec<String> {
     for t in &d.surrogate {
         lines.push(format!("surrogate, not physics: {} = {} +- {}", t.name, sig(t.value, 3), sig(1.96 * t.error, 2)));
     }
-    if lines.is_empty() {
-        lines.push("nothing was added; the improved model is the base model, refitted".to_owned());
-        return lines;
-    }
     let mut moved: Vec<_> = d.moves.iter().filter(|m| m.moved.abs() >= 1.0).collect();
     moved.sort_by(|a, b| b.moved.abs().total_cmp(&a.moved.abs()));
-    if moved.is_empty() {
-        lines.push("none of the model's own parameters moved by more than its standard error".to_owned());
+    lines.push(if lines.is_empty() {
+        "nothing was added; the improved model is the base model, refitted".to_owned()
+    } else if moved.is_empty() {
+        "none of the model's own parameters moved by more than its standard error".to_owned()
     } else {
         let list: Vec<String> = moved
             .iter()
             .map(|m| format!("{} {:+.1} s.e. ({} to {})", m.name, m.moved, sig(m.before, 3), sig(m.after, 3)))
             .collect();
-        lines.push(format!("had been hiding it: {}", list.join(", ")));
-    }
+        format!("had been hiding it: {}", list.join(", "))
+    });
+    lines.extend(d.sides.as_ref().map(|s| own_sides(s, units)));
     lines
+}
+
+/// Whether the ship's own two sides differ, and by what.
+fn own_sides(s: &Sides, units: Units) -> String {
+    let differ = adequacy_words(s.p);
+    let clear = |a: &&Amplitude| differ != "not seen" && a.value.abs() > 1.96 * a.error;
+    let one = |a: &Amplitude| format!("{} = {}", a.name, amplitude(a, units));
+    let by: Vec<String> = s.parameters.iter().filter(clear).take(3).map(one).collect();
+    let by = if by.is_empty() { String::new() } else { format!(": {}", by.join(", ")) };
+    let p = p_value(s.p);
+    format!("port and starboard of the ship herself differ, as with a single screw: {differ} ({p}){by}")
 }
 
 fn proof(d: &Diagnosis) -> Vec<String> {
@@ -690,24 +700,6 @@ fn adequacy_words(p: f64) -> &'static str {
     }
 }
 
-/// Whether the ship's own two sides differ, and by what.
-fn own_sides(s: &Sides, units: &Units) -> String {
-    let differ = adequacy_words(s.p);
-    let clear = |a: &&Amplitude| a.value.abs() > 1.96 * a.error;
-    let by: Vec<String> = s
-        .parameters
-        .iter()
-        .filter(clear)
-        .take(3)
-        .map(|a| format!("{} {} +- {}", a.name, units.text(a.value, &a.unit), units.text(1.96 * a.error, &a.unit)))
-        .collect();
-    let by = if by.is_empty() || differ == "not seen" { String::new() } else { format!(": {}", by.join(", ")) };
-    format!(
-        "port and starboard of the ship herself differ (a single screw, a rudder off its zero): {differ} ({}){by}",
-        p_value(s.p)
-    )
-}
-
 fn still_open(d: &Diagnosis) -> Vec<String> {
     let units = Units::of(&d.base.ship);
     let a = d.adequacy_after;
@@ -737,7 +729,6 @@ fn still_open(d: &Diagnosis) -> Vec<String> {
         fixed(d.noise_after.force_time, 0),
         change.join("; ")
     ));
-    lines.extend(d.sides.as_ref().map(|s| own_sides(s, &units)));
     let mut used: Vec<_> = d.hull_budget.iter().filter(|b| b.used.is_finite()).collect();
     used.sort_by(|a, b| b.used.abs().total_cmp(&a.used.abs()));
     let beyond = used.iter().filter(|b| b.used.abs() > 2.0).count();
