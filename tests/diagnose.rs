@@ -4,7 +4,7 @@
 
 mod support;
 
-use support::{model, runs, truth_noise};
+use support::{commanded, model, runs, truth_noise};
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::parameter::Parity;
 
@@ -265,6 +265,27 @@ fn a_force_in_one_part_of_the_water_is_no_weather() {
     let place = d.location.place.as_ref().unwrap();
     assert!(place.p < 1e-10 && place.east[1] > 2000.0 && place.force[0] > 1e4, "{place:?}");
     assert!(d.headline.contains("goes with the place"), "{}", d.headline);
+}
+
+#[test]
+fn where_the_leader_does_not_stand_what_explains_something_else_has_its_turn() {
+    let base = model();
+    let mut truth = base.clone();
+    for term in ["thruster", "log_scale"] {
+        truth.add_term(term).unwrap();
+    }
+    // A thruster that loses nothing at speed is none: whatever goes with its command has another cause.
+    truth.set(&[("thruster.gain", 1.0), ("thruster.half_speed", 15.0), ("log_scale.error", 0.01)]).unwrap();
+    let command = |i: usize, t: f64| {
+        let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+        if i % 3 == 0 && (40.0..120.0).contains(&t) { side } else { 0.0 }
+    };
+    let data = commanded(&truth, &truth_noise(), 30, 17, &command);
+    let d = diagnose(&base, &data, &[], &Settings::default(), &|_| ()).unwrap();
+    assert_eq!(d.ranking[0].mechanism, "thruster");
+    let named: Vec<&str> = d.findings.iter().map(|f| f.mechanism.as_str()).collect();
+    assert_eq!(named.first(), Some(&"log_scale"), "{}", d.headline);
+    assert!((value(&d, "log_scale.error") - 0.01).abs() < 0.003);
 }
 
 #[test]

@@ -799,7 +799,11 @@ impl Unlisted<'_> {
     }
 }
 
-/// Refits the leaders among the mechanisms that may be named, and returns the best with its confidence set.
+/// Likeness below which two mechanisms explain different things.
+const UNLIKE: f64 = 0.3;
+
+/// Refits the leaders among the mechanisms that may be named, and returns the best with its confidence set. Where the first does not
+/// stand once it is refitted, what explains something else has its turn; what explains the same would go in its clothes.
 fn contest(
     s: &Screen,
     current: &Estimate,
@@ -807,9 +811,15 @@ fn contest(
     may: &dyn Fn(&Row) -> bool,
     progress: &dyn Fn(&str),
 ) -> Option<(Accepted, Estimate)> {
-    let leaders: Vec<&Row> = s.rows.iter().filter(|r| may(r)).collect();
-    progress(&format!("refitting with {}", arena.list[leaders.first()?.candidate].mechanism.title));
-    compete(s, &leaders, current, arena)
+    let mut leaders: Vec<&Row> = s.rows.iter().filter(|r| may(r)).collect();
+    loop {
+        let leader = leaders.first()?.candidate;
+        progress(&format!("refitting with {}", arena.list[leader].mechanism.title));
+        if let Some(outcome) = compete(s, &leaders, current, arena) {
+            return Some(outcome);
+        }
+        leaders.retain(|r| r.candidate != leader && s.likeness(leader, r.candidate) < UNLIKE);
+    }
 }
 
 /// Whether the unknown force is a material part of the forces on the ship.

@@ -39,6 +39,17 @@ pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
 
 /// Runs of 120 steps of 2 s: turns, zigzags, random steps, stops.
 pub fn runs(model: &Model, noise: &Noise, count: usize, seed: u64) -> Vec<Run> {
+    commanded(model, noise, count, seed, &|_, _| 0.0)
+}
+
+/// The same with a bow thruster, told what to do by run and second.
+pub fn commanded(
+    model: &Model,
+    noise: &Noise,
+    count: usize,
+    seed: u64,
+    thruster: &dyn Fn(usize, f64) -> f64,
+) -> Vec<Run> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     (0..count)
         .map(|i| {
@@ -59,7 +70,7 @@ pub fn runs(model: &Model, noise: &Noise, count: usize, seed: u64) -> Vec<Run> {
                 let n_goal = if i % 4 == 3 && t > 80.0 { -2.0 } else { n0 };
                 delta += (goal - delta).clamp(-0.09, 0.09);
                 n += (n_goal - n).clamp(-0.2, 0.2);
-                inputs.push(Inputs::actuators(t, n, delta));
+                inputs.push(Inputs { thruster: thruster(i, t), ..Inputs::actuators(t, n, delta) });
             }
             let heading = std::f64::consts::TAU * (i as f64 * 0.618_034).fract();
             let session = format!("s{}", (i / 4) % 4);
