@@ -292,15 +292,29 @@ fn rivals(s: &Screen, leaders: &[&Row], list: &[Candidate]) -> Vec<Contender> {
     out
 }
 
+/// Why a competition has no winner.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fall {
+    /// What the leader promised is not there once it is refitted, or undoes something else.
+    Faded,
+    /// It is there, but the leader's own coefficients are not where such coefficients are: something else, in its clothes.
+    Disguised,
+}
+
 /// Refits the leader and its rivals, and returns the best with its confidence set.
-pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: Arena) -> Option<(Accepted, Estimate)> {
+pub(super) fn compete(
+    s: &Screen,
+    leaders: &[&Row],
+    current: &Estimate,
+    arena: Arena,
+) -> Result<(Accepted, Estimate), Fall> {
     let Arena { integration, runs, list, prior, settings } = arena;
-    let leader = *leaders.first()?;
+    let leader = *leaders.first().ok_or(Fall::Faded)?;
     let refit = |c: &Contender, noise: &Noise, effort: Effort, least: f64| {
         let (model, free) = enter(s, list, c.candidate, &c.extent, &c.amplitude, current, integration, runs, noise);
         estimate_above(least, &model, integration, runs, &free, noise, prior, effort)
     };
-    let stands = |(r, e, _): &(Contender, Estimate, f64)| {
+    let is_there = |(r, e, _): &(Contender, Estimate, f64)| {
         let c = &list[r.candidate];
         let w = presence(&wald(e, integration, runs), &e.free, &e.model, c, &r.extent);
         // The likelihood itself must hold what the scores promised.
@@ -308,9 +322,9 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
         let statistic = w.statistic().min(gain.max(0.0));
         chi_squared_p(statistic, w.value.len()) * (leaders.len().max(1) as f64) < settings.alpha
             && c.size(w.value.as_slice()) >= 1.0
-            && plausible(e, c)
             && !undoes(c, e, runs)
     };
+    let stands = |f: &(Contender, Estimate, f64)| plausible(&f.1, &list[f.0.candidate]) && is_there(f);
     // The law of a force is known only so well: a rival that explains nearly as much may have the truer form.
     let form = |best: f64| (FORM_UNKNOWN * (best - current.log_posterior)).max(CLOSE);
     let price = |c: &Contender| PRICE * c.amplitude.len() as f64;
@@ -320,7 +334,15 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
     let v = lead.log_posterior - price(&own);
     let first = (own, lead, v);
     // Behind a leader that stands, a rival that stays further back than any set is wide changes nothing.
-    let (least, mut field) = if stands(&first) { (v - form(v), vec![first]) } else { (f64::NEG_INFINITY, Vec::new()) };
+    let mut fall = Fall::Faded;
+    let (least, mut field) = if stands(&first) {
+        (v - form(v), vec![first])
+    } else {
+        if is_there(&first) {
+            fall = Fall::Disguised;
+        }
+        (f64::NEG_INFINITY, Vec::new())
+    };
     for r in rivals(s, leaders, list) {
         let price = price(&r);
         let e = refit(&r, &noise, REFIT, least + price);
@@ -331,7 +353,7 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
         }
     }
     field.sort_by(|a, b| b.2.total_cmp(&a.2));
-    let best = field.first()?.2;
+    let best = field.first().ok_or(fall)?.2;
     let width = match list[field[0].0.candidate].mechanism.kind {
         Kind::Sensor | Kind::Actuator => CLOSE,
         Kind::Environment | Kind::Ship => form(best),
@@ -372,7 +394,7 @@ pub(super) fn compete(s: &Screen, leaders: &[&Row], current: &Estimate, arena: A
         set,
         why,
     };
-    Some((entry, e))
+    Ok((entry, e))
 }
 
 /// Drops an accepted mechanism that a later one made needless.
@@ -423,7 +445,7 @@ pub(super) fn swap(accepted: &mut [Accepted], current: &mut Estimate, arena: Are
         let may =
             |r: &&Row| outside(r.candidate) && acceptable(r, list, settings) && acceptable_beside(r, &others, list);
         let leaders: Vec<&Row> = s.rows.iter().filter(may).collect();
-        let Some((entry, found)) = compete(&s, &leaders, &rest, arena) else { continue };
+        let Ok((entry, found)) = compete(&s, &leaders, &rest, arena) else { continue };
         if entry.candidate != accepted[i].candidate || entry.extent != accepted[i].extent {
             *current = found;
         }

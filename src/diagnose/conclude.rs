@@ -3,7 +3,7 @@
 
 use super::admit::{Admission, admit, followed};
 use super::compete::{
-    Accepted, Arena, REFIT, SETTLE, Wald, acceptable, acceptable_beside, backward, compete, positions, swap, wald,
+    Accepted, Arena, Fall, REFIT, SETTLE, Wald, acceptable, acceptable_beside, backward, compete, positions, swap, wald,
 };
 use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior, passes};
 use super::filter::{Column, Probe, Run};
@@ -802,8 +802,8 @@ impl Unlisted<'_> {
 /// Likeness below which two mechanisms explain different things.
 const UNLIKE: f64 = 0.3;
 
-/// Refits the leaders among the mechanisms that may be named, and returns the best with its confidence set. Where the first does not
-/// stand once it is refitted, what explains something else has its turn; what explains the same would go in its clothes.
+/// Refits the leaders among the mechanisms that may be named, and returns the best with its confidence set. Where the first is
+/// something else in its clothes, what explains other things has its turn; where it fades, promises are not to be trusted.
 fn contest(
     s: &Screen,
     current: &Estimate,
@@ -815,8 +815,10 @@ fn contest(
     loop {
         let leader = leaders.first()?.candidate;
         progress(&format!("refitting with {}", arena.list[leader].mechanism.title));
-        if let Some(outcome) = compete(s, &leaders, current, arena) {
-            return Some(outcome);
+        match compete(s, &leaders, current, arena) {
+            Ok(outcome) => return Some(outcome),
+            Err(Fall::Faded) => return None,
+            Err(Fall::Disguised) => {}
         }
         leaders.retain(|r| r.candidate != leader && s.likeness(leader, r.candidate) < UNLIKE);
     }
