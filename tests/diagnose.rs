@@ -277,8 +277,8 @@ fn where_the_leader_does_not_stand_what_explains_something_else_has_its_turn() {
     // A thruster that loses nothing at speed is none: whatever goes with its command has another cause.
     truth.set(&[("thruster.gain", 1.0), ("thruster.half_speed", 15.0), ("log_scale.error", 0.01)]).unwrap();
     let command = |i: usize, t: f64| {
-        let side = if i % 2 == 0 { 1.0 } else { -1.0 };
-        if i % 3 == 0 && (40.0..120.0).contains(&t) { side } else { 0.0 }
+        let side = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+        if i.is_multiple_of(3) && (40.0..120.0).contains(&t) { side } else { 0.0 }
     };
     let data = commanded(&truth, &truth_noise(), 30, 17, &command);
     let d = diagnose(&base, &data, &[], &Settings::default(), &|_| ()).unwrap();
