@@ -258,41 +258,72 @@ pub fn pick(m: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64>
 /// Rounds in which the set of bounds that hold is looked for: it is nearly always found in three.
 const BOUND_ROUNDS: usize = 20;
 
+/// Rounds in which it is looked for from where a climb ends, and sweeps of a climb.
+const CLIMBS: usize = 20;
+const SWEEPS: usize = 50;
+
 /// Maximises `g's - s'Hs/2` over steps within `room`, each entry's least and most.
 ///
 /// What would leave its room goes as far as that lets it, and the others find their best beside it: clipped alone, it would leave
 /// them where only its whole step makes sense. Which bounds hold is found as by Hintermüller, Ito and Kunisch (2003), SIAM J.
-/// Optim. 13, p. 865: those that the present step breaks, and those held that still pull outwards.
+/// Optim. 13, p. 865: those that the present step breaks, and those held that still pull outwards. That set may go in circles;
+/// then it is taken from where a climb, entry by entry, comes to.
 pub fn step_inside(information: &DMatrix<f64>, score: &DVector<f64>, room: &[(f64, f64)]) -> DVector<f64> {
     let n = score.len();
+    let clamped = |s: &DVector<f64>| DVector::from_fn(n, |i, _| s[i].max(room[i].0).min(room[i].1));
     let mut held: Vec<Option<f64>> = vec![None; n];
-    let mut step = DVector::zeros(n);
-    for _ in 0..BOUND_ROUNDS {
+    let mut point: Option<DVector<f64>> = None;
+    for round in 0..BOUND_ROUNDS + CLIMBS {
         let inside: Vec<usize> = (0..n).filter(|i| held[*i].is_none()).collect();
         let at_bounds = DVector::from_fn(n, |i, _| held[i].unwrap_or(0.0));
         let left = score - information * &at_bounds;
         let left = DVector::from_fn(inside.len(), |k, _| left[inside[k]]);
         let best = pseudo_inverse(&pick(information, &inside, &inside)) * left;
-        step = at_bounds;
+        let mut step = at_bounds;
         inside.iter().zip(best.iter()).for_each(|(i, s)| step[*i] = *s);
         let pull = score - information * &step;
+        let outwards = |i: usize, b: f64, pull: f64| {
+            let (least, most) = room[i];
+            (b == least && pull < 0.0) || (b == most && pull > 0.0)
+        };
         let next: Vec<Option<f64>> = (0..n)
             .map(|i| match held[i] {
                 None if step[i] < room[i].0 => Some(room[i].0),
                 None if step[i] > room[i].1 => Some(room[i].1),
                 None => None,
-                Some(b) => Some(b).filter(|b| {
-                    let (least, most) = room[i];
-                    (*b == least && pull[i] < 0.0) || (*b == most && pull[i] > 0.0)
-                }),
+                Some(b) => Some(b).filter(|b| outwards(i, *b, pull[i])),
             })
             .collect();
         if next == held {
-            break;
+            return clamped(&step);
         }
-        held = next;
+        held = if round + 1 < BOUND_ROUNDS {
+            next
+        } else {
+            let climbed = climb(information, score, room, point.unwrap_or_else(|| clamped(&step)));
+            let pull = score - information * &climbed;
+            let held = (0..n).map(|i| Some(climbed[i]).filter(|b| outwards(i, *b, pull[i]))).collect();
+            point = Some(climbed);
+            held
+        };
     }
-    DVector::from_fn(n, |i, _| step[i].max(room[i].0).min(room[i].1))
+    point.unwrap_or_else(|| DVector::zeros(n))
+}
+
+/// Sweeps over the entries of a step, each going where it is best beside the others and within its room.
+fn climb(
+    information: &DMatrix<f64>,
+    score: &DVector<f64>,
+    room: &[(f64, f64)],
+    mut step: DVector<f64>,
+) -> DVector<f64> {
+    for _ in 0..SWEEPS {
+        for i in (0..step.len()).filter(|i| information[(*i, *i)] > 0.0) {
+            let slope = score[i] - information.column(i).dot(&step);
+            step[i] = (step[i] + slope / information[(i, i)]).max(room[i].0).min(room[i].1);
+        }
+    }
+    step
 }
 
 /// Inverse of a symmetric positive matrix, scaled to unit diagonal; directions without information get none.
@@ -320,6 +351,7 @@ pub fn pseudo_inverse(m: &DMatrix<f64>) -> DMatrix<f64> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
 
     fn one_run(session: &str, score: &[f64], information: &[f64]) -> RunEvidence {
         let n = score.len();
@@ -377,6 +409,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig { cases: 20_000, rng_seed: RngSeed::Fixed(20250226), failure_persistence: None, ..ProptestConfig::default() })]
+
         /// Inside there is no slope left, at a bound it pulls outwards, and nothing that was clipped does better.
         #[test]
         fn the_step_is_the_best_inside(
