@@ -166,7 +166,7 @@ fn inputs_that_were_not_logged_for_a_while_are_told_and_pass_for_no_physics() {
     }
 }
 
-/// First and last second of a push that begins and ends within the blocks of time in which the search goes.
+/// First and last second of a push that does not fill the blocks of time in which the search goes.
 const WITHIN: [f64; 2] = [84.0, 146.0];
 
 /// Thirty runs, in some of which a force of their own acts from 80 to 140 s.
@@ -209,7 +209,7 @@ fn a_push_is_named_with_its_windows_by_recording() {
     };
     let found: Vec<_> = windows.iter().filter(right).collect();
     assert!(windows.len() >= 6 && found.len() + 1 >= windows.len(), "{windows:?}");
-    // To the sample, two seconds long, and not to the block of five in which the search goes.
+    // To the sample, two seconds long, and not to the block in which the search goes.
     let off = |w: &&&trimtab::diagnose::locate::Window| 0.5 * ((w.start - WITHIN[0]).abs() + (w.end - WITHIN[1]).abs());
     let mean = found.iter().map(|w| off(&w)).sum::<f64>() / found.len() as f64;
     assert!(mean < 2.5, "edges off by {mean} s: {windows:?}");

@@ -93,7 +93,7 @@ fn a_calm_basin_is_not_given_wind_and_a_late_gyro_is_found() {
 #[test]
 fn the_sides_of_a_ship_with_one_screw_differ() {
     let Some(hull) = present(Hull::open("kvlcc2")) else { return };
-    let kinematics = Agreement::of_study(&hull, 40.0).unwrap();
+    let kinematics = Agreement::of_study(&hull, kvlcc2_diagnosed::SPAN).unwrap();
     let case = kvlcc2_diagnosed::all_recordings(&hull, &kinematics).unwrap();
     let sides = case.diagnosis.sides.unwrap();
     assert!(sides.p < 1e-4, "{sides:?}");

@@ -293,7 +293,6 @@ fn rivals(s: &Screen, leaders: &[&Row], list: &[Candidate]) -> Vec<Contender> {
 }
 
 /// Why a competition has no winner.
-#[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fall {
     /// What the leader promised is not there once it is refitted, or undoes something else.
     Faded,
@@ -324,7 +323,7 @@ pub(super) fn compete(
             && c.size(w.value.as_slice()) >= 1.0
             && !undoes(c, e, runs)
     };
-    let stands = |f: &(Contender, Estimate, f64)| plausible(&f.1, &list[f.0.candidate]) && is_there(f);
+    let as_itself = |(r, e, _): &(Contender, Estimate, f64)| plausible(e, &list[r.candidate]);
     // The law of a force is known only so well: a rival that explains nearly as much may have the truer form.
     let form = |best: f64| (FORM_UNKNOWN * (best - current.log_posterior)).max(CLOSE);
     let price = |c: &Contender| PRICE * c.amplitude.len() as f64;
@@ -334,21 +333,16 @@ pub(super) fn compete(
     let v = lead.log_posterior - price(&own);
     let first = (own, lead, v);
     // Behind a leader that stands, a rival that stays further back than any set is wide changes nothing.
-    let mut fall = Fall::Faded;
-    let (least, mut field) = if stands(&first) {
-        (v - form(v), vec![first])
-    } else {
-        if is_there(&first) {
-            fall = Fall::Disguised;
-        }
-        (f64::NEG_INFINITY, Vec::new())
-    };
+    let there = is_there(&first);
+    let fall = if there { Fall::Disguised } else { Fall::Faded };
+    let (least, mut field) =
+        if there && as_itself(&first) { (v - form(v), vec![first]) } else { (f64::NEG_INFINITY, Vec::new()) };
     for r in rivals(s, leaders, list) {
         let price = price(&r);
         let e = refit(&r, &noise, REFIT, least + price);
         let v = e.log_posterior - price;
         let rival = (r, e, v);
-        if v < least || stands(&rival) {
+        if v < least || (as_itself(&rival) && is_there(&rival)) {
             field.push(rival);
         }
     }

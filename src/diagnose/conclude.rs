@@ -90,6 +90,13 @@ pub struct Amplitude {
     pub ci95: [f64; 2],
 }
 
+impl Amplitude {
+    /// A value with its standard error, as normally distributed.
+    pub(super) fn new(name: String, value: f64, unit: &str, error: f64) -> Self {
+        Self { name, value, unit: unit.into(), error, ci95: [value - 1.96 * error, value + 1.96 * error] }
+    }
+}
+
 /// Shares of the unexplained force by equation.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Equations {
@@ -997,16 +1004,11 @@ fn describe(
                 let v = value[i] * col.scale;
                 let error = covariance[(i, i)].max(0.0).sqrt() * col.scale;
                 let name = &c.names[i % k];
-                Amplitude {
-                    name: match &a.extent {
-                        Extent::Each(sessions) => format!("{name} [{}]", sessions[i / k]),
-                        Extent::All | Extent::In(_) => name.clone(),
-                    },
-                    value: v,
-                    unit: p.info.unit.into(),
-                    error,
-                    ci95: [v - 1.96 * error, v + 1.96 * error],
-                }
+                let name = match &a.extent {
+                    Extent::Each(sessions) => format!("{name} [{}]", sessions[i / k]),
+                    Extent::All | Extent::In(_) => name.clone(),
+                };
+                Amplitude::new(name, v, p.info.unit, error)
             })
             .collect();
         out.push(Finding {
@@ -1122,13 +1124,7 @@ fn push_finding(push: &Push, location: &Location) -> Finding {
         region: None,
         signature: "time-local".into(),
         parameters: (0..3)
-            .map(|e| Amplitude {
-                name: names[e].0.into(),
-                value: push.force[e],
-                unit: names[e].1.into(),
-                error: push.error[e],
-                ci95: [push.force[e] - 1.96 * push.error[e], push.force[e] + 1.96 * push.error[e]],
-            })
+            .map(|e| Amplitude::new(names[e].0.into(), push.force[e], names[e].1, push.error[e]))
             .collect(),
         held_out: None,
     }

@@ -409,7 +409,12 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 20_000, rng_seed: RngSeed::Fixed(20250226), failure_persistence: None, ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig {
+            cases: 20_000,
+            rng_seed: RngSeed::Fixed(20250226),
+            failure_persistence: None,
+            ..ProptestConfig::default()
+        })]
 
         /// Inside there is no slope left, at a bound it pulls outwards, and nothing that was clipped does better.
         #[test]

@@ -377,6 +377,12 @@ impl Blocks {
         (self.score[to] - self.score[from], (h + h.transpose()) * 0.5)
     }
 
+    /// What a constant force in blocks `from..to` gains in log-likelihood.
+    fn gain(&self, from: usize, to: usize, force: &Vector3<f64>) -> f64 {
+        let (score, information) = self.span(from, to);
+        score.dot(force) - 0.5 * force.dot(&(information * force))
+    }
+
     /// The constant force that fits blocks `from..to` best.
     fn fit(&self, from: usize, to: usize) -> Option<Span> {
         let (score, information) = self.span(from, to);
@@ -484,10 +490,7 @@ fn edges(
     let Pass { score, information, .. } =
         filter.pass(run, noise, Wanted { basis: Some((3 * count, &basis)), ..Wanted::default() });
     let pieces = Blocks::sums(1, count, &score, &information);
-    let gain = |(from, to): &(usize, usize)| {
-        let (score, information) = pieces.span(*from, *to);
-        score.dot(force) - 0.5 * force.dot(&(information * force))
-    };
+    let gain = |(from, to): &(usize, usize)| pieces.gain(*from, *to, force);
     let choices = (0..inside).flat_map(|from| (inside..=count).map(move |to| (from, to)));
     let best = choices.max_by(|a, b| gain(a).total_cmp(&gain(b)));
     best.map_or(samples, |(from, to)| (limits[from], limits[to]))
@@ -559,13 +562,8 @@ fn common_pushes(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f6
         let mut spans = Vec::new();
         let mut statistic = 0.0;
         for (index, b) in blocks.iter().enumerate() {
-            let gains: Vec<(usize, usize, f64)> = b
-                .local_spans()
-                .map(|(from, to)| {
-                    let (score, information) = b.span(from, to);
-                    (from, to, score.dot(force) - 0.5 * force.dot(&(information * force)))
-                })
-                .collect();
+            let gains: Vec<(usize, usize, f64)> =
+                b.local_spans().map(|(from, to)| (from, to, b.gain(from, to, force))).collect();
             let Some((from, to, most)) = gains.iter().copied().max_by(|a, b| a.2.total_cmp(&b.2)) else { continue };
             let mean = gains.iter().map(|g| (g.2 - most).exp()).sum::<f64>() / gains.len() as f64;
             let (with, without) = ((AFFECTED * mean).ln() + most, (1.0 - AFFECTED).ln());

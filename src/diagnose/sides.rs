@@ -44,13 +44,7 @@ pub(super) fn sides(s: &Screen, found: &Estimate, base: usize) -> Option<Sides> 
         let p = &found.model.parameters[column.parameter];
         let (value, error) =
             (tested.value[k] * column.scale, tested.covariance[(k, k)].max(0.0).sqrt() * column.scale.abs());
-        Amplitude {
-            name: p.name.clone(),
-            value,
-            unit: p.info.unit.into(),
-            error,
-            ci95: [value - 1.96 * error, value + 1.96 * error],
-        }
+        Amplitude::new(p.name.clone(), value, p.info.unit, error)
     };
     let mut parameters: Vec<Amplitude> = odd.iter().enumerate().map(amplitude).collect();
     let weight = |a: &Amplitude| (a.value / a.error.max(f64::MIN_POSITIVE)).abs();

@@ -11,7 +11,7 @@ use trimtab::recording::Split;
 use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED, fixed, sig};
 
 /// Over this the changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
-const SPAN: f64 = 40.0;
+pub const SPAN: f64 = 40.0;
 
 /// Parameters of the base model in which port and starboard differ: a mirror-symmetric ship has none of them.
 pub const ONE_SIDED: [&str; 5] =
