@@ -1,5 +1,5 @@
 //! Bow thruster, losing force as the ship gathers speed.
-//! Force follows the command at once; force and moment fade alike. A ship without thruster particulars gets a typical one: 1e-4 rho g L^2 d at 0.4 L.
+//! Force follows the command at once; the moment fades later than the force, as the hull aft of the jet is pulled the other way. A ship without thruster particulars gets a typical one: 1e-4 rho g L^2 d at 0.4 L.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
 use crate::diagnose::filter::Probe;
@@ -16,15 +16,15 @@ static INFO: TermInfo = TermInfo {
     name: "thruster",
     title: "bow thruster",
     group: Group::External,
-    equation: "Y = gain T_0 command/(1 + (u/u_h)^2), N = x_T Y",
-    source: "fade to half the thrust at u_h as in harbour-manoeuvring practice, 2.5 kn for a coaster",
+    equation: "Y = gain T_0 command/(1 + (u/u_Y)^2), N = x_T gain T_0 command/(1 + (u/u_N)^2)",
+    source: "half the force at 2.5 kn for a coaster, as in harbour-manoeuvring practice; that the moment holds longer: Chislett & Bjoerheden 1966",
     needs: &["thruster"],
     mechanisms: &[Mechanism {
         name: "thruster",
         title: "bow thruster",
         kind: Kind::Environment,
         parameters: &["gain"],
-        companions: &["half_speed"],
+        companions: &["half_speed", "moment_half_speed"],
         probe: Probe::Tangent,
         needs_reference: false,
         floor: 0.01,
@@ -37,10 +37,15 @@ static INFO: TermInfo = TermInfo {
             .scale(|_| 0.5)
             .spread(|_| 1.0)
             .bounds(0.0, 3.0),
-        ParameterInfo::new("half_speed", "u_h", "m/s", "speed at which half of the thrust is left")
+        ParameterInfo::new("half_speed", "u_Y", "m/s", "speed at which half of the side force is left")
             .default(|s| 0.045 * size::speed(s))
             .scale(|s| 0.01 * size::speed(s))
-            .spread(|s| 0.02 * size::speed(s))
+            .spread(|s| 0.03 * size::speed(s))
+            .bounds(0.01, 20.0),
+        ParameterInfo::new("moment_half_speed", "u_N", "m/s", "speed at which half of the yaw moment is left")
+            .default(|s| 0.075 * size::speed(s))
+            .scale(|s| 0.01 * size::speed(s))
+            .spread(|s| 0.04 * size::speed(s))
             .bounds(0.01, 20.0),
     ],
 };
@@ -62,8 +67,11 @@ impl<S: Scalar> Physics<S> for Thruster {
             || (1e-4 * hull.water_density * size::GRAVITY * hull.lpp.powi(2) * hull.draught, 0.4 * hull.lpp),
             |t| (t.thrust, t.x),
         );
-        let speed = flow.u / p[1];
-        let y = p[0] * at.inputs.thruster * thrust / (speed * speed + 1.0);
-        Force { x: S::zero(), y, n: y * x }
+        let full = p[0] * at.inputs.thruster * thrust;
+        let left = |half: S| {
+            let speed = flow.u / half;
+            full / (speed * speed + 1.0)
+        };
+        Force { x: S::zero(), y: left(p[1]), n: left(p[2]) * x }
     }
 }
