@@ -294,6 +294,10 @@ fn a_ship_whose_sides_differ_is_told_from_one_whose_sides_are_alike() {
     for p in alike.parameters.iter_mut().filter(|p| p.info.parity == Parity::Odd) {
         (p.value, p.free) = (0.0, false);
     }
+    // A sensor that the model has and that reads to one side is not the ship.
+    alike.add_term("yaw_rate_bias").unwrap();
+    let bias = alike.find("yaw_rate_bias.bias").unwrap();
+    alike.parameters[bias].free = true;
     let of = |asymmetry: f64| {
         let mut truth = alike.clone();
         let i = truth.find("flow.asymmetry").unwrap();

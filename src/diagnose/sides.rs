@@ -7,6 +7,7 @@ use super::estimate::{Estimate, FreeParameter};
 use super::evidence::chi_squared_p;
 use super::screen::Screen;
 use crate::parameter::Parity;
+use crate::terms::{self, Group};
 use serde::Serialize;
 
 /// A test of everything in the base that breaks mirror symmetry.
@@ -25,8 +26,16 @@ pub struct Sides {
 /// Tests the parameters of the base, the first `base` free ones of the estimate, that differ between port and starboard; `None` when
 /// it has none. `s` is the screen at the estimate.
 pub(super) fn sides(s: &Screen, found: &Estimate, base: usize) -> Option<Sides> {
-    let parity = |f: &FreeParameter| found.model.parameters[f.column.parameter].info.parity;
-    let odd: Vec<usize> = (0..base).filter(|i| parity(&found.free[*i]) == Parity::Odd).collect();
+    // A sensor that reads to one side is not the ship.
+    let of_the_ship = |name: &str| {
+        let term = name.split('.').next().and_then(terms::find);
+        term.is_some_and(|t| matches!(t.info().group, Group::Hull | Group::Propulsion | Group::Rudder))
+    };
+    let differs = |i: &usize| {
+        let p = &found.model.parameters[found.free[*i].column.parameter];
+        p.info.parity == Parity::Odd && of_the_ship(&p.name)
+    };
+    let odd: Vec<usize> = (0..base).filter(differs).collect();
     if odd.is_empty() {
         return None;
     }
