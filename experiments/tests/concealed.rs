@@ -15,12 +15,12 @@ use trimtab_experiments::conceal::runner::Runner;
 
 /// False alarms among the 12 nulls.
 const MOST_FALSE_ALARMS: usize = 1;
-/// Effects seen among the 13 single ones at a signal-to-noise ratio of 12.
-const FEWEST_SEEN: usize = 10;
+/// Effects seen among the 14 single ones, two of them on other hulls, at a signal-to-noise ratio of 12.
+const FEWEST_SEEN: usize = 11;
 /// Of these, with the right name first.
-const FEWEST_RIGHT: usize = 10;
+const FEWEST_RIGHT: usize = 11;
 /// Of these, with a right name in the confidence set.
-const FEWEST_IN_SET: usize = 10;
+const FEWEST_IN_SET: usize = 11;
 /// Cases of any kind with one name given in confidence that is neither right nor near.
 const MOST_WRONG: usize = 1;
 /// Pairs and triples, of 3, with at least one right name and none wrong.
@@ -77,7 +77,7 @@ fn forty_concealed_cases_are_judged_well_enough() {
     let failed: Vec<String> = scores.iter().filter(|s| !s.error.is_empty()).map(|s| s.error.clone()).collect();
     assert!(failed.is_empty(), "without a score: {failed:?}");
 
-    let single: Vec<Score> = scores.iter().filter(|s| s.arm == "single").cloned().collect();
+    let single: Vec<Score> = scores.iter().filter(|s| s.arm == "single" || s.arm == "hulls").cloned().collect();
     let (quiet, alarms) = count(&scores, |s| s.false_alarm.map(|a| !a));
     assert_eq!(quiet + alarms.len(), 12);
     assert!(alarms.len() <= MOST_FALSE_ALARMS, "false alarms: {alarms:?}");

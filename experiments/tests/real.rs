@@ -8,8 +8,9 @@ use std::path::Path;
 use trimtab::recording::Split;
 use trimtab_experiments::real::esso_osaka::{self, BASELINES};
 use trimtab_experiments::real::kinematics::Agreement;
+use trimtab_experiments::real::kvlcc2_diagnosed::{self, ONE_SIDED, PUT_BACK};
 use trimtab_experiments::real::published::PublishedMmg;
-use trimtab_experiments::real::{Hull, RealError, is_absent, kvlcc2, kvlcc2_diagnosed};
+use trimtab_experiments::real::{Hull, RealError, is_absent, kvlcc2};
 
 /// The value, or none after saying that the recordings are absent.
 fn present<T>(result: Result<T, RealError>) -> Option<T> {
@@ -91,15 +92,20 @@ fn a_calm_basin_is_not_given_wind_and_a_late_gyro_is_found() {
 }
 
 #[test]
-fn the_sides_of_a_ship_with_one_screw_differ() {
-    let Some(hull) = present(Hull::open("kvlcc2")) else { return };
-    let kinematics = Agreement::of_study(&hull, kvlcc2_diagnosed::SPAN).unwrap();
-    let case = kvlcc2_diagnosed::all_recordings(&hull, &kinematics).unwrap();
-    let sides = case.diagnosis.sides.unwrap();
-    assert!(sides.p < 1e-4, "{sides:?}");
-    // The same side force of the propeller as the turning circles show: to starboard she turns wider.
+fn the_sides_of_a_ship_with_one_screw_differ_and_a_sensor_that_was_left_out_is_put_back() {
+    let Some(cases) = present(Hull::open("kvlcc2").and_then(|hull| kvlcc2_diagnosed::best_model(&hull))) else {
+        return;
+    };
+    let sides = cases[0].diagnosis.sides.as_ref().unwrap();
+    assert!(sides.p < 1e-6, "{sides:?}");
+    // Of the ship, not of the gyro that reads too much.
+    assert!(sides.parameters.iter().all(|p| ONE_SIDED.contains(&p.name.as_str())), "{sides:?}");
     let propeller = sides.parameters.iter().find(|p| p.name == "propeller.side_force").unwrap();
     assert!(propeller.ci95[0] > 0.0, "{propeller:?}");
+    for (case, term) in cases[1..].iter().zip(PUT_BACK) {
+        let named: Vec<&str> = case.diagnosis.findings.iter().map(|f| f.mechanism.as_str()).collect();
+        assert_eq!(named, [term], "{}", case.diagnosis.headline);
+    }
 }
 
 #[test]

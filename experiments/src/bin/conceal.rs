@@ -80,5 +80,5 @@ fn run(a: &Arguments) -> Result<PathBuf, ConcealError> {
         seed: a.seed,
     };
     let out = a.out.clone().unwrap_or_default();
-    Case::make(&spec, &DiagnosisMeter::new()?)?.write(&out)
+    Case::make(&spec, &DiagnosisMeter::new(spec.family)?)?.write(&out)
 }

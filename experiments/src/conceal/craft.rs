@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
-use crate::truth::{Contributions, Inputs, Particulars, Truth, hd, mmg, ships};
+use crate::truth::{Contributions, Inputs, Particulars, Truth, hd, large_drift, mmg, ships};
 
 /// Which equations stand behind a data set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum)]
@@ -16,6 +16,10 @@ pub enum Family {
     Hd,
     /// The MMG standard method with a four-quadrant propeller and a large-drift hull: another family than the fitted one.
     Mmg,
+    /// Another hull: a full tanker, KVLCC2's form with her published MMG parameters, brought to ship A's length.
+    Tanker,
+    /// Another hull and another simulator: ship B, flapped rudder and strips at large drift, brought to ship A's length.
+    Flap,
 }
 
 impl Family {
@@ -24,6 +28,17 @@ impl Family {
         match self {
             Self::Hd => "hd",
             Self::Mmg => "mmg",
+            Self::Tanker => "tanker",
+            Self::Flap => "flap",
+        }
+    }
+
+    /// Factor on the speeds of the programme: a tanker is slower than a coaster of her length at the same rate of the screw.
+    pub fn pace(self) -> f64 {
+        match self {
+            Self::Hd | Self::Mmg => 1.0,
+            Self::Tanker => 0.6,
+            Self::Flap => 0.75,
         }
     }
 
@@ -32,7 +47,7 @@ impl Family {
     pub fn structure(self) -> &'static [&'static str] {
         match self {
             Self::Hd => &[],
-            Self::Mmg => &[
+            Self::Mmg | Self::Tanker | Self::Flap => &[
                 "crossflow",
                 "hull_nonlinear",
                 "munk",
@@ -101,10 +116,16 @@ pub enum Craft {
     Hd(hd::Hd),
     /// The MMG standard method.
     Mmg(mmg::Mmg),
+    /// The simulator for large drift.
+    LargeDrift(large_drift::LargeDrift),
 }
 
+/// Length of every craft \[m\]: similar ships at one Froude number differ in nothing but their units, so that sizes of effects
+/// that are real for one are real for all.
+pub const LENGTH: f64 = 85.0;
+
 impl Craft {
-    /// Ship A with every true coefficient off its chart: a factor exp(0.04 z) in the MMG family; in the HD family the eleven
+    /// The family's ship with every true coefficient off its chart: a factor exp(0.04 z); in the HD family the eleven
     /// parameters by exp(0.05 z) and the hull as in the charts. `hull_error` shifts each hull coefficient by up to that share.
     pub fn draw(family: Family, hull_error: f64, rng: &mut ChaCha8Rng) -> Self {
         let mut off = |sd: f64| {
@@ -117,8 +138,11 @@ impl Craft {
                 ship.p.iter_mut().for_each(|p| *p *= off(0.05));
                 Self::Hd(ship)
             }
-            Family::Mmg => {
-                let mut ship = ships::ship_a();
+            Family::Mmg | Family::Tanker => {
+                let mut ship = match family {
+                    Family::Tanker => ships::kvlcc2().scaled(LENGTH),
+                    _ => ships::ship_a(),
+                };
                 // Propeller walk is one of the effects: without it the screw pushes along the keel only.
                 ship.propeller.side_force = 0.0;
                 for c in coefficients(&mut ship) {
@@ -126,12 +150,21 @@ impl Craft {
                 }
                 Self::Mmg(ship)
             }
+            Family::Flap => {
+                let mut ship = ships::ship_b().scaled(LENGTH);
+                ship.propeller.side_force = 0.0;
+                for c in large_drift_coefficients(&mut ship) {
+                    *c *= off(0.04);
+                }
+                Self::LargeDrift(ship)
+            }
         };
         if hull_error > 0.0 {
             let mut shift = |c: &mut f64| *c *= 1.0 + rng.random_range(-hull_error..hull_error);
             match &mut craft {
                 Self::Hd(ship) => ship.hull.each().into_iter().for_each(&mut shift),
                 Self::Mmg(ship) => coefficients(ship).into_iter().for_each(&mut shift),
+                Self::LargeDrift(ship) => large_drift_coefficients(ship).into_iter().for_each(&mut shift),
             }
         }
         craft
@@ -142,6 +175,7 @@ impl Craft {
         match self {
             Self::Hd(ship) => &ship.particulars,
             Self::Mmg(ship) => &ship.particulars,
+            Self::LargeDrift(ship) => &ship.particulars,
         }
     }
 
@@ -150,6 +184,7 @@ impl Craft {
         match self {
             Self::Hd(ship) => (ship.propeller.diameter, ship.propeller.wake),
             Self::Mmg(ship) => (ship.propeller.diameter, ship.propeller.wake),
+            Self::LargeDrift(ship) => (ship.propeller.diameter, ship.propeller.wake),
         }
     }
 
@@ -158,6 +193,7 @@ impl Craft {
         match self {
             Self::Hd(ship) => ship.force(u, v, r, inputs.n, inputs.delta),
             Self::Mmg(ship) => ship.force(u, v, r, inputs.n, inputs.delta),
+            Self::LargeDrift(ship) => ship.force(u, v, r, inputs.n, inputs.delta),
         }
     }
 
@@ -169,6 +205,11 @@ impl Craft {
                 ship.rudder_inflow(v, r, va, thrust)
             }
             Self::Mmg(ship) => {
+                let (va, p) = (ship.propeller_inflow(u, v, r), &ship.propeller);
+                let thrust = p.thrust_factor * p.open_water.thrust(inputs.n, va, p.diameter, ship.particulars.rho);
+                ship.rudder_inflow(u, v, r, inputs.n, thrust, va)
+            }
+            Self::LargeDrift(ship) => {
                 let (va, p) = (ship.propeller_inflow(u, v, r), &ship.propeller);
                 let thrust = p.thrust_factor * p.open_water.thrust(inputs.n, va, p.diameter, ship.particulars.rho);
                 ship.rudder_inflow(u, v, r, inputs.n, thrust, va)
@@ -190,23 +231,29 @@ impl Craft {
                 }
                 ship.accelerations(u, v, r, inputs.n, inputs.delta, extra)
             }
-            Self::Mmg(ship) => mmg_accelerations(&tweak_mmg(ship, tweak), water, inputs, tweak, extra),
+            Self::Mmg(ship) => {
+                let ship = tweak_mmg(ship, tweak);
+                truth_accelerations(&ship, [ship.gyration, ship.yaw_added], water, inputs, tweak, extra)
+            }
+            Self::LargeDrift(ship) => {
+                let ship = tweak_large_drift(ship, tweak);
+                truth_accelerations(&ship, [ship.gyration, ship.yaw_added], water, inputs, tweak, extra)
+            }
         }
     }
 
     /// The force (X, Y \[N\], N \[N m\]) that gives these accelerations through the ship's own, unaltered inertia.
     pub fn inertial_force(&self, [du, dv, dr]: [f64; 3]) -> [f64; 3] {
-        match self {
+        let i = match self {
             Self::Hd(ship) => {
                 let (surge, [[a, b], [c, d]]) = ship.masses();
-                [surge * du, a * dv + b * dr, c * dv + d * dr]
+                return [surge * du, a * dv + b * dr, c * dv + d * dr];
             }
-            Self::Mmg(ship) => {
-                let i = ship.inertia();
-                let mxg = i.mass * i.xg;
-                [(i.mass + i.surge_added) * du, (i.mass + i.sway_added) * dv + mxg * dr, mxg * dv + i.yaw * dr]
-            }
-        }
+            Self::Mmg(ship) => ship.inertia(),
+            Self::LargeDrift(ship) => ship.inertia(),
+        };
+        let mxg = i.mass * i.xg;
+        [(i.mass + i.surge_added) * du, (i.mass + i.sway_added) * dv + mxg * dr, mxg * dv + i.yaw * dr]
     }
 
     /// Propeller rate that holds the speed ahead `u` \[m/s\] with the rudder amidships, at most `most` \[rps\].
@@ -258,6 +305,43 @@ fn coefficients(ship: &mut mmg::Mmg) -> Vec<&mut f64> {
         &mut p.wake,
         &mut p.wake_c1,
         &mut q.normal_gradient,
+        &mut q.deduction,
+        &mut q.hull_increase,
+        &mut q.hull_position,
+        &mut q.inflow_position,
+        left,
+        right,
+        &mut q.wake_ratio,
+        &mut q.race,
+        &mut q.astern_race,
+    ]
+}
+
+/// The coefficients of a ship at large drift that no chart gives exactly.
+fn large_drift_coefficients(ship: &mut large_drift::LargeDrift) -> Vec<&mut f64> {
+    let (h, p, q) = (&mut ship.hull, &mut ship.propeller, &mut ship.rudder);
+    let [left, right] = &mut q.straightening;
+    vec![
+        &mut ship.surge_added,
+        &mut ship.sway_added,
+        &mut ship.yaw_added,
+        &mut ship.gyration,
+        &mut h.r0,
+        &mut h.r0_astern,
+        &mut h.xvr,
+        &mut h.yv,
+        &mut h.yr,
+        &mut h.nv,
+        &mut h.nr,
+        &mut h.cross_flow_drag,
+        &mut h.yaw_in_force,
+        &mut h.yaw_in_moment,
+        &mut p.thrust_factor,
+        &mut p.thrust_deduction,
+        &mut p.wake,
+        &mut p.wake_decay,
+        &mut q.flap,
+        &mut q.gain,
         &mut q.deduction,
         &mut q.hull_increase,
         &mut q.hull_position,
@@ -339,10 +423,38 @@ fn tweak_mmg(ship: &mmg::Mmg, t: &Tweak) -> mmg::Mmg {
     s
 }
 
+fn tweak_large_drift(ship: &large_drift::LargeDrift, t: &Tweak) -> large_drift::LargeDrift {
+    let mut s = ship.clone();
+    s.propeller.wake += t.wake;
+    s.propeller.thrust_factor *= t.thrust;
+    s.rudder.race *= t.race;
+    s.rudder.gain *= t.rudder;
+    s.rudder.offset += t.rudder_angle;
+    s.surge_added *= t.added[0];
+    s.sway_added *= t.added[1];
+    s.yaw_added *= t.added[2];
+    let h = &mut s.hull;
+    // Strips are all the nonlinearity there is: their drag takes the factor of the sway force.
+    let pairs = [
+        (&mut h.r0, t.resistance),
+        (&mut h.r0_astern, t.resistance),
+        (&mut h.yv, t.linear[0]),
+        (&mut h.yr, t.linear[1]),
+        (&mut h.nv, t.linear[2]),
+        (&mut h.nr, t.linear[3]),
+        (&mut h.cross_flow_drag, t.nonlinear[0]),
+    ];
+    for (coefficient, factor) in pairs {
+        *coefficient *= factor;
+    }
+    s
+}
+
 /// (m + m_x) u' = X + (m + m_y) v r + m x_G r^2 and so on; `tweak` still holds mass and centre of gravity, which the
-/// simulator takes from its particulars.
-fn mmg_accelerations(
-    ship: &mmg::Mmg,
+/// simulator takes from its particulars. `[k_zz / L, J_z']` are what its yaw inertia is made of.
+fn truth_accelerations(
+    ship: &dyn Truth,
+    [gyration, yaw_added]: [f64; 2],
     [u, v, r]: [f64; 3],
     inputs: &Inputs,
     tweak: &Tweak,
@@ -350,11 +462,11 @@ fn mmg_accelerations(
 ) -> [f64; 3] {
     let own = ship.force(u, v, r, inputs.n, inputs.delta).total();
     let i = ship.inertia();
-    let p = &ship.particulars;
+    let p = ship.particulars();
     let mass = i.mass * tweak.mass;
     let xg = i.xg + tweak.xg;
-    let radius = ship.gyration * p.length;
-    let yaw = mass * (radius * radius + xg * xg) + ship.yaw_added * p.force_scale() * p.length.powi(3);
+    let radius = gyration * p.length;
+    let yaw = mass * (radius * radius + xg * xg) + yaw_added * p.force_scale() * p.length.powi(3);
     let (surge, sway, mxg) = (mass + i.surge_added, mass + i.sway_added, mass * xg);
     let du = (own.x + extra[0] + sway * v * r + mxg * r * r) / surge;
     let y = own.y + extra[1] - surge * u * r;
@@ -375,6 +487,7 @@ mod tests {
         for (craft, truth) in [
             (Craft::Hd(hd::ship_a()), Box::new(hd::ship_a()) as Box<dyn Truth>),
             (Craft::Mmg(ships::ship_a()), Box::new(ships::ship_a())),
+            (Craft::LargeDrift(ships::ship_b()), Box::new(ships::ship_b())),
         ] {
             let own = craft.accelerations([state.u, state.v, state.r], &inputs, &Tweak::NEUTRAL, [0.0; 3]);
             let expected = truth.derivative(0.0, &state, &inputs, &Environment::default());
@@ -387,8 +500,9 @@ mod tests {
     #[test]
     fn inertia_undoes_what_a_force_does() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);
-        for family in [Family::Hd, Family::Mmg] {
+        for family in [Family::Hd, Family::Mmg, Family::Tanker, Family::Flap] {
             let craft = Craft::draw(family, 0.1, &mut rng);
+            assert_eq!(craft.particulars().length, LENGTH);
             let (water, inputs, push) = ([3.0, 0.4, -0.01], Inputs { n: 1.5, delta: 0.1 }, [1e4, -2e4, 3e5]);
             let calm = craft.accelerations(water, &inputs, &Tweak::NEUTRAL, [0.0; 3]);
             let pushed = craft.accelerations(water, &inputs, &Tweak::NEUTRAL, push);

@@ -144,8 +144,8 @@ const PROGRAMME: [(&str, usize); 8] = [
     ("slow", 2),
 ];
 
-/// The plans of a design.
-pub fn plans(design: Design, craft: &Craft, rng: &mut ChaCha8Rng) -> Vec<Plan> {
+/// The plans of a design, speeds times `pace`.
+pub fn plans(design: Design, craft: &Craft, pace: f64, rng: &mut ChaCha8Rng) -> Vec<Plan> {
     let (runs, sessions) = match design {
         Design::Few => (6, 2),
         _ => (40, 4),
@@ -173,7 +173,7 @@ pub fn plans(design: Design, craft: &Craft, rng: &mut ChaCha8Rng) -> Vec<Plan> {
             _ => between(0.0, 2.0 * PI),
         };
         let start = [between(-300.0, 300.0), between(-300.0, 300.0)];
-        let (speed, orders) = orders(kind, craft, &mut between);
+        let (speed, orders) = orders(kind, craft, pace, &mut between);
         Plan {
             name: format!("r{:02}", i + 1),
             session: i / per_session,
@@ -190,10 +190,10 @@ pub fn plans(design: Design, craft: &Craft, rng: &mut ChaCha8Rng) -> Vec<Plan> {
 }
 
 /// First speed and orders of a manoeuvre.
-fn orders(kind: &str, craft: &Craft, between: &mut dyn FnMut(f64, f64) -> f64) -> (f64, Vec<Order>) {
+fn orders(kind: &str, craft: &Craft, pace: f64, between: &mut dyn FnMut(f64, f64) -> f64) -> (f64, Vec<Order>) {
     let most = 4.15;
     let degrees = PI / 180.0;
-    let mut speed = between(3.0, 7.0);
+    let mut speed = pace * between(3.0, 7.0);
     let n = craft.trimmed_rate(speed, most);
     let side = if between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
     let steady = Steer::Course(0.0);
@@ -231,7 +231,7 @@ fn orders(kind: &str, craft: &Craft, between: &mut dyn FnMut(f64, f64) -> f64) -
             ]
         }
         "astern" => {
-            speed = between(0.1, 1.0);
+            speed = pace * between(0.1, 1.0);
             let back = -between(1.6, 3.6);
             let kick = between(110.0, 170.0);
             vec![
@@ -240,7 +240,7 @@ fn orders(kind: &str, craft: &Craft, between: &mut dyn FnMut(f64, f64) -> f64) -
             ]
         }
         "acceleration" => {
-            speed = between(1.0, 3.0);
+            speed = pace * between(1.0, 3.0);
             let low = craft.trimmed_rate(speed, most);
             vec![
                 (0.0, low, steady),
@@ -248,7 +248,7 @@ fn orders(kind: &str, craft: &Craft, between: &mut dyn FnMut(f64, f64) -> f64) -
             ]
         }
         "slow" => {
-            speed = between(0.3, 1.5);
+            speed = pace * between(0.3, 1.5);
             let mut parts = Vec::new();
             let mut t = 0.0;
             while t < PERIOD * STEPS as f64 {
@@ -282,7 +282,7 @@ mod tests {
     fn of(design: Design) -> Vec<Plan> {
         let mut rng = ChaCha8Rng::seed_from_u64(5);
         let craft = Craft::draw(Family::Mmg, 0.0, &mut rng);
-        plans(design, &craft, &mut rng)
+        plans(design, &craft, 1.0, &mut rng)
     }
 
     #[test]

@@ -11,6 +11,7 @@ use trimtab::model::Model;
 use trimtab::ship::Ship;
 use trimtab::state::Inputs;
 
+use super::craft::Family;
 use super::design::PERIOD;
 use super::effects::{Class, Entry};
 use super::strength::{ForceMeter, Meter};
@@ -26,13 +27,13 @@ pub struct DiagnosisMeter {
 }
 
 impl DiagnosisMeter {
-    /// A meter for the ship and base model of the concealed cases.
+    /// A meter for the ship of this family and the base model of the concealed cases.
     ///
     /// # Errors
     /// [`ConcealError::Meter`] when the library refuses them.
-    pub fn new() -> Result<Self, ConcealError> {
+    pub fn new(family: Family) -> Result<Self, ConcealError> {
         let fail = |e: &dyn std::fmt::Display| ConcealError::Meter { message: e.to_string() };
-        let ship = Ship::parse(&seal::ship_file(), Path::new("ship.toml")).map_err(|e| fail(&e))?;
+        let ship = Ship::parse(&seal::ship_file(family), Path::new("ship.toml")).map_err(|e| fail(&e))?;
         let model = Model::parse(seal::MODEL, Path::new("model.toml"), ship).map_err(|e| fail(&e))?;
         Ok(Self { model, settings: Settings::default(), last: Mutex::new(None) })
     }
@@ -126,7 +127,6 @@ fn runs(recorded: &Recorded, sea: &Recorded) -> Vec<Run> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conceal::craft::Family;
     use crate::conceal::{Case, Spec, Strength};
 
     fn case(meter: &DiagnosisMeter, effect: &str, size: f64) -> Case {
@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     fn a_stronger_effect_has_a_higher_ratio_and_no_effect_has_none() {
-        let meter = DiagnosisMeter::new().unwrap();
+        let meter = DiagnosisMeter::new(Family::Hd).unwrap();
         let of = |size: f64| case(&meter, "heading_bias", size);
         let (none, weak, strong) = (of(0.0), of(0.002), of(0.004));
         let entry = weak.effects[0].entry;
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn a_push_is_graded_in_its_windows_by_what_nothing_else_can_mimic() {
-        let meter = DiagnosisMeter::new().unwrap();
+        let meter = DiagnosisMeter::new(Family::Hd).unwrap();
         let of = |size: f64| case(&meter, "push", size);
         let (none, weak, strong) = (of(0.0), of(4e3), of(8e3));
         let entry = weak.effects[0].entry;

@@ -25,7 +25,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-use craft::{Craft, Family};
+use craft::{Craft, Family, LENGTH};
 use design::{Design, PERIOD, Plan, STEPS};
 use effects::{Class, Draw, Entry};
 use noise::{Noise, Rows};
@@ -196,7 +196,7 @@ impl Spec {
                 name: name.clone(),
                 known: effects::catalogue().map(|e| e.name).collect::<Vec<_>>().join(", "),
             })?;
-            if self.family == Family::Mmg && !entry.in_mmg {
+            if self.family != Family::Hd && !entry.in_mmg {
                 return Err(ConcealError::NotInFamily { effect: entry.name, family: self.family.name() });
             }
             Ok(entry)
@@ -310,7 +310,7 @@ impl Case {
 /// An effect at a size, with all that it draws taken from a stream of its own.
 fn activate(spec: &Spec, entry: &'static Entry, place: usize, size: f64, runs: usize) -> Active {
     let mut rng = rng(spec.seed, stream::EFFECTS + place as u64);
-    let mut draw = Draw { rng: &mut rng, runs, length: 85.0, duration: PERIOD * STEPS as f64 };
+    let mut draw = Draw { rng: &mut rng, runs, length: LENGTH, duration: PERIOD * STEPS as f64 };
     let sessions = if spec.design == Design::Few { 2 } else { 4 };
     Active {
         entry,
@@ -339,7 +339,7 @@ fn record(spec: &Spec, effects: Vec<Active>) -> Recorded {
         Background::Dropouts => noise.dropouts = 2.0,
     }
     let craft = Craft::draw(spec.family, hull_error, &mut rng(spec.seed, stream::CRAFT));
-    let plans = design::plans(spec.design, &craft, &mut rng(spec.seed, stream::PLANS));
+    let plans = design::plans(spec.design, &craft, spec.family.pace(), &mut rng(spec.seed, stream::PLANS));
     let world = World { craft, effects, gusts, method };
     let sailed = |(i, plan): (usize, &Plan)| sail::sail(&world, plan, i, rng(spec.seed, stream::GUSTS + i as u64));
     let tracks: Vec<Track> = plans.iter().enumerate().map(sailed).collect();

@@ -52,9 +52,9 @@ impl Runner {
         let next = AtomicUsize::new(0);
         let failed: Mutex<Option<ConcealError>> = Mutex::new(None);
         let work = || -> Result<(), ConcealError> {
-            // A meter of its own: it keeps what it fitted last, and two cases at a time would take turns.
-            let meter = DiagnosisMeter::new()?;
             while let Some(planned) = plan.get(next.fetch_add(1, Ordering::Relaxed)) {
+                // A meter of its own: it keeps what it fitted last, and two cases at a time would take turns.
+                let meter = DiagnosisMeter::new(planned.spec.family)?;
                 each(self.one(planned, &meter))?;
             }
             Ok(())

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use super::craft::{Family, LENGTH};
 use super::design::PERIOD;
 use super::effects::{Class, Compare};
 use super::{Case, ConcealError, Spec, effects::hull::THRUSTER};
@@ -119,7 +120,7 @@ impl Case {
     /// The files of the study by name, in the order in which they are written.
     pub fn study_files(&self) -> Vec<(String, String)> {
         let mut files = vec![
-            ("ship.toml".to_owned(), ship_file()),
+            ("ship.toml".to_owned(), ship_file(self.spec.family)),
             ("model.toml".to_owned(), MODEL.to_owned()),
             ("columns.toml".to_owned(), "bridge = 8.0\n".to_owned()),
         ];
@@ -181,7 +182,7 @@ impl Case {
             }
             let sensor = e.entry.class == Class::Sensor;
             // A quarter of the length is about the radius of gyration: what moves her alike counts alike.
-            let weighed = [square[0], square[1], square[2] / (0.25 * 85.0_f64).powi(2)];
+            let weighed = [square[0], square[1], square[2] / (0.25 * LENGTH).powi(2)];
             let total: f64 = weighed.iter().sum();
             Answer {
                 effect: e.entry.name.to_owned(),
@@ -239,8 +240,13 @@ impl Case {
     }
 }
 
-/// Ship A, with the thruster that every case's ship has whether it is used or not.
-pub(super) fn ship_file() -> String {
+/// The family's ship, with the thruster that every case's ship has whether it is used or not.
+pub(super) fn ship_file(family: Family) -> String {
     let [thrust, x] = THRUSTER;
-    format!("{}\n[thruster]\nthrust = {thrust:.1}\nx = {x:.1}\n", include_str!("../../ships/a.toml").trim_end())
+    let ship = match family {
+        Family::Hd | Family::Mmg => include_str!("../../ships/a.toml"),
+        Family::Tanker => include_str!("../../ships/tanker.toml"),
+        Family::Flap => include_str!("../../ships/flap.toml"),
+    };
+    format!("{}\n[thruster]\nthrust = {thrust:.1}\nx = {x:.1}\n", ship.trim_end())
 }

@@ -32,6 +32,17 @@ pub fn without_wind(runs: &[Run]) -> Vec<Run> {
     out
 }
 
+/// The model as if it had never had a term.
+///
+/// # Errors
+/// [`RealError::Model`].
+pub fn without_term(model: &Model, term: &str) -> Result<Model, RealError> {
+    let mut file = model.to_file();
+    file.terms.retain(|t| t != term);
+    file.parameters.retain(|name, _| !name.starts_with(&format!("{term}.")));
+    Ok(Model::from_file(&file, model.ship.clone())?)
+}
+
 /// One diagnosis and what was given to it.
 pub struct Case {
     /// In words.

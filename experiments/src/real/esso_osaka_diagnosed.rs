@@ -1,7 +1,7 @@
 //! Esso Osaka, diagnosed: calm-water model and no wind given, what is found is compared with the anemometer that was withheld.
 //! Sensors are mended by the recordings' own kinematics, before any model is asked; nothing here is chosen by its outcome.
 
-use super::diagnosis::{Case, Frame, Pull, Step, by_recording, pulls, runs, sessions, without_wind};
+use super::diagnosis::{Case, Frame, Pull, Step, by_recording, pulls, runs, sessions, without_term, without_wind};
 use super::kinematics::{Agreement, Mend, held, jumps, median};
 use super::{Hull, RealError};
 use trimtab::diagnose::Settings;
@@ -140,14 +140,6 @@ fn mends(hull: &Hull, kinematics: &[Agreement]) -> Result<Vec<(String, Mend)>, R
 fn mended(runs: &[Run], mends: &[(String, Mend)]) -> Vec<Run> {
     let of = |r: &Run| mends.iter().find(|(name, _)| r.name.starts_with(name.as_str()))?.1.applied(r);
     runs.iter().filter_map(of).collect()
-}
-
-/// The model as if it had never had a term.
-fn without_term(model: &Model, term: &str) -> Result<Model, RealError> {
-    let mut file = model.to_file();
-    file.terms.retain(|t| t != term);
-    file.parameters.retain(|name, _| !name.starts_with(&format!("{term}.")));
-    Ok(Model::from_file(&file, model.ship.clone())?)
 }
 
 impl Diagnosed {

@@ -1,7 +1,7 @@
 //! KVLCC2, diagnosed: tests in a calm basin, in which no wind, current or waves may be found, and a single screw, whose
 //! asymmetry may. The zigzags are diagnosed and the turning circles only prove.
 
-use super::diagnosis::{Answer, Case, Frame, Step, runs};
+use super::diagnosis::{Answer, Case, Frame, Step, runs, without_term};
 use super::kinematics::{Agreement, Mend, median};
 use super::{Hull, RealError};
 use trimtab::diagnose::Settings;
@@ -20,6 +20,9 @@ pub const ONE_SIDED: [&str; 5] =
 /// Mechanisms that a calm basin does not have.
 pub const NOT_IN_A_BASIN: [&str; 8] =
     ["wind", "mean_wind", "current", "tide", "waves", "wave_drift", "earth_force", "push"];
+
+/// Terms of the best model with its sensors that are left out, one at a time, for the diagnosis to put back.
+pub const PUT_BACK: [&str; 2] = ["time_skew", "yaw_rate_bias"];
 
 /// What the experiment gives.
 pub struct Diagnosed {
@@ -58,13 +61,31 @@ fn gyro_mended(hull: &Hull, kinematics: &[Agreement]) -> Result<(Vec<Run>, Vec<R
 }
 
 /// The diagnosis with all six recordings to learn from and none left for a proof: sides differ most in the turning circles.
-///
-/// # Errors
-/// [`RealError`].
-pub fn all_recordings(hull: &Hull, kinematics: &[Agreement]) -> Result<Case, RealError> {
+fn all_recordings(hull: &Hull, kinematics: &[Agreement]) -> Result<Case, RealError> {
     let (train, test) = gyro_mended(hull, kinematics)?;
     let whole = [train, test].concat();
     Case::new("all recordings, gyro mended", &hull.model("model.toml")?, &whole, &[], &Settings::default())
+}
+
+/// The model with hull coefficients freed, fitted to the zigzags.
+fn freed(hull: &Hull) -> Result<Model, RealError> {
+    Ok(hull.fitted(&hull.model("freed.toml")?, &hull.windows(Split::Train)?)?.model)
+}
+
+/// The recordings as they are, given to the best model, and then to what the diagnosis made of it without one of the terms that it
+/// had added: is that one put back, and nothing else? In the order of [`PUT_BACK`].
+///
+/// # Errors
+/// [`RealError`].
+pub fn best_model(hull: &Hull) -> Result<Vec<Case>, RealError> {
+    let (train, test) = (runs(hull, Split::Train)?, runs(hull, Split::Test)?);
+    let of = |name: &str, model: &Model| Case::new(name, model, &train, &test, &Settings::default());
+    let mut cases = vec![of("best model, as recorded", &freed(hull)?)?];
+    let improved = cases[0].diagnosis.model.clone();
+    for term in PUT_BACK {
+        cases.push(of(&format!("best model with its sensors, without {term}"), &without_term(&improved, term)?)?);
+    }
+    Ok(cases)
 }
 
 /// Runs everything.
@@ -81,10 +102,12 @@ pub fn run() -> Result<Diagnosed, RealError> {
     let (train, test) = gyro_mended(&hull, &kinematics)?;
     cases.push(Case::new("gyro mended", &eleven, &train, &test, &settings)?);
     cases.push(Case::new("gyro mended, mirror-symmetric ship", &symmetric(&eleven)?, &train, &test, &settings)?);
-    let best = hull.fitted(&hull.model("freed.toml")?, &hull.windows(Split::Train)?)?.model;
-    cases.push(Case::new("best model without its asymmetry", &symmetric(&best)?, &train, &test, &settings)?);
+    let best = symmetric(&freed(&hull)?)?;
+    cases.push(Case::new("best model without its asymmetry", &best, &train, &test, &settings)?);
 
     cases.push(all_recordings(&hull, &kinematics)?);
+
+    cases.extend(best_model(&hull)?);
 
     // One question at a time on a mirror-symmetric ship, with everything else estimated along.
     let (steps, asymmetry) = asked(&cases[2], &train, &test)?;

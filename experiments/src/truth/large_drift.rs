@@ -116,6 +116,18 @@ pub struct LargeDrift {
 }
 
 impl LargeDrift {
+    /// The similar ship of this length \[m\], in the same water: coefficients are without dimension and stay.
+    #[must_use]
+    pub fn scaled(&self, length: f64) -> Self {
+        let k = length / self.particulars.length;
+        let mut ship = self.clone();
+        ship.particulars = self.particulars.scaled(length);
+        ship.propeller.diameter *= k;
+        ship.rudder.span *= k;
+        ship.rudder.area *= k * k;
+        ship
+    }
+
     /// Yoshimura's unified model:
     ///
     /// X = 1/2 rho L d {-(R0F + (R0A - R0F) |beta|/pi) u U + X_vr v r L}

@@ -154,6 +154,20 @@ impl Particulars {
         self.volume / (self.length * self.breadth * self.draught)
     }
 
+    /// The similar ship of this length \[m\], in the same water.
+    #[must_use]
+    pub fn scaled(&self, length: f64) -> Self {
+        let k = length / self.length;
+        Self {
+            length,
+            breadth: k * self.breadth,
+            draught: k * self.draught,
+            volume: k.powi(3) * self.volume,
+            xg: k * self.xg,
+            rho: self.rho,
+        }
+    }
+
     /// Mass rho volume \[kg\].
     pub fn mass(&self) -> f64 {
         self.rho * self.volume
