@@ -4,9 +4,13 @@
 
 mod support;
 
-use support::{commanded, model, runs, truth_noise};
+use support::{STAR, commanded, model, runs, truth_noise};
+use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
+use trimtab::model::Model;
 use trimtab::parameter::Parity;
+use trimtab::state::Inputs;
+use trimtab::terms::Form;
 
 /// Thirty runs to learn from and ten to prove on, of a ship that has what the base model lacks.
 fn case(set: &[(&str, f64)], sessions: &[&str], seed: u64) -> Diagnosis {
@@ -46,6 +50,58 @@ fn a_current_is_named_with_its_set_and_improves_unseen_runs() {
     let proof = d.held_out.unwrap();
     assert!(proof.after < proof.before && proof.log_likelihood_gain > 20.0, "{proof:?}");
     assert!(d.model.term_names().contains(&"current"));
+}
+
+/// A run as a similar ship would sail it, lengths times `k`, at the same Froude number.
+fn scaled(run: &Run, k: f64) -> Run {
+    let time = k.sqrt();
+    let units = [k, k, 1.0, time, time, 1.0 / time];
+    let state = |s: &[f64; 6]| std::array::from_fn(|i| s[i] * units[i]);
+    Run {
+        dt: run.dt * time,
+        inputs: run.inputs.iter().map(|i| Inputs::actuators(i.t * time, i.n / time, i.delta)).collect(),
+        measured: run.measured.iter().map(state).collect(),
+        initial: state(&run.initial),
+        ..run.clone()
+    }
+}
+
+#[test]
+fn a_model_of_three_metres_is_diagnosed_like_the_ship_it_is_similar_to() {
+    let base = model();
+    let mut truth = base.clone();
+    truth.add_term("current").unwrap();
+    let north = truth.find("current.north").unwrap();
+    truth.parameters[north].value = 0.1;
+    let data = runs(&truth, &truth_noise(), 40, 3);
+    let k: f64 = 3.0 / 85.0;
+    let (speed, force) = (k.sqrt(), k.powi(3));
+    let mut ship = base.ship.clone();
+    for length in [
+        &mut ship.hull.lpp,
+        &mut ship.hull.breadth,
+        &mut ship.hull.draught,
+        &mut ship.propeller.diameter,
+        &mut ship.rudder.span,
+    ] {
+        *length *= k;
+    }
+    ship.hull.mass *= force;
+    ship.rudder.area *= k * k;
+    ship.parameters.clear();
+    let mut small = Model::new(ship, "HD", Form::Regular, &[]).unwrap();
+    let resistance = |i: usize| if (1..=3).contains(&i) { force / speed.powi(i as i32) } else { 1.0 };
+    small.set_eleven(&std::array::from_fn(|i| STAR[i] * resistance(i)));
+    let of =
+        |model: &Model, data: &[Run]| diagnose(model, &data[..30], &data[30..], &Settings::default(), &|_| ()).unwrap();
+    let (large, small) = (of(&base, &data), of(&small, &data.iter().map(|r| scaled(r, k)).collect::<Vec<_>>()));
+    assert_eq!((large.verdict, small.verdict), (Verdict::Named, Verdict::Named), "{}", small.headline);
+    assert_eq!(small.findings[0].mechanism, "current");
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-3;
+    assert!(near(small.findings[0].statistic, large.findings[0].statistic));
+    assert!(near(value(&small, "current.north"), speed * value(&large, "current.north")));
+    let cvdm = |d: &Diagnosis| d.held_out.as_ref().map_or(f64::NAN, |h| h.after);
+    assert!(near(cvdm(&small), cvdm(&large)));
 }
 
 #[test]
