@@ -20,7 +20,7 @@ use crate::model::{Model, ModelError};
 use crate::simulate::{Integration, Method};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Settings of a diagnosis, the `[diagnose]` table of a study.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -980,6 +980,16 @@ fn surrogate(s: &Screen, model: &Model) -> Vec<SurrogateTerm> {
         .collect()
 }
 
+/// Fewest kinds of manoeuvre among which scatter is told.
+const KINDS: usize = 5;
+
+/// What was sailed in each run: the manoeuvre, or the recording where there are few manoeuvres or no names for them.
+fn kinds(runs: &[Run]) -> Vec<&str> {
+    let manoeuvres: BTreeSet<&str> = runs.iter().map(|r| r.manoeuvre.as_str()).collect();
+    let by_manoeuvre = manoeuvres.len() >= KINDS;
+    runs.iter().map(|r| if by_manoeuvre { r.manoeuvre.as_str() } else { r.recording.as_str() }).collect()
+}
+
 fn describe(
     accepted: &[Accepted],
     found: &Estimate,
@@ -989,9 +999,12 @@ fn describe(
     before: &Screen,
     after: &Screen,
 ) -> Vec<Finding> {
-    // The ship's own forces may have another form: intervals hold what that does to a parameter.
+    // The ship's own forces may have another form: intervals hold what that does to a parameter, and how far what is sailed alike
+    // pulls it apart.
     let n = found.free.len();
-    let all = Wald::of(found, after.widened.inverse.view((0, 0), (n, n)).into_owned());
+    let mut all = Wald::of(found, after.widened.inverse.view((0, 0), (n, n)).into_owned());
+    let scatter = after.evidence.scatter(&after.widened, &kinds(runs));
+    (0..n).for_each(|i| all.covariance[(i, i)] *= scatter[i] * scatter[i]);
     let mut out = Vec::new();
     for a in accepted {
         let c = &list[a.candidate];

@@ -94,6 +94,30 @@ impl Evidence {
         Base { columns: columns.to_vec(), inverse: pseudo_inverse(&h), score: g }
     }
 
+    /// How much further the base's parameters scatter than its information says, as factors of at least 1 on their standard
+    /// errors: the roots of the diagonal of `A^-1 B A^-1` over that of `A^-1`, with A the information, `B = C/(C-1) sum (g_c -
+    /// mean g)(g_c - mean g)^T` and `g_c` the scores summed over the runs of group c of C (Liang & Zeger 1986, Biometrika 73,
+    /// eq. 2.7). A model whose form is not the ship's errs alike in all runs of a kind.
+    pub fn scatter(&self, base: &Base, groups: &[&str]) -> Vec<f64> {
+        let n = base.columns.len();
+        let mut sums: BTreeMap<&str, DVector<f64>> = BTreeMap::new();
+        for (group, run) in groups.iter().zip(&self.runs) {
+            let score = DVector::from_fn(n, |i, _| run.score[base.columns[i]]);
+            *sums.entry(group).or_insert_with(|| DVector::zeros(n)) += score;
+        }
+        let count = sums.len() as f64;
+        if sums.len() < 2 {
+            return vec![1.0; n];
+        }
+        let mean = sums.values().fold(DVector::zeros(n), |a: DVector<f64>, g| a + g) / count;
+        let mut variances = DVector::zeros(n);
+        for g in sums.values() {
+            let step = &base.inverse * (g - &mean);
+            variances += step.component_mul(&step) * (count / (count - 1.0));
+        }
+        (0..n).map(|i| (variances[i] / base.inverse[(i, i)]).sqrt()).map(|f| if f > 1.0 { f } else { 1.0 }).collect()
+    }
+
     /// Tests a group of columns, common to all runs, after the base has had its say.
     pub fn test(&self, base: &Base, columns: &[usize]) -> Test {
         let cross = pick(&self.total.information, columns, &base.columns);
@@ -378,6 +402,26 @@ mod tests {
         let t = e.test(&base, &[1]);
         assert!((t.statistic - 4.0).abs() < 1e-12 && (t.amplitude[0] - 6.0 / 9.0).abs() < 1e-12);
         assert!((t.retained - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn runs_that_scatter_by_group_widen_what_is_known_and_runs_that_do_not_leave_it() {
+        // Eight runs whose scores have the variance that their information of 1 says, and the same with two kinds that pull apart.
+        let of = |pull: f64| {
+            let signs = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
+            let run = |(i, sign): (usize, &f64)| one_run("a", &[sign + if i < 4 { pull } else { -pull }], &[1.0]);
+            Evidence::new(signs.iter().enumerate().map(run).collect())
+        };
+        let groups = ["turn", "turn", "turn", "turn", "zigzag", "zigzag", "zigzag", "zigzag"];
+        let factor = |pull: f64| {
+            let e = of(pull);
+            e.scatter(&e.base(&[0], &[0.0], &[0.0]), &groups)[0]
+        };
+        assert_eq!(factor(0.0), 1.0);
+        // B = 2 (4^2 + 4^2), A = 8: the variance is 64/64 where the information says 1/8.
+        assert!((factor(1.0) - 8.0_f64.sqrt()).abs() < 1e-12);
+        let e = of(1.0);
+        assert_eq!(e.scatter(&e.base(&[0], &[0.0], &[0.0]), &["all"; 8]), [1.0]);
     }
 
     #[test]
