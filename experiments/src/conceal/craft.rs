@@ -1,4 +1,5 @@
-//! The two truth families behind one set of alterations: what an effect may change in a ship without knowing which family she is.
+//! The ships behind one set of alterations, two families on ship A and two other hulls: what an effect may change in a ship without
+//! knowing which she is.
 //! It sails nothing and knows no effect; it turns a state, inputs and a [`Tweak`] into accelerations.
 
 use rand::RngExt;
