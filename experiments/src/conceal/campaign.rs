@@ -65,7 +65,7 @@ const CONTRASTED: [&str; 12] = [
     "race",
 ];
 
-/// The arm of the campaign with hulls on which no threshold was looked at.
+/// The arm of the campaign with other hulls than the one that thresholds were set on.
 const OTHER_HULLS: &str = "hulls";
 
 /// Seed of a case: from the campaign's seed and the key, so that no case moves when another is added.
@@ -538,15 +538,15 @@ pub fn figure(scores: &[Score]) -> Figure {
         ("in the set", |s| s.in_set),
     ];
     let mut others = Panel::new(
-        "other hulls than the thresholds', SNR 12",
+        "ship A and other hulls, SNR 12",
         Axis::categories("", counted.iter().map(|c| c.0)),
         Axis::new("share of cases").range(0.0, 1.0),
     );
     for (name, color, family) in [
-        ("ship A, HD", BLUE, Family::Hd),
-        ("ship A, MMG", ORANGE, Family::Mmg),
+        ("HD truth", BLUE, Family::Hd),
+        ("MMG truth", ORANGE, Family::Mmg),
         ("tanker", SKY, Family::Tanker),
-        ("flapped rudder", PURPLE, Family::Flap),
+        ("flapped rudder", BASELINE, Family::Flap),
     ] {
         let bar = |(_, of): &(&str, fn(&Score) -> Option<bool>)| {
             let here = hulls.iter().filter(|s| s.family == family.name()).map(|s| of(s));
