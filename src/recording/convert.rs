@@ -433,6 +433,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(super::super::seeded())]
         #[test]
         fn unwrapping_undoes_wrapping(steps in prop::collection::vec(-3.0..3.0f64, 2..60)) {
             let mut sum = 0.5;

@@ -835,6 +835,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(super::super::seeded())]
         #[test]
         fn resampling_keeps_straight_lines(step in 0.03..3.0f64, jitter in prop::collection::vec(-0.015..0.015f64, 200)) {
             let mut channels = straight(200, 0.1);
