@@ -1002,20 +1002,20 @@ fn describe(
     // The ship's own forces may have another form: intervals hold what that does to a parameter, and how far what is sailed alike
     // pulls it apart.
     let n = found.free.len();
-    let mut all = Wald::of(found, after.widened.inverse.view((0, 0), (n, n)).into_owned());
+    let all = Wald::of(found, after.widened.inverse.view((0, 0), (n, n)).into_owned());
     let scatter = after.evidence.scatter(&after.widened, &kinds(runs));
-    (0..n).for_each(|i| all.covariance[(i, i)] *= scatter[i] * scatter[i]);
     let mut out = Vec::new();
     for a in accepted {
         let c = &list[a.candidate];
-        let Wald { value, covariance } = all.part(&positions(&found.free, c, &a.extent));
+        let places = positions(&found.free, c, &a.extent);
+        let Wald { value, covariance } = all.part(&places);
         let parameters = (0..value.len())
             .map(|i| {
                 let k = c.columns.len();
                 let col = &c.columns[i % k];
                 let p = &found.model.parameters[col.parameter];
                 let v = value[i] * col.scale;
-                let error = covariance[(i, i)].max(0.0).sqrt() * col.scale;
+                let error = covariance[(i, i)].max(0.0).sqrt() * scatter[places[i]] * col.scale;
                 let name = &c.names[i % k];
                 let name = match &a.extent {
                     Extent::Each(sessions) => format!("{name} [{}]", sessions[i / k]),

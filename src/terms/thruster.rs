@@ -1,5 +1,6 @@
 //! Bow thruster, losing force as the ship gathers speed.
-//! Force follows the command at once; the moment fades later than the force, as the hull aft of the jet is pulled the other way. A ship without thruster particulars gets a typical one: 1e-4 rho g L^2 d at 0.4 L.
+//! Force follows the command at once; the moment fades later than the force, as the hull aft of the jet is pulled the other way.
+//! A ship without thruster particulars gets a typical one: 1e-4 rho g L^2 d at 0.4 L.
 
 use super::{Group, Moment, Physics, Term, TermInfo, size};
 use crate::diagnose::filter::Probe;

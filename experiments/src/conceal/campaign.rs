@@ -477,6 +477,11 @@ pub fn table(lines: &[Line]) -> Table {
     table
 }
 
+/// A share as a bar with its interval; nothing where no case says.
+fn bar(share: Option<Share>) -> (f64, f64, f64) {
+    share.map_or((f64::NAN, f64::NAN, f64::NAN), |s| (s.value(), s.low, s.high))
+}
+
 /// Detection and first names against strength, both families, false alarms by background, other hulls, and wrong names.
 pub fn figure(scores: &[Score]) -> Figure {
     let steps = [3.0, 6.0, 12.0, 24.0];
@@ -502,8 +507,7 @@ pub fn figure(scores: &[Score]) -> Figure {
         let share = |name: &&str| {
             let here = scores.iter().filter(|s| s.arm == "null" && s.background == *name);
             let here = here.filter(|s| family.is_none_or(|f| s.family == f));
-            let s = Share::of(here.map(|s| right(s).map(|r| !r)));
-            s.map_or((f64::NAN, f64::NAN, f64::NAN), |s| (s.value(), s.low, s.high))
+            bar(Share::of(here.map(|s| right(s).map(|r| !r))))
         };
         names.iter().map(share).collect()
     };
@@ -548,11 +552,10 @@ pub fn figure(scores: &[Score]) -> Figure {
         ("tanker", SKY, Family::Tanker),
         ("flapped rudder", BASELINE, Family::Flap),
     ] {
-        let bar = |(_, of): &(&str, fn(&Score) -> Option<bool>)| {
-            let here = hulls.iter().filter(|s| s.family == family.name()).map(|s| of(s));
-            Share::of(here).map_or((f64::NAN, f64::NAN, f64::NAN), |s| (s.value(), s.low, s.high))
+        let of_hull = |(_, of): &(&str, fn(&Score) -> Option<bool>)| {
+            bar(Share::of(hulls.iter().filter(|s| s.family == family.name()).map(|s| of(s))))
         };
-        others = others.with(Layer::bars_with_intervals(name, color, counted.iter().map(bar).collect::<Vec<_>>()));
+        others = others.with(Layer::bars_with_intervals(name, color, counted.iter().map(of_hull).collect::<Vec<_>>()));
     }
     let silent: [(&str, &str, fn(&Score) -> Option<bool>); 4] = [
         ("not in the catalogue", "withheld", |s| s.wrong_confident),
@@ -560,10 +563,7 @@ pub fn figure(scores: &[Score]) -> Figure {
         ("no reference", "pooled", |s| s.wrong_confident),
         ("poor design", "design", |s| s.wrong_confident),
     ];
-    let wrong = silent.map(|(_, arm, of)| {
-        let share = Share::of(scores.iter().filter(|s| s.arm == arm).map(of));
-        share.map_or((f64::NAN, f64::NAN, f64::NAN), |s| (s.value(), s.low, s.high))
-    });
+    let wrong = silent.map(|(_, arm, of)| bar(Share::of(scores.iter().filter(|s| s.arm == arm).map(of))));
     let wrong = Panel::new(
         "what cannot be told: wrong name all the same",
         Axis::categories("", silent.iter().map(|c| c.0)),

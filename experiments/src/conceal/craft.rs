@@ -141,7 +141,7 @@ impl Craft {
             }
             Family::Mmg | Family::Tanker => {
                 let mut ship = match family {
-                    Family::Tanker => ships::kvlcc2().scaled(LENGTH),
+                    Family::Tanker => ships::kvlcc2_of(LENGTH),
                     _ => ships::ship_a(),
                 };
                 // Propeller walk is one of the effects: without it the screw pushes along the keel only.
@@ -171,13 +171,18 @@ impl Craft {
         craft
     }
 
+    /// The simulator behind her, unaltered.
+    fn truth(&self) -> &dyn Truth {
+        match self {
+            Self::Hd(ship) => ship,
+            Self::Mmg(ship) => ship,
+            Self::LargeDrift(ship) => ship,
+        }
+    }
+
     /// Main particulars.
     pub fn particulars(&self) -> &Particulars {
-        match self {
-            Self::Hd(ship) => &ship.particulars,
-            Self::Mmg(ship) => &ship.particulars,
-            Self::LargeDrift(ship) => &ship.particulars,
-        }
+        self.truth().particulars()
     }
 
     /// Propeller diameter D \[m\], and wake fraction on a straight course.
@@ -191,11 +196,7 @@ impl Craft {
 
     /// Forces by origin at velocity through the water.
     pub fn force(&self, [u, v, r]: [f64; 3], inputs: &Inputs) -> Contributions {
-        match self {
-            Self::Hd(ship) => ship.force(u, v, r, inputs.n, inputs.delta),
-            Self::Mmg(ship) => ship.force(u, v, r, inputs.n, inputs.delta),
-            Self::LargeDrift(ship) => ship.force(u, v, r, inputs.n, inputs.delta),
-        }
+        self.truth().force(u, v, r, inputs.n, inputs.delta)
     }
 
     /// Angle of attack of the rudder \[rad\].
@@ -245,14 +246,11 @@ impl Craft {
 
     /// The force (X, Y \[N\], N \[N m\]) that gives these accelerations through the ship's own, unaltered inertia.
     pub fn inertial_force(&self, [du, dv, dr]: [f64; 3]) -> [f64; 3] {
-        let i = match self {
-            Self::Hd(ship) => {
-                let (surge, [[a, b], [c, d]]) = ship.masses();
-                return [surge * du, a * dv + b * dr, c * dv + d * dr];
-            }
-            Self::Mmg(ship) => ship.inertia(),
-            Self::LargeDrift(ship) => ship.inertia(),
-        };
+        if let Self::Hd(ship) = self {
+            let (surge, [[a, b], [c, d]]) = ship.masses();
+            return [surge * du, a * dv + b * dr, c * dv + d * dr];
+        }
+        let i = self.truth().inertia();
         let mxg = i.mass * i.xg;
         [(i.mass + i.surge_added) * du, (i.mass + i.sway_added) * dv + mxg * dr, mxg * dv + i.yaw * dr]
     }

@@ -135,18 +135,6 @@ const LARGE_DRIFT: [f64; 2] = [35.0 * PI / 180.0, 65.0 * PI / 180.0];
 const STALL: [f64; 2] = [40.0 * PI / 180.0, 60.0 * PI / 180.0];
 
 impl Mmg {
-    /// The similar ship of this length \[m\], in the same water: coefficients are without dimension and stay.
-    #[must_use]
-    pub fn scaled(&self, length: f64) -> Self {
-        let k = length / self.particulars.length;
-        let mut ship = self.clone();
-        ship.particulars = self.particulars.scaled(length);
-        ship.propeller.diameter *= k;
-        ship.rudder.span *= k;
-        ship.rudder.area *= k * k;
-        ship
-    }
-
     /// Weight of the large-drift hull at this velocity, 0..=1.
     ///
     /// Runs on the local drift angle atan2(sqrt(v^2 + (r L/2)^2), u), which is 90 deg when turning on the spot and more in sternway.

@@ -81,6 +81,12 @@ pub fn kvlcc2_model() -> Mmg {
     )
 }
 
+/// KVLCC2 at full scale, brought to a length \[m\] in the same water.
+pub fn kvlcc2_of(length: f64) -> Mmg {
+    let full = kvlcc2();
+    kvlcc2_at_scale(full.particulars.scaled(length), full.propeller.wake)
+}
+
 fn kvlcc2_at_scale(particulars: Particulars, wake: f64) -> Mmg {
     let scale = particulars.length / 320.0;
     Mmg {
