@@ -6,6 +6,7 @@ use super::compete::{
     Accepted, Arena, Fall, REFIT, SETTLE, Wald, acceptable, acceptable_beside, backward, compete, positions, swap, wald,
 };
 use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior, passes};
+use super::evidence::{KINDS, reach};
 use super::filter::{Column, Probe, Run};
 use super::forces::forces_of;
 use super::locate::{EquationShare, Location, Place, Push, RegionTest, Window, locate, sharpened};
@@ -93,7 +94,12 @@ pub struct Amplitude {
 impl Amplitude {
     /// A value with its standard error, as normally distributed.
     pub(super) fn new(name: String, value: f64, unit: &str, error: f64) -> Self {
-        Self { name, value, unit: unit.into(), error, ci95: [value - 1.96 * error, value + 1.96 * error] }
+        Self::within(name, value, unit, error, 1.96)
+    }
+
+    /// A value with its standard error, whose 95 % interval reaches so many errors to either side.
+    pub(super) fn within(name: String, value: f64, unit: &str, error: f64, reach: f64) -> Self {
+        Self { name, value, unit: unit.into(), error, ci95: [value - reach * error, value + reach * error] }
     }
 }
 
@@ -747,7 +753,7 @@ pub fn diagnose(
         adequacy_after,
         surrogate,
         moves: moves(&null, &current, integration, &runs, model),
-        sides: sides(last.as_ref().unwrap_or(&first), &current, null.free.len()),
+        sides: sides(last.as_ref().unwrap_or(&first), &current, null.free.len(), &kinds(&runs)),
         hull_budget: budget(&current),
         next_trial: trial,
         held_out: proof,
@@ -980,9 +986,6 @@ fn surrogate(s: &Screen, model: &Model) -> Vec<SurrogateTerm> {
         .collect()
 }
 
-/// Fewest kinds of manoeuvre among which scatter is told.
-const KINDS: usize = 5;
-
 /// What was sailed in each run: the manoeuvre, or the recording where there are few manoeuvres or no names for them.
 fn kinds(runs: &[Run]) -> Vec<&str> {
     let manoeuvres: BTreeSet<&str> = runs.iter().map(|r| r.manoeuvre.as_str()).collect();
@@ -1003,7 +1006,9 @@ fn describe(
     // pulls it apart.
     let n = found.free.len();
     let all = Wald::of(found, after.widened.inverse.view((0, 0), (n, n)).into_owned());
-    let scatter = after.evidence.scatter(&after.widened, &kinds(runs));
+    let kinds = kinds(runs);
+    let scatter = after.evidence.scatter(&after.widened, &kinds);
+    let reach = reach(kinds.iter().collect::<BTreeSet<_>>().len());
     let mut out = Vec::new();
     for a in accepted {
         let c = &list[a.candidate];
@@ -1021,7 +1026,7 @@ fn describe(
                     Extent::Each(sessions) => format!("{name} [{}]", sessions[i / k]),
                     Extent::All | Extent::In(_) => name.clone(),
                 };
-                Amplitude::new(name, v, p.info.unit, error)
+                Amplitude::within(name, v, p.info.unit, error, reach)
             })
             .collect();
         out.push(Finding {

@@ -2,7 +2,7 @@
 //! It does not know what a column means: names and verdicts are made elsewhere.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
 /// Score and information of one run.
@@ -274,6 +274,17 @@ pub fn chi_squared_p(statistic: f64, degrees: usize) -> f64 {
     ChiSquared::new(degrees as f64).map_or(1.0, |d| d.sf(statistic.max(0.0)).max(f64::MIN_POSITIVE))
 }
 
+/// Fewest groups of runs among which scatter is told; where there are fewer, they are taken for as many.
+pub const KINDS: usize = 5;
+
+/// Standard errors that a 95 % interval reaches to either side once scatter among so many groups of runs has had its say on them
+/// ([`Evidence::scatter`]): Student's t with one degree of freedom less than groups, as an error that few tell is itself uncertain
+/// (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
+pub fn reach(groups: usize) -> f64 {
+    let degrees = groups.max(KINDS) - 1;
+    StudentsT::new(0.0, 1.0, degrees as f64).map_or(1.96, |t| t.inverse_cdf(0.975))
+}
+
 /// Rows and columns of a matrix.
 pub fn pick(m: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), columns.len(), |i, j| m[(rows[i], columns[j])])
@@ -422,6 +433,13 @@ mod tests {
         assert!((factor(1.0) - 8.0_f64.sqrt()).abs() < 1e-12);
         let e = of(1.0);
         assert_eq!(e.scatter(&e.base(&[0], &[0.0], &[0.0]), &["all"; 8]), [1.0]);
+    }
+
+    #[test]
+    fn intervals_reach_further_the_fewer_groups_tell_the_scatter() {
+        assert!((reach(8) - 2.3646).abs() < 1e-4 && (reach(5) - 2.7764).abs() < 1e-4);
+        assert_eq!((reach(2), reach(1)), (reach(5), reach(5)));
+        assert!((reach(10_000) - 1.96).abs() < 1e-3);
     }
 
     #[test]

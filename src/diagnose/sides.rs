@@ -4,11 +4,13 @@
 use super::compete::Wald;
 use super::conclude::Amplitude;
 use super::estimate::{Estimate, FreeParameter};
-use super::evidence::chi_squared_p;
+use super::evidence::{chi_squared_p, reach};
 use super::screen::Screen;
 use crate::parameter::Parity;
 use crate::terms::{self, Group};
+use nalgebra::DMatrix;
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// A test of everything in the base that breaks mirror symmetry.
 #[derive(Clone, Debug, Serialize)]
@@ -24,8 +26,9 @@ pub struct Sides {
 }
 
 /// Tests the parameters of the base, the first `base` free ones of the estimate, that differ between port and starboard; `None` when
-/// it has none. `s` is the screen at the estimate.
-pub(super) fn sides(s: &Screen, found: &Estimate, base: usize) -> Option<Sides> {
+/// it has none. `s` is the screen at the estimate and `kinds` what was sailed in each run, which may pull the sides further apart
+/// than they are known ([`super::evidence::Evidence::scatter`]).
+pub(super) fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -> Option<Sides> {
     // A sensor that reads to one side is not the ship.
     let of_the_ship = |name: &str| {
         let term = name.split('.').next().and_then(terms::find);
@@ -45,7 +48,10 @@ pub(super) fn sides(s: &Screen, found: &Estimate, base: usize) -> Option<Sides> 
     let (precision, pull): (Vec<f64>, Vec<f64>) = found.free.iter().enumerate().map(terms).unzip();
     let free = s.evidence.base(&(0..found.free.len()).collect::<Vec<_>>(), &precision, &pull);
     let step = free.step();
-    let mut all = Wald::of(found, free.inverse);
+    let scatter = s.evidence.scatter(&free, kinds);
+    let reach = reach(kinds.iter().collect::<BTreeSet<_>>().len());
+    let n = scatter.len();
+    let mut all = Wald::of(found, DMatrix::from_fn(n, n, |i, j| free.inverse[(i, j)] * scatter[i] * scatter[j]));
     all.value += step;
     let tested = all.part(&odd);
     let amplitude = |(k, i): (usize, &usize)| {
@@ -53,7 +59,7 @@ pub(super) fn sides(s: &Screen, found: &Estimate, base: usize) -> Option<Sides> 
         let p = &found.model.parameters[column.parameter];
         let (value, error) =
             (tested.value[k] * column.scale, tested.covariance[(k, k)].max(0.0).sqrt() * column.scale.abs());
-        Amplitude::new(p.name.clone(), value, p.info.unit, error)
+        Amplitude::within(p.name.clone(), value, p.info.unit, error, reach)
     };
     let mut parameters: Vec<Amplitude> = odd.iter().enumerate().map(amplitude).collect();
     let weight = |a: &Amplitude| (a.value / a.error.max(f64::MIN_POSITIVE)).abs();

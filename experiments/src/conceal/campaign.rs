@@ -253,6 +253,21 @@ fn reached(score: &Score) -> bool {
     }
 }
 
+/// Families whose flow at the rudder is straightened differently on her two sides, by a single number that is known.
+const LOPSIDED: [Family; 3] = [Family::Mmg, Family::Tanker, Family::Flap];
+
+/// Their cases that say something of her two sides: nulls, and everything of the other hulls.
+fn lopsided(scores: &[Score], family: Family) -> impl Iterator<Item = &Score> + Clone {
+    let arms = ["null", OTHER_HULLS];
+    scores.iter().filter(move |s| s.family == family.name() && arms.contains(&s.arm.as_str()) && s.asymmetry.is_some())
+}
+
+/// Whether the flow's asymmetry has its true sign, where her sides were said to differ.
+fn right_side(score: &Score) -> Option<bool> {
+    let product = score.asymmetry_found? * score.asymmetry?;
+    (score.sides_differ?).then_some(product > 0.0)
+}
+
 /// A way to answer what is missing.
 struct Way {
     name: &'static str,
@@ -315,6 +330,7 @@ pub fn summary(all: &[Score]) -> Vec<Line> {
     let (hd, mmg) = (Some("hd"), Some("mmg"));
     let at_most = |limit: f64| move |v: f64| v <= limit;
     let at_least = |limit: f64| move |v: f64| v >= limit;
+    let calibrated = |v: f64| (0.86..=0.94).contains(&v);
     share(
         "false alarms, nulls of the HD family",
         "<= 5 %",
@@ -363,9 +379,12 @@ pub fn summary(all: &[Score]) -> Vec<Line> {
     let twelve = || single(scores, None, 12.0);
     share("truth in the confidence set at SNR 12", ">= 90 %", Share::of(twelve().map(|s| s.in_set)), &at_least(0.9));
     share("right equation at SNR 12", ">= 95 %", Share::of(twelve().map(|s| s.right_equation)), &at_least(0.95));
-    share("true size in the 90 % interval at SNR 12", "86 to 94 %", Share::of(twelve().map(|s| s.covered)), &|v| {
-        (0.86..=0.94).contains(&v)
-    });
+    share(
+        "true size in the 90 % interval at SNR 12",
+        "86 to 94 %",
+        Share::of(twelve().map(|s| s.covered)),
+        &calibrated,
+    );
     share(
         "absorbed effects named all the same",
         "none",
@@ -409,6 +428,17 @@ pub fn summary(all: &[Score]) -> Vec<Line> {
         line("detection at SNR 12", ">= 98 %", Share::of(here().map(|s| s.detected)), &at_least(0.98));
         line("first name right, given detection", ">= 80 %", Share::of(here().map(|s| s.first_right)), &at_least(0.8));
         line("truth in the confidence set", ">= 90 %", Share::of(here().map(|s| s.in_set)), &at_least(0.9));
+        line("true size in the 90 % interval", "86 to 94 %", Share::of(here().map(|s| s.covered)), &calibrated);
+    }
+    for family in LOPSIDED {
+        let here = || lopsided(scores, family);
+        let mut line = |what: &str, target: &str, found: Option<Share>, met: &dyn Fn(f64) -> bool| {
+            share(&format!("{}: {what}", family.name()), target, found, met);
+        };
+        line("her two sides said to differ", "-", Share::of(here().map(|s| s.sides_differ)), &|_| true);
+        line("of those, with the right sign of the flow's", "-", Share::of(here().map(right_side)), &|_| true);
+        let covered = Share::of(here().map(|s| s.asymmetry_covered));
+        line("true asymmetry of the flow in the 90 % interval", "86 to 94 %", covered, &calibrated);
     }
     for (family, of) in [("hd", "nulls of the HD family"), ("mmg", "nulls of the MMG family")] {
         for way in &WAYS[1..] {
@@ -427,6 +457,17 @@ pub fn summary(all: &[Score]) -> Vec<Line> {
         let met = found.map(met);
         lines.push(Line { what: what.into(), target: target.into(), found: found.map(Found::Number), met });
     };
+    for family in [Family::Tanker, Family::Flap] {
+        let sizes = arm(OTHER_HULLS).filter(|s| s.family == family.name() && reached(s)).map(|s| s.size_error);
+        number(&format!("{}: median error of the size", family.name()), "<= 0.10", median(sizes), &at_most(0.1));
+    }
+    for family in LOPSIDED {
+        let here = || lopsided(scores, family);
+        let error = |s: &Score| Some((s.asymmetry_found? - s.asymmetry?).abs());
+        let what = |what: &str| format!("{}: median {what} of the flow at the rudder", family.name());
+        number(&what("true asymmetry"), "-", median(here().map(|s| s.asymmetry.map(f64::abs))), &|_| true);
+        number(&what("error of the asymmetry"), "-", median(here().map(error)), &|_| true);
+    }
     number("mean size of the confidence set at SNR 12", "<= 1.6", mean(twelve().map(|s| s.set_size)), &at_most(1.6));
     number(
         "mean window overlap (IoU) at SNR 12",
@@ -482,7 +523,28 @@ fn bar(share: Option<Share>) -> (f64, f64, f64) {
     share.map_or((f64::NAN, f64::NAN, f64::NAN), |s| (s.value(), s.low, s.high))
 }
 
-/// Detection and first names against strength, both families, false alarms by background, other hulls, and wrong names.
+/// The asymmetry of the flow at the rudder, found against true.
+fn sides(scores: &[Score]) -> Panel {
+    let ends = [-0.18, 0.06];
+    let mut panel = Panel::new(
+        "single screw: asymmetry at the rudder",
+        Axis::new("true [-]").range(ends[0], ends[1]),
+        Axis::new("found [-]"),
+    )
+    .with(Layer::line("found is true", LIMIT, ends.map(|v| (v, v))));
+    for (name, color, family) in [
+        ("MMG truth", ORANGE, Family::Mmg),
+        ("tanker", SKY, Family::Tanker),
+        ("flapped rudder", BASELINE, Family::Flap),
+    ] {
+        let points = lopsided(scores, family).filter_map(|s| Some((s.asymmetry?, s.asymmetry_found?)));
+        panel = panel.with(Layer::scatter(name, color, points));
+    }
+    panel
+}
+
+/// Detection and first names against strength, both families, false alarms by background, other hulls, wrong names,
+/// and the ship's own two sides.
 pub fn figure(scores: &[Score]) -> Figure {
     let steps = [3.0, 6.0, 12.0, 24.0];
     let strength = || Axis::new("signal-to-noise ratio").log().range(2.5, 30.0);
@@ -594,7 +656,7 @@ pub fn figure(scores: &[Score]) -> Figure {
         errors = errors.with(Layer::line(model.name, model.color, steps.into_iter().filter_map(at)));
     }
     let figure = Figure::new("Concealed effects: what was found")
-        .columns(2)
+        .columns(3)
         .with(panel("something is missing: seen", |s| s.detected))
         .with(panel("first name right, given seen", |s| s.first_right))
         .with(set)
@@ -603,7 +665,8 @@ pub fn figure(scores: &[Score]) -> Figure {
         .with(wrong)
         .with(ways);
     // A campaign without the oracle has no such panel.
-    if scores.iter().any(|s| s.oracle_held_out.is_some()) { figure.with(errors) } else { figure }
+    let figure = if scores.iter().any(|s| s.oracle_held_out.is_some()) { figure.with(errors) } else { figure };
+    figure.with(sides(scores))
 }
 
 #[cfg(test)]

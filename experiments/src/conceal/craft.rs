@@ -171,6 +171,17 @@ impl Craft {
         craft
     }
 
+    /// Half the difference of the flow straightening between lateral inflow at the rudder from port and from starboard, what her
+    /// single screw makes of it; `None` where rudder and screw are polynomials, lopsided in themselves.
+    pub fn asymmetry(&self) -> Option<f64> {
+        let [port, starboard] = match self {
+            Self::Hd(_) => return None,
+            Self::Mmg(ship) => ship.rudder.straightening,
+            Self::LargeDrift(ship) => ship.rudder.straightening,
+        };
+        Some(0.5 * (port - starboard))
+    }
+
     /// The simulator behind her, unaltered.
     fn truth(&self) -> &dyn Truth {
         match self {

@@ -109,6 +109,15 @@ pub struct Diagnosis {
     held_out: Option<HeldOut>,
     #[serde(default)]
     admission: Admission,
+    sides: Option<Sides>,
+}
+
+/// What was said of the ship's own two sides.
+#[derive(Debug, Clone, Deserialize)]
+struct Sides {
+    p: f64,
+    #[serde(default)]
+    parameters: Vec<FoundParameter>,
 }
 
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -218,6 +227,14 @@ pub struct Score {
     pub sindy_named: String,
     /// Whether that is right.
     pub sindy_right: Option<bool>,
+    /// Ships whose flow straightening has two sides: half its true difference.
+    pub asymmetry: Option<f64>,
+    /// What was found of it.
+    pub asymmetry_found: Option<f64>,
+    /// The true one lies in the 90 % interval.
+    pub asymmetry_covered: Option<bool>,
+    /// Port and starboard of the ship herself were said to differ.
+    pub sides_differ: Option<bool>,
     /// Time of the diagnosis \[s\].
     pub seconds: Option<f64>,
     /// Why there is no score.
@@ -281,6 +298,7 @@ pub fn judge(manifest: &Manifest, diagnosis: &Diagnosis) -> Score {
         ..Score::default()
     };
     held_out(diagnosis, first, &mut score);
+    own_sides(manifest, diagnosis, &mut score);
     if null {
         let euler = verdict_key(&manifest.expected) == "numerics";
         let alarming = own.iter().any(|f| !(euler && numerics(&f.mechanism)));
@@ -399,6 +417,21 @@ fn size(answer: &Answer, finding: &Finding) -> Option<(f64, Option<bool>)> {
     Some((error, Some(along.abs() <= 1.644_854 * variance.sqrt())))
 }
 
+/// Below this chance a diagnosis says that port and starboard of the ship differ.
+const DIFFER: f64 = 1e-4;
+
+/// What was said of the ship's own two sides beside what is true of the flow at her rudder.
+fn own_sides(manifest: &Manifest, diagnosis: &Diagnosis, score: &mut Score) {
+    let (Some(truth), Some(sides)) = (manifest.asymmetry, &diagnosis.sides) else { return };
+    (score.asymmetry, score.sides_differ) = (Some(truth), Some(sides.p < DIFFER));
+    let Some(found) = sides.parameters.iter().find(|p| p.name == "flow.asymmetry") else { return };
+    score.asymmetry_found = Some(found.value);
+    score.asymmetry_covered = found.ci95.map(|[low, high]| {
+        let error = (high - low) / (2.0 * 1.959_964);
+        (found.value - truth).abs() <= 1.644_854 * error
+    });
+}
+
 /// Time common to true and found windows over the time of their union, all runs together.
 fn overlap(truth: &[(String, f64, f64)], found: &[&FoundWindow]) -> f64 {
     let mut runs: Vec<&str> = truth.iter().map(|w| w.0.as_str()).collect();
@@ -479,6 +512,7 @@ mod tests {
             expected: if answers.is_empty() { "NOTHING MISSING" } else { "NAMED" }.into(),
             structure: family.structure().iter().map(ToString::to_string).collect(),
             answers,
+            asymmetry: None,
             files: Default::default(),
         }
     }
@@ -542,6 +576,25 @@ mod tests {
         let hull = judge(&null, &said(named("crossflow")));
         assert_eq!((hull.false_alarm, hull.structural), (Some(false), 1));
         assert_eq!(judge(&null, &said(named("mean_wind"))).false_alarm, Some(true));
+    }
+
+    #[test]
+    fn what_is_said_of_the_two_sides_is_held_against_the_flow_at_the_rudder() {
+        let of = |asymmetry, p: f64, value: f64| {
+            let sides = json!({"p": p, "parameters": [
+                {"name": "rudder.lift0", "value": 1.0, "ci95": [0.0, 2.0]},
+                {"name": "flow.asymmetry", "value": value, "ci95": [value - 0.0196, value + 0.0196]},
+            ]});
+            let said = said(json!({"verdict": "NOTHING MISSING", "findings": [], "sides": sides}));
+            judge(&Manifest { asymmetry, ..manifest(vec![], Family::Tanker) }, &said)
+        };
+        // A standard error of 0.01: the 90 % interval reaches 0.0164 to either side.
+        let s = of(Some(-0.12), 1e-5, -0.104);
+        assert_eq!((s.sides_differ, s.asymmetry_covered, s.asymmetry_found), (Some(true), Some(true), Some(-0.104)));
+        let s = of(Some(-0.12), 1e-3, -0.103);
+        assert_eq!((s.sides_differ, s.asymmetry_covered, s.asymmetry), (Some(false), Some(false), Some(-0.12)));
+        let s = of(None, 1e-5, -0.104);
+        assert_eq!((s.sides_differ, s.asymmetry_found), (None, None), "a ship of polynomials has no such number");
     }
 
     #[test]

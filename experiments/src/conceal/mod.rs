@@ -216,6 +216,8 @@ pub struct Recorded {
     pub rows: Vec<Rows>,
     /// When effects of limited duration acted, in the runs to train on.
     pub windows: Vec<effects::Window>,
+    /// How far her two sides differ ([`Craft::asymmetry`]).
+    pub asymmetry: Option<f64>,
 }
 
 /// A case, made and not yet written.
@@ -346,7 +348,7 @@ fn record(spec: &Spec, effects: Vec<Active>) -> Recorded {
     let noisy = |(i, t): (usize, &Track)| noise.apply(&t.reported, &mut rng(spec.seed, stream::NOISE + i as u64));
     let rows = tracks.iter().enumerate().map(noisy).collect();
     let windows = world.effects.iter().flat_map(|e| e.windows(&plans)).collect();
-    Recorded { plans, tracks, rows, windows }
+    Recorded { plans, tracks, rows, windows, asymmetry: world.craft.asymmetry() }
 }
 
 #[cfg(test)]

@@ -55,6 +55,8 @@ pub struct Manifest {
     pub structure: Vec<String>,
     /// The effects.
     pub answers: Vec<Answer>,
+    /// Half the difference of the flow straightening between her two sides, where she has one ([`super::craft::Craft::asymmetry`]).
+    pub asymmetry: Option<f64>,
     /// SHA-256 of every file of the study.
     pub files: BTreeMap<String, String>,
 }
@@ -218,6 +220,7 @@ impl Case {
             expected: self.expected().to_owned(),
             structure: self.spec.family.structure().iter().map(ToString::to_string).collect(),
             answers: answers.collect(),
+            asymmetry: self.recorded.asymmetry,
             files: files.iter().map(|(name, text)| (name.clone(), digest(text.as_bytes()))).collect(),
         }
     }
