@@ -94,13 +94,24 @@ fn a_calm_basin_is_not_given_wind_and_a_late_gyro_is_found() {
 #[test]
 fn the_sides_of_a_ship_with_one_screw_differ_and_a_sensor_that_was_left_out_is_put_back() {
     let Some(hull) = present(Hull::open("kvlcc2")) else { return };
-    let cases = kvlcc2_diagnosed::left_out(&hull, &kvlcc2_diagnosed::freed(&hull).unwrap()).unwrap();
+    let best = kvlcc2_diagnosed::freed(&hull).unwrap();
+    let cases = kvlcc2_diagnosed::left_out(&hull, &best).unwrap();
     let sides = cases[0].diagnosis.sides.as_ref().unwrap();
     assert!(sides.p < 1e-6, "{sides:?}");
     // Of the ship, not of the gyro that reads too much.
     assert!(sides.parameters.iter().all(|p| ONE_SIDED.contains(&p.name.as_str())), "{sides:?}");
     let propeller = sides.parameters.iter().find(|p| p.name == "propeller.side_force").unwrap();
-    assert!(propeller.ci95[0] > 0.0, "{propeller:?}");
+    assert!(propeller.value > 2.0 * propeller.error, "{propeller:?}");
+    // Taken out of the model, it is told again, and no weather in its place.
+    let alike =
+        kvlcc2_diagnosed::sides_made_alike(&hull, &best, &Agreement::of_study(&hull, kvlcc2_diagnosed::SPAN).unwrap())
+            .unwrap();
+    let again = alike.diagnosis.sides.unwrap();
+    assert!(alike.diagnosis.findings.is_empty() && again.p < 1e-6, "{again:?}");
+    for p in &again.parameters {
+        let before = sides.parameters.iter().find(|q| q.name == p.name).unwrap();
+        assert!((p.value - before.value).abs() < before.ci95[1] - before.value, "{p:?} {before:?}");
+    }
     for (case, term) in cases[1..].iter().zip(PUT_BACK) {
         let named: Vec<&str> = case.diagnosis.findings.iter().map(|f| f.mechanism.as_str()).collect();
         assert_eq!(named, [term], "{}", case.diagnosis.headline);
