@@ -52,6 +52,15 @@ fn a_current_is_named_with_its_set_and_improves_unseen_runs() {
     assert!(d.model.term_names().contains(&"current"));
 }
 
+#[test]
+fn a_wind_stays_a_wind_when_a_current_is_found_beside_it() {
+    // Asked again without the wind, a force fixed on the earth has a steeper slope at nothing than a wind of 14 m/s, whose law bends.
+    let d = case(&[("current.north", 0.1), ("mean_wind.east", 14.0)], &[], 2);
+    let sets: Vec<&[String]> = d.findings.iter().map(|f| f.confidence_set.as_slice()).collect();
+    assert_eq!(sets, [["mean_wind"], ["current"]], "{}", d.headline);
+    assert!((value(&d, "mean_wind.east") - 14.0).abs() < 1.4 && (value(&d, "current.north") - 0.1).abs() < 0.02);
+}
+
 /// A run as a similar ship would sail it, lengths times `k`, at the same Froude number.
 fn scaled(run: &Run, k: f64) -> Run {
     let time = k.sqrt();

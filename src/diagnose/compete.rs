@@ -441,6 +441,21 @@ pub(super) fn swap(accepted: &mut [Accepted], current: &mut Estimate, arena: Are
         let leaders: Vec<&Row> = s.rows.iter().filter(may).collect();
         let Ok((entry, found)) = compete(&s, &leaders, &rest, arena) else { continue };
         if entry.candidate != accepted[i].candidate || entry.extent != accepted[i].extent {
+            // Who is in was estimated to the end, beside what came after it: a newcomer must do better than that, and a force
+            // without a cause better than any cause that comes near.
+            let value = |a: &Accepted, e: &Estimate| {
+                let amplitudes = a.extent.parts().len() * list[a.candidate].columns.len();
+                e.log_posterior - PRICE * amplitudes as f64
+            };
+            let stands_in = |a: &Accepted| list[a.candidate].mechanism.stand_in;
+            let needed = if stands_in(&entry) && !stands_in(&accepted[i]) {
+                (FORM_UNKNOWN * (found.log_posterior - rest.log_posterior)).max(CLOSE)
+            } else {
+                0.0
+            };
+            if value(&entry, &found) - value(&accepted[i], current) <= needed {
+                continue;
+            }
             *current = found;
         }
         accepted[i] = entry;
