@@ -292,6 +292,12 @@ fn rivals(s: &Screen, leaders: &[&Row], list: &[Candidate]) -> Vec<Contender> {
     out
 }
 
+/// How much less than the best of what gains so much log-likelihood a rival may explain and yet be the truer form: the law of a
+/// force is known only so well.
+fn form(gain: f64) -> f64 {
+    (FORM_UNKNOWN * gain).max(CLOSE)
+}
+
 /// Why a competition has no winner.
 pub(super) enum Fall {
     /// What the leader promised is not there once it is refitted, or undoes something else.
@@ -324,8 +330,6 @@ pub(super) fn compete(
             && !undoes(c, e, runs)
     };
     let as_itself = |(r, e, _): &(Contender, Estimate, f64)| plausible(e, &list[r.candidate]);
-    // The law of a force is known only so well: a rival that explains nearly as much may have the truer form.
-    let form = |best: f64| (FORM_UNKNOWN * (best - current.log_posterior)).max(CLOSE);
     let price = |c: &Contender| PRICE * c.amplitude.len() as f64;
     let own = Contender::of(leader);
     let lead = refit(&own, &current.noise, SETTLE, f64::NEG_INFINITY);
@@ -335,8 +339,11 @@ pub(super) fn compete(
     // Behind a leader that stands, a rival that stays further back than any set is wide changes nothing.
     let there = is_there(&first);
     let fall = if there { Fall::Disguised } else { Fall::Faded };
-    let (least, mut field) =
-        if there && as_itself(&first) { (v - form(v), vec![first]) } else { (f64::NEG_INFINITY, Vec::new()) };
+    let (least, mut field) = if there && as_itself(&first) {
+        (v - form(v - current.log_posterior), vec![first])
+    } else {
+        (f64::NEG_INFINITY, Vec::new())
+    };
     for r in rivals(s, leaders, list) {
         let price = price(&r);
         let e = refit(&r, &noise, REFIT, least + price);
@@ -350,7 +357,7 @@ pub(super) fn compete(
     let best = field.first().ok_or(fall)?.2;
     let width = match list[field[0].0.candidate].mechanism.kind {
         Kind::Sensor | Kind::Actuator => CLOSE,
-        Kind::Environment | Kind::Ship => form(best),
+        Kind::Environment | Kind::Ship => form(best - current.log_posterior),
     };
     let near = |(_, _, v): &(Contender, Estimate, f64)| best - v < width;
     // A force without a cause gives way to any cause that comes near.
@@ -444,12 +451,11 @@ pub(super) fn swap(accepted: &mut [Accepted], current: &mut Estimate, arena: Are
             // Who is in was estimated to the end, beside what came after it: a newcomer must do better than that, and a force
             // without a cause better than any cause that comes near.
             let value = |a: &Accepted, e: &Estimate| {
-                let amplitudes = a.extent.parts().len() * list[a.candidate].columns.len();
-                e.log_posterior - PRICE * amplitudes as f64
+                e.log_posterior - PRICE * positions(&e.free, &list[a.candidate], &a.extent).len() as f64
             };
             let stands_in = |a: &Accepted| list[a.candidate].mechanism.stand_in;
             let needed = if stands_in(&entry) && !stands_in(&accepted[i]) {
-                (FORM_UNKNOWN * (found.log_posterior - rest.log_posterior)).max(CLOSE)
+                form(found.log_posterior - rest.log_posterior)
             } else {
                 0.0
             };

@@ -6,7 +6,7 @@ use super::compete::{
     Accepted, Arena, Fall, REFIT, SETTLE, Wald, acceptable, acceptable_beside, backward, compete, positions, swap, wald,
 };
 use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior, passes};
-use super::evidence::{KINDS, reach};
+use super::evidence::{KINDS, Scatter};
 use super::filter::{Column, Probe, Run};
 use super::forces::forces_of;
 use super::locate::{EquationShare, Location, Place, Push, RegionTest, Window, locate, sharpened};
@@ -1006,9 +1006,7 @@ fn describe(
     // pulls it apart.
     let n = found.free.len();
     let all = Wald::of(found, after.widened.inverse.view((0, 0), (n, n)).into_owned());
-    let kinds = kinds(runs);
-    let scatter = after.evidence.scatter(&after.widened, &kinds);
-    let reach = reach(kinds.iter().collect::<BTreeSet<_>>().len());
+    let Scatter { factors, reach } = after.evidence.scatter(&after.widened, &kinds(runs));
     let mut out = Vec::new();
     for a in accepted {
         let c = &list[a.candidate];
@@ -1020,7 +1018,7 @@ fn describe(
                 let col = &c.columns[i % k];
                 let p = &found.model.parameters[col.parameter];
                 let v = value[i] * col.scale;
-                let error = covariance[(i, i)].max(0.0).sqrt() * scatter[places[i]] * col.scale;
+                let error = covariance[(i, i)].max(0.0).sqrt() * factors[places[i]] * col.scale;
                 let name = &c.names[i % k];
                 let name = match &a.extent {
                     Extent::Each(sessions) => format!("{name} [{}]", sessions[i / k]),

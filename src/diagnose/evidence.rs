@@ -98,7 +98,7 @@ impl Evidence {
     /// errors: the roots of the diagonal of `A^-1 B A^-1` over that of `A^-1`, with A the information, `B = C/(C-1) sum (g_c -
     /// mean g)(g_c - mean g)^T` and `g_c` the scores summed over the runs of group c of C (Liang & Zeger 1986, Biometrika 73,
     /// eq. 2.7). A model whose form is not the ship's errs alike in all runs of a kind.
-    pub fn scatter(&self, base: &Base, groups: &[&str]) -> Vec<f64> {
+    pub fn scatter(&self, base: &Base, groups: &[&str]) -> Scatter {
         let n = base.columns.len();
         let mut sums: BTreeMap<&str, DVector<f64>> = BTreeMap::new();
         for (group, run) in groups.iter().zip(&self.runs) {
@@ -106,8 +106,9 @@ impl Evidence {
             *sums.entry(group).or_insert_with(|| DVector::zeros(n)) += score;
         }
         let count = sums.len() as f64;
+        let reach = reach(sums.len());
         if sums.len() < 2 {
-            return vec![1.0; n];
+            return Scatter { factors: vec![1.0; n], reach };
         }
         let mean = sums.values().fold(DVector::zeros(n), |a: DVector<f64>, g| a + g) / count;
         let mut variances = DVector::zeros(n);
@@ -115,7 +116,8 @@ impl Evidence {
             let step = &base.inverse * (g - &mean);
             variances += step.component_mul(&step) * (count / (count - 1.0));
         }
-        (0..n).map(|i| (variances[i] / base.inverse[(i, i)]).sqrt()).map(|f| if f > 1.0 { f } else { 1.0 }).collect()
+        let factor = |i: usize| (variances[i] / base.inverse[(i, i)]).sqrt();
+        Scatter { factors: (0..n).map(factor).map(|f| if f > 1.0 { f } else { 1.0 }).collect(), reach }
     }
 
     /// Tests a group of columns, common to all runs, after the base has had its say.
@@ -191,6 +193,15 @@ impl Evidence {
         }
         base.test(&g, &h, &c)
     }
+}
+
+/// How far estimates scatter beyond their information.
+#[derive(Clone, Debug)]
+pub struct Scatter {
+    /// Factors on the standard errors, in the order of the base's columns.
+    pub factors: Vec<f64>,
+    /// Standard errors, multiplied so, that a 95 % interval reaches to either side.
+    pub reach: f64,
 }
 
 /// A block of columns that is always fitted along.
@@ -280,7 +291,7 @@ pub const KINDS: usize = 5;
 /// Standard errors that a 95 % interval reaches to either side once scatter among so many groups of runs has had its say on them
 /// ([`Evidence::scatter`]): Student's t with one degree of freedom less than groups, as an error that few tell is itself uncertain
 /// (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
-pub fn reach(groups: usize) -> f64 {
+fn reach(groups: usize) -> f64 {
     let degrees = groups.max(KINDS) - 1;
     StudentsT::new(0.0, 1.0, degrees as f64).map_or(1.96, |t| t.inverse_cdf(0.975))
 }
@@ -426,13 +437,13 @@ mod tests {
         let groups = ["turn", "turn", "turn", "turn", "zigzag", "zigzag", "zigzag", "zigzag"];
         let factor = |pull: f64| {
             let e = of(pull);
-            e.scatter(&e.base(&[0], &[0.0], &[0.0]), &groups)[0]
+            e.scatter(&e.base(&[0], &[0.0], &[0.0]), &groups).factors[0]
         };
         assert_eq!(factor(0.0), 1.0);
         // B = 2 (4^2 + 4^2), A = 8: the variance is 64/64 where the information says 1/8.
         assert!((factor(1.0) - 8.0_f64.sqrt()).abs() < 1e-12);
         let e = of(1.0);
-        assert_eq!(e.scatter(&e.base(&[0], &[0.0], &[0.0]), &["all"; 8]), [1.0]);
+        assert_eq!(e.scatter(&e.base(&[0], &[0.0], &[0.0]), &["all"; 8]).factors, [1.0]);
     }
 
     #[test]

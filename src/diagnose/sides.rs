@@ -4,13 +4,12 @@
 use super::compete::Wald;
 use super::conclude::Amplitude;
 use super::estimate::{Estimate, FreeParameter};
-use super::evidence::{chi_squared_p, reach};
+use super::evidence::{Scatter, chi_squared_p};
 use super::screen::Screen;
 use crate::parameter::Parity;
 use crate::terms::{self, Group};
 use nalgebra::DMatrix;
 use serde::Serialize;
-use std::collections::BTreeSet;
 
 /// A test of everything in the base that breaks mirror symmetry.
 #[derive(Clone, Debug, Serialize)]
@@ -48,10 +47,9 @@ pub(super) fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -
     let (precision, pull): (Vec<f64>, Vec<f64>) = found.free.iter().enumerate().map(terms).unzip();
     let free = s.evidence.base(&(0..found.free.len()).collect::<Vec<_>>(), &precision, &pull);
     let step = free.step();
-    let scatter = s.evidence.scatter(&free, kinds);
-    let reach = reach(kinds.iter().collect::<BTreeSet<_>>().len());
-    let n = scatter.len();
-    let mut all = Wald::of(found, DMatrix::from_fn(n, n, |i, j| free.inverse[(i, j)] * scatter[i] * scatter[j]));
+    let Scatter { factors, reach } = s.evidence.scatter(&free, kinds);
+    let n = factors.len();
+    let mut all = Wald::of(found, DMatrix::from_fn(n, n, |i, j| free.inverse[(i, j)] * factors[i] * factors[j]));
     all.value += step;
     let tested = all.part(&odd);
     let amplitude = |(k, i): (usize, &usize)| {

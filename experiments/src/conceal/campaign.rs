@@ -68,6 +68,9 @@ const CONTRASTED: [&str; 12] = [
 /// The arm of the campaign with other hulls than the one that thresholds were set on.
 const OTHER_HULLS: &str = "hulls";
 
+/// The hulls in it.
+const OTHERS: [Family; 2] = [Family::Tanker, Family::Flap];
+
 /// Seed of a case: from the campaign's seed and the key, so that no case moves when another is added.
 fn seed(campaign: u64, key: &str) -> u64 {
     let hex = digest(format!("{campaign} {key}").as_bytes());
@@ -169,7 +172,7 @@ pub fn plan(campaign: u64) -> Vec<Planned> {
             }
         }
     }
-    for family in [Family::Tanker, Family::Flap] {
+    for family in OTHERS {
         let f = family.name();
         let base = |seed: u64| Spec::null(family, seed);
         for (background, count) in [(Background::Ordinary, 10), (Background::Gusts, 5), (Background::Coloured, 5)] {
@@ -267,6 +270,14 @@ fn right_side(score: &Score) -> Option<bool> {
     let product = score.asymmetry_found? * score.asymmetry?;
     (score.sides_differ?).then_some(product > 0.0)
 }
+
+/// The families as figures show them.
+const SHOWN: [(&str, Color, Family); 4] = [
+    ("HD truth", BLUE, Family::Hd),
+    ("MMG truth", ORANGE, Family::Mmg),
+    ("tanker", SKY, Family::Tanker),
+    ("flapped rudder", BASELINE, Family::Flap),
+];
 
 /// A way to answer what is missing.
 struct Way {
@@ -419,26 +430,29 @@ pub fn summary(all: &[Score]) -> Vec<Line> {
         Share::of(arm("design").map(|s| s.wrong_confident)),
         &at_most(0.1),
     );
-    for family in [Family::Tanker, Family::Flap] {
+    let mut line = |family: Family, what: &str, target: &str, found: Option<Share>, met: &dyn Fn(f64) -> bool| {
+        share(&format!("{}: {what}", family.name()), target, found, met);
+    };
+    for family in OTHERS {
         let here = || arm(OTHER_HULLS).filter(move |s| s.family == family.name() && reached(s));
-        let mut line = |what: &str, target: &str, found: Option<Share>, met: &dyn Fn(f64) -> bool| {
-            share(&format!("{}: {what}", family.name()), target, found, met);
-        };
-        line("false alarms on nulls", "<= 10 %", Share::of(here().map(|s| s.false_alarm)), &at_most(0.1));
-        line("detection at SNR 12", ">= 98 %", Share::of(here().map(|s| s.detected)), &at_least(0.98));
-        line("first name right, given detection", ">= 80 %", Share::of(here().map(|s| s.first_right)), &at_least(0.8));
-        line("truth in the confidence set", ">= 90 %", Share::of(here().map(|s| s.in_set)), &at_least(0.9));
-        line("true size in the 90 % interval", "86 to 94 %", Share::of(here().map(|s| s.covered)), &calibrated);
+        line(family, "false alarms on nulls", "<= 10 %", Share::of(here().map(|s| s.false_alarm)), &at_most(0.1));
+        line(family, "detection at SNR 12", ">= 98 %", Share::of(here().map(|s| s.detected)), &at_least(0.98));
+        line(
+            family,
+            "first name right, given detection",
+            ">= 80 %",
+            Share::of(here().map(|s| s.first_right)),
+            &at_least(0.8),
+        );
+        line(family, "truth in the confidence set", ">= 90 %", Share::of(here().map(|s| s.in_set)), &at_least(0.9));
+        line(family, "true size in the 90 % interval", "86 to 94 %", Share::of(here().map(|s| s.covered)), &calibrated);
     }
     for family in LOPSIDED {
         let here = || lopsided(scores, family);
-        let mut line = |what: &str, target: &str, found: Option<Share>, met: &dyn Fn(f64) -> bool| {
-            share(&format!("{}: {what}", family.name()), target, found, met);
-        };
-        line("her two sides said to differ", "-", Share::of(here().map(|s| s.sides_differ)), &|_| true);
-        line("of those, with the right sign of the flow's", "-", Share::of(here().map(right_side)), &|_| true);
+        line(family, "her two sides said to differ", "-", Share::of(here().map(|s| s.sides_differ)), &|_| true);
+        line(family, "of those, with the right sign of the flow's", "-", Share::of(here().map(right_side)), &|_| true);
         let covered = Share::of(here().map(|s| s.asymmetry_covered));
-        line("true asymmetry of the flow in the 90 % interval", "86 to 94 %", covered, &calibrated);
+        line(family, "true asymmetry of the flow in the 90 % interval", "86 to 94 %", covered, &calibrated);
     }
     for (family, of) in [("hd", "nulls of the HD family"), ("mmg", "nulls of the MMG family")] {
         for way in &WAYS[1..] {
@@ -457,7 +471,7 @@ pub fn summary(all: &[Score]) -> Vec<Line> {
         let met = found.map(met);
         lines.push(Line { what: what.into(), target: target.into(), found: found.map(Found::Number), met });
     };
-    for family in [Family::Tanker, Family::Flap] {
+    for family in OTHERS {
         let sizes = arm(OTHER_HULLS).filter(|s| s.family == family.name() && reached(s)).map(|s| s.size_error);
         number(&format!("{}: median error of the size", family.name()), "<= 0.10", median(sizes), &at_most(0.1));
     }
@@ -532,11 +546,7 @@ fn sides(scores: &[Score]) -> Panel {
         Axis::new("found [-]"),
     )
     .with(Layer::line("found is true", LIMIT, ends.map(|v| (v, v))));
-    for (name, color, family) in [
-        ("MMG truth", ORANGE, Family::Mmg),
-        ("tanker", SKY, Family::Tanker),
-        ("flapped rudder", BASELINE, Family::Flap),
-    ] {
+    for (name, color, family) in SHOWN.into_iter().filter(|shown| LOPSIDED.contains(&shown.2)) {
         let points = lopsided(scores, family).filter_map(|s| Some((s.asymmetry?, s.asymmetry_found?)));
         panel = panel.with(Layer::scatter(name, color, points));
     }
@@ -608,12 +618,7 @@ pub fn figure(scores: &[Score]) -> Figure {
         Axis::categories("", counted.iter().map(|c| c.0)),
         Axis::new("share of cases").range(0.0, 1.0),
     );
-    for (name, color, family) in [
-        ("HD truth", BLUE, Family::Hd),
-        ("MMG truth", ORANGE, Family::Mmg),
-        ("tanker", SKY, Family::Tanker),
-        ("flapped rudder", BASELINE, Family::Flap),
-    ] {
+    for (name, color, family) in SHOWN {
         let of_hull = |(_, of): &(&str, fn(&Score) -> Option<bool>)| {
             bar(Share::of(hulls.iter().filter(|s| s.family == family.name()).map(|s| of(s))))
         };

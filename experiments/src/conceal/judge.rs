@@ -411,10 +411,18 @@ fn size(answer: &Answer, finding: &Finding) -> Option<(f64, Option<bool>)> {
     let along: f64 = pairs.iter().map(|(t, p)| (p.value - t) * t / truth).sum();
     let mut variance = 0.0;
     for (t, p) in &pairs {
-        let Some([low, high]) = p.ci95 else { return Some((error, None)) };
-        variance += ((high - low) / (2.0 * 1.959_964) * t / truth).powi(2);
+        let Some(ci95) = p.ci95 else { return Some((error, None)) };
+        variance += (standard_error(ci95) * t / truth).powi(2);
     }
-    Some((error, Some(along.abs() <= 1.644_854 * variance.sqrt())))
+    Some((error, Some(along.abs() <= NINETY * variance.sqrt())))
+}
+
+/// Standard errors that a 90 % interval reaches to either side.
+const NINETY: f64 = 1.644_854;
+
+/// The standard error behind a 95 % interval, as if normal.
+fn standard_error([low, high]: [f64; 2]) -> f64 {
+    (high - low) / (2.0 * 1.959_964)
 }
 
 /// Below this chance a diagnosis says that port and starboard of the ship differ.
@@ -426,10 +434,7 @@ fn own_sides(manifest: &Manifest, diagnosis: &Diagnosis, score: &mut Score) {
     (score.asymmetry, score.sides_differ) = (Some(truth), Some(sides.p < DIFFER));
     let Some(found) = sides.parameters.iter().find(|p| p.name == "flow.asymmetry") else { return };
     score.asymmetry_found = Some(found.value);
-    score.asymmetry_covered = found.ci95.map(|[low, high]| {
-        let error = (high - low) / (2.0 * 1.959_964);
-        (found.value - truth).abs() <= 1.644_854 * error
-    });
+    score.asymmetry_covered = found.ci95.map(|ci| (found.value - truth).abs() <= NINETY * standard_error(ci));
 }
 
 /// Time common to true and found windows over the time of their union, all runs together.
