@@ -122,7 +122,7 @@ struct Innovation<S> {
     variance: S,
 }
 
-/// Innovations of one run under the linearised step maps, for a noise or for eight at once: a Kalman filter without
+/// Innovations of one run under the linearised step maps, for a noise or for four at once: a Kalman filter without
 /// sensitivities. What lies beyond `gate` standard deviations is an outlier, from which the filter learns nothing.
 fn innovations<S: Scalar>(
     run: &Run,

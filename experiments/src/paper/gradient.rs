@@ -333,7 +333,7 @@ fn course(case: &Case, model: &Model, runs: &[FitRun], way: &Way) -> Result<Cour
     })
 }
 
-/// Time of a gradient over that of a cost, both eight runs side by side.
+/// Time of a gradient over that of a cost, both four runs side by side.
 fn gradient_times(model: &Model, runs: &[FitRun]) -> Result<[(&'static str, f64); 4], PaperError> {
     let p: Vec<f64> = model.free().iter().map(|i| model.parameters[*i].value).collect();
     let shortest = |work: &dyn Fn() -> bool| {
