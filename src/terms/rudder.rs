@@ -54,7 +54,7 @@ impl Rudder {
     }
     /// Lift and drag coefficients at any angle of attack `a` in (-pi, pi] \[rad\].
     ///
-    /// Of the lift, the fraction `lost` goes as the angle passes `onset` \[rad\] by [`STALL_WIDTH`].
+    /// The fraction `lost` of the lift vanishes as the angle rises from `onset` \[rad\] by [`STALL_WIDTH`].
     pub fn coefficients<S: Scalar>(p: &[S], a: S, [lost, onset]: [S; 2]) -> (S, S) {
         let inside = a.clamp(-PLATE_LIMIT, PLATE_LIMIT);
         let plate = smooth::smooth_step((a.abs() - CURVE_LIMIT) / (PLATE_LIMIT - CURVE_LIMIT));

@@ -1,5 +1,5 @@
 //! Load of the measured wind on the part of the ship above water.
-//! The wind channel gives speed and direction; what is unknown are the three load coefficients. Wind nobody measured is `mean_wind`.
+//! The wind channel gives speed and direction; unknown are the three load coefficients. An unmeasured wind is the term `mean_wind`.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
@@ -44,8 +44,8 @@ fn air_load<S: Scalar>(ship: &Ship, state: &State<S>, wind: [S; 2], c: [S; 3]) -
     }
 }
 
-/// What a wind (north, east) \[m/s\], blowing to, adds to the load of still air. Still air is part of the resistance of
-/// the calm-water model, so that no wind is no force.
+/// The load of a wind that blows towards (north, east) \[m/s\] less the load of still air, which is part of the resistance
+/// of the calm-water model. No wind gives no force.
 pub(super) fn wind_load<S: Scalar>(ship: &Ship, state: &State<S>, wind: [S; 2], c: [S; 3]) -> Force<S> {
     air_load(ship, state, wind, c) + air_load(ship, state, [S::zero(); 2], c) * -S::one()
 }
@@ -54,12 +54,12 @@ static INFO: TermInfo = TermInfo {
     name: "wind",
     title: "measured wind",
     group: Group::Environment,
-    equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the same in still air",
+    equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the load in still air",
     source: "cosine and sine form, C_X = -c_x cos g, C_Y = c_y sin g, C_N = c_n sin 2g, as in public MMG codes",
     needs: &["wind"],
     mechanisms: &[Mechanism {
         name: "wind",
-        title: "wind, as the anemometer recorded it",
+        title: "wind recorded by the anemometer",
         kind: Kind::Environment,
         parameters: &["drag", "side", "yaw"],
         companions: &[],
