@@ -9,8 +9,8 @@ use std::process::Command;
 use std::sync::Mutex;
 use std::time::Duration;
 
-use trimtab_experiments::conceal::campaign::{SEED, ci_slice, plan};
-use trimtab_experiments::conceal::judge::Score;
+use trimtab_experiments::conceal::campaign::plan::{SEED, ci_slice, plan};
+use trimtab_experiments::conceal::judge::score::Score;
 use trimtab_experiments::conceal::runner::Runner;
 
 /// False alarms among the 12 nulls.

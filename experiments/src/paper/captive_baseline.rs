@@ -9,8 +9,9 @@
 
 use super::PaperError;
 use crate::truth::captive::{Range, Row, fit_resistance, fit_side_force, propeller_runs, rudder_sweep, towing};
+use crate::truth::integrate::trimmed_rate;
 use crate::truth::ships::ShipId;
-use crate::truth::{Truth, trimmed_rate};
+use crate::truth::simulator::Truth;
 use nalgebra::{DMatrix, DVector};
 use trimtab::model::Model;
 use trimtab::state::{Inputs, State};
@@ -122,7 +123,7 @@ fn polynomial(points: &[RudderPoint], degree: usize, value: impl Fn(&RudderPoint
 mod tests {
     use super::super::case::initial_model;
     use super::*;
-    use crate::truth::Force;
+    use crate::truth::motion::Force;
     use trimtab::physics::Form;
     use trimtab::terms::rudder::Rudder;
 

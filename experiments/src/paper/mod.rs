@@ -6,6 +6,7 @@
 
 pub mod captive_baseline;
 pub mod case;
+pub mod coverage;
 pub mod curves;
 pub mod distributions;
 pub mod gradient;

@@ -2,9 +2,10 @@
 //! It says nothing of how well anything is fitted.
 
 use super::case::Case;
+use super::coverage::{printed_statistics, statistics};
 use super::sheet::{cell, save};
 use super::{Artefact, PaperError};
-use crate::truth::dataset::{Split, paper_statistics, period, statistics};
+use crate::truth::dataset::{Split, period};
 use std::fmt::Write;
 use std::path::Path;
 use trimtab::report::{Axis, DASH, FITTED, Figure, GREY, Layer, Marker, Panel, Table, fixed};
@@ -37,7 +38,7 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
         for (split, part) in PARTS {
             let empty = PaperError::Empty { ship: case.ship.name(), what: "runs in one part of the split" };
             let ours = statistics(&case.runs, split).ok_or(empty)?;
-            let paper = paper_statistics(case.ship, split);
+            let paper = printed_statistics(case.ship, split);
             let slot = groups.len() as f64;
             groups.push(format!("{} {part}", &case.label()[5..]));
             for (i, ((name, unit, ours), (_, _, paper))) in
