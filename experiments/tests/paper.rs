@@ -9,7 +9,8 @@ use trimtab::fit::constraints;
 use trimtab::physics::Form;
 use trimtab::simulate::Integration;
 use trimtab_experiments::paper::case::{Case, Setup, initial_model};
-use trimtab_experiments::paper::{ARTEFACTS, published::published};
+use trimtab_experiments::paper::list::ARTEFACTS;
+use trimtab_experiments::paper::published::published;
 use trimtab_experiments::truth::dataset::{Run, dataset};
 use trimtab_experiments::truth::ships::ShipId;
 
