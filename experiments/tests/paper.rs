@@ -1,5 +1,5 @@
-//! Promises of the paper's tables and figures on a small part of ship A's data set: they repeat, they are complete, the fit gains.
-//! How large the gains on the whole data set are is printed by the binary `paper` and asserted nowhere.
+//! The paper's tables and figures on a small part of ship A's data set: they repeat, they are complete, and the fit gains.
+//! The gains on the whole data set are printed by the binary `paper` and asserted nowhere.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -34,7 +34,7 @@ fn tables_and_figures_repeat_bit_by_bit_on_one_and_on_two_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let text: Vec<String> = pool.install(|| {
             let cases = [small_case(&runs)];
-            // The last two make many fits; what they share with the others is tested here.
+            // The last two make many fits and share their code with these.
             ARTEFACTS[..6].iter().map(|artefact| (artefact.make)(&cases, folder.path()).unwrap()).collect()
         });
         (text, files(folder.path()))
