@@ -1,5 +1,5 @@
 //! A model: a ship, a list of terms, and one vector of parameters; from these the equations of motion.
-//! It holds no recording and knows no cost: it only says how the ship accelerates.
+//! It holds no recording and no cost: it only gives the accelerations of the ship.
 
 use crate::error::suggestion;
 use crate::parameter::ParameterInfo;
@@ -67,7 +67,7 @@ pub enum ModelError {
         /// A near name, as part of a sentence.
         suggestion: String,
     },
-    /// A value that a parameter cannot take.
+    /// An impossible value of a parameter.
     #[error("parameter `{name}` = {value}: {expected}")]
     BadValue {
         /// Dotted name.
@@ -87,7 +87,7 @@ pub enum ModelError {
     },
 }
 
-/// A prior on a parameter: what is believed of it before the data.
+/// A prior on a parameter: what is known of it before the data.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Prior {
@@ -97,16 +97,16 @@ pub struct Prior {
     pub sd: f64,
 }
 
-/// One parameter of a model: what it is, its value, and whether a fit may move it.
+/// One parameter of a model: its description, its value, and whether a fit may change it.
 #[derive(Clone, Debug)]
 pub struct Parameter {
     /// Dotted name, `term.parameter`.
     pub name: String,
-    /// What is known of it.
+    /// Its description in the catalogue.
     pub info: &'static ParameterInfo,
     /// Its value.
     pub value: f64,
-    /// Whether a fit may move it.
+    /// Whether a fit may change it.
     pub free: bool,
     /// Lower bound for the fit.
     pub lower: f64,
@@ -114,7 +114,7 @@ pub struct Parameter {
     pub upper: f64,
     /// Prior for the fit.
     pub prior: Option<Prior>,
-    /// A natural size: the solver's unit for it.
+    /// Size of a relevant change: the solver's unit for it.
     pub scale: f64,
 }
 
@@ -160,7 +160,7 @@ impl std::fmt::Debug for Model {
     }
 }
 
-/// A model file: terms and parameter settings; everything else comes from the terms and the ship.
+/// A model file: terms and parameter settings; every other value comes from the terms and the ship.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelFile {
@@ -169,7 +169,7 @@ pub struct ModelFile {
     /// Low-speed form, `paper` or `regular`.
     #[serde(default)]
     pub form: Form,
-    /// Terms beyond the base (hull, resistance, propeller, rudder).
+    /// Terms beyond the base terms (flow, hull, resistance, propeller, rudder).
     #[serde(default)]
     pub terms: Vec<String>,
     /// Settings by dotted parameter name.
@@ -180,14 +180,14 @@ pub struct ModelFile {
     pub sessions: BTreeMap<String, BTreeMap<String, f64>>,
 }
 
-/// What a model file may say of one parameter; what is left out comes from the term.
+/// What a model file may say of one parameter; a key left out takes the term's value.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Setting {
     /// Value, and start of a fit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// Whether a fit may move it.
+    /// Whether a fit may change it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free: Option<bool>,
     /// Lower bound.
@@ -251,7 +251,7 @@ impl Model {
         Ok(model)
     }
 
-    /// The model with every term of the catalogue, those it lacked at their defaults.
+    /// The model with every term of the catalogue; added terms have their default parameters.
     ///
     /// # Errors
     /// Those of [`Model::add_term`].
@@ -263,7 +263,7 @@ impl Model {
         Ok(model)
     }
 
-    /// Adds a term with its default parameters, all fixed; adding one that is there already changes nothing.
+    /// Adds a term with its default parameters, all fixed; adding a term twice changes nothing.
     pub fn add_term(&mut self, name: &str) -> Result<(), ModelError> {
         if self.terms.iter().any(|t| t.term.info().name == name) {
             return Ok(());
@@ -401,7 +401,7 @@ impl Model {
         }
     }
 
-    /// The same model, and the same parameter vector, evaluating only the terms for which `keep` holds.
+    /// This model with its whole parameter vector, but evaluating only the terms for which `keep` holds.
     ///
     /// Leaving out terms at their neutral parameters changes no result, only the time it takes.
     pub fn restricted(&self, keep: impl Fn(&str) -> bool) -> Self {

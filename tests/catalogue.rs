@@ -1,4 +1,4 @@
-//! What every term of the catalogue must keep to, asserted over the whole catalogue: a new term is tested the moment it is listed.
+//! Laws of every term, asserted over the whole catalogue: a new term is tested as soon as it is listed.
 //! Laws of the motion as a whole are in `laws.rs`; published numbers are in `reference.rs`.
 
 // The lints that spare #[test] functions do not see the helpers between them.
@@ -49,7 +49,7 @@ const POINT: usize = STATES + 12;
 const SIZES: [f64; POINT] =
     [10.0, 10.0, 0.3, 1.0, 1.0, 0.01, 1.0, 1.0, 0.1, 5.0, 5.0, 0.3, 0.3, 0.5, 0.5, 0.1, 3e-3, 0.3];
 
-/// A point in an environment where every channel is at work.
+/// A point in an environment where every channel differs from neutral.
 fn point(u: f64, v: f64, r: f64, n: f64, delta: f64, psi: f64) -> [f64; POINT] {
     [120.0, -40.0, psi, u, v, r, 9.3, n, delta, 6.0, -3.5, 0.31, -0.22, 0.7, 0.4, 0.45, 4e-3, 0.6]
 }
@@ -60,8 +60,8 @@ fn inputs_of<S: Scalar>(x: &[S]) -> Inputs<S> {
     Inputs { t, n, delta, wind: [w0, w1], current: [c0, c1], waves: [h0, h1], draught_to_depth, bank, thruster }
 }
 
-/// Everything a term can act on: rates, report of the sensors, and the driven actuators, at a point `x` followed by the
-/// parameters. Actuators reach the point through a short history, so that lags have something to do.
+/// All quantities a term can change: rates, sensor report and actuators, at a point `x` followed by the parameters. Actuators
+/// reach the point through a short history, so that lags act.
 const OUTPUTS: usize = 2 * STATES + 2;
 fn outputs<S: Number<Coefficient = S>>(model: &Model, x: &[S]) -> [S; OUTPUTS] {
     let dynamics = Dynamics::new(model, x[POINT..].to_vec());
@@ -100,7 +100,7 @@ fn everywhere() -> Vec<[f64; POINT]> {
             }
         }
     }
-    // The same in a neutral environment, where inputs of zero must not be special.
+    // Also in a neutral environment, where inputs of zero must not be special.
     let calm = points.iter().map(|p| {
         let mut p = *p;
         p[STATES + 3..].fill(0.0);
@@ -136,7 +136,7 @@ fn gradient_variables(x: &[f64], first: usize) -> Vec<Gradient> {
 }
 
 #[test]
-fn names_are_unique_and_every_parameter_says_what_it_is() {
+fn names_are_unique_and_every_parameter_is_described() {
     let plain = |s: &str| {
         s.starts_with(|c: char| c.is_ascii_alphabetic())
             && s.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
@@ -162,7 +162,7 @@ fn names_are_unique_and_every_parameter_says_what_it_is() {
             assert!(p.lower < p.upper, "{name}");
             assert!(scale.is_finite() && scale > 0.0, "{name} has scale {scale}");
             assert!(spread > 0.0, "{name} has prior sd {spread}");
-            // The ship file says which way the screw turns, and with it to which side it walks.
+            // The ship file gives the sense of rotation of the screw, and so the side of its side force.
             let handed = name == "propeller_walk.astern";
             if p.parity == Parity::Odd && !handed {
                 assert_eq!(p.lower, -p.upper, "{name} is one-sided, so that its bounds must mirror");
@@ -181,7 +181,7 @@ fn a_term_at_its_defaults_changes_no_bit() {
         for at in everywhere().iter().chain(&generic()) {
             let expected = outputs(&base, &with_parameters(&base, at));
             let found = outputs(&with, &with_parameters(&with, at));
-            // Bits but for the sign of zero.
+            // Equal bits except for the sign of zero.
             assert_eq!(found, expected, "{term} at its defaults acts at {at:?}");
         }
     }
@@ -230,7 +230,7 @@ fn every_term_is_finite_with_finite_derivatives_everywhere() {
 }
 
 #[test]
-fn a_parameter_that_acts_by_force_alone_changes_no_output_any_other_way() {
+fn a_force_parameter_changes_rates_through_its_force_only() {
     let mut seen = BTreeSet::new();
     for term in names() {
         let model = probed(term);
@@ -392,7 +392,7 @@ fn eight_lanes_and_nested_duals_give_the_same_numbers() {
     }
 }
 
-/// A point seen in a mirror that swaps port and starboard.
+/// The mirror image of a point: port and starboard swapped.
 fn mirrored(x: &[f64], model: &Model) -> Vec<f64> {
     let odd = [1, 2, 4, 5, STATES + 2, STATES + 4, STATES + 6, STATES + 8, STATES + 10, STATES + 11];
     x.iter()
@@ -435,7 +435,7 @@ fn east_of(name: &str, model: &Model) -> Option<usize> {
     Some(model.index(&partner).unwrap_or_else(|| panic!("{name} has no partner {partner}")))
 }
 
-/// The same situation with north chosen another way: everything that has a direction on earth is turned by `angle`.
+/// The point with every direction on the earth turned by `angle`.
 fn turned(x: &[f64], model: &Model, angle: f64) -> Vec<f64> {
     let (sin, cos) = angle.sin_cos();
     let mut y = x.to_vec();

@@ -1,5 +1,5 @@
-//! Laws of the motion as a whole: order of the integrators, uniform current, energy, and the signs that seamanship knows.
-//! What each term must keep to on its own is asserted over the catalogue in `catalogue.rs`.
+//! Laws of the motion as a whole: order of the integrators, uniform current, energy, and signs known from seamanship.
+//! Laws of single terms are asserted over the catalogue in `catalogue.rs`.
 
 // The lints that spare #[test] functions do not see the helpers between them.
 #![allow(clippy::unwrap_used, clippy::panic)]
@@ -64,7 +64,7 @@ fn euler_converges_with_order_one_and_rk4_with_order_four() {
     let terms = ["current", "wind", "crossflow", "roll"];
     let values =
         [("current.north", 0.4), ("wind.side", 0.8), ("crossflow.drag", 0.3), ("roll.yaw", 0.2), ("rudder.lift1", 2.0)];
-    // A rudder and an engine that lag run on between samples, and not straight.
+    // Rudder and engine with a lag move between samples, and not linearly.
     let lags = [("rudder_lag.time", 3.0), ("engine_lag.time", 8.0)];
     let prompt = model(Form::Paper, &terms, &values);
     let late =
@@ -100,7 +100,7 @@ fn a_uniform_current_adds_only_its_own_turning_in_body_axes() {
             for i in 0..STATES {
                 assert!((found[i] - expected[i]).abs() < 1e-14, "rate {i}: {} {}", found[i], expected[i]);
             }
-            // A current that was recorded is the same current.
+            // A recorded current acts alike.
             assert_eq!(rates(&calm, [0.0, 0.0, psi, u + along, v + across, r], &recorded), found);
         }
     }
@@ -175,7 +175,7 @@ fn both_forms_agree_ahead_at_small_drift_and_the_sternway_term_leads_from_one_to
         for i in 3..STATES {
             assert_eq!(a[i].re, b[i].re, "rate {i} at u = {u}");
             for j in 3..STATES {
-                // U = sqrt(u^2 + small^2) for u is all that differs.
+                // The only difference is U = sqrt(u^2 + small^2) for u.
                 let close = 1e-3 * (a[i].eps[j].abs() + b[i].eps[j].abs());
                 assert!((a[i].eps[j] - b[i].eps[j]).abs() <= close, "d rate {i} / d {j} at u = {u}");
             }
@@ -188,7 +188,7 @@ fn both_forms_agree_ahead_at_small_drift_and_the_sternway_term_leads_from_one_to
 }
 
 #[test]
-fn the_regular_form_is_the_same_ship_whichever_way_it_moves_at_zero_turn() {
+fn the_regular_form_is_fore_aft_symmetric_without_yaw_rate() {
     let m = model(Form::Regular, &[], &[]);
     let inputs = Inputs::actuators(0.0, 0.0, 0.0);
     for (u, v) in [(2.0, 0.0), (2.0, 0.4), (0.5, -1.0)] {
@@ -238,7 +238,7 @@ fn strip_integrals_are_those_of_a_fine_quadrature() {
 }
 
 #[test]
-fn cross_flow_drag_weighs_the_turning_apart_in_force_and_moment() {
+fn cross_flow_drag_weighs_the_yaw_rate_separately_in_force_and_moment() {
     let of = |turn: [f64; 2], r: f64| {
         let set = [("crossflow.drag", 1.0), ("crossflow.turn_force", turn[0]), ("crossflow.turn_moment", turn[1])];
         let m = model(Form::Paper, &["crossflow"], &set);
@@ -288,7 +288,7 @@ fn a_rate_limited_rudder_never_exceeds_its_rate_and_arrives() {
 }
 
 #[test]
-fn wind_pushes_where_it_blows_and_a_measured_wind_is_the_same_as_an_unmeasured_one() {
+fn wind_pushes_to_leeward_and_measured_and_unmeasured_wind_have_equal_loads() {
     let m = model(Form::Paper, &["wind"], &[("wind.drag", 0.7), ("wind.side", 0.8), ("wind.yaw", 0.1)]);
     let guess =
         |north, east| model(Form::Paper, &["mean_wind"], &[("mean_wind.north", north), ("mean_wind.east", east)]);
@@ -310,7 +310,7 @@ fn wind_pushes_where_it_blows_and_a_measured_wind_is_the_same_as_an_unmeasured_o
 }
 
 #[test]
-fn signs_are_those_that_seamen_know() {
+fn forces_have_the_signs_known_from_seamanship() {
     let rest = [0.0; STATES];
     let ahead = [0.0, 0.0, 0.0, 5.0, 0.0, 0.0];
     let astern_rpm = Inputs::actuators(0.0, -2.0, 0.0);
@@ -347,7 +347,7 @@ fn signs_are_those_that_seamen_know() {
 }
 
 #[test]
-fn a_lagged_heel_is_its_cause_some_seconds_ago() {
+fn a_lagged_heel_follows_the_yaw_rate_of_some_seconds_before() {
     // With r' given, N = c U^3 (r - tau r') moved to the side of the inertia must give back r'.
     let values = [("roll.yaw", 0.3), ("roll.lag", 4.0)];
     let with = model(Form::Paper, &["roll"], &values);

@@ -1,5 +1,5 @@
-//! The `Scalar` trait: what a number must be able to do so that physics can be written against it once.
-//! It is not a numeric tower: it holds what ship dynamics use, and nothing else.
+//! The `Scalar` trait: the operations of a number that physics is written against once.
+//! It is not a numeric tower: it holds only the operations that ship dynamics use.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};

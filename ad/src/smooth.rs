@@ -1,5 +1,5 @@
-//! Smooth stand-ins for the corners of physics, so that a derivative exists everywhere a solver may look.
-//! These are shapes without units or meaning; which effect is blended over which range is said where they are used.
+//! Smooth replacements for the corners of physics, so that a derivative exists at every point a solver may visit.
+//! These are shapes without units or meaning; each use states which effect it blends over which range.
 
 use crate::Scalar;
 use std::f64::consts::TAU;

@@ -1,5 +1,5 @@
 //! Lanes against `f64`, lane by lane: bit for bit for the arithmetic, within stated units in the last place for the rest.
-//! Derivatives over lanes are here too; what a derivative is worth by itself is tested in `oracle.rs`.
+//! Derivatives over lanes are tested here too; derivatives of a single number in `oracle.rs`.
 
 mod functions;
 
@@ -16,7 +16,7 @@ fn ulps(a: f64, b: f64) -> u64 {
     ordered(a).abs_diff(ordered(b))
 }
 
-/// Lanes holding a number and seven others that must not matter to it.
+/// Lanes with one number and seven others that must not change its result.
 fn among_others(x: f64, others: [f64; 7]) -> Lanes {
     Lanes::from_fn(|lane| if lane == 3 { x } else { others[lane.min(6)] })
 }
@@ -170,7 +170,7 @@ fn arc_tangent_on_the_axes_and_at_infinity_is_that_of_f64() {
 }
 
 #[test]
-fn lanes_branch_apart() {
+fn each_lane_takes_its_own_branch() {
     let x = Lanes::from_fn(|lane| lane as f64 - 1.5);
     let mask = x.less(Lanes::zero());
     let y = Lanes::select(mask, Lanes::from_f64(-1.0), Lanes::from_f64(1.0));

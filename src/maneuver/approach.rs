@@ -1,5 +1,5 @@
-//! How a trial is approached: settings as a person gives them, and the balanced approach they lead to.
-//! Nothing is sailed here.
+//! How a trial is approached: the settings of a study, and the balanced approach that follows from them.
+//! No trial is simulated here.
 
 use super::ManeuverError;
 use crate::dynamics::Dynamics;
@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::state::{Force, Inputs, STATES, State};
 use serde::{Deserialize, Serialize};
 
-/// Settings of the trials, the section `[maneuver]` of a study. What is left out is chosen from the ship.
+/// Settings of the trials, the table `[maneuver]` of a study. A setting left out is derived from the ship.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ManeuverSettings {
@@ -68,7 +68,7 @@ impl ManeuverSettings {
     /// The approach of a ship with this model and parameter vector.
     ///
     /// # Errors
-    /// [`ManeuverError`]: a setting that cannot be, or no balance between thrust and resistance.
+    /// [`ManeuverError`]: an impossible setting, or no balance between thrust and resistance.
     pub fn approach(&self, model: &Model, theta: &[f64]) -> Result<Approach, ManeuverError> {
         self.check()?;
         let length = model.ship.hull.lpp;

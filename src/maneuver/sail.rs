@@ -1,5 +1,5 @@
-//! Sails a trial: simulates the ship under orders given while she sails, with rudder and engine of finite rate.
-//! What is ordered when is the trial's; what is measured afterwards too.
+//! Simulates a ship under orders that depend on its motion, with rudder and engine of finite rate.
+//! The orders and the measures belong to each trial, not to this file.
 
 use super::{Approach, Ended, Track};
 use crate::dynamics::Dynamics;
@@ -16,8 +16,8 @@ pub(super) struct Orders {
     pub n: f64,
 }
 
-/// Sails from the approach (x = y = psi = 0, straight ahead) under the orders of `helm`, which is shown the track so far
-/// at every sample and gives the orders from then on, or `None` to end the trial.
+/// Simulates from the approach (x = y = psi = 0, straight ahead) under the orders of `helm`, which receives the track so
+/// far at every sample and gives the orders from then on, or `None` to end the trial.
 ///
 /// Orders are followed at the approach's rudder and engine rate. Terms that act on whole input series (actuator lag,
 /// rudder offset) are applied to the series that results, anew whenever an order changes; they must be causal.

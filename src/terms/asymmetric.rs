@@ -1,6 +1,6 @@
-//! A generic force law of what a mirror-symmetric ship in open calm water cannot have: forces to one side, and forces that turn with heading.
-//! The counterpart of `symmetric`, for the question of whether a named mechanism explains more than any constant, earth-fixed
-//! or one-sided force could; it is not physics to extrapolate.
+//! A generic force law that a mirror-symmetric ship in open calm water cannot have: forces to one side, and forces fixed on the earth.
+//! The counterpart of `symmetric`: a named mechanism is tested against any constant, earth-fixed or one-sided force. It is no
+//! physics to extrapolate.
 
 use super::size;
 use crate::parameter::ParameterInfo;
@@ -16,7 +16,7 @@ static INFO: TermInfo = TermInfo {
     name: "asymmetric",
     title: "generic one-sided or earth-fixed force",
     group: Group::External,
-    equation: "X, Y, N = sum of coefficient times monomial (the words of each parameter); u|u| times 1/2 rho L d, n|n| D^2 times rho D^2, \
+    equation: "X, Y, N = sum of coefficient times monomial (given with each parameter); u|u| times 1/2 rho L d, n|n| D^2 times rho D^2, \
                in N times L; |.| rounded at small speeds",
     source: "generic basis, no source",
     needs: &[],

@@ -1,5 +1,5 @@
 //! Suction towards the nearer bank of a channel, with a moment that turns the bow away from it.
-//! It needs the distances to both banks; a bank that was not recorded cannot be told from other body forces.
+//! It needs the distances to both banks; an unrecorded bank cannot be distinguished from other forces fixed to the ship.
 
 use super::size;
 use crate::parameter::ParameterInfo;

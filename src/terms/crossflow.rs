@@ -1,6 +1,6 @@
 //! Cross-flow drag of the hull in strips, beyond the quadratic damping of the base model.
-//! One drag coefficient for all strips, and a weight of the turning in force and moment, as hulls are measured to differ there; it
-//! matters at large drift and when the ship turns on the spot.
+//! One drag coefficient for all strips, with weights of the yaw rate in force and moment, in which measured hulls differ. It matters
+//! at large drift and in turns on the spot; it is not the quadratic damping Y_vv of the base model.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
@@ -51,16 +51,16 @@ static INFO: TermInfo = TermInfo {
         trial: "drifting sideways and turning on the spot",
     }],
     parameters: &[
-        ParameterInfo::new("drag", "C_D", "-", "drag coefficient beyond the base model's; 0.6 to 1.0 in all")
+        ParameterInfo::new("drag", "C_D", "-", "drag coefficient beyond the base model's; 0.6 to 1.0 with it")
             .scale(|_| 0.2)
             .spread(|_| 0.3)
             .bounds(0.0, 2.0),
-        ParameterInfo::new("turn_force", "C_rY", "-", "weight of the turning in the sway force")
+        ParameterInfo::new("turn_force", "C_rY", "-", "weight of the yaw rate in the sway force")
             .default(|_| 1.0)
             .scale(|_| 0.5)
             .spread(|_| 0.8)
             .bounds(0.0, 4.0),
-        ParameterInfo::new("turn_moment", "C_rN", "-", "weight of the turning in the yaw moment")
+        ParameterInfo::new("turn_moment", "C_rN", "-", "weight of the yaw rate in the yaw moment")
             .default(|_| 1.0)
             .scale(|_| 0.2)
             .spread(|_| 0.2)

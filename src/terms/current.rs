@@ -1,5 +1,5 @@
 //! A uniform steady current that carries the ship and the water around it.
-//! Its forces come from the velocity through the water that all other terms use; a tide that turns is a term of its own.
+//! Its forces come from the velocity through the water, which all other terms use; a tidal current is the term `tide`.
 
 use super::size;
 use crate::parameter::ParameterInfo;

@@ -1,5 +1,5 @@
-//! A constant force in a fixed direction on earth, acting at midship.
-//! It says nothing of its cause: it is the generic form of what wind, waves or a line do at a constant speed.
+//! A constant force in a fixed direction on the earth, acting at midship.
+//! It is generic and states no cause: wind, waves or a line act so on a ship of constant speed.
 
 use super::size;
 use crate::parameter::ParameterInfo;

@@ -1,5 +1,5 @@
 //! A resistance that is higher in proportion: a fouled hull, or added resistance of any kind.
-//! With one loading and one season it cannot be told from p1 to p3; it is meant for differences between sessions.
+//! Within one loading and one season it cannot be distinguished from p1 to p3; it is meant for differences between sessions.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;

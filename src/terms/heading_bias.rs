@@ -1,5 +1,5 @@
 //! A compass that reads a constant too much.
-//! Only the heading channel; the ship's path tells, since it does not go where it points.
+//! It acts on the heading channel only; it is identifiable because the track does not follow the reported heading.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;

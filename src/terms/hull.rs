@@ -20,7 +20,7 @@ macro_rules! derivative {
     };
 }
 
-/// The size of a coefficient for scaling: its estimate, kept away from zero by what is usual for its kind.
+/// The size of a coefficient for scaling: its estimate, kept away from zero by a usual size of its kind.
 fn reference(ship: &Ship, name: &str) -> f64 {
     let usual = match name {
         "Xudot" | "Xvr" => 0.01,

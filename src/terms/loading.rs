@@ -1,5 +1,5 @@
-//! A ship loaded otherwise than its particulars say: mass and yaw inertia, and the centre of gravity.
-//! Draught, and with it the hull coefficients, stay as they are.
+//! A loading condition other than the ship file's: mass, yaw inertia and centre of gravity.
+//! Draught and hull coefficients do not change.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;

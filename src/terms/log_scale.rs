@@ -1,5 +1,5 @@
-//! A speed log that reads too much in proportion, along and across.
-//! Positions are not affected, and tell.
+//! A speed log with a constant relative error, along and across.
+//! Positions are not affected; they make the error identifiable.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;

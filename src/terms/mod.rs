@@ -1,5 +1,5 @@
 //! The catalogue of terms: each physical effect, actuator defect or sensor defect is one file here and two lines below.
-//! A term computes; what is known of it (equation, source, parameters) is data in its `TermInfo`.
+//! A term computes; its description (equation, source, parameters) is data in its `TermInfo`.
 //!
 //! # Adding a term
 //! Write `src/terms/my_effect.rs` with a unit struct that implements [`Term`] and [`Physics`], add `mod my_effect;` and

@@ -1,5 +1,5 @@
-//! An additional destabilising yaw moment of drift, of the kind that potential flow gives.
-//! Odd in u: it changes sense with the direction of motion, as the base model's N_v U v does not.
+//! An additional destabilising yaw moment of drift, as potential flow gives it.
+//! It is odd in u and changes sign with the direction of motion; the base model's N_v U v does not.
 
 use super::size;
 use crate::parameter::ParameterInfo;

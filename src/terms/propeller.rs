@@ -1,5 +1,5 @@
 //! Propeller forces: net thrust, and a side force proportional to it (parameter p0 of the paper).
-//! Thrust itself comes from the flow; effects beyond the paper's linear side force are terms of their own.
+//! Thrust comes from the flow; side forces beyond the paper's linear one are the term `propeller_walk`.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;

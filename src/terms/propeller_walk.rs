@@ -119,7 +119,7 @@ mod tests {
             [with[4] - without[4], with[5] - without[5]]
         };
         let (right, left) = (brought(right), brought(left));
-        // The stern to port turns the bow to starboard.
+        // A stern that moves to port turns the bow to starboard.
         assert!(right[1] > 1e-6 && (right[1] + left[1]).abs() < 1e-12 && (right[0] + left[0]).abs() < 1e-12);
     }
 }

@@ -1,5 +1,5 @@
 //! A constant push on the ship during one window of time: a tug, a line, an unrecorded thruster.
-//! The window is one of run time `t`, the same in every run; force and moment are fixed to the ship.
+//! The window is in run time `t` and alike in every run; force and moment are fixed to the ship, not to the earth.
 
 use super::size;
 use crate::parameter::ParameterInfo;

@@ -1,5 +1,5 @@
 //! A change of the propeller race at the rudder.
-//! Seen only in how well the rudder works with the propeller turning; lift slope and race are hard to tell apart.
+//! It shows only in the rudder force with the propeller turning; lift slope and race are hard to distinguish.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;

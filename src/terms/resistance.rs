@@ -1,5 +1,5 @@
 //! Surge resistance as a cubic in u, the parameters p1 to p3 of the paper.
-//! It enters the surge equation as -R(u): printed with a plus sign there, R >= 0 would push the ship.
+//! It enters the surge equation as -R(u); with the plus sign that the paper prints, R >= 0 would push the ship.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;

@@ -1,5 +1,5 @@
 //! Yaw moment and sway force of the heel that a turn causes, following the turn with a lag.
-//! Heel is quasi-static: the lag is expanded to first order, so that roll resonance and heel from wind are not here. With a negative `yaw` the lag takes away inertia, and 1/2 rho L^2 d |yaw| U^3 tau/g must stay below Iz - Nrdot.
+//! Heel is quasi-static: the lag is expanded to first order, so that roll resonance and heel from wind are not modelled. With a negative `yaw` the lag takes away inertia, and 1/2 rho L^2 d |yaw| U^3 tau/g must stay below Iz - Nrdot.
 
 use super::size;
 use crate::parameter::ParameterInfo;
@@ -38,7 +38,7 @@ static INFO: TermInfo = TermInfo {
         floor: 0.125,
         stand_in: false,
         look_alikes: &["munk", "loading"],
-        trial: "zigzags at high speed, and record the roll",
+        trial: "zigzags at high speed with the roll recorded",
     }],
     parameters: &[
         ParameterInfo::new("sway", "k_Y", "-", "sway force of heel, per U r/g")

@@ -1,5 +1,5 @@
 //! Loss of rudder lift at large angles of attack.
-//! Lift only; drag keeps its curve. The paper's cubic already bends over near 28 degrees, and takes up much of this.
+//! Lift only; the drag curve does not change. The paper's cubic already bends over near 28 degrees and absorbs much of the loss.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
@@ -18,7 +18,7 @@ static INFO: TermInfo = TermInfo {
     title: "rudder stall",
     group: Group::Rudder,
     equation: "c_L -> c_L (1 - loss s), s from 0 to 1 as |a| goes from onset to onset + 6 deg",
-    source: "linear lift up to stall and a drop of 20 to 40 % after it, at 27 to 40 deg in the slipstream; the smooth step is ours",
+    source: "linear lift up to stall and a drop of 20 to 40 % after it, at 27 to 40 deg in the slipstream; the smooth step is trimtab's",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "rudder_stall",

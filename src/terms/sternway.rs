@@ -1,5 +1,5 @@
-//! Hull and resistance forces that keep their sense when the ship moves astern.
-//! A share of the fore-aft consistent form inside the paper's form; in a model of form `regular` it does nothing.
+//! Hull and resistance forces with the right sign when the ship moves astern.
+//! A share of the fore-aft consistent form within the paper's form; it has no effect in a model of form `regular`.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;

@@ -1,5 +1,5 @@
-//! A speed log that reads a constant too much across.
-//! Like a current across the ship that turns with it.
+//! A speed log that reads a constant too much across the ship.
+//! It differs from a current in that it turns with the ship.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;

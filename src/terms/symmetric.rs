@@ -1,6 +1,6 @@
-//! A generic force law that is the same to port and to starboard: every low-order monomial of speed, drift, turn, rpm and rudder.
-//! It is a correction without a name, for the question of whether a named mechanism explains more than any smooth hull,
-//! propeller or rudder error could; it is not physics to extrapolate.
+//! A generic force law, alike to port and to starboard: every low-order monomial of speed, drift, yaw rate, rpm and rudder.
+//! A named mechanism is tested against it, that is, against any smooth error of hull, propeller and rudder; it is no physics
+//! to extrapolate.
 
 use super::size;
 use crate::parameter::ParameterInfo;
@@ -25,7 +25,7 @@ static INFO: TermInfo = TermInfo {
     name: "symmetric",
     title: "generic mirror-symmetric force",
     group: Group::Hull,
-    equation: "X, Y, N/L = sum of coefficient times monomial (the words of each parameter) times 1/2 rho L d; rho D^2 in its place \
+    equation: "X, Y, N/L = sum of coefficient times monomial (given with each parameter) times 1/2 rho L d; rho D^2 in its place \
                where n is in the monomial, else 1/2 rho A_R where delta is; W = u_R |u_R|, U_0 = 0.2 sqrt(g L); \
                X even and Y, N odd in (v, r, delta); |.| rounded at small speeds",
     source: "generic basis, no source",
@@ -91,7 +91,7 @@ impl<S: Scalar> Physics<S> for Symmetric {
         let l = ship.hull.lpp;
         let d = ship.propeller.diameter;
         let hull = size::pressure(ship);
-        // Factors that turn the hull's unit into those of propeller and rudder.
+        // Conversions from the hull's unit to those of propeller and rudder.
         let propeller = ship.hull.water_density * d * d / hull;
         let rudder = 0.5 * ship.hull.water_density * ship.rudder.area / hull;
         let small = at.small;

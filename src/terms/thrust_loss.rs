@@ -1,5 +1,5 @@
 //! A loss of thrust in proportion: a fouled, damaged or badly known propeller.
-//! The race on the rudder is made of thrust and weakens with it.
+//! The propeller race at the rudder follows from the thrust and weakens with it; torque is not modelled.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;

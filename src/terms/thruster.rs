@@ -1,5 +1,5 @@
-//! Bow thruster, losing force as the ship gathers speed.
-//! Force follows the command at once; the moment fades later than the force, as the hull aft of the jet is pulled the other way.
+//! Bow thruster, whose force decreases with the ship's speed.
+//! Force follows the command at once; the moment decreases later than the force, as suction on the hull aft of the jet acts the other way.
 //! A ship without thruster particulars gets a typical one: 1e-4 rho g L^2 d at 0.4 L.
 
 use super::size;

@@ -1,5 +1,5 @@
 //! A uniform current that turns with the principal lunar tide.
-//! Only the M2 constituent; the acceleration of the water (1e-4 m/s2) exerts no force here.
+//! Only the M2 constituent; the force of the water's acceleration (1e-4 m/s2) is not modelled.
 
 use super::size;
 use crate::parameter::ParameterInfo;

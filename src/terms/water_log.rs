@@ -1,5 +1,5 @@
-//! A speed log that reports velocity through the water although it is read as over ground.
-//! Without a current in the model there is no difference, and no effect.
+//! A speed log that measures velocity through the water but is read as velocity over ground.
+//! Without a current in the model it has no effect.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;

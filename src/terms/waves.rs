@@ -31,7 +31,7 @@ static INFO: TermInfo = TermInfo {
     needs: &["waves"],
     mechanisms: &[Mechanism {
         name: "waves",
-        title: "wave drift, as the waves were recorded",
+        title: "wave drift of recorded waves",
         kind: Kind::Environment,
         parameters: &["drag", "side", "yaw"],
         companions: &[],

@@ -1,5 +1,5 @@
 //! Load of the measured wind on the part of the ship above water.
-//! The wind channel gives speed and direction; what is unknown are the three load coefficients. Wind nobody measured is `mean_wind`.
+//! The wind channel gives speed and direction; unknown are the three load coefficients. An unmeasured wind is the term `mean_wind`.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
@@ -54,12 +54,12 @@ static INFO: TermInfo = TermInfo {
     name: "wind",
     title: "measured wind",
     group: Group::Environment,
-    equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the same in still air",
+    equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the load in still air",
     source: "cosine and sine form, C_X = -c_x cos g, C_Y = c_y sin g, C_N = c_n sin 2g, as in public MMG codes",
     needs: &["wind"],
     mechanisms: &[Mechanism {
         name: "wind",
-        title: "wind, as the anemometer recorded it",
+        title: "wind recorded by the anemometer",
         kind: Kind::Environment,
         parameters: &["drag", "side", "yaw"],
         companions: &[],

@@ -1,5 +1,5 @@
 //! A rate gyro that reads a constant too much.
-//! Only the yaw-rate channel; the heading channel tells.
+//! It acts on the yaw-rate channel only; it is identifiable from the heading channel.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;

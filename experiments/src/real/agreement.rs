@@ -1,9 +1,9 @@
-//! What position, heading, velocity and yaw rate of one recording say of each other: clocks, gyro and reference point.
-//! No ship and no model enters, so that it can stand witness when a diagnosis blames a sensor.
+//! Agreement of position, heading, velocity and yaw rate within one recording: delays, gyro bias and reference point.
+//! It uses no ship and no model, so that it is independent evidence on a sensor that a diagnosis names.
 
-use super::{Hull, RealError};
+use super::error::RealError;
+use super::hull::Hull;
 use nalgebra::{DMatrix, DVector};
-use trimtab::diagnose::filter::Run;
 use trimtab::recording::{Channel, Recording};
 use trimtab::report::{Table, fixed, sig};
 
@@ -43,7 +43,7 @@ fn integral(values: &[f64], t: &[f64]) -> Vec<f64> {
 
 impl Agreement {
     /// Compares changes over `span` \[s\] of position and heading with the integrals of velocity and yaw rate. With a delay
-    /// tau and a lever l, `dx - int v dt = tau dv + l d(cos psi, sin psi)`; the two look alike at constant speed, so that each
+    /// tau and a lever l, `dx - int v dt = tau dv + l d(cos psi, sin psi)`; the two are collinear at constant speed, so that each
     /// is estimated with the other taken as zero. `None` for a recording without the channels or shorter than two spans.
     pub fn of(recording: &Recording, run: &str, span: f64) -> Option<Self> {
         use Channel::{Psi, R, T, U, V, X, Y};
@@ -98,7 +98,7 @@ impl Agreement {
 }
 
 /// An angle in (-pi, pi].
-fn wrapped(angle: f64) -> f64 {
+pub fn wrapped(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }
 
@@ -131,104 +131,12 @@ pub fn table(agreements: &[Agreement]) -> Table {
     table
 }
 
-/// What a recording's own kinematics say must be mended in its windows before a model is asked.
-#[derive(Clone, Debug, Default)]
-pub struct Mend {
-    /// Recorded velocities are late or no measurement of their own: leave them out.
-    pub no_velocity: bool,
-    /// Stretches in which position and heading were held, not measured \[s\].
-    pub held: Vec<(f64, f64)>,
-    /// The yaw rate is this much late \[s\].
-    pub rate_delay: f64,
-    /// The yaw rate reads this much too much \[rad/s\].
-    pub rate_bias: f64,
-    /// Times at which position or heading jump: windows over them are left out \[s\].
-    pub jumps: Vec<f64>,
-}
-
-impl Mend {
-    /// The run with its gyro in time and without bias, and without what was not measured; `None` when the receiver jumped.
-    pub fn applied(&self, run: &Run) -> Option<Run> {
-        let (first, last) = (run.inputs.first()?.t, run.inputs.last()?.t);
-        if self.jumps.iter().any(|t| first <= *t && *t <= last) {
-            return None;
-        }
-        let mut out = run.clone();
-        if self.no_velocity {
-            out.channels[3] = false;
-            out.channels[4] = false;
-        }
-        for k in 0..run.measured.len() {
-            let t = run.inputs[k].t;
-            // A sample is the mean of the rows within half a sample period.
-            if self.held.iter().any(|(a, b)| a - 0.5 * run.dt <= t && t <= b + 0.5 * run.dt) {
-                out.measured[k][..3].fill(f64::NAN);
-            }
-            out.measured[k][5] = interpolated(run, 5, k as f64 + self.rate_delay / run.dt) - self.rate_bias;
-        }
-        Some(out)
-    }
-}
-
-/// A channel between two samples; NaN outside the run.
-fn interpolated(run: &Run, channel: usize, place: f64) -> f64 {
-    let (i, share) = (place.floor(), place - place.floor());
-    let value = |i: f64| if i < 0.0 { f64::NAN } else { run.measured.get(i as usize).map_or(f64::NAN, |m| m[channel]) };
-    if share == 0.0 { value(i) } else { (1.0 - share) * value(i) + share * value(i + 1.0) }
-}
-
-/// Stretches in which position and heading repeat to the last bit for `rows` rows or more: a receiver that holds its last value.
-/// A stretch begins with the first repetition.
-pub fn held(recording: &Recording, rows: usize) -> Vec<(f64, f64)> {
-    let [t, x, y, psi] = position(recording);
-    let repeats = |k: usize| k > 0 && x[k] == x[k - 1] && y[k] == y[k - 1] && psi[k] == psi[k - 1];
-    let mut out = Vec::new();
-    let mut k = 1;
-    while k < x.len() {
-        let from = k;
-        while k < x.len() && repeats(k) {
-            k += 1;
-        }
-        if k - from >= rows.max(1) {
-            out.push((t[from], t[k - 1]));
-        }
-        k += 1;
-    }
-    out
-}
-
-/// Times at which position or heading move faster than a ship can \[m/s, rad/s\] since they last changed: a receiver that lost
-/// itself and found itself again.
-pub fn jumps(recording: &Recording, fastest: f64, fastest_turn: f64) -> Vec<f64> {
-    let [t, x, y, psi] = position(recording);
-    let mut changed = 0;
-    let mut out = Vec::new();
-    for k in 1..x.len() {
-        let (dx, dy, turn) = (x[k] - x[k - 1], y[k] - y[k - 1], wrapped(psi[k] - psi[k - 1]).abs());
-        if dx == 0.0 && dy == 0.0 && turn == 0.0 {
-            continue;
-        }
-        let since = t[k] - t[changed];
-        if dx.hypot(dy) > fastest * since || turn > fastest_turn * since {
-            out.push(t[k]);
-        }
-        changed = k;
-    }
-    out
-}
-
-/// Time, position and heading; empty where one was not recorded.
-fn position(recording: &Recording) -> [&[f64]; 4] {
-    let channels = [Channel::T, Channel::X, Channel::Y, Channel::Psi].map(|c| recording.get(c).unwrap_or_default());
-    if channels.iter().any(|c| c.is_empty()) { [&[]; 4] } else { channels }
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// A circle recorded at 10 Hz: velocities late by `delay`, yaw rate late and biased, positions of a point `lever` forward.
-    fn circle(delay: f64, rate_delay: f64, bias: f64, lever: f64) -> Recording {
+    pub fn circle(delay: f64, rate_delay: f64, bias: f64, lever: f64) -> Recording {
         let (speed, size, slow) = (0.5, 0.3, 0.05);
         let t: Vec<f64> = (0..1500).map(|k| 0.1 * f64::from(k)).collect();
         // Heading swings, so that yaw rate and speed change.
@@ -264,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn clocks_gyro_and_lever_are_read_off_a_recording() {
+    fn delays_gyro_bias_and_lever_of_a_recording_are_recovered() {
         let late = Agreement::of(&circle(0.8, 0.5, 1e-3, 0.0), "late", 20.0).unwrap();
         assert!((late.velocity_delay - 0.8).abs() < 0.02, "{late:?}");
         assert!((late.rate_delay - 0.5).abs() < 0.02 && (late.rate_bias - 1e-3).abs() < 2e-5, "{late:?}");
@@ -275,28 +183,5 @@ mod tests {
             sound.velocity_delay.abs() < 0.02 && sound.lever.abs() < 0.01 && sound.rate_delay.abs() < 0.02,
             "{sound:?}"
         );
-    }
-
-    #[test]
-    fn a_receiver_that_holds_and_one_that_jumps_are_told_apart() {
-        let good = circle(0.0, 0.0, 0.0, 0.0);
-        assert!(held(&good, 2).is_empty() && jumps(&good, 1.5, 0.5).is_empty());
-        let broken = |edit: &dyn Fn(&mut [Vec<f64>; 3])| {
-            let mut place = [Channel::X, Channel::Y, Channel::Psi].map(|c| good.get(c).unwrap().to_vec());
-            edit(&mut place);
-            let others = good.channels().filter(|(c, _)| ![Channel::X, Channel::Y, Channel::Psi].contains(c));
-            let mut channels: Vec<(Channel, Vec<f64>)> = others.map(|(c, v)| (c, v.to_vec())).collect();
-            let [x, y, psi] = place;
-            channels.extend([(Channel::X, x), (Channel::Y, y), (Channel::Psi, psi)]);
-            Recording::from_channels("broken", channels).unwrap()
-        };
-        let holding = broken(&|p| p.iter_mut().for_each(|c| (101..110).for_each(|k| c[k] = c[100])));
-        let stretches = held(&holding, 2);
-        assert_eq!(stretches.len(), 1);
-        assert!((stretches[0].0 - 10.1).abs() < 1e-9 && (stretches[0].1 - 10.9).abs() < 1e-9, "{stretches:?}");
-        assert!(jumps(&holding, 1.5, 0.5).is_empty(), "it catches up no faster than it could have sailed");
-        let jumping = broken(&|p| p[0][700..].iter_mut().for_each(|x| *x += 0.4));
-        assert_eq!(jumps(&jumping, 1.5, 0.5).len(), 1);
-        assert!(held(&jumping, 2).is_empty());
     }
 }
