@@ -1,16 +1,18 @@
 //! What a user would do otherwise, and the best that could be done: the yardsticks the diagnosis is measured against.
 //! None of it is part of a diagnosis: it names by other rules ([`Refitted`]) or is told the answer ([`oracle`]).
 
+use super::base::base_parameters;
 use super::candidate::{Candidate, Extent, append, applies, candidates};
-use super::compete::enter;
-use super::conclude::{Settings, base_parameters};
+use super::compete::start_with;
 use super::covariance::Z;
-use super::estimate::{Effort, Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
+use super::estimate::{Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
 use super::evidence::Evidence;
 use super::filter::{Column, Filter, Gains, Pass, Run, Wanted};
 use super::noise::{Noise, NoisePrior, guess};
+use super::problem::Problem;
 use super::prove::median_distance;
 use super::screen::screen;
+use super::settings::{Settings, TOLD_FINISH, TOLD_START};
 use crate::model::{Model, ModelError};
 use crate::simulate::Integration;
 use crate::state::STATES;
@@ -184,12 +186,6 @@ pub struct Told {
     pub extent: Extent,
 }
 
-/// Only what a mechanism is then started from: its parameters and the noise are estimated again with it.
-const START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
-
-/// Told the answer, it has only this one fit to make.
-const FINISH: Effort = Effort { rounds: 8, noise_rounds: 2, noise_iterations: 6, noise_runs: 10 };
-
 /// Median cVDM \[%\] on held-out runs, as the diagnosis' proof measures it, of a model that was told which mechanisms act, and in
 /// which sessions: estimated and refitted as the diagnosis does with what it finds. How far the held-out error can fall when the name
 /// is right. `None` when the catalogue lacks one of them.
@@ -211,24 +207,20 @@ pub fn oracle(
     let first = guess(runs, &full);
     let prior = NoisePrior::around(&first);
     let free = base_parameters(&full, settings.nuisance);
-    let mut current = estimate(&full, integration, runs, &free, &first, &prior, START);
+    let mut current = estimate(&full, integration, runs, &free, &first, &prior, TOLD_START);
     for (told, candidate) in told.iter().zip(chosen) {
-        let (start, free) = started(&current, integration, runs, candidate, &told.extent);
-        current = estimate(&start, integration, runs, &free, &current.noise, &prior, FINISH);
+        let candidates = std::slice::from_ref(candidate);
+        let problem = Problem { integration, runs, candidates, prior: &prior, settings };
+        let (start, free) = started(&current, problem, &told.extent);
+        current = problem.estimate(&start, &free, &current.noise, TOLD_FINISH);
     }
     Ok(Some(median_distance(&current.model, integration, held_out)))
 }
 
-/// The model with a mechanism at the amplitudes that a linear step from the estimate gives, and everything else moved along.
-fn started(
-    found: &Estimate,
-    integration: Integration,
-    runs: &[Run],
-    candidate: &Candidate,
-    extent: &Extent,
-) -> (Model, Vec<FreeParameter>) {
-    let alone = std::slice::from_ref(candidate);
-    let s = screen(found, integration, runs, alone);
+/// The model with the problem's one mechanism at the amplitudes that a linear step from the estimate gives, and everything else
+/// moved along.
+fn started(found: &Estimate, problem: Problem, extent: &Extent) -> (Model, Vec<FreeParameter>) {
+    let s = screen(found, problem.integration, problem.runs, problem.candidates);
     let test = s.test(0, extent);
-    enter(&s, alone, 0, extent, &test.amplitude, found, integration, runs, &found.noise)
+    start_with(&s, 0, extent, &test.amplitude, found, problem, &found.noise)
 }

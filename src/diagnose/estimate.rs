@@ -4,6 +4,7 @@
 use super::evidence::{Base, Evidence, RunEvidence, step_inside};
 use super::filter::{Column, Filter, GATE, Pass, Run, Wanted};
 use super::noise::{Noise, NoisePrior, fit_noise};
+pub use super::settings::Effort;
 use crate::model::{Model, Prior};
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
@@ -99,19 +100,6 @@ pub struct Estimate {
     pub free: Vec<FreeParameter>,
     /// Log-likelihood plus log-prior at the estimate.
     pub log_posterior: f64,
-}
-
-/// Settings of an estimation.
-#[derive(Clone, Copy, Debug)]
-pub struct Effort {
-    /// Rounds of parameter steps, each followed by a noise estimate while `noise_rounds` last.
-    pub rounds: usize,
-    /// Rounds with a noise estimate.
-    pub noise_rounds: usize,
-    /// BFGS iterations in a noise estimate.
-    pub noise_iterations: usize,
-    /// Runs used for the noise estimate, evenly spread.
-    pub noise_runs: usize,
 }
 
 /// Share of measurements set aside as outliers above which they are none.

@@ -4,8 +4,8 @@
 use super::estimate::{Estimate, base_of, restrictions};
 use super::evidence::{Base, Evidence, RunEvidence, chi_squared_p, pick};
 use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::generic::{GenericLaw, widen};
 use super::noise::Noise;
-use super::screen::{basis_columns, widen};
 use crate::model::Model;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
@@ -186,10 +186,7 @@ pub struct Location {
 pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Location {
     let model = &found.model;
     let mut columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
-    let free = columns.len();
-    for term in ["symmetric", "asymmetric"] {
-        columns.extend(basis_columns(model, term).into_iter().map(|(_, column)| column));
-    }
+    let law = GenericLaw::append(&mut columns, model);
     let filter = Filter::new(model, integration, &columns);
     let length = block_length(runs);
     let blocks_in = |r: &Run| r.measured.len().div_ceil(length);
@@ -228,7 +225,7 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
     let evidence = super::estimate::evidence(runs, &passes, &restrictions(&found.free));
     let base = base_of(&evidence, model, &found.free);
     // A force that comes back with the ship's state is no event: what a smooth force law can mimic is taken out of the windows.
-    let widened = widen(&evidence, &base, &(free..columns.len()).collect::<Vec<_>>());
+    let widened = widen(&evidence, &base, &law.columns());
     let step = widened.step();
     let looked_at: f64 = runs.iter().map(|r| choices(blocks_in(r))).sum();
     let blocks_of: Vec<Blocks> = runs

@@ -5,6 +5,7 @@ use super::candidate::{Candidate, Extent, append};
 use super::estimate::{Estimate, base_of, evidence, restrictions};
 use super::evidence::{Base, Evidence, Test, UNSEEN, pick};
 use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::generic::{GenericLaw, widen};
 use crate::model::Model;
 use crate::physics::Kind;
 use crate::simulate::Integration;
@@ -46,12 +47,8 @@ pub struct Screen {
     pub widened: Base,
     /// Columns of each candidate.
     groups: Vec<Vec<usize>>,
-    /// Columns of the mirror-symmetric basis.
-    pub symmetric: Vec<usize>,
-    /// Columns of the mirror-breaking and earth-fixed basis.
-    pub asymmetric: Vec<usize>,
-    /// Dotted names of the basis columns, symmetric then asymmetric.
-    pub basis_names: Vec<String>,
+    /// The generic force law.
+    pub law: GenericLaw,
     /// Rows in order of significance.
     pub rows: Vec<Row>,
     /// Test of the symmetric basis.
@@ -63,6 +60,11 @@ pub struct Screen {
 }
 
 impl Screen {
+    /// What a smooth force law of state and heading gains more than by chance: statistic less degrees of freedom.
+    pub fn asymmetric_gain(&self) -> f64 {
+        self.asymmetric_test.statistic - self.asymmetric_test.degrees as f64
+    }
+
     /// Columns of a candidate.
     pub fn columns(&self, index: usize) -> &[usize] {
         &self.groups[index]
@@ -119,42 +121,20 @@ fn named(sessions: &[String]) -> Vec<&str> {
     sessions.iter().map(String::as_str).collect()
 }
 
-pub(super) fn basis_columns(model: &Model, term: &str) -> Vec<(String, Column)> {
-    let prefix = format!("{term}.");
-    model
-        .parameters
-        .iter()
-        .enumerate()
-        .filter(|(_, p)| p.name.starts_with(&prefix))
-        .map(|(parameter, p)| (p.name.clone(), Column::tangent(model, parameter)))
-        .collect()
-}
-
 /// Runs one sensitivity pass over everything and tests every candidate.
 pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidates: &[Candidate]) -> Screen {
     let model = &found.model;
     let mut columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
     let groups = append(&mut columns, candidates);
-    let mut names = Vec::new();
-    let mut block = |term: &str| {
-        let start = columns.len();
-        for (name, column) in basis_columns(model, term) {
-            names.push(name);
-            columns.push(column);
-        }
-        (start..columns.len()).collect::<Vec<usize>>()
-    };
-    let symmetric = block("symmetric");
-    let asymmetric = block("asymmetric");
+    let law = GenericLaw::append(&mut columns, model);
     let filter = Filter::new(model, integration, &columns);
     let passes: Vec<Pass> = runs.par_iter().map(|r| filter.pass(r, &found.noise, Wanted::default())).collect();
     let evidence = evidence(runs, &passes, &restrictions(&found.free));
     let base = base_of(&evidence, model, &found.free);
-    let widened = widen(&evidence, &base, &symmetric);
+    let widened = widen(&evidence, &base, &law.symmetric);
     let sessions: Vec<String> = evidence.sessions.keys().cloned().collect();
     // A sensor is judged by what no force law whatever can bring.
-    let anything: Vec<usize> = symmetric.iter().chain(&asymmetric).copied().collect();
-    let loosest = widen(&evidence, &base, &anything);
+    let loosest = widen(&evidence, &base, &law.columns());
     let mut rows: Vec<Row> = (0..candidates.len())
         .into_par_iter()
         .map(|i| {
@@ -170,62 +150,9 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
         let key = |r: &Row| (r.test.statistic - r.test.degrees as f64) * f64::from(u8::from(r.visible && r.admissible));
         key(b).total_cmp(&key(a))
     });
-    let symmetric_test = evidence.test(&base, &symmetric);
-    let asymmetric_test = evidence.test(&widened, &asymmetric);
-    Screen {
-        evidence,
-        base,
-        widened,
-        groups,
-        symmetric,
-        asymmetric,
-        basis_names: names,
-        rows,
-        symmetric_test,
-        asymmetric_test,
-        passes,
-    }
-}
-
-/// The base widened by the symmetric basis under a shrinkage prior, whose common variance is chosen by its marginal
-/// likelihood: nothing when the data do not ask for it.
-pub(super) fn widen(evidence: &Evidence, base: &Base, symmetric: &[usize]) -> Base {
-    let h = &evidence.total.information;
-    let cross = pick(h, symmetric, &base.columns);
-    let own = pick(h, symmetric, symmetric) - &cross * &base.inverse * cross.transpose();
-    let score = DVector::from_fn(symmetric.len(), |i, _| evidence.total.score[symmetric[i]]) - &cross * base.step();
-    let eigen = SymmetricEigen::new((&own + own.transpose()) * 0.5);
-    let z = eigen.eigenvectors.transpose() * &score;
-    // log p(data | v) with amplitudes ~ N(0, v): sum of -0.5 ln(1 + v l) + 0.5 z^2 v / (1 + v l).
-    let log_marginal = |v: f64| -> f64 {
-        eigen
-            .eigenvalues
-            .iter()
-            .zip(z.iter())
-            .map(|(l, z)| {
-                let d = 1.0 + v * l.max(0.0);
-                -0.5 * d.ln() + 0.5 * z * z * v / d
-            })
-            .sum()
-    };
-    let (mut best, mut variance) = (0.0, 0.0);
-    for i in 0..=40 {
-        let v = 10f64.powf(-8.0 + 0.25 * f64::from(i));
-        let value = log_marginal(v);
-        if value > best + 2.0 {
-            (best, variance) = (value, v);
-        }
-    }
-    if variance == 0.0 {
-        return base.clone();
-    }
-    let mut shrunk = evidence.clone();
-    for c in symmetric {
-        shrunk.total.information[(*c, *c)] += 1.0 / variance;
-    }
-    let mut widened = shrunk.extend(base, symmetric);
-    widened.columns.truncate(base.columns.len() + symmetric.len());
-    widened
+    let symmetric_test = evidence.test(&base, &law.symmetric);
+    let asymmetric_test = evidence.test(&widened, &law.asymmetric);
+    Screen { evidence, base, widened, groups, law, rows, symmetric_test, asymmetric_test, passes }
 }
 
 /// Statistics closer than this are the same.
