@@ -1,8 +1,9 @@
 //! What a diagnosis names: a value with its interval, and a finding with everything that is said about it.
 //! It holds and computes nothing; how a finding is made and judged is in other files.
 
-use super::locate::{EquationShare, Window};
+use super::locate::EquationShare;
 use super::prove::HeldOut;
+use super::push::Window;
 use crate::physics::Kind;
 use serde::Serialize;
 

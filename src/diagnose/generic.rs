@@ -1,7 +1,8 @@
 //! A generic force law: a basis of smooth forces of state, inputs and heading, as a rival of every name in the catalogue.
 //! It is no physics: it says what a free law would explain, and names nothing.
 
-use super::evidence::{Base, Evidence, pick};
+use super::algebra::pick;
+use super::evidence::{Base, Evidence};
 use super::filter::Column;
 use super::settings::{GENERIC_GAIN, SURROGATE_P, SURROGATE_TERMS};
 use crate::model::Model;

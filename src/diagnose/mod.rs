@@ -6,6 +6,7 @@
 //! models on held-out runs ([`prove`]). [`diagnose`] runs them in order and concludes.
 
 pub mod admit;
+mod algebra;
 pub mod base;
 pub mod baseline;
 pub mod candidate;
@@ -31,13 +32,19 @@ mod summary;
 mod wald;
 mod words;
 
+mod blocks;
 pub mod filter;
 mod forces;
 pub mod locate;
 pub mod noise;
+pub mod noise_fit;
+mod optimise;
+pub mod place;
 pub mod prove;
+pub mod push;
 pub mod receiver;
 pub mod refit;
+pub mod region;
 pub mod report;
 pub mod screen;
 pub mod sides;

@@ -7,7 +7,9 @@ use super::decide::{Decision, MechanismTest, PlaceTest, PushTest, ResidualTests,
 use super::estimate::Estimate;
 use super::filter::Run;
 use super::finding::PUSH;
-use super::locate::{Location, Place, Push, locate, sharpened};
+use super::locate::{Location, locate};
+use super::place::Place;
+use super::push::{Push, sharpened};
 use super::screen::{Screen, screen};
 use super::select::Selection;
 

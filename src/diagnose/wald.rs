@@ -1,8 +1,8 @@
 //! Wald's test: how far estimated parameters are from zero, in units of their covariance.
 //! It takes estimate and covariance as they are; whether a parameter is worth naming is decided elsewhere.
 
+use super::algebra::pick;
 use super::estimate::{Estimate, FreeParameter, base_of, evidence, passes, restrictions};
-use super::evidence::pick;
 use super::filter::{Column, Run};
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};

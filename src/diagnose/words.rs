@@ -7,7 +7,8 @@ use super::decide::Verdict;
 use super::diagnosis::NextTrial;
 use super::finding::{Amplitude, Finding, GENERIC, PUSH};
 use super::generic::SurrogateTerm;
-use super::locate::{Place, Window};
+use super::place::Place;
+use super::push::Window;
 use crate::report::sig;
 
 /// What is missing and not in the catalogue, as far as it can be told.
