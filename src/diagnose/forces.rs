@@ -58,7 +58,7 @@ pub(super) fn forces_of(model: &Model, parameters: &[usize], runs: &[Run]) -> Ve
 
 /// Whether a mechanism that breaks mirror symmetry only takes back what a free parameter of the base, which breaks it too, puts
 /// where it acts: then that parameter is what is off there, it has taken up an effect elsewhere, and nothing acts here.
-pub(super) fn undoes(c: &Candidate, found: &Estimate, runs: &[Run]) -> bool {
+pub(super) fn only_cancels(c: &Candidate, found: &Estimate, runs: &[Run]) -> bool {
     let odd = |i: usize| found.model.parameters[i].info.parity == Parity::Odd;
     let own: Vec<usize> = c.columns.iter().map(|col| col.parameter).collect();
     let base = found.free.iter().filter(|f| f.prior.is_none() && f.sessions.is_none()).map(|f| f.column.parameter);
