@@ -7,6 +7,7 @@ pub mod diagnose;
 pub mod error;
 pub mod evaluate;
 pub mod fit;
+pub mod ipopt;
 pub mod maneuver;
 pub mod model;
 pub mod parameter;
