@@ -8,6 +8,7 @@ pub mod dynamics;
 pub mod error;
 pub mod evaluate;
 pub mod fit;
+pub mod ipopt;
 pub mod maneuver;
 pub mod model;
 pub mod parameter;

@@ -1,17 +1,5 @@
-//! What a fit knows of its estimates: active constraints, covariance, and the combinations the data do not determine.
-//! It works on matrices in scaled parameters `z = p / scale` and neither simulates nor solves.
-//!
-//! Linear theory around the solution. With the cost `C = (1/M) sum e^2`, its Gauss-Newton matrix H, the residual variance
-//! `s^2` and the null space Z of the active constraints (`A d = 0` for `d = Z y`),
-//!
-//! ```text
-//! Gauss-Newton   Cov = (2 s^2 / M) B,   B = Z (Z^T H Z)^-1 Z^T
-//! sandwich       Cov = B (c/(c-1) sum_c g_c g_c^T) B,   g_c the gradient of the part of cluster c (runs of one recording)
-//! ```
-//!
-//! The first takes residuals as independent. Along a simulated trajectory they are not, so that it is far too sure of itself;
-//! the second only takes the recordings as independent of each other, and needs several of them. Source: White, Econometrica
-//! 50 (1982) 1-25 and Liang & Zeger, Biometrika 73 (1986) 13-22 for the sandwich.
+//! Directions that active constraints leave free, and the inverse of a curvature within them.
+//! It knows matrices alone: no model, no cost, no solver.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -66,37 +54,6 @@ impl Inverse {
     }
 }
 
-/// The middle of the sandwich: `c/(c-1) sum_c g_c g_c^T` over c clusters.
-pub(super) fn meat(clusters: &[DVector<f64>], n: usize) -> DMatrix<f64> {
-    let mut sum = DMatrix::zeros(n, n);
-    for g in clusters {
-        sum += g * g.transpose();
-    }
-    let c = clusters.len() as f64;
-    if c > 1.0 { sum * (c / (c - 1.0)) } else { sum }
-}
-
-/// A direction in words: its largest entries by name, `0.71 p5 - 0.70 p7`.
-pub(super) fn in_words(direction: &DVector<f64>, names: &[&str]) -> String {
-    let mut entries: Vec<usize> = (0..direction.len()).filter(|i| direction[*i].abs() > 0.15).collect();
-    entries.sort_by(|a, b| direction[*b].abs().total_cmp(&direction[*a].abs()));
-    entries.truncate(5);
-    // A direction has no sense of its own: the largest entry is written positive.
-    let sign = entries.first().map_or(1.0, |i| direction[*i].signum());
-    let mut text = String::new();
-    for i in entries {
-        let value = sign * direction[i];
-        let joint = match (text.is_empty(), value < 0.0) {
-            (true, false) => "",
-            (true, true) => "-",
-            (false, false) => " + ",
-            (false, true) => " - ",
-        };
-        text += &format!("{joint}{:.2} {}", value.abs(), names[i]);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,18 +84,11 @@ mod tests {
     }
 
     #[test]
-    fn what_the_data_do_not_determine_is_named() {
+    fn what_the_data_do_not_determine_is_told_from_what_they_do() {
         // The data see 2 x + y and w alone.
         let h = DMatrix::from_row_slice(3, 3, &[4.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 5.0]);
         let inverse = inverse(&h, &DMatrix::identity(3, 3));
         assert_eq!(inverse.rank, 2);
         assert_eq!(inverse.determined(), [false, false, true]);
-        assert_eq!(in_words(&inverse.directions[2].1, &["x", "y", "w"]), "0.89 y - 0.45 x");
-    }
-
-    #[test]
-    fn clusters_that_repeat_a_score_add_its_square_not_its_size() {
-        let m = meat(&[vector(&[1.0, 0.0]), vector(&[-1.0, 0.0])], 2);
-        assert_eq!(m, DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0]));
     }
 }
