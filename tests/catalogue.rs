@@ -9,10 +9,10 @@ use std::path::Path;
 use trimtab::flow::Flow;
 use trimtab::model::{BASE, Model};
 use trimtab::parameter::Parity;
+use trimtab::report::terms::{listing, summary};
 use trimtab::ship::Ship;
 use trimtab::state::{Force, Inputs, STATES, State};
 use trimtab::terms::hull::Inertia;
-use trimtab::terms::listing::{listing, summary};
 use trimtab::terms::{CATALOGUE, CHUNK, Curvature, Form, Gradient, GradientLanes, Lanes, NumDual, Number};
 use trimtab_ad::Scalar;
 

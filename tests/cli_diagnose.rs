@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 use support::{model, runs, truth_noise};
-use trimtab::diagnose::report::KEYS;
+use trimtab::report::diagnosis::KEYS;
 
 /// Runs the command in a folder.
 fn trimtab(folder: &Path, arguments: &[&str]) -> Output {

@@ -7,8 +7,8 @@ use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
 use trimtab::fit::{Fit, FitRun, FitSettings, fit};
 use trimtab::model::Model;
+use trimtab::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
 use trimtab::recording::{Split, Window};
-use trimtab::report::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
 

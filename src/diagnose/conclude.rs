@@ -453,13 +453,13 @@ const ALONG: f64 = 2.5;
 const MIRRORED: f64 = 0.2;
 
 /// What a force for a limited time is called.
-pub(super) const PUSH: &str = "push";
+pub(crate) const PUSH: &str = "push";
 
 /// The same in plain words.
-pub(super) const PUSH_TITLE: &str = "a push for a limited time (tug, thruster, line)";
+pub(crate) const PUSH_TITLE: &str = "a push for a limited time (tug, thruster, line)";
 
 /// What stands in a confidence set for physics that the catalogue does not hold.
-pub(super) const GENERIC: &str = "generic";
+pub(crate) const GENERIC: &str = "generic";
 
 /// In at most so many recordings a push cannot be told from the ship's own forces in a state that no other recording visits.
 const FEW_RECORDINGS: usize = 2;
@@ -775,7 +775,7 @@ enum Unlisted<'a> {
 
 impl Unlisted<'_> {
     fn headline(&self) -> String {
-        let sig = |v: f64| crate::report::sig(v, 3);
+        let sig = |v: f64| crate::numerals::sig(v, 3);
         match self {
             Self::Law(surrogate) => {
                 let terms: Vec<&str> = surrogate.iter().map(|t| t.name.as_str()).collect();
@@ -1252,7 +1252,7 @@ fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) -> Opt
 
 fn headline(verdict: Verdict, findings: &[Finding], admission: &Admission, unlisted: Option<&Unlisted>) -> String {
     let values = |f: &Finding| {
-        let one = |p: &Amplitude| format!("{} = {} {}", p.name, crate::report::sig(p.value, 3), p.unit);
+        let one = |p: &Amplitude| format!("{} = {} {}", p.name, crate::numerals::sig(p.value, 3), p.unit);
         f.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
     };
     let list = |f: &Finding| {

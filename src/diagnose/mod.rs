@@ -12,8 +12,6 @@ pub mod conclude;
 pub mod covariance;
 pub mod estimate;
 pub mod evidence;
-pub mod figures;
-
 pub mod filter;
 mod forces;
 pub mod locate;
@@ -22,7 +20,6 @@ pub mod noise;
 pub mod prove;
 pub mod receiver;
 pub mod refit;
-pub mod report;
 pub mod screen;
 pub mod sides;
 pub mod signal;

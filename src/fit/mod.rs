@@ -8,7 +8,6 @@
 //! | `problem` | both, scaled, with the priors, as Ipopt wants them |
 //! | [`ipopt`] | the solver |
 //! | `uncertainty` | covariances, and what the data do not determine |
-//! | [`report`] | a fit in words and tables |
 //! | [`multistart`] | the same fit from many starts |
 //!
 //! [`fit`] joins them.
@@ -18,7 +17,6 @@ pub mod cost;
 pub mod ipopt;
 pub mod multistart;
 mod problem;
-pub mod report;
 mod uncertainty;
 
 pub use constraints::{ConstraintSettings, Limits, Rule};

@@ -1,8 +1,8 @@
 //! One HTML page that carries everything it shows: headings, paragraphs, tables, and figures as embedded images.
 //! No scripts and nothing from outside the file, so that it reads the same offline, printed, and years later.
 
-use super::figure::{Figure, FigureError};
 use super::table::Table;
+use crate::plot::{Figure, FigureError};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -187,7 +187,7 @@ impl Page {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Axis, FITTED, Layer, Panel};
+    use crate::plot::{Axis, FITTED, Layer, Panel};
 
     fn page() -> String {
         let figure = Figure::new("R(u) < 80 kN").with(

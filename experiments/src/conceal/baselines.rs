@@ -99,7 +99,7 @@ mod tests {
     use crate::conceal::effects::{Class, catalogue};
     use crate::conceal::strength::ForceMeter;
     use crate::conceal::{Case, Spec};
-    use trimtab::diagnose::report::mechanism_names;
+    use trimtab::report::diagnosis::mechanism_names;
 
     #[test]
     fn rivals_are_asked_about_nulls_and_the_oracle_about_effects_that_can_be_seen() {

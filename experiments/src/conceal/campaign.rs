@@ -4,9 +4,10 @@
 use std::collections::BTreeSet;
 
 use serde::Serialize;
-use trimtab::report::{
-    Axis, BASELINE, BLUE, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, ORACLE, ORANGE, PURPLE, Panel, SKY, Table,
+use trimtab::plot::{
+    Axis, BASELINE, BLUE, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, ORACLE, ORANGE, PURPLE, Panel, SKY,
 };
+use trimtab::report::Table;
 
 use super::craft::Family;
 use super::design::Design;

@@ -7,8 +7,10 @@ use super::sheet::{cell, save};
 use super::{Artefact, PaperError};
 use std::path::Path;
 use trimtab::evaluate::{Comparison, Outcome};
+use trimtab::numerals::sig;
+use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel};
 use trimtab::recording::Split;
-use trimtab::report::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel, Table, sig};
+use trimtab::report::Table;
 use trimtab::state::STATES;
 
 /// Error distributions.

@@ -8,9 +8,9 @@ use std::path::Path;
 use std::time::Instant;
 use trimtab::fit::{Cost, CostOptions, Derivatives, FitRun, FitSettings, Hessian, Progress, fit};
 use trimtab::model::Model;
-use trimtab::report::{
-    Axis, BLUE, Color, DASH, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, SKY, Table, VERMILLION, fixed, sig,
-};
+use trimtab::numerals::{DASH, fixed, sig};
+use trimtab::plot::{Axis, BLUE, Color, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, SKY, VERMILLION};
+use trimtab::report::Table;
 use trimtab::simulate::{Integration, Method};
 
 /// Exact gradient against finite differences.
@@ -95,7 +95,7 @@ const WAYS: [Way; 7] = [
         derivatives: Derivatives::FiniteDifferences,
         step: 1e-9,
         hessian: Hessian::LimitedMemory,
-        color: trimtab::report::GREY,
+        color: trimtab::plot::GREY,
         dashed: true,
     },
 ];
@@ -248,7 +248,7 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
     Figure::new("Exact gradient against finite differences")
         .columns(3)
         .panel_size(900, 640)
-        .legend(trimtab::report::Legend::EachPanel)
+        .legend(trimtab::plot::Legend::EachPanel)
         .with(accuracy)
         .with_all(courses_panels)
         .save(&out.join("gradient"))?;

@@ -10,7 +10,8 @@ use std::path::Path;
 use trimtab::evaluate::{Estimate, EvaluationSettings, evaluate};
 use trimtab::fit::{FitSettings, fit};
 use trimtab::model::{Model, Prior};
-use trimtab::report::{DASH, Table, fixed, sig};
+use trimtab::numerals::{DASH, fixed, sig};
+use trimtab::report::Table;
 use trimtab::terms::Form;
 
 /// What limits the fit.

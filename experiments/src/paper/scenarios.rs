@@ -10,10 +10,10 @@ use super::{Artefact, PaperError};
 use std::fmt::Write;
 use std::path::Path;
 use trimtab::evaluate::{Comparison, predict};
+use trimtab::numerals::{DASH, fixed, sig};
+use trimtab::plot::{Axis, BASELINE, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, east_north};
 use trimtab::recording::{Split, Window};
-use trimtab::report::{
-    Axis, BASELINE, DASH, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, Table, east_north, fixed, sig,
-};
+use trimtab::report::Table;
 use trimtab::state::{STATE_NAMES, STATES};
 
 /// Figures 3 to 6.
@@ -145,7 +145,7 @@ fn figure(case: &Case, window: &Window, title: &str, before: &Comparison, other:
     let (published, captive, fitted) =
         (sail(&case.published_baseline), sail(&case.captive_baseline), sail(&case.fit.model));
     // In the order of drawing: the truth lies below what is judged by it.
-    let series: [(&str, trimtab::report::Color, &[[f64; STATES]], bool); 4] = [
+    let series: [(&str, trimtab::plot::Color, &[[f64; STATES]], bool); 4] = [
         ("truth", TRUTH, &window.measured, false),
         ("baseline, published p~", BASELINE, &published, true),
         ("baseline, captive tests", ORANGE, &captive, false),

@@ -7,7 +7,9 @@ use super::{Artefact, PaperError};
 use crate::truth::dataset::{Split, paper_statistics, period, statistics};
 use std::fmt::Write;
 use std::path::Path;
-use trimtab::report::{Axis, DASH, FITTED, Figure, GREY, Layer, Marker, Panel, Table, fixed};
+use trimtab::numerals::{DASH, fixed};
+use trimtab::plot::{Axis, FITTED, Figure, GREY, Layer, Marker, Panel};
+use trimtab::report::Table;
 
 /// Table 1.
 pub static TABLE1: Artefact = Artefact {

@@ -13,8 +13,9 @@ use trimtab::diagnose::prove::{HeldOut, prove};
 use trimtab::diagnose::receiver::settled;
 use trimtab::diagnose::{Diagnosis, Settings, diagnose};
 use trimtab::model::{Model, Prior};
+use trimtab::numerals::{fixed, sig};
 use trimtab::recording::Split;
-use trimtab::report::{Table, fixed, sig};
+use trimtab::report::Table;
 use trimtab::simulate::Integration;
 
 /// The windows of one split as runs of the diagnosis.

@@ -7,8 +7,9 @@ use super::{Hull, RealError};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
+use trimtab::numerals::{fixed, sig};
+use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, RECORDED};
 use trimtab::recording::Split;
-use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, RECORDED, fixed, sig};
 
 /// Over this the changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 const SPAN: f64 = 20.0;

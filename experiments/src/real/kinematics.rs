@@ -4,8 +4,9 @@
 use super::{Hull, RealError};
 use nalgebra::{DMatrix, DVector};
 use trimtab::diagnose::filter::Run;
+use trimtab::numerals::{fixed, sig};
 use trimtab::recording::{Channel, Recording};
-use trimtab::report::{Table, fixed, sig};
+use trimtab::report::Table;
 
 /// Whether the channels of one recording agree.
 #[derive(Clone, Debug)]

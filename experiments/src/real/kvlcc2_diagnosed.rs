@@ -7,8 +7,9 @@ use super::{Hull, RealError};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
+use trimtab::numerals::{fixed, sig};
+use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED};
 use trimtab::recording::Split;
-use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED, fixed, sig};
 
 /// Over this the changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 pub const SPAN: f64 = 40.0;

@@ -12,8 +12,9 @@ pub mod published;
 use std::path::{Path, PathBuf};
 use trimtab::fit::{Fit, FitRun, FitSettings, fit};
 use trimtab::model::{Model, ModelError};
+use trimtab::plot::{Figure, FigureError};
 use trimtab::recording::{Split, Window};
-use trimtab::report::{Figure, FigureError, Table};
+use trimtab::report::Table;
 use trimtab::ship::{Ship, ShipError};
 use trimtab::study::{Study, StudyError};
 

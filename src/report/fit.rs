@@ -1,8 +1,9 @@
 //! A fit in words and tables, for people: what was estimated, how surely, what held it back and what it cost.
 //! The same content for programs is the fit itself, serialised.
 
-use super::{CovarianceKind, Derivatives, Estimate, Fit, Hessian};
-use crate::report::{Table, interval, sig};
+use super::table::Table;
+use crate::fit::{CovarianceKind, Derivatives, Estimate, Fit, Hessian};
+use crate::numerals::{interval, sig};
 use std::fmt::Write;
 
 /// Significant digits of every number.

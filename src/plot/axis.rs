@@ -1,7 +1,7 @@
 //! Axes: the range an axis covers, where its ticks fall, how they read, and equal scales for tracks.
 //! Pure arithmetic: nothing here draws.
 
-use super::table::superscript;
+use crate::numerals::superscript;
 
 /// Values at or beyond this size are treated as missing: their differences would overflow.
 const LARGEST: f64 = 1e300;

@@ -1,12 +1,14 @@
 //! A diagnosis in words: the numbered summary of the terminal, the JSON document with its keys explained, and the HTML page.
 //! It computes no statistics; whatever it says is in [`Diagnosis`], turned into units that people use (kN, degrees).
 
-use super::conclude::{Amplitude, Diagnosis, Finding, GENERIC, PUSH, PUSH_TITLE, Verdict};
 use super::figures::Picture;
-use super::locate::{EquationShare, Window};
-use super::mechanism::{Kind, Mechanism};
-use super::sides::Sides;
-use crate::report::{Page, Section, Table, fixed, sig};
+use crate::diagnose::conclude::{Amplitude, Diagnosis, Finding, GENERIC, PUSH, PUSH_TITLE, Verdict};
+use crate::diagnose::locate::{EquationShare, Window};
+use crate::diagnose::mechanism::{Kind, Mechanism};
+use crate::diagnose::sides::Sides;
+use crate::numerals::{fixed, sig};
+use crate::report::html::{Page, Section};
+use crate::report::table::Table;
 use crate::ship::Ship;
 use crate::terms::CATALOGUE;
 use serde_json::{Map, Value};

@@ -1,9 +1,9 @@
 //! The pictures of a diagnosis: where the unknown force acts, what could be behind it, and what naming it gains.
 //! They show what is in [`Diagnosis`] and compute nothing beyond means in bins.
 
-use super::conclude::{Diagnosis, Ranked, Trace};
-use super::report::{Units, title_of};
-use crate::report::{
+use super::text::{Units, title_of};
+use crate::diagnose::conclude::{Diagnosis, Ranked, Trace};
+use crate::plot::{
     Axis, BASELINE, Color, FITTED, Figure, FigureError, GREEN, GREY, LIMIT, Layer, Legend, Marker, ORANGE, PURPLE,
     Panel, RECORDED, SKY, east_north,
 };
@@ -21,7 +21,7 @@ pub struct Picture {
     pub title: String,
     /// What is to be seen, in one or two sentences.
     pub caption: &'static str,
-    /// Heading of the part of the report, as in [`super::report::parts`].
+    /// Heading of the part of the report, as in [`super::text::parts`].
     pub part: &'static str,
     /// As [`Figure::png`].
     pub png: Vec<u8>,
@@ -211,8 +211,8 @@ fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Figure {
     let title = if large > 0.0 {
         format!(
             "Force the model does not explain; an arrow of {} m is {} {unit}",
-            crate::report::sig(0.1 * widest, 2),
-            crate::report::sig(0.5 * large * factor, 2)
+            crate::numerals::sig(0.1 * widest, 2),
+            crate::numerals::sig(0.5 * large * factor, 2)
         )
     } else {
         "Tracks".to_owned()
@@ -385,7 +385,7 @@ fn compass(d: &Diagnosis) -> Figure {
         })
         .fold(0.0, f64::max);
     let length = if large > 0.0 { 0.7 / large } else { 0.0 };
-    let title = format!("Force by heading of the ship; the longest arrow is {} {unit}", crate::report::sig(large, 2));
+    let title = format!("Force by heading of the ship; the longest arrow is {} {unit}", crate::numerals::sig(large, 2));
     let mut figure = Figure::new(title).columns(2).panel_size(700, 700).legend(Legend::Off);
     for (stage, color, force) in stages(d) {
         let arrows: Vec<[(f64, f64); 2]> = mean(force, 0)
@@ -517,7 +517,7 @@ fn confusability(d: &Diagnosis) -> Figure {
         pair.map_or(f64::NAN, |c| (c.cosine * 100.0).round() / 100.0)
     };
     let values: Vec<Vec<f64>> = names.iter().map(|a| names.iter().map(|b| between(a, b)).collect()).collect();
-    let map = crate::report::Mark::Heatmap { values, range: Some((0.5, 1.0)), annotate: true };
+    let map = crate::plot::Mark::Heatmap { values, range: Some((0.5, 1.0)), annotate: true };
     let axis = |short: bool| {
         let labels = names.iter().map(|m| if short { (*m).to_owned() } else { title_of(m).to_owned() });
         Axis::categories("", labels)

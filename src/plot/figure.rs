@@ -568,7 +568,7 @@ fn rows(panel: &Panel, layer: &Layer) -> Vec<Row> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{BLUE, GREEN, TRUTH};
+    use crate::plot::{BLUE, GREEN, TRUTH};
 
     const NAN: f64 = f64::NAN;
 

@@ -452,7 +452,7 @@ impl Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Layer, palette};
+    use crate::plot::{Layer, palette};
 
     #[test]
     fn tracks_have_the_same_metres_per_pixel_on_both_axes() {

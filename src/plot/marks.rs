@@ -7,7 +7,7 @@ use super::draw::Frame;
 use super::figure::{Layer, Mark, Marker, Panel, Stroke};
 use super::palette::{self, Color};
 use super::style::{INK, NOTE, TICK};
-use super::table::{fixed, sig};
+use crate::numerals::{fixed, sig};
 
 /// Whether bars and boxes of a panel lie: the categories are on the y axis only.
 pub(super) fn lies(panel: &Panel) -> bool {

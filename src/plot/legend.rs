@@ -113,7 +113,7 @@ fn sample(canvas: &mut Canvas, layer: &Layer, (x, y): Px) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::palette;
+    use crate::plot::palette;
 
     #[test]
     fn names_are_once_in_the_legend() {
