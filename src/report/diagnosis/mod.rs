@@ -4,4 +4,4 @@
 pub mod figures;
 mod text;
 
-pub use text::{KEYS, document, keys_listing, mechanism_names, page, summary, title_of};
+pub use text::{KEYS, document, keys_listing, mechanism_names, page, parts, summary, title_of};
