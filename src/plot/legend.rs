@@ -1,9 +1,11 @@
 //! The legend: a strip that names the series with a sample of each, and never lies over the data.
-//! Which strips a figure has and where they go is decided in `draw`.
+//! Which strips a figure has and where they go is decided in `layout`.
 
-use super::canvas::{Anchor, Canvas, Px, Rect, Run, text_width};
-use super::figure::{Layer, Mark};
-use super::marks::{arrow, dashes, draw_marker, hull, softened, whisker};
+use super::canvas::{Anchor, Canvas, Run};
+use super::font::text_width;
+use super::geometry::{Px, Rect};
+use super::layer::{Layer, Mark};
+use super::shapes::{arrow, dashes, draw_marker, hull, softened, whisker};
 use super::style::{LABEL, cut, ink};
 
 /// Width of a sample, px.
