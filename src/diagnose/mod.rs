@@ -7,6 +7,7 @@
 
 pub mod admit;
 pub mod baseline;
+pub mod candidate;
 mod compete;
 pub mod conclude;
 pub mod covariance;
@@ -15,7 +16,6 @@ pub mod evidence;
 pub mod filter;
 mod forces;
 pub mod locate;
-pub mod mechanism;
 pub mod noise;
 pub mod prove;
 pub mod receiver;

@@ -4,8 +4,9 @@
 use super::table::Table;
 use crate::numerals::{DASH, sig};
 use crate::parameter::{ParameterInfo, Parity};
+use crate::physics::{Group, TermInfo};
 use crate::ship::Ship;
-use crate::terms::{CATALOGUE, Group, TermInfo};
+use crate::terms::CATALOGUE;
 use serde::Serialize;
 use std::fmt;
 

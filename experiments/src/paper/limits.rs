@@ -11,8 +11,8 @@ use trimtab::evaluate::{Estimate, EvaluationSettings, evaluate};
 use trimtab::fit::{FitSettings, fit};
 use trimtab::model::{Model, Prior};
 use trimtab::numerals::{DASH, fixed, sig};
+use trimtab::physics::Form;
 use trimtab::report::Table;
-use trimtab::terms::Form;
 
 /// What limits the fit.
 pub static LIMITS: Artefact = Artefact {

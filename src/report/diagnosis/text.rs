@@ -4,9 +4,9 @@
 use super::figures::Picture;
 use crate::diagnose::conclude::{Amplitude, Diagnosis, Finding, GENERIC, PUSH, PUSH_TITLE, Verdict};
 use crate::diagnose::locate::{EquationShare, Window};
-use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::diagnose::sides::Sides;
 use crate::numerals::{fixed, sig};
+use crate::physics::{Kind, Mechanism};
 use crate::report::html::{Page, Section};
 use crate::report::table::Table;
 use crate::ship::Ship;
