@@ -11,7 +11,7 @@ use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::{Settings, Verdict, diagnose};
 use trimtab::error::suggestion;
 use trimtab::recording::{Split, Window};
-use trimtab::report::diagnosis::{document, figures, keys_listing, mechanism_names, page, summary};
+use trimtab::report::diagnosis::{document, keys_listing, mechanism_names, page, pictures, summary};
 
 const LONG: &str = "\
 Compares the recordings of a study with its model, and answers with evidence:
@@ -88,7 +88,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     if output.has_folder() {
         output.file("improved.toml", model_text(&diagnosis.model)?.as_bytes())?;
         output.file("base.toml", model_text(&diagnosis.base)?.as_bytes())?;
-        let pictures = figures::all(&diagnosis)?;
+        let pictures = pictures(&diagnosis)?;
         output.file("report.html", page(&diagnosis, name, &pictures).render().as_bytes())?;
         for p in &pictures {
             output.file(format!("figures/{}.png", p.stem), &p.png)?;

@@ -25,6 +25,7 @@ pub enum Scale {
 
 /// One axis of a panel.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[must_use]
 pub struct Axis {
     /// What is plotted, with its unit: `yaw rate r [deg/s]`.
     pub label: String,
@@ -40,39 +41,33 @@ pub struct Axis {
 
 impl Axis {
     /// A linear axis fitted to the data.
-    #[must_use]
     pub fn new(label: impl Into<String>) -> Self {
         Self { label: label.into(), ..Self::default() }
     }
 
     /// An axis with one slot for each label.
-    #[must_use]
     pub fn categories<S: Into<String>>(label: impl Into<String>, labels: impl IntoIterator<Item = S>) -> Self {
         let scale = Scale::Categories(labels.into_iter().map(Into::into).collect());
         Self { label: label.into(), scale, ..Self::default() }
     }
 
     /// The same axis on a logarithmic scale.
-    #[must_use]
     pub fn log(self) -> Self {
         Self { scale: Scale::Log, ..self }
     }
 
     /// The same axis from `lo` to `hi`.
-    #[must_use]
     pub fn range(self, lo: f64, hi: f64) -> Self {
         Self { range: Some((lo, hi)), ..self }
     }
 
     /// The same axis, covering `value` whatever the data are.
-    #[must_use]
     pub fn including(mut self, value: f64) -> Self {
         self.include.push(value);
         self
     }
 
     /// The same axis with a tick every `step`.
-    #[must_use]
     pub fn every(self, step: f64) -> Self {
         Self { every: Some(step), ..self }
     }

@@ -12,7 +12,7 @@ impl Figure {
     ///
     /// `x` and `y` are as on the axes, categories by their label; `z` is the value of a heat map cell and the heading
     /// (rad) of a hull; `lo` and `hi` are the ends of an interval, band or span. What is missing is an empty field.
-    /// An arrow is two rows, `arrow-from` and `arrow-to`; histograms and boxes are given by their samples.
+    /// An arrow is two rows, `arrow-from` and `arrow-to`; boxes are given by their samples.
     ///
     /// # Errors
     /// [`FigureError::Csv`] if the writer fails.
@@ -80,7 +80,6 @@ fn rows(panel: &Panel, layer: &Layer) -> Vec<Row> {
             .flat_map(|(i, values)| values.iter().map(move |&v| (i, v)))
             .map(|(i, v)| slot("sample", i, v, NO, NO))
             .collect(),
-        Mark::Histogram { values, .. } => values.iter().map(|&v| point("count", v, NO, NO, NO, NO)).collect(),
         Mark::Hulls { poses, .. } => poses.iter().map(|&[x, y, psi]| point("hull", y, x, psi, NO, NO)).collect(),
         Mark::Arrows(arrows) => arrows
             .iter()

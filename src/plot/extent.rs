@@ -1,7 +1,7 @@
-//! The room that the data of a panel take: the smallest ranges that show every layer, and the bins of histograms.
+//! The room that the data of a panel take: the smallest ranges that show every layer.
 //! It looks at numbers only; where they fall on a sheet is in `frame`.
 
-use super::axis::{Extent, Scale, drawable};
+use super::axis::{Extent, drawable};
 use super::figure::Panel;
 use super::layer::{Layer, Mark};
 use super::shapes::hull;
@@ -28,7 +28,7 @@ pub(super) fn has_data(layer: &Layer) -> bool {
         Mark::Line(points) | Mark::Scatter(points, _) => points.iter().any(pair),
         Mark::Errors(points, _) => points.iter().any(|&(x, y, _, _)| pair(&(x, y))),
         Mark::Band(points) => points.iter().any(|&(x, lo, hi)| drawable(x) && pair(&(lo, hi))),
-        Mark::Bars { values, .. } | Mark::Histogram { values, .. } => values.iter().any(|&v| drawable(v)),
+        Mark::Bars { values, .. } => values.iter().any(|&v| drawable(v)),
         Mark::Boxes(rows) | Mark::Heatmap { values: rows, .. } => rows.iter().flatten().any(|&v| drawable(v)),
         Mark::Hulls { poses, .. } => poses.iter().any(|pose| pose.iter().all(|&v| drawable(v))),
         Mark::Arrows(arrows) => arrows.iter().any(|ends| ends.iter().all(pair)),
@@ -37,10 +37,10 @@ pub(super) fn has_data(layer: &Layer) -> bool {
 }
 
 /// The smallest ranges that show all layers of a panel.
-pub(super) fn extents(panel: &Panel, bins: Option<Bins>) -> (Extent, Extent) {
+pub(super) fn extents(panel: &Panel) -> (Extent, Extent) {
     let mut room = Room { x: Extent::new(&panel.x.scale), y: Extent::new(&panel.y.scale), lying: lies(panel) };
     for layer in &panel.layers {
-        room.add(&layer.mark, bins);
+        room.add(&layer.mark);
     }
     (room.x, room.y)
 }
@@ -62,7 +62,7 @@ impl Room {
         }
     }
 
-    fn add(&mut self, mark: &Mark, bins: Option<Bins>) {
+    fn add(&mut self, mark: &Mark) {
         match mark {
             Mark::Line(points) | Mark::Scatter(points, _) => points.iter().for_each(|&(x, y)| self.point(x, y)),
             Mark::Errors(points, _) => {
@@ -92,13 +92,6 @@ impl Room {
                 samples.iter().flatten().for_each(|&v| self.along().add(v));
                 self.categories(samples.len());
             }
-            Mark::Histogram { values, .. } => {
-                let Some(bins) = bins else { return };
-                self.x.add(bins.edge(0));
-                self.x.add(bins.edge(bins.n));
-                self.y.add_foot();
-                bins.count(values).iter().for_each(|&c| self.y.add(c as f64));
-            }
             Mark::Heatmap { values, .. } => {
                 let columns = values.iter().map(Vec::len).max().unwrap_or(0);
                 if columns > 0 {
@@ -122,59 +115,6 @@ impl Room {
     }
 }
 
-/// The bins all histograms of a panel share, equal on the scale of its x axis.
-#[derive(Clone, Copy)]
-pub(super) struct Bins {
-    lo: f64,
-    hi: f64,
-    pub n: usize,
-    log: bool,
-}
-
-impl Bins {
-    /// The bins of a panel; `None` without a value to count.
-    pub fn of(panel: &Panel) -> Option<Self> {
-        let log = panel.x.scale == Scale::Log;
-        let along = |v: f64| if log { v.log10() } else { v };
-        let (mut all, mut asked, mut most) = (vec![], 0, 0);
-        for layer in &panel.layers {
-            if let Mark::Histogram { values, bins } = &layer.mark {
-                let before = all.len();
-                all.extend(values.iter().copied().filter(|&v| drawable(v) && (!log || v > 0.0)).map(along));
-                most = most.max(all.len() - before);
-                asked = asked.max(*bins);
-            }
-        }
-        all.sort_by(f64::total_cmp);
-        let (lo, hi) = (*all.first()?, *all.last()?);
-        if hi - lo <= 1e-12 * hi.abs().max(lo.abs()) {
-            let half = if log { 0.5 } else { 0.5 * lo.abs().max(1.0) };
-            return Some(Self { lo: lo - half, hi: hi + half, n: asked.clamp(1, 200), log });
-        }
-        let spread = quantile(&all, 0.75)? - quantile(&all, 0.25)?;
-        let width = 2.0 * spread / (most.max(1) as f64).cbrt();
-        let fitting = if width > 0.0 { ((hi - lo) / width).ceil().clamp(5.0, 60.0) as usize } else { 20 };
-        Some(Self { lo, hi, n: if asked > 0 { asked.min(500) } else { fitting }, log })
-    }
-
-    /// The lower edge of bin `k`.
-    pub fn edge(self, k: usize) -> f64 {
-        let v = self.lo + (self.hi - self.lo) * k as f64 / self.n as f64;
-        if self.log { 10f64.powf(v) } else { v }
-    }
-
-    /// How many values are in each bin.
-    pub fn count(self, values: &[f64]) -> Vec<usize> {
-        let mut counts = vec![0; self.n];
-        for &v in values.iter().filter(|&&v| drawable(v) && (!self.log || v > 0.0)) {
-            let along = if self.log { v.log10() } else { v };
-            let k = ((along - self.lo) / (self.hi - self.lo) * self.n as f64) as usize;
-            counts[k.min(self.n - 1)] += 1;
-        }
-        counts
-    }
-}
-
 /// Quantile of sorted values by linear interpolation; `None` for no values.
 pub(super) fn quantile(sorted: &[f64], q: f64) -> Option<f64> {
     let position = q * sorted.len().checked_sub(1)? as f64;
@@ -186,7 +126,6 @@ pub(super) fn quantile(sorted: &[f64], q: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::palette;
 
     #[test]
     fn quantiles_interpolate_between_samples() {
@@ -195,19 +134,5 @@ mod tests {
         assert_eq!(quantile(&sorted, 0.0), Some(1.0));
         assert_eq!(quantile(&sorted, 1.0), Some(4.0));
         assert_eq!(quantile(&[], 0.5), None);
-    }
-
-    #[test]
-    fn histograms_of_a_panel_share_their_bins_and_count_every_value_once() {
-        let values: Vec<f64> = (0..300).map(|i| f64::from(i).sin()).collect();
-        let panel = Panel::default().with(Layer::histogram("a", palette::BLUE, values.clone())).with(Layer::histogram(
-            "b",
-            palette::GREEN,
-            [-3.0, f64::NAN, 4.0],
-        ));
-        let bins = Bins::of(&panel).unwrap();
-        assert_eq!((bins.edge(0), bins.edge(bins.n)), (-3.0, 4.0));
-        assert_eq!(bins.count(&values).iter().sum::<usize>(), 300);
-        assert_eq!(bins.count(&[-3.0, f64::NAN, 4.0]).iter().sum::<usize>(), 2);
     }
 }

@@ -12,6 +12,7 @@ pub fn east_north(x: f64, y: f64) -> (f64, f64) {
 
 /// One set of axes with its layers.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[must_use]
 pub struct Panel {
     /// Heading; empty for none.
     pub title: String,
@@ -27,26 +28,22 @@ pub struct Panel {
 
 impl Panel {
     /// An empty panel.
-    #[must_use]
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         Self { title: title.into(), x, y, equal_aspect: false, layers: vec![] }
     }
 
     /// An empty panel for tracks: east to the right, north up, metres of equal length.
-    #[must_use]
     pub fn track(title: impl Into<String>) -> Self {
         Self { equal_aspect: true, ..Self::new(title, Axis::new("east y [m]"), Axis::new("north x [m]")) }
     }
 
     /// The same panel with one more layer on top.
-    #[must_use]
     pub fn with(mut self, layer: Layer) -> Self {
         self.layers.push(layer);
         self
     }
 
     /// The same panel with more layers on top.
-    #[must_use]
     pub fn with_all(mut self, layers: impl IntoIterator<Item = Layer>) -> Self {
         self.layers.extend(layers);
         self
@@ -67,6 +64,7 @@ pub enum Legend {
 
 /// A figure: panels in rows, a title and a legend.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Figure {
     /// Title; empty for none.
     pub title: String,
@@ -84,7 +82,6 @@ pub struct Figure {
 
 impl Figure {
     /// An empty figure with one column of panels of 900 x 600 px.
-    #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
@@ -97,32 +94,27 @@ impl Figure {
     }
 
     /// The same figure with this many panels in a row.
-    #[must_use]
     pub fn columns(self, columns: usize) -> Self {
         Self { columns, ..self }
     }
 
     /// The same figure with panels of this size, px of the PNG.
-    #[must_use]
     pub fn panel_size(self, width: u32, height: u32) -> Self {
         Self { panel_width: width, panel_height: height, ..self }
     }
 
     /// The same figure with its legend elsewhere.
-    #[must_use]
     pub fn legend(self, legend: Legend) -> Self {
         Self { legend, ..self }
     }
 
     /// The same figure with one more panel.
-    #[must_use]
     pub fn with(mut self, panel: Panel) -> Self {
         self.panels.push(panel);
         self
     }
 
     /// The same figure with more panels.
-    #[must_use]
     pub fn with_all(mut self, panels: impl IntoIterator<Item = Panel>) -> Self {
         self.panels.extend(panels);
         self

@@ -2,7 +2,7 @@
 //! It draws nothing.
 
 use super::axis::{Scale, equal_aspect, limits};
-use super::extent::{Bins, extents};
+use super::extent::extents;
 use super::figure::Panel;
 use super::font::text_width;
 use super::geometry::{Px, Rect};
@@ -14,14 +14,12 @@ pub(super) struct Frame {
     pub plot: Rect,
     pub x: Ruler,
     pub y: Ruler,
-    pub bins: Option<Bins>,
 }
 
 impl Frame {
     /// The axes of a panel, their ranges fitted to its layers where they are not given.
     pub fn new(panel: &Panel, plot: Rect) -> Self {
-        let bins = Bins::of(panel);
-        let (ex, ey) = extents(panel, bins);
+        let (ex, ey) = extents(panel);
         let (mut x, mut y) = (limits(&panel.x, ex, 0.02), limits(&panel.y, ey, 0.05));
         let (w, h) = (f64::from(plot.width()), f64::from(plot.height()));
         if panel.equal_aspect && panel.x.scale == Scale::Linear && panel.y.scale == Scale::Linear {
@@ -32,7 +30,6 @@ impl Frame {
             plot,
             x: ruler(&panel.x, x, w, 110.0, false, wide),
             y: ruler(&panel.y, y, h, 48.0, true, |_| f64::from(TICK) * 1.7),
-            bins,
         }
     }
 

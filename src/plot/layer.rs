@@ -62,14 +62,6 @@ pub enum Mark {
     /// One box for each category: median, quartiles, whiskers to the last sample within 1.5 interquartile ranges, and
     /// the samples beyond. Orientation and grouping as for bars.
     Boxes(Vec<Vec<f64>>),
-    /// Counts of values in equal bins, the same bins for all histograms of a panel. Zero bins: as many as the data bear
-    /// (Freedman and Diaconis 1981).
-    Histogram {
-        /// The values counted.
-        values: Vec<f64>,
-        /// How many bins.
-        bins: usize,
-    },
     /// Ship outlines at poses [x m north, y m east, psi rad clockwise from north] of the midship point, on a panel whose
     /// horizontal axis is east and whose vertical axis is north.
     Hulls {
@@ -97,6 +89,7 @@ pub enum Mark {
 
 /// One series of a panel.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Layer {
     /// Name in the legend and in the CSV; layers without a name are not in the legend.
     pub name: String,
@@ -114,7 +107,6 @@ pub struct Layer {
 
 impl Layer {
     /// A layer of any kind.
-    #[must_use]
     pub fn new(name: impl Into<String>, color: Color, mark: Mark) -> Self {
         let in_legend = !matches!(mark, Mark::Text(_) | Mark::Heatmap { .. });
         let width = if matches!(mark, Mark::HLine(_) | Mark::VLine(_) | Mark::Hulls { .. }) { 2.0 } else { 3.5 };
@@ -122,19 +114,16 @@ impl Layer {
     }
 
     /// A line through points.
-    #[must_use]
     pub fn line(name: impl Into<String>, color: Color, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self::new(name, color, Mark::Line(points.into_iter().collect()))
     }
 
     /// Separate points.
-    #[must_use]
     pub fn scatter(name: impl Into<String>, color: Color, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self::new(name, color, Mark::Scatter(points.into_iter().collect(), Marker::Circle))
     }
 
     /// Points with intervals: (x, y, lo, hi).
-    #[must_use]
     pub fn errors(
         name: impl Into<String>,
         color: Color,
@@ -144,43 +133,36 @@ impl Layer {
     }
 
     /// An area between two curves: (x, lo, hi).
-    #[must_use]
     pub fn band(name: impl Into<String>, color: Color, points: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
         Self::new(name, color, Mark::Band(points.into_iter().collect()))
     }
 
     /// The region between two values of y.
-    #[must_use]
     pub fn h_span(name: impl Into<String>, color: Color, lo: f64, hi: f64) -> Self {
         Self::new(name, color, Mark::HSpan(lo, hi))
     }
 
     /// The region between two values of x.
-    #[must_use]
     pub fn v_span(name: impl Into<String>, color: Color, lo: f64, hi: f64) -> Self {
         Self::new(name, color, Mark::VSpan(lo, hi))
     }
 
     /// A horizontal line.
-    #[must_use]
     pub fn h_line(name: impl Into<String>, color: Color, y: f64) -> Self {
         Self::new(name, color, Mark::HLine(y))
     }
 
     /// A vertical line.
-    #[must_use]
     pub fn v_line(name: impl Into<String>, color: Color, x: f64) -> Self {
         Self::new(name, color, Mark::VLine(x))
     }
 
     /// Bars, one for each category.
-    #[must_use]
     pub fn bars(name: impl Into<String>, color: Color, values: impl IntoIterator<Item = f64>) -> Self {
         Self::new(name, color, Mark::Bars { values: values.into_iter().collect(), intervals: vec![] })
     }
 
     /// Bars with intervals: (value, lo, hi), the ends as values.
-    #[must_use]
     pub fn bars_with_intervals(
         name: impl Into<String>,
         color: Color,
@@ -191,19 +173,11 @@ impl Layer {
     }
 
     /// Boxes and whiskers, one for each category.
-    #[must_use]
     pub fn boxes(name: impl Into<String>, color: Color, samples: impl IntoIterator<Item = Vec<f64>>) -> Self {
         Self::new(name, color, Mark::Boxes(samples.into_iter().collect()))
     }
 
-    /// A histogram with as many bins as the data bear.
-    #[must_use]
-    pub fn histogram(name: impl Into<String>, color: Color, values: impl IntoIterator<Item = f64>) -> Self {
-        Self::new(name, color, Mark::Histogram { values: values.into_iter().collect(), bins: 0 })
-    }
-
     /// Ship outlines on a track, at poses [x m north, y m east, psi rad].
-    #[must_use]
     pub fn hulls(
         name: impl Into<String>,
         color: Color,
@@ -215,49 +189,41 @@ impl Layer {
     }
 
     /// Arrows, each from its first to its second point.
-    #[must_use]
     pub fn arrows(name: impl Into<String>, color: Color, arrows: impl IntoIterator<Item = [(f64, f64); 2]>) -> Self {
         Self::new(name, color, Mark::Arrows(arrows.into_iter().collect()))
     }
 
     /// A matrix as coloured cells with their values. `name` is what the colour means, with unit.
-    #[must_use]
     pub fn heatmap(name: impl Into<String>, values: Vec<Vec<f64>>) -> Self {
         Self::new(name, Color::rgb(0, 0, 0), Mark::Heatmap { values, range: None, annotate: true })
     }
 
     /// A remark at a point.
-    #[must_use]
     pub fn text(text: impl Into<String>, color: Color, at: (f64, f64)) -> Self {
         Self::new(text, color, Mark::Text(at))
     }
 
     /// The same layer with dashed lines.
-    #[must_use]
     pub fn dashed(self) -> Self {
         Self { stroke: Stroke::Dashed, ..self }
     }
 
     /// The same layer with dotted lines.
-    #[must_use]
     pub fn dotted(self) -> Self {
         Self { stroke: Stroke::Dotted, ..self }
     }
 
     /// The same layer with lines this wide, px of the PNG.
-    #[must_use]
     pub fn width(self, width: f32) -> Self {
         Self { width, ..self }
     }
 
     /// The same layer, left out of the legend but kept by name in the CSV.
-    #[must_use]
     pub fn unlisted(self) -> Self {
         Self { in_legend: false, ..self }
     }
 
     /// The same points with another marker.
-    #[must_use]
     pub fn marker(mut self, with: Marker) -> Self {
         if let Mark::Scatter(_, marker) | Mark::Errors(_, marker) = &mut self.mark {
             *marker = with;

@@ -93,7 +93,7 @@ fn sample(canvas: &mut Canvas, layer: &Layer, (x, y): Px) {
         Mark::Band(_) => canvas.fill_rect(block, color.faded(0.22)),
         Mark::HSpan(..) | Mark::VSpan(..) => canvas.fill_rect(block, color.faded(0.16)),
         Mark::Bars { .. } => canvas.fill_rect(block, softened(color)),
-        Mark::Boxes(_) | Mark::Histogram { .. } => {
+        Mark::Boxes(_) => {
             canvas.fill_rect(block, color.faded(0.3));
             canvas.stroke_rect(block, 2.5, color);
         }

@@ -3,7 +3,7 @@
 
 use super::axis::{Scale, drawable};
 use super::canvas::{Anchor, Canvas, Run, Type};
-use super::extent::{Bins, is_grouped, lies, quantile};
+use super::extent::{is_grouped, lies, quantile};
 use super::figure::Panel;
 use super::frame::Frame;
 use super::geometry::{Px, Rect, between};
@@ -39,7 +39,6 @@ pub(super) fn draw_layer(frame: &Frame, canvas: &mut Canvas, panel: &Panel, laye
             let slots = Slots::of(panel, group);
             samples.iter().enumerate().for_each(|(i, values)| brush.whiskered(&slots, i, values));
         }
-        Mark::Histogram { values, .. } => frame.bins.iter().for_each(|bins| brush.histogram(bins, values)),
         Mark::Hulls { poses, length, beam } => poses.iter().for_each(|&pose| brush.hull(pose, *length, *beam)),
         Mark::Arrows(arrows) => {
             for &[from, to] in arrows {
@@ -185,24 +184,6 @@ impl Brush<'_> {
                 canvas.disc(p, 4.0, color.faded(0.6));
             }
         }
-    }
-
-    fn histogram(&mut self, bins: &Bins, values: &[f64]) {
-        let frame = self.frame;
-        let mut outline = vec![];
-        for (k, &count) in bins.count(values).iter().enumerate() {
-            let at = |edge: usize| frame.at(bins.edge(edge), count as f64);
-            let (Some(a), Some(b)) = (at(k), at(k + 1)) else { continue };
-            if outline.is_empty() {
-                outline.push((a.0, frame.plot.bottom));
-            }
-            outline.extend([a, b]);
-        }
-        if let Some(&(x, _)) = outline.last() {
-            outline.push((x, frame.plot.bottom));
-        }
-        self.canvas.fill(&outline, self.color.faded(0.25));
-        self.canvas.stroke(&outline, 2.5, &self.dash, self.color);
     }
 
     fn hull(&mut self, pose: [f64; 3], length: f64, beam: f64) {

@@ -30,6 +30,6 @@ pub use error::FigureError;
 pub use figure::{Figure, Legend, Panel, east_north};
 pub use layer::{Layer, Mark, Marker, Stroke};
 pub use palette::{
-    BASELINE, BLUE, CYCLE, Color, FITTED, GREEN, GREY, LIMIT, ORACLE, ORANGE, PURPLE, RECORDED, SKY, TRUTH, VERMILLION,
-    YELLOW, cycle,
+    BASELINE, BLUE, Color, FITTED, GREEN, GREY, LIMIT, ORACLE, ORANGE, PURPLE, RECORDED, SKY, TRUTH, VERMILLION, cycle,
 };
+pub use ticks::nice_step;

@@ -32,14 +32,6 @@ impl Figure {
     pub fn save(&self, stem: &Path) -> Result<Vec<PathBuf>, FigureError> {
         Ok(vec![write(stem, "png", &self.png()?)?, write(stem, "csv", self.csv()?.as_bytes())?])
     }
-
-    /// Writes `stem.svg`, making the folder if need be, and returns its path.
-    ///
-    /// # Errors
-    /// [`FigureError::Io`] if the file cannot be written, and as [`Self::svg`].
-    pub fn save_svg(&self, stem: &Path) -> Result<PathBuf, FigureError> {
-        write(stem, "svg", self.svg()?.as_bytes())
-    }
 }
 
 fn write(stem: &Path, extension: &str, bytes: &[u8]) -> Result<PathBuf, FigureError> {
@@ -85,7 +77,6 @@ mod tests {
             Layer::bars("bars", BLUE, v.iter().copied()),
             Layer::bars_with_intervals("intervals", BLUE, v.iter().map(|&y| (y, y - 1.0, y + 1.0))),
             Layer::boxes("boxes", BLUE, [v.to_vec(), vec![], vec![NAN], vec![1.0]]),
-            Layer::histogram("histogram", BLUE, v.iter().copied()),
             Layer::hulls("hulls", TRUTH, v.iter().map(|&y| [y, 2.0 * y, 0.1 * y]), 80.0, 12.0),
             Layer::arrows("arrows", TRUTH, pairs().map(|p| [p, (p.0 + 1.0, p.1 + 1.0)])),
             Layer::heatmap("heatmap", vec![v.to_vec(), vec![], vec![NAN, 1.0]]),

@@ -80,7 +80,8 @@ pub(super) fn ruler(
 }
 
 /// The smallest of 1, 2, 5 times a power of ten that is at least `at_least`.
-fn nice_step(at_least: f64) -> f64 {
+#[must_use]
+pub fn nice_step(at_least: f64) -> f64 {
     let magnitude = 10f64.powf(at_least.log10().floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * magnitude).find(|&s| s >= at_least * (1.0 - 1e-9)).unwrap_or(at_least)
 }

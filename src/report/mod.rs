@@ -7,6 +7,7 @@ mod html;
 pub mod maneuver;
 mod table;
 pub mod terms;
+mod units;
 
 pub use html::{Page, Section};
 pub use table::Table;

@@ -7,6 +7,7 @@ use std::fmt;
 
 /// A table of text cells. Columns of numbers are set to the right, others to the left.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[must_use]
 pub struct Table {
     header: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -15,7 +16,6 @@ pub struct Table {
 
 impl Table {
     /// An empty table with these column headings.
-    #[must_use]
     pub fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
         Self { header: header.into_iter().map(Into::into).collect(), rows: vec![], width: None }
     }
@@ -29,7 +29,6 @@ impl Table {
     }
 
     /// The same table, its long cells wrapped so that it is at most `columns` characters wide in a terminal.
-    #[must_use]
     pub fn wrapped(self, columns: u16) -> Self {
         Self { width: Some(columns), ..self }
     }
