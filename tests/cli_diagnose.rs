@@ -152,12 +152,12 @@ fn no_key_is_explained_that_the_document_cannot_have() {
 #[test]
 fn the_summary_has_seven_parts_in_order_and_no_missing_number() {
     let summary = text(&CASE.output.stdout);
-    let headings = ["VERDICT", "WHERE", "MODEL", "PROOF", "STILL OPEN", "BLIND TO", "NEXT TRIAL"];
+    let headings = ["VERDICT", "WHERE", "MODEL", "PROOF", "STILL OPEN", "LIMITS", "NEXT TRIAL"];
     let places: Vec<usize> =
         headings.iter().enumerate().map(|(i, h)| summary.find(&format!(" {} {h}", i + 1)).unwrap()).collect();
     assert!(places.is_sorted(), "{summary}");
     assert!(summary.contains("steady current") && summary.contains("setting towards"), "{summary}");
-    assert!(summary.contains("port and starboard of the ship herself"), "{summary}");
+    assert!(summary.contains("port and starboard of the ship itself"), "{summary}");
     assert!(!summary.contains("NaN") && !summary.contains("inf "), "{summary}");
     assert!(summary.lines().all(|l| l.chars().count() <= 104), "{summary}");
 }
@@ -178,7 +178,7 @@ fn the_improved_model_is_taken_by_other_commands_and_beats_the_base() {
 #[test]
 fn the_report_is_one_file_that_needs_nothing_else() {
     let page = std::fs::read_to_string(CASE.folder.join("results/report.html")).unwrap();
-    for heading in ["Verdict", "Where", "Model", "Proof", "Still open", "Blind to", "Next trial"] {
+    for heading in ["Verdict", "Where", "Model", "Proof", "Still open", "Limits", "Next trial"] {
         assert!(page.contains(&format!(">{heading}</h2>")), "{heading}");
     }
     let mut pieces = page.split("src=\"data:image/png;base64,");

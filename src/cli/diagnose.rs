@@ -1,4 +1,4 @@
-//! `trimtab diagnose`: where recordings and simulation part, which physics was left out, and the proof on unseen runs.
+//! `trimtab diagnose`: where recordings and simulation differ, which physics was left out, and the proof on test runs.
 //! The diagnosis, its words and its figures are the library's; here it is asked for, watched and written down.
 
 use super::Answer;
@@ -17,19 +17,19 @@ const LONG: &str = "\
 Compares the recordings of a study with its model, and answers with evidence:
   locates    in which equation, when, and in which region of state and inputs a force acts that
              the model lacks
-  names      which mechanism of the catalogue explains it, or which ones these data cannot tell
-             apart
-  models     adds it, with its size in physical units, and says which parameters had been hiding
+  names      which mechanism of the catalogue explains it, or which ones these data cannot
+             distinguish
+  models     adds it, with its size in physical units, and says which parameters had absorbed
              it
-  proves     before against after on the test runs, which no earlier step has touched
-It says as plainly when nothing is missing, when only gusts are there, when a sensor or the
-integration step is to blame, when the catalogue does not hold it, and when the recordings
-cannot tell.
+  proves     compares both models on the test runs, which no earlier step uses
+It says so when nothing is missing, when there are only gusts, when a sensor or the
+integration step is the cause, when the catalogue does not hold the effect, and when the
+recordings give no answer.
 
 The training runs of the study locate, name and model; its test runs only prove. Settings are in
 the table [diagnose] of the study: alpha (chance of naming anything when nothing is missing,
-0.01), most (mechanisms at most, 3), withhold (mechanisms not to be considered), nuisance (carry
-unknown hull, propeller and rudder coefficients along, true), substeps (RK4 steps in a sample
+0.01), most (mechanisms at most, 3), withhold (mechanisms not to be considered), nuisance (estimate
+unknown hull, propeller and rudder coefficients too, true), substeps (RK4 steps in a sample
 period, 1), seed (of the bootstrap).";
 
 const EXAMPLE: &str = "\
@@ -42,13 +42,13 @@ improved.toml (a model file with what was found, which every command takes as --
 base.toml (the study's model, refitted the same way), figures/*.png with the CSV behind each.
 
 Exit code 0 if a verdict was reached, whichever; 1 if the recordings cannot answer (verdict
-`insufficient`, or a fault in them that must be mended first); 2 if it could not run.
+`insufficient`, or an error in them that must be corrected first); 2 if it could not run.
 
 diagnosis.json (and --json), in SI units and radians; what does not exist or is not finite is
 absent:
 ";
 
-/// Says what physics a model lacks, models it, and proves the gain on unseen runs
+/// Says what physics a model lacks, models it, and proves the gain on test runs
 #[derive(Debug, clap::Args)]
 #[command(long_about = LONG, after_long_help = format!("{EXAMPLE}{}", keys_listing()))]
 pub struct Args {

@@ -6,7 +6,7 @@
 use super::geometry::{Px, Rect, clip_path, clip_polygon, cut_dashes};
 use super::palette::Color;
 
-/// Which end of a text stands at the point it is placed on.
+/// The end of a text that is at the point it is placed on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Anchor {
     Start,

@@ -1,4 +1,4 @@
-//! A fit in words and tables, for people: what was estimated, how surely, what held it back and what it cost.
+//! A fit in words and tables, for people: what was estimated, with which errors, which constraints are active and what it cost.
 //! The same content for programs is the fit itself, serialised.
 
 use super::table::Table;
@@ -26,7 +26,7 @@ impl Estimate {
             (Some(side), _, _) => format!("at its {side} bound"),
             (None, Some(0.0), _) => "held by constraints".into(),
             (None, _, Some([lower, upper])) => interval(lower, upper, DIGITS),
-            (None, _, None) => "the data do not say".into(),
+            (None, _, None) => "not determined".into(),
         }
     }
 }
@@ -49,7 +49,7 @@ impl Fit {
 
     /// The whole report.
     pub fn report(&self) -> String {
-        let sections = [self.course(), self.table(), self.held_back(), self.undetermined()];
+        let sections = [self.course(), self.table(), self.active_constraints(), self.what_is_open()];
         sections.join("\n\n") + "\n"
     }
 
@@ -117,21 +117,21 @@ impl Fit {
         format!("{table}\n{errors}")
     }
 
-    /// The constraints that are active.
-    fn held_back(&self) -> String {
+    /// The constraints that are active at the estimate.
+    fn active_constraints(&self) -> String {
         if self.active.is_empty() {
-            return "No constraint holds the fit back.".to_owned();
+            return "No constraint is active at the estimate.".to_owned();
         }
         let rows = self.active.iter().map(|a| format!("\n  {}   ({})", a.sentence, a.rule));
-        format!("Constraints that hold the fit back:{}", rows.collect::<String>())
+        format!("Constraints active at the estimate:{}", rows.collect::<String>())
     }
 
     /// What the data do not determine, and strong correlations.
-    fn undetermined(&self) -> String {
+    fn what_is_open(&self) -> String {
         let mut text = if self.undetermined.is_empty() {
             "The data determine every combination of the parameters to better than one scale unit.".to_owned()
         } else {
-            "What the data do not determine (parameters in units of their scale):".to_owned()
+            "Combinations that the data do not determine (parameters in units of their scale):".to_owned()
         };
         for combination in &self.undetermined {
             let how = combination

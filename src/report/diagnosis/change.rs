@@ -33,8 +33,8 @@ pub(super) fn held_out(d: &Diagnosis) -> Option<Sketch> {
     Some(Sketch {
         stem: "held_out",
         part: "PROOF",
-        caption: "Each run that was kept aside, simulated freely by the base model refitted and by the improved model.",
-        figure: Figure::new("Runs kept aside, before and after (dotted: medians)")
+        caption: "Each test run, simulated freely by the base model, refitted, and by the improved model.",
+        figure: Figure::new("Test runs, before and after (dotted: medians)")
             .panel_size(1240, 150 + 40 * pairs.len() as u32)
             .with(dots),
     })
@@ -49,7 +49,7 @@ pub(super) fn moves(d: &Diagnosis) -> Option<Sketch> {
     Some(Sketch {
         stem: "moves",
         part: "MODEL",
-        caption: "How far the model's own parameters moved when the findings were added: those beyond 2 had been hiding them.",
+        caption: "How far the model's own parameters moved when the findings were added: those beyond 2 had absorbed part of the effect.",
         figure: levels("Moves of the model's own parameters", "moved [standard errors]", rows),
     })
 }
@@ -65,9 +65,9 @@ pub(super) fn hull_budget(d: &Diagnosis) -> Option<Sketch> {
     Some(Sketch {
         stem: "hull_budget",
         part: "STILL OPEN",
-        caption: "How much of what was allowed for in the ship's own coefficients these data used; the twenty furthest. They \
-                  are an error budget, not findings.",
-        figure: levels("Hull error budget", "distance from the expected value [standard deviations allowed]", budget),
+        caption: "Distance of the ship's own coefficients from their priors, the twenty furthest. They are an error budget, \
+                  not findings.",
+        figure: levels("Hull error budget", "distance from the prior value [prior standard deviations]", budget),
     })
 }
 

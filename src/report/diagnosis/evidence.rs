@@ -1,4 +1,4 @@
-//! Figures of the evidence: which mechanism explains the data, and which ones look alike on them.
+//! Figures of the evidence: which mechanism explains the data, and which ones are similar in their effects.
 //! The statistics are the diagnosis's own.
 
 use super::names::title_of;
@@ -8,7 +8,7 @@ use crate::diagnose::conclude::Ranked;
 use crate::plot::{Axis, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, Mark, ORANGE, PURPLE, Panel, RECORDED, SKY};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Mechanisms in the figure of the ranking, and in that of likeness.
+/// Mechanisms in the figure of the ranking, and in that of similarity.
 const RANKED: usize = 18;
 const COMPARED: usize = 14;
 
@@ -21,14 +21,14 @@ fn evidence(r: &Ranked) -> f64 {
     }
 }
 
-/// What became of a mechanism, in words and as a colour.
+/// The outcome of a test, in words and as a colour.
 const OUTCOMES: [(&str, Color); 6] = [
     ("found", FITTED),
-    ("cannot be told from it", SKY),
+    ("not distinguishable from a finding", SKY),
     ("impossible sign, or too small to matter", ORANGE),
     ("the ship's own forces can explain it", PURPLE),
-    ("explains something, but worse", GREEN),
-    ("not seen", GREY),
+    ("explains the data less well", GREEN),
+    ("not significant", GREY),
 ];
 
 /// Which of [`OUTCOMES`] a mechanism had.
@@ -64,7 +64,7 @@ pub(super) fn ranking(d: &Diagnosis) -> Option<Sketch> {
     });
     let mut panel = Panel::new(
         "",
-        Axis::new("evidence, corrected for all that was tested [standard errors]").including(0.0),
+        Axis::new("evidence, corrected for the number of tests [standard errors]").including(0.0),
         Axis::categories("", labels),
     );
     for (i, (name, color)) in OUTCOMES.into_iter().enumerate() {
@@ -83,14 +83,14 @@ pub(super) fn ranking(d: &Diagnosis) -> Option<Sketch> {
         stem: "ranking",
         part: "VERDICT",
         caption: "Evidence for each mechanism, tested one at a time in the base model and corrected for how many were tested. \
-                  Only what is beyond the dashed line can be named.",
+                  Only a mechanism beyond the dashed line can be named.",
         figure: Figure::new("Which mechanism explains the data?")
             .panel_size(1240, 150 + 42 * rows.len() as u32)
             .with(panel.with(Layer::v_line(limit, LIMIT, threshold).dashed())),
     })
 }
 
-/// Likeness of the mechanisms with the strongest evidence, as far as they are in a pair at all.
+/// Similarity of the mechanisms with the strongest evidence, as far as they are in a pair at all.
 pub(super) fn confusability(d: &Diagnosis) -> Option<Sketch> {
     if d.confusable.is_empty() {
         return None;
@@ -113,9 +113,9 @@ pub(super) fn confusability(d: &Diagnosis) -> Option<Sketch> {
     Some(Sketch {
         stem: "confusability",
         part: "VERDICT",
-        caption: "Mechanisms that look alike on these data: 1 cannot be told apart, below 0.7 (blank) easily.",
-        figure: Figure::new("What looks alike on these data")
+        caption: "Mechanisms with similar effects on these data: those at 1 cannot be distinguished, those below 0.7 (blank) easily.",
+        figure: Figure::new("Similarity of mechanisms on these data")
             .panel_size(560 + side, 260 + side)
-            .with(Panel::new("", short, long).with(Layer::new("likeness (cosine)", RECORDED, map))),
+            .with(Panel::new("", short, long).with(Layer::new("similarity (cosine)", RECORDED, map))),
     })
 }

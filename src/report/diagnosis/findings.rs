@@ -2,7 +2,7 @@
 //! How sure the findings are is in the verdict, and what they gain in the proof.
 
 use super::names::about;
-use super::phrases::{adequacy_words, amplitude, p_value};
+use super::phrases::{UNDECIDED, adequacy_words, amplitude, p_value};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::conclude::Amplitude;
 use crate::diagnose::sides::Sides;
@@ -19,7 +19,12 @@ pub(super) fn model(d: &Diagnosis) -> Vec<String> {
         }));
     }
     for t in &d.surrogate {
-        lines.push(format!("surrogate, not physics: {} = {} +- {}", t.name, sig(t.value, 3), sig(1.96 * t.error, 2)));
+        lines.push(format!(
+            "sparse force law (a description, not physics): {} = {} +- {}",
+            t.name,
+            sig(t.value, 3),
+            sig(1.96 * t.error, 2)
+        ));
     }
     let mut moved: Vec<_> = d.moves.iter().filter(|m| m.moved.abs() >= 1.0).collect();
     moved.sort_by(|a, b| b.moved.abs().total_cmp(&a.moved.abs()));
@@ -32,7 +37,7 @@ pub(super) fn model(d: &Diagnosis) -> Vec<String> {
             .iter()
             .map(|m| format!("{} {:+.1} s.e. ({} to {})", m.name, m.moved, sig(m.before, 3), sig(m.after, 3)))
             .collect();
-        format!("had been hiding it: {}", list.join(", "))
+        format!("parameters that had absorbed the effect: {}", list.join(", "))
     });
     lines.extend(d.sides.as_ref().map(|s| own_sides(s, units)));
     lines
@@ -41,10 +46,10 @@ pub(super) fn model(d: &Diagnosis) -> Vec<String> {
 /// Whether the ship's own two sides differ, and by what.
 fn own_sides(s: &Sides, units: Units) -> String {
     let differ = adequacy_words(s.p);
-    let clear = |a: &&Amplitude| differ != "not seen" && a.value.abs() > 1.96 * a.error;
+    let clear = |a: &&Amplitude| s.p < UNDECIDED && a.value.abs() > 1.96 * a.error;
     let one = |a: &Amplitude| format!("{} = {}", a.name, amplitude(a, units));
     let by: Vec<String> = s.parameters.iter().filter(clear).take(3).map(one).collect();
     let by = if by.is_empty() { String::new() } else { format!(": {}", by.join(", ")) };
     let p = p_value(s.p);
-    format!("port and starboard of the ship herself differ, as with a single screw: {differ} ({p}){by}")
+    format!("port and starboard of the ship itself differ, as with a single screw: {differ} ({p}){by}")
 }

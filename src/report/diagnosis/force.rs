@@ -48,8 +48,8 @@ pub(super) fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Option<Sketch> {
     Some(Sketch {
         stem: "tracks",
         part: "WHERE",
-        caption: "Tracks of the most telling runs with the force that the model does not explain. Grey arrows are within what \
-                  the filter cannot resolve.",
+        caption: "Tracks of the most telling runs with the force that the model does not explain. Grey arrows are smaller than the \
+                  filter resolves.",
         figure,
     })
 }
@@ -101,7 +101,7 @@ pub(super) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Sketch> {
             let title = if e == 0 { t.run.clone() } else { String::new() };
             let mut panel = Panel::new(title, Axis::new("time [s]"), Axis::new(&label).including(0.0));
             for w in d.location.windows.iter().filter(|w| w.index == t.index) {
-                panel = panel.with(Layer::v_span("window that stands out", SKY, w.start, w.end));
+                panel = panel.with(Layer::v_span("window with a significant force", SKY, w.start, w.end));
             }
             let band = (0..t.time.len()).map(|k| {
                 let (f, half) = (t.before[k][e] * factor, 1.96 * t.sd[k][e] * factor);
@@ -123,7 +123,7 @@ pub(super) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Sketch> {
         stem: "forces",
         part: "WHERE",
         caption: "The unknown force over time in the same runs, as the filter estimates it, with its 95 % band under the base \
-                  model. A complete model leaves it about zero.",
+                  model. With a complete model it is about zero.",
         figure,
     })
 }

@@ -12,12 +12,12 @@ pub(super) fn still_open(d: &Diagnosis) -> Vec<String> {
     let a = d.adequacy_after;
     let mut lines = vec![
         format!(
-            "more of the ship's own forces in another form: {} ({})",
+            "further forces with port-starboard symmetry (the ship's own, in another form): {} ({})",
             adequacy_words(a.symmetric),
             p_value(a.symmetric)
         ),
         format!(
-            "more that breaks port-starboard symmetry or is fixed on the earth: {} ({})",
+            "further forces without that symmetry, or fixed on the earth: {} ({})",
             adequacy_words(a.asymmetric),
             p_value(a.asymmetric)
         ),
@@ -32,7 +32,7 @@ pub(super) fn still_open(d: &Diagnosis) -> Vec<String> {
         })
         .collect();
     lines.push(format!(
-        "unknown force that nothing explains (standard deviation, lasting {} s): {}",
+        "unexplained force (standard deviation; correlation time {} s): {}",
         fixed(d.noise_after.force_time, 0),
         change.join("; ")
     ));
@@ -42,7 +42,7 @@ pub(super) fn still_open(d: &Diagnosis) -> Vec<String> {
     if !used.is_empty() {
         let furthest: Vec<String> = used.iter().take(3).map(|b| format!("{} {:+.1}", b.name, b.used)).collect();
         lines.push(format!(
-            "hull error budget: {beyond} of {} coefficients beyond 2 of the standard deviations allowed; furthest {}",
+            "the ship's own coefficients: {beyond} of {} further than 2 prior standard deviations from their priors; furthest {}",
             used.len(),
             furthest.join(", ")
         ));
@@ -58,7 +58,7 @@ pub(super) fn blind(d: &Diagnosis) -> Vec<String> {
     reasons.dedup();
     for reason in reasons {
         let names: Vec<&str> = d.absorbed.iter().filter(|a| a.by == reason).map(|a| title_of(&a.mechanism)).collect();
-        lines.push(format!("hidden: {} (by {reason})", names.join(", ")));
+        lines.push(format!("not identifiable: {} (absorbed by {reason})", names.join(", ")));
     }
     let sizes: Vec<String> = d
         .detectable
@@ -67,10 +67,10 @@ pub(super) fn blind(d: &Diagnosis) -> Vec<String> {
         .map(|s| format!("{} {}", s.mechanism, units.text(s.size, &s.unit)))
         .collect();
     if !sizes.is_empty() {
-        lines.push(format!("would have been seen, 4 times in 5, from: {}", sizes.join("; ")));
+        lines.push(format!("detected with a probability of 80 % from: {}", sizes.join("; ")));
     }
     if lines.is_empty() {
-        lines.push("nothing of the catalogue".to_owned());
+        lines.push("every mechanism of the catalogue is identifiable".to_owned());
     }
     lines
 }

@@ -15,16 +15,16 @@ pub(super) fn location(d: &Diagnosis) -> Vec<String> {
     let mut lines = vec![format!("unexplained force by equation (rms): {}", equations([x, y, n], units))];
     for f in d.findings.iter().filter(|f| f.kind != Kind::Sensor) {
         let e = &f.equations;
-        lines.push(format!("{} brings (rms): {}", f.title, equations([&e.x, &e.y, &e.n], units)));
+        lines.push(format!("force of {} (rms): {}", f.title, equations([&e.x, &e.y, &e.n], units)));
     }
     let pushes: Vec<&Window> = d.findings.iter().flat_map(|f| &f.windows).collect();
     let windows: Vec<&Window> = if pushes.is_empty() { d.location.windows.iter().collect() } else { pushes };
     let sailed: BTreeSet<usize> = windows.iter().map(|w| w.index).collect();
     if windows.is_empty() {
-        lines.push("in time: no window stands out".to_owned());
+        lines.push("in time: no window with a significant force".to_owned());
     } else {
         lines.push(format!(
-            "in time: {} windows in {} of {} runs stand out",
+            "in time: a significant force in {} windows of {} of {} runs",
             windows.len(),
             sailed.len(),
             d.traces.len()
@@ -33,7 +33,7 @@ pub(super) fn location(d: &Diagnosis) -> Vec<String> {
     }
     let regions: Vec<_> = d.location.regions.iter().filter(|r| r.p < 0.01 && r.samples > 0.005).collect();
     if regions.is_empty() {
-        lines.push("in state and inputs: no region stands out".to_owned());
+        lines.push("in state and inputs: no region with a significant force".to_owned());
     }
     for r in regions.iter().take(3) {
         lines.push(format!(
@@ -46,8 +46,8 @@ pub(super) fn location(d: &Diagnosis) -> Vec<String> {
     }
     lines.extend(d.location.place.as_ref().filter(|p| p.p < 1e-4).map(|p| {
         format!(
-            "by place: strongest from {} to {} m north and {} to {} m east, {} to north and {} to east beyond what acts \
-             everywhere ({})",
+            "by place: strongest from {} to {} m north and {} to {} m east, {} to north and {} to east beyond the \
+             force that acts everywhere ({})",
             fixed(p.north[0], 0),
             fixed(p.north[1], 0),
             fixed(p.east[0], 0),
@@ -57,11 +57,11 @@ pub(super) fn location(d: &Diagnosis) -> Vec<String> {
             p_value(p.p)
         )
     }));
-    let mut said: Vec<&str> = Vec::new();
+    let mut signatures: Vec<&str> = Vec::new();
     for f in &d.findings {
-        if !said.contains(&f.signature.as_str()) {
+        if !signatures.contains(&f.signature.as_str()) {
             lines.push(format!("signature: {}", f.signature));
-            said.push(&f.signature);
+            signatures.push(&f.signature);
         }
     }
     lines

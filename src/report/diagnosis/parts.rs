@@ -26,7 +26,7 @@ pub fn parts(d: &Diagnosis) -> Vec<Part> {
         Part { heading: "MODEL", lines: model(d) },
         Part { heading: "PROOF", lines: proof(d) },
         Part { heading: "STILL OPEN", lines: still_open(d) },
-        Part { heading: "BLIND TO", lines: blind(d) },
+        Part { heading: "LIMITS", lines: blind(d) },
         Part { heading: "NEXT TRIAL", lines: next_trial(d) },
     ]
 }

@@ -95,7 +95,7 @@ pub(super) fn pattern(d: &Diagnosis) -> Option<Sketch> {
         stem: "pattern",
         part: "WHERE",
         caption: "Mean unknown force against heading, propeller, rudder and drift, with 95 % intervals from the scatter \
-                  between runs. A sine in heading is fixed on the earth; a slope in the others goes with the ship.",
+                  between runs. A sine in heading is fixed on the earth; a slope in the others moves with the ship.",
         figure,
     })
 }
@@ -135,7 +135,7 @@ pub(super) fn compass(d: &Diagnosis) -> Option<Sketch> {
         stem: "compass",
         part: "WHERE",
         caption: "Mean horizontal force by heading of the ship, in earth axes. Arrows that all point the same way are fixed on \
-                  the earth; arrows that turn with the position on the circle go with the ship.",
+                  the earth; arrows that turn with the position on the circle move with the ship.",
         figure,
     })
 }

@@ -1,5 +1,5 @@
 //! Phrases that several parts of a diagnosis share: p-values, shares, amplitudes and forces with their intervals.
-//! Which of them are said, and about what, is decided in the parts.
+//! Which of them are written, and about what, is decided in the parts.
 
 use crate::diagnose::conclude::Amplitude;
 use crate::diagnose::locate::{EquationShare, Window};
@@ -14,13 +14,17 @@ pub(super) fn percent(share: f64) -> String {
     format!("{} %", fixed(100.0 * share, 0))
 }
 
+/// p-value above which a test of adequacy finds nothing.
+pub(super) const UNDECIDED: f64 = 0.01;
+
+/// The outcome of a test of adequacy or symmetry.
 pub(super) fn adequacy_words(p: f64) -> &'static str {
     if p < 1e-4 {
-        "seen"
-    } else if p < 0.01 {
-        "cannot tell"
+        "significant"
+    } else if p < UNDECIDED {
+        "undecided"
     } else {
-        "not seen"
+        "not significant"
     }
 }
 

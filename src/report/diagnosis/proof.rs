@@ -7,17 +7,17 @@ use crate::numerals::{fixed, sig};
 
 pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     let Some(h) = &d.held_out else {
-        return vec!["no runs were kept aside, so nothing is proven; mark some with `split = \"test\"`".to_owned()];
+        return vec!["there are no test runs, so nothing is proven; mark some with `split = \"test\"`".to_owned()];
     };
     if d.findings.is_empty() {
         return vec![format!(
-            "nothing to prove; base model, refitted, on {} unseen runs: cVDM {} %",
+            "no finding to prove; base model, refitted, on {} test runs: cVDM {} %",
             h.runs,
             sig(h.before, 3)
         )];
     }
     let mut lines = vec![format!(
-        "{} unseen runs: cVDM {} % before, {} % after (median improvement {}, 95 % {} to {}); {} better, {} worse",
+        "{} test runs: cVDM {} % before, {} % after (median improvement {}, 95 % {} to {}); {} better, {} worse",
         h.runs,
         sig(h.before, 3),
         sig(h.after, 3),
@@ -28,17 +28,17 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
         h.worse
     )];
     if h.ci95[0] <= 0.0 {
-        lines.push("the interval reaches zero: these unseen runs do not confirm the gain".to_owned());
+        lines.push("the interval reaches zero: these test runs do not confirm the gain".to_owned());
     }
     if let (Some(run), Some(change)) = (&h.worst_run, h.worst_improvement) {
         let word = if change < 0.0 { "worse" } else { "better" };
         lines.push(format!("worst run: {run}, {} {word}", percent(change.abs())));
     }
     if let Some(g) = h.generic {
-        lines.push(format!("a generic force law instead, without any name: cVDM {} %", sig(g, 3)));
+        lines.push(format!("with a generic force law in place of the findings: cVDM {} %", sig(g, 3)));
     }
     lines.push(format!(
-        "log-likelihood gained: {}; innovations (1 is as the noise says): {} before, {} after",
+        "log-likelihood gained: {}; mean square of standardised innovations (1 agrees with the noise model): {} before, {} after",
         fixed(h.log_likelihood_gain, 1),
         sig(h.whiteness[0], 3),
         sig(h.whiteness[1], 3)

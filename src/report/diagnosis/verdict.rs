@@ -3,21 +3,22 @@
 
 use super::names::title_of;
 use super::phrases::{amplitude, p_value};
+use crate::diagnose::admit::Issue;
 use crate::diagnose::{Diagnosis, Finding, Verdict};
 use crate::numerals::{fixed, sig};
 use crate::report::units::Units;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Notes of one kind that are said in full.
+/// Notes of one kind that are written in full.
 const NOTES: usize = 2;
 
-/// What was diagnosed with what, in one line.
+/// Study, recordings, base model and integration in one line.
 #[must_use]
 pub fn subject(d: &Diagnosis, study: &str) -> String {
     let a = &d.admission;
     let held_out = d.held_out.as_ref().map_or("none".to_owned(), |h| h.runs.to_string());
     format!(
-        "{study} · {} runs in {} sessions ({} samples), {held_out} held out · base model {} · {}, {} a sample",
+        "{study} · {} runs in {} sessions ({} samples), {held_out} test runs · base model {} · {}, {} a sample",
         a.runs,
         a.sessions,
         a.samples,
@@ -27,7 +28,7 @@ pub fn subject(d: &Diagnosis, study: &str) -> String {
     )
 }
 
-/// What the verdict is called.
+/// The name of a verdict in reports.
 #[must_use]
 pub fn verdict_words(verdict: Verdict) -> &'static str {
     match verdict {
@@ -35,10 +36,10 @@ pub fn verdict_words(verdict: Verdict) -> &'static str {
         Verdict::Named => "MISSING PHYSICS, NAMED",
         Verdict::OneOf => "MISSING PHYSICS, ONE OF SEVERAL",
         Verdict::NotInCatalogue => "MISSING PHYSICS, NOT IN THE CATALOGUE",
-        Verdict::Sensor => "A SENSOR, NOT THE SHIP",
-        Verdict::Numerics => "THE INTEGRATION STEP, NOT THE SHIP",
-        Verdict::Random => "RANDOM FORCES (GUSTS), NOTHING THAT REPEATS",
-        Verdict::Insufficient => "THESE RECORDINGS CANNOT TELL",
+        Verdict::Sensor => "A SENSOR ERROR, NOT MISSING PHYSICS",
+        Verdict::Numerics => "THE INTEGRATION STEP, NOT MISSING PHYSICS",
+        Verdict::Random => "RANDOM FORCES (GUSTS), NO REPEATED EFFECT",
+        Verdict::Insufficient => "THESE RECORDINGS GIVE NO ANSWER",
     }
 }
 
@@ -58,13 +59,13 @@ pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
         };
         let sessions = sessions(d, f);
         lines.push(format!(
-            "{}{size}{sessions}: seen, {} after correction for all that was tried",
+            "{}{size}{sessions}: {} after correction for the number of mechanisms tested",
             f.title,
             p_value(f.p)
         ));
         if f.confidence_set.len() > 1 {
             let all: Vec<&str> = f.confidence_set.iter().map(|m| title_of(m)).collect();
-            lines.push(format!("cannot tell which of: {}; {}", all.join(", "), f.why));
+            lines.push(format!("not distinguishable on these data: {}; {}", all.join(", "), f.why));
         } else {
             lines.push(f.why.clone());
         }
@@ -72,16 +73,23 @@ pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
     if let (true, Some(r)) = (d.findings.is_empty(), d.ranking.first()) {
         lines.push(format!("strongest candidate, not named: {}, {} after correction", r.title, p_value(r.p)));
     }
-    let mut said: BTreeMap<&str, usize> = BTreeMap::new();
-    for i in &d.admission.issues {
-        let word = if i.blocking { "mend first" } else { "note" };
-        let before = said.entry(i.mechanism).or_default();
-        *before += 1;
-        if i.blocking || *before <= NOTES {
+    lines.extend(notes(&d.admission.issues));
+    lines
+}
+
+/// What is wrong with the recordings: whatever must be corrected first, and a few notes of each kind.
+fn notes(issues: &[Issue]) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut noted: BTreeMap<&str, usize> = BTreeMap::new();
+    for i in issues {
+        let count = noted.entry(i.mechanism).or_default();
+        *count += usize::from(!i.blocking);
+        if i.blocking || *count <= NOTES {
+            let word = if i.blocking { "correct first" } else { "note" };
             lines.push(format!("{word}: {}; {}", i.text, i.next_step));
         }
     }
-    let more = said.into_iter().filter(|(_, count)| *count > NOTES);
+    let more = noted.into_iter().filter(|(_, count)| *count > NOTES);
     lines.extend(more.map(|(what, count)| format!("note: {} more runs with `{what}`", count - NOTES)));
     lines
 }
@@ -142,4 +150,26 @@ fn size_of(f: &Finding, session: Option<&str>, units: Units) -> Option<String> {
     };
     let low = (magnitude - 1.96 * error).max(0.0);
     Some(format!("{} {unit} ({} to {}) {direction}", sig(magnitude, 3), sig(low, 3), sig(magnitude + 1.96 * error, 3)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_issue_to_correct_is_written_and_only_notes_beyond_two_of_a_kind_are_counted() {
+        let issue = |blocking, text: &str| Issue {
+            channel: "r".into(),
+            mechanism: "jump",
+            text: text.into(),
+            next_step: "look at it".into(),
+            blocking,
+        };
+        let blocking: Vec<Issue> = ["a", "b", "c"].map(|text| issue(true, text)).into();
+        assert_eq!(notes(&blocking), ["a", "b", "c"].map(|t| format!("correct first: {t}; look at it")));
+        let mut both = blocking;
+        both.extend(["d", "e", "f", "g"].map(|text| issue(false, text)));
+        let lines = notes(&both);
+        assert_eq!(lines[3..], ["note: d; look at it", "note: e; look at it", "note: 2 more runs with `jump`"]);
+    }
 }
