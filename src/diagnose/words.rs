@@ -9,7 +9,7 @@ use super::finding::{Amplitude, Finding, GENERIC, PUSH};
 use super::generic::SurrogateTerm;
 use super::place::Place;
 use super::push::Window;
-use crate::report::sig;
+use crate::numerals::sig;
 
 /// What is missing and not in the catalogue, as far as it can be told.
 pub enum Missing<'a> {

@@ -12,7 +12,6 @@
 //! | `subspace` | directions that constraints leave free |
 //! | `covariance` | covariances, and what the data do not determine |
 //! | `summary` | the outcome: estimates, intervals, active constraints; [`fit`] joins all |
-//! | [`report`] | a fit in words and tables |
 //! | [`multistart`] | the same fit from many starts |
 
 pub mod constraints;
@@ -21,7 +20,6 @@ mod covariance;
 mod error;
 pub mod multistart;
 mod problem;
-pub mod report;
 mod settings;
 mod solve;
 mod subspace;

@@ -37,16 +37,6 @@ pub struct StartOutcome {
     pub outcome: Result<Fit, FitError>,
 }
 
-impl StartOutcome {
-    /// One line: where it ended, or why it did not.
-    pub fn brief(&self) -> String {
-        match &self.outcome {
-            Ok(fit) => fit.brief(),
-            Err(error) => error.to_string(),
-        }
-    }
-}
-
 /// Fits from each start in turn, in an order and from values that depend on the seed alone.
 pub fn multi_start(
     model: &Model,

@@ -3,6 +3,7 @@
 
 /// An sRGB colour with opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Color {
     /// Red, 0 to 255.
     pub r: u8,
@@ -16,19 +17,16 @@ pub struct Color {
 
 impl Color {
     /// A solid colour.
-    #[must_use]
     pub const fn rgb(r: u8, g: u8, b: u8) -> Self {
         Self { r, g, b, alpha: 1.0 }
     }
 
     /// The same colour, `alpha` times as opaque.
-    #[must_use]
     pub fn faded(self, alpha: f32) -> Self {
         Self { alpha: (self.alpha * alpha).clamp(0.0, 1.0), ..self }
     }
 
     /// The colour at `t` in [0, 1] on the way from `self` to `other`.
-    #[must_use]
     pub fn mix(self, other: Self, t: f64) -> Self {
         let t = t.clamp(0.0, 1.0);
         let channel = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * t).round() as u8;
@@ -60,8 +58,6 @@ pub const PURPLE: Color = Color::rgb(204, 121, 167);
 pub const ORANGE: Color = Color::rgb(230, 159, 0);
 /// Okabe-Ito sky blue.
 pub const SKY: Color = Color::rgb(86, 180, 233);
-/// Okabe-Ito yellow: areas only, too light for lines on white.
-pub const YELLOW: Color = Color::rgb(240, 228, 66);
 /// A neutral grey for references and for what is left aside.
 pub const GREY: Color = Color::rgb(120, 120, 120);
 
@@ -79,7 +75,7 @@ pub const ORACLE: Color = GREEN;
 pub const LIMIT: Color = GREY;
 
 /// Colours for series without a fixed meaning, in the order to use them.
-pub const CYCLE: [Color; 7] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY];
+const CYCLE: [Color; 7] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY];
 
 /// The `i`-th colour for series without a fixed meaning; repeats after the seventh.
 #[must_use]

@@ -1,12 +1,9 @@
-//! A fit in words and tables, for people: what was estimated, how surely, what held it back and what it cost.
+//! A fit in words and tables, for people: what was estimated, with which errors, which constraints are active and what it cost.
 //! The same content for programs is the fit itself, serialised.
 
-use super::cost::Derivatives;
-use super::covariance::CovarianceKind;
-use super::settings::Hessian;
-use super::summary::{Estimate, Fit};
-use crate::report::{Table, interval, sig};
-use std::fmt::Write;
+use super::table::Table;
+use crate::fit::{CovarianceKind, Derivatives, Estimate, Fit, Hessian, StartOutcome};
+use crate::numerals::{interval, sig};
 
 /// Significant digits of every number.
 const DIGITS: usize = 5;
@@ -29,7 +26,7 @@ impl Estimate {
             (Some(side), _, _) => format!("at its {side} bound"),
             (None, Some(0.0), _) => "held by constraints".into(),
             (None, _, Some([lower, upper])) => interval(lower, upper, DIGITS),
-            (None, _, None) => "the data do not say".into(),
+            (None, _, None) => "not determined".into(),
         }
     }
 }
@@ -52,23 +49,16 @@ impl Fit {
 
     /// The whole report.
     pub fn report(&self) -> String {
-        let mut text = String::new();
-        let mut line = |words: String| {
-            let _ = writeln!(text, "{words}");
-        };
-        line(format!("Fit of {} to {} runs of {} recordings", self.model.name, self.runs, self.recordings));
-        line(format!("Status       {}", self.status));
+        let sections = [self.course(), self.table(), self.active_constraints(), self.what_is_open()];
+        sections.join("\n\n") + "\n"
+    }
+
+    /// What was fitted, how it ended, and what it cost.
+    fn course(&self) -> String {
         let mut cost = format!("{} -> {}", number(self.start_cost), number(self.cost));
         if self.prior_cost > 0.0 {
             cost += &format!(", priors add {}", number(self.prior_cost));
         }
-        line(format!("Cost         {cost} (residual variance {})", number(self.residual_variance)));
-        line(format!(
-            "Size         {} residuals, {} parameters, {} constraint rows",
-            self.residuals,
-            self.estimates.len(),
-            self.constraints
-        ));
         let derivatives = match self.settings.derivatives {
             Derivatives::Lanes => "exact, dual numbers over SIMD lanes",
             Derivatives::Dual => "exact, dual numbers",
@@ -80,14 +70,25 @@ impl Fit {
             Hessian::Exact => "exact second order",
             Hessian::LimitedMemory => "limited memory",
         };
-        line(format!("Derivatives  {derivatives}; Hessian {hessian}"));
-        let c = &self.counts;
-        line(format!(
-            "Work         {} iterations, {} cost, {} gradient and {} Hessian evaluations, {:.2} s",
-            self.iterations, c.objective, c.gradient, c.hessian, self.seconds
-        ));
-        line(String::new());
+        let (c, variance) = (&self.counts, number(self.residual_variance));
+        let (residuals, parameters, rows) = (self.residuals, self.estimates.len(), self.constraints);
+        let (passes, seconds) = (self.iterations, self.seconds);
+        [
+            format!("Fit of {} to {} runs of {} recordings", self.model.name, self.runs, self.recordings),
+            format!("Status       {}", self.status),
+            format!("Cost         {cost} (residual variance {variance})"),
+            format!("Size         {residuals} residuals, {parameters} parameters, {rows} constraint rows"),
+            format!("Derivatives  {derivatives}; Hessian {hessian}"),
+            format!(
+                "Work         {passes} iterations, {} cost, {} gradient and {} Hessian evaluations, {seconds:.2} s",
+                c.objective, c.gradient, c.hessian
+            ),
+        ]
+        .join("\n")
+    }
 
+    /// The estimates, and how their errors are to be read.
+    fn table(&self) -> String {
         let mut table = Table::new(["parameter", "symbol", "unit", "start", "estimate", "std. error", "95 % interval"]);
         for e in &self.estimates {
             table.row([
@@ -100,8 +101,7 @@ impl Fit {
                 e.interval_in_words(),
             ]);
         }
-        line(table.to_string());
-        line(match (self.covariance_kind, self.design_effect) {
+        let errors = match (self.covariance_kind, self.design_effect) {
             (CovarianceKind::Sandwich, Some(effect)) => format!(
                 "Standard errors take the {} recordings as independent, not their samples: variances are {} times those of \
                  independent residuals.",
@@ -113,33 +113,35 @@ impl Fit {
                  limits ({} recordings are too few to do better).",
                 self.recordings
             ),
-        });
+        };
+        format!("{table}\n{errors}")
+    }
 
-        line(String::new());
+    /// The constraints that are active at the estimate.
+    fn active_constraints(&self) -> String {
         if self.active.is_empty() {
-            line("No constraint holds the fit back.".into());
-        } else {
-            line("Constraints that hold the fit back:".into());
-            for active in &self.active {
-                line(format!("  {}   ({})", active.sentence, active.rule));
-            }
+            return "No constraint is active at the estimate.".to_owned();
         }
-        line(String::new());
-        if self.undetermined.is_empty() {
-            line("The data determine every combination of the parameters to better than one scale unit.".into());
+        let rows = self.active.iter().map(|a| format!("\n  {}   ({})", a.sentence, a.rule));
+        format!("Constraints active at the estimate:{}", rows.collect::<String>())
+    }
+
+    /// What the data do not determine, and strong correlations.
+    fn what_is_open(&self) -> String {
+        let mut text = if self.undetermined.is_empty() {
+            "The data determine every combination of the parameters to better than one scale unit.".to_owned()
         } else {
-            line("What the data do not determine (parameters in units of their scale):".into());
-            for combination in &self.undetermined {
-                line(match combination.standard_deviation {
-                    Some(deviation) => format!("  {}   (std. deviation {})", combination.words, number(deviation)),
-                    None => format!("  {}   (not at all)", combination.words),
-                });
-            }
+            "Combinations that the data do not determine (parameters in units of their scale):".to_owned()
+        };
+        for combination in &self.undetermined {
+            let how = combination
+                .standard_deviation
+                .map_or("not at all".to_owned(), |deviation| format!("std. deviation {}", number(deviation)));
+            text += &format!("\n  {}   ({how})", combination.words);
         }
         let strong = self.strong_correlations();
         if !strong.is_empty() {
-            line(String::new());
-            line(format!("Correlations beyond 0.9: {}", strong.join(", ")));
+            text += &format!("\n\nCorrelations beyond 0.9: {}", strong.join(", "));
         }
         text
     }
@@ -154,5 +156,12 @@ impl Fit {
             }
         }
         strong
+    }
+}
+
+impl StartOutcome {
+    /// One line: where it ended, or why it did not.
+    pub fn brief(&self) -> String {
+        self.outcome.as_ref().map_or_else(ToString::to_string, Fit::brief)
     }
 }

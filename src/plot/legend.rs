@@ -1,9 +1,11 @@
 //! The legend: a strip that names the series with a sample of each, and never lies over the data.
-//! Which strips a figure has and where they go is decided in `draw`.
+//! Which strips a figure has and where they go is decided in `layout`.
 
-use super::canvas::{Anchor, Canvas, Px, Rect, Run, text_width};
-use super::figure::{Layer, Mark};
-use super::marks::{arrow, dashes, draw_marker, hull, softened, whisker};
+use super::canvas::{Anchor, Canvas, Run};
+use super::font::text_width;
+use super::geometry::{Px, Rect};
+use super::layer::{Layer, Mark};
+use super::shapes::{arrow, dashes, draw_marker, hull, softened, whisker};
 use super::style::{LABEL, cut, ink};
 
 /// Width of a sample, px.
@@ -91,7 +93,7 @@ fn sample(canvas: &mut Canvas, layer: &Layer, (x, y): Px) {
         Mark::Band(_) => canvas.fill_rect(block, color.faded(0.22)),
         Mark::HSpan(..) | Mark::VSpan(..) => canvas.fill_rect(block, color.faded(0.16)),
         Mark::Bars { .. } => canvas.fill_rect(block, softened(color)),
-        Mark::Boxes(_) | Mark::Histogram { .. } => {
+        Mark::Boxes(_) => {
             canvas.fill_rect(block, color.faded(0.3));
             canvas.stroke_rect(block, 2.5, color);
         }
@@ -113,7 +115,7 @@ fn sample(canvas: &mut Canvas, layer: &Layer, (x, y): Px) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::palette;
+    use crate::plot::palette;
 
     #[test]
     fn names_are_once_in_the_legend() {

@@ -1,7 +1,8 @@
 //! How text looks in a figure: its sizes and colours, and how it is broken into lines that fit.
 //! It places nothing on the sheet.
 
-use super::canvas::{Type, text_width};
+use super::canvas::Type;
+use super::font::text_width;
 use super::palette::Color;
 
 /// Title of the figure, px.

@@ -1,9 +1,11 @@
 //! Figures and tables of trials: the track with ship outlines, rudder, heading and speed over time, measures in ship lengths.
 //! It converts units and computes nothing else.
 
-use super::imo::{Criterion, SHORTEST};
-use super::{Ended, Side, Stopping, Track, Trial, Turning, Zigzag};
-use crate::report::{Axis, BLUE, Color, Figure, GREY, Layer, Panel, Table, VERMILLION, east_north, fixed};
+use super::table::Table;
+use crate::maneuver::imo::{Criterion, SHORTEST};
+use crate::maneuver::{Ended, Side, Stopping, Track, Trial, Turning, Zigzag};
+use crate::numerals::fixed;
+use crate::plot::{Axis, BLUE, Color, Figure, GREY, Layer, Panel, VERMILLION, east_north};
 use crate::ship::Ship;
 
 /// Colour of a side.
@@ -107,7 +109,7 @@ pub fn stopping_figure(ship: &Ship, trial: &Trial<Stopping>) -> Figure {
     Figure::new(format!("{}: {}", ship.name, trial.name))
         .columns(2)
         .panel_size(900, 560)
-        .legend(crate::report::Legend::Off)
+        .legend(crate::plot::Legend::Off)
         .with(track_panel("", ship, one.iter()))
         .with(time_panel("surge velocity u [m/s]", one, |t, k| t.states[k][3]))
         .with(time_panel("propeller rate n [rpm]", one, |t, k| t.n[k] * 60.0))
@@ -203,7 +205,7 @@ pub fn criteria_table<'a>(trials: impl IntoIterator<Item = (&'a str, &'a [Criter
     let mut table = Table::new(["trial", "IMO MSC.137(76)", "measured", "limit", "unit", "verdict"]);
     for (name, criteria) in trials {
         for c in criteria {
-            let number = |x: Option<f64>| x.map_or_else(|| crate::report::DASH.into(), |x| fixed(x, 2));
+            let number = |x: Option<f64>| x.map_or_else(|| crate::numerals::DASH.into(), |x| fixed(x, 2));
             table.row([
                 name.to_owned(),
                 c.name.clone(),
@@ -222,7 +224,7 @@ pub fn criteria_note(ship: &Ship) -> Option<String> {
     (ship.hull.lpp < SHORTEST).then(|| {
         format!(
             "The standard binds ships of {SHORTEST:.0} m and more; for L = {} m its limits are shown for comparison.",
-            crate::report::sig(ship.hull.lpp, 3)
+            crate::numerals::sig(ship.hull.lpp, 3)
         )
     })
 }

@@ -1,55 +1,22 @@
-//! Turns a sheet into an image: every shape becomes an element of plotters, drawn by its bitmap or SVG backend.
-//! What the shapes are and where they stand was decided before; nothing here knows of axes or data.
-//!
-//! The backends of plotters take whole pixels. The bitmap is therefore drawn at several times its size and averaged, and the
-//! SVG has a view box of tenths of a pixel.
+//! A sheet as PNG: every shape becomes elements of plotters, drawn by its bitmap backend at several times the size and averaged.
+//! What the shapes are and where they lie was decided before; nothing here knows of axes or data.
 
-use super::canvas::{Anchor, Canvas, Px, Rect, Run, Shape, Type, advances};
-use super::figure::FigureError;
+use super::canvas::{Anchor, Canvas, Run, Shape, Type};
+use super::error::FigureError;
+use super::font::{HALF_CAPITAL, advances, font};
+use super::geometry::{Px, Rect};
 use super::palette::Color;
-use ab_glyph::{Font, FontRef};
+use super::pen::{failed, rgba, text_style};
+use ab_glyph::Font;
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color as _, register_font};
-use std::sync::OnceLock;
+use plotters::style::Color as _;
 
-/// The name DejaVu Sans is registered under. Viewers of an SVG that lack it fall back on fonts of the same letter widths.
-const FAMILY: &str = "DejaVu Sans, Bitstream Vera Sans, Verdana, sans-serif";
-/// Half the height of a capital letter over the font size: text is placed by the middle of its capitals.
-const HALF_CAPITAL: f32 = 0.365;
 /// Figures above this many pixels are refused instead of exhausting the memory.
 const MOST_PIXELS: u64 = 40_000_000;
 /// Samples along each side of a pixel.
 const SAMPLES: u32 = 3;
 const SCALE: f32 = SAMPLES as f32;
-/// Units of the SVG to a pixel.
-const TENTHS: f32 = 10.0;
-
-struct Fonts {
-    regular: FontRef<'static>,
-    bold: FontRef<'static>,
-}
-
-/// The embedded font, registered with plotters at the first call.
-pub(super) fn font(bold: bool) -> Result<&'static FontRef<'static>, FigureError> {
-    static FONTS: OnceLock<Option<Fonts>> = OnceLock::new();
-    let load = |style: FontStyle, bytes: &'static [u8]| {
-        register_font(FAMILY, style, bytes).ok()?;
-        FontRef::try_from_slice(bytes).ok()
-    };
-    FONTS
-        .get_or_init(|| {
-            Some(Fonts {
-                regular: load(FontStyle::Normal, dejavu::sans::regular())?,
-                bold: load(FontStyle::Bold, dejavu::sans::bold())?,
-            })
-        })
-        .as_ref()
-        .map(|fonts| if bold { &fonts.bold } else { &fonts.regular })
-        .ok_or(FigureError::Font)
-}
-
 /// The sheet as PNG.
 pub(super) fn png(sheet: &Canvas) -> Result<Vec<u8>, FigureError> {
     let (width, height) = (sheet.width, sheet.height);
@@ -243,87 +210,6 @@ fn turns(corner: &[Px]) -> bool {
     u.0 * v.0 + u.1 * v.1 < 0.995 * u.0.hypot(u.1) * v.0.hypot(v.1)
 }
 
-/// The sheet as an SVG document, shown at half its size: figures are laid out for screens of double density.
-pub(super) fn svg(sheet: &Canvas) -> Result<String, FigureError> {
-    let size = (sheet.width * TENTHS as u32, sheet.height * TENTHS as u32);
-    let mut drawn = String::new();
-    {
-        let area = SVGBackend::with_string(&mut drawn, size).into_drawing_area();
-        area.fill(&WHITE).map_err(failed)?;
-        for shape in &sheet.shapes {
-            svg_shape(&area, shape)?;
-        }
-        area.present().map_err(failed)?;
-    }
-    // The first line is the opening tag, to which plotters adds neither the size to be shown at nor round joins.
-    let body = drawn.split_once('\n').map_or("", |(_, body)| body);
-    Ok(format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" \
-         stroke-linejoin=\"round\">\n{body}",
-        sheet.width / 2,
-        sheet.height / 2,
-        size.0,
-        size.1
-    ))
-}
-
-fn svg_shape(area: &DrawingArea<SVGBackend<'_>, Shift>, shape: &Shape) -> Result<(), FigureError> {
-    let tenths = |v: f32| (v * TENTHS).round();
-    let place = |&(x, y): &Px| (tenths(x) as i32, tenths(y) as i32);
-    let places = |points: &[Px]| points.iter().map(place).collect::<Vec<_>>();
-    match shape {
-        Shape::Polygon { corners, color } => area.draw(&Polygon::new(places(corners), rgba(*color))),
-        Shape::Rect { rect, color } => {
-            let corners = [place(&(rect.left, rect.top)), place(&(rect.right, rect.bottom))];
-            area.draw(&Rectangle::new(corners, rgba(*color).filled()))
-        }
-        Shape::Stroke { pieces, width, color } => {
-            let pen = rgba(*color).stroke_width(tenths(*width) as u32);
-            pieces.iter().try_for_each(|piece| area.draw(&PathElement::new(places(piece), pen)))
-        }
-        Shape::Disc { center, radius, color } => {
-            area.draw(&Circle::new(place(center), tenths(*radius) as u32, rgba(*color).filled()))
-        }
-        Shape::Text { text, at, anchor, run, style } => {
-            // The SVG of plotters has a font 1/1.24 of the size it is given, and the baseline 0.76 of that below the point.
-            let down = (HALF_CAPITAL - 0.76) * style.size;
-            let corner = match run {
-                Run::Across => (at.0, at.1 + down),
-                Run::Up => (at.0 + down, at.1),
-            };
-            let pen = text_style(*style, 1.24 * f64::from(style.size * TENTHS), *run, *anchor);
-            area.draw(&Text::new(text.as_str(), place(&corner), pen))
-        }
-    }
-    .map_err(failed)
-}
-
-fn rgba(color: Color) -> RGBAColor {
-    // Three digits of an opacity are plenty, and spare an SVG the tail of the conversion.
-    RGBAColor(color.r, color.g, color.b, (f64::from(color.alpha) * 1e3).round() / 1e3)
-}
-
-fn text_style(style: Type, size: f64, run: Run, anchor: Anchor) -> TextStyle<'static> {
-    let weight = if style.bold { FontStyle::Bold } else { FontStyle::Normal };
-    let turn = match run {
-        Run::Across => FontTransform::None,
-        Run::Up => FontTransform::Rotate270,
-    };
-    let side = match anchor {
-        Anchor::Start => HPos::Left,
-        Anchor::Middle => HPos::Center,
-        Anchor::End => HPos::Right,
-    };
-    FontDesc::new(FontFamily::Name(FAMILY), size, weight)
-        .transform(turn)
-        .color(&rgba(style.color))
-        .pos(Pos::new(side, VPos::Top))
-}
-
-fn failed<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> FigureError {
-    FigureError::Drawing(error.to_string())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -394,7 +280,7 @@ mod tests {
     #[test]
     fn text_stands_with_its_capitals_about_the_point_and_as_wide_as_measured() {
         let (size, at) = (40.0, (150.0, 150.0));
-        let width = super::super::canvas::text_width("HHHHH", size, false);
+        let width = crate::plot::font::text_width("HHHHH", size, false);
         for (run, anchor, from) in [
             (Run::Across, Anchor::Start, 150.0),
             (Run::Across, Anchor::Middle, 150.0 - 0.5 * width),
@@ -425,25 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn greek_letters_superscripts_and_signs_have_glyphs() {
-        for c in "ψδρΔβαη²³⁻⁶·×±−–≤≥°→".chars() {
-            for bold in [false, true] {
-                assert_ne!(font(bold).unwrap().glyph_id(c).0, 0, "{c}");
-            }
-        }
-    }
-
-    #[test]
-    fn text_in_svg_is_escaped() {
-        let mut canvas = Canvas::new(100, 100);
-        let style = Type { size: 12.0, bold: false, color: BLACK };
-        canvas.text("R'(u) > 0 & <b>\u{1}", (5.0, 5.0), Anchor::Start, Run::Across, style);
-        let svg = canvas.into_svg().unwrap();
-        assert!(svg.contains("R&apos;(u) &gt; 0 &amp; &lt;b&gt; \n"), "{svg}");
-    }
-
-    #[test]
     fn a_figure_too_large_for_the_memory_is_refused() {
-        assert!(matches!(Canvas::new(100_000, 100_000).into_png(), Err(FigureError::TooLarge { .. })));
+        assert!(matches!(png(&Canvas::new(100_000, 100_000)), Err(FigureError::TooLarge { .. })));
     }
 }
