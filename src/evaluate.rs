@@ -478,10 +478,10 @@ impl<'a> Bootstrap<'a> {
 mod tests {
     use super::*;
     use crate::fit::{Cost, CostOptions, Derivatives};
+    use crate::physics::Form;
     use crate::recording::Environment;
     use crate::simulate::report;
     use crate::state::Inputs;
-    use crate::terms::Form;
     use std::f64::consts::PI;
     use std::path::Path;
 

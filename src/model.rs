@@ -2,12 +2,13 @@
 //! It holds no recording and knows no cost: it only says how the ship accelerates.
 
 use crate::error::suggestion;
-use crate::flow::{Adjust, Flow};
 use crate::parameter::ParameterInfo;
+use crate::physics::Inertia;
+use crate::physics::{Adjust, Flow};
+use crate::physics::{AnyTerm, Form, Instant, Number};
 use crate::ship::{Ship, line_of};
 use crate::state::{Force, Inputs, STATES, State};
-use crate::terms::hull::Inertia;
-use crate::terms::{self, AnyTerm, Form, Moment, Number};
+use crate::terms;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -452,8 +453,8 @@ impl Model {
         }
     }
 
-    fn moment<'a, S: Scalar>(&'a self, state: &'a State<S>, inputs: &'a Inputs<S>) -> Moment<'a, S> {
-        Moment { ship: &self.ship, form: self.form, state, inputs }
+    fn moment<'a, S: Scalar>(&'a self, state: &'a State<S>, inputs: &'a Inputs<S>) -> Instant<'a, S> {
+        Instant { ship: &self.ship, form: self.form, state, inputs }
     }
 
     /// What the terms share at a moment.
@@ -461,7 +462,7 @@ impl Model {
         self.flow_at(theta, &self.moment(state, inputs))
     }
 
-    fn flow_at<S: Number>(&self, theta: &[S], at: &Moment<S>) -> Flow<S> {
+    fn flow_at<S: Number>(&self, theta: &[S], at: &Instant<S>) -> Flow<S> {
         let mut adjust = Adjust::neutral();
         adjust.current = at.inputs.current;
         for t in &self.terms {
@@ -499,7 +500,7 @@ impl Model {
         self.rates_in(theta, &at, &self.flow_at(theta, &at), push)
     }
 
-    fn rates_in<S: Number>(&self, theta: &[S], at: &Moment<S>, flow: &Flow<S>, push: &Force<S>) -> [S; STATES] {
+    fn rates_in<S: Number>(&self, theta: &[S], at: &Instant<S>, flow: &Flow<S>, push: &Force<S>) -> [S; STATES] {
         let state = at.state;
         let mut force = *push;
         for t in &self.terms {

@@ -2,8 +2,8 @@
 //! The same code runs on any number type; what happens to the states on the way out is the caller's.
 
 use crate::model::Model;
+use crate::physics::Number;
 use crate::state::{Force, Inputs, STATES, State};
-use crate::terms::Number;
 use serde::{Deserialize, Serialize};
 use trimtab_ad::Scalar;
 

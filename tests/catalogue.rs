@@ -6,14 +6,15 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
-use trimtab::flow::Flow;
 use trimtab::model::{BASE, Model};
 use trimtab::parameter::Parity;
+use trimtab::physics::Flow;
+use trimtab::physics::Inertia;
+use trimtab::physics::{CHUNK, Curvature, Form, Gradient, GradientLanes, Lanes, NumDual, Number};
 use trimtab::ship::Ship;
 use trimtab::state::{Force, Inputs, STATES, State};
-use trimtab::terms::hull::Inertia;
+use trimtab::terms::CATALOGUE;
 use trimtab::terms::listing::{listing, summary};
-use trimtab::terms::{CATALOGUE, CHUNK, Curvature, Form, Gradient, GradientLanes, Lanes, NumDual, Number};
 use trimtab_ad::Scalar;
 
 fn ship() -> Ship {

@@ -9,8 +9,8 @@ use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::model::Model;
 use trimtab::parameter::Parity;
+use trimtab::physics::Form;
 use trimtab::state::Inputs;
-use trimtab::terms::Form;
 
 /// Thirty runs to learn from and ten to prove on, of a ship that has what the base model lacks.
 fn case(set: &[(&str, f64)], sessions: &[&str], seed: u64) -> Diagnosis {

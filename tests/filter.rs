@@ -9,9 +9,10 @@ use rayon::prelude::*;
 use support::{STAR, model, runs, truth_noise};
 use trimtab::diagnose::estimate::{Effort, FreeParameter, estimate, log_posterior};
 use trimtab::diagnose::evidence::{Evidence, RunEvidence};
-use trimtab::diagnose::filter::{Column, Filter, GATE, Probe, Wanted};
+use trimtab::diagnose::filter::{Column, Filter, GATE, Wanted};
 use trimtab::diagnose::noise::{NOISE_PARAMETERS, Noise, NoisePrior, SensorNoise, fit_noise, guess};
 use trimtab::model::{ELEVEN, Model};
+use trimtab::physics::Probe;
 use trimtab::simulate::{Integration, Method};
 
 fn columns(model: &Model, names: &[&str]) -> Vec<Column> {

@@ -7,11 +7,11 @@
 use std::f64::consts::PI;
 use std::path::Path;
 use trimtab::model::{Model, ModelError};
+use trimtab::physics::{Form, Gradient};
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Method, Scenario, simulate};
 use trimtab::state::{Force, Inputs, STATES, State};
 use trimtab::terms::crossflow::strip_integrals;
-use trimtab::terms::{Form, Gradient};
 
 fn ship(letter: &str) -> Ship {
     let path = format!("{}/experiments/ships/{letter}.toml", env!("CARGO_MANIFEST_DIR"));

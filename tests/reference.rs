@@ -6,10 +6,10 @@
 
 use std::path::Path;
 use trimtab::model::Model;
+use trimtab::physics::Form;
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Method, Scenario, simulate};
 use trimtab::state::Inputs;
-use trimtab::terms::Form;
 
 fn ship(letter: &str) -> Ship {
     let path = format!("{}/experiments/ships/{letter}.toml", env!("CARGO_MANIFEST_DIR"));

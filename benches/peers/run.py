@@ -168,7 +168,9 @@ def table(tools, samples):
     for tool in tools:
         about = {**first, "tool": tool.about["label"], "versions": tool.about["versions"]}
         for what in WHATS:
-            row = {**about, "what": what, "difference": f"{tool.check.get(what, 0.0):.1e}"}
+            row = {**about, "what": what, "difference": ""}
+            if what in tool.check:
+                row["difference"] = f"{tool.check[what]:.1e}"
             row["iterations"] = tool.check["iterations"] if what == "full fit" else ""
             for clock in ("processor", "wall"):
                 row[f"{clock}_median_s"] = f"{median(tool, what, clock):.4e}"

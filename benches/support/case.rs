@@ -5,10 +5,10 @@ use std::path::Path;
 use trimtab::fit::cost::weights;
 use trimtab::fit::{Cost, CostOptions, Derivatives, FitRun, FitSettings, Limits};
 use trimtab::model::Model;
+use trimtab::physics::Form;
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Scenario, simulate};
 use trimtab::state::Inputs;
-use trimtab::terms::Form;
 
 const STAR: [f64; 11] = [-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370];
 const RUNS: usize = 165;

@@ -6,8 +6,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use trimtab::fit::constraints;
+use trimtab::physics::Form;
 use trimtab::simulate::Integration;
-use trimtab::terms::Form;
 use trimtab_experiments::paper::case::{Case, Setup, initial_model};
 use trimtab_experiments::paper::{ARTEFACTS, published::published};
 use trimtab_experiments::truth::dataset::{Run, dataset};

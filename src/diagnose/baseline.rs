@@ -1,13 +1,13 @@
 //! What a user would do otherwise, and the best that could be done: the yardsticks the diagnosis is measured against.
 //! None of it is part of a diagnosis: it names by other rules ([`Refitted`]) or is told the answer ([`oracle`]).
 
+use super::candidate::{Candidate, Extent, append, applies, candidates};
 use super::compete::enter;
 use super::conclude::{Settings, base_parameters};
 use super::covariance::Z;
 use super::estimate::{Effort, Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
 use super::evidence::Evidence;
 use super::filter::{Column, Filter, Gains, Pass, Run, Wanted};
-use super::mechanism::{Candidate, Extent, append, candidates};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::median_distance;
 use super::screen::screen;
@@ -145,7 +145,7 @@ impl Refitted {
     /// one amplitude in all sessions, by linear least squares in its amplitudes with the free parameters along.
     pub fn ranking(&self, runs: &[Run], withhold: &[String]) -> Vec<BicGain> {
         let list: Vec<Candidate> =
-            candidates(&self.model, withhold).into_iter().filter(|c| c.mechanism.applies(runs)).collect();
+            candidates(&self.model, withhold).into_iter().filter(|c| applies(c.mechanism, runs)).collect();
         let mut columns: Vec<Column> = self.free.iter().map(|f| f.column).collect();
         let groups = append(&mut columns, &list);
         let filter = Filter::new(&self.model, self.integration, &columns);

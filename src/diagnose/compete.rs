@@ -1,17 +1,19 @@
 //! Which mechanism explains the data best: refits the leaders of a screen with everything else free, compares them, and keeps
 //! every one that the data allow. What is tested, and what is said of the outcome, is decided elsewhere.
 
+use super::candidate::{Candidate, Extent};
 use super::conclude::Settings;
 use super::estimate::{
     Effort, Estimate, FreeParameter, base_of, estimate, estimate_above, evidence, log_posterior, passes, restrictions,
 };
 use super::evidence::{chi_squared_p, pick};
-use super::filter::{Column, Probe, Run};
+use super::filter::{Column, Run};
 use super::forces::undoes;
-use super::mechanism::{Candidate, Extent, Kind};
 use super::noise::{Noise, NoisePrior};
 use super::screen::{Row, Screen, screen};
 use crate::model::Model;
+use crate::physics::Kind;
+use crate::physics::Probe;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
 

@@ -2,15 +2,15 @@
 //! and says what was found, what cannot be told, and what would have been seen. The arithmetic is in the other files.
 
 use super::admit::{Admission, admit, followed};
+use super::candidate::{Candidate, Extent, applies, candidates};
 use super::compete::{
     Accepted, Arena, Fall, REFIT, SETTLE, Wald, acceptable, acceptable_beside, backward, compete, positions, swap, wald,
 };
 use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior, passes};
 use super::evidence::{KINDS, Scatter};
-use super::filter::{Column, Probe, Run};
+use super::filter::{Column, Run};
 use super::forces::forces_of;
 use super::locate::{EquationShare, Location, Place, Push, RegionTest, Window, locate, sharpened};
-use super::mechanism::{Candidate, Extent, Kind, candidates};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::{HeldOut, prove};
 use super::receiver::settled;
@@ -18,6 +18,8 @@ use super::refit::refit;
 use super::screen::{Row, Screen, screen};
 use super::sides::{Sides, sides};
 use crate::model::{Model, ModelError};
+use crate::physics::Kind;
+use crate::physics::Probe;
 use crate::simulate::{Integration, Method};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -548,7 +550,7 @@ pub fn diagnose(
         admission.integration = integration;
     }
     let list: Vec<Candidate> =
-        candidates(&full, &settings.withhold).into_iter().filter(|c| c.mechanism.applies(runs)).collect();
+        candidates(&full, &settings.withhold).into_iter().filter(|c| applies(c.mechanism, runs)).collect();
     progress("locating unknown forces");
     let mut runs = runs.to_vec();
     let mut location = locate(&null, integration, &runs);

@@ -8,13 +8,15 @@
 
 use super::covariance::{Discrete, Z, initial, predict};
 use super::noise::Noise;
-use crate::flow::Flow;
 use crate::model::Model;
+use crate::physics::Flow;
+use crate::physics::Inertia;
+use crate::physics::Probe;
+use crate::physics::{CHUNK, Gradient, Group};
 use crate::recording::Window;
 use crate::simulate::{Integration, Method, driven, step};
 use crate::state::{Force, Inputs, STATES, State};
-use crate::terms::hull::Inertia;
-use crate::terms::{CHUNK, Gradient, Group, find};
+use crate::terms::find;
 use nalgebra::{DMatrix, DVector};
 
 /// One run as the filter needs it.
@@ -83,17 +85,6 @@ impl Column {
     pub fn tangent(model: &Model, parameter: usize) -> Self {
         Self { parameter, scale: model.parameters[parameter].scale, probe: Probe::Tangent }
     }
-}
-
-/// How the sensitivity to a parameter is taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Probe {
-    /// The exact derivative.
-    Tangent,
-    /// `(f(+scale) - f(-scale)) / 2`: for effects quadratic in their amplitude, whose derivative at zero vanishes.
-    Odd,
-    /// `f(scale) - f(0)`: for effects that exist on one side only.
-    Forward,
 }
 
 /// Forces on the body axes as functions of the state, added as further columns after the parameters.

@@ -1,13 +1,13 @@
 //! The force that some parameters of a model bring at the recorded states: with them less without them.
 //! It measures what a model says; whether the model is right is not asked here.
 
+use super::candidate::Candidate;
 use super::estimate::Estimate;
 use super::filter::Run;
-use super::mechanism::Candidate;
 use crate::model::Model;
 use crate::parameter::Parity;
+use crate::physics::Inertia;
 use crate::state::{Force, State};
-use crate::terms::hull::Inertia;
 
 /// Every so many samples are looked at.
 const STRIDE: usize = 4;

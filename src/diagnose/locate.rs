@@ -619,9 +619,9 @@ fn common_pushes(runs: &[Run], blocks: &[Blocks], unit: &[f64; 3], looked_at: f6
 mod tests {
     use super::*;
     use crate::diagnose::noise::guess;
+    use crate::physics::Form;
     use crate::ship::Ship;
     use crate::state::{Inputs, STATES};
-    use crate::terms::Form;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;

@@ -7,6 +7,7 @@
 
 pub mod admit;
 pub mod baseline;
+pub mod candidate;
 mod compete;
 pub mod conclude;
 pub mod covariance;
@@ -17,7 +18,6 @@ pub mod figures;
 pub mod filter;
 mod forces;
 pub mod locate;
-pub mod mechanism;
 pub mod noise;
 pub mod prove;
 pub mod receiver;

@@ -4,8 +4,8 @@
 use super::conclude::{Amplitude, Diagnosis, Finding, GENERIC, PUSH, PUSH_TITLE, Verdict};
 use super::figures::Picture;
 use super::locate::{EquationShare, Window};
-use super::mechanism::{Kind, Mechanism};
 use super::sides::Sides;
+use crate::physics::{Kind, Mechanism};
 use crate::report::{Page, Section, Table, fixed, sig};
 use crate::ship::Ship;
 use crate::terms::CATALOGUE;

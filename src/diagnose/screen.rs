@@ -1,11 +1,12 @@
 //! The test of every mechanism of the catalogue by its sensitivities, after parameters, nuisances, initial states and noise
 //! have had their say. It ranks and corrects for multiplicity; it does not refit and does not conclude.
 
+use super::candidate::{Candidate, Extent, append};
 use super::estimate::{Estimate, base_of, evidence, restrictions};
 use super::evidence::{Base, Evidence, Test, UNSEEN, pick};
 use super::filter::{Column, Filter, Pass, Run, Wanted};
-use super::mechanism::{Candidate, Extent, Kind, append};
 use crate::model::Model;
+use crate::physics::Kind;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rayon::prelude::*;

@@ -7,7 +7,8 @@ use super::estimate::{Estimate, FreeParameter};
 use super::evidence::{Scatter, chi_squared_p};
 use super::screen::Screen;
 use crate::parameter::Parity;
-use crate::terms::{self, Group};
+use crate::physics::Group;
+use crate::terms;
 use nalgebra::DMatrix;
 use serde::Serialize;
 

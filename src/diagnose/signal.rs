@@ -1,11 +1,11 @@
 //! How strong an effect is, as the diagnosis would see it: the yardstick by which concealed effects are graded.
 //! It decides nothing and names nothing.
 
+use super::candidate::{Candidate, append, candidates};
 use super::conclude::{Settings, base_parameters};
 use super::estimate::{Effort, Estimate, base_of, estimate, evidence, passes, restrictions};
 use super::evidence::{Base, Evidence};
 use super::filter::{Column, Filter, Pass, Run, Wanted};
-use super::mechanism::{Candidate, append, candidates};
 use super::noise::{NoisePrior, guess};
 use crate::model::{Model, ModelError};
 use crate::simulate::Integration;

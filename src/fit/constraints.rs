@@ -18,9 +18,9 @@
 
 use super::FitError;
 use crate::model::Model;
+use crate::physics::{Form, Number};
 use crate::terms::resistance::Resistance;
 use crate::terms::rudder::Rudder;
-use crate::terms::{Form, Number};
 use serde::{Deserialize, Serialize};
 
 /// Which limits the rules default to.

@@ -12,11 +12,12 @@
 
 use super::FitError;
 use crate::model::{BASE, Model};
+use crate::physics::{CHUNK, Curvature, Gradient, GradientLanes, Group, Lanes, NumDual, Number};
 use crate::recording::Window;
 use crate::ship::Ship;
 use crate::simulate::{self, Integration, Scenario, absurd_speed, step};
 use crate::state::{Force, Inputs, STATES};
-use crate::terms::{self, CHUNK, Curvature, Gradient, GradientLanes, Group, Lanes, NumDual, Number};
+use crate::terms;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::model::Model;
+use crate::physics::Form;
 use crate::ship::Ship;
-use crate::terms::Form;
 use std::f64::consts::PI;
 use std::path::Path;
 

@@ -1,11 +1,11 @@
 //! Positions and velocities that are those of an antenna away from midship.
 //! Horizontal lever only; its motion in roll is not there.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::STATES;
 use trimtab_ad::Scalar;
 
@@ -52,7 +52,7 @@ impl Term for Antenna {
 }
 
 impl<S: Scalar> Physics<S> for Antenna {
-    fn measure(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
         let (sin, cos) = at.state.psi.sin_cos();
         y[0] += p[0] * cos - p[1] * sin;
         y[1] += p[0] * sin + p[1] * cos;

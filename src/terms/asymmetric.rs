@@ -2,9 +2,10 @@
 //! The counterpart of `symmetric`, for the question of whether a named mechanism explains more than any constant, earth-fixed
 //! or one-sided force could; it is not physics to extrapolate.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::flow::Flow;
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -48,7 +49,7 @@ impl Term for Asymmetric {
 }
 
 impl<S: Scalar> Physics<S> for Asymmetric {
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let [x_0, y_0, n_0, y_u, n_u, y_n, n_n, x_cos, x_sin, y_sin, y_cos, n_sin, n_cos] =
             std::array::from_fn(|i| p[i]);
         let ship = at.ship;

@@ -1,11 +1,12 @@
 //! Suction towards the nearer bank of a channel, with a moment that turns the bow away from it.
 //! It needs the distances to both banks; a bank that was not recorded cannot be told from other body forces.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -55,7 +56,7 @@ impl Term for Bank {
 }
 
 impl<S: Scalar> Physics<S> for Bank {
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let pressure = flow.u * flow.u * at.inputs.bank * (at.ship.hull.breadth * size::pressure(at.ship));
         Force { x: S::zero(), y: p[0] * pressure, n: -(p[1] * pressure) * at.ship.hull.lpp }
     }

@@ -2,11 +2,11 @@
 //! One drag coefficient for all strips, and a weight of the turning in force and moment, as hulls are measured to differ there; it
 //! matters at large drift and when the ship turns on the spot.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -79,7 +79,7 @@ impl Term for Crossflow {
 }
 
 impl<S: Scalar> Physics<S> for Crossflow {
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let hull = &at.ship.hull;
         let half = 0.5 * hull.lpp;
         let [sway, _] = strip_integrals(flow.v, p[1] * flow.r * half);

@@ -1,11 +1,12 @@
 //! A uniform steady current that carries the ship and the water around it.
 //! Its forces come from the velocity through the water that all other terms use; a tide that turns is a term of its own.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Adjust;
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Adjust;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use trimtab_ad::Scalar;
 
 /// Steady current.
@@ -49,7 +50,7 @@ impl Term for Current {
 }
 
 impl<S: Scalar> Physics<S> for Current {
-    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
         adjust.current[0] += p[0];
         adjust.current[1] += p[1];
     }

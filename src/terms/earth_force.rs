@@ -1,11 +1,12 @@
 //! A constant force in a fixed direction on earth, acting at midship.
 //! It says nothing of its cause: it is the generic form of what wind, waves or a line do at a constant speed.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::{Flow, to_body};
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Probe;
+use crate::physics::{Flow, to_body};
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -49,7 +50,7 @@ impl Term for EarthForce {
 }
 
 impl<S: Scalar> Physics<S> for EarthForce {
-    fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
         let [x, y] = to_body([p[0], p[1]], at.state.psi);
         Force { x, y, n: S::zero() }
     }

@@ -2,10 +2,11 @@
 //! No torque balance, no reversing delay; a shaft rate that was measured has no lag.
 
 use super::rudder_lag::first_order;
-use super::{Group, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Probe;
+use crate::physics::{Group, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
 use crate::state::Inputs;
 use trimtab_ad::Scalar;

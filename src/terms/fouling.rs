@@ -1,11 +1,11 @@
 //! A resistance that is higher in proportion: a fouled hull, or added resistance of any kind.
 //! With one loading and one season it cannot be told from p1 to p3; it is meant for differences between sessions.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
+use crate::physics::Adjust;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use trimtab_ad::Scalar;
 
 /// Fouling.
@@ -43,7 +43,7 @@ impl Term for Fouling {
 }
 
 impl<S: Scalar> Physics<S> for Fouling {
-    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
         adjust.resistance *= p[0] + 1.0;
     }
 }

@@ -1,9 +1,9 @@
 //! Inertia and hull hydrodynamics in the Spyrou 1996 form, the left-hand side of the paper's eq. (1).
 //! It gives the mass matrix and everything quadratic in (u, v, r); resistance in u alone is a term of its own.
 
-use super::{Form, Group, Moment, Physics, Term, TermInfo};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::{Form, Group, Instant, Physics, Term, TermInfo};
 use crate::ship::Ship;
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -78,48 +78,6 @@ static INFO: TermInfo = TermInfo {
     ],
 };
 
-/// The mass matrix of the three equations: surge alone, sway and yaw coupled.
-#[derive(Clone, Copy, Debug)]
-pub struct Inertia<S> {
-    /// m - Xudot.
-    pub surge: S,
-    /// m - Yvdot.
-    pub sway: S,
-    /// m xG - Yrdot.
-    pub sway_yaw: S,
-    /// m xG - Nvdot.
-    pub yaw_sway: S,
-    /// Iz - Nrdot.
-    pub yaw: S,
-}
-
-impl<S: Scalar> Inertia<S> {
-    /// The mass matrix from the parameters of the term `hull`.
-    pub fn new(p: &[S], flow: &Flow<S>) -> Self {
-        let a = &flow.adjust;
-        let m = p[0] * a.mass;
-        let xg = p[2] + a.x_g;
-        let cube = flow.speed * flow.speed * flow.speed;
-        Self {
-            surge: m - p[3],
-            sway: m - p[4] * a.added_mass,
-            sway_yaw: m * xg - p[5] * a.added_mass + a.roll[0] * cube,
-            yaw_sway: m * xg - p[6] * a.added_mass,
-            yaw: p[1] * a.mass - p[7] * a.added_mass + a.roll[1] * cube,
-        }
-    }
-
-    /// Accelerations (u', v', r') under a force.
-    pub fn solve(&self, f: &Force<S>) -> [S; 3] {
-        let inverse = S::one() / (self.sway * self.yaw - self.sway_yaw * self.yaw_sway);
-        [
-            f.x / self.surge,
-            (f.y * self.yaw - f.n * self.sway_yaw) * inverse,
-            (f.n * self.sway - f.y * self.yaw_sway) * inverse,
-        ]
-    }
-}
-
 impl Term for Hull {
     fn info(&self) -> &'static TermInfo {
         &INFO
@@ -136,7 +94,7 @@ impl<S: Scalar> Physics<S> for Hull {
     ///
     /// Form `regular` (Yoshimura's low-speed form, and share `sternway` of it in the paper form): U is replaced by |u| in the
     /// damping terms Yv and Nr, and by u in the odd terms Yr and Nv. 1/U is 1/sqrt(U^2 + small^2) in both forms.
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let [m, _, xg, _, yvdot, yrdot, _, _, xvr, yv, yr, nv, nr, yvv, yvr, yrr, nrr, nrrv, nvvr] =
             std::array::from_fn(|i| p[i]);
         let a = &flow.adjust;

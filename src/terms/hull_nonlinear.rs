@@ -1,11 +1,12 @@
 //! Hull forces of higher order in drift and turn, which the base model leaves out.
 //! The N_vvr and N_vrr of the cubic model are already in `hull`; coefficients are dimensionless, with 1/2 rho L d.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -56,7 +57,7 @@ impl Term for HullNonlinear {
 }
 
 impl<S: Scalar> Physics<S> for HullNonlinear {
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let ship = at.ship;
         let l = ship.hull.lpp;
         let small = ship.small_speed();

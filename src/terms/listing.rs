@@ -1,8 +1,9 @@
 //! The catalogue as text and as data: what `trimtab terms` prints.
 //! It reads the terms' own `TermInfo` and adds nothing to it; values that depend on a ship are shown only for a given ship.
 
-use super::{CATALOGUE, Group, TermInfo};
+use super::CATALOGUE;
 use crate::parameter::{ParameterInfo, Parity};
+use crate::physics::{Group, TermInfo};
 use crate::report::{DASH, Table, sig};
 use crate::ship::Ship;
 use serde::Serialize;

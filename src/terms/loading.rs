@@ -1,11 +1,11 @@
 //! A ship loaded otherwise than its particulars say: mass and yaw inertia, and the centre of gravity.
 //! Draught, and with it the hull coefficients, stay as they are.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
+use crate::physics::Adjust;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use trimtab_ad::Scalar;
 
 /// Loading condition.
@@ -48,7 +48,7 @@ impl Term for Loading {
 }
 
 impl<S: Scalar> Physics<S> for Loading {
-    fn adjust(&self, p: &[S], at: &Moment<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], at: &Instant<S>, adjust: &mut Adjust<S>) {
         adjust.mass *= p[0] + 1.0;
         adjust.x_g += p[1] * at.ship.hull.lpp;
     }

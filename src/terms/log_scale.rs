@@ -1,11 +1,11 @@
 //! A speed log that reads too much in proportion, along and across.
 //! Positions are not affected, and tell.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::STATES;
 use trimtab_ad::Scalar;
 
@@ -45,7 +45,7 @@ impl Term for LogScale {
 }
 
 impl<S: Scalar> Physics<S> for LogScale {
-    fn measure(&self, p: &[S], _at: &Moment<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
         y[3] += y[3] * p[0];
         y[4] += y[4] * p[0];
     }

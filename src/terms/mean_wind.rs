@@ -1,12 +1,13 @@
 //! Load of a steady wind that was not measured, with typical load coefficients.
 //! Gusts are not here, nor is a wind that was recorded: that is the term `wind`.
 
+use super::size;
 use super::wind::wind_load;
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -73,7 +74,7 @@ impl Term for MeanWind {
 }
 
 impl<S: Scalar> Physics<S> for MeanWind {
-    fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
         wind_load(at.ship, at.state, [p[0], p[1]], [p[2], p[3], p[4]])
     }
 }

@@ -1,11 +1,12 @@
 //! An additional destabilising yaw moment of drift, of the kind that potential flow gives.
 //! Odd in u: it changes sense with the direction of motion, as the base model's N_v U v does not.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -49,7 +50,7 @@ impl Term for Munk {
 }
 
 impl<S: Scalar> Physics<S> for Munk {
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let n = -(p[0] * flow.u * flow.v) * (size::pressure(at.ship) * at.ship.hull.lpp);
         Force { n, ..Force::zero() }
     }

@@ -1,9 +1,9 @@
 //! Propeller forces: net thrust, and a side force proportional to it (parameter p0 of the paper).
 //! Thrust itself comes from the flow; effects beyond the paper's linear side force are terms of their own.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -34,7 +34,7 @@ impl Term for Propeller {
 }
 
 impl<S: Scalar> Physics<S> for Propeller {
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let y = p[0] * flow.propulsion;
         Force { x: flow.propulsion, y, n: y * at.ship.propeller_x() }
     }

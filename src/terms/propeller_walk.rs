@@ -1,11 +1,11 @@
 //! Side force of the propeller, with its own strength ahead and astern.
 //! The paper's side force proportional to net thrust is `propeller.side_force`; this one is proportional to n^2 and fades with speed.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -76,7 +76,7 @@ impl Term for PropellerWalk {
 }
 
 impl<S: Scalar> Physics<S> for PropellerWalk {
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let ship = at.ship;
         let d = ship.propeller.diameter;
         let small = ship.small_speed();
@@ -94,9 +94,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use crate::model::Model;
+    use crate::physics::Form;
     use crate::ship::Ship;
     use crate::state::{Force, Inputs, State};
-    use crate::terms::Form;
     use std::path::Path;
 
     #[test]

@@ -1,9 +1,10 @@
 //! A constant push on the ship during one window of time: a tug, a line, an unrecorded thruster.
 //! The window is one of run time `t`, the same in every run; force and moment are fixed to the ship.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::flow::Flow;
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -38,7 +39,7 @@ impl Term for Push {
 }
 
 impl<S: Scalar> Physics<S> for Push {
-    fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
         let t = at.inputs.t;
         let window = ((t - p[3]).tanh() - (t - p[4]).tanh()) * 0.5;
         Force { x: p[0], y: p[1], n: p[2] } * window

@@ -1,11 +1,11 @@
 //! A change of the propeller race at the rudder.
 //! Seen only in how well the rudder works with the propeller turning; lift slope and race are hard to tell apart.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
+use crate::physics::Adjust;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use trimtab_ad::Scalar;
 
 /// Propeller race on the rudder.
@@ -43,7 +43,7 @@ impl Term for Race {
 }
 
 impl<S: Scalar> Physics<S> for Race {
-    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
         adjust.race *= p[0] + 1.0;
     }
 }

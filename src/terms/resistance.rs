@@ -1,9 +1,9 @@
 //! Surge resistance as a cubic in u, the parameters p1 to p3 of the paper.
 //! It enters the surge equation as -R(u): printed with a plus sign there, R >= 0 would push the ship.
 
-use super::{Form, Group, Moment, Physics, Term, TermInfo};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::{Form, Group, Instant, Physics, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -54,7 +54,7 @@ impl Term for Resistance {
 }
 
 impl<S: Scalar> Physics<S> for Resistance {
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let u = flow.u;
         let share = match at.form {
             Form::Paper => flow.adjust.sternway,

@@ -1,11 +1,12 @@
 //! Yaw moment and sway force of the heel that a turn causes, following the turn with a lag.
 //! Heel is quasi-static: the lag is expanded to first order, so that roll resonance and heel from wind are not here. With a negative `yaw` the lag takes away inertia, and 1/2 rho L^2 d |yaw| U^3 tau/g must stay below Iz - Nrdot.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::{Adjust, Flow};
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Probe;
+use crate::physics::{Adjust, Flow};
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -13,7 +14,7 @@ use trimtab_ad::Scalar;
 pub struct Roll;
 
 /// Sway force and yaw moment per U^3 r.
-fn gains<S: Scalar>(p: &[S], at: &Moment<S>) -> [S; 2] {
+fn gains<S: Scalar>(p: &[S], at: &Instant<S>) -> [S; 2] {
     let unit = size::pressure(at.ship) / size::GRAVITY;
     [p[0] * unit, p[1] * (unit * at.ship.hull.lpp)]
 }
@@ -66,13 +67,13 @@ impl Term for Roll {
 }
 
 impl<S: Scalar> Physics<S> for Roll {
-    fn adjust(&self, p: &[S], at: &Moment<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], at: &Instant<S>, adjust: &mut Adjust<S>) {
         let [sway, yaw] = gains(p, at);
         adjust.roll[0] += sway * p[2];
         adjust.roll[1] += yaw * p[2];
     }
 
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let [sway, yaw] = gains(p, at);
         let cause = flow.speed * flow.speed * flow.speed * flow.r;
         Force { x: S::zero(), y: sway * cause, n: yaw * cause }

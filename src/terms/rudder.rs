@@ -1,9 +1,9 @@
 //! Rudder forces from a cubic lift and a quadratic drag curve, the parameters p4 to p10 of the paper.
 //! The curves hold up to 45 degrees of attack; beyond 60 degrees the rudder is a flat plate, with a smooth blend between.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::state::Force;
 use std::f64::consts::PI;
 use trimtab_ad::{Scalar, smooth};
@@ -77,7 +77,7 @@ impl Term for Rudder {
 }
 
 impl<S: Scalar> Physics<S> for Rudder {
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let (u, v) = (flow.rudder_u, flow.rudder_v);
         let inflow = v.atan2(u);
         let a = smooth::wrap_angle(at.inputs.delta - inflow);

@@ -1,10 +1,11 @@
 //! First-order lag between the recorded rudder angle, then an order, and the rudder.
 //! The rudder starts where it is ordered to be; a limit of its rate is `rudder_rate`.
 
-use super::{Group, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Probe;
+use crate::physics::{Group, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
 use crate::state::Inputs;
 use trimtab_ad::Scalar;

@@ -1,10 +1,10 @@
 //! A rudder that stands off the recorded angle by a constant.
 //! Looks like `rudder.lift0` wherever the inflow is steady; only coasting and changes of rpm tell them apart.
 
-use super::{Group, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
 use crate::parameter::ParameterInfo;
+use crate::physics::Probe;
+use crate::physics::{Group, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
 use crate::state::Inputs;
 use trimtab_ad::Scalar;

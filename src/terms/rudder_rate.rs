@@ -1,10 +1,11 @@
 //! A steering gear that turns the rudder no faster than a limit.
 //! The parameter is the inverse of the limit, so that 0 is a gear without limit; below the limit the rudder follows its order.
 
-use super::{Group, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Probe;
+use crate::physics::{Group, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
 use crate::state::Inputs;
 use trimtab_ad::Scalar;

@@ -1,11 +1,11 @@
 //! Loss of rudder lift at large angles of attack.
 //! Lift only; drag keeps its curve. The paper's cubic already bends over near 28 degrees, and takes up much of this.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
+use crate::physics::Adjust;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use trimtab_ad::Scalar;
 
 /// Rudder stall.
@@ -48,7 +48,7 @@ impl Term for RudderStall {
 }
 
 impl<S: Scalar> Physics<S> for RudderStall {
-    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
         adjust.stall += p[0];
         adjust.stall_onset = p[1];
     }

@@ -1,11 +1,11 @@
 //! Shallow water: damping, added mass and resistance grow with draught over water under the keel.
 //! One number for the depth scales fixed sensitivities; squat, and the strong growth of cross-flow drag below h/d = 1.5, are not modelled.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
+use crate::physics::Adjust;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use trimtab_ad::Scalar;
 
 /// Shallow water.
@@ -64,7 +64,7 @@ impl Term for Shallow {
 }
 
 impl<S: Scalar> Physics<S> for Shallow {
-    fn adjust(&self, p: &[S], at: &Moment<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], at: &Instant<S>, adjust: &mut Adjust<S>) {
         let q = at.inputs.draught_to_depth.clamp(0.0, MOST);
         let z = p[0] + p[1] * q / (S::one() - q);
         let factor = |sensitivity: f64| z * sensitivity + 1.0;

@@ -1,11 +1,11 @@
 //! Hull and resistance forces that keep their sense when the ship moves astern.
 //! A share of the fore-aft consistent form inside the paper's form; in a model of form `regular` it does nothing.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
+use crate::physics::Adjust;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use trimtab_ad::Scalar;
 
 /// Sternway hull forces.
@@ -44,7 +44,7 @@ impl Term for Sternway {
 }
 
 impl<S: Scalar> Physics<S> for Sternway {
-    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
         adjust.sternway += p[0];
     }
 }

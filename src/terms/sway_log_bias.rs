@@ -1,11 +1,11 @@
 //! A speed log that reads a constant too much across.
 //! Like a current across the ship that turns with it.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::STATES;
 use trimtab_ad::Scalar;
 
@@ -46,7 +46,7 @@ impl Term for SwayLogBias {
 }
 
 impl<S: Scalar> Physics<S> for SwayLogBias {
-    fn measure(&self, p: &[S], _at: &Moment<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
         y[4] += p[0];
     }
 }

@@ -2,9 +2,10 @@
 //! It is a correction without a name, for the question of whether a named mechanism explains more than any smooth hull,
 //! propeller or rudder error could; it is not physics to extrapolate.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::flow::Flow;
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::ship::Ship;
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -85,7 +86,7 @@ fn dot<S: Scalar, const N: usize>(p: &[S], monomials: &[S; N]) -> S {
 }
 
 impl<S: Scalar> Physics<S> for Symmetric {
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let ship = at.ship;
         let l = ship.hull.lpp;
         let d = ship.propeller.diameter;

@@ -1,11 +1,11 @@
 //! A loss of thrust in proportion: a fouled, damaged or badly known propeller.
 //! The race on the rudder is made of thrust and weakens with it.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
+use crate::physics::Adjust;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use trimtab_ad::Scalar;
 
 /// Loss of thrust.
@@ -41,7 +41,7 @@ impl Term for ThrustLoss {
 }
 
 impl<S: Scalar> Physics<S> for ThrustLoss {
-    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
         adjust.thrust *= S::one() - p[0];
     }
 }

@@ -2,11 +2,12 @@
 //! Force follows the command at once; the moment fades later than the force, as the hull aft of the jet is pulled the other way.
 //! A ship without thruster particulars gets a typical one: 1e-4 rho g L^2 d at 0.4 L.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -62,7 +63,7 @@ impl Term for Thruster {
 }
 
 impl<S: Scalar> Physics<S> for Thruster {
-    fn force(&self, p: &[S], at: &Moment<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let hull = &at.ship.hull;
         let (thrust, x) = at.ship.thruster.as_ref().map_or_else(
             || (1e-4 * hull.water_density * size::GRAVITY * hull.lpp.powi(2) * hull.draught, 0.4 * hull.lpp),

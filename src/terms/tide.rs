@@ -1,11 +1,12 @@
 //! A uniform current that turns with the principal lunar tide.
 //! Only the M2 constituent; the acceleration of the water (1e-4 m/s2) exerts no force here.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Adjust;
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Adjust;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use std::f64::consts::TAU;
 use trimtab_ad::Scalar;
 
@@ -60,7 +61,7 @@ impl Term for Tide {
 }
 
 impl<S: Scalar> Physics<S> for Tide {
-    fn adjust(&self, p: &[S], at: &Moment<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], at: &Instant<S>, adjust: &mut Adjust<S>) {
         let (sin, cos) = (at.inputs.t * (TAU / PERIOD)).sin_cos();
         adjust.current[0] += p[0] * sin + p[1] * cos;
         adjust.current[1] += p[2] * sin + p[3] * cos;

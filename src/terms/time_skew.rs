@@ -1,11 +1,12 @@
 //! Channels that are reported late: positions, and the heading.
 //! First order in the delay, good while the rates change little over it; velocities are taken to be on time.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::STATES;
 use trimtab_ad::Scalar;
 
@@ -51,7 +52,7 @@ impl Term for TimeSkew {
 }
 
 impl<S: Scalar> Physics<S> for TimeSkew {
-    fn measure(&self, p: &[S], _at: &Moment<S>, _flow: &Flow<S>, rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, rate: &[S; STATES], y: &mut [S; STATES]) {
         y[0] -= rate[0] * p[0];
         y[1] -= rate[1] * p[0];
         y[2] -= rate[2] * p[1];

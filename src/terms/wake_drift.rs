@@ -1,11 +1,11 @@
 //! Wake at the propeller that changes with the drift angle there.
 //! It changes thrust and, through the race, the rudder; port and starboard may differ.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Adjust;
 use crate::parameter::ParameterInfo;
+use crate::physics::Adjust;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use trimtab_ad::Scalar;
 
 /// Wake change in drift.
@@ -56,7 +56,7 @@ impl Term for WakeDrift {
 }
 
 impl<S: Scalar> Physics<S> for WakeDrift {
-    fn adjust(&self, p: &[S], _at: &Moment<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
         adjust.wake_relief += p[0];
         adjust.wake_asymmetry += p[1];
     }

@@ -1,11 +1,11 @@
 //! A speed log that reports velocity through the water although it is read as over ground.
 //! Without a current in the model there is no difference, and no effect.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::STATES;
 use trimtab_ad::Scalar;
 
@@ -50,7 +50,7 @@ impl Term for WaterLog {
 }
 
 impl<S: Scalar> Physics<S> for WaterLog {
-    fn measure(&self, p: &[S], _at: &Moment<S>, flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(&self, p: &[S], _at: &Instant<S>, flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
         y[3] -= flow.current[0] * p[0];
         y[4] -= flow.current[1] * p[0];
     }

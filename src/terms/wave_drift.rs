@@ -2,11 +2,11 @@
 //! Unlike wind it does not depend on the speed of the ship; unlike `earth_force` it is an order of magnitude stronger abeam than ahead.
 
 use super::waves::drift_load;
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -73,7 +73,7 @@ impl Term for WaveDrift {
 }
 
 impl<S: Scalar> Physics<S> for WaveDrift {
-    fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
         drift_load(at.ship, at.state.psi, [p[0], p[1]], [p[2], p[3], p[4]])
     }
 }

@@ -1,11 +1,12 @@
 //! Mean drift load of the measured waves, proportional to the wave height squared.
 //! Coefficients do not depend on wave length or ship speed, and motions at wave frequency are not modelled.
 
-use super::{Group, Moment, Physics, Term, TermInfo, size};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::{Flow, to_body};
+use super::size;
 use crate::parameter::ParameterInfo;
+use crate::physics::Probe;
+use crate::physics::{Flow, to_body};
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -68,7 +69,7 @@ impl Term for Waves {
 }
 
 impl<S: Scalar> Physics<S> for Waves {
-    fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
         drift_load(at.ship, at.state.psi, at.inputs.waves, [p[0], p[1], p[2]])
     }
 }

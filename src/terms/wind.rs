@@ -1,11 +1,11 @@
 //! Load of the measured wind on the part of the ship above water.
 //! The wind channel gives speed and direction; what is unknown are the three load coefficients. Wind nobody measured is `mean_wind`.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::{Flow, to_body};
 use crate::parameter::ParameterInfo;
+use crate::physics::Probe;
+use crate::physics::{Flow, to_body};
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::ship::{AboveWater, Ship};
 use crate::state::{Force, State};
 use trimtab_ad::Scalar;
@@ -97,7 +97,7 @@ impl Term for Wind {
 }
 
 impl<S: Scalar> Physics<S> for Wind {
-    fn force(&self, p: &[S], at: &Moment<S>, _flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
         wind_load(at.ship, at.state, at.inputs.wind, [p[0], p[1], p[2]])
     }
 }

@@ -1,11 +1,11 @@
 //! A rate gyro that reads a constant too much.
 //! Only the yaw-rate channel; the heading channel tells.
 
-use super::{Group, Moment, Physics, Term, TermInfo};
-use crate::diagnose::filter::Probe;
-use crate::diagnose::mechanism::{Kind, Mechanism};
-use crate::flow::Flow;
 use crate::parameter::ParameterInfo;
+use crate::physics::Flow;
+use crate::physics::Probe;
+use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Kind, Mechanism};
 use crate::state::STATES;
 use trimtab_ad::Scalar;
 
@@ -46,7 +46,7 @@ impl Term for YawRateBias {
 }
 
 impl<S: Scalar> Physics<S> for YawRateBias {
-    fn measure(&self, p: &[S], _at: &Moment<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
         y[5] += p[0];
     }
 }

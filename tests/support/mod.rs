@@ -10,10 +10,10 @@ use std::path::Path;
 use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::noise::{GROUP_OF, Noise, SensorNoise};
 use trimtab::model::Model;
+use trimtab::physics::Form;
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Method, driven, step};
 use trimtab::state::{Force, Inputs, State};
-use trimtab::terms::Form;
 
 pub const STAR: [f64; 11] = [-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370];
 

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::baseline::{Refitted, Told, oracle};
+use trimtab::diagnose::candidate::Extent;
 use trimtab::diagnose::filter::Run;
-use trimtab::diagnose::mechanism::Extent;
 use trimtab::model::Model;
 use trimtab::recording::Split;
 use trimtab::ship::Ship;

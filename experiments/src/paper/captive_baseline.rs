@@ -123,7 +123,7 @@ mod tests {
     use super::super::case::initial_model;
     use super::*;
     use crate::truth::Force;
-    use trimtab::terms::Form;
+    use trimtab::physics::Form;
     use trimtab::terms::rudder::Rudder;
 
     #[test]

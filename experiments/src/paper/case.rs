@@ -10,11 +10,11 @@ use std::path::Path;
 use trimtab::evaluate::{Evaluation, EvaluationSettings, evaluate};
 use trimtab::fit::{Fit, FitRun, FitSettings, Limits, fit};
 use trimtab::model::Model;
+use trimtab::physics::Form;
 use trimtab::recording::{Environment, Order, Split, Window};
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Method};
 use trimtab::state::Inputs;
-use trimtab::terms::Form;
 
 /// What may be varied from the way the paper did it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,8 +10,8 @@ use std::path::Path;
 use trimtab::evaluate::{Estimate, EvaluationSettings, evaluate};
 use trimtab::fit::{FitSettings, fit};
 use trimtab::model::{Model, Prior};
+use trimtab::physics::Form;
 use trimtab::report::{DASH, Table, fixed, sig};
-use trimtab::terms::Form;
 
 /// What limits the fit.
 pub static LIMITS: Artefact = Artefact {

@@ -321,7 +321,7 @@ mod tests {
         use trimtab::state as lib;
         let text = include_str!("../../ships/a.toml");
         let ship = trimtab::ship::Ship::parse(text, std::path::Path::new("a.toml")).unwrap();
-        let mut model = trimtab::model::Model::new(ship, "check", trimtab::terms::Form::Paper, &[]).unwrap();
+        let mut model = trimtab::model::Model::new(ship, "check", trimtab::physics::Form::Paper, &[]).unwrap();
         let truth = ship_a();
         model.set_eleven(&truth.p);
         let theta: Vec<f64> = model.parameters.iter().map(|p| p.value).collect();

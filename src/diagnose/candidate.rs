@@ -1,71 +1,18 @@
-//! What the diagnosis can name: a mechanism is a group of parameters of one term, with the words and cautions that go with it.
-//! The list itself is in the terms' files, beside the physics.
+//! A mechanism of the catalogue as a candidate of one model: its columns, its amplitudes, and the sessions it acts in.
+//! What the mechanisms are is told in the terms' files, beside the physics.
 
 use super::evidence::Test;
-use super::filter::{Column, Probe, Run};
+use super::filter::{Column, Run};
 use crate::model::Model;
-use crate::terms::{CATALOGUE, Group};
-use serde::Serialize;
+use crate::physics::{Group, Mechanism};
+use crate::terms::CATALOGUE;
 
-/// What kind of thing a mechanism is, for the verdict.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Kind {
-    /// A force or inflow from outside the ship.
-    Environment,
-    /// Hull, propeller or rudder physics.
-    Ship,
-    /// An actuator that does not do what was recorded.
-    Actuator,
-    /// A sensor that does not report what is.
-    Sensor,
-}
-
-/// Something the diagnosis can name.
-#[derive(Debug)]
-pub struct Mechanism {
-    /// Name, unique over the catalogue.
-    pub name: &'static str,
-    /// Plain words, as the end of "what was left out: ...".
-    pub title: &'static str,
-    /// What kind of thing it is.
-    pub kind: Kind,
-    /// Names of its parameters within its term.
-    pub parameters: &'static [&'static str],
-    /// Names of coefficients of its term that are not known exactly once it acts: freed with it, with their priors.
-    pub companions: &'static [&'static str],
-    /// How the sensitivity is taken at the neutral point.
-    pub probe: Probe,
-    /// True when unknown hull, propeller and rudder coefficients can mimic it, so that only a reference session shows it.
-    pub needs_reference: bool,
-    /// Smallest amplitude worth naming, in units of the parameters' scales.
-    pub floor: f64,
-    /// True for a force without a cause, which stands in for physics of some other form: named when no cause comes near.
-    pub stand_in: bool,
-    /// Names of mechanisms that look alike on some data.
-    pub look_alikes: &'static [&'static str],
-    /// The trial that shows it best.
-    pub trial: &'static str,
-}
-
-impl Mechanism {
-    /// Whether either names the other as a look-alike.
-    pub fn looks_like(&self, other: &Self) -> bool {
-        self.look_alikes.contains(&other.name) || other.look_alikes.contains(&self.name)
-    }
-
-    /// Whether it is a vector over the ground, which the weather makes anew every day; the others are coefficients, which stay.
-    pub fn is_weather(&self) -> bool {
-        self.parameters == ["north", "east"]
-    }
-
-    /// Whether recordings can possibly show it: a tide needs a good part of its period.
-    pub fn applies(&self, runs: &[Run]) -> bool {
-        const QUARTER_TIDE: f64 = 11_178.0;
-        let times = || runs.iter().flat_map(|r| [r.inputs.first(), r.inputs.last()]).flatten().map(|i| i.t);
-        let span = times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min);
-        self.name != "tide" || span > QUARTER_TIDE
-    }
+/// Whether recordings can possibly show a mechanism: a tide needs a good part of its period.
+pub fn applies(mechanism: &Mechanism, runs: &[Run]) -> bool {
+    const QUARTER_TIDE: f64 = 11_178.0;
+    let times = || runs.iter().flat_map(|r| [r.inputs.first(), r.inputs.last()]).flatten().map(|i| i.t);
+    let span = times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min);
+    mechanism.name != "tide" || span > QUARTER_TIDE
 }
 
 /// In which sessions a mechanism acts, and whether with one amplitude.
@@ -182,8 +129,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+    use crate::physics::Form;
     use crate::ship::Ship;
-    use crate::terms::Form;
     use nalgebra::{DMatrix, DVector};
     use std::path::Path;
 
