@@ -19,6 +19,8 @@ mod eligible;
 pub mod estimate;
 mod event;
 pub mod evidence;
+#[cfg(test)]
+mod example;
 pub mod figures;
 pub mod finding;
 mod generic;
