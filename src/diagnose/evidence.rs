@@ -325,7 +325,7 @@ mod tests {
 
     #[test]
     fn runs_that_scatter_by_group_widen_what_is_known_and_runs_that_do_not_leave_it() {
-        // Eight runs whose scores have the variance that their information of 1 says, and the same with two kinds that pull apart.
+        // Four runs whose scores have the variance that their information of 1 says, and the same with two kinds that pull apart.
         let of = |pull: f64| {
             let signs = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
             let run = |(i, sign): (usize, &f64)| one_run("a", &[sign + if i < 4 { pull } else { -pull }], &[1.0]);

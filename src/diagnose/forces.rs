@@ -5,9 +5,9 @@ use super::candidate::Candidate;
 use super::estimate::Estimate;
 use super::filter::Run;
 use super::settings::CANCELLED_SHARE;
+use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::parameter::Parity;
-use crate::physics::Inertia;
 use crate::state::{Force, State};
 
 /// The force is taken at every so many samples.
@@ -33,16 +33,17 @@ pub fn forces_of(model: &Model, parameters: &[usize], runs: &[Run]) -> Vec<[f64;
     for r in runs {
         let (with, bare) = (model.values_in(&r.session), neutral.values_in(&r.session));
         let (mut a, mut b) = (r.inputs.clone(), r.inputs.clone());
-        model.drive(&with, r.dt, &mut a);
-        neutral.drive(&bare, r.dt, &mut b);
+        let (with, bare) = (Dynamics::new(model, with), Dynamics::new(&neutral, bare));
+        with.drive(r.dt, &mut a);
+        bare.drive(r.dt, &mut b);
         for ((m, i), j) in r.measured.iter().zip(&a).zip(&b).step_by(STRIDE) {
             if m.iter().any(|v| !v.is_finite()) {
                 continue;
             }
             let state = State::from_array(*m);
-            let (x, flow) = model.rates(&with, &state, i, &Force::zero());
-            let (y, _) = neutral.rates(&bare, &state, j, &Force::zero());
-            let inertia = Inertia::new(model.part("hull", &with), &flow);
+            let (x, flow) = with.rates(&state, i, &Force::zero());
+            let (y, _) = bare.rates(&state, j, &Force::zero());
+            let inertia = with.inertia(&flow);
             let d = [x[3] - y[3], x[4] - y[4], x[5] - y[5]];
             out.push([
                 inertia.surge * d[0],

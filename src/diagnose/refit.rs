@@ -7,7 +7,7 @@
 use super::estimate::{Estimate, base_of, evidence, log_posterior, restrictions};
 use super::evidence::Base;
 use super::filter::{Column, Filter, Gains, Pass, Run, Wanted};
-use crate::fit::ipopt::{IpoptError, Nlp, OptionValue, Options, Solution, solve};
+use crate::ipopt::{IpoptError, Nlp, OptionValue, Options, Solution, solve};
 use crate::model::Model;
 use crate::simulate::Integration;
 use nalgebra::DMatrix;

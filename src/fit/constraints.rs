@@ -16,7 +16,7 @@
 //! subscript; (iv) at a = 0 would force p4 = 0, so the grid leaves zero out, and it cannot hold beyond 45 degrees, where
 //! every such cubic changes sign.
 
-use super::FitError;
+use super::error::FitError;
 use crate::model::Model;
 use crate::physics::{Form, Number};
 use crate::terms::resistance::Resistance;
@@ -95,7 +95,7 @@ enum Curve {
 }
 
 impl Curve {
-    fn at<S: Number>(self, model: &Model, theta: &[S], x: f64) -> S {
+    fn at<S: Number<Coefficient = S>>(self, model: &Model, theta: &[S], x: f64) -> S {
         let resistance = model.part("resistance", theta);
         let rudder = model.part("rudder", theta);
         match self {
@@ -172,7 +172,7 @@ impl Row {
 }
 
 /// Smallest and largest recorded surge speed \[m/s\]; `[0, 0]` where none was recorded.
-pub fn speed_range(runs: &[super::FitRun]) -> [f64; 2] {
+pub fn speed_range(runs: &[super::cost::FitRun]) -> [f64; 2] {
     let recorded = runs.iter().filter(|r| r.measured_channels[3]).flat_map(|r| r.measured.iter().map(|m| m[3]));
     let start = runs.iter().map(|r| r.initial[3]);
     recorded.chain(start).filter(|u| u.is_finite()).fold([0.0, 0.0], |[lo, hi], u| [lo.min(u), hi.max(u)])

@@ -3,10 +3,23 @@
 
 use super::constraints::Row;
 use super::cost::{Cost, Quadratic};
-use super::ipopt::{IterationReport, Nlp};
-use super::{Hessian, Progress};
+use super::settings::Hessian;
+use crate::ipopt::{IterationReport, Nlp};
 use crate::model::Model;
 use nalgebra::{DMatrix, DVector};
+
+/// Where a running fit stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Iteration of the solver.
+    pub iteration: usize,
+    /// Cost, priors included.
+    pub cost: f64,
+    /// Largest violation of a constraint, scaled.
+    pub violation: f64,
+    /// Largest entry of the gradient of the Lagrangian, scaled.
+    pub optimality: f64,
+}
 
 /// Priors on the free parameters, as residuals beside those of the data.
 ///

@@ -1,7 +1,10 @@
 //! A fit in words and tables, for people: what was estimated, how surely, what held it back and what it cost.
 //! The same content for programs is the fit itself, serialised.
 
-use super::{CovarianceKind, Derivatives, Estimate, Fit, Hessian};
+use super::cost::Derivatives;
+use super::covariance::CovarianceKind;
+use super::settings::Hessian;
+use super::summary::{Estimate, Fit};
 use crate::report::{Table, interval, sig};
 use std::fmt::Write;
 
