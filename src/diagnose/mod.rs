@@ -19,6 +19,8 @@ mod eligible;
 pub mod estimate;
 mod event;
 pub mod evidence;
+#[cfg(test)]
+mod example;
 pub mod finding;
 mod generic;
 mod improved;
