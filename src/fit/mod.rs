@@ -8,6 +8,7 @@
 //! | `settings` | section `[fit]` of a study |
 //! | `task` | what stays fixed during a fit: model, cost, constraints, scales, start |
 //! | `problem` | the task with the priors, scaled, as Ipopt wants it |
+//! | `stages` | runs in shorter pieces, to be fitted first |
 //! | `solve` | from the start through Ipopt to the best point |
 //! | `subspace` | directions that constraints leave free |
 //! | `covariance` | covariances, and what the data do not determine |
@@ -24,6 +25,7 @@ mod problem;
 pub mod report;
 mod settings;
 mod solve;
+mod stages;
 mod subspace;
 mod summary;
 mod task;

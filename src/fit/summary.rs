@@ -146,13 +146,9 @@ pub fn fit(
 fn describe(task: &Task, end: End, clock: Instant) -> Fit {
     let cost = task.cost.value(&end.p).unwrap_or(task.start_cost);
     let covariances = Covariances::of(task, &end, cost);
-    let mut model = task.model.clone();
-    for (i, value) in task.cost.free().iter().zip(&end.p) {
-        model.parameters[*i].value = *value;
-    }
     Fit {
-        converged: end.status.is_success(),
-        status: end.status.to_string(),
+        converged: end.converged,
+        status: end.words.clone(),
         estimates: estimates(task, &end, &covariances),
         covariance_kind: covariances.kind,
         covariance_gauss_newton: covariances.table(task, &covariances.independent),
@@ -169,11 +165,11 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
         recordings: covariances.clusters,
         residuals: task.cost.residuals(),
         constraints: task.rows.len(),
-        iterations: end.iterations,
-        counts: end.counts,
+        iterations: end.work.iterations,
+        counts: end.work.counts,
         seconds: clock.elapsed().as_secs_f64(),
         settings: *task.settings,
-        model,
+        model: task.model_at(&end.p),
     }
 }
 

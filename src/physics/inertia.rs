@@ -36,13 +36,25 @@ impl<S: Scalar> Inertia<S> {
         }
     }
 
+    /// Determinant of the sway-yaw part, `sway yaw - sway_yaw yaw_sway` \[kg2 m2\].
+    pub fn determinant(&self) -> S {
+        self.sway * self.yaw - self.sway_yaw * self.yaw_sway
+    }
+
     /// Accelerations (u', v', r') under a force.
     pub fn solve(&self, f: &Force<S>) -> [S; 3] {
-        let inverse = S::one() / (self.sway * self.yaw - self.sway_yaw * self.yaw_sway);
+        let inverse = S::one() / self.determinant();
         [
             f.x / self.surge,
             (f.y * self.yaw - f.n * self.sway_yaw) * inverse,
             (f.n * self.sway - f.y * self.yaw_sway) * inverse,
         ]
+    }
+}
+
+impl Inertia<f64> {
+    /// Whether the matrix can be inverted and every mass is positive: only then is it a ship's.
+    pub fn is_positive(&self) -> bool {
+        self.surge > 0.0 && self.sway > 0.0 && self.yaw > 0.0 && self.determinant() > 0.0
     }
 }
