@@ -12,6 +12,7 @@
 //! | `solve` | from the start through Ipopt to the best point |
 //! | `subspace` | directions that constraints leave free |
 //! | `covariance` | covariances, and what the data do not determine |
+//! | `doubts` | what residuals say against a fit: model error, windows too long, residuals alike |
 //! | `summary` | the outcome: estimates, intervals, active constraints; [`fit`] joins all |
 //! | [`report`] | a fit in words and tables |
 //! | [`multistart`] | the same fit from many starts |
@@ -19,6 +20,7 @@
 pub mod constraints;
 pub mod cost;
 mod covariance;
+mod doubts;
 mod error;
 pub mod multistart;
 mod problem;
@@ -34,6 +36,7 @@ pub use crate::ipopt::Counts;
 pub use constraints::{ConstraintSettings, Limits, Rule};
 pub use cost::{Cost, CostOptions, Derivatives, FitRun, Quadratic};
 pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
+pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;
 pub use multistart::{MultiStart, StartOutcome, multi_start};
 pub use problem::Progress;

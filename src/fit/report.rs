@@ -56,6 +56,7 @@ impl Fit {
         let mut line = |words: String| {
             let _ = writeln!(text, "{words}");
         };
+        line(self.headline.clone());
         line(format!("Fit of {} to {} runs of {} recordings", self.model.name, self.runs, self.recordings));
         line(format!("Status       {}", self.status));
         let mut cost = format!("{} -> {}", number(self.start_cost), number(self.cost));
@@ -107,6 +108,12 @@ impl Fit {
                  independent residuals.",
                 self.recordings,
                 number(effect)
+            ),
+            (CovarianceKind::Correlated, _) => format!(
+                "Standard errors count as many successive residuals as one as are alike: {} ({} recordings are too few to take \
+                 whole recordings as independent).",
+                number(self.residual_statistics.likeness.unwrap_or(1.0)),
+                self.recordings
             ),
             _ => format!(
                 "Standard errors take residuals as independent, which along a trajectory they are not: read them as lower \

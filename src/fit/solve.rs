@@ -41,8 +41,6 @@ const STAGE_TOLERANCE: f64 = 1e-6;
 pub(super) struct End {
     pub p: Vec<f64>,
     pub priors: Priors,
-    /// How the solver ended.
-    pub status: Status,
     /// Whether `p` is the solver's optimum.
     pub converged: bool,
     /// How the fit ended, in words.
@@ -265,7 +263,7 @@ impl Task<'_> {
             Some(solution) => self.active_set(&p, solution),
             None => self.touched(&p),
         };
-        End { converged: solution.is_some(), status: end.status, words, p, priors, work, active, parts }
+        End { converged: solution.is_some(), words, p, priors, work, active, parts }
     }
 
     /// Infeasibility is an error where it is the constraints' own: they are linear, so that Ipopt's word is final.
