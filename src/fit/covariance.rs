@@ -6,6 +6,7 @@
 //!
 //! ```text
 //! Gauss-Newton   Cov = (2 s^2 / M) B,   B = Z (Z^T H Z)^-1 Z^T
+//! correlated     Cov = l B H B (2 s^2 / M),   l how many successive residuals count as one (see `doubts`)
 //! sandwich       Cov = B (c/(c-1) sum_c g_c g_c^T) B,   g_c the gradient of the part of cluster c (runs of one recording)
 //! ```
 //!
@@ -29,6 +30,8 @@ pub const SANDWICH_FROM: usize = 8;
 pub enum CovarianceKind {
     /// Residuals taken as independent.
     GaussNewton,
+    /// As many successive residuals of a run taken for one as their autocorrelation says; recordings are too few for more.
+    Correlated,
     /// Recordings taken as independent, residuals of one recording not.
     Sandwich,
 }
@@ -50,13 +53,17 @@ pub(super) struct Covariances {
     pub independent: DMatrix<f64>,
     /// Covariance with recordings taken as independent.
     pub sandwich: DMatrix<f64>,
-    /// Which of the two standard errors come from.
+    /// Covariance with successive residuals taken for one, by their autocorrelation.
+    pub correlated: DMatrix<f64>,
+    /// How many successive residuals count as one, at least 1 and at least what the settings say of the priors.
+    pub likeness: f64,
+    /// Which of the three standard errors come from.
     pub kind: CovarianceKind,
     /// Degrees of freedom of the variance behind it.
     pub freedom: usize,
     /// Number of recordings.
     pub clusters: usize,
-    /// Ratio of the two, see [`Fit::design_effect`](super::Fit::design_effect).
+    /// Ratio of the variances, see [`Fit::design_effect`](super::Fit::design_effect).
     pub design_effect: Option<f64>,
     /// For each parameter, whether the data and the priors determine it.
     determined: Vec<bool>,
@@ -64,7 +71,9 @@ pub(super) struct Covariances {
 
 impl Covariances {
     /// The covariances where a fit ended at a given cost.
-    pub fn of(task: &Task, end: &End, cost: f64) -> Self {
+    ///
+    /// `likeness` is how many successive residuals count as one, where that is known.
+    pub fn of(task: &Task, end: &End, cost: f64, likeness: Option<f64>) -> Self {
         let n = task.scales.len();
         let directions = task.free_directions(&end.active);
         let quadratic = task.cost.quadratic(&end.p);
@@ -77,16 +86,25 @@ impl Covariances {
         let bread = inverse(&(&data + &prior), &directions);
         let meat = meat(&clusters, n);
         let ratio = (&bread.matrix * &meat).trace() / (&bread.matrix * &data * unit).trace();
+        let likeness = likeness.unwrap_or(1.0).max(1.0) / task.settings.correlated_samples.max(1.0);
+        let likeness = likeness.max(1.0);
+        let freedom = task.cost.residuals().saturating_sub(n).max(1);
         let (kind, freedom) = if clusters.len() >= SANDWICH_FROM {
             (CovarianceKind::Sandwich, clusters.len() - 1)
+        } else if likeness > 1.0 {
+            (CovarianceKind::Correlated, ((freedom as f64 / likeness) as usize).max(1))
         } else {
-            (CovarianceKind::GaussNewton, task.cost.residuals().saturating_sub(n).max(1))
+            (CovarianceKind::GaussNewton, freedom)
         };
+        // The data's part of the variance alone: what a prior says is as sure as it was.
+        let inflated = &data * (unit * likeness) + &prior * unit;
         Self {
             data,
             directions,
             unit,
             independent: &bread.matrix * unit,
+            correlated: &bread.matrix * inflated * &bread.matrix,
+            likeness,
             sandwich: &bread.matrix * (meat + prior * unit) * &bread.matrix,
             kind,
             freedom,
@@ -99,6 +117,7 @@ impl Covariances {
     fn chosen(&self) -> &DMatrix<f64> {
         match self.kind {
             CovarianceKind::Sandwich => &self.sandwich,
+            CovarianceKind::Correlated => &self.correlated,
             CovarianceKind::GaussNewton => &self.independent,
         }
     }

@@ -66,7 +66,7 @@ impl Default for FitSettings {
             polish_steps: 10,
             max_yaw_rate: 0.0314,
             correlated_samples: 1.0,
-            prior_updates: 3,
+            prior_updates: 10,
             print: false,
             constraints: ConstraintSettings::default(),
             integration: Integration::default(),

@@ -3,6 +3,7 @@
 
 use super::cost::{Cost, FitRun};
 use super::covariance::{Covariance, CovarianceKind, Covariances, in_words};
+use super::doubts::{Doubt, ResidualStatistics, headline};
 use super::error::FitError;
 use super::problem::Progress;
 use super::settings::FitSettings;
@@ -62,8 +63,14 @@ pub struct Fit {
     pub model: Model,
     /// Whether the solver found an optimum.
     pub converged: bool,
-    /// How it ended, in words.
+    /// How it ended and what residuals say against it, in one line.
+    pub headline: String,
+    /// How it ended, in words: what stopped the solver, and whether its last point is the one returned.
     pub status: String,
+    /// What residuals say against taking the fit at its word.
+    pub doubts: Vec<Doubt>,
+    /// The statistics behind the doubts.
+    pub residual_statistics: ResidualStatistics,
     /// The free parameters.
     pub estimates: Vec<Estimate>,
     /// Which covariance `covariance`, `correlations` and the standard errors are.
@@ -87,6 +94,10 @@ pub struct Fit {
     pub cost: f64,
     /// What the priors add to it.
     pub prior_cost: f64,
+    /// What they add at the start, with the same weight; a fit never ends above cost and priors of a feasible start.
+    pub start_prior_cost: f64,
+    /// Parts into which runs were cut for the first stage of the fit; 1 without stages.
+    pub first_stage_parts: usize,
     /// Variance of the weighted residuals.
     pub residual_variance: f64,
     /// Number of runs.
@@ -145,14 +156,16 @@ pub fn fit(
 /// The outcome of a task from where it ended.
 fn describe(task: &Task, end: End, clock: Instant) -> Fit {
     let cost = task.cost.value(&end.p).unwrap_or(task.start_cost);
-    let covariances = Covariances::of(task, &end, cost);
-    let mut model = task.model.clone();
-    for (i, value) in task.cost.free().iter().zip(&end.p) {
-        model.parameters[*i].value = *value;
-    }
+    let model = task.model_at(&end.p);
+    let statistics = ResidualStatistics::of(task, &model);
+    let covariances = Covariances::of(task, &end, cost, statistics.likeness);
+    let doubts = statistics.doubts(&covariances, task.scales.len());
     Fit {
-        converged: end.status.is_success(),
-        status: end.status.to_string(),
+        converged: end.converged,
+        headline: headline(end.converged, &end.words, &doubts),
+        doubts,
+        residual_statistics: statistics,
+        status: end.words.clone(),
         estimates: estimates(task, &end, &covariances),
         covariance_kind: covariances.kind,
         covariance_gauss_newton: covariances.table(task, &covariances.independent),
@@ -164,13 +177,15 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
         start_cost: task.start_cost,
         cost,
         prior_cost: end.priors.value(&end.p),
+        start_prior_cost: end.priors.value(&task.start),
+        first_stage_parts: end.parts,
         residual_variance: task.variance(cost),
         runs: task.runs.len(),
         recordings: covariances.clusters,
         residuals: task.cost.residuals(),
         constraints: task.rows.len(),
-        iterations: end.iterations,
-        counts: end.counts,
+        iterations: end.work.iterations,
+        counts: end.work.counts,
         seconds: clock.elapsed().as_secs_f64(),
         settings: *task.settings,
         model,
@@ -213,6 +228,7 @@ fn undetermined(task: &Task, covariances: &Covariances) -> Vec<Combination> {
     let by_data = inverse(&covariances.data, &covariances.directions);
     let inflation = match covariances.kind {
         CovarianceKind::Sandwich => covariances.design_effect.unwrap_or(1.0).max(1.0),
+        CovarianceKind::Correlated => covariances.likeness,
         CovarianceKind::GaussNewton => 1.0,
     };
     let mut undetermined = Vec::new();
