@@ -18,3 +18,4 @@ pub mod simulate;
 pub mod state;
 pub mod study;
 pub mod terms;
+pub mod validity;

@@ -5,7 +5,7 @@ use crate::error::suggestion;
 use crate::parameter::ParameterInfo;
 use crate::physics::Inertia;
 use crate::physics::{Adjust, Flow};
-use crate::physics::{AnyTerm, Form, Instant, Number};
+use crate::physics::{AnyTerm, Form, Instant, Number, TermInfo};
 use crate::ship::{Ship, line_of};
 use crate::state::{Force, Inputs, STATES, State};
 use crate::terms;
@@ -364,6 +364,11 @@ impl Model {
         let mut view = self.clone();
         view.terms.retain(|t| keep(t.term.info().name));
         view
+    }
+
+    /// What is known of the model's terms, in order.
+    pub fn terms(&self) -> impl Iterator<Item = &'static TermInfo> + '_ {
+        self.terms.iter().map(|t| t.term.info())
     }
 
     /// Names of the model's terms, in order.

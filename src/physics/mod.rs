@@ -6,6 +6,7 @@ pub mod inertia;
 pub mod instant;
 pub mod mechanism;
 pub mod term;
+pub mod validity;
 
 pub use flow::{Adjust, Flow, to_body};
 pub use inertia::Inertia;
@@ -14,3 +15,4 @@ pub use mechanism::{Kind, Mechanism, Probe};
 pub use term::{
     AnyTerm, CHUNK, Curvature, Gradient, GradientLanes, Group, Lanes, NumDual, Number, Physics, Term, TermInfo,
 };
+pub use validity::{Quantity, Validity, degrees, range_in_words};
