@@ -173,7 +173,7 @@ fn percent(share: f64) -> String {
 }
 
 /// Ranges named in one line; the others are in the JSON.
-const NAMED: usize = 4;
+const NAMED: usize = 3;
 
 impl Coverage {
     /// One line for a report: `Validity: 12 % of 4800 samples outside a term's range: hull in drift angle (12 %, valid 0 to 20 deg)`.

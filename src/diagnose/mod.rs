@@ -28,4 +28,5 @@ pub mod sides;
 pub mod signal;
 
 pub use conclude::{Diagnosis, Finding, Settings, Verdict, diagnose};
+pub use filter::Run;
 pub use signal::Signal;

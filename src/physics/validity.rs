@@ -35,9 +35,9 @@ impl Quantity {
             Self::Turn => "yaw rate r L/U",
             Self::Depth => "depth over draught",
             Self::Rate => "propeller rate",
-            Self::Advance => "advance ratio J, propeller ahead",
-            Self::Reversing => "advance ratio u/(n D), propeller astern",
-            Self::Attack => "rudder angle of attack",
+            Self::Advance => "advance ratio ahead",
+            Self::Reversing => "advance ratio astern",
+            Self::Attack => "angle of attack",
         }
     }
 
