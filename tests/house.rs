@@ -1,6 +1,9 @@
 //! The rules of the house, read from the source: arrows point down, no circle of files, no long function, and no ship in `ad`.
 //! Files that still break a rule are listed here by name; the list must match exactly, so that it can only become shorter.
 
+// A helper that cannot do its work ends the test with it.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 #[path = "house/graph.rs"]
 mod graph;
 #[path = "house/source.rs"]
