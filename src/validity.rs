@@ -77,6 +77,16 @@ pub fn outside<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
     Coverage { samples: count, share_outside: share(anywhere, count), outside }
 }
 
+/// The samples of a run for [`outside`]: states with NaN in the channels that were not measured, and the inputs.
+pub fn samples<'a>(
+    measured: &'a [[f64; STATES]],
+    channels: &'a [bool; STATES],
+    inputs: &'a [Inputs<f64>],
+) -> impl Iterator<Item = ([f64; STATES], &'a Inputs<f64>)> {
+    let known = |y: &[f64; STATES]| std::array::from_fn(|j| if channels[j] { y[j] } else { f64::NAN });
+    measured.iter().map(known).zip(inputs)
+}
+
 fn share(part: usize, whole: usize) -> f64 {
     if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
 }
@@ -280,5 +290,10 @@ mod tests {
         let mut blind = at(5.0, 0.0, 2.0, 0.0);
         blind.0[4] = f64::NAN;
         assert_eq!(outside(&model(Form::Paper, &[]), [blind, at(5.0, 0.0, 2.0, 0.0)]).samples, 1);
+        // A channel that was not measured reads 0, which is no state of rest.
+        let (state, inputs) = at(5.0, 0.0, 2.0, 0.0);
+        let without_sway = [true, true, true, true, false, true];
+        let run = samples(&[state], &without_sway, &[inputs]).map(|(y, i)| (y, *i)).collect::<Vec<_>>();
+        assert_eq!(outside(&model(Form::Paper, &[]), run).samples, 0);
     }
 }

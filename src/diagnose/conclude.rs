@@ -21,6 +21,7 @@ use crate::model::{Model, ModelError};
 use crate::physics::Kind;
 use crate::physics::Probe;
 use crate::simulate::{Integration, Method};
+use crate::validity::{self, Coverage};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::collections::{BTreeMap, BTreeSet};
@@ -350,6 +351,8 @@ pub struct Diagnosis {
     pub next_trial: Option<NextTrial>,
     /// Proof on held-out runs.
     pub held_out: Option<HeldOut>,
+    /// How much of the training runs lies outside the ranges over which the terms of the improved model are valid.
+    pub validity: Coverage,
     /// Settings used.
     pub settings: Settings,
     /// The unknown force along every run, before and after, for pictures.
@@ -361,6 +364,10 @@ pub struct Diagnosis {
     /// The base model, refitted.
     #[serde(skip)]
     pub base: Model,
+}
+
+fn coverage(model: &Model, runs: &[Run]) -> Coverage {
+    validity::outside(model, runs.iter().flat_map(|r| validity::samples(&r.measured, &r.channels, &r.inputs)))
 }
 
 fn traces(runs: &[Run], before: &Screen, after: Option<&Screen>) -> Vec<Trace> {
@@ -738,6 +745,7 @@ pub fn diagnose(
     let trial = unlisted.as_ref().map(Unlisted::next_trial).or_else(|| next_trial(verdict, &findings, &list));
     let surrogate = if let Some(Unlisted::Law(terms)) = unlisted { terms } else { Vec::new() };
     let detectable = detectable(&first, &list, settings, &full);
+    let improved = trimmed(&current.model, model, &current.free);
     Ok(Diagnosis {
         schema: "trimtab-diagnosis/1",
         verdict,
@@ -762,7 +770,8 @@ pub fn diagnose(
         findings,
         settings: settings.clone(),
         traces: traces(&runs, &first, last.as_ref()),
-        model: trimmed(&current.model, model, &current.free),
+        validity: coverage(&improved, &runs),
+        model: improved,
         base: trimmed(&null.model, model, &null.free),
     })
 }

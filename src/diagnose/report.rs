@@ -218,6 +218,25 @@ pub const KEYS: &[(&str, &str)] = &[
     ("next_trial", "which trial to sail next"),
     ("next_trial.trial", "the trial"),
     ("next_trial.why", "what it would decide"),
+    (
+        "validity",
+        "how much of the training runs lies outside the ranges over which the terms of the improved model are valid",
+    ),
+    ("validity.samples", "samples compared with the ranges"),
+    ("validity.share_outside", "share of them outside the range of at least one term"),
+    ("validity.outside[]", "what is outside, the largest share first"),
+    ("validity.outside[].term", "name of the term"),
+    (
+        "validity.outside[].quantity",
+        "froude, drift, turn, depth, rate, advance, reversing or attack (see `trimtab terms NAME`)",
+    ),
+    (
+        "validity.outside[].range",
+        "lowest and highest value for which the term is valid [SI]; absent when open on one side",
+    ),
+    ("validity.outside[].samples", "samples at which the quantity is known"),
+    ("validity.outside[].share", "share of these outside"),
+    ("validity.outside[].met", "smallest and largest value met outside [SI]"),
     ("settings", "settings used, as in table [diagnose] of a study, the seed included"),
 ];
 
@@ -635,6 +654,7 @@ fn model(d: &Diagnosis) -> Vec<String> {
         format!("had been hiding it: {}", list.join(", "))
     });
     lines.extend(d.sides.as_ref().map(|s| own_sides(s, units)));
+    lines.push(d.validity.line());
     lines
 }
 

@@ -28,6 +28,7 @@ pub use multistart::{MultiStart, StartOutcome, multi_start};
 
 use crate::model::Model;
 use crate::simulate::Integration;
+use crate::validity::{self, Coverage};
 use constraints::Row;
 use ipopt::{HessianMode, IpoptError, OptionValue, Options, Solution, Status};
 use nalgebra::{DMatrix, DVector};
@@ -310,6 +311,8 @@ pub struct Fit {
     /// Evaluations by the solver.
     #[serde(serialize_with = "serialize_counts")]
     pub counts: Counts,
+    /// How much of the data lies outside the ranges over which the terms are valid.
+    pub validity: Coverage,
     /// Time taken \[s\].
     pub seconds: f64,
     /// The settings.
@@ -674,7 +677,9 @@ impl<'a> Task<'a> {
         for (i, value) in self.cost.free().iter().zip(&end.p) {
             model.parameters[*i].value = *value;
         }
+        let samples = self.runs.iter().flat_map(|r| validity::samples(&r.measured, &r.measured_channels, &r.inputs));
         Fit {
+            validity: validity::outside(&model, samples),
             converged: end.status.is_success(),
             status: end.status.to_string(),
             estimates: self.cost.free().iter().enumerate().map(estimate).collect(),

@@ -138,6 +138,8 @@ impl Fit {
             line(String::new());
             line(format!("Correlations beyond 0.9: {}", strong.join(", ")));
         }
+        line(String::new());
+        line(self.validity.line());
         text
     }
 
