@@ -1,5 +1,5 @@
-//! Time of what a fit of the paper's size is made of: 165 runs of 120 steps, 11 parameters.
-//! Results and the questions they answer are in README.md; no test depends on them.
+//! Times of the parts of a fit of the paper's size: 165 runs of 120 steps, 11 parameters.
+//! The questions and results are in README.md; no test depends on a time.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
@@ -32,7 +32,7 @@ fn mean_speed(states: &[[f64; 6]]) -> f64 {
     states.iter().map(|s| s[3].hypot(s[4])).sum::<f64>() / states.len() as f64
 }
 
-/// Runs of the model with p*, ahead and astern, with the rudder weaving, and a disturbance that no parameter explains.
+/// Runs of the model with p*, ahead and astern, with a weaving rudder, and with a disturbance that no parameter explains.
 fn recordings(dt: f64) -> Vec<FitRun> {
     let mut truth = ship_a();
     truth.set_eleven(&STAR);

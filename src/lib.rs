@@ -67,6 +67,7 @@
 pub mod check;
 pub mod demo;
 pub mod diagnose;
+pub mod dynamics;
 pub mod error;
 pub mod evaluate;
 pub mod fit;
@@ -76,6 +77,7 @@ pub mod parameter;
 pub mod physics;
 pub mod recording;
 pub mod report;
+pub mod sensitivity;
 pub mod ship;
 pub mod simulate;
 pub mod state;

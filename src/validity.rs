@@ -1,6 +1,7 @@
 //! How much of the data lies outside the ranges over which the laws of a model's terms are valid, by term and quantity.
 //! It reports and judges nothing: a fit to data outside a range may be as good as any, and need not hold anywhere else.
 
+use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::physics::{Flow, Form, Quantity, Validity, range_in_words};
 use crate::state::{Inputs, STATES, State};
@@ -55,7 +56,7 @@ pub fn outside<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
     samples: impl IntoIterator<Item = (Y, I)>,
 ) -> Coverage {
     let mut limits = limits(model);
-    let theta = model.values();
+    let dynamics = Dynamics::new(model, model.values());
     let (mut count, mut anywhere) = (0, 0);
     for (state, inputs) in samples {
         let (state, inputs) = (State::from_array(*state.borrow()), inputs.borrow());
@@ -64,7 +65,7 @@ pub fn outside<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
         }
         // The terms look at the heading only for what turns with the earth.
         let state = State { psi: if state.psi.is_finite() { state.psi } else { 0.0 }, ..state };
-        let flow = model.flow(&theta, &state, inputs);
+        let flow = dynamics.flow(&dynamics.instant(&state, inputs));
         count += 1;
         let mut out = false;
         for limit in &mut limits {
@@ -97,7 +98,7 @@ fn limits(model: &Model) -> Vec<Limit> {
     let mut laws: Vec<(&'static str, &'static Validity)> = model.terms().map(|i| (i.name, &i.validity)).collect();
     let own = laws.len();
     if model.form == Form::Regular
-        && let Some(sternway) = crate::terms::find("sternway")
+        && let Some(sternway) = model.catalogue().find("sternway")
     {
         laws.push((sternway.info().name, &sternway.info().validity));
     }

@@ -1,5 +1,5 @@
 //! `trimtab demo`: a complete study, from recordings to a fitted model, in seconds and without any file of the user's.
-//! It only does what the other commands do, and leaves the study behind so that they can be tried on it.
+//! It calls the other commands' functions, and writes the study so that a user can repeat each command on it.
 
 use super::Answer;
 use super::error::CliError;
@@ -17,9 +17,9 @@ use trimtab::recording::Split;
 use trimtab::report::{DASH, Table, interval, sig};
 
 const LONG: &str = "\
-Does the whole job on an example that is built in: forty recordings of a coastal container ship of 85 m (made by a \
-    simulator that knows more physics than the model has), a model with eleven unknown parameters, a fit to 32 of the runs, \
-    and a judgement on the other 8 against a published baseline. The study is written to the folder, ready to be copied.";
+Runs the whole job on a built-in example: forty recordings of a coastal container ship of 85 m (made by a simulator with \
+    more physics than the model has), a model with eleven unknown parameters, a fit to 32 of the runs, and an evaluation on \
+    the other 8 against a published baseline. The study is written to the folder, ready to be copied.";
 
 const AFTER: &str = "\
 Example:
@@ -28,11 +28,11 @@ Example:
 
 JSON: result.folder, result.fit (as of `trimtab fit`), result.evaluation (as of `trimtab evaluate`).";
 
-/// Does the whole job on a built-in example
+/// Runs the whole job on a built-in example
 #[derive(Debug, clap::Args)]
 #[command(long_about = LONG, after_long_help = AFTER)]
 pub struct Args {
-    /// Folder for study and results; made if need be.
+    /// Folder for study and results; created if absent.
     #[arg(long, value_name = "DIR", default_value = "trimtab-demo")]
     out: PathBuf,
     /// Print the result as one JSON object, and nothing else, to standard output.
@@ -76,7 +76,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let theta = fit.model.values();
     let ship = &fit.model.ship;
     let mut turns = String::new();
-    // A fit that went wrong may leave a ship that holds no speed: the demo then goes without turning circles.
+    // With a poor fit no propeller rate may hold the speed: the demo then has no turning circles.
     if let Ok(approach) = settings.approach(&fit.model, &theta) {
         let trials =
             Side::BOTH.map(|side| turning_trial(&fit.model, &theta, &approach, side, settings.turning_angle()));
@@ -92,7 +92,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let text = format!(
         "Wrote an example study to {dir} ({written} files): {} and 40 recordings of 4 minutes.\n\n\
          1. Fitted the model to {} runs, from the paper's initial guess\n\n{}\n\n{}\n\n\
-         2. Judged it on the {} runs kept aside\n\n{}{turns}\n\
+         2. Judged it on the {} test runs\n\n{}{turns}\n\
          Look at {dir}/results: tracks.png, curves.png, improvement.png, turning.png, fit.txt\n\
          Try next:\n  \
          trimtab check {study}\n  \
@@ -110,7 +110,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     Ok(if fit.converged { Answer::Yes } else { Answer::No })
 }
 
-/// The estimates; the whole report is in a file.
+/// The estimates as a short table; the whole report is in `fit.txt`.
 fn parameters(fit: &Fit) -> Table {
     let mut table = Table::new(["parameter", "symbol", "unit", "start", "estimate", "95 % interval"]);
     for e in &fit.estimates {

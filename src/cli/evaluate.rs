@@ -1,5 +1,5 @@
-//! `trimtab evaluate`: how well a model predicts the runs that were kept aside, beside a baseline.
-//! The measures and their definitions are the library's; here they are laid out.
+//! `trimtab evaluate`: how well a model predicts the test runs, beside a baseline.
+//! The library computes the measures; this file prints, tabulates and draws them.
 
 use super::Answer;
 use super::error::CliError;
@@ -14,12 +14,12 @@ use trimtab::simulate::Integration;
 use trimtab::state::STATE_NAMES;
 
 const LONG: &str = "\
-Simulates the recordings of a study with two models and compares both with what was measured, on the test runs above all: \
+Simulates the recordings of a study with two models and compares both with the measured motion, first on the test runs: \
     mean deviation (MD) of each dimension, cVDM (all dimensions in one number, percent), how much the fitted model improves on \
     the baseline, and on how many runs. Intervals are 95 % bootstrap intervals over runs.
 
 The fitted model is --model, or the study's. The baseline is --baseline, or `baseline` in [evaluate] of the study, or the \
-    study's model. Where they are the same model, its deviations are printed without a comparison.";
+    study's model. If both are one model, its deviations are printed without a comparison.";
 
 const AFTER: &str = "\
 Example:
@@ -39,7 +39,7 @@ JSON: result.baseline, result.fitted (names), result.summaries[] with group (tes
     cvdm, or diverged_after [s]); result.validity (share_outside of the samples; outside[] with term, quantity, range, share, \
     met). A number that does not exist is absent.";
 
-/// Judges a model on the runs kept aside, against a baseline
+/// Judges a model on the test runs, against a baseline
 #[derive(Debug, clap::Args)]
 #[command(long_about = LONG, after_long_help = AFTER)]
 pub struct Args {

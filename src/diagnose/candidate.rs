@@ -1,15 +1,17 @@
 //! A mechanism of the catalogue as a candidate of one model: its columns, its amplitudes, and the sessions it acts in.
-//! What the mechanisms are is told in the terms' files, beside the physics.
+//! What the mechanisms are is told in the terms' files, beside the physics; whether one is named is decided elsewhere.
 
+use super::estimate::{Estimate, FreeParameter};
 use super::evidence::Test;
 use super::filter::{Column, Run};
+use super::settings::{BEYOND_BOUNDS, QUARTER_TIDE};
 use crate::model::Model;
-use crate::physics::{Group, Mechanism};
+use crate::physics::{Group, Mechanism, Probe};
 use crate::terms::CATALOGUE;
+use nalgebra::DVector;
 
 /// Whether recordings can possibly show a mechanism: a tide needs a good part of its period.
 pub fn applies(mechanism: &Mechanism, runs: &[Run]) -> bool {
-    const QUARTER_TIDE: f64 = 11_178.0;
     let times = || runs.iter().flat_map(|r| [r.inputs.first(), r.inputs.last()]).flatten().map(|i| i.t);
     let span = times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min);
     mechanism.name != "tide" || span > QUARTER_TIDE
@@ -79,14 +81,57 @@ impl Candidate {
             let away = value - value.clamp(p.lower, p.upper);
             if away == 0.0 { 0.0 } else { (away / error).powi(2) }
         };
-        test.amplitude.iter().enumerate().map(beyond).sum::<f64>() <= BEYOND * test.statistic.max(1.0)
+        test.amplitude.iter().enumerate().map(beyond).sum::<f64>() <= BEYOND_BOUNDS * test.statistic.max(1.0)
+    }
+
+    /// Its free parameters where it acts, group of sessions by group.
+    pub fn parameters(&self, extent: &Extent) -> Vec<FreeParameter> {
+        let of = |sessions: Option<Vec<String>>| {
+            self.columns.iter().map(move |col| FreeParameter {
+                column: Column { probe: Probe::Tangent, ..*col },
+                sessions: sessions.clone(),
+                prior: None,
+            })
+        };
+        extent.parts().into_iter().flat_map(of).collect()
+    }
+
+    /// Where a model holds the coefficients that are not known exactly once it acts.
+    pub fn companions(&self, model: &Model) -> Vec<usize> {
+        self.mechanism.companions.iter().filter_map(|name| model.index(&format!("{}.{name}", self.term))).collect()
+    }
+
+    /// Where its parameters are among the free ones.
+    pub fn positions(&self, free: &[FreeParameter], extent: &Extent) -> Vec<usize> {
+        let same = |f: &FreeParameter, own: &FreeParameter| {
+            f.column.parameter == own.column.parameter && f.prior.is_none() && f.sessions == own.sessions
+        };
+        self.parameters(extent).iter().filter_map(|own| free.iter().position(|f| same(f, own))).collect()
+    }
+
+    /// Adds amplitudes in units of the columns' scales to its parameters; those of single sessions are set to them.
+    pub fn add(&self, model: &mut Model, extent: &Extent, amplitude: &DVector<f64>) {
+        for (p, a) in self.parameters(extent).iter().zip(amplitude.iter()) {
+            let value = a * p.column.scale;
+            p.set(model, value + if p.sessions.is_none() { p.value(model) } else { 0.0 });
+        }
+    }
+
+    /// The model of an estimate without it, and what is free then.
+    pub fn removed(&self, found: &Estimate, extent: &Extent) -> (Model, Vec<FreeParameter>) {
+        let (mut model, mut free) = (found.model.clone(), found.free.clone());
+        let mut places = self.positions(&free, extent);
+        places.sort_unstable();
+        for at in places.into_iter().rev() {
+            let f = free.remove(at);
+            let neutral = (model.parameters[f.column.parameter].info.default)(&model.ship);
+            f.set(&mut model, if f.sessions.is_some() { 0.0 } else { neutral });
+        }
+        (model, free)
     }
 }
 
-/// Share of what a test promises that amplitudes may lose when they are kept inside their bounds.
-const BEYOND: f64 = 0.25;
-
-/// Appends the columns of candidates, and gives where those of each stand.
+/// Appends the columns of candidates, and gives the places of each candidate's own.
 pub fn append(columns: &mut Vec<Column>, candidates: &[Candidate]) -> Vec<Vec<usize>> {
     let mut place = |c: &Candidate| {
         let start = columns.len();
@@ -135,7 +180,7 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn what_promises_a_little_more_than_there_can_be_is_possible_and_the_other_sign_is_not() {
+    fn amplitudes_a_little_beyond_their_bound_are_possible_and_the_other_sign_is_not() {
         let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
         let model = Model::new(ship, "HD", Form::Regular, &[]).unwrap().complete().unwrap();
         let all = candidates(&model, &[]);

@@ -42,7 +42,7 @@ impl Discrete<f64> {
 }
 
 impl Discrete<Lanes> {
-    /// Eight noises side by side.
+    /// Four noises side by side.
     pub fn side_by_side(noises: &[Discrete<f64>; Lanes::LANES]) -> Self {
         let lanes = |of: &dyn Fn(&Discrete<f64>) -> f64| Lanes::from_fn(|lane| of(&noises[lane]));
         Self {

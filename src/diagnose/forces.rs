@@ -4,9 +4,9 @@
 use super::candidate::Candidate;
 use super::estimate::Estimate;
 use super::filter::Run;
+use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::parameter::Parity;
-use crate::physics::Inertia;
 use crate::state::{Force, State};
 
 /// Every so many samples are looked at.
@@ -34,16 +34,17 @@ pub(super) fn forces_of(model: &Model, parameters: &[usize], runs: &[Run]) -> Ve
     for r in runs {
         let (with, bare) = (model.values_in(&r.session), neutral.values_in(&r.session));
         let (mut a, mut b) = (r.inputs.clone(), r.inputs.clone());
-        model.drive(&with, r.dt, &mut a);
-        neutral.drive(&bare, r.dt, &mut b);
+        let (with, bare) = (Dynamics::new(model, with), Dynamics::new(&neutral, bare));
+        with.drive(r.dt, &mut a);
+        bare.drive(r.dt, &mut b);
         for ((m, i), j) in r.measured.iter().zip(&a).zip(&b).step_by(STRIDE) {
             if m.iter().any(|v| !v.is_finite()) {
                 continue;
             }
             let state = State::from_array(*m);
-            let (x, flow) = model.rates(&with, &state, i, &Force::zero());
-            let (y, _) = neutral.rates(&bare, &state, j, &Force::zero());
-            let inertia = Inertia::new(model.part("hull", &with), &flow);
+            let (x, flow) = with.rates(&state, i, &Force::zero());
+            let (y, _) = bare.rates(&state, j, &Force::zero());
+            let inertia = with.inertia(&flow);
             let d = [x[3] - y[3], x[4] - y[4], x[5] - y[5]];
             out.push([
                 inertia.surge * d[0],
@@ -57,7 +58,7 @@ pub(super) fn forces_of(model: &Model, parameters: &[usize], runs: &[Run]) -> Ve
 
 /// Whether a mechanism that breaks mirror symmetry only takes back what a free parameter of the base, which breaks it too, puts
 /// where it acts: then that parameter is what is off there, it has taken up an effect elsewhere, and nothing acts here.
-pub(super) fn undoes(c: &Candidate, found: &Estimate, runs: &[Run]) -> bool {
+pub(super) fn only_cancels(c: &Candidate, found: &Estimate, runs: &[Run]) -> bool {
     let odd = |i: usize| found.model.parameters[i].info.parity == Parity::Odd;
     let own: Vec<usize> = c.columns.iter().map(|col| col.parameter).collect();
     let base = found.free.iter().filter(|f| f.prior.is_none() && f.sessions.is_none()).map(|f| f.column.parameter);

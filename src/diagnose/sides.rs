@@ -1,11 +1,11 @@
 //! Whether port and starboard of the ship herself differ: what a single screw does to the flow and a rudder off its zero, as the
 //! parameters say that are carried along anyway. It is told beside the verdict and is no finding: nothing is missing for it.
 
-use super::compete::Wald;
-use super::conclude::Amplitude;
 use super::estimate::{Estimate, FreeParameter};
 use super::evidence::{Scatter, chi_squared_p};
+use super::finding::Amplitude;
 use super::screen::Screen;
+use super::wald::Wald;
 use crate::parameter::Parity;
 use crate::physics::Group;
 use crate::terms;

@@ -1,20 +1,19 @@
 //! How strong an effect is, as the diagnosis would see it: the yardstick by which concealed effects are graded.
 //! It decides nothing and names nothing.
 
+use super::base::base_parameters;
 use super::candidate::{Candidate, append, candidates};
-use super::conclude::{Settings, base_parameters};
-use super::estimate::{Effort, Estimate, base_of, estimate, evidence, passes, restrictions};
+use super::estimate::{Estimate, base_of, estimate, evidence, passes, restrictions};
 use super::evidence::{Base, Evidence};
 use super::filter::{Column, Filter, Pass, Run, Wanted};
-use super::noise::{NoisePrior, guess};
+use super::noise::NoisePrior;
+use super::noise_fit::guess;
+use super::settings::{SIGNAL, Settings};
 use crate::model::{Model, ModelError};
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
 use nalgebra::DVector;
 use rayon::prelude::*;
-
-/// Enough for a yardstick: noise within a few per cent.
-const EFFORT: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
 
 /// The base model fitted to runs without an effect, ready to measure the same runs with it.
 pub struct Signal {
@@ -37,7 +36,7 @@ impl Signal {
         let integration = settings.integration();
         let free = base_parameters(&full, settings.nuisance);
         let first = guess(without, &full);
-        let null = estimate(&full, integration, without, &free, &first, &NoisePrior::around(&first), EFFORT);
+        let null = estimate(&full, integration, without, &free, &first, &NoisePrior::around(&first), SIGNAL);
         let candidates = candidates(&full, &[]);
         let mut columns: Vec<Column> = free.iter().map(|f| f.column).collect();
         let groups = append(&mut columns, &candidates);

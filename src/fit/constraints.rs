@@ -95,7 +95,7 @@ enum Curve {
 }
 
 impl Curve {
-    fn at<S: Number>(self, model: &Model, theta: &[S], x: f64) -> S {
+    fn at<S: Number<Coefficient = S>>(self, model: &Model, theta: &[S], x: f64) -> S {
         let resistance = model.part("resistance", theta);
         let rudder = model.part("rudder", theta);
         match self {

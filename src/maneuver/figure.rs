@@ -1,5 +1,5 @@
 //! Figures and tables of trials: the track with ship outlines, rudder, heading and speed over time, measures in ship lengths.
-//! Nothing is computed here beyond units.
+//! It converts units and computes nothing else.
 
 use super::imo::{Criterion, SHORTEST};
 use super::{Ended, Side, Stopping, Track, Trial, Turning, Zigzag};
@@ -217,7 +217,7 @@ pub fn criteria_table<'a>(trials: impl IntoIterator<Item = (&'a str, &'a [Criter
     table
 }
 
-/// What must be known to read the criteria of this ship, or nothing.
+/// A note on the criteria for a ship that the standard does not bind.
 pub fn criteria_note(ship: &Ship) -> Option<String> {
     (ship.hull.lpp < SHORTEST).then(|| {
         format!(
@@ -227,7 +227,7 @@ pub fn criteria_note(ship: &Ship) -> Option<String> {
     })
 }
 
-/// How a trial ended, where it did not end well.
+/// How a trial ended, if it is not complete.
 pub fn ended_note<M>(trial: &Trial<M>) -> Option<String> {
     match trial.ended {
         Ended::Complete => None,

@@ -1,5 +1,5 @@
 //! The pseudo-term that holds the parameters of the flow: wake, thrust, propeller race and rudder inflow.
-//! It gives no force; what the parameters do is computed in [`Flow::new`](crate::physics::Flow::new).
+//! It gives no force; [`Flow::new`](crate::physics::Flow::new) uses the parameters.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Validity;

@@ -1,10 +1,15 @@
-//! Diagnoses Esso Osaka without her wind, compares what is found with the anemometer that was withheld, then gives her the wind.
+//! Diagnoses Esso Osaka without its wind, compares the findings with the withheld anemometer, then diagnoses with the wind.
 //! The recordings are not part of the project: the study file says where they are looked for.
 
 use std::process::ExitCode;
-use trimtab_experiments::real::diagnosis::{findings_table, pulls_table, steps_table};
-use trimtab_experiments::real::kinematics::table;
-use trimtab_experiments::real::{RealError, esso_osaka_diagnosed, figures, write_csv, write_png};
+use trimtab_experiments::folders::figures;
+use trimtab_experiments::real::agreement::table;
+use trimtab_experiments::real::case::findings_table;
+use trimtab_experiments::real::error::RealError;
+use trimtab_experiments::real::esso_osaka_diagnosed;
+use trimtab_experiments::real::frame::steps_table;
+use trimtab_experiments::real::output::{write_csv, write_png};
+use trimtab_experiments::real::pull::pulls_table;
 
 fn main() -> ExitCode {
     match run() {

@@ -1,10 +1,14 @@
-//! Diagnoses KVLCC2 from her zigzags in a calm basin and proves on her turning circles.
+//! Diagnoses KVLCC2 from its zigzags in a calm basin and proves the findings on its turning circles.
 //! The recordings are not part of the project: the study file says where they are looked for.
 
 use std::process::ExitCode;
-use trimtab_experiments::real::diagnosis::{findings_table, sides_table, steps_table};
-use trimtab_experiments::real::kinematics::table;
-use trimtab_experiments::real::{RealError, figures, kvlcc2_diagnosed, write_csv, write_png};
+use trimtab_experiments::folders::figures;
+use trimtab_experiments::real::agreement::table;
+use trimtab_experiments::real::case::{findings_table, sides_table};
+use trimtab_experiments::real::error::RealError;
+use trimtab_experiments::real::frame::steps_table;
+use trimtab_experiments::real::kvlcc2_diagnosed;
+use trimtab_experiments::real::output::{write_csv, write_png};
 
 fn main() -> ExitCode {
     match run() {
@@ -24,7 +28,7 @@ fn run() -> Result<(), RealError> {
     for case in &found.cases {
         println!("{}: {}", case.name, case.diagnosis.headline);
     }
-    println!("{findings}\nPort and starboard of the ship herself:\n{sides}");
+    println!("{findings}\nPort and starboard of the ship:\n{sides}");
     println!("Added to a mirror-symmetric ship, one by one:\n{steps}");
     println!("{}\n{}", found.basin(), found.screw());
     let folder = figures();

@@ -1,8 +1,11 @@
-//! Fits Esso Osaka to training runs and prints the errors on runs kept aside beside those of two baselines.
+//! Fits Esso Osaka to training runs and prints the errors on test runs beside those of two baselines.
 //! The recordings are not part of the project: the study file says where they are looked for.
 
 use std::process::ExitCode;
-use trimtab_experiments::real::{RealError, esso_osaka, figures, write_csv, write_png};
+use trimtab_experiments::folders::figures;
+use trimtab_experiments::real::error::RealError;
+use trimtab_experiments::real::esso_osaka;
+use trimtab_experiments::real::output::{write_csv, write_png};
 
 fn main() -> ExitCode {
     match run() {

@@ -1,8 +1,11 @@
-//! Fits KVLCC2 to the zigzags of her free-running tests and prints her turning circles beside the measured ones.
+//! Fits KVLCC2 to the zigzags of its free-running tests and prints its turning circles beside the measured ones.
 //! The recordings are not part of the project: the study file says where they are looked for.
 
 use std::process::ExitCode;
-use trimtab_experiments::real::{RealError, figures, kvlcc2, write_csv, write_png};
+use trimtab_experiments::folders::figures;
+use trimtab_experiments::real::error::RealError;
+use trimtab_experiments::real::kvlcc2;
+use trimtab_experiments::real::output::{write_csv, write_png};
 
 fn main() -> ExitCode {
     match run() {
