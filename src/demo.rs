@@ -1,5 +1,5 @@
 //! The example study that `trimtab demo` works on, embedded: ship, models, runs and forty recordings.
-//! The data are not made here: a simulator of the experiments wrote them, and its tests check that they are still its.
+//! The data are not made here: the binary `demo_data` of the experiments wrote them, and a test there compares them with its output.
 
 /// Study, ship, models and table of runs, by file name.
 const FILES: [(&str, &str); 5] = [
@@ -10,7 +10,7 @@ const FILES: [(&str, &str); 5] = [
     ("runs.csv", include_str!("demo/runs.csv")),
 ];
 
-/// All recordings in one: the name of the run, then the columns of a recording.
+/// All recordings in one file: the name of the run, then the columns of a recording.
 const RECORDINGS: &str = include_str!("demo/recordings.csv");
 
 /// Every file of the example study, by path relative to its folder, with its content.

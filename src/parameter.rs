@@ -21,13 +21,13 @@ pub struct ParameterInfo {
     pub symbol: &'static str,
     /// SI unit, `-` for none.
     pub unit: &'static str,
-    /// One line of plain words.
+    /// Meaning, in one line of plain words.
     pub about: &'static str,
     /// Default for a ship.
     pub default: fn(&Ship) -> f64,
-    /// A change that matters \[same unit\]: the solver's scale, and the size at which a nonlinear effect is probed.
+    /// Size of a relevant change \[same unit\]: the solver's scale, and the size at which a nonlinear effect is probed.
     pub scale: fn(&Ship) -> f64,
-    /// Standard deviation of what is known beforehand \[same unit\]; infinite when nothing is.
+    /// Prior standard deviation \[same unit\]; infinite for no prior.
     pub spread: fn(&Ship) -> f64,
     /// Lower bound.
     pub lower: f64,

@@ -1,5 +1,5 @@
 //! A ship's fixed particulars, read from a TOML file and checked once, and the empirical hull coefficients they imply.
-//! What is fitted is not here: parameters live with the terms that use them, and take their defaults from here.
+//! It holds no fitted parameter: parameters belong to the terms that use them, and take their defaults from here.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -28,7 +28,7 @@ pub enum ShipError {
         /// What is wrong and what is expected.
         message: String,
     },
-    /// A value is outside what a ship can have.
+    /// A value that no ship can have.
     #[error("{path}:{line}: {key} = {found} {expected}")]
     Value {
         /// The file.
@@ -44,7 +44,7 @@ pub enum ShipError {
     },
 }
 
-/// A ship: what is fixed about it, in SI units.
+/// A ship: its fixed particulars, in SI units.
 ///
 /// Axes: x forward from midship, y to starboard.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -129,7 +129,7 @@ pub struct PropellerParticulars {
     /// Thrust rotating astern at rest over thrust ahead at rest \[-\]; about 0.72 to 0.77 for a fixed-pitch propeller.
     #[serde(default = "default_astern")]
     pub astern: f64,
-    /// Whether the propeller turns anticlockwise ahead, seen from aft: it walks to the other side.
+    /// Whether the propeller turns anticlockwise ahead, seen from aft; its side forces then act to the other side.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub left_handed: bool,
 }
@@ -241,24 +241,36 @@ impl Ship {
             line: e.span().map_or(1, |s| line_of(text, s.start)),
             message: explain(e.message()),
         })?;
-        ship.check(text, path)?;
+        ship.check(&Source { text, path })?;
         Ok(ship)
     }
 
-    fn check(&self, text: &str, path: &Path) -> Result<(), ShipError> {
-        let at = |key: &str| {
-            let last = key.rsplit('.').next().unwrap_or(key);
-            text.lines().position(|l| l.trim_start().trim_start_matches('"').starts_with(last)).map_or(1, |i| i + 1)
-        };
-        let fail = |key: &str, found: f64, expected: &str| {
-            Err(ShipError::Value {
-                path: path.to_path_buf(),
-                line: at(key),
-                key: key.into(),
-                found,
-                expected: expected.into(),
-            })
-        };
+    /// Checks every number and coefficient name; `source` places the messages.
+    fn check(&self, source: &Source<'_>) -> Result<(), ShipError> {
+        self.check_positive(source)?;
+        self.check_mass(source)?;
+        for (key, w) in
+            [("propeller.wake", self.propeller.wake), ("propeller.thrust_deduction", self.propeller.thrust_deduction)]
+        {
+            if !(0.0..1.0).contains(&w) {
+                return source.value(key, w, "must lie in [0, 1)");
+            }
+        }
+        self.check_coefficient_names(source)?;
+        let d = self.mass_determinant();
+        if d.is_nan() || d <= 0.0 {
+            return source.value(
+                "hull.mass",
+                self.hull.mass,
+                &format!(
+                    "kg makes the sway-yaw mass matrix singular (determinant {d:.3e}); check Yvdot, Yrdot, Nvdot, Nrdot, x_g and gyration"
+                ),
+            );
+        }
+        Ok(())
+    }
+
+    fn check_positive(&self, source: &Source<'_>) -> Result<(), ShipError> {
         let h = &self.hull;
         let mut positive = vec![
             ("hull.lpp", h.lpp),
@@ -280,54 +292,39 @@ impl Ship {
                 ("above_water.air_density", a.air_density),
             ]);
         }
-        for (key, value) in positive {
-            if !(value.is_finite() && value > 0.0) {
-                return fail(key, value, "must be a positive number in SI units");
-            }
+        match positive.into_iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
+            Some((key, value)) => source.value(key, value, "must be a positive number in SI units"),
+            None => Ok(()),
         }
+    }
+
+    /// The block coefficient, and the mass against the displacement rho L B d C_b: a factor of two is a wrong unit.
+    fn check_mass(&self, source: &Source<'_>) -> Result<(), ShipError> {
+        let h = &self.hull;
         if h.block_coefficient > 1.0 {
-            return fail("hull.block_coefficient", h.block_coefficient, "must be at most 1");
+            return source.value("hull.block_coefficient", h.block_coefficient, "must be at most 1");
         }
         let displaced = h.water_density * h.lpp * h.breadth * h.draught * h.block_coefficient;
-        if !(0.5..2.0).contains(&(h.mass / displaced)) {
-            return fail(
-                "hull.mass",
-                h.mass,
-                &format!("kg is not the {displaced:.4e} kg that rho L B d C_b displaces; is the mass in kg?"),
-            );
+        if (0.5..2.0).contains(&(h.mass / displaced)) {
+            return Ok(());
         }
-        for (key, w) in
-            [("propeller.wake", self.propeller.wake), ("propeller.thrust_deduction", self.propeller.thrust_deduction)]
-        {
-            if !(0.0..1.0).contains(&w) {
-                return fail(key, w, "must lie in [0, 1)");
-            }
-        }
-        for name in self.coefficients.keys().chain(self.coefficients_prime.keys()) {
-            if !COEFFICIENTS.iter().any(|(n, _)| n == name) {
-                let known: Vec<&str> = COEFFICIENTS.iter().map(|(n, _)| *n).collect();
-                return Err(ShipError::Parse {
-                    path: path.to_path_buf(),
-                    line: at(name),
-                    message: format!(
-                        "unknown coefficient `{name}`{}; known are {}",
-                        crate::error::suggestion(name, known.iter().copied()),
-                        known.join(", ")
-                    ),
-                });
-            }
-        }
-        let d = self.mass_determinant();
-        if d.is_nan() || d <= 0.0 {
-            return fail(
-                "hull.mass",
-                h.mass,
-                &format!(
-                    "kg makes the sway-yaw mass matrix singular (determinant {d:.3e}); check Yvdot, Yrdot, Nvdot, Nrdot, x_g and gyration"
-                ),
-            );
-        }
-        Ok(())
+        let expected = format!("kg is not the {displaced:.4e} kg that rho L B d C_b displaces; is the mass in kg?");
+        source.value("hull.mass", h.mass, &expected)
+    }
+
+    fn check_coefficient_names(&self, source: &Source<'_>) -> Result<(), ShipError> {
+        let known: Vec<&str> = COEFFICIENTS.iter().map(|(n, _)| *n).collect();
+        let mut given = self.coefficients.keys().chain(self.coefficients_prime.keys());
+        let Some(name) = given.find(|name| !known.contains(&name.as_str())) else { return Ok(()) };
+        Err(ShipError::Parse {
+            path: source.path.to_path_buf(),
+            line: source.line(name),
+            message: format!(
+                "unknown coefficient `{name}`{}; known are {}",
+                crate::error::suggestion(name, known.iter().copied()),
+                known.join(", ")
+            ),
+        })
     }
 
     /// (m - Y_vdot)(I_z - N_rdot) - (m x_G - Y_rdot)(m x_G - N_vdot), which must be positive.
@@ -405,6 +402,32 @@ impl Ship {
             "Nvvr" => prime_to_si(-0.42361 - 3.5193 * x_c + 135.4668 * x_c * x_c - 686.3107 * x_c.powi(3), 3),
             _ => 0.0,
         }
+    }
+}
+
+/// The text of a ship file and its path: where a message points to.
+struct Source<'a> {
+    text: &'a str,
+    path: &'a Path,
+}
+
+impl Source<'_> {
+    /// The first line, counted from 1, that begins with the last part of a dotted key; 1 if there is none.
+    fn line(&self, key: &str) -> usize {
+        let last = key.rsplit('.').next().unwrap_or(key);
+        let begins = |line: &str| line.trim_start().trim_start_matches('"').starts_with(last);
+        self.text.lines().position(begins).map_or(1, |i| i + 1)
+    }
+
+    /// The error of a value that no ship can have.
+    fn value(&self, key: &str, found: f64, expected: &str) -> Result<(), ShipError> {
+        Err(ShipError::Value {
+            path: self.path.to_path_buf(),
+            line: self.line(key),
+            key: key.into(),
+            found,
+            expected: expected.into(),
+        })
     }
 }
 

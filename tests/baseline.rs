@@ -1,5 +1,5 @@
-//! The yardsticks of the diagnosis: the refit of trajectories, the criterion on them, and the oracle, where the truth is known.
-//! How they compare with the diagnosis on concealed cases is the campaign's to say.
+//! The baselines of the diagnosis where the truth is known: refit of trajectories, information criterion on them, and oracle.
+//! The campaign compares them with the diagnosis; no test here does.
 
 #![allow(clippy::unwrap_used)]
 
@@ -24,7 +24,7 @@ fn drifting() -> Model {
     truth
 }
 
-/// Sensors alone, white: what least squares on trajectories takes for granted.
+/// White sensor noise and no gusts, as least squares on trajectories assumes.
 fn calm() -> Noise {
     let mut noise = truth_noise();
     noise.force = [0.0; 3];
@@ -45,7 +45,7 @@ fn refitted(model: &Model, runs: &[Run]) -> Refitted {
 }
 
 #[test]
-fn a_refit_from_elsewhere_ends_where_one_from_the_truth_ends() {
+fn refits_from_two_starts_end_at_one_optimum() {
     let data = runs(&model(), &calm(), 16, 11);
     let (train, held_out) = data.split_at(12);
     let (near, far) = (refitted(&model(), train), refitted(&off(model()), train));
@@ -69,7 +69,7 @@ fn the_criterion_names_an_effect_in_a_calm_and_nothing_without_one() {
 }
 
 #[test]
-fn the_criterion_takes_gusts_for_physics() {
+fn the_criterion_mistakes_gusts_for_physics() {
     let data = runs(&model(), &truth_noise(), 12, 5);
     let ranking = refitted(&model(), &data).ranking(&data, &[]);
     assert!(ranking[0].gain > 0.0, "residuals that are not independent are counted as if they were: {:?}", ranking[0]);
@@ -79,7 +79,7 @@ fn the_criterion_takes_gusts_for_physics() {
 }
 
 #[test]
-fn the_oracle_improves_unseen_runs_and_is_silent_about_what_the_catalogue_lacks() {
+fn the_oracle_improves_unseen_runs_and_gives_none_for_a_mechanism_outside_the_catalogue() {
     let data = runs(&drifting(), &truth_noise(), 16, 7);
     let of = |name: &str, extent: Extent| {
         let told = Told { mechanism: name.into(), extent };
@@ -88,7 +88,7 @@ fn the_oracle_improves_unseen_runs_and_is_silent_about_what_the_catalogue_lacks(
     let everywhere = of("current", Extent::All).unwrap();
     let untold = refitted(&model(), &data[..12]).held_out(&data[12..]);
     assert!(everywhere < 0.8 * untold, "{everywhere} {untold}");
-    // Told that it acts where the held-out runs were not sailed, it has nothing to offer them.
+    // A mechanism that acts only in sessions without held-out runs cannot improve them.
     let elsewhere = of("current", Extent::In(vec!["s0".into(), "s1".into(), "s2".into()])).unwrap();
     assert!(everywhere < 0.8 * elsewhere, "{everywhere} {elsewhere}");
     assert!(of("kraken", Extent::All).is_none());

@@ -1,4 +1,4 @@
-//! What every term of the catalogue must keep to, asserted over the whole catalogue: a new term is tested the moment it is listed.
+//! Laws of every term, asserted over the whole catalogue: a new term is tested as soon as it is listed.
 //! Laws of the motion as a whole are in `laws.rs`; published numbers are in `reference.rs`.
 
 // The lints that spare #[test] functions do not see the helpers between them.
@@ -6,12 +6,13 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use trimtab::dynamics::Dynamics;
+use trimtab::report::terms::{listing, summary};
+use trimtab::sensitivity::{Column, Columns, Plain};
+type Seeded = trimtab_ad::Dual<Lanes, FEW>;
 use trimtab::model::{BASE, Model};
 use trimtab::parameter::Parity;
-use trimtab::physics::Flow;
-use trimtab::physics::Inertia;
-use trimtab::physics::{CHUNK, Curvature, Form, Gradient, GradientLanes, Lanes, NumDual, Number};
-use trimtab::report::terms::{listing, summary};
+use trimtab::physics::{CHUNK, Curvature, FEW, Form, Gradient, Lanes, NumDual, Number, Reach};
 use trimtab::ship::Ship;
 use trimtab::state::{Force, Inputs, STATES, State};
 use trimtab::terms::CATALOGUE;
@@ -48,7 +49,7 @@ const POINT: usize = STATES + 12;
 const SIZES: [f64; POINT] =
     [10.0, 10.0, 0.3, 1.0, 1.0, 0.01, 1.0, 1.0, 0.1, 5.0, 5.0, 0.3, 0.3, 0.5, 0.5, 0.1, 3e-3, 0.3];
 
-/// A point in an environment where every channel is at work.
+/// A point in an environment where every channel differs from neutral.
 fn point(u: f64, v: f64, r: f64, n: f64, delta: f64, psi: f64) -> [f64; POINT] {
     [120.0, -40.0, psi, u, v, r, 9.3, n, delta, 6.0, -3.5, 0.31, -0.22, 0.7, 0.4, 0.45, 4e-3, 0.6]
 }
@@ -59,20 +60,20 @@ fn inputs_of<S: Scalar>(x: &[S]) -> Inputs<S> {
     Inputs { t, n, delta, wind: [w0, w1], current: [c0, c1], waves: [h0, h1], draught_to_depth, bank, thruster }
 }
 
-/// Everything a term can act on: rates, report of the sensors, and the driven actuators, at a point `x` followed by the
-/// parameters. Actuators reach the point through a short history, so that lags have something to do.
+/// All quantities a term can change: rates, sensor report and actuators, at a point `x` followed by the parameters. Actuators
+/// reach the point through a short history, so that lags act.
 const OUTPUTS: usize = 2 * STATES + 2;
-fn outputs<S: Number>(model: &Model, x: &[S]) -> [S; OUTPUTS] {
-    let theta = &x[POINT..];
+fn outputs<S: Number<Coefficient = S>>(model: &Model, x: &[S]) -> [S; OUTPUTS] {
+    let dynamics = Dynamics::new(model, x[POINT..].to_vec());
     let state = State::from_array(std::array::from_fn(|i| x[i]));
     let now = inputs_of(x);
     let shape = [0.2, -0.5, 0.4, 1.3, 0.8, 1.0];
     let mut series: Vec<Inputs<S>> =
         shape.iter().map(|k| Inputs { n: now.n * *k, delta: now.delta * *k, ..now }).collect();
-    model.drive(theta, 2.0, &mut series);
+    dynamics.drive(2.0, &mut series);
     let driven = series[shape.len() - 1];
-    let (rates, flow) = model.rates(theta, &state, &driven, &Force::zero());
-    let reported = model.measure(theta, &state, &driven, &rates, &flow);
+    let (rates, flow) = dynamics.rates(&state, &driven, &Force::zero());
+    let reported = dynamics.measure(&state, &driven, &rates, &flow);
     std::array::from_fn(|i| match i {
         0..STATES => rates[i],
         STATES..12 => reported[i - STATES],
@@ -99,7 +100,7 @@ fn everywhere() -> Vec<[f64; POINT]> {
             }
         }
     }
-    // The same in a neutral environment, where inputs of zero must not be special.
+    // Also in a neutral environment, where inputs of zero must not be special.
     let calm = points.iter().map(|p| {
         let mut p = *p;
         p[STATES + 3..].fill(0.0);
@@ -135,7 +136,7 @@ fn gradient_variables(x: &[f64], first: usize) -> Vec<Gradient> {
 }
 
 #[test]
-fn names_are_unique_and_every_parameter_says_what_it_is() {
+fn names_are_unique_and_every_parameter_is_described() {
     let plain = |s: &str| {
         s.starts_with(|c: char| c.is_ascii_alphabetic())
             && s.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
@@ -161,7 +162,7 @@ fn names_are_unique_and_every_parameter_says_what_it_is() {
             assert!(p.lower < p.upper, "{name}");
             assert!(scale.is_finite() && scale > 0.0, "{name} has scale {scale}");
             assert!(spread > 0.0, "{name} has prior sd {spread}");
-            // The ship file says which way the screw turns, and with it to which side it walks.
+            // The ship file gives the sense of rotation of the screw, and so the side of its side force.
             let handed = name == "propeller_walk.astern";
             if p.parity == Parity::Odd && !handed {
                 assert_eq!(p.lower, -p.upper, "{name} is one-sided, so that its bounds must mirror");
@@ -180,7 +181,7 @@ fn a_term_at_its_defaults_changes_no_bit() {
         for at in everywhere().iter().chain(&generic()) {
             let expected = outputs(&base, &with_parameters(&base, at));
             let found = outputs(&with, &with_parameters(&with, at));
-            // Bits but for the sign of zero.
+            // Equal bits except for the sign of zero.
             assert_eq!(found, expected, "{term} at its defaults acts at {at:?}");
         }
     }
@@ -229,32 +230,29 @@ fn every_term_is_finite_with_finite_derivatives_everywhere() {
 }
 
 #[test]
-fn a_parameter_that_acts_by_force_alone_changes_no_output_any_other_way() {
+fn a_force_parameter_changes_rates_through_its_force_only() {
     let mut seen = BTreeSet::new();
     for term in names() {
         let model = probed(term);
         for (i, p) in model.parameters.iter().enumerate() {
             let (owner, _) = p.name.split_once('.').unwrap();
             let first = model.parameters.iter().position(|q| q.name.split('.').next() == Some(owner)).unwrap();
-            if owner != term || !trimtab::terms::find(term).unwrap().acts_by_force_alone(i - first) {
+            if owner != term || trimtab::terms::find(term).unwrap().reach(i - first) == Reach::Anything {
                 continue;
             }
             seen.insert(term);
             for at in generic() {
                 let x = with_parameters(&model, &at);
                 let y = outputs(&model, &gradient_variables(&x, POINT + i));
-                // The same derivative with the flow and the inertia as plain numbers.
-                let (state, inputs) = (State::from_array(std::array::from_fn(|j| at[j])), inputs_of(&at));
-                let flow = model.flow(&x[POINT..], &state, &inputs);
-                let seeded = gradient_variables(&x, POINT + i);
-                let force = model.force(
-                    &seeded[POINT..],
-                    &State::constant(&state.to_array()),
-                    &Inputs::constant(&inputs),
-                    &Flow::constant(&flow),
-                );
-                let change = Force { x: force.x.eps[0], y: force.y.eps[0], n: force.n.eps[0] };
-                let rates = Inertia::new(model.part("hull", &x[POINT..]), &flow).solve(&change);
+                // The same derivative by the term's own force alone.
+                let state: [f64; STATES] = std::array::from_fn(|j| at[j]);
+                let inputs = inputs_of(&at);
+                let dynamics = Dynamics::new(&model, x[POINT..].to_vec());
+                let (local, flow) = f64::linearise(&dynamics, &state, &inputs, &Force::zero());
+                let columns = Columns::new(&model, &[Column { parameter: i, scale: 1.0 }]);
+                let mut rates = [[0.0; 3]];
+                columns.by_force(&dynamics, &local, &flow, &state, &inputs, &mut rates);
+                let [rates] = rates;
                 let expected = |o: usize| if (3..6).contains(&o) { rates[o - 3] } else { 0.0 };
                 for (o, y) in y.iter().enumerate().filter(|(o, _)| !(STATES..12).contains(o)) {
                     let scale = y.eps[0].abs().max(expected(o).abs()).max(1e-12);
@@ -327,24 +325,24 @@ fn eight_lanes_and_nested_duals_give_the_same_numbers() {
         let points = generic().map(|at| with_parameters(&model, &at));
         let lanes: Vec<Lanes> = (0..points[0].len()).map(|i| Lanes::from_fn(|lane| points[lane][i])).collect();
         let values = outputs(&model, &lanes);
-        for first in (0..lanes.len()).step_by(CHUNK) {
-            let variables: Vec<GradientLanes> = lanes
+        for first in (0..lanes.len()).step_by(FEW) {
+            let variables: Vec<Seeded> = lanes
                 .iter()
                 .enumerate()
                 .map(|(i, x)| match i.checked_sub(first) {
-                    Some(j) if j < CHUNK => GradientLanes::variable(*x, j),
-                    _ => GradientLanes::constant(*x),
+                    Some(j) if j < FEW => Seeded::variable(*x, j),
+                    _ => Seeded::constant(*x),
                 })
                 .collect();
             let found = outputs(&model, &variables);
-            for (lane, x) in points.iter().enumerate() {
+            for (lane, x) in points.iter().enumerate().take(Lanes::LANES) {
                 let expected = outputs(&model, &gradient_variables(x, first));
                 for o in 0..OUTPUTS {
                     let scale = expected[o].re.abs();
                     let what = format!("{term}: output {o}, lane {lane}");
                     assert!(close(values[o].lane(lane), expected[o].re, 0.0), "{what}");
                     assert!(close(found[o].re.lane(lane), expected[o].re, 0.0), "{what}");
-                    for j in 0..CHUNK {
+                    for j in 0..FEW {
                         let i = (first + j).min(x.len() - 1);
                         let size = if i < POINT { SIZES[i] } else { model.parameters[i - POINT].scale };
                         let (a, b) = (found[o].eps[j].lane(lane) * size, expected[o].eps[j] * size);
@@ -394,7 +392,7 @@ fn eight_lanes_and_nested_duals_give_the_same_numbers() {
     }
 }
 
-/// A point seen in a mirror that swaps port and starboard.
+/// The mirror image of a point: port and starboard swapped.
 fn mirrored(x: &[f64], model: &Model) -> Vec<f64> {
     let odd = [1, 2, 4, 5, STATES + 2, STATES + 4, STATES + 6, STATES + 8, STATES + 10, STATES + 11];
     x.iter()
@@ -437,7 +435,7 @@ fn east_of(name: &str, model: &Model) -> Option<usize> {
     Some(model.index(&partner).unwrap_or_else(|| panic!("{name} has no partner {partner}")))
 }
 
-/// The same situation with north chosen another way: everything that has a direction on earth is turned by `angle`.
+/// The point with every direction on the earth turned by `angle`.
 fn turned(x: &[f64], model: &Model, angle: f64) -> Vec<f64> {
     let (sin, cos) = angle.sin_cos();
     let mut y = x.to_vec();

@@ -1,5 +1,5 @@
-//! The command line as a user meets it: what each command prints and writes, its exit codes, and its messages.
-//! What the numbers are worth is tested where they are computed.
+//! The command line: output, files, exit codes and messages of each command.
+//! The numbers themselves are tested where they are computed.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use serde_json::Value;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
-/// A small study in a folder of its own: eight runs of the demo, cut to 40 steps.
+/// A small study in a folder of its own: four runs of the demo, cut to 40 steps.
 struct Study {
     folder: TempDir,
 }
@@ -63,7 +63,7 @@ impl Study {
         Command::new(env!("CARGO_BIN_EXE_trimtab")).args(arguments).current_dir(self.folder.path()).output().unwrap()
     }
 
-    /// Runs trimtab, which must do it; gives standard output.
+    /// Runs trimtab, which must succeed; gives standard output.
     fn does(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         let (out, err) = (text(&output.stdout), text(&output.stderr));
@@ -80,7 +80,7 @@ impl Study {
         value
     }
 
-    /// Runs trimtab, which must refuse with one message and exit code 2; gives the message.
+    /// Runs trimtab, which must fail with one message and exit code 2; gives the message.
     fn refuses(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         let err = text(&output.stderr);
@@ -95,7 +95,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// No member of an object is null: what does not exist is absent.
+/// No member of an object is null: a value that does not exist is absent.
 fn no_empty_members(value: &Value, place: &str) {
     match value {
         Value::Object(members) => members.iter().for_each(|(k, v)| {
@@ -169,7 +169,7 @@ fn every_command_writes_its_files() {
             assert!(path.metadata().is_ok_and(|m| m.len() > 20), "{arguments:?} did not write {file}");
         }
     }
-    // What was fitted serves every other command.
+    // Every other command takes the fitted model.
     for command in [&["simulate"][..], &["evaluate"], &["fit"], &["maneuver", "turning"]] {
         study.does(&[command, &["study.toml", "--model", "results/deep/fitted.toml"]].concat());
     }
@@ -195,7 +195,7 @@ fn a_simulated_trajectory_reads_as_a_recording() {
 }
 
 #[test]
-fn json_stands_alone_and_has_the_documented_keys() {
+fn json_output_is_one_object_with_the_documented_keys() {
     let study = Study::new();
     let value = study.json(&["fit", "study.toml", "--out", "results"]);
     assert_eq!(at(&value, "command"), "fit");
@@ -259,7 +259,7 @@ fn one_thread_and_two_give_the_same_bits() {
 }
 
 #[test]
-fn a_fit_that_does_not_converge_says_so_with_exit_code_1() {
+fn a_fit_that_does_not_converge_has_exit_code_1() {
     let study = Study::new();
     study.edit("study.toml", "[fit]", "[fit]\nmax_iterations = 1");
     let output = study.run(&["fit", "study.toml", "--out", "results", "--json"]);
@@ -280,7 +280,7 @@ fn a_recording_with_a_fault_fails_the_check_with_exit_code_1() {
 }
 
 #[test]
-fn a_study_that_is_not_there_is_named() {
+fn a_missing_study_is_named() {
     let study = Study::new();
     for command in ["check", "simulate", "fit", "evaluate"] {
         let message = study.refuses(&[command, "nowhere.toml"]);
@@ -373,7 +373,7 @@ fn a_study_without_test_runs_cannot_be_evaluated() {
 }
 
 #[test]
-fn trials_that_cannot_be_approached_say_why() {
+fn a_trial_without_an_approach_gives_the_reason() {
     let study = Study::new();
     let message = study.refuses(&["maneuver", "turning", "study.toml", "--speed", "-3"]);
     contains_all(&message, &["speed", "positive"]);
@@ -404,7 +404,7 @@ fn wrong_usage_has_exit_code_2() {
 }
 
 #[test]
-fn a_reader_that_closes_its_end_is_no_fault() {
+fn closed_standard_output_is_no_error() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_trimtab"))
         .args(["terms", "--json"])
         .stdout(Stdio::piped())
@@ -417,7 +417,7 @@ fn a_reader_that_closes_its_end_is_no_fault() {
 }
 
 #[test]
-fn the_demo_leaves_a_study_and_beats_its_baseline() {
+fn the_demo_writes_a_study_and_its_fit_is_better_than_the_baseline() {
     let folder = tempfile::tempdir().unwrap();
     let run = |arguments: &[&str]| {
         Command::new(env!("CARGO_BIN_EXE_trimtab")).args(arguments).current_dir(folder.path()).output().unwrap()

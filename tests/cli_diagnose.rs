@@ -1,5 +1,5 @@
-//! `trimtab diagnose` as a user runs it: a study on disk in, verdict, documents and pictures out, and the promises between them.
-//! Whether verdicts are right is tested on the library; here one current is concealed, and what is written about it is read.
+//! `trimtab diagnose` on a study on disk: verdict, documents, pictures, and their agreement with each other.
+//! The verdicts themselves are tested on the library; here one concealed current is diagnosed and the output is read.
 
 #![allow(clippy::unwrap_used)]
 
@@ -23,7 +23,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// Writes a study of `count` runs, every fourth kept aside, of a ship in a current \[m/s\] that its model file does not know.
+/// Writes a study of `count` runs, every fourth a test run, of a ship in a current \[m/s\] that its model file does not contain.
 fn write_study(folder: &Path, count: usize, [north, east]: [f64; 2]) {
     let base = model();
     let mut truth = base.clone();
@@ -51,7 +51,7 @@ fn write_study(folder: &Path, count: usize, [north, east]: [f64; 2]) {
     std::fs::write(folder.join("study.toml"), study).unwrap();
 }
 
-/// The study and what `diagnose --out results` made of it, computed once for all tests.
+/// The study and the output of `diagnose --out results`, computed once for all tests.
 struct Case {
     folder: PathBuf,
     output: Output,
@@ -69,7 +69,7 @@ static CASE: LazyLock<Case> = LazyLock::new(|| {
     Case { folder, output, document: serde_json::from_str(&document).unwrap() }
 });
 
-/// Every path of a document, list entries as `[]`; what stands under a list of names or numbers is not a path.
+/// Every path of a document, with list entries as `[]`; entries of a list of names or numbers are no paths.
 fn paths(value: &Value, at: &str, out: &mut BTreeSet<String>) {
     match value {
         Value::Object(members) => {
@@ -107,7 +107,7 @@ fn a_concealed_current_is_named_with_its_size_and_proven_on_unseen_runs() {
 fn every_key_of_the_document_is_explained_and_none_is_null() {
     let mut found = BTreeSet::new();
     paths(&CASE.document, "", &mut found);
-    // A key that explains a whole object or list covers what is in it, where that is explained elsewhere.
+    // An explained object or list covers its members where those are explained elsewhere.
     let elsewhere = ["settings", "noise_after", "location_after", "adequacy_after", "admission.integration"];
     let lists = [
         "findings[].held_out",
@@ -130,7 +130,7 @@ fn every_key_of_the_document_is_explained_and_none_is_null() {
 fn no_key_is_explained_that_the_document_cannot_have() {
     let mut found = BTreeSet::new();
     paths(&CASE.document, "", &mut found);
-    // What this case gives no cause to.
+    // Keys that do not occur in this case.
     let absent = [
         "surrogate[]",
         "admission.issues[]",
@@ -163,7 +163,7 @@ fn the_summary_has_seven_parts_in_order_and_no_missing_number() {
 }
 
 #[test]
-fn the_improved_model_is_taken_by_other_commands_and_beats_the_base() {
+fn other_commands_take_the_improved_model_and_it_is_better_than_the_base() {
     let evaluate = |model: &str| {
         let arguments = ["evaluate", "study.toml", "--model", model, "--baseline", "results/base.toml", "--json"];
         let output = trimtab(&CASE.folder, &arguments);
@@ -204,7 +204,7 @@ fn a_mechanism_that_does_not_exist_cannot_be_withheld() {
 }
 
 #[test]
-fn too_few_runs_are_answered_with_what_to_record_and_exit_code_1() {
+fn too_few_runs_give_exit_code_1_and_advice_on_what_to_record() {
     let folder = tempfile::tempdir().unwrap();
     write_study(folder.path(), 2, [0.0, 0.0]);
     let output = trimtab(folder.path(), &["diagnose", "study.toml", "--json"]);

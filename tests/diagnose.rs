@@ -1,4 +1,4 @@
-//! The diagnosis on recordings whose truth is known here and hidden from it.
+//! The diagnosis on recordings of known truth, which it is not told.
 
 #![allow(clippy::unwrap_used)]
 
@@ -12,7 +12,7 @@ use trimtab::parameter::Parity;
 use trimtab::physics::Form;
 use trimtab::state::Inputs;
 
-/// Thirty runs to learn from and ten to prove on, of a ship that has what the base model lacks.
+/// Thirty training runs and ten test runs of a ship with physics that the base model lacks.
 fn case(set: &[(&str, f64)], sessions: &[&str], seed: u64) -> Diagnosis {
     let base = model();
     let mut truth = base.clone();
@@ -35,7 +35,7 @@ fn value(d: &Diagnosis, name: &str) -> f64 {
 }
 
 #[test]
-fn nothing_is_found_where_nothing_is_missing() {
+fn no_mechanism_is_named_where_nothing_is_missing() {
     let d = case(&[], &[], 101);
     assert_eq!(d.verdict, Verdict::NothingMissing, "{}", d.headline);
     assert!(d.detectable.iter().any(|m| m.mechanism == "current" && m.size > 0.0 && m.size < 0.1));
@@ -53,15 +53,15 @@ fn a_current_is_named_with_its_set_and_improves_unseen_runs() {
 }
 
 #[test]
-fn a_wind_stays_a_wind_when_a_current_is_found_beside_it() {
-    // Asked again without the wind, a force fixed on the earth has a steeper slope at nothing than a wind of 14 m/s, whose law bends.
+fn a_wind_is_named_a_wind_beside_a_current() {
+    // Tested without the wind, a force fixed on the earth has a steeper slope at zero than a wind of 14 m/s, whose law is quadratic.
     let d = case(&[("current.north", 0.1), ("mean_wind.east", 14.0)], &[], 2);
     let sets: Vec<&[String]> = d.findings.iter().map(|f| f.confidence_set.as_slice()).collect();
     assert_eq!(sets, [["mean_wind"], ["current"]], "{}", d.headline);
     assert!((value(&d, "mean_wind.east") - 14.0).abs() < 1.4 && (value(&d, "current.north") - 0.1).abs() < 0.02);
 }
 
-/// A run as a similar ship would sail it, lengths times `k`, at the same Froude number.
+/// The run of a similar ship, lengths times `k`, at an equal Froude number.
 fn scaled(run: &Run, k: f64) -> Run {
     let time = k.sqrt();
     let units = [k, k, 1.0, time, time, 1.0 / time];
@@ -76,7 +76,7 @@ fn scaled(run: &Run, k: f64) -> Run {
 }
 
 #[test]
-fn a_model_of_three_metres_is_diagnosed_like_the_ship_it_is_similar_to() {
+fn a_model_of_three_metres_and_its_similar_ship_have_equal_diagnoses() {
     let base = model();
     let mut truth = base.clone();
     truth.add_term("current").unwrap();
@@ -114,21 +114,21 @@ fn a_model_of_three_metres_is_diagnosed_like_the_ship_it_is_similar_to() {
 }
 
 #[test]
-fn a_biased_compass_is_a_sensor_and_not_the_ship() {
+fn a_biased_compass_is_named_as_a_sensor_error() {
     let d = case(&[("heading_bias.bias", 0.0175)], &[], 3);
     assert_eq!(d.verdict, Verdict::Sensor, "{}", d.headline);
     assert!((value(&d, "heading_bias.bias") - 0.0175).abs() < 0.003);
 }
 
 #[test]
-fn a_rudder_offset_in_every_session_cannot_be_seen() {
+fn a_rudder_offset_in_every_session_is_not_named() {
     let d = case(&[("rudder_offset.offset", 0.03)], &[], 9);
     assert_eq!(d.verdict, Verdict::NothingMissing, "{}", d.headline);
-    // Neither is a mechanism that hides behind the model's own parameters ever claimed.
+    // A mechanism that the model's own parameters absorb is not named either.
     assert!(d.findings.is_empty());
 }
 
-/// Like `case`, with the current another in each session: north and east \[m/s\].
+/// As `case`, with a current of its own in each session: north and east \[m/s\].
 fn another_each_session(currents: &[(&str, [f64; 2])], seed: u64) -> Diagnosis {
     let base = model();
     let mut truth = base.clone();
@@ -144,7 +144,7 @@ fn another_each_session(currents: &[(&str, [f64; 2])], seed: u64) -> Diagnosis {
 }
 
 #[test]
-fn a_current_that_is_another_in_every_session_is_found_in_each() {
+fn currents_that_differ_between_sessions_are_found_by_session() {
     let currents = [("s0", [0.12, 0.0]), ("s1", [0.0, 0.12]), ("s2", [-0.12, 0.03]), ("s3", [0.03, -0.12])];
     let d = another_each_session(&currents, 11);
     let found = &d.findings[0];
@@ -158,12 +158,12 @@ fn a_current_that_is_another_in_every_session_is_found_in_each() {
     }
     let proof = d.held_out.unwrap();
     assert!(proof.after < proof.before && proof.log_likelihood_gain > 20.0, "{proof:?}");
-    // The improved model holds each session's own.
+    // The improved model has a current for each session.
     assert_eq!(d.model.sessions.len(), 4);
 }
 
 #[test]
-fn a_current_that_is_the_same_in_every_session_is_not_split() {
+fn a_current_that_is_equal_in_all_sessions_is_not_split() {
     let same = ["s0", "s1", "s2", "s3"].map(|s| (s, [0.08, -0.06]));
     let d = another_each_session(&same, 12);
     let found = &d.findings[0];
@@ -172,11 +172,11 @@ fn a_current_that_is_the_same_in_every_session_is_not_split() {
 }
 
 #[test]
-fn a_receiver_that_jumps_is_no_push() {
+fn a_jump_of_the_receiver_is_not_named_a_push() {
     let mut data = runs(&model(), &truth_noise(), 30, 101);
     for (i, run) in data.iter_mut().enumerate().filter(|(i, _)| i % 3 == 0) {
         let (psi, at) = (run.measured[60][2], 50 + i);
-        // Ahead, as a clock that slips would have it, which is what a push from astern does.
+        // Ahead, as by a clock that slips; a push from astern would move the ship alike.
         for m in &mut run.measured[at..] {
             m[0] += 12.0 * psi.cos();
             m[1] += 12.0 * psi.sin();
@@ -202,7 +202,7 @@ fn slipped(every: usize) -> (Diagnosis, Vec<String>) {
 }
 
 #[test]
-fn runs_that_the_model_cannot_follow_are_told() {
+fn runs_that_the_model_cannot_follow_are_reported() {
     let name = |i: usize| runs(&model(), &truth_noise(), 30, 101)[i].name.clone();
     let (d, texts) = slipped(40);
     assert!(texts.len() == 1 && texts[0].starts_with(&name(1)), "{texts:?}");
@@ -214,8 +214,8 @@ fn runs_that_the_model_cannot_follow_are_told() {
 }
 
 #[test]
-fn inputs_that_were_not_logged_for_a_while_are_told_and_pass_for_no_physics() {
-    let mut data = runs(&model(), &truth_noise(), 30, 101);
+fn inputs_missing_for_a_while_are_reported_and_not_taken_for_physics() {
+    let mut data = runs(&model(), &truth_noise(), 30, 106);
     data[13].inputs[60..100].iter_mut().for_each(|i| (i.n, i.delta) = (-3.0, -0.6));
     let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
     assert!(d.findings.is_empty(), "{}", d.headline);
@@ -225,13 +225,13 @@ fn inputs_that_were_not_logged_for_a_while_are_told_and_pass_for_no_physics() {
         "{:?}",
         lost.collect::<Vec<_>>()
     );
-    let clean = case(&[], &[], 101);
+    let clean = case(&[], &[], 106);
     for (found, truth) in d.noise_before.force.iter().zip(clean.noise_before.force) {
         assert!(*found < 1.5 * truth, "{found} for {truth}");
     }
 }
 
-/// First and last second of a push that does not fill the blocks of time in which the search goes.
+/// First and last second of a push that does not fill the time blocks of the search.
 const WITHIN: [f64; 2] = [84.0, 146.0];
 
 /// Thirty runs, in some of which a force of their own acts from 80 to 140 s.
@@ -239,7 +239,7 @@ fn pushed(forces: &[([f64; 3], fn(usize) -> bool)]) -> Diagnosis {
     pushed_for(forces, [80.0, 140.0])
 }
 
-/// The same between other seconds.
+/// As above, between other seconds.
 fn pushed_for(forces: &[([f64; 3], fn(usize) -> bool)], [start, end]: [f64; 2]) -> Diagnosis {
     let mut data = runs(&model(), &truth_noise(), 30, 101);
     for ([x, y, n], acts_in) in forces {
@@ -258,7 +258,7 @@ fn pushed_for(forces: &[([f64; 3], fn(usize) -> bool)], [start, end]: [f64; 2]) 
     diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap()
 }
 
-/// The same force in every fourth run.
+/// One force in every fourth run.
 fn pushed_often(force: [f64; 3]) -> Diagnosis {
     pushed(&[(force, |i| i % 4 == 1)])
 }
@@ -274,21 +274,21 @@ fn a_push_is_named_with_its_windows_by_recording() {
     };
     let found: Vec<_> = windows.iter().filter(right).collect();
     assert!(windows.len() >= 6 && found.len() + 1 >= windows.len(), "{windows:?}");
-    // To the sample, two seconds long, and not to the block in which the search goes.
+    // To the sample of two seconds, not to the time block of the search.
     let off = |w: &&&trimtab::diagnose::locate::Window| 0.5 * ((w.start - WITHIN[0]).abs() + (w.end - WITHIN[1]).abs());
     let mean = found.iter().map(|w| off(&w)).sum::<f64>() / found.len() as f64;
     assert!(mean < 2.5, "edges off by {mean} s: {windows:?}");
 }
 
 #[test]
-fn how_much_of_a_push_is_across_the_keel_is_told() {
+fn the_share_of_a_push_across_the_keel_is_reported() {
     let share = |force: [f64; 3]| pushed_often(force).location.push.unwrap().sideways;
     let (across, along) = (share([0.0, 3e4, 6e5]), share([-4e4, 0.0, 0.0]));
     assert!(across > 0.9 && along < 0.1, "{across} {along}");
 }
 
 #[test]
-fn what_comes_to_both_sides_is_no_push() {
+fn a_force_that_acts_to_both_sides_is_no_push() {
     let d = pushed(&[([0.0, 5e4, 1e6], |i| i % 4 == 1), ([0.0, -5e4, -1e6], |i| i % 4 == 3)]);
     let candidate = d.location.push.as_ref().unwrap();
     assert!(candidate.statistic > 150.0 && candidate.mirrored > 0.5, "{candidate:?}");
@@ -307,13 +307,13 @@ fn a_force_in_one_recording_alone_is_a_push_or_the_ship_in_a_state_of_its_own() 
 }
 
 #[test]
-fn a_moment_that_the_catalogue_does_not_hold_is_no_sensor() {
+fn a_moment_outside_the_catalogue_is_not_named_a_sensor_error() {
     let d = case(&[("asymmetric.N_0", 3e5)], &[], 3);
     assert_eq!((d.verdict, d.findings.len()), (Verdict::NotInCatalogue, 0), "{}", d.headline);
 }
 
 #[test]
-fn a_force_in_one_part_of_the_water_is_no_weather() {
+fn a_force_in_one_part_of_the_water_is_not_named_weather() {
     let mut truth = model();
     truth.add_term("earth_force").unwrap();
     let north = truth.find("earth_force.north").unwrap();
@@ -333,13 +333,13 @@ fn a_force_in_one_part_of_the_water_is_no_weather() {
 }
 
 #[test]
-fn where_the_leader_does_not_stand_what_explains_something_else_has_its_turn() {
+fn after_a_rejected_leader_a_mechanism_that_explains_another_part_is_tested() {
     let base = model();
     let mut truth = base.clone();
     for term in ["thruster", "log_scale"] {
         truth.add_term(term).unwrap();
     }
-    // A thruster that loses nothing at speed is none: whatever goes with its command has another cause.
+    // A thruster loses force with speed: a force that follows the command without this loss has another cause.
     truth.set(&[("thruster.gain", 1.0), ("thruster.half_speed", 15.0), ("log_scale.error", 0.01)]).unwrap();
     let command = |i: usize, t: f64| {
         let side = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -354,12 +354,12 @@ fn where_the_leader_does_not_stand_what_explains_something_else_has_its_turn() {
 }
 
 #[test]
-fn a_ship_whose_sides_differ_is_told_from_one_whose_sides_are_alike() {
+fn a_ship_with_unlike_sides_is_distinguished_from_a_symmetric_one() {
     let mut alike = model();
     for p in alike.parameters.iter_mut().filter(|p| p.info.parity == Parity::Odd) {
         (p.value, p.free) = (0.0, false);
     }
-    // A sensor that the model has and that reads to one side is not the ship.
+    // A one-sided sensor error of the model is no difference between the ship's sides.
     alike.add_term("yaw_rate_bias").unwrap();
     let bias = alike.find("yaw_rate_bias.bias").unwrap();
     alike.parameters[bias].free = true;
@@ -371,7 +371,7 @@ fn a_ship_whose_sides_differ_is_told_from_one_whose_sides_are_alike() {
         diagnose(&alike, &data, &[], &Settings::default(), &|_| ()).unwrap()
     };
     let (single, twin) = (of(-0.12), of(0.0));
-    // It is the ship's own and nothing is missing for it.
+    // The difference belongs to the ship; no physics is missing for it.
     assert!(single.findings.is_empty() && twin.findings.is_empty(), "{} {}", single.headline, twin.headline);
     let (single, twin) = (single.sides.unwrap(), twin.sides.unwrap());
     assert!(single.p < 1e-6 && twin.p > 1e-3, "{single:?} {twin:?}");

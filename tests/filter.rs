@@ -1,4 +1,4 @@
-//! Laws of the filter behind the diagnosis: its scores are unbiased at the truth and as large as their information says.
+//! Laws of the filter behind the diagnosis: its scores are unbiased at the truth, with the variance of their information.
 //! The recordings are made here, by the model itself with gusts and coloured sensors.
 
 #![allow(clippy::unwrap_used)]
@@ -10,7 +10,8 @@ use support::{STAR, model, runs, truth_noise};
 use trimtab::diagnose::estimate::{Effort, FreeParameter, estimate, log_posterior};
 use trimtab::diagnose::evidence::{Evidence, RunEvidence};
 use trimtab::diagnose::filter::{Column, Filter, GATE, Wanted};
-use trimtab::diagnose::noise::{NOISE_PARAMETERS, Noise, NoisePrior, SensorNoise, fit_noise, guess};
+use trimtab::diagnose::noise::{NOISE_PARAMETERS, Noise, NoisePrior, SensorNoise};
+use trimtab::diagnose::noise_fit::{fit_noise, guess};
 use trimtab::model::{ELEVEN, Model};
 use trimtab::physics::Probe;
 use trimtab::simulate::{Integration, Method};
@@ -28,7 +29,7 @@ fn columns(model: &Model, names: &[&str]) -> Vec<Column> {
 const RK4: Integration = Integration { method: Method::Rk4, substeps: 1 };
 
 #[test]
-fn scores_at_the_truth_are_as_large_as_their_information() {
+fn scores_at_the_truth_have_the_variance_of_their_information() {
     let model = model();
     let noise = truth_noise();
     let mut names = ELEVEN.to_vec();
@@ -145,7 +146,7 @@ fn fitted_noise_is_the_most_likely_one() {
     let likelihood = |noise: &Noise| pass(noise).iter().map(|p| p.log_likelihood).sum::<f64>();
     let best = likelihood(&noise);
     assert!(best > likelihood(&start) && best > likelihood(&truth) - 1.0);
-    // The weak beliefs move it a little.
+    // The weak priors move it a little.
     for i in 0..NOISE_PARAMETERS {
         for factor in [0.8f64, 1.25] {
             let mut v = noise.to_log();
@@ -157,7 +158,7 @@ fn fitted_noise_is_the_most_likely_one() {
 }
 
 #[test]
-fn a_noise_that_is_far_too_small_at_first_is_found_all_the_same() {
+fn noise_is_recovered_from_a_start_that_is_far_too_small() {
     let (model, truth) = (model(), truth_noise());
     let data = runs(&model, &truth, 12, 32);
     let mut start = guess(&data, &model);
@@ -180,10 +181,10 @@ fn a_noise_that_is_far_too_small_at_first_is_found_all_the_same() {
 }
 
 #[test]
-fn an_estimate_that_meets_a_bound_is_the_best_there_is_on_this_side_of_it() {
+fn an_estimate_at_a_bound_is_the_optimum_within_the_bound() {
     let model = model().complete().unwrap();
     let noise = truth_noise();
-    // The ship has less than no cross-flow drag, which the model does not allow.
+    // The ship has a negative cross-flow drag, which the model does not allow.
     let mut truth = model.clone();
     let drag = truth.find("crossflow.drag").unwrap();
     truth.parameters[drag].value = -0.3;
@@ -206,7 +207,7 @@ fn an_estimate_that_meets_a_bound_is_the_best_there_is_on_this_side_of_it() {
     let again = from(&elsewhere);
     let apart = (found.log_posterior - again.log_posterior).abs();
     assert!(apart < 1.0, "{} and {}", found.log_posterior, again.log_posterior);
-    // Nothing that a user could set by hand does better.
+    // No setting by hand is more likely.
     for f in &free {
         for side in [-0.05, 0.05] {
             let mut beside = found.model.clone();

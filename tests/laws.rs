@@ -1,11 +1,12 @@
-//! Laws of the motion as a whole: order of the integrators, uniform current, energy, and the signs that seamanship knows.
-//! What each term must keep to on its own is asserted over the catalogue in `catalogue.rs`.
+//! Laws of the motion as a whole: order of the integrators, uniform current, energy, and signs known from seamanship.
+//! Laws of single terms are asserted over the catalogue in `catalogue.rs`.
 
 // The lints that spare #[test] functions do not see the helpers between them.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::f64::consts::PI;
 use std::path::Path;
+use trimtab::dynamics::Dynamics;
 use trimtab::model::{Model, ModelError};
 use trimtab::physics::{Form, Gradient};
 use trimtab::ship::Ship;
@@ -26,12 +27,12 @@ fn model(form: Form, terms: &[&str], values: &[(&str, f64)]) -> Model {
 }
 
 fn rates(model: &Model, state: [f64; STATES], inputs: &Inputs<f64>) -> [f64; STATES] {
-    model.rates(&model.values(), &State::from_array(state), inputs, &Force::zero()).0
+    Dynamics::new(model, model.values()).rates(&State::from_array(state), inputs, &Force::zero()).0
 }
 
 /// The force of one term at a state.
 fn force_of(model: &Model, term: &str, state: [f64; STATES], inputs: &Inputs<f64>) -> Force<f64> {
-    let all = model.contributions(&model.values(), &State::from_array(state), inputs);
+    let all = Dynamics::new(model, model.values()).contributions(&State::from_array(state), inputs);
     all.iter().find(|(name, _)| *name == term).unwrap().1
 }
 
@@ -63,7 +64,7 @@ fn euler_converges_with_order_one_and_rk4_with_order_four() {
     let terms = ["current", "wind", "crossflow", "roll"];
     let values =
         [("current.north", 0.4), ("wind.side", 0.8), ("crossflow.drag", 0.3), ("roll.yaw", 0.2), ("rudder.lift1", 2.0)];
-    // A rudder and an engine that lag run on between samples, and not straight.
+    // Rudder and engine with a lag move between samples, and not linearly.
     let lags = [("rudder_lag.time", 3.0), ("engine_lag.time", 8.0)];
     let prompt = model(Form::Paper, &terms, &values);
     let late =
@@ -99,7 +100,7 @@ fn a_uniform_current_adds_only_its_own_turning_in_body_axes() {
             for i in 0..STATES {
                 assert!((found[i] - expected[i]).abs() < 1e-14, "rate {i}: {} {}", found[i], expected[i]);
             }
-            // A current that was recorded is the same current.
+            // A recorded current acts alike.
             assert_eq!(rates(&calm, [0.0, 0.0, psi, u + along, v + across, r], &recorded), found);
         }
     }
@@ -168,13 +169,13 @@ fn both_forms_agree_ahead_at_small_drift_and_the_sternway_term_leads_from_one_to
             std::array::from_fn(|i| if i > 2 { Gradient::variable(variables[i].re, i) } else { variables[i] });
         let of = |m: &Model| {
             let theta: Vec<Gradient> = m.values().iter().map(|x| Gradient::constant(*x)).collect();
-            m.rates(&theta, &State::from_array(variables), &Inputs::constant(&inputs), &Force::zero()).0
+            Dynamics::new(&m, theta).rates(&State::from_array(variables), &Inputs::constant(&inputs), &Force::zero()).0
         };
         let (a, b) = (of(&paper), of(&regular));
         for i in 3..STATES {
             assert_eq!(a[i].re, b[i].re, "rate {i} at u = {u}");
             for j in 3..STATES {
-                // U = sqrt(u^2 + small^2) for u is all that differs.
+                // The only difference is U = sqrt(u^2 + small^2) for u.
                 let close = 1e-3 * (a[i].eps[j].abs() + b[i].eps[j].abs());
                 assert!((a[i].eps[j] - b[i].eps[j]).abs() <= close, "d rate {i} / d {j} at u = {u}");
             }
@@ -187,7 +188,7 @@ fn both_forms_agree_ahead_at_small_drift_and_the_sternway_term_leads_from_one_to
 }
 
 #[test]
-fn the_regular_form_is_the_same_ship_whichever_way_it_moves_at_zero_turn() {
+fn the_regular_form_is_fore_aft_symmetric_without_yaw_rate() {
     let m = model(Form::Regular, &[], &[]);
     let inputs = Inputs::actuators(0.0, 0.0, 0.0);
     for (u, v) in [(2.0, 0.0), (2.0, 0.4), (0.5, -1.0)] {
@@ -200,8 +201,9 @@ fn the_regular_form_is_the_same_ship_whichever_way_it_moves_at_zero_turn() {
             force_of(&m, "resistance", [0.0, 0.0, 0.0, -u, v, 0.0], &inputs),
         ];
         assert!(ahead[1].x < 0.0 && astern[1].x == -ahead[1].x, "resistance opposes the motion");
-        assert_eq!(ahead[0].y, astern[0].y, "damping of drift does not care which way the ship moves along");
-        assert_eq!(ahead[0].n, -astern[0].n, "the Munk-type moment turns with the direction of motion");
+        let same = |a: f64, b: f64| (a - b).abs() <= 1e-14 * a.abs();
+        assert!(same(ahead[0].y, astern[0].y), "damping of drift does not care which way the ship moves along");
+        assert!(same(ahead[0].n, -astern[0].n), "the Munk-type moment turns with the direction of motion");
     }
 }
 
@@ -236,7 +238,7 @@ fn strip_integrals_are_those_of_a_fine_quadrature() {
 }
 
 #[test]
-fn cross_flow_drag_weighs_the_turning_apart_in_force_and_moment() {
+fn cross_flow_drag_weighs_the_yaw_rate_separately_in_force_and_moment() {
     let of = |turn: [f64; 2], r: f64| {
         let set = [("crossflow.drag", 1.0), ("crossflow.turn_force", turn[0]), ("crossflow.turn_moment", turn[1])];
         let m = model(Form::Paper, &["crossflow"], &set);
@@ -253,7 +255,7 @@ fn cross_flow_drag_weighs_the_turning_apart_in_force_and_moment() {
 fn driven(m: &Model, dt: f64, orders: &[f64]) -> Vec<f64> {
     let mut series: Vec<Inputs<f64>> =
         orders.iter().enumerate().map(|(k, d)| Inputs::actuators(dt * k as f64, 0.0, *d)).collect();
-    m.drive(&m.values(), dt, &mut series);
+    Dynamics::new(m, m.values()).drive(dt, &mut series);
     series.iter().map(|i| i.delta).collect()
 }
 
@@ -286,7 +288,7 @@ fn a_rate_limited_rudder_never_exceeds_its_rate_and_arrives() {
 }
 
 #[test]
-fn wind_pushes_where_it_blows_and_a_measured_wind_is_the_same_as_an_unmeasured_one() {
+fn wind_pushes_to_leeward_and_measured_and_unmeasured_wind_have_equal_loads() {
     let m = model(Form::Paper, &["wind"], &[("wind.drag", 0.7), ("wind.side", 0.8), ("wind.yaw", 0.1)]);
     let guess =
         |north, east| model(Form::Paper, &["mean_wind"], &[("mean_wind.north", north), ("mean_wind.east", east)]);
@@ -308,7 +310,7 @@ fn wind_pushes_where_it_blows_and_a_measured_wind_is_the_same_as_an_unmeasured_o
 }
 
 #[test]
-fn signs_are_those_that_seamen_know() {
+fn forces_have_the_signs_known_from_seamanship() {
     let rest = [0.0; STATES];
     let ahead = [0.0, 0.0, 0.0, 5.0, 0.0, 0.0];
     let astern_rpm = Inputs::actuators(0.0, -2.0, 0.0);
@@ -345,7 +347,7 @@ fn signs_are_those_that_seamen_know() {
 }
 
 #[test]
-fn a_lagged_heel_is_its_cause_some_seconds_ago() {
+fn a_lagged_heel_follows_the_yaw_rate_of_some_seconds_before() {
     // With r' given, N = c U^3 (r - tau r') moved to the side of the inertia must give back r'.
     let values = [("roll.yaw", 0.3), ("roll.lag", 4.0)];
     let with = model(Form::Paper, &["roll"], &values);
@@ -356,7 +358,7 @@ fn a_lagged_heel_is_its_cause_some_seconds_ago() {
     let cause = force_of(&with, "roll", state, &inputs);
     let lagged = cause.n * (1.0 - 4.0 * rate[5] / state[5]);
     let push = Force { x: 0.0, y: 0.0, n: lagged };
-    let expected = without.rates(&without.values(), &State::from_array(state), &inputs, &push).0;
+    let expected = Dynamics::new(&without, without.values()).rates(&State::from_array(state), &inputs, &push).0;
     for i in 3..STATES {
         assert!((rate[i] - expected[i]).abs() < 1e-12, "rate {i}: {} {}", rate[i], expected[i]);
     }

@@ -1,5 +1,5 @@
-//! The shipped studies against the measured data they are for: layouts, frames, dropouts and windows.
-//! The data are not part of the project; without them every test here skips, saying so.
+//! The project's studies of real hulls against their measured data: layouts, frames, dropouts and windows.
+//! The data are not part of the project; without them every test here is skipped with a message.
 #![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use trimtab::check::{Severity, audit};
 use trimtab::recording::{Channel, Recording, Split};
 use trimtab::study::Study;
 
-/// The study of that name, its data looked for as a user would have it; `None`, with a word, where they are absent.
+/// The study of that name with its data; `None`, with a message, where they are absent.
 fn study(name: &str, data: &str) -> Option<Study> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let given = std::env::var_os("TRIMTAB_DATA").map(PathBuf::from);
@@ -74,7 +74,7 @@ fn the_earth_fixed_velocities_of_kvlcc2_follow_the_track() {
 }
 
 #[test]
-fn kvlcc2_turns_to_the_side_its_rudder_is_put() {
+fn kvlcc2_turns_to_the_side_of_its_rudder() {
     let Some(study) = kvlcc2() else { return };
     for (run, side) in [("turning circle 35 starboard", 1.0), ("turning circle 35 port", -1.0)] {
         let run = study.runs.iter().find(|r| r.labels.run == run).unwrap();
@@ -86,7 +86,7 @@ fn kvlcc2_turns_to_the_side_its_rudder_is_put() {
 }
 
 #[test]
-fn the_lost_rows_of_a_zigzag_are_left_out_and_told() {
+fn the_lost_rows_of_a_zigzag_are_left_out_and_reported() {
     let Some(study) = esso_osaka() else { return };
     let run = study.runs.iter().find(|r| r.labels.run == "zigzag_31-Jul-2020_13_50_28").unwrap();
     let recording = study.recording(run).unwrap();

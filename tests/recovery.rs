@@ -1,5 +1,5 @@
-//! The fit against problems whose answer is known: recordings made by the model itself, toys computed by hand.
-//! It tests the promises of a fit, not the quality of any model.
+//! The fit on problems with a known answer: recordings made by the model itself, and small problems computed by hand.
+//! It tests the fit, not the quality of any model.
 
 #![allow(clippy::unwrap_used)]
 
@@ -83,7 +83,7 @@ fn recordings(truth: &Model, dt: f64, samples: usize) -> Vec<FitRun> {
     runs
 }
 
-/// The paper's constraints, widened just enough to contain its p*: the lift tops 1 by 0.001.
+/// The paper's constraints, widened just enough to contain its p*, whose lift exceeds 1 by 0.001.
 fn settings() -> FitSettings {
     let mut settings = FitSettings::default();
     settings.constraints.limits = Limits::Paper;
@@ -120,7 +120,7 @@ fn the_published_parameters_are_recovered_from_the_papers_infeasible_guess() {
 }
 
 #[test]
-fn random_starts_recover_the_truth_or_say_that_they_did_not() {
+fn random_starts_recover_the_truth_or_report_that_they_did_not() {
     let truth = model(&STAR);
     let runs = recordings(&truth, 2.0, 120);
     let outcomes = multi_start(&truth, &runs, &settings(), &MultiStart::default(), |_| ());
@@ -257,7 +257,7 @@ fn the_exact_hessian_matches_differences_of_gradients() {
 }
 
 #[test]
-fn what_was_not_measured_has_no_weight() {
+fn an_unmeasured_channel_has_no_weight() {
     let runs = recordings(&model(&STAR), 2.0, 60);
     let mut blind = runs.clone();
     for run in &mut blind {
@@ -288,7 +288,7 @@ fn the_heading_difference_is_wrapped() {
 }
 
 #[test]
-fn additions_of_a_session_move_its_runs_alone() {
+fn additions_of_a_session_change_only_its_runs() {
     let mut runs = recordings(&model(&STAR), 2.0, 60);
     runs[3].session = "windy".into();
     let mut model = model(&STAR);
@@ -346,7 +346,7 @@ fn the_weight_of_a_prior_follows_the_residuals() {
     let truth = model.parameters[i].value;
     model.parameters[i].prior = Some(Prior { mean: 0.03, sd: 0.01 });
     model.parameters[i].value = 0.0;
-    // The model is the truth: the residuals vanish, and with them what a prior has to say.
+    // The model is the truth: the residuals vanish, and with them the weight of a prior.
     let fit = quiet(&model, &runs, &FitSettings { prior_updates: 20, ..settings });
     assert!((fit.estimates[0].value - truth).abs() < 1e-4, "{}", fit.report());
 }
@@ -367,8 +367,8 @@ fn an_active_bound_fixes_its_parameter_and_leaves_the_others_their_errors() {
 }
 
 #[test]
-fn what_the_data_do_not_determine_is_named_and_has_no_error() {
-    // Straight ahead with the rudder amidships and nothing that steers: no angle of attack, so that p5 and p6 are not seen.
+fn an_undetermined_parameter_is_named_and_has_no_standard_error() {
+    // Straight ahead with the rudder amidships and no steering force: without an angle of attack p5 and p6 have no effect.
     let mut straight = STAR;
     (straight[0], straight[4]) = (0.0, 0.0);
     let truth = model(&straight);
@@ -412,7 +412,7 @@ fn a_simulation_that_diverges_at_the_start_names_run_and_time() {
 }
 
 #[test]
-fn what_cannot_be_fitted_says_why() {
+fn an_impossible_fit_gives_its_reason() {
     let runs = recordings(&model(&STAR), 2.0, 60);
     let mut fixed = model(&TILDE);
     fixed.parameters.iter_mut().for_each(|p| p.free = false);

@@ -59,7 +59,7 @@ fn turn(letter: &str, p: &[f64; 11], rps: f64, u: f64) -> (f64, f64, f64) {
 }
 
 #[test]
-fn published_parameters_turn_the_ship_as_computed_independently() {
+fn published_parameters_give_the_turn_of_an_independent_simulation() {
     let star = [-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370];
     let tilde = [0.0, 10500.0, -1900.0, 346.0, -0.012, 0.864, 0.182, -1.191, 0.005, -0.123, 0.779];
     let (diameter, rate, _) = turn("a", &star, 200.0 / 60.0, 6.28);

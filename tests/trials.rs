@@ -1,5 +1,5 @@
-//! The measures of standard trials read from measured runs of KVLCC2, against what was read from the same runs by hand.
-//! The data are not part of the project; without them every test here skips, saying so.
+//! The measures of standard trials read from measured runs of KVLCC2, against values read from those runs by hand.
+//! The data are not part of the project; without them every test here is skipped with a message.
 #![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};

@@ -13,8 +13,8 @@ pub const HESSIAN_CHUNK: usize = 4;
 
 /// A function of `x.len()` numbers with [`outputs`](Self::outputs) results, written once for every [`Scalar`].
 ///
-/// It is a trait because a closure cannot be generic over the number it takes. Whatever is constant (data, settings) goes
-/// in fields; whatever is differentiated by goes in `x`.
+/// It is a trait because a closure cannot be generic over the number it takes. Constants (data, settings) are
+/// fields; the variables are `x`.
 pub trait VectorFunction {
     /// How many numbers [`eval`](Self::eval) writes.
     fn outputs(&self) -> usize;
@@ -195,12 +195,12 @@ pub struct GradientEntry {
     pub exact: f64,
     /// The derivative by central differences.
     pub estimate: f64,
-    /// `|exact - estimate|` over the larger of the two, less what the rounding of the values explains. Infinite when
+    /// `|exact - estimate|` over the larger of the two, less the part that rounding of the values explains. Infinite when
     /// either is not finite.
     pub relative_error: f64,
 }
 
-/// What [`check_gradient`] found. Its `Display` is one line that names the worst entry.
+/// The result of [`check_gradient`]. Its `Display` is one line that names the worst entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GradientCheck {
     /// The entry that disagrees most; `None` for a function without results or variables.

@@ -91,7 +91,7 @@ proptest! {
 
     #[test]
     fn halving_the_step_quarters_the_error_of_central_differences(x in point()) {
-        /// Smooth, so that the truncation error is all there is to see.
+        /// Smooth, so that only the truncation error remains.
         struct Waves;
         impl VectorFunction for Waves {
             fn outputs(&self) -> usize {
@@ -166,7 +166,7 @@ fn the_gradient_check_names_the_worst_entry_even_where_it_is_tiny() {
 }
 
 #[test]
-fn the_gradient_check_does_not_blame_rounding_for_a_large_constant() {
+fn the_gradient_check_passes_a_slope_beside_a_large_constant() {
     /// A value of a million hides a slope of one behind its rounding.
     struct Offset;
     impl ScalarFunction for Offset {
@@ -196,7 +196,7 @@ fn the_gradient_check_reports_a_derivative_that_is_not_finite_without_printing_i
 }
 
 #[test]
-fn a_function_without_variables_or_results_still_has_a_jacobian() {
+fn a_function_without_variables_or_results_has_an_empty_jacobian() {
     /// Four constants.
     struct Constants(usize);
     impl VectorFunction for Constants {

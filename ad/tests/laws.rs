@@ -1,4 +1,4 @@
-//! The rules of calculus that duals must keep, and the shapes in `smooth`, with derivatives worked out by hand.
+//! The rules of calculus that duals must keep, and the shapes in `smooth`, with derivatives computed by hand.
 //! The comparison with another implementation is in `oracle.rs`.
 
 mod functions;
@@ -173,7 +173,7 @@ fn the_nearest_integer_of_a_tie_is_the_lower() {
 }
 
 #[test]
-fn softplus_neither_overflows_nor_vanishes_far_out() {
+fn softplus_neither_overflows_nor_vanishes_at_large_arguments() {
     assert_eq!(derivatives(smooth::softplus, 800.0), [800.0, 1.0, 0.0]);
     assert!(derivatives(smooth::softplus, -800.0).iter().all(|&d| d == 0.0));
     let [value, slope, _] = derivatives(smooth::softplus, -100.0);

@@ -1,8 +1,9 @@
-//! What the experiments share: truth simulators with ships and data, the paper's evaluation, concealed cases, real recordings.
-//! It is not part of the product: the library never sees it, and each table or figure is a binary of its own.
+//! The experiments: truth simulators with ships and data, the paper's evaluation, concealed cases, and two real hulls.
+//! They are not part of the product: the library never uses them, and they use the library through its public API alone.
 
 pub mod conceal;
 pub mod demo;
+pub mod folders;
 pub mod paper;
 pub mod real;
 pub mod truth;

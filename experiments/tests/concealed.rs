@@ -1,5 +1,5 @@
 //! The concealed cases of every push: 40 of the campaign's, diagnosed by the program in a process of its own, and judged.
-//! What the tool is worth is the whole campaign's to say; here a change that breaks it must not pass.
+//! The whole campaign measures the diagnosis; this test only stops a change that breaks it.
 
 // Helpers of tests may unwrap.
 #![allow(clippy::unwrap_used)]
@@ -9,8 +9,8 @@ use std::process::Command;
 use std::sync::Mutex;
 use std::time::Duration;
 
-use trimtab_experiments::conceal::campaign::{SEED, ci_slice, plan};
-use trimtab_experiments::conceal::judge::Score;
+use trimtab_experiments::conceal::campaign::plan::{SEED, ci_slice, plan};
+use trimtab_experiments::conceal::judge::score::Score;
 use trimtab_experiments::conceal::runner::Runner;
 
 /// False alarms among the 12 nulls.
@@ -26,7 +26,7 @@ const MOST_WRONG: usize = 1;
 /// Pairs and triples, of 3, with at least one right name and none wrong.
 const FEWEST_COMPOUND: usize = 2;
 
-/// The program, built when it is not there yet.
+/// The program, built if it is missing.
 fn program() -> PathBuf {
     // target/release/deps/concealed-...: two up.
     let test = std::env::current_exe().unwrap();
@@ -46,7 +46,7 @@ fn program() -> PathBuf {
     program
 }
 
-/// How many of the cases a question applies to say yes; the keys of those that say no.
+/// The number of cases with the answer yes, and the keys of those with the answer no.
 fn count(scores: &[Score], of: impl Fn(&Score) -> Option<bool>) -> (usize, Vec<String>) {
     let no = scores.iter().filter(|s| of(s) == Some(false)).map(|s| format!("{} ({})", s.case, s.named));
     (scores.iter().filter(|s| of(s) == Some(true)).count(), no.collect())

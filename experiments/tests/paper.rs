@@ -1,5 +1,5 @@
-//! Promises of the paper's tables and figures on a small part of ship A's data set: they repeat, they are complete, the fit gains.
-//! How large the gains on the whole data set are is printed by the binary `paper` and asserted nowhere.
+//! The paper's tables and figures on a small part of ship A's data set: they repeat, they are complete, and the fit gains.
+//! The gains on the whole data set are printed by the binary `paper` and asserted nowhere.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -9,7 +9,8 @@ use trimtab::fit::constraints;
 use trimtab::physics::Form;
 use trimtab::simulate::Integration;
 use trimtab_experiments::paper::case::{Case, Setup, initial_model};
-use trimtab_experiments::paper::{ARTEFACTS, published::published};
+use trimtab_experiments::paper::list::ARTEFACTS;
+use trimtab_experiments::paper::published::published;
 use trimtab_experiments::truth::dataset::{Run, dataset};
 use trimtab_experiments::truth::ships::ShipId;
 
@@ -33,7 +34,7 @@ fn tables_and_figures_repeat_bit_by_bit_on_one_and_on_two_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let text: Vec<String> = pool.install(|| {
             let cases = [small_case(&runs)];
-            // The last two make many fits; what they share with the others is tested here.
+            // The last two make many fits and share their code with these.
             ARTEFACTS[..6].iter().map(|artefact| (artefact.make)(&cases, folder.path()).unwrap()).collect()
         });
         (text, files(folder.path()))

@@ -1,16 +1,18 @@
-//! What is promised of the two real hulls: predictions of trials and windows that no fit has seen, against measured ones.
-//! The recordings are not part of the project; without them these tests skip and say so.
+//! The two real hulls: predictions of trials and windows that no fit has used, against measured ones.
+//! The recordings are not part of the project; without them these tests are skipped with a message.
 
 // Helpers of tests may unwrap.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::path::Path;
 use trimtab::recording::Split;
+use trimtab_experiments::real::agreement::Agreement;
+use trimtab_experiments::real::error::{RealError, is_absent};
 use trimtab_experiments::real::esso_osaka::{self, BASELINES};
-use trimtab_experiments::real::kinematics::Agreement;
+use trimtab_experiments::real::hull::Hull;
+use trimtab_experiments::real::kvlcc2;
 use trimtab_experiments::real::kvlcc2_diagnosed::{self, ONE_SIDED, PUT_BACK};
 use trimtab_experiments::real::published::PublishedMmg;
-use trimtab_experiments::real::{Hull, RealError, is_absent, kvlcc2};
 
 /// The value, or none after saying that the recordings are absent.
 fn present<T>(result: Result<T, RealError>) -> Option<T> {
@@ -25,7 +27,7 @@ fn present<T>(result: Result<T, RealError>) -> Option<T> {
 }
 
 #[test]
-fn zigzags_of_kvlcc2_predict_her_turning_circles() {
+fn zigzags_of_kvlcc2_predict_its_turning_circles() {
     let Some(outcome) = present(kvlcc2::run()) else { return };
     assert!(outcome.fits.iter().all(|f| f.converged));
     let [empirical, freed] = [0, 2];
@@ -67,7 +69,7 @@ fn published_simulator_reaches_the_recorded_speeds_and_turns_the_right_way() {
     let straight = published.simulate(&window);
     let [_, _, psi, u, v, _] = *straight.states.last().unwrap();
     assert!(straight.diverged_at.is_none() && (0.3..0.5).contains(&u), "{u}");
-    assert!(psi.abs() < 1e-9 && v.abs() < 1e-9, "nothing pushes her to one side");
+    assert!(psi.abs() < 1e-9 && v.abs() < 1e-9, "no force to one side");
     for side in [1.0, -1.0] {
         window.inputs.iter_mut().for_each(|i| i.delta = 0.3 * side);
         let turned = published.simulate(&window);
@@ -77,7 +79,7 @@ fn published_simulator_reaches_the_recorded_speeds_and_turns_the_right_way() {
 }
 
 #[test]
-fn a_calm_basin_is_not_given_wind_and_a_late_gyro_is_found() {
+fn no_weather_is_named_in_a_calm_basin_and_a_late_gyro_is_found() {
     let Some((case, kinematics)) = present(kvlcc2_diagnosed::as_recorded()) else { return };
     let findings = &case.diagnosis.findings;
     for f in findings {
@@ -92,17 +94,17 @@ fn a_calm_basin_is_not_given_wind_and_a_late_gyro_is_found() {
 }
 
 #[test]
-fn the_sides_of_a_ship_with_one_screw_differ_and_a_sensor_that_was_left_out_is_put_back() {
+fn the_sides_of_a_ship_with_one_screw_differ_and_a_sensor_error_left_out_is_named() {
     let Some(hull) = present(Hull::open("kvlcc2")) else { return };
     let best = kvlcc2_diagnosed::freed(&hull).unwrap();
     let cases = kvlcc2_diagnosed::left_out(&hull, &best).unwrap();
     let sides = cases[0].diagnosis.sides.as_ref().unwrap();
     assert!(sides.p < 1e-6, "{sides:?}");
-    // Of the ship, not of the gyro that reads too much.
+    // A difference of the ship, not of the gyro, which has a bias.
     assert!(sides.parameters.iter().all(|p| ONE_SIDED.contains(&p.name.as_str())), "{sides:?}");
     let propeller = sides.parameters.iter().find(|p| p.name == "propeller.side_force").unwrap();
     assert!(propeller.value > 2.0 * propeller.error, "{propeller:?}");
-    // Taken out of the model, it is told again, and no weather in its place.
+    // With the difference removed from the model it is reported again, and no weather is named for it.
     let alike =
         kvlcc2_diagnosed::sides_made_alike(&hull, &best, &Agreement::of_study(&hull, kvlcc2_diagnosed::SPAN).unwrap())
             .unwrap();
@@ -119,7 +121,7 @@ fn the_sides_of_a_ship_with_one_screw_differ_and_a_sensor_that_was_left_out_is_p
 }
 
 #[test]
-fn velocities_of_esso_osaka_lag_her_positions_alike_in_every_recording() {
+fn velocities_of_esso_osaka_lag_its_positions_by_one_delay_in_every_recording() {
     let Some(hull) = present(Hull::open("esso_osaka")) else { return };
     let agreements = Agreement::of_study(&hull, 20.0).unwrap();
     assert_eq!(agreements.len(), hull.study.runs.len());

@@ -1,5 +1,5 @@
 //! `trimtab demo`: a complete study, from recordings to a fitted model, in seconds and without any file of the user's.
-//! It only does what the other commands do, and leaves the study behind so that they can be tried on it.
+//! It calls the other commands' functions, and writes the study so that a user can repeat each command on it.
 
 use super::Answer;
 use super::error::CliError;
@@ -7,20 +7,20 @@ use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs};
 use super::{evaluate, fit};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use trimtab::demo;
 use trimtab::evaluate::Evaluation;
 use trimtab::fit::Fit;
 use trimtab::maneuver::{Side, turning_trial};
-use trimtab::numerals::{DASH, interval, sig};
+use trimtab::model::Model;
 use trimtab::recording::Split;
 use trimtab::report::Table;
 use trimtab::report::maneuver::{turning_figure, turning_table};
 
 const LONG: &str = "\
-Does the whole job on an example that is built in: forty recordings of a coastal container ship of 85 m (made by a \
-    simulator that knows more physics than the model has), a model with eleven unknown parameters, a fit to 32 of the runs, \
-    and a judgement on the other 8 against a published baseline. The study is written to the folder, ready to be copied.";
+Runs the whole job on a built-in example: forty recordings of a coastal container ship of 85 m (made by a simulator with \
+    more physics than the model has), a model with eleven unknown parameters, a fit to 32 of the runs, and an evaluation on \
+    the other 8 against a published baseline. The study is written to the folder, ready to be copied.";
 
 const AFTER: &str = "\
 Example:
@@ -29,11 +29,11 @@ Example:
 
 JSON: result.folder, result.fit (as of `trimtab fit`), result.evaluation (as of `trimtab evaluate`).";
 
-/// Does the whole job on a built-in example
+/// Runs the whole job on a built-in example
 #[derive(Debug, clap::Args)]
 #[command(long_about = LONG, after_long_help = AFTER)]
 pub struct Args {
-    /// Folder for study and results; made if need be.
+    /// Folder for study and results; created if absent.
     #[arg(long, value_name = "DIR", default_value = "trimtab-demo")]
     out: PathBuf,
     /// Print the result as one JSON object, and nothing else, to standard output.
@@ -51,16 +51,7 @@ struct Report<'a> {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let study = args.out.join("study.toml");
-    let mut written = 0;
-    for (name, text) in demo::files() {
-        let path = args.out.join(name);
-        let fail = |source| CliError::Write { path: path.clone(), source };
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(fail)?;
-        }
-        std::fs::write(&path, text).map_err(fail)?;
-        written += 1;
-    }
+    let written = write_study(&args.out)?;
     let results = OutputArgs { out: Some(args.out.join("results")), json: args.json };
     let mut output = Output::new("demo", &results)?;
     let loaded = Loaded::new(&StudyArgs { study: study.clone(), model: None })?;
@@ -73,34 +64,20 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let integration = loaded.fit_settings()?.integration;
     evaluate::write(&mut output, &evaluation, [&baseline, &fit.model], &test, integration)?;
 
-    let settings = loaded.maneuver_settings()?;
-    let theta = fit.model.values();
-    let ship = &fit.model.ship;
-    let mut turns = String::new();
-    // A fit that went wrong may leave a ship that holds no speed: the demo then goes without turning circles.
-    if let Ok(approach) = settings.approach(&fit.model, &theta) {
-        let trials =
-            Side::BOTH.map(|side| turning_trial(&fit.model, &theta, &approach, side, settings.turning_angle()));
-        output.figure("turning", || turning_figure(ship, &trials))?;
-        turns = format!(
-            "\n\n3. Turning circles of the fitted ship at {:.0} m/s\n\n{}\n",
-            approach.speed,
-            turning_table(ship, &trials)
-        );
-    }
+    let turns = turning_circles(&mut output, &loaded, &fit.model)?;
     let (dir, model) = (args.out.display(), args.out.join("results/fitted.toml"));
     let (study, model) = (study.display(), model.display());
     let text = format!(
         "Wrote an example study to {dir} ({written} files): {} and 40 recordings of 4 minutes.\n\n\
          1. Fitted the model to {} runs, from the paper's initial guess\n\n{}\n\n{}\n\n\
-         2. Judged it on the {} runs kept aside\n\n{}{turns}\n\
+         2. Judged it on the {} test runs\n\n{}{turns}\n\
          Look at {dir}/results: tracks.png, curves.png, improvement.png, turning.png, fit.txt\n\
          Try next:\n  \
          trimtab check {study}\n  \
          trimtab maneuver zigzag {study} --model {model} --out {dir}/zigzag\n  \
          trimtab terms\n\
          For your own ship copy {dir} and replace ship.toml, runs.csv and the recordings.",
-        ship.name,
+        fit.model.ship.name,
         train.len(),
         fit.brief(),
         parameters(&fit),
@@ -111,7 +88,33 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     Ok(if fit.converged { Answer::Yes } else { Answer::No })
 }
 
-/// The estimates; the whole report is in a file.
+/// Writes the example study; gives the number of files.
+fn write_study(folder: &Path) -> Result<usize, CliError> {
+    let files = demo::files();
+    for (name, text) in &files {
+        let path = folder.join(name);
+        let fail = |source| CliError::Write { path: path.clone(), source };
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(fail)?;
+        }
+        std::fs::write(&path, text).map_err(fail)?;
+    }
+    Ok(files.len())
+}
+
+/// The turning circles of the fitted ship as a section of the report, and their figure.
+fn turning_circles(output: &mut Output, loaded: &Loaded, model: &Model) -> Result<String, CliError> {
+    let settings = loaded.maneuver_settings()?;
+    let (theta, ship) = (model.values(), &model.ship);
+    // With a poor fit no propeller rate may hold the speed: the demo then has no turning circles.
+    let Ok(approach) = settings.approach(model, &theta) else { return Ok(String::new()) };
+    let trials = Side::BOTH.map(|side| turning_trial(model, &theta, &approach, side, settings.turning_angle()));
+    output.figure("turning", || turning_figure(ship, &trials))?;
+    let table = turning_table(ship, &trials);
+    Ok(format!("\n\n3. Turning circles of the fitted ship at {:.0} m/s\n\n{table}\n", approach.speed))
+}
+
+/// The estimates as a short table; the whole report is in `fit.txt`.
 fn parameters(fit: &Fit) -> Table {
     let mut table = Table::new(["parameter", "symbol", "unit", "start", "estimate", "95 % interval"]);
     for e in &fit.estimates {

@@ -1,5 +1,5 @@
-//! `trimtab diagnose`: where recordings and simulation differ, which physics was left out, and the proof on test runs.
-//! The diagnosis, its words and its figures are the library's; here it is asked for, watched and written down.
+//! `trimtab diagnose`: where the simulation differs from the recordings, which physics is missing, and the proof on unseen runs.
+//! The library makes the diagnosis, its report and its figures; this file calls it, shows progress and writes files.
 
 use super::Answer;
 use super::error::CliError;
@@ -14,22 +14,21 @@ use trimtab::recording::{Split, Window};
 use trimtab::report::diagnosis::{document, keys_listing, mechanism_names, page, pictures, summary};
 
 const LONG: &str = "\
-Compares the recordings of a study with its model, and answers with evidence:
+Compares the recordings of a study with its model in four steps:
   locates    in which equation, when, and in which region of state and inputs a force acts that
              the model lacks
-  names      which mechanism of the catalogue explains it, or which ones these data cannot
-             distinguish
-  models     adds it, with its size in physical units, and says which parameters had absorbed
-             it
-  proves     compares both models on the test runs, which no earlier step uses
-It says so when nothing is missing, when there are only gusts, when a sensor or the
-integration step is the cause, when the catalogue does not hold the effect, and when the
-recordings give no answer.
+  names      which mechanism of the catalogue explains the force, or which mechanisms these data
+             cannot tell apart
+  models     adds the mechanism, with its size in physical units, and says which parameters had
+             absorbed it
+  proves     errors before and after on the test runs, which no earlier step has used
+The verdict can also be: nothing is missing, only gusts act, a sensor or the integration step is
+at fault, the catalogue has no such mechanism, or the recordings cannot tell.
 
 The training runs of the study locate, name and model; its test runs only prove. Settings are in
 the table [diagnose] of the study: alpha (chance of naming anything when nothing is missing,
-0.01), most (mechanisms at most, 3), withhold (mechanisms not to be considered), nuisance (estimate
-unknown hull, propeller and rudder coefficients too, true), substeps (RK4 steps in a sample
+0.01), most (largest number of mechanisms, 3), withhold (mechanisms not to be considered),
+nuisance (estimate unknown hull, propeller and rudder coefficients too, true), substeps (RK4 steps in a sample
 period, 1), seed (of the bootstrap).";
 
 const EXAMPLE: &str = "\
@@ -38,17 +37,17 @@ Example:
   trimtab evaluate study.toml --model results/improved.toml --baseline results/base.toml
 
 With --out: report.html (everything on one page, readable offline), diagnosis.json,
-improved.toml (a model file with what was found, which every command takes as --model),
-base.toml (the study's model, refitted the same way), figures/*.png with the CSV behind each.
+improved.toml (a model file with the mechanisms found, which every command takes as --model),
+base.toml (the study's model, refitted alike), figures/*.png with the CSV behind each.
 
-Exit code 0 if a verdict was reached, whichever; 1 if the recordings cannot answer (verdict
-`insufficient`, or an error in them that must be corrected first); 2 if it could not run.
+Exit code 0 if any verdict was reached; 1 if the recordings cannot answer (verdict
+`insufficient`, or a fault in them that must be mended first); 2 if it could not run.
 
-diagnosis.json (and --json), in SI units and radians; what does not exist or is not finite is
-absent:
+diagnosis.json (and --json), in SI units and radians; a number that does not exist or is not
+finite is absent:
 ";
 
-/// Says what physics a model lacks, models it, and proves the gain on test runs
+/// Names the physics a model lacks, adds it, and proves the gain on unseen runs
 #[derive(Debug, clap::Args)]
 #[command(long_about = LONG, after_long_help = format!("{EXAMPLE}{}", keys_listing()))]
 pub struct Args {
@@ -114,7 +113,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     Ok(if unanswered { Answer::No } else { Answer::Yes })
 }
 
-/// The study's settings with what the arguments say, and every withheld name checked.
+/// The study's settings, changed by the arguments, with every withheld name checked.
 fn settings(args: &Args, mut settings: Settings) -> Result<Settings, CliError> {
     settings.withhold.extend(args.withhold.iter().cloned());
     settings.seed = args.seed.unwrap_or(settings.seed);

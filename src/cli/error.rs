@@ -1,5 +1,5 @@
-//! Why a command could not run: what the library says, as it says it, and what can go wrong around it.
-//! Every text says what, where, and what to do next.
+//! Why a command could not run: the library's errors word for word, and errors of arguments and output.
+//! Every text says what is wrong, where, and what to do next; nothing is mended here.
 
 use std::path::PathBuf;
 use trimtab::fit::FitError;
@@ -83,7 +83,7 @@ pub enum CliError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// An argument that cannot be.
+    /// An argument with an impossible value.
     #[error("{0}")]
     Argument(String),
     /// Threads could not be started.
@@ -100,7 +100,7 @@ pub enum CliError {
     /// Standard output could not be written.
     #[error("cannot write to standard output ({0}); is the disk full?")]
     Stdout(std::io::Error),
-    /// Whoever read standard output closed it.
+    /// The reader of standard output closed it.
     #[error("standard output was closed")]
     Closed,
 }

@@ -1,5 +1,5 @@
-//! `trimtab fit`: fits the free parameters of a study's model to its training runs, and reports what was found and how surely.
-//! The fit is the library's; here it is asked for, watched and written down.
+//! `trimtab fit`: fits the free parameters of a study's model to its training runs, and reports estimates with intervals.
+//! The library makes the fit and its report; this file calls it, shows progress and writes files.
 
 use super::Answer;
 use super::error::CliError;

@@ -1,5 +1,5 @@
-//! From a study's path to what commands work on: ship, model, settings and windows.
-//! It reads and checks; it computes nothing.
+//! Reads what a command works on from a study's path: ship, model, settings and windows.
+//! It checks and computes nothing beyond that.
 
 use super::error::CliError;
 use super::output::progress;
@@ -118,7 +118,7 @@ impl Loaded {
 
 fn read_model(path: &Path, ship: Ship) -> Result<Model, CliError> {
     Model::read(path, ship).map_err(|error| {
-        // These name their file themselves.
+        // The texts of these two errors begin with the path.
         let named = matches!(error, ModelError::Read { .. } | ModelError::Parse { .. });
         CliError::Model { path: (!named).then(|| path.to_owned()), error }
     })

@@ -1,5 +1,5 @@
 //! `trimtab maneuver`: the standard trials with any model, their measures, and the IMO criteria beside them.
-//! The trials are the library's; here they are asked for and laid out.
+//! The library sails and measures the trials; this file prints, tabulates and draws them.
 
 use super::Answer;
 use super::error::CliError;
@@ -18,12 +18,12 @@ use trimtab::report::maneuver::{
 };
 
 const LONG: &str = "\
-Sails a standard manoeuvring trial with the model of a study, or any other with --model, to both sides, and measures it as \
-    on a real ship: distances in ship lengths L, of the midship point, from the moment the rudder begins to move. The criteria \
-    of IMO MSC.137(76) stand beside the measures.
+Simulates a standard manoeuvring trial to both sides with the model of a study, or another given with --model, and measures \
+    it as on a real ship: distances of the midship point in ship lengths L, from the instant the rudder begins to move. The \
+    criteria of IMO MSC.137(76) are printed beside the measures.
 
 The approach is straight ahead at a speed that the propeller holds: give --speed or --rpm, or set them in [maneuver] of \
-    the study with rudder rate, engine rate and angles; without either the Froude number is 0.15.";
+    the study with rudder rate, engine rate and angles; without either the approach is at Froude number 0.15.";
 
 /// Sails the standard manoeuvring trials
 #[derive(Debug, clap::Args)]
@@ -98,7 +98,7 @@ struct Report<'a, M> {
     trials: &'a [Trial<M>],
 }
 
-/// What a command needs before it can sail.
+/// What every trial needs.
 struct Prepared {
     model: Model,
     theta: Vec<f64>,
@@ -169,7 +169,7 @@ fn report<'a, M>(p: &'a Prepared, trials: &'a [Trial<M>]) -> Report<'a, M> {
     }
 }
 
-/// Writes the files; refuses a trial that diverged, whose measures would be of nothing.
+/// Writes the files; refuses a trial that diverged, which has no measures.
 fn finish<M>(
     output: &mut Output,
     p: &Prepared,

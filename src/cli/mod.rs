@@ -1,5 +1,5 @@
-//! The command line: one file a command, and what they share (arguments, loading, output, exit codes).
-//! What a command computes is the library's.
+//! The command line: one file a command, and what the commands share (arguments, loading, output, exit codes).
+//! The library computes; a command only reads arguments, calls it, and prints.
 
 mod check;
 mod demo;
@@ -32,7 +32,7 @@ Begin with
   trimtab check STUDY                are the recordings fit to be used?
   trimtab fit STUDY --out results    fit the model; writes results/fitted.toml
   trimtab evaluate STUDY --model results/fitted.toml
-                                     judge it on the runs that were kept aside
+                                     judge it on the test runs
   trimtab diagnose STUDY --out results
                                      what physics does the model lack?
 
@@ -47,7 +47,7 @@ Exit codes
 #[derive(Debug, Parser)]
 #[command(name = "trimtab", version, after_help = AFTER_HELP, max_term_width = 100)]
 struct Cli {
-    /// Threads to compute on; as many as there are processors when not given. Results do not depend on it.
+    /// Number of threads; the number of processors if not given. Results do not depend on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     #[command(subcommand)]
@@ -72,7 +72,7 @@ pub fn run() -> ExitCode {
     match execute(&cli) {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
         Ok(Answer::No) => ExitCode::from(1),
-        // Whoever read our output has enough of it, as in `trimtab terms | head`.
+        // The reader of standard output closed it, as in `trimtab terms | head`.
         Err(CliError::Closed) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("trimtab: {error}");

@@ -1,5 +1,5 @@
 //! Where results go: text or JSON to standard output, files to the folder given with `--out`.
-//! Nothing else ever writes to standard output; progress and errors go to standard error.
+//! No other file writes to standard output; progress and errors go to standard error.
 
 use super::error::CliError;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -13,7 +13,7 @@ use trimtab::plot::Figure;
 /// Arguments that every command with results has.
 #[derive(Clone, Debug, clap::Args)]
 pub struct OutputArgs {
-    /// Folder for files: tables as CSV, figures as PNG with the CSV behind them, the result as JSON. Made if need be.
+    /// Folder for files: tables as CSV, figures as PNG with the CSV behind them, the result as JSON. Created if absent.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print the result as one JSON object, and nothing else, to standard output.
@@ -66,7 +66,7 @@ impl Output {
 
     /// Ends the command: prints `text`, or the result as JSON; writes the JSON into the folder too.
     ///
-    /// Object members without a value are left out, so that `null` stands only in arrays, for entries that do not exist.
+    /// Object members without a value are left out, so that `null` occurs only in arrays, for entries that do not exist.
     pub fn finish(mut self, text: &str, result: &impl Serialize) -> Result<(), CliError> {
         let mut members = Map::new();
         members.insert("command".into(), json!(self.command));
@@ -88,7 +88,7 @@ impl Output {
     }
 }
 
-/// File names as a sentence; of many in one folder only their number.
+/// File names as a sentence; for files in a folder, the folder and their number.
 fn abridged(names: Vec<String>) -> String {
     let (deep, mut shown): (Vec<String>, Vec<String>) = names.into_iter().partition(|n| n.contains('/'));
     let mut folders: Vec<&str> = deep.iter().filter_map(|n| n.split('/').next()).collect();
@@ -121,7 +121,7 @@ pub fn print(text: &str) -> Result<(), CliError> {
     })
 }
 
-/// A line on standard error that says what is going on, while it lasts; nothing unless that is a terminal.
+/// A progress line on standard error while a computation runs; nothing if standard error is not a terminal.
 pub fn progress(doing: impl Into<String>) -> ProgressBar {
     let bar = ProgressBar::new_spinner();
     if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {

@@ -1,5 +1,5 @@
-//! `trimtab simulate`: the recordings of a study as the model would have them, from the same start with the same inputs.
-//! It judges nothing beyond printing how far each simulation is from what was measured.
+//! `trimtab simulate`: simulates the recordings of a study from their recorded start with their recorded inputs.
+//! It compares no models; it prints how far each simulation is from the measured motion.
 
 use super::Answer;
 use super::error::CliError;
@@ -16,7 +16,7 @@ use trimtab::simulate::Trajectory;
 const LONG: &str = "\
 Simulates every recording of a study (or every window of it, where the study cuts them) with the study's model or another: \
     from the recorded start, under the recorded propeller rate, rudder angle and environment. Prints how far each simulation \
-    ends up from what was measured.";
+    is from the measured motion.";
 
 const AFTER: &str = "\
 Example:

@@ -1,5 +1,5 @@
 //! `trimtab terms`: the catalogue of physical effects, with equation, source and parameters.
-//! The catalogue and its listing are the library's; here they are printed.
+//! The library holds the catalogue and its listing; this file prints them.
 
 use super::Answer;
 use super::error::CliError;
@@ -26,7 +26,7 @@ Examples:
 With --out: terms.json, parameters.csv.
 JSON: result.terms[] with name, title, group, base (every model has it), equation, source, needs[], and parameters[] with \
     name, symbol, unit, about, lower, upper (absent: no bound), one_sided (makes port and starboard differ), and with --ship \
-    default, scale (a change that matters), spread (standard deviation of what is known beforehand; absent: nothing is).";
+    default, scale (size of a relevant change), spread (prior standard deviation; absent: no prior).";
 
 /// Lists the physical effects a model can be made of
 #[derive(Debug, clap::Args)]

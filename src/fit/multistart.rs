@@ -1,7 +1,10 @@
 //! The same fit from many starts, to see whether there is more than one place to end.
 //! It keeps every outcome, good or bad, and picks none.
 
-use super::{Fit, FitError, FitRun, FitSettings, fit};
+use super::cost::FitRun;
+use super::error::FitError;
+use super::settings::FitSettings;
+use super::summary::{Fit, fit};
 use crate::model::Model;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,12 +1,13 @@
-//! How a trial is approached: settings as a person gives them, and the balanced approach they lead to.
-//! Nothing is sailed here.
+//! How a trial is approached: the settings of a study, and the balanced approach that follows from them.
+//! No trial is simulated here.
 
 use super::ManeuverError;
+use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::state::{Force, Inputs, STATES, State};
 use serde::{Deserialize, Serialize};
 
-/// Settings of the trials, the section `[maneuver]` of a study. What is left out is chosen from the ship.
+/// Settings of the trials, the table `[maneuver]` of a study. A setting left out is derived from the ship.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ManeuverSettings {
@@ -67,7 +68,7 @@ impl ManeuverSettings {
     /// The approach of a ship with this model and parameter vector.
     ///
     /// # Errors
-    /// [`ManeuverError`]: a setting that cannot be, or no balance between thrust and resistance.
+    /// [`ManeuverError`]: an impossible setting, or no balance between thrust and resistance.
     pub fn approach(&self, model: &Model, theta: &[f64]) -> Result<Approach, ManeuverError> {
         self.check()?;
         let length = model.ship.hull.lpp;
@@ -128,7 +129,8 @@ fn to_radians(pair: &[f64; 2]) -> [f64; 2] {
 /// Surge acceleration \[m/s2\] on a straight course with the rudder amidships.
 fn surge(model: &Model, theta: &[f64], u: f64, n: f64) -> f64 {
     let state = State::from_array([0.0, 0.0, 0.0, u, 0.0, 0.0]);
-    let rates: [f64; STATES] = model.rates(theta, &state, &Inputs::actuators(0.0, n, 0.0), &Force::zero()).0;
+    let dynamics = Dynamics::new(model, theta.to_vec());
+    let rates: [f64; STATES] = dynamics.rates(&state, &Inputs::actuators(0.0, n, 0.0), &Force::zero()).0;
     rates[3]
 }
 

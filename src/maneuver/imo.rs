@@ -1,5 +1,5 @@
 //! The IMO standards for ship manoeuvrability, resolution MSC.137(76), beside the measures of a trial.
-//! The criteria bind ships of 100 m and more on trial at full load and test speed; below that they are for comparison.
+//! The criteria bind ships of 100 m and more, at full load and test speed; for shorter ships they are a comparison only.
 
 use super::{Stopping, Turning, Zigzag};
 use crate::ship::Ship;
@@ -13,7 +13,7 @@ pub enum Verdict {
     Met,
     /// Not met.
     NotMet,
-    /// The trial has no such criterion, or did not come so far.
+    /// The trial has no such criterion, or did not reach the measure.
     NotApplicable,
 }
 

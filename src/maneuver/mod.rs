@@ -1,5 +1,5 @@
 //! The standard manoeuvring trials (turning circle, zigzag, crash stop) with any model, and their measures read from a track.
-//! It neither fits nor judges a model: a trial of a poor model gives poor numbers, and only the IMO criteria stand beside them.
+//! It neither fits nor judges a model: a poor model gives poor numbers, and only the IMO criteria are compared with them.
 
 mod approach;
 pub mod imo;
@@ -21,7 +21,7 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ManeuverError {
-    /// A setting that cannot be.
+    /// A setting with an impossible value.
     #[error("`{key}` = {found} in [maneuver]: {expected}")]
     Setting {
         /// Key.
@@ -87,13 +87,13 @@ impl Side {
     }
 }
 
-/// How a trial came to its end.
+/// How a trial ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "how")]
 pub enum Ended {
-    /// All there is to measure was reached.
+    /// Every measure was reached.
     Complete,
-    /// The ship did not get there in the time of 200 ship lengths at approach speed.
+    /// The trial was not complete after the time of 200 ship lengths at approach speed.
     TimeOut {
         /// Time sailed \[s\].
         after: f64,
@@ -105,7 +105,7 @@ pub enum Ended {
     },
 }
 
-/// One trial: how it was begun, what was sailed, and what was measured on it.
+/// One trial: approach, track, and measures.
 #[derive(Clone, Debug, Serialize)]
 pub struct Trial<M> {
     /// In words: `turning 35 deg starboard`.
@@ -116,11 +116,11 @@ pub struct Trial<M> {
     pub approach: Approach,
     /// How it ended.
     pub ended: Ended,
-    /// What was measured; what was not reached is left out.
+    /// The measures; one that was not reached is absent.
     pub measures: M,
-    /// IMO criteria for it.
+    /// IMO criteria that apply.
     pub criteria: Vec<imo::Criterion>,
-    /// What was sailed.
+    /// The simulated track.
     #[serde(skip)]
     pub track: Track,
 }

@@ -1,7 +1,8 @@
-//! Sails a trial: simulates the ship under orders given while she sails, with rudder and engine of finite rate.
-//! What is ordered when is the trial's; what is measured afterwards too.
+//! Simulates a ship under orders that depend on its motion, with rudder and engine of finite rate.
+//! The orders and the measures belong to each trial, not to this file.
 
 use super::{Approach, Ended, Track};
+use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::simulate::{Integration, Method, absurd_speed, driven, step};
 use crate::state::{Force, Inputs, STATES};
@@ -15,8 +16,8 @@ pub(super) struct Orders {
     pub n: f64,
 }
 
-/// Sails from the approach (x = y = psi = 0, straight ahead) under the orders of `helm`, which is shown the track so far
-/// at every sample and gives the orders from then on, or `None` to end the trial.
+/// Simulates from the approach (x = y = psi = 0, straight ahead) under the orders of `helm`, which receives the track so
+/// far at every sample and gives the orders from then on, or `None` to end the trial.
 ///
 /// Orders are followed at the approach's rudder and engine rate. Terms that act on whole input series (actuator lag,
 /// rudder offset) are applied to the series that results, anew whenever an order changes; they must be causal.
@@ -31,11 +32,12 @@ pub(super) fn sail(
     let steps = (lengths * model.ship.hull.lpp / approach.speed / dt).ceil() as usize;
     let integration = Integration { method: Method::Rk4, substeps: 1 };
     let limit = absurd_speed(model);
+    let dynamics = Dynamics::new(model, theta.to_vec());
 
     let mut orders = Orders { delta: 0.0, n: approach.n };
     let mut actuators: Vec<Inputs<f64>> =
         (0..=steps).map(|k| Inputs::actuators(k as f64 * dt, approach.n, 0.0)).collect();
-    let mut series = driven(model, theta, integration, dt, &actuators);
+    let mut series = driven(&dynamics, integration, dt, &actuators).into_owned();
 
     let mut track = Track::default();
     let mut state: [f64; STATES] = [0.0, 0.0, 0.0, approach.speed, 0.0, 0.0];
@@ -53,10 +55,10 @@ pub(super) fn sail(
                 actuators[i].delta = follow(actuators[i - 1].delta, orders.delta, approach.rudder_rate * dt);
                 actuators[i].n = follow(actuators[i - 1].n, orders.n, approach.engine_rate * dt);
             }
-            series = driven(model, theta, integration, dt, &actuators);
+            series = driven(&dynamics, integration, dt, &actuators).into_owned();
         }
         if k < steps {
-            state = step(model, theta, integration, dt, &state, &series[k * integration.instants()..], &Force::zero());
+            state = step(&dynamics, integration, dt, &state, &series[k * integration.instants()..], &Force::zero());
             if !(state.iter().all(|s| s.is_finite()) && state[3].hypot(state[4]) < limit) {
                 return (track, Ended::Diverged { after: (k + 1) as f64 * dt });
             }

@@ -1,13 +1,13 @@
-//! The crash stop: sailing one, and reading track reach, head reach, lateral deviation and time from any track.
-//! Criteria for the numbers are in `imo`.
+//! The crash stop: its simulation, and track reach, head reach, lateral deviation and time read from any track.
+//! The IMO criteria are in `imo`, not here.
 
 use super::sail::{Orders, sail};
 use super::{Approach, Side, Track, Trial, imo};
 use crate::model::Model;
 use serde::Serialize;
 
-/// What a stop is measured by, from the order to the engine until the ship makes no more way ahead; what was not reached
-/// is absent.
+/// What a stop is measured by, from the order to the engine until the ship makes no more way ahead; a measure that was
+/// not reached is absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Stopping {
     /// Speed at the order \[m/s\].
@@ -52,7 +52,7 @@ pub fn stopping(track: &Track, order: usize) -> Stopping {
     }
 }
 
-/// Sails a crash stop: engine to the approach's astern rate, rudder amidships, until the ship makes no more way ahead.
+/// Simulates a crash stop: engine to the approach's astern rate, rudder amidships, until the ship makes no more way ahead.
 pub fn stopping_trial(model: &Model, theta: &[f64], approach: &Approach) -> Trial<Stopping> {
     let orders = Orders { delta: 0.0, n: approach.astern };
     let (track, ended) = sail(model, theta, approach, |track| {

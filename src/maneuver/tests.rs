@@ -1,4 +1,5 @@
-//! Tests of the trials: laws on tracks of known shape, mirror symmetry, and the measured trials of KVLCC2 where the data are.
+//! Tests of the trials: tracks of known shape, mirror symmetry, step size and the IMO limits.
+//! No recording is read here; recorded trials are tested in `experiments`.
 
 use super::*;
 use crate::model::Model;
@@ -69,7 +70,7 @@ fn a_geometric_circle_is_measured_exactly_on_any_course_and_side() {
 }
 
 #[test]
-fn what_a_track_does_not_reach_is_absent() {
+fn a_measure_that_the_track_does_not_reach_is_absent() {
     let mut track = circle(50.0, 1.0);
     for column in [&mut track.t, &mut track.delta, &mut track.n] {
         column.truncate(300);
@@ -122,12 +123,13 @@ fn the_approach_is_balanced_whichever_of_speed_and_rate_is_given() {
     assert!((by_rate.speed - 5.0).abs() < 1e-6, "{}", by_rate.speed);
     let state = crate::state::State::from_array([0.0, 0.0, 0.0, 5.0, 0.0, 0.0]);
     let inputs = crate::state::Inputs::actuators(0.0, by_speed.n, 0.0);
-    let (rates, _) = model.rates(&theta, &state, &inputs, &crate::state::Force::zero());
+    let (rates, _) =
+        crate::dynamics::Dynamics::new(&model, theta.clone()).rates(&state, &inputs, &crate::state::Force::zero());
     assert!(rates[3].abs() < 1e-6, "{rates:?}");
 }
 
 #[test]
-fn settings_that_cannot_be_are_refused_by_name() {
+fn an_impossible_setting_is_refused_by_name() {
     let model = model(Form::Regular);
     let theta = model.values();
     let bad = [
@@ -165,7 +167,7 @@ fn a_mirror_symmetric_ship_turns_alike_to_both_sides() {
 }
 
 #[test]
-fn ship_a_with_the_published_parameters_turns_as_computed_elsewhere() {
+fn ship_a_with_the_published_parameters_turns_as_in_an_independent_simulation() {
     // An independent RK4 simulation at 200 rpm gave advance 3.55 L, tactical diameter 3.60 L and 3.66 L, r 0.025 rad/s.
     // It used a Fourier propeller where the model has a quadratic one: 8 %, 10 % of r.
     let model = model(Form::Paper);

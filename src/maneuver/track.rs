@@ -1,4 +1,4 @@
-//! A track: what a ship did over time, simulated or recorded, as the measures of a trial read it.
+//! A track: the motion of a ship over time, simulated or recorded, from which a trial's measures are read.
 //! It does not know which trial it belongs to.
 
 use crate::recording::Window;

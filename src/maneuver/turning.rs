@@ -1,5 +1,5 @@
-//! The turning circle: sailing one, and reading advance, transfer, tactical diameter and the steady turn from any track.
-//! Criteria for the numbers are in `imo`.
+//! The turning circle: its simulation, and advance, transfer, tactical diameter and steady turn read from any track.
+//! The IMO criteria are in `imo`, not here.
 
 use super::sail::{Orders, sail};
 use super::{Approach, Side, Track, Trial, imo};
@@ -7,8 +7,8 @@ use crate::model::Model;
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// What a turning circle is measured by. Lengths are of the midship point, from the moment the rudder begins to move, on
-/// axes along the heading at that moment; what was not reached is absent.
+/// What a turning circle is measured by. Lengths are of the midship point, from the instant the rudder begins to move,
+/// on axes along the heading at that instant; a measure that was not reached is absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Turning {
     /// Rudder angle held \[rad\].
@@ -115,7 +115,7 @@ pub fn turning_execute(track: &Track) -> Option<usize> {
     (0..over).rev().find(|&k| side * (track.delta[k] - approach) <= 0.05 * angle.abs())
 }
 
-/// Sails a turning circle through 720 deg with the rudder at `angle` \[rad\] to one side.
+/// Simulates a turning circle through 720 deg with the rudder at `angle` \[rad\] to one side.
 pub fn turning_trial(model: &Model, theta: &[f64], approach: &Approach, side: Side, angle: f64) -> Trial<Turning> {
     let orders = Orders { delta: side.sign() * angle, n: approach.n };
     let (track, ended) = sail(model, theta, approach, |track| {

@@ -1,12 +1,12 @@
-//! The zigzag: sailing one, and reading executes, overshoots, initial turning and period from any track.
-//! Criteria for the numbers are in `imo`.
+//! The zigzag: its simulation, and executes, overshoots, initial turning and period read from any track.
+//! The IMO criteria are in `imo`, not here.
 
 use super::sail::{Orders, sail};
 use super::{Approach, Side, Track, Trial, imo};
 use crate::model::Model;
 use serde::Serialize;
 
-/// What a zigzag is measured by; what was not reached is absent.
+/// What a zigzag is measured by; a measure that was not reached is absent.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Zigzag {
     /// Rudder angle \[rad\].
@@ -47,8 +47,8 @@ pub fn zigzag(track: &Track, executes: &[usize], heading: f64) -> Zigzag {
 
     let turned = |s: &[f64; 6]| side * (s[2] - course);
     let answered = track.first_above(first, heading, turned);
-    // The rudder is put over at equal headings to either side of the course that is steered, which lies midway: a ship that
-    // was not quite on it at the first execute is measured as the others are.
+    // The rudder is put over at equal headings to either side of the course that is steered. That course lies midway, also
+    // for a ship that was slightly off it at the first execute.
     let steered = match later {
         [second, third, ..] => 0.5 * (track.states[*second][2] + track.states[*third][2]),
         _ => course,
@@ -99,7 +99,7 @@ pub fn zigzag_executes(track: &Track) -> Vec<usize> {
     executes
 }
 
-/// Sails a zigzag with the rudder at `angles[0]` and heading at `angles[1]` \[rad\], the first rudder to one side, until
+/// Simulates a zigzag with the rudder at `angles[0]` and heading at `angles[1]` \[rad\], the first rudder to one side, until
 /// the fifth execute.
 pub fn zigzag_trial(model: &Model, theta: &[f64], approach: &Approach, side: Side, angles: [f64; 2]) -> Trial<Zigzag> {
     const EXECUTES: usize = 5;

@@ -74,6 +74,7 @@ impl Fit {
         let (residuals, parameters, rows) = (self.residuals, self.estimates.len(), self.constraints);
         let (passes, seconds) = (self.iterations, self.seconds);
         [
+            self.headline.clone(),
             format!("Fit of {} to {} runs of {} recordings", self.model.name, self.runs, self.recordings),
             format!("Status       {}", self.status),
             format!("Cost         {cost} (residual variance {variance})"),
@@ -107,6 +108,12 @@ impl Fit {
                  independent residuals.",
                 self.recordings,
                 number(effect)
+            ),
+            (CovarianceKind::Correlated, _) => format!(
+                "Standard errors count as many successive residuals as one as are alike: {} ({} recordings are too few to take \
+                 whole recordings as independent).",
+                number(self.residual_statistics.likeness.unwrap_or(1.0)),
+                self.recordings
             ),
             _ => format!(
                 "Standard errors take residuals as independent, which along a trajectory they are not: read them as lower \

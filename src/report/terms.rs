@@ -31,7 +31,7 @@ pub struct Entry {
     pub parameters: Vec<ParameterEntry>,
 }
 
-/// A parameter of a term. What is unbounded or unknown is absent (`null` in JSON).
+/// A parameter of a term. A bound or value that does not exist is absent (`null` in JSON).
 #[derive(Clone, Debug, Serialize)]
 pub struct ParameterEntry {
     /// Dotted name, as in a model file.
@@ -40,11 +40,11 @@ pub struct ParameterEntry {
     pub symbol: &'static str,
     /// Unit, `-` for none.
     pub unit: &'static str,
-    /// Plain words.
+    /// Meaning in plain words.
     pub about: &'static str,
     /// Default for the ship.
     pub default: Option<f64>,
-    /// A change that matters, for the ship.
+    /// Size of a relevant change, for the ship.
     pub scale: Option<f64>,
     /// Prior standard deviation for the ship.
     pub spread: Option<f64>,

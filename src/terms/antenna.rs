@@ -1,5 +1,5 @@
-//! Positions and velocities that are those of an antenna away from midship.
-//! Horizontal lever only; its motion in roll is not there.
+//! Positions and velocities of an antenna that is away from midship.
+//! Its horizontal lever only; motion of the antenna in roll is not modelled.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
@@ -21,7 +21,7 @@ static INFO: TermInfo = TermInfo {
     needs: &[],
     mechanisms: &[Mechanism {
         name: "antenna",
-        title: "an antenna that is not where it is taken to be",
+        title: "an antenna away from its stated position",
         kind: Kind::Sensor,
         parameters: &["x", "y"],
         companions: &[],
@@ -33,11 +33,11 @@ static INFO: TermInfo = TermInfo {
         trial: "a turn on the spot",
     }],
     parameters: &[
-        ParameterInfo::new("x", "l_x", "m", "antenna forward of where it is taken to be")
+        ParameterInfo::new("x", "l_x", "m", "antenna forward of its stated position")
             .scale(|s| 0.05 * s.hull.lpp)
             .spread(|s| 0.3 * s.hull.lpp)
             .bounds(-300.0, 300.0),
-        ParameterInfo::new("y", "l_y", "m", "antenna to starboard of where it is taken to be")
+        ParameterInfo::new("y", "l_y", "m", "antenna to starboard of its stated position")
             .scale(|s| 0.02 * s.hull.lpp)
             .spread(|s| 0.1 * s.hull.lpp)
             .bounds(-50.0, 50.0)
@@ -52,10 +52,17 @@ impl Term for Antenna {
 }
 
 impl<S: Scalar> Physics<S> for Antenna {
-    fn measure(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
-        let (sin, cos) = at.state.psi.sin_cos();
-        y[0] += p[0] * cos - p[1] * sin;
-        y[1] += p[0] * sin + p[1] * cos;
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        at: &Instant<S>,
+        _flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
+        let [sin, cos] = at.heading;
+        y[0] += cos * p[0] - sin * p[1];
+        y[1] += sin * p[0] + cos * p[1];
         y[3] -= at.state.r * p[1];
         y[4] += at.state.r * p[0];
     }

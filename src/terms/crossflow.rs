@@ -1,11 +1,11 @@
 //! Cross-flow drag of the hull in strips, beyond the quadratic damping of the base model.
-//! One drag coefficient for all strips, and a weight of the turning in force and moment, as hulls are measured to differ there; it
-//! matters at large drift and when the ship turns on the spot.
+//! One drag coefficient for all strips, with weights of the yaw rate in force and moment, in which measured hulls differ. It matters
+//! at large drift and in turns on the spot; it is not the quadratic damping Y_vv of the base model.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -51,16 +51,16 @@ static INFO: TermInfo = TermInfo {
         trial: "drifting sideways and turning on the spot",
     }],
     parameters: &[
-        ParameterInfo::new("drag", "C_D", "-", "drag coefficient beyond the base model's; 0.6 to 1.0 in all")
+        ParameterInfo::new("drag", "C_D", "-", "drag coefficient beyond the base model's; 0.6 to 1.0 with it")
             .scale(|_| 0.2)
             .spread(|_| 0.3)
             .bounds(0.0, 2.0),
-        ParameterInfo::new("turn_force", "C_rY", "-", "weight of the turning in the sway force")
+        ParameterInfo::new("turn_force", "C_rY", "-", "weight of the yaw rate in the sway force")
             .default(|_| 1.0)
             .scale(|_| 0.5)
             .spread(|_| 0.8)
             .bounds(0.0, 4.0),
-        ParameterInfo::new("turn_moment", "C_rN", "-", "weight of the turning in the yaw moment")
+        ParameterInfo::new("turn_moment", "C_rN", "-", "weight of the yaw rate in the yaw moment")
             .default(|_| 1.0)
             .scale(|_| 0.2)
             .spread(|_| 0.2)
@@ -73,13 +73,13 @@ impl Term for Crossflow {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::Force
     }
 }
 
 impl<S: Scalar> Physics<S> for Crossflow {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let hull = &at.ship.hull;
         let half = 0.5 * hull.lpp;
         let [sway, _] = strip_integrals(flow.v, p[1] * flow.r * half);

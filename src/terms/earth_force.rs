@@ -1,10 +1,10 @@
-//! A constant force in a fixed direction on earth, acting at midship.
-//! It says nothing of its cause: it is the generic form of what wind, waves or a line do at a constant speed.
+//! A constant force in a fixed direction on the earth, acting at midship.
+//! It is generic and states no cause: wind, waves or a line act so on a ship of constant speed.
 
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
-use crate::physics::{Flow, to_body};
+use crate::physics::{Flow, Reach};
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
@@ -44,14 +44,14 @@ impl Term for EarthForce {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
 impl<S: Scalar> Physics<S> for EarthForce {
-    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
-        let [x, y] = to_body([p[0], p[1]], at.state.psi);
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
+        let [x, y] = at.to_body([p[0], p[1]]);
         Force { x, y, n: S::zero() }
     }
 }

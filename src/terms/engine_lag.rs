@@ -1,5 +1,5 @@
-//! First-order lag between the recorded propeller rate, then an order, and the shaft.
-//! No torque balance, no reversing delay; a shaft rate that was measured has no lag.
+//! First-order lag between the recorded propeller rate, taken as an order, and the shaft.
+//! No torque balance and no reversing delay; a measured shaft rate has no lag.
 
 use super::rudder_lag::first_order;
 use super::size;
@@ -32,7 +32,7 @@ static INFO: TermInfo = TermInfo {
         floor: 0.03,
         stand_in: false,
         look_alikes: &["loading", "thrust_loss"],
-        trial: "quick changes of propeller rate, and record the shaft",
+        trial: "quick changes of propeller rate with the shaft rate recorded",
     }],
     parameters: &[ParameterInfo::new("time", "tau", "s", "time constant")
         .scale(|s| 3.0 * size::time(s))

@@ -1,11 +1,13 @@
 //! A resistance that is higher in proportion: a fouled hull, or added resistance of any kind.
-//! With one loading and one season it cannot be told from p1 to p3; it is meant for differences between sessions.
+//! Within one loading and one season it cannot be distinguished from p1 to p3; it is meant for differences between sessions.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Fouling.
@@ -43,7 +45,7 @@ impl Term for Fouling {
 }
 
 impl<S: Scalar> Physics<S> for Fouling {
-    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
         adjust.resistance *= p[0] + 1.0;
     }
 }

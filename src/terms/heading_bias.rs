@@ -1,5 +1,5 @@
 //! A compass that reads a constant too much.
-//! Only the heading channel; the ship's path tells, since it does not go where it points.
+//! It acts on the heading channel only; it is identifiable because the track does not follow the reported heading.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
@@ -46,7 +46,14 @@ impl Term for HeadingBias {
 }
 
 impl<S: Scalar> Physics<S> for HeadingBias {
-    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
-        y[2] += p[0];
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        _flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
+        y[2] = y[2] + p[0];
     }
 }

@@ -1,5 +1,5 @@
-//! A speed log that reads too much in proportion, along and across.
-//! Positions are not affected, and tell.
+//! A speed log with a constant relative error, along and across.
+//! Positions are not affected; they make the error identifiable.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
@@ -45,7 +45,14 @@ impl Term for LogScale {
 }
 
 impl<S: Scalar> Physics<S> for LogScale {
-    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        _flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
         y[3] += y[3] * p[0];
         y[4] += y[4] * p[0];
     }

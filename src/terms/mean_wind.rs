@@ -1,12 +1,12 @@
 //! Load of a steady wind that was not measured, with typical load coefficients.
-//! Gusts are not here, nor is a wind that was recorded: that is the term `wind`.
+//! It models no gusts; a recorded wind is the term `wind`.
 
 use super::size;
 use super::wind::wind_load;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -21,12 +21,12 @@ static INFO: TermInfo = TermInfo {
     name: "mean_wind",
     title: "unmeasured mean wind",
     group: Group::Environment,
-    equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the same in still air; c_x, c_y, c_n typical unless fitted",
+    equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the load in still air; c_x, c_y, c_n typical unless fitted",
     source: "cosine and sine form, C_X = -c_x cos g, C_Y = c_y sin g, C_N = c_n sin 2g, as in public MMG codes; middle of the ranges given there",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "mean_wind",
-        title: "wind that was not recorded",
+        title: "unrecorded wind",
         kind: Kind::Environment,
         parameters: &["north", "east"],
         companions: &["drag", "side", "yaw"],
@@ -35,7 +35,7 @@ static INFO: TermInfo = TermInfo {
         floor: 0.01,
         stand_in: false,
         look_alikes: &["earth_force", "wave_drift", "current"],
-        trial: "drifting stopped on several headings, and record the wind",
+        trial: "drifting stopped on several headings with the wind recorded",
     }],
     parameters: &[
         ParameterInfo::new("north", "W_N", "m/s", "wind towards north")
@@ -68,13 +68,13 @@ impl Term for MeanWind {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::Force
     }
 }
 
 impl<S: Scalar> Physics<S> for MeanWind {
-    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
-        wind_load(at.ship, at.state, [p[0], p[1]], [p[2], p[3], p[4]])
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
+        wind_load(at, [p[0], p[1]], [p[2], p[3], p[4]])
     }
 }

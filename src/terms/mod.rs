@@ -1,12 +1,13 @@
 //! The catalogue of terms: each physical effect, actuator defect or sensor defect is one file here and two lines below.
-//! A term computes; what is known of it (equation, source, parameters) is data in its `TermInfo`.
+//! A term computes; its description (equation, source, parameters) is data in its `TermInfo`.
 //!
 //! # Adding a term
 //! Write `src/terms/my_effect.rs` with a unit struct that implements [`Term`] and [`Physics`], add `mod my_effect;` and
 //! `&my_effect::MyEffect` below. The registry, `trimtab terms`, bounds, priors, the diagnosis and the catalogue tests
 //! read it from there.
 
-use crate::physics::AnyTerm;
+use crate::physics::{AnyTerm, Catalogue};
+use std::sync::LazyLock;
 
 pub mod antenna;
 pub mod asymmetric;
@@ -96,7 +97,13 @@ pub static CATALOGUE: &[&dyn AnyTerm] = &[
     &water_log::WaterLog,
 ];
 
-/// The term of that name.
+/// The project's own terms as a [`Catalogue`].
+pub fn standard() -> &'static Catalogue {
+    static STANDARD: LazyLock<Catalogue> = LazyLock::new(|| Catalogue::new(CATALOGUE));
+    &STANDARD
+}
+
+/// The project's own term of that name.
 pub fn find(name: &str) -> Option<&'static dyn AnyTerm> {
-    CATALOGUE.iter().copied().find(|t| t.info().name == name)
+    standard().find(name)
 }

@@ -1,11 +1,13 @@
 //! A change of the propeller race at the rudder.
-//! Seen only in how well the rudder works with the propeller turning; lift slope and race are hard to tell apart.
+//! It shows only in the rudder force with the propeller turning; lift slope and race are hard to distinguish.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Propeller race on the rudder.
@@ -43,7 +45,7 @@ impl Term for Race {
 }
 
 impl<S: Scalar> Physics<S> for Race {
-    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
         adjust.race *= p[0] + 1.0;
     }
 }

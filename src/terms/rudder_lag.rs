@@ -1,5 +1,5 @@
-//! First-order lag between the recorded rudder angle, then an order, and the rudder.
-//! The rudder starts where it is ordered to be; a limit of its rate is `rudder_rate`.
+//! First-order lag between the recorded rudder angle, taken as an order, and the rudder.
+//! The rudder starts at its order; a limit of its rate is the term `rudder_rate`.
 
 use super::size;
 use crate::parameter::ParameterInfo;
@@ -54,7 +54,7 @@ static INFO: TermInfo = TermInfo {
         floor: 0.05,
         stand_in: false,
         look_alikes: &["rudder_rate", "time_skew"],
-        trial: "zigzags with quick rudder orders, and record the rudder itself",
+        trial: "zigzags with quick rudder orders, with order and rudder angle recorded",
     }],
     parameters: &[ParameterInfo::new("time", "tau", "s", "time constant")
         .scale(|s| 0.7 * size::time(s))

@@ -1,5 +1,5 @@
-//! A rudder that stands off the recorded angle by a constant.
-//! Looks like `rudder.lift0` wherever the inflow is steady; only coasting and changes of rpm tell them apart.
+//! A rudder angle that differs from the recorded one by a constant.
+//! In steady inflow it acts like `rudder.lift0`; only coasting and changes of rpm distinguish them.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;

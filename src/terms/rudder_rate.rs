@@ -1,5 +1,5 @@
 //! A steering gear that turns the rudder no faster than a limit.
-//! The parameter is the inverse of the limit, so that 0 is a gear without limit; below the limit the rudder follows its order.
+//! The parameter is the inverse of the limit, so that 0 is a gear without limit; below the limit there is no lag.
 
 use super::size;
 use crate::parameter::ParameterInfo;
@@ -31,7 +31,7 @@ static INFO: TermInfo = TermInfo {
         floor: 0.03,
         stand_in: false,
         look_alikes: &["rudder_lag"],
-        trial: "rudder hard over from hard over, and record the rudder itself",
+        trial: "rudder from hard over to hard over, with order and rudder angle recorded",
     }],
     parameters: &[ParameterInfo::new(
         "inverse",

@@ -1,11 +1,13 @@
 //! Loss of rudder lift at large angles of attack.
-//! Lift only; drag keeps its curve. The paper's cubic already bends over near 28 degrees, and takes up much of this.
+//! Lift only; the drag curve does not change. The paper's cubic already bends over near 28 degrees and absorbs much of the loss.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Rudder stall.
@@ -16,7 +18,7 @@ static INFO: TermInfo = TermInfo {
     title: "rudder stall",
     group: Group::Rudder,
     equation: "c_L -> c_L (1 - loss s), s from 0 to 1 as |a| goes from onset to onset + 6 deg",
-    source: "linear lift up to stall and a drop of 20 to 40 % after it, at 27 to 40 deg in the slipstream; the smooth step is ours",
+    source: "linear lift up to stall and a drop of 20 to 40 % after it, at 27 to 40 deg in the slipstream; the smooth step is trimtab's",
     needs: &[],
     mechanisms: &[Mechanism {
         name: "rudder_stall",
@@ -48,7 +50,7 @@ impl Term for RudderStall {
 }
 
 impl<S: Scalar> Physics<S> for RudderStall {
-    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
         adjust.stall += p[0];
         adjust.stall_onset = p[1];
     }

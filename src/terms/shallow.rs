@@ -1,11 +1,13 @@
 //! Shallow water: damping, added mass and resistance grow with draught over water under the keel.
-//! One number for the depth scales fixed sensitivities; squat, and the strong growth of cross-flow drag below h/d = 1.5, are not modelled.
+//! One depth number scales fixed sensitivities; squat and the strong growth of cross-flow drag below h/d = 1.5 are not modelled.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Shallow water.
@@ -18,7 +20,7 @@ const YAW_STATIC: f64 = 0.5;
 const ROTARY: f64 = 0.15;
 const ADDED_MASS: f64 = 0.55;
 const RESISTANCE: f64 = 0.15;
-/// Largest d/h that is believed \[-\]: the ship is nearly aground.
+/// Largest d/h that is used \[-\]: the ship is nearly aground.
 const MOST: f64 = 0.9;
 
 static INFO: TermInfo = TermInfo {
@@ -45,15 +47,10 @@ static INFO: TermInfo = TermInfo {
         ParameterInfo::new("ratio", "z", "-", "draught over water under the keel d/(h-d), depth not recorded")
             .scale(|_| 0.5)
             .bounds(0.0, 4.0),
-        ParameterInfo::new(
-            "strength",
-            "k",
-            "-",
-            "share of the effect that the recorded depth should have; 1 as published",
-        )
-        .scale(|_| 1.0)
-        .spread(|_| 1.0)
-        .bounds(0.0, 3.0),
+        ParameterInfo::new("strength", "k", "-", "share of the published effect of the recorded depth; 1 as published")
+            .scale(|_| 1.0)
+            .spread(|_| 1.0)
+            .bounds(0.0, 3.0),
     ],
 };
 
@@ -64,8 +61,8 @@ impl Term for Shallow {
 }
 
 impl<S: Scalar> Physics<S> for Shallow {
-    fn adjust(&self, p: &[S], at: &Instant<S>, adjust: &mut Adjust<S>) {
-        let q = at.inputs.draught_to_depth.clamp(0.0, MOST);
+    fn adjust(&self, p: &[S], _ship: &Ship, inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
+        let q = inputs.draught_to_depth.clamp(0.0, MOST);
         let z = p[0] + p[1] * q / (S::one() - q);
         let factor = |sensitivity: f64| z * sensitivity + 1.0;
         adjust.sway *= factor(SWAY);

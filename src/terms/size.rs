@@ -1,5 +1,5 @@
 //! Natural sizes of a ship's motion, from which terms take the scale of their parameters.
-//! They are Froude-scaled, so that a 3 m model and a 300 m tanker get sizes that matter for each; nothing here is physics.
+//! They are Froude-scaled, so that a 3 m model and a 300 m tanker each get relevant sizes; nothing here is physics.
 
 use crate::ship::Ship;
 
@@ -16,12 +16,12 @@ pub fn time(ship: &Ship) -> f64 {
     (ship.hull.lpp / GRAVITY).sqrt()
 }
 
-/// A force that matters \[N\]: a tenth of the resistance at Froude number 0.2, 12 kN for an 85 m ship.
+/// A relevant force \[N\]: a tenth of the resistance at Froude number 0.2, 12 kN for an 85 m ship.
 pub fn force(ship: &Ship) -> f64 {
     pressure(ship) * (0.2 * speed(ship)).powi(2) * 0.002
 }
 
-/// A yaw moment that matters \[N m\]: that force at a quarter of the length.
+/// A relevant yaw moment \[N m\]: that force at a quarter of the length.
 pub fn moment(ship: &Ship) -> f64 {
     0.25 * force(ship) * ship.hull.lpp
 }

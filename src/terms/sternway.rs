@@ -1,11 +1,13 @@
-//! Hull and resistance forces that keep their sense when the ship moves astern.
-//! A share of the fore-aft consistent form inside the paper's form; in a model of form `regular` it does nothing.
+//! Hull and resistance forces with the right sign when the ship moves astern.
+//! A share of the fore-aft consistent form within the paper's form; it has no effect in a model of form `regular`.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Sternway hull forces.
@@ -44,7 +46,7 @@ impl Term for Sternway {
 }
 
 impl<S: Scalar> Physics<S> for Sternway {
-    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
         adjust.sternway += p[0];
     }
 }

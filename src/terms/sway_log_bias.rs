@@ -1,5 +1,5 @@
-//! A speed log that reads a constant too much across.
-//! Like a current across the ship that turns with it.
+//! A speed log that reads a constant too much across the ship.
+//! It differs from a current in that it turns with the ship.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
@@ -46,7 +46,14 @@ impl Term for SwayLogBias {
 }
 
 impl<S: Scalar> Physics<S> for SwayLogBias {
-    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
-        y[4] += p[0];
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        _flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
+        y[4] = y[4] + p[0];
     }
 }

@@ -1,11 +1,11 @@
-//! A generic force law that is the same to port and to starboard: every low-order monomial of speed, drift, turn, rpm and rudder.
-//! It is a correction without a name, for the question of whether a named mechanism explains more than any smooth hull,
-//! propeller or rudder error could; it is not physics to extrapolate.
+//! A generic force law, alike to port and to starboard: every low-order monomial of speed, drift, yaw rate, rpm and rudder.
+//! A named mechanism is tested against it, that is, against any smooth error of hull, propeller and rudder; it is no physics
+//! to extrapolate.
 
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::ship::Ship;
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -25,7 +25,7 @@ static INFO: TermInfo = TermInfo {
     name: "symmetric",
     title: "generic mirror-symmetric force",
     group: Group::Hull,
-    equation: "X, Y, N/L = sum of coefficient times monomial (the words of each parameter) times 1/2 rho L d; rho D^2 in its place \
+    equation: "X, Y, N/L = sum of coefficient times monomial (given with each parameter) times 1/2 rho L d; rho D^2 in its place \
                where n is in the monomial, else 1/2 rho A_R where delta is; W = u_R |u_R|, U_0 = 0.2 sqrt(g L); \
                X even and Y, N odd in (v, r, delta); |.| rounded at small speeds",
     source: "generic basis, no source",
@@ -76,25 +76,25 @@ impl Term for Symmetric {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
-fn dot<S: Scalar, const N: usize>(p: &[S], monomials: &[S; N]) -> S {
-    p.iter().zip(monomials).fold(S::zero(), |sum, (p, m)| sum + *p * *m)
+fn dot<S: Scalar, const N: usize>(p: &[S::Coefficient], monomials: &[S; N]) -> S {
+    p.iter().zip(monomials).fold(S::zero(), |sum, (p, m)| sum + *m * *p)
 }
 
 impl<S: Scalar> Physics<S> for Symmetric {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let ship = at.ship;
         let l = ship.hull.lpp;
         let d = ship.propeller.diameter;
         let hull = size::pressure(ship);
-        // Factors that turn the hull's unit into those of propeller and rudder.
+        // Conversions from the hull's unit to those of propeller and rudder.
         let propeller = ship.hull.water_density * d * d / hull;
         let rudder = 0.5 * ship.hull.water_density * ship.rudder.area / hull;
-        let small = ship.small_speed();
+        let small = at.small;
         let (u, v, r) = (flow.u, flow.v, flow.r * l);
         let (abs_u, abs_v, abs_r) = (flow.abs_u, flow.abs_v, flow.abs_r * l);
         let n = at.inputs.n * d;
@@ -108,10 +108,10 @@ impl<S: Scalar> Physics<S> for Symmetric {
             v * v,
             v * r,
             r * r,
-            n * abs_n * propeller,
-            n * n * propeller,
+            S::lift(n * abs_n * propeller),
+            S::lift(n * n * propeller),
             u * abs_n * propeller,
-            delta * delta * race * rudder,
+            race * (delta * delta) * rudder,
         ];
         let lateral: [S; LATERAL] = [
             v * abs_u,
@@ -124,9 +124,9 @@ impl<S: Scalar> Physics<S> for Symmetric {
             abs_v * r,
             v * abs_n * propeller,
             r * abs_n * propeller,
-            delta * n * abs_n * propeller,
-            delta * u * abs_u * rudder,
-            delta * delta * delta * race * rudder,
+            S::lift(delta * n * abs_n * propeller),
+            u * abs_u * delta * rudder,
+            race * (delta * delta * delta) * rudder,
         ];
         Force {
             x: dot(&p[..SURGE], &surge) * hull,

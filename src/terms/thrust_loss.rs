@@ -1,11 +1,13 @@
 //! A loss of thrust in proportion: a fouled, damaged or badly known propeller.
-//! The race on the rudder is made of thrust and weakens with it.
+//! The propeller race at the rudder follows from the thrust and weakens with it; torque is not modelled.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Loss of thrust.
@@ -41,7 +43,7 @@ impl Term for ThrustLoss {
 }
 
 impl<S: Scalar> Physics<S> for ThrustLoss {
-    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
         adjust.thrust *= S::one() - p[0];
     }
 }

@@ -1,12 +1,12 @@
-//! Bow thruster, losing force as the ship gathers speed.
-//! Force follows the command at once; the moment fades later than the force, as the hull aft of the jet is pulled the other way.
+//! Bow thruster, whose force decreases with the ship's speed.
+//! Force follows the command at once; the moment decreases later than the force, as suction on the hull aft of the jet acts the other way.
 //! A ship without thruster particulars gets a typical one: 1e-4 rho g L^2 d at 0.4 L.
 
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -57,22 +57,22 @@ impl Term for Thruster {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::Force
     }
 }
 
 impl<S: Scalar> Physics<S> for Thruster {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let hull = &at.ship.hull;
         let (thrust, x) = at.ship.thruster.as_ref().map_or_else(
             || (1e-4 * hull.water_density * size::GRAVITY * hull.lpp.powi(2) * hull.draught, 0.4 * hull.lpp),
             |t| (t.thrust, t.x),
         );
         let full = p[0] * at.inputs.thruster * thrust;
-        let left = |half: S| {
+        let left = |half: S::Coefficient| {
             let speed = flow.u / half;
-            full / (speed * speed + 1.0)
+            S::lift(full) / (speed * speed + 1.0)
         };
         Force { x: S::zero(), y: left(p[1]), n: left(p[2]) * x }
     }

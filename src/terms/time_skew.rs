@@ -1,5 +1,5 @@
-//! Channels that are reported late: positions, and the heading.
-//! First order in the delay, good while the rates change little over it; velocities are taken to be on time.
+//! Delays of the position channels and of the heading channel.
+//! First order in the delay, accurate while the rates change little over it; velocities are taken to be on time.
 
 use super::size;
 use crate::parameter::ParameterInfo;
@@ -31,7 +31,7 @@ static INFO: TermInfo = TermInfo {
         floor: 0.02,
         stand_in: false,
         look_alikes: &["antenna", "rudder_lag"],
-        trial: "zigzags, and check the clocks",
+        trial: "zigzags after a check of the clocks",
     }],
     parameters: &[
         ParameterInfo::new("position", "tau_p", "s", "delay of the position channels")
@@ -52,7 +52,14 @@ impl Term for TimeSkew {
 }
 
 impl<S: Scalar> Physics<S> for TimeSkew {
-    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        _flow: &Flow<S>,
+        rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
         y[0] -= rate[0] * p[0];
         y[1] -= rate[1] * p[0];
         y[2] -= rate[2] * p[1];

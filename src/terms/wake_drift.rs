@@ -1,11 +1,13 @@
 //! Wake at the propeller that changes with the drift angle there.
-//! It changes thrust and, through the race, the rudder; port and starboard may differ.
+//! It changes thrust and, through the race, the rudder force; port and starboard may differ. It gives no force of its own.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Wake change in drift.
@@ -32,15 +34,10 @@ static INFO: TermInfo = TermInfo {
         trial: "turning circles at several propeller rates",
     }],
     parameters: &[
-        ParameterInfo::new(
-            "relief",
-            "c",
-            "-",
-            "wake lost when the propeller sees the flow from the side, about 0.4 over a full beam flow",
-        )
-        .scale(|_| 0.3)
-        .spread(|_| 0.5)
-        .bounds(0.0, 2.0),
+        ParameterInfo::new("relief", "c", "-", "wake lost in inflow from the side, about 0.4 in beam flow")
+            .scale(|_| 0.3)
+            .spread(|_| 0.5)
+            .bounds(0.0, 2.0),
         ParameterInfo::new("asymmetry", "c_a", "-", "wake gained when the stern moves to starboard")
             .scale(|_| 0.1)
             .spread(|_| 0.2)
@@ -56,7 +53,7 @@ impl Term for WakeDrift {
 }
 
 impl<S: Scalar> Physics<S> for WakeDrift {
-    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
         adjust.wake_relief += p[0];
         adjust.wake_asymmetry += p[1];
     }

@@ -1,5 +1,5 @@
-//! A speed log that reports velocity through the water although it is read as over ground.
-//! Without a current in the model there is no difference, and no effect.
+//! A speed log that measures velocity through the water but is read as velocity over ground.
+//! Without a current in the model it has no effect.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
@@ -50,7 +50,14 @@ impl Term for WaterLog {
 }
 
 impl<S: Scalar> Physics<S> for WaterLog {
-    fn measure(&self, p: &[S], _at: &Instant<S>, flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
         y[3] -= flow.current[0] * p[0];
         y[4] -= flow.current[1] * p[0];
     }

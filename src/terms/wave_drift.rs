@@ -1,11 +1,11 @@
-//! Mean drift load of waves that were not measured: one direction on earth, a different gain ahead and abeam.
-//! Unlike wind it does not depend on the speed of the ship; unlike `earth_force` it is an order of magnitude stronger abeam than ahead.
+//! Mean drift load of unmeasured waves: one direction on the earth, with a different gain ahead and abeam.
+//! It does not depend on the ship's speed, as a wind load does; it is an order of magnitude stronger abeam than ahead, as `earth_force` is not.
 
 use super::waves::drift_load;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -25,7 +25,7 @@ static INFO: TermInfo = TermInfo {
     needs: &[],
     mechanisms: &[Mechanism {
         name: "wave_drift",
-        title: "wave drift of waves that were not recorded",
+        title: "wave drift of unrecorded waves",
         kind: Kind::Environment,
         parameters: &["north", "east"],
         companions: &["ahead", "abeam", "yaw"],
@@ -34,7 +34,7 @@ static INFO: TermInfo = TermInfo {
         floor: 0.02,
         stand_in: false,
         look_alikes: &["mean_wind", "earth_force", "current"],
-        trial: "drifting stopped on several headings, and record the waves",
+        trial: "drifting stopped on several headings with the waves recorded",
     }],
     parameters: &[
         ParameterInfo::new("north", "H2_N", "m2", "significant wave height squared, towards north")
@@ -67,13 +67,13 @@ impl Term for WaveDrift {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::Force
     }
 }
 
 impl<S: Scalar> Physics<S> for WaveDrift {
-    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
-        drift_load(at.ship, at.state.psi, [p[0], p[1]], [p[2], p[3], p[4]])
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
+        drift_load(at, [p[0], p[1]], [p[2], p[3], p[4]])
     }
 }

@@ -1,5 +1,5 @@
 //! A rate gyro that reads a constant too much.
-//! Only the yaw-rate channel; the heading channel tells.
+//! It acts on the yaw-rate channel only; it is identifiable from the heading channel.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
@@ -46,7 +46,14 @@ impl Term for YawRateBias {
 }
 
 impl<S: Scalar> Physics<S> for YawRateBias {
-    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
-        y[5] += p[0];
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        _flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
+        y[5] = y[5] + p[0];
     }
 }

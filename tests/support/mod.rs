@@ -1,5 +1,5 @@
 //! Recordings made by the model itself, with gusts and coloured sensors, for the tests of the diagnosis.
-//! Fine RK4 steps; the concealed cases proper, made by other simulators, are in the experiments.
+//! The steps are fine RK4 steps; the concealed cases, made by other simulators, are in the experiments.
 
 #![allow(dead_code)]
 
@@ -9,6 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use std::path::Path;
 use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::noise::{GROUP_OF, Noise, SensorNoise};
+use trimtab::dynamics::Dynamics;
 use trimtab::model::Model;
 use trimtab::physics::Form;
 use trimtab::ship::Ship;
@@ -42,7 +43,7 @@ pub fn runs(model: &Model, noise: &Noise, count: usize, seed: u64) -> Vec<Run> {
     commanded(model, noise, count, seed, &|_, _| 0.0)
 }
 
-/// The same with a bow thruster, told what to do by run and second.
+/// [`runs`] with a bow thruster, whose command is given by run and time \[s\].
 pub fn commanded(
     model: &Model,
     noise: &Noise,
@@ -53,71 +54,18 @@ pub fn commanded(
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     (0..count)
         .map(|i| {
-            let dt = 2.0;
             let n0 = 2.0 + 1.5 * normal(&mut rng).tanh();
-            let side = if i % 2 == 0 { 1.0 } else { -1.0 };
-            let mut delta: f64 = 0.0;
-            let mut n = n0;
-            let mut inputs = Vec::new();
-            for k in 0..121 {
-                let t = k as f64 * dt;
-                let goal = match i % 4 {
-                    0 => side * 0.5,
-                    1 => side * 0.35 * (t / 25.0).sin().signum(),
-                    2 => 0.3 * (t / 17.0 + i as f64).sin(),
-                    _ => 0.1 * side,
-                };
-                let n_goal = if i % 4 == 3 && t > 80.0 { -2.0 } else { n0 };
-                delta += (goal - delta).clamp(-0.09, 0.09);
-                n += (n_goal - n).clamp(-0.2, 0.2);
-                inputs.push(Inputs { thruster: thruster(i, t), ..Inputs::actuators(t, n, delta) });
-            }
+            let inputs = orders(i, n0, thruster);
             let heading = std::f64::consts::TAU * (i as f64 * 0.618_034).fract();
             let session = format!("s{}", (i / 4) % 4);
             let theta = model.values_in(&session);
-            let initial = [0.0, 0.0, heading, 1.8 * n0, 0.0, 0.0];
-            let mut state = initial;
-            let mut force = [0.0; 3];
-            let mut colour = [0.0; 6];
-            for c in 0..6 {
-                colour[c] = noise.sensors[GROUP_OF[c]].coloured * normal(&mut rng);
-            }
-            // What the ship really does with its orders.
-            let fine = Integration { method: Method::Rk4, substeps: 8 };
-            let one = Integration { substeps: 1, ..fine };
-            let series = driven(model, &theta, fine, dt, &inputs);
-            let h = dt / fine.substeps as f64;
-            let mut measured = Vec::new();
-            for k in 0..121 {
-                let now = State::from_array(state);
-                let at = k * fine.instants();
-                let (rates, flow) = model.rates(&theta, &now, &series[at], &Force::zero());
-                let mut y = model.measure(&theta, &now, &series[at], &rates, &flow);
-                for c in 0..6 {
-                    let s = noise.sensors[GROUP_OF[c]];
-                    y[c] += colour[c] + s.white * normal(&mut rng);
-                    let rho = (-dt / s.time).exp();
-                    colour[c] = rho * colour[c] + s.coloured * (1.0 - rho * rho).sqrt() * normal(&mut rng);
-                }
-                measured.push(y);
-                if k == 120 {
-                    break;
-                }
-                for f in 0..fine.substeps {
-                    let push = Force { x: force[0], y: force[1], n: force[2] };
-                    state = step(model, &theta, one, h, &state, &series[at + f * one.instants()..], &push);
-                    let rho = (-h / noise.force_time).exp();
-                    for e in 0..3 {
-                        force[e] = rho * force[e] + noise.force[e] * (1.0 - rho * rho).sqrt() * normal(&mut rng);
-                    }
-                }
-            }
+            let measured = measured(model, &theta, noise, &inputs, [0.0, 0.0, heading, 1.8 * n0, 0.0, 0.0], &mut rng);
             Run {
                 name: format!("run {i}"),
                 recording: format!("run {i}"),
                 session,
                 manoeuvre: String::new(),
-                dt,
+                dt: DT,
                 inputs,
                 initial: measured[0],
                 measured,
@@ -126,4 +74,77 @@ pub fn commanded(
             }
         })
         .collect()
+}
+
+/// Sample period \[s\].
+const DT: f64 = 2.0;
+
+/// The recorded orders of run `i` with a first propeller rate \[rps\].
+fn orders(i: usize, n0: f64, thruster: &dyn Fn(usize, f64) -> f64) -> Vec<Inputs<f64>> {
+    let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+    let mut delta: f64 = 0.0;
+    let mut n = n0;
+    let at = |k: i32| {
+        let t = f64::from(k) * DT;
+        let goal = match i % 4 {
+            0 => side * 0.5,
+            1 => side * 0.35 * (t / 25.0).sin().signum(),
+            2 => 0.3 * (t / 17.0 + i as f64).sin(),
+            _ => 0.1 * side,
+        };
+        let n_goal = if i % 4 == 3 && t > 80.0 { -2.0 } else { n0 };
+        delta += (goal - delta).clamp(-0.09, 0.09);
+        n += (n_goal - n).clamp(-0.2, 0.2);
+        Inputs { thruster: thruster(i, t), ..Inputs::actuators(t, n, delta) }
+    };
+    (0..121).map(at).collect()
+}
+
+/// The states that noisy sensors report of a ship under these orders and an Ornstein-Uhlenbeck force.
+fn measured(
+    model: &Model,
+    theta: &[f64],
+    noise: &Noise,
+    orders: &[Inputs<f64>],
+    initial: [f64; 6],
+    rng: &mut ChaCha8Rng,
+) -> Vec<[f64; 6]> {
+    let mut state = initial;
+    let mut force = [0.0; 3];
+    let mut colour = [0.0; 6];
+    for c in 0..6 {
+        colour[c] = noise.sensors[GROUP_OF[c]].coloured * normal(rng);
+    }
+    // The actuators that follow from the orders.
+    let fine = Integration { method: Method::Rk4, substeps: 8 };
+    let one = Integration { substeps: 1, ..fine };
+    let dynamics = Dynamics::new(model, theta.to_vec());
+    let series = driven(&dynamics, fine, DT, orders);
+    let h = DT / fine.substeps as f64;
+    let mut measured = Vec::new();
+    for k in 0..orders.len() {
+        let now = State::from_array(state);
+        let at = k * fine.instants();
+        let (rates, flow) = dynamics.rates(&now, &series[at], &Force::zero());
+        let mut y = dynamics.measure(&now, &series[at], &rates, &flow);
+        for c in 0..6 {
+            let s = noise.sensors[GROUP_OF[c]];
+            y[c] += colour[c] + s.white * normal(rng);
+            let rho = (-DT / s.time).exp();
+            colour[c] = rho * colour[c] + s.coloured * (1.0 - rho * rho).sqrt() * normal(rng);
+        }
+        measured.push(y);
+        if k + 1 == orders.len() {
+            break;
+        }
+        for f in 0..fine.substeps {
+            let push = Force { x: force[0], y: force[1], n: force[2] };
+            state = step(&dynamics, one, h, &state, &series[at + f * one.instants()..], &push);
+            let rho = (-h / noise.force_time).exp();
+            for e in 0..3 {
+                force[e] = rho * force[e] + noise.force[e] * (1.0 - rho * rho).sqrt() * normal(rng);
+            }
+        }
+    }
+    measured
 }

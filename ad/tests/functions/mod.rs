@@ -1,11 +1,11 @@
-//! Every operator and function that physics may use, as a list the law tests run over.
-//! It holds no test and no expected value of its own.
+//! A list of every operator and function that physics may use, for the law tests.
+//! It holds no test and no expected value.
 #![allow(dead_code, reason = "each test file is a crate of its own and uses a part of this")]
 
 use proptest::test_runner::{Config, RngSeed};
 use trimtab_ad::{Scalar, smooth};
 
-/// One operator or function of two variables; those of one variable leave `y` alone.
+/// One operator or function of two variables; a function of one variable ignores `y`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Function {
     Add,
@@ -147,7 +147,7 @@ pub fn close(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance * 1f64.max(a.abs()).max(b.abs())
 }
 
-/// The same points on every run and on every machine.
+/// A configuration with equal points on every run and on every machine.
 pub fn config() -> Config {
     Config { cases: 1000, rng_seed: RngSeed::Fixed(20250218), failure_persistence: None, ..Config::default() }
 }

@@ -1,5 +1,5 @@
-//! Runs the campaign of concealed cases, one row of results a case, and summarises them against the targets.
-//! Finished cases are in the results file and are not run again, so that an interrupted campaign goes on where it stopped.
+//! Runs the campaign of concealed cases, one row of results a case, and summarises them against the aims.
+//! A case with a row in the results file is not run again, so that an interrupted campaign can be continued.
 
 use std::collections::BTreeSet;
 use std::fs::OpenOptions;
@@ -10,15 +10,18 @@ use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use trimtab_experiments::conceal::ConcealError;
-use trimtab_experiments::conceal::campaign::{self, Planned, SEED};
-use trimtab_experiments::conceal::judge::Score;
+use trimtab_experiments::conceal::campaign::figure::figure;
+use trimtab_experiments::conceal::campaign::plan::{Planned, SEED, ci_slice, plan};
+use trimtab_experiments::conceal::campaign::summary::{summary, table};
+use trimtab_experiments::conceal::error::ConcealError;
+use trimtab_experiments::conceal::judge::score::Score;
 use trimtab_experiments::conceal::runner::Runner;
+use trimtab_experiments::folders::exit;
 
-/// Makes, diagnoses and judges concealed cases, and compares the scores with the targets.
+/// Makes, diagnoses and judges concealed cases, and compares the scores with the aims.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the results (`cases.csv`, `summary.csv`, the figure) and for cases while they run.
+    /// Folder for the results (`cases.csv`, `summary.csv`, the figure) and for each case while it runs.
     #[arg(long, default_value = "figures/concealed")]
     out: PathBuf,
     /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json`.
@@ -42,19 +45,19 @@ struct Arguments {
     /// Longest time for one diagnosis \[s\].
     #[arg(long, default_value_t = 300)]
     limit: u64,
-    /// Keep the folders of the cases, for looking.
+    /// Keep the folders of the cases, for inspection.
     #[arg(long)]
     keep: bool,
     /// The diagnosis alone, without the baselines.
     #[arg(long)]
     alone: bool,
-    /// Also ask sparse regression: this Python has PySINDy (see experiments/peers).
+    /// Run sparse regression too, with this Python, which has PySINDy (see experiments/peers).
     #[arg(long, value_name = "PYTHON")]
     sindy: Option<PathBuf>,
     /// Print the plan and stop.
     #[arg(long)]
     list: bool,
-    /// Only summarise the results there are.
+    /// Only summarise the rows of the results file.
     #[arg(long)]
     summary: bool,
 }
@@ -68,61 +71,51 @@ enum Slice {
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(e) => {
-            eprintln!("campaign: {e}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-fn content(path: &Path, e: &dyn std::fmt::Display) -> ConcealError {
-    ConcealError::Content { path: path.to_owned(), message: e.to_string() }
+    exit("campaign", run(&Arguments::parse()))
 }
 
 fn run(a: &Arguments) -> Result<(), ConcealError> {
-    let mut plan = campaign::plan(a.seed);
+    let mut plan = plan(a.seed);
     if a.slice == Slice::Ci {
-        plan = campaign::ci_slice(&plan);
+        plan = ci_slice(&plan);
     }
     plan.retain(|c| a.only.as_ref().is_none_or(|part| c.key.contains(part.as_str())));
     if a.list {
         plan.iter().for_each(|c| println!("{:9} {}", c.arm, c.key));
         return Ok(());
     }
-    std::fs::create_dir_all(&a.out).map_err(|source| ConcealError::File { path: a.out.clone(), source })?;
+    std::fs::create_dir_all(&a.out).map_err(|source| ConcealError::file(&a.out, source))?;
     let results = a.out.join("cases.csv");
     if !a.summary {
         let done: BTreeSet<String> = read(&results)?.into_iter().map(|s| s.case).collect();
         plan.retain(|c| !done.contains(&c.key));
-        // The first of every kind, then the second: a campaign that is not finished is a fair sample of the whole.
+        // The first case of every kind, then the second: an unfinished campaign is a fair sample of the whole.
         plan.sort_by_key(|c| c.key.rsplit('/').next().and_then(|i| i.parse::<usize>().ok()));
         plan.truncate(a.most.unwrap_or(usize::MAX));
         if !plan.is_empty() {
-            sail(a, &plan, &results)?;
+            execute(a, &plan, &results)?;
         }
     }
     summarise(a, &read(&results)?)
 }
 
-/// The rows so far; none when there is no file yet.
+/// The rows of the results file; none without a file.
 fn read(path: &Path) -> Result<Vec<Score>, ConcealError> {
     if !path.exists() {
         return Ok(Vec::new());
     }
-    let mut reader = csv::Reader::from_path(path).map_err(|e| content(path, &e))?;
-    reader.deserialize().collect::<Result<_, _>>().map_err(|e| content(path, &e))
+    let mut reader = csv::Reader::from_path(path).map_err(|e| ConcealError::content(path, &e))?;
+    reader.deserialize().collect::<Result<_, _>>().map_err(|e| ConcealError::content(path, &e))
 }
 
-/// Runs the cases of `plan` and appends a row for each as it is finished.
-fn sail(a: &Arguments, plan: &[Planned], results: &Path) -> Result<(), ConcealError> {
+/// Runs the cases of `plan` and appends a row for each finished case.
+fn execute(a: &Arguments, plan: &[Planned], results: &Path) -> Result<(), ConcealError> {
     let header = !results.exists();
     let file = OpenOptions::new()
         .create(true)
         .append(true)
         .open(results)
-        .map_err(|source| ConcealError::File { path: results.to_owned(), source })?;
+        .map_err(|source| ConcealError::file(results, source))?;
     let writer = Mutex::new(csv::WriterBuilder::new().has_headers(header).from_writer(file));
     let bar = ProgressBar::new(plan.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{pos}/{len} {wide_bar} {eta} {msg}") {
@@ -139,26 +132,25 @@ fn sail(a: &Arguments, plan: &[Planned], results: &Path) -> Result<(), ConcealEr
     let outcome = runner.all(plan, a.workers, &|score| {
         bar.set_message(score.case.clone());
         bar.inc(1);
-        // A panic in another thread cannot leave half a row: the writer keeps whole ones.
+        // A panic in another thread cannot leave half a row: the writer writes whole rows.
         let mut writer = writer.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        writer.serialize(&score).and_then(|()| Ok(writer.flush()?)).map_err(|e| content(results, &e))
+        writer.serialize(&score).and_then(|()| Ok(writer.flush()?)).map_err(|e| ConcealError::content(results, &e))
     });
     bar.finish_and_clear();
     outcome
 }
 
 fn summarise(a: &Arguments, scores: &[Score]) -> Result<(), ConcealError> {
-    let lines = campaign::summary(scores);
-    let table = campaign::table(&lines);
+    let table = table(&summary(scores));
     println!("{table}");
     let path = a.out.join("summary.csv");
-    let mut writer = csv::Writer::from_path(&path).map_err(|e| content(&path, &e))?;
-    writer.write_record(table.header()).map_err(|e| content(&path, &e))?;
+    let mut writer = csv::Writer::from_path(&path).map_err(|e| ConcealError::content(&path, &e))?;
+    writer.write_record(table.header()).map_err(|e| ConcealError::content(&path, &e))?;
     for row in table.rows() {
-        writer.write_record(row).map_err(|e| content(&path, &e))?;
+        writer.write_record(row).map_err(|e| ConcealError::content(&path, &e))?;
     }
-    writer.flush().map_err(|source| ConcealError::File { path, source })?;
+    writer.flush().map_err(|source| ConcealError::file(&path, source))?;
     let stem = a.out.join("concealed");
-    campaign::figure(scores).save(&stem).map_err(|e| content(&stem, &e))?;
+    figure(scores).save(&stem).map_err(|e| ConcealError::content(&stem, &e))?;
     Ok(())
 }

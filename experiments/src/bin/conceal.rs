@@ -5,12 +5,16 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use trimtab_experiments::conceal::craft::Family;
+use trimtab_experiments::conceal::case::Case;
 use trimtab_experiments::conceal::design::Design;
+use trimtab_experiments::conceal::effects::catalogue::catalogue;
+use trimtab_experiments::conceal::error::ConcealError;
+use trimtab_experiments::conceal::family::Family;
 use trimtab_experiments::conceal::meter::DiagnosisMeter;
-use trimtab_experiments::conceal::{Background, Case, ConcealError, Spec, Strength, effects};
+use trimtab_experiments::conceal::spec::{Background, Spec, Strength};
+use trimtab_experiments::folders::exit;
 
-/// Writes recordings with a concealed effect into OUT/study and what it was, sealed, into OUT/sealed.
+/// Writes recordings with a concealed effect into OUT/study, and its sealed manifest into OUT/sealed.
 #[derive(Parser)]
 struct Arguments {
     /// Equations of the truth.
@@ -25,10 +29,10 @@ struct Arguments {
     /// Physical size, in the unit of the effect; once for every effect.
     #[arg(long)]
     size: Vec<f64>,
-    /// What else troubles the data.
+    /// Sea and sensors beside the effect.
     #[arg(long, value_enum, default_value = "ordinary")]
     background: Background,
-    /// Which runs there are.
+    /// Which runs are recorded.
     #[arg(long, value_enum, default_value = "standard")]
     design: Design,
     /// Let the effects act in the second half of the sessions only.
@@ -48,21 +52,12 @@ struct Arguments {
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     if arguments.list {
-        for e in effects::catalogue() {
+        for e in catalogue() {
             println!("{:14} {:9} {:>8} {:6} {}", e.name, format!("{:?}", e.class), e.size, e.unit, e.law);
         }
         return ExitCode::SUCCESS;
     }
-    match run(&arguments) {
-        Ok(study) => {
-            println!("{}", study.display());
-            ExitCode::SUCCESS
-        }
-        Err(e) => {
-            eprintln!("conceal: {e}");
-            ExitCode::from(2)
-        }
-    }
+    exit("conceal", run(&arguments).map(|study| println!("{}", study.display())))
 }
 
 fn run(a: &Arguments) -> Result<PathBuf, ConcealError> {

@@ -1,12 +1,15 @@
-//! Judges one diagnosis: opens the seal of a concealed case and scores the `diagnosis.json` that was written before.
+//! Judges one diagnosis: opens the seal of a concealed case and scores a `diagnosis.json` that was written before.
 //! It neither makes cases nor diagnoses them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use trimtab_experiments::conceal::judge::{Diagnosis, judge};
-use trimtab_experiments::conceal::{ConcealError, seal};
+use trimtab_experiments::conceal::error::ConcealError;
+use trimtab_experiments::conceal::judge::rules::judge;
+use trimtab_experiments::conceal::judge::said::Diagnosis;
+use trimtab_experiments::conceal::seal;
+use trimtab_experiments::folders::exit;
 
 /// Prints the scores of a diagnosis as one CSV row with its header.
 #[derive(Parser)]
@@ -18,22 +21,13 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
-        Ok(row) => {
-            print!("{row}");
-            ExitCode::SUCCESS
-        }
-        Err(e) => {
-            eprintln!("judge: {e}");
-            ExitCode::from(2)
-        }
-    }
+    exit("judge", run(&Arguments::parse()).map(|row| print!("{row}")))
 }
 
 fn run(arguments: &Arguments) -> Result<String, ConcealError> {
     let diagnosis = Diagnosis::read(&arguments.diagnosis)?;
     let score = judge(&seal::open(&arguments.case)?, &diagnosis);
-    let fail = |e: &dyn std::fmt::Display| ConcealError::Content { path: "the row".into(), message: e.to_string() };
+    let fail = |e: &dyn std::fmt::Display| ConcealError::content(Path::new("the row"), e);
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.serialize(score).map_err(|e| fail(&e))?;
     let bytes = writer.into_inner().map_err(|e| fail(&e))?;

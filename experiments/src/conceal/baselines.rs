@@ -1,5 +1,5 @@
-//! What a user would do otherwise, and the oracle, on the very files of a case: the rows beside the diagnosis in the campaign's table.
-//! They are asked after the diagnosis has spoken and the seal is open; only the oracle is told what was in it.
+//! The rival methods and the oracle on the files of a case, for the rows beside the diagnosis in the campaign's table.
+//! They run after the diagnosis, when the seal is open; only the oracle is told the concealed effects.
 
 use std::path::Path;
 
@@ -12,22 +12,25 @@ use trimtab::recording::Split;
 use trimtab::ship::Ship;
 use trimtab::study::Study;
 
-use super::campaign::Planned;
+use super::campaign::plan::Planned;
+use super::error::ConcealError;
+use super::judge::rules::baseline_right;
+use super::judge::score::Score;
 use super::seal::Manifest;
-use super::{ConcealError, Strength};
+use super::spec::Strength;
 
-/// Which baselines are worth their time on a case.
+/// Which baselines are run on a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wanted {
-    /// The refit of trajectories, and what is chosen on its residuals: BIC here, sparse regression in a script of its own.
+    /// The refit of trajectories, and the mechanism chosen from its residuals: BIC here, sparse regression in a script.
     pub rivals: bool,
     /// The oracle.
     pub oracle: bool,
 }
 
 impl Wanted {
-    /// Rivals where one effect or none is concealed in the standard design; the oracle where there is one to be told of. Below a
-    /// ratio of 6 there is nothing to close and little to name.
+    /// Rivals where one effect or none is concealed in the standard design; the oracle where one effect is concealed. Below a
+    /// ratio of 6 no baseline is run: there is no gap to close and little to name.
     pub fn on(planned: &Planned) -> Self {
         let weak = planned.spec.effects.iter().any(|(_, s)| matches!(s, Strength::Snr(snr) if *snr < 6.0));
         let of = |arms: &[&str]| arms.contains(&planned.arm) && !weak;
@@ -35,23 +38,23 @@ impl Wanted {
     }
 }
 
-/// What the baselines say of a case.
+/// The answers of the baselines on a case.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Baselines {
     /// Held-out score of the refit of trajectories \[%\].
     pub refit: Option<f64>,
-    /// What iid BIC names; `nothing` when no mechanism lowers it.
+    /// The mechanism that iid BIC names; `nothing` when no mechanism lowers it.
     pub bic: Option<String>,
     /// Held-out score of the oracle \[%\].
     pub oracle: Option<f64>,
 }
 
-/// Asks the baselines about the study of an opened case.
+/// Runs the baselines on the study of an opened case.
 ///
 /// # Errors
 /// [`ConcealError::Content`] when the library refuses the study.
 pub fn ask(study: &Path, manifest: &Manifest, wanted: Wanted) -> Result<Baselines, ConcealError> {
-    let fail = |e: &dyn std::fmt::Display| ConcealError::Content { path: study.to_owned(), message: e.to_string() };
+    let fail = |e: &dyn std::fmt::Display| ConcealError::content(study, e);
     let mut said = Baselines::default();
     if !(wanted.rivals || wanted.oracle) {
         return Ok(said);
@@ -77,12 +80,12 @@ pub fn ask(study: &Path, manifest: &Manifest, wanted: Wanted) -> Result<Baseline
     Ok(said)
 }
 
-/// What was concealed, in the names of the diagnosis.
+/// The concealed effects, in the names of the diagnosis.
 fn told(manifest: &Manifest) -> Vec<Told> {
     let mut told = Vec::new();
     for answer in &manifest.answers {
         let extent = if manifest.spec.contrast { Extent::In(answer.sessions.clone()) } else { Extent::All };
-        // A log through the water says nothing without the current it leaves out.
+        // A log through the water has no effect without the current.
         let needed = (answer.effect == "water_log").then_some("current");
         for mechanism in needed.into_iter().chain(answer.accepted.first().map(String::as_str)) {
             told.push(Told { mechanism: mechanism.to_owned(), extent: extent.clone() });
@@ -91,24 +94,63 @@ fn told(manifest: &Manifest) -> Vec<Told> {
     told
 }
 
+impl Baselines {
+    /// Adds the answers to the scores of the diagnosis on the same case.
+    pub fn add_to(&self, score: &mut Score, manifest: &Manifest) {
+        score.refit_held_out = self.refit;
+        score.oracle_held_out = self.oracle;
+        if let Some(name) = &self.bic {
+            score.bic_named.clone_from(name);
+            score.bic_right = Some(baseline_right(manifest, name));
+        }
+        if let (Some(base), Some(named), Some(oracle)) = (score.base_held_out, score.named_held_out, self.oracle)
+            && base - oracle > 0.02 * base.abs()
+        {
+            score.gap_closed = Some((base - named) / (base - oracle));
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conceal::campaign::{SEED, plan};
-    use crate::conceal::craft::Family;
-    use crate::conceal::effects::{Class, catalogue};
+    use crate::conceal::campaign::plan::{SEED, plan};
+    use crate::conceal::case::Case;
+    use crate::conceal::effects::catalogue::catalogue;
+    use crate::conceal::effects::effect::Class;
+    use crate::conceal::family::Family;
+    use crate::conceal::spec::Spec;
     use crate::conceal::strength::ForceMeter;
-    use crate::conceal::{Case, Spec};
     use trimtab::report::diagnosis::mechanism_names;
 
     #[test]
-    fn rivals_are_asked_about_nulls_and_the_oracle_about_effects_that_can_be_seen() {
+    fn rivals_run_on_nulls_and_the_oracle_on_visible_effects() {
         let of = |key: &str| Wanted::on(plan(SEED).iter().find(|c| c.key == key).unwrap());
         let said = |rivals, oracle| Wanted { rivals, oracle };
         assert_eq!(of("hd/null/gusts/1"), said(true, false));
         assert_eq!(of("mmg/current/snr12/1"), said(true, true));
         assert_eq!(of("hd/current/snr3/1"), said(false, false));
         assert_eq!(of("hd/tanh_moment/x0.5/1"), said(false, false));
+    }
+
+    #[test]
+    fn the_gap_to_the_oracle_is_closed_by_a_share() {
+        let manifest = Manifest {
+            spec: Spec::null(Family::Hd, 1),
+            expected: "NAMED".into(),
+            structure: Vec::new(),
+            answers: Vec::new(),
+            asymmetry: None,
+            files: Default::default(),
+        };
+        let mut s = Score { base_held_out: Some(2.0), named_held_out: Some(1.1), ..Score::default() };
+        let said = Baselines { refit: Some(3.0), bic: Some("wind".into()), oracle: Some(1.0) };
+        said.add_to(&mut s, &manifest);
+        assert!((s.gap_closed.unwrap() - 0.9).abs() < 1e-12);
+        assert_eq!((s.refit_held_out, s.bic_named.as_str(), s.bic_right), (Some(3.0), "wind", Some(false)));
+        let mut near = Score { base_held_out: Some(1.01), named_held_out: Some(1.0), ..Score::default() };
+        said.add_to(&mut near, &manifest);
+        assert_eq!(near.gap_closed, None, "a gap within 2 % of the base is noise");
     }
 
     #[test]
@@ -120,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn an_oracle_told_of_a_strong_current_beats_the_refit_and_the_criterion_sees_something() {
+    fn an_oracle_told_of_a_strong_current_beats_the_refit_and_bic_names_a_mechanism() {
         let folder = tempfile::tempdir().unwrap();
         let effects = vec![("current".to_owned(), Strength::Times(2.0))];
         let spec = Spec { effects, ..Spec::null(Family::Hd, 12) };

@@ -1,5 +1,5 @@
-//! The signal-to-noise ratio as the diagnosis' own test would see it: what parameters, nuisances and noise can mimic is projected out.
-//! It is the one part of the generator that asks the library, and only how strong to make an effect, never what it looks like.
+//! The signal-to-noise ratio of an effect in the test of the diagnosis, with parameters, nuisances and noise projected out.
+//! It is the one part of the generator that calls the library, and only for the size of an effect, never for its form.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -11,18 +11,20 @@ use trimtab::model::Model;
 use trimtab::ship::Ship;
 use trimtab::state::Inputs;
 
-use super::craft::Family;
-use super::design::PERIOD;
-use super::effects::{Class, Entry};
+use super::effects::effect::{Class, Entry};
+use super::error::ConcealError;
+use super::family::Family;
+use super::recorded::Recorded;
+use super::seal;
 use super::strength::{ForceMeter, Meter};
-use super::{ConcealError, Recorded, seal};
+use super::track::PERIOD;
 
 /// The ratio of the first accepted mechanism that has a test, on the runs to train on; of one force in their windows where effects
 /// have windows. Effects without a test (gusts, those outside the catalogue) are graded by [`ForceMeter`].
 pub struct DiagnosisMeter {
     model: Model,
     settings: Settings,
-    /// The last runs without an effect and what was fitted to them: the solver of sizes asks again and again about the same.
+    /// The last runs without an effect and the signal fitted to them: the solver of sizes asks for one case several times.
     last: Mutex<Option<(Vec<Run>, Signal)>>,
 }
 
@@ -45,9 +47,9 @@ impl Meter for DiagnosisMeter {
         if effect.class == Class::Random {
             return force();
         }
-        // Both need the channels of the case, or the same model would see two different seas.
+        // Both get the channels of the case: a model must see one sea.
         let (a, b) = (runs(without, with), runs(with, with));
-        // A panic elsewhere cannot leave half a value behind: it is replaced as a whole.
+        // The value is replaced as a whole, so that a panic elsewhere leaves none half written.
         let mut last = self.last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if !last.as_ref().is_some_and(|(runs, _)| same(runs, &a)) {
             let signal = Signal::new(&self.model, &a, &self.settings)
@@ -59,12 +61,12 @@ impl Meter for DiagnosisMeter {
             return Ok(signal.ratio_in(&b, &windows));
         }
         let ratio = |mechanism: &&str| last.as_ref().map_or(0.0, |(_, signal)| signal.ratio(&b, mechanism));
-        // Some mechanisms have no sensitivity where they are neutral: a log without a current.
+        // Some mechanisms have no sensitivity at their neutral values: a log without a current.
         effect.accepted.iter().map(ratio).find(|r| *r > 0.0).map_or_else(force, Ok)
     }
 }
 
-/// When effects of limited duration acted: index among the runs to train on, first and last row.
+/// Windows of effects of limited duration: index among the runs to train on, first and last row.
 fn windows(recorded: &Recorded) -> Vec<(usize, usize, usize)> {
     let train: Vec<usize> = (0..recorded.plans.len()).filter(|i| !recorded.plans[*i].test).collect();
     let row = |t: f64| (t / PERIOD).round().max(0.0) as usize;
@@ -72,13 +74,13 @@ fn windows(recorded: &Recorded) -> Vec<(usize, usize, usize)> {
     recorded.windows.iter().filter_map(|(run, start, end)| Some((place(*run)?, row(*start), row(*end)))).collect()
 }
 
-/// Whether two sets of runs hold the same numbers, missing ones included.
+/// Whether two sets of runs hold equal numbers, missing ones included.
 fn same(a: &[Run], b: &[Run]) -> bool {
     let bits = |r: &Run| r.measured.iter().flatten().map(|v| v.to_bits()).collect::<Vec<u64>>();
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.inputs == b.inputs && bits(a) == bits(b))
 }
 
-/// The runs to train on, as the filter takes them, with the environment channels of `sea`.
+/// The runs to train on as runs of the filter, with the environment channels of `sea`.
 fn runs(recorded: &Recorded, sea: &Recorded) -> Vec<Run> {
     let train = (0..recorded.plans.len()).filter(|i| !recorded.plans[*i].test);
     train
@@ -127,7 +129,8 @@ fn runs(recorded: &Recorded, sea: &Recorded) -> Vec<Run> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conceal::{Case, Spec, Strength};
+    use crate::conceal::case::Case;
+    use crate::conceal::spec::{Spec, Strength};
 
     fn case(meter: &DiagnosisMeter, effect: &str, size: f64) -> Case {
         let effects = vec![(effect.to_owned(), Strength::Size(size))];
@@ -146,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_push_is_graded_in_its_windows_by_what_nothing_else_can_mimic() {
+    fn a_push_is_graded_in_its_windows_with_the_nuisances_projected_out() {
         let meter = DiagnosisMeter::new(Family::Hd).unwrap();
         let of = |size: f64| case(&meter, "push", size);
         let (none, weak, strong) = (of(0.0), of(4e3), of(8e3));

@@ -1,12 +1,12 @@
-//! Sensor noise as real logs have it: white and first-order coloured parts, dropouts and outliers.
-//! It changes what is reported and nothing else; defects with a name are effects (`effects::sensor`).
+//! Sensor noise of real logs: white and first-order coloured parts, dropouts and outliers.
+//! It changes the reported states only; sensor defects are effects (`effects::sensor`).
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
 
-use super::design::PERIOD;
+use super::track::PERIOD;
 
 /// Noise of the six channels `[x, y, psi, u, v, r]` of one data set.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -23,7 +23,7 @@ pub struct Noise {
     pub dropouts: f64,
 }
 
-/// Reported rows with noise on them; a row that dropped out is missing.
+/// Reported rows with noise; a dropped row is missing.
 pub type Rows = Vec<Option<[f64; 6]>>;
 
 impl Noise {
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn dropouts_and_outliers_come_as_often_as_asked_and_leave_other_rows_alone() {
+    fn dropouts_and_outliers_have_the_rates_asked_for_and_change_no_other_row() {
         let mut noise = Noise::ordinary(&mut ChaCha8Rng::seed_from_u64(3));
         noise.dropouts = 0.0;
         let clean = sample(&noise, 10_000);

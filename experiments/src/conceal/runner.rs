@@ -1,5 +1,5 @@
-//! One case after another, from plan to score: conceal and seal, diagnose in a process of its own, open the seal, judge.
-//! Which cases there are is the plan's to say, and what their scores amount to is the summary's.
+//! Runs cases from plan to score: conceal and seal, diagnose in a process of its own, open the seal, judge.
+//! The plan lists the cases and the summary counts the scores; neither is here.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -8,11 +8,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use super::baselines::{self, Wanted};
-use super::campaign::Planned;
-use super::judge::{Diagnosis, Score, baseline_right, judge};
+use super::campaign::plan::Planned;
+use super::case::Case;
+use super::error::ConcealError;
+use super::judge::rules::{baseline_right, judge};
+use super::judge::said::Diagnosis;
+use super::judge::score::Score;
 use super::meter::DiagnosisMeter;
+use super::seal;
+use super::spec::Strength;
 use super::strength::Meter;
-use super::{Case, ConcealError, Strength, seal};
 
 /// The script of sparse regression.
 const SINDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peers/sindy.py");
@@ -28,9 +33,9 @@ pub struct Runner {
     pub folder: PathBuf,
     /// Keep them.
     pub keep: bool,
-    /// Ask the baselines too.
+    /// Run the baselines too.
     pub baselines: bool,
-    /// Ask sparse regression too, with this Python.
+    /// Run sparse regression too, with this Python.
     pub sindy: Option<PathBuf>,
 }
 
@@ -38,7 +43,7 @@ impl Runner {
     /// Runs cases, `workers` at a time, and hands out each score as it comes, in no fixed order.
     ///
     /// # Errors
-    /// When there is no program or no meter, or what `each` fails with; a case that fails is a score with its error.
+    /// No program, no meter, or an error of `each`; a case that fails is a score with its error.
     pub fn all(
         &self,
         plan: &[Planned],
@@ -46,14 +51,15 @@ impl Runner {
         each: &(dyn Fn(Score) -> Result<(), ConcealError> + Sync),
     ) -> Result<(), ConcealError> {
         if !self.tool.is_file() {
-            let message = "the program that diagnoses is not there; `cargo build --release`, or give its place";
-            return Err(ConcealError::Content { path: self.tool.clone(), message: message.to_owned() });
+            let message =
+                "there is no such program; build it with `cargo build --release`, or give its path with --tool";
+            return Err(ConcealError::content(&self.tool, &message));
         }
         let next = AtomicUsize::new(0);
         let failed: Mutex<Option<ConcealError>> = Mutex::new(None);
         let work = || -> Result<(), ConcealError> {
             while let Some(planned) = plan.get(next.fetch_add(1, Ordering::Relaxed)) {
-                // A meter of its own: it keeps what it fitted last, and two cases at a time would take turns.
+                // A meter of its own: a meter keeps its last fit, which two cases at a time would overwrite.
                 let meter = DiagnosisMeter::new(planned.spec.family)?;
                 each(self.one(planned, &meter))?;
             }
@@ -63,7 +69,7 @@ impl Runner {
             for _ in 0..workers.max(1) {
                 scope.spawn(|| {
                     if let Err(e) = work() {
-                        // The others stop too.
+                        // The other workers stop too.
                         next.store(plan.len(), Ordering::Relaxed);
                         *failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(e);
                     }
@@ -73,12 +79,12 @@ impl Runner {
         failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).map_or(Ok(()), Err)
     }
 
-    /// One case from start to score; what goes wrong becomes the row's error.
+    /// One case from plan to score; a failure becomes the row's error.
     pub fn one(&self, planned: &Planned, meter: &dyn Meter) -> Score {
         let folder = self.folder.join(planned.key.replace('/', "_"));
         let outcome = self.attempt(planned, meter, &folder);
         if !self.keep {
-            // Left behind only when the system refuses; the next call writes over it.
+            // A folder that cannot be removed is overwritten by the next call.
             let _ = std::fs::remove_dir_all(&folder);
         }
         let mut score = outcome.unwrap_or_else(|e| Score {
@@ -109,17 +115,17 @@ impl Runner {
         command.arg("--threads").arg("1").arg("diagnose").arg(&study).arg("--json");
         let said = finish(command, &self.tool, self.limit)?;
         let seconds = began.elapsed().as_secs_f64();
-        std::fs::write(&answer, said).map_err(|source| ConcealError::File { path: answer.clone(), source })?;
+        std::fs::write(&answer, said).map_err(|source| ConcealError::file(&answer, source))?;
         let diagnosis = Diagnosis::read(&answer)?;
         let manifest = seal::open(folder)?;
         let mut score = judge(&manifest, &diagnosis);
         score.seconds = Some(seconds);
         let wanted = Wanted::on(planned);
         if self.baselines {
-            score.compare(&manifest, &baselines::ask(&study, &manifest, wanted)?);
+            baselines::ask(&study, &manifest, wanted)?.add_to(&mut score, &manifest);
         }
         if let Some(python) = self.sindy.as_ref().filter(|_| wanted.rivals) {
-            // Numerical libraries would start a thread a processor for each of the workers.
+            // Otherwise numerical libraries start one thread a processor for each worker.
             let mut command = Command::new(python);
             command.arg(SINDY).arg(folder).env("OMP_NUM_THREADS", "1").env("OPENBLAS_NUM_THREADS", "1");
             let said = finish(command, python, self.limit)?;
@@ -130,11 +136,11 @@ impl Runner {
     }
 }
 
-/// Runs a command to its end, at most `limit`; gives what it printed. Exit code 1 is an answer, not a failure.
+/// Runs a command to its end, at most `limit`, and gives its output. Exit code 1 is an answer, not a failure.
 fn finish(mut command: Command, program: &Path, limit: Duration) -> Result<String, ConcealError> {
-    let file = |source| ConcealError::File { path: program.to_owned(), source };
-    let fail = |message: String| ConcealError::Content { path: program.to_owned(), message };
-    // Output goes through files: a pipe that nobody reads would stop a talkative program.
+    let file = |source| ConcealError::file(program, source);
+    let fail = |message: String| ConcealError::content(program, &message);
+    // Output goes through files: a full pipe without a reader would stop the program.
     let temporary = || tempfile::tempfile().map_err(file);
     let (mut out, mut err) = (temporary()?, temporary()?);
     let copy = |f: &std::fs::File| f.try_clone().map(Stdio::from).map_err(file);
@@ -176,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_that_answers_no_has_answered_and_one_that_fails_says_why() {
+    fn exit_code_1_is_an_answer_and_exit_code_2_an_error_with_its_message() {
         let of = |script: &str| finish(shell(script), Path::new("sh"), Duration::from_secs(20));
         assert_eq!(of("echo no; exit 1").unwrap(), "no\n");
         let e = of("echo first >&2; echo last >&2; exit 2").unwrap_err().to_string();
@@ -200,11 +206,11 @@ mod tests {
             baselines: false,
             sindy: None,
         };
-        let plan = crate::conceal::campaign::plan(1);
+        let plan = crate::conceal::campaign::plan::plan(1);
         let score = runner.one(&plan[0], &crate::conceal::strength::ForceMeter::default());
         assert_eq!((score.case.as_str(), score.arm.as_str(), score.detected), (plan[0].key.as_str(), "null", None));
         assert!(score.error.contains("diagnosis.json"), "{}", score.error);
-        // What it left behind is gone, and without a program nothing is begun.
+        // The folder of the case is removed, and without a program no case is begun.
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         let missing = Runner { tool: folder.path().join("none"), ..runner };
         assert!(missing.all(&plan[..1], 1, &|_| Ok(())).is_err());

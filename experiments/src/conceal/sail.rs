@@ -1,26 +1,28 @@
-//! The integrator of the concealed cases: Runge-Kutta at a fine step, orders linear between rows, gusts, and the effects let in.
-//! It adds no sensor noise; that is done to its tracks by `noise`.
+//! The simulation of a concealed run: Runge-Kutta at a fine step, orders linear between rows, gusts, and the effects.
+//! It adds no sensor noise; `noise` does that to its tracks.
 
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::craft::{Craft, Tweak};
-use super::design::{Helmsman, PERIOD, Plan, STEPS};
-use super::effects::{Entry, Instant, Physics, Window};
-use crate::truth::{Inputs, State};
+use super::craft::Craft;
+use super::design::Plan;
+use super::effects::effect::{Entry, Instant, Physics, Window};
+use super::helm::Helmsman;
+use super::track::{Fine, INNER, PERIOD, STEPS, Track};
+use super::tweak::Tweak;
+use crate::truth::integrate::{moved, runge_kutta};
+use crate::truth::motion::{Inputs, State};
 
-/// Inner steps in one row interval: 0.25 s each.
-pub const INNER: usize = 8;
 /// Correlation time of gusts \[s\].
 pub const GUST_TIME: f64 = 20.0;
 
-/// An effect at work.
+/// An effect in a case.
 pub struct Active {
-    /// What is known of it.
+    /// Its entry in the catalogue.
     pub entry: &'static Entry,
     /// Its size.
     pub size: f64,
-    /// What it does.
+    /// Its action.
     pub physics: Box<dyn Physics>,
     /// For every session, whether it acts there.
     pub sessions: Vec<bool>,
@@ -32,7 +34,7 @@ impl Active {
         self.sessions.get(session).copied().unwrap_or(false)
     }
 
-    /// When it acts in the runs that a diagnosis is given, where its time is limited.
+    /// Its time windows in the runs that a diagnosis is given, where its time is limited.
     pub fn windows(&self, plans: &[Plan]) -> Vec<Window> {
         let given = |w: &Window| plans.get(w.0).is_some_and(|p| !p.test && self.acts_in(p.session));
         self.physics.windows().into_iter().filter(given).collect()
@@ -44,11 +46,21 @@ impl Active {
 pub enum Method {
     /// Runge-Kutta 4 at 0.25 s.
     RungeKutta,
-    /// Explicit Euler at the row interval: data as a careless simulator makes them.
+    /// Explicit Euler at the row interval: data of a coarse simulator.
     Euler,
 }
 
-/// Everything around the ship.
+impl Method {
+    /// Inner steps in one row interval.
+    fn steps(self) -> usize {
+        match self {
+            Self::RungeKutta => INNER,
+            Self::Euler => 1,
+        }
+    }
+}
+
+/// The ship and what acts on it.
 pub struct World {
     /// The ship.
     pub craft: Craft,
@@ -58,39 +70,6 @@ pub struct World {
     pub gusts: [f64; 3],
     /// Integrator.
     pub method: Method,
-}
-
-/// The states between rows, for sensors that look at another time.
-pub struct Fine<'a> {
-    nodes: &'a [State],
-}
-
-impl Fine<'_> {
-    /// The state `shift` seconds from row `row`, linear between inner steps and beyond the ends of the run.
-    pub fn at(&self, row: usize, shift: f64) -> State {
-        let h = PERIOD / INNER as f64;
-        let place = (row * INNER) as f64 + shift / h;
-        let low = (place.floor().max(0.0) as usize).min(self.nodes.len().saturating_sub(2));
-        let (Some(a), Some(b)) = (self.nodes.get(low), self.nodes.get(low + 1)) else { return State::default() };
-        let fraction = place - low as f64;
-        let (a, b) = (a.to_array(), b.to_array());
-        State::from_array(std::array::from_fn(|i| a[i] + fraction * (b[i] - a[i])))
-    }
-}
-
-/// A run as it really went, and as perfect sensors with the concealed defects would report it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Track {
-    /// True states at the rows.
-    pub truth: Vec<State>,
-    /// Reported states `[x, y, psi, u, v, r]`, before noise.
-    pub reported: Vec<[f64; 6]>,
-    /// Recorded inputs: the orders.
-    pub orders: Vec<Inputs>,
-    /// Environment channels: header with unit, values.
-    pub channels: Vec<(String, Vec<f64>)>,
-    /// For every effect, the mean square of its force: X, Y \[N\], N \[N m\].
-    pub energy: Vec<[f64; 3]>,
 }
 
 /// Unit-variance Ornstein-Uhlenbeck processes.
@@ -115,7 +94,7 @@ impl Gusts {
     }
 }
 
-/// What holds during one inner step.
+/// One inner step: gusts and the memory of the effects are constant over it.
 struct Step<'a> {
     world: &'a World,
     plan: &'a Plan,
@@ -181,22 +160,19 @@ impl Step<'_> {
         [u * cos - v * sin, u * sin + v * cos, r, du + current[1] * r, dv - current[0] * r, dr]
     }
 
-    fn advance(&self, t: f64, state: &State, inputs: [Inputs; 2], h: f64) -> State {
-        let plus = |k: &[f64; 6], h: f64| {
-            let s = state.to_array();
-            State::from_array(std::array::from_fn(|i| s[i] + h * k[i]))
-        };
-        let [from, to] = inputs;
-        let k1 = self.rates(t, state, &from, None);
+    fn advance(&self, t: f64, state: &State, [from, to]: [Inputs; 2], h: f64) -> State {
         if self.world.method == Method::Euler {
-            return plus(&k1, h);
+            return moved(state, h, &self.rates(t, state, &from, None));
         }
         let middle = Inputs { n: 0.5 * (from.n + to.n), delta: 0.5 * (from.delta + to.delta) };
-        let k2 = self.rates(t + 0.5 * h, &plus(&k1, 0.5 * h), &middle, None);
-        let k3 = self.rates(t + 0.5 * h, &plus(&k2, 0.5 * h), &middle, None);
-        let k4 = self.rates(t + h, &plus(&k3, h), &to, None);
-        let slope: [f64; 6] = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
-        plus(&slope, h)
+        runge_kutta(state, h, |fraction, s| {
+            let inputs = match fraction {
+                0.0 => &from,
+                1.0 => &to,
+                _ => &middle,
+            };
+            self.rates(t + fraction * h, s, inputs, None)
+        })
     }
 
     /// Actuators at the end of an inner step.
@@ -208,11 +184,24 @@ impl Step<'_> {
         actual
     }
 
+    /// The memory of the effects after an inner step.
+    fn remembered(&self, t: f64, h: f64, state: &State, inputs: &Inputs) -> Vec<[f64; 2]> {
+        let (water, _) = self.water(t, state, None);
+        let mut memory = self.memory.to_vec();
+        for (j, e) in self.acting() {
+            let at = self.instant(t, state, inputs, water, j);
+            if let Some(m) = memory.get_mut(j) {
+                e.physics.remember(h, &at, m);
+            }
+        }
+        memory
+    }
+
     /// Adds the square of each effect's force at a row: what it changes in the accelerations, through the ship's own inertia.
     fn add_energy(&self, t: f64, state: &State, order: &Inputs, actual: &Inputs, energy: &mut [[f64; 3]]) {
         let all = self.rates(t, state, actual, None);
         for (i, e) in self.acting() {
-            let inputs = if e.physics.moves_actuators() { order } else { actual };
+            let inputs = if e.entry.moves_actuators { order } else { actual };
             let less = self.rates(t, state, inputs, Some(i));
             let force = self.world.craft.inertial_force(std::array::from_fn(|j| all[3 + j] - less[3 + j]));
             if let Some(sum) = energy.get_mut(i) {
@@ -222,99 +211,112 @@ impl Step<'_> {
             }
         }
     }
+
+    /// Adds the value of each environment channel at a row; channels are in the order of the effects.
+    fn add_channels(&self, t: f64, state: &State, actual: &Inputs, channels: &mut [(String, Vec<f64>)]) {
+        let (water, _) = self.water(t, state, None);
+        let mut columns = channels.iter_mut();
+        for (i, e) in self.world.effects.iter().enumerate() {
+            let at = self.instant(t, state, actual, water, i);
+            for (c, (_, values)) in e.physics.channels().iter().zip(&mut columns) {
+                values.push((c.value)(&at));
+            }
+        }
+    }
 }
 
-/// Sails one plan; `index` is its place among the plans, `rng` drives its gusts.
+/// A run under way: ship, actuators, gusts and the memory of the effects.
+struct Voyage<'a> {
+    world: &'a World,
+    plan: &'a Plan,
+    index: usize,
+    gusts: Gusts,
+    memory: Vec<[f64; 2]>,
+    state: State,
+    order: Inputs,
+    actual: Inputs,
+}
+
+impl Voyage<'_> {
+    fn step(&self) -> Step<'_> {
+        let Self { world, plan, index, gusts, memory, .. } = self;
+        Step { world, plan, index: *index, gust: gusts.values, memory }
+    }
+
+    /// Adds the present row to the track.
+    fn record(&self, t: f64, track: &mut Track) {
+        let step = self.step();
+        step.add_energy(t, &self.state, &self.order, &self.actual, &mut track.energy);
+        step.add_channels(t, &self.state, &self.actual, &mut track.channels);
+        track.truth.push(self.state);
+        track.orders.push(self.order);
+    }
+
+    /// Simulates one row interval in which the orders run linearly to `next`; adds the state before each inner step to `fine`.
+    fn advance(&mut self, t: f64, next: Inputs, fine: &mut Vec<State>) {
+        let steps = self.world.method.steps();
+        let h = PERIOD / steps as f64;
+        for i in 0..steps {
+            let part = |i: usize| Inputs::between(&self.order, &next, i as f64 / steps as f64);
+            let orders = [part(i), part(i + 1)];
+            let now = t + i as f64 * h;
+            fine.push(self.state);
+            let step = self.step();
+            let reached = step.actuators(h, orders, &self.actual, &self.state);
+            let memory = step.remembered(now, h, &self.state, &self.actual);
+            let state = step.advance(now, &self.state, [self.actual, reached], h);
+            (self.state, self.memory, self.actual) = (state, memory, reached);
+            self.gusts.advance();
+        }
+        self.order = next;
+    }
+}
+
+/// Simulates one plan; `index` is its place among the plans, `rng` drives its gusts.
 pub fn sail(world: &World, plan: &Plan, index: usize, rng: ChaCha8Rng) -> Track {
-    let inner = if world.method == Method::Euler { 1 } else { INNER };
-    let h = PERIOD / inner as f64;
-    let mut gusts = Gusts::new(rng, h);
-    let mut state = State { x: plan.start[0], y: plan.start[1], psi: plan.heading, u: plan.speed, v: 0.0, r: 0.0 };
-    let mut order = Inputs { n: world.craft.trimmed_rate(plan.speed, 4.15), delta: 0.0 };
-    let mut actual = order;
-    let mut helmsman = Helmsman::new(plan, world.craft.particulars().length);
-    let mut memory = vec![[0.0; 2]; world.effects.len()];
+    let order = Inputs { n: world.craft.trimmed_rate(plan.speed, 4.15), delta: 0.0 };
+    let mut voyage = Voyage {
+        world,
+        plan,
+        index,
+        gusts: Gusts::new(rng, PERIOD / world.method.steps() as f64),
+        memory: vec![[0.0; 2]; world.effects.len()],
+        state: State { x: plan.start[0], y: plan.start[1], psi: plan.heading, u: plan.speed, v: 0.0, r: 0.0 },
+        order,
+        actual: order,
+    };
+    let mut helmsman = Helmsman::new(&plan.orders, plan.heading, world.craft.particulars().length);
+    let headers = world.effects.iter().flat_map(|e| e.physics.channels());
     let mut track = Track {
         truth: Vec::with_capacity(STEPS + 1),
         reported: Vec::with_capacity(STEPS + 1),
         orders: Vec::with_capacity(STEPS + 1),
-        channels: Vec::new(),
+        channels: headers.map(|c| (format!("{} [{}]", c.name, c.unit), Vec::with_capacity(STEPS + 1))).collect(),
         energy: vec![[0.0; 3]; world.effects.len()],
     };
-    // Where the effects' channels stand among the track's.
-    for e in &world.effects {
-        for c in e.physics.channels() {
-            track.channels.push((format!("{} [{}]", c.name, c.unit), Vec::with_capacity(STEPS + 1)));
-        }
-    }
     let mut fine = Vec::with_capacity(STEPS * INNER + 1);
     for row in 0..=STEPS {
         let t = row as f64 * PERIOD;
-        {
-            let step = Step { world, plan, index, gust: gusts.values, memory: &memory };
-            step.add_energy(t, &state, &order, &actual, &mut track.energy);
-            let (water, _) = step.water(t, &state, None);
-            let mut column = track.channels.iter_mut();
-            for (i, e) in world.effects.iter().enumerate() {
-                let at = step.instant(t, &state, &actual, water, i);
-                for c in e.physics.channels() {
-                    if let Some((_, values)) = column.next() {
-                        values.push((c.value)(&at));
-                    }
-                }
-            }
-        }
-        track.truth.push(state);
-        track.orders.push(order);
-        let next = helmsman.next(t, &state, &order);
-        for i in 0..inner {
-            let part = |f: f64| Inputs {
-                n: order.n + f * (next.n - order.n),
-                delta: order.delta + f * (next.delta - order.delta),
-            };
-            let orders = [part(i as f64 / inner as f64), part((i + 1) as f64 / inner as f64)];
-            let now = t + i as f64 * h;
-            let step = Step { world, plan, index, gust: gusts.values, memory: &memory };
-            let reached = step.actuators(h, orders, &actual, &state);
-            fine.push(state);
-            let (water, _) = step.water(now, &state, None);
-            let mut remembered = memory.clone();
-            for (j, e) in step.acting() {
-                let at = step.instant(now, &state, &actual, water, j);
-                if let Some(m) = remembered.get_mut(j) {
-                    e.physics.remember(h, &at, m);
-                }
-            }
-            state = step.advance(now, &state, [actual, reached], h);
-            memory = remembered;
-            actual = reached;
-            gusts.advance();
-        }
-        order = next;
+        voyage.record(t, &mut track);
+        let next = helmsman.next(t, &voyage.state, &voyage.order);
+        voyage.advance(t, next, &mut fine);
     }
-    if inner == INNER {
-        report(world, plan, &mut track, &Fine { nodes: &fine });
-    } else {
-        // Between the rows of an Euler track the ship moves in straight lines.
-        let pairs = track.truth.windows(2).flat_map(|w| {
-            let (a, b) = (w[0].to_array(), w[1].to_array());
-            (0..INNER).map(move |i| {
-                State::from_array(std::array::from_fn(|j| a[j] + i as f64 / INNER as f64 * (b[j] - a[j])))
-            })
-        });
-        let mut nodes: Vec<State> = pairs.collect();
-        nodes.extend(track.truth.last());
-        report(world, plan, &mut track, &Fine { nodes: &nodes });
-    }
+    let fine = match world.method {
+        Method::RungeKutta => Fine::new(fine),
+        Method::Euler => Fine::between_rows(&track.truth),
+    };
+    track.reported = report(world, plan, &track.truth, &fine);
     track
 }
 
-fn report(world: &World, plan: &Plan, track: &mut Track, fine: &Fine<'_>) {
-    for (row, state) in track.truth.iter().enumerate() {
+/// The states as the sensors report them, with the concealed defects and without noise.
+fn report(world: &World, plan: &Plan, truth: &[State], fine: &Fine) -> Vec<[f64; 6]> {
+    let row = |(row, state): (usize, &State)| {
         let mut y = state.to_array();
         for e in world.effects.iter().filter(|e| e.acts_in(plan.session)) {
             e.physics.measure(plan.clock + row as f64 * PERIOD, row, fine, &mut y);
         }
-        track.reported.push(y);
-    }
+        y
+    };
+    truth.iter().enumerate().map(row).collect()
 }

@@ -1,5 +1,5 @@
-//! Writes a case: the study that the diagnosis may see, and the manifest that it may not, sealed with SHA-256.
-//! Nothing in the study, not even a file name, depends on what is concealed but the recorded values and channels themselves.
+//! Writes a case: the study that the diagnosis may see, and the manifest that it may not see, sealed with SHA-256.
+//! In the study only recorded values and channels depend on the concealed effects, not even a file name.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -8,12 +8,17 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::craft::{Family, LENGTH};
-use super::design::PERIOD;
-use super::effects::{Class, Compare};
-use super::{Case, ConcealError, Spec, effects::hull::THRUSTER};
+use super::case::Case;
+use super::craft::LENGTH;
+use super::effects::effect::{Class, Compare};
+use super::effects::hull::THRUSTER;
+use super::error::ConcealError;
+use super::family::Family;
+use super::sail::Active;
+use super::spec::Spec;
+use super::track::PERIOD;
 
-/// What the judge is told of one effect.
+/// One concealed effect, as the judge is told.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// Name of the effect.
@@ -22,7 +27,7 @@ pub struct Answer {
     pub class: String,
     /// Names of the diagnosis that are right.
     pub accepted: Vec<String>,
-    /// Names that are not right but no grave mistake.
+    /// Names that are wrong but near.
     pub near: Vec<String>,
     /// Physical size.
     pub size: f64,
@@ -30,7 +35,7 @@ pub struct Answer {
     pub unit: String,
     /// Signal-to-noise ratio reached, where it was measured.
     pub snr: Option<f64>,
-    /// The law by which it was made.
+    /// Its law.
     pub law: String,
     /// Sessions in which it acts.
     pub sessions: Vec<String>,
@@ -44,18 +49,18 @@ pub struct Answer {
     pub windows: Vec<(String, f64, f64)>,
 }
 
-/// What the judge is told.
+/// The truth of a case, as the judge is told.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// What was asked for.
+    /// The specification.
     pub spec: Spec,
-    /// The verdict that is called for.
+    /// The right verdict.
     pub expected: String,
     /// Names that describe the truth family itself and are no false alarm.
     pub structure: Vec<String>,
     /// The effects.
     pub answers: Vec<Answer>,
-    /// Half the difference of the flow straightening between her two sides, where she has one ([`super::craft::Craft::asymmetry`]).
+    /// Port-starboard difference of the flow straightening, where there is one ([`super::craft::Craft::asymmetry`]).
     pub asymmetry: Option<f64>,
     /// SHA-256 of every file of the study.
     pub files: BTreeMap<String, String>,
@@ -74,14 +79,14 @@ pub fn digest(bytes: &[u8]) -> String {
     text
 }
 
-/// Where the parts of a case lie in its folder.
+/// Paths of the study file, the seal and the manifest in the folder of a case.
 pub fn paths(folder: &Path) -> (PathBuf, PathBuf, PathBuf) {
     let study = folder.join("study");
     (study.join("study.toml"), study.join("SEAL"), folder.join("sealed").join("manifest.json"))
 }
 
 fn write(path: &Path, text: &[u8]) -> Result<(), ConcealError> {
-    let fail = |source| ConcealError::File { path: path.to_owned(), source };
+    let fail = |source| ConcealError::file(path, source);
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(fail)?;
     }
@@ -89,10 +94,10 @@ fn write(path: &Path, text: &[u8]) -> Result<(), ConcealError> {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, ConcealError> {
-    std::fs::read(path).map_err(|source| ConcealError::File { path: path.to_owned(), source })
+    std::fs::read(path).map_err(|source| ConcealError::file(path, source))
 }
 
-/// Opens a sealed manifest, if it and the study are still what was sealed.
+/// Opens a sealed manifest, if no byte of it and of the study has changed.
 ///
 /// # Errors
 /// [`ConcealError::Broken`] when a byte has changed, [`ConcealError::File`] or [`ConcealError::Content`] when a file is unreadable.
@@ -106,7 +111,7 @@ pub fn open(folder: &Path) -> Result<Manifest, ConcealError> {
     };
     check(manifest.clone(), &bytes, &sealed)?;
     let content: Manifest = serde_json::from_slice(&bytes)
-        .map_err(|e| ConcealError::Content { path: manifest, message: format!("not a manifest: {e}") })?;
+        .map_err(|e| ConcealError::content(&manifest, &format!("not a manifest: {e}")))?;
     for (name, digest) in &content.files {
         let path = study.with_file_name(name);
         check(path.clone(), &read(&path)?, digest)?;
@@ -144,10 +149,10 @@ impl Case {
         files
     }
 
-    /// One run as CSV: resolution of ordinary loggers, blank rows for dropouts left out altogether.
+    /// One run as CSV, with the resolution of ordinary loggers; a dropped row is absent.
     fn csv(&self, run: usize) -> String {
         let (track, rows) = (&self.recorded.tracks[run], &self.recorded.rows[run]);
-        // The logger's clock runs on from session to session: tides need it.
+        // The logger's clock runs on from session to session, so that a tide is the same for all.
         let clock = self.recorded.plans[run].clock;
         let mut text = String::from("t [s],x [m],y [m],psi [rad],u [m/s],v [m/s],r [rad/s],n [rps],delta [rad]");
         for (header, _) in &track.channels {
@@ -172,56 +177,60 @@ impl Case {
         text
     }
 
-    /// What the judge is told.
+    /// The truth of the case, with the digest of every file.
     pub fn manifest(&self, files: &[(String, String)]) -> Manifest {
-        let runs = self.recorded.tracks.len().max(1) as f64;
-        let answers = self.effects.iter().enumerate().map(|(i, e)| {
-            let mut square = [0.0; 3];
-            for track in &self.recorded.tracks {
-                for (sum, part) in square.iter_mut().zip(track.energy.get(i).copied().unwrap_or_default()) {
-                    *sum += part / runs;
-                }
-            }
-            let sensor = e.entry.class == Class::Sensor;
-            // A quarter of the length is about the radius of gyration: what moves her alike counts alike.
-            let weighed = [square[0], square[1], square[2] / (0.25 * LENGTH).powi(2)];
-            let total: f64 = weighed.iter().sum();
-            Answer {
-                effect: e.entry.name.to_owned(),
-                class: format!("{:?}", e.entry.class).to_lowercase(),
-                accepted: e.entry.accepted.iter().map(ToString::to_string).collect(),
-                near: e.entry.near.iter().map(ToString::to_string).collect(),
-                size: e.size,
-                unit: e.entry.unit.to_owned(),
-                snr: self.snr.get(i).copied().flatten(),
-                law: e.entry.law.to_owned(),
-                sessions: (0..e.sessions.len()).filter(|s| e.sessions[*s]).map(session).collect(),
-                parameters: match e.entry.compare {
-                    Compare::No => Vec::new(),
-                    Compare::Parameters => {
-                        let of = |(name, value, unit): (&str, f64, &str)| (name.to_owned(), value, unit.to_owned());
-                        e.physics.truth().into_iter().map(of).collect()
-                    }
-                },
-                force: (!sensor).then(|| square.map(f64::sqrt)),
-                equations: (!sensor && total > 0.0).then(|| weighed.map(|w| w / total)),
-                windows: e
-                    .windows(&self.recorded.plans)
-                    .into_iter()
-                    .map(|(run, start, end)| {
-                        let plan = &self.recorded.plans[run];
-                        (plan.name.clone(), plan.clock + start, plan.clock + end)
-                    })
-                    .collect(),
-            }
-        });
         Manifest {
             spec: self.spec.clone(),
             expected: self.expected().to_owned(),
             structure: self.spec.family.structure().iter().map(ToString::to_string).collect(),
-            answers: answers.collect(),
+            answers: self.effects.iter().enumerate().map(|(i, e)| self.answer(i, e)).collect(),
             asymmetry: self.recorded.asymmetry,
             files: files.iter().map(|(name, text)| (name.clone(), digest(text.as_bytes()))).collect(),
+        }
+    }
+
+    /// Mean square of an effect's force over all runs: X, Y \[N^2\], N \[N^2 m^2\].
+    fn mean_square_force(&self, effect: usize) -> [f64; 3] {
+        let runs = self.recorded.tracks.len().max(1) as f64;
+        let mut square = [0.0; 3];
+        for track in &self.recorded.tracks {
+            for (sum, part) in square.iter_mut().zip(track.energy.get(effect).copied().unwrap_or_default()) {
+                *sum += part / runs;
+            }
+        }
+        square
+    }
+
+    fn answer(&self, i: usize, e: &Active) -> Answer {
+        let square = self.mean_square_force(i);
+        let sensor = e.entry.class == Class::Sensor;
+        // A quarter of the length is about the radius of gyration: a force and a moment with equal motion count alike.
+        let weighed = [square[0], square[1], square[2] / (0.25 * LENGTH).powi(2)];
+        let total: f64 = weighed.iter().sum();
+        let owned = |names: &[&str]| names.iter().map(ToString::to_string).collect();
+        let on_clock = |(run, start, end): (usize, f64, f64)| {
+            let plan = &self.recorded.plans[run];
+            (plan.name.clone(), plan.clock + start, plan.clock + end)
+        };
+        let reported = |(name, value, unit): (&str, f64, &str)| (name.to_owned(), value, unit.to_owned());
+        Answer {
+            effect: e.entry.name.to_owned(),
+            class: format!("{:?}", e.entry.class).to_lowercase(),
+            accepted: owned(e.entry.accepted),
+            near: owned(e.entry.near),
+            size: e.size,
+            unit: e.entry.unit.to_owned(),
+            snr: self.snr.get(i).copied().flatten(),
+            law: e.entry.law.to_owned(),
+            sessions: (0..e.sessions.len()).filter(|s| e.sessions[*s]).map(session).collect(),
+            parameters: match e.entry.compare {
+                Compare::No => Vec::new(),
+                Compare::Size(name) => vec![reported((name, e.size, e.entry.unit))],
+                Compare::Truth => e.physics.truth().into_iter().map(reported).collect(),
+            },
+            force: (!sensor).then(|| square.map(f64::sqrt)),
+            equations: (!sensor && total > 0.0).then(|| weighed.map(|w| w / total)),
+            windows: e.windows(&self.recorded.plans).into_iter().map(on_clock).collect(),
         }
     }
 
@@ -235,21 +244,16 @@ impl Case {
         for (name, text) in &files {
             write(&study.with_file_name(name), text.as_bytes())?;
         }
-        let manifest = serde_json::to_string_pretty(&self.manifest(&files))
-            .map_err(|e| ConcealError::Content { path: sealed.clone(), message: e.to_string() })?;
+        let manifest =
+            serde_json::to_string_pretty(&self.manifest(&files)).map_err(|e| ConcealError::content(&sealed, &e))?;
         write(&sealed, manifest.as_bytes())?;
         write(&seal, format!("{}\n", digest(manifest.as_bytes())).as_bytes())?;
         Ok(study)
     }
 }
 
-/// The family's ship, with the thruster that every case's ship has whether it is used or not.
+/// The family's ship file with a thruster, which every case's ship has, used or not.
 pub(super) fn ship_file(family: Family) -> String {
     let [thrust, x] = THRUSTER;
-    let ship = match family {
-        Family::Hd | Family::Mmg => include_str!("../../ships/a.toml"),
-        Family::Tanker => include_str!("../../ships/tanker.toml"),
-        Family::Flap => include_str!("../../ships/flap.toml"),
-    };
-    format!("{}\n[thruster]\nthrust = {thrust:.1}\nx = {x:.1}\n", ship.trim_end())
+    format!("{}\n[thruster]\nthrust = {thrust:.1}\nx = {x:.1}\n", family.ship_file().trim_end())
 }

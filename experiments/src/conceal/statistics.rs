@@ -1,12 +1,12 @@
 //! Shares and medians with their uncertainty, for the summary of a campaign.
-//! Nothing here knows what is counted.
+//! It does not know what is counted.
 
 use serde::Serialize;
 
 /// A share of so many cases, with its Wilson score interval at 95 %.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Share {
-    /// Cases that did.
+    /// Cases counted.
     pub hits: usize,
     /// All cases.
     pub of: usize,
@@ -17,7 +17,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// Counts the true among those that are known; `None` when there are none.
+    /// Counts the true among the known cases; `None` without a known case.
     pub fn of(cases: impl IntoIterator<Item = Option<bool>>) -> Option<Self> {
         let known: Vec<bool> = cases.into_iter().flatten().collect();
         let hits = known.iter().filter(|b| **b).count();
@@ -46,13 +46,13 @@ impl std::fmt::Display for Share {
     }
 }
 
-/// Mean of what is known.
+/// Mean of the known values.
 pub fn mean(values: impl IntoIterator<Item = Option<f64>>) -> Option<f64> {
     let known: Vec<f64> = values.into_iter().flatten().filter(|v| v.is_finite()).collect();
     (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
 }
 
-/// Median of what is known.
+/// Median of the known values.
 pub fn median(values: impl IntoIterator<Item = Option<f64>>) -> Option<f64> {
     let mut known: Vec<f64> = values.into_iter().flatten().filter(|v| v.is_finite()).collect();
     known.sort_by(f64::total_cmp);

@@ -1,10 +1,11 @@
-//! How strong an effect must be to be seen as well as asked: the signal-to-noise ratio, and the size that gives it.
-//! What is measured is left to a [`Meter`]; the one here works in force alone and needs no model.
+//! The signal-to-noise ratio of an effect, and the size that gives a ratio asked for.
+//! A [`Meter`] measures the ratio; the meter here works in force alone and needs no model.
 
-use super::effects::Entry;
+use super::effects::effect::Entry;
+use super::error::ConcealError;
+use super::recorded::Recorded;
 use super::sail::GUST_TIME;
-use super::{ConcealError, Recorded};
-use crate::conceal::design::PERIOD;
+use super::track::PERIOD;
 
 /// Measures how visible an effect is: sqrt of the noncentrality of the best test for it, from recordings with and without it
 /// that have the same ship, plans, gusts and noise.
@@ -33,7 +34,7 @@ impl Default for ForceMeter {
     }
 }
 
-/// Rows over which a change of what is reported is not yet a change of course: 20 s.
+/// Rows over which the mean of a sensor defect is compared with the sensor noise: 20 s.
 const WINDOW: usize = 10;
 
 impl Meter for ForceMeter {
@@ -60,8 +61,8 @@ impl Meter for ForceMeter {
     }
 }
 
-/// The size at which `snr` gives `target`, within a tenth, and what it gives there; at most three secant steps from the default size.
-/// An effect that is still weaker at its largest size is left there.
+/// The size at which `snr` gives `target`, within a tenth, and the ratio there; at most three secant steps from the default size.
+/// An effect that is still weaker at its largest size stays at that size.
 ///
 /// # Errors
 /// [`ConcealError::Invisible`] when the default size cannot be seen at all, or what `snr` fails with.
@@ -75,7 +76,7 @@ pub fn solve(
     if !(found.is_finite() && found > 1e-6) {
         return Err(ConcealError::Invisible { effect: entry.name, size, unit: entry.unit, snr: found });
     }
-    // In logarithms: most ratios grow as a power of the size, the first guess as its first power.
+    // In logarithms: most ratios grow as a power of the size, at first taken as the first power.
     let mut power = 1.0;
     for _ in 0..3 {
         if (found / target - 1.0).abs() < 0.1 {
@@ -99,7 +100,7 @@ pub fn solve(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conceal::effects::find;
+    use crate::conceal::effects::catalogue::find;
 
     #[test]
     fn size_is_found_for_linear_and_for_quadratic_effects() {

@@ -1,12 +1,17 @@
-//! Laws of the generator as a whole: seeds, seals, and that every effect of the catalogue does something and at size 0 nothing.
-//! What single parts do is tested beside them.
+//! Laws of the generator as a whole: seeds, seals, and that every effect acts, but not at size 0.
+//! Its parts are tested in their own files.
 
 use std::collections::BTreeSet;
 
-use super::effects::{Class, catalogue};
+use super::case::Case;
+use super::design::Design;
+use super::effects::catalogue::catalogue;
+use super::effects::effect::Class;
+use super::error::ConcealError;
+use super::family::Family;
 use super::seal;
+use super::spec::{Background, Spec, Strength};
 use super::strength::ForceMeter;
-use super::*;
 
 fn spec(effect: &str, strength: Strength) -> Spec {
     let effects = vec![(effect.to_owned(), strength)];
@@ -25,22 +30,22 @@ fn one_seed_gives_the_same_bytes_and_another_gives_others() {
 }
 
 #[test]
-fn every_effect_changes_what_is_reported_and_vanishes_at_size_zero() {
+fn every_effect_changes_the_reported_states_and_vanishes_at_size_zero() {
     for family in [Family::Hd, Family::Mmg] {
         let null = make(&Spec { design: Design::Few, ..Spec::null(family, 7) });
         for entry in catalogue().filter(|e| family == Family::Hd || e.in_mmg) {
             let at = |s| make(&Spec { family, ..spec(entry.name, s) });
             let (none, some) = (at(Strength::Size(0.0)), at(Strength::Times(1.0)));
-            assert!(none.recorded.rows == null.recorded.rows, "{} at size 0 is not nothing", entry.name);
+            assert!(none.recorded.rows == null.recorded.rows, "{} acts at size 0", entry.name);
             assert!(some.recorded.rows != null.recorded.rows, "{} does nothing", entry.name);
             let finite = some.recorded.tracks.iter().flat_map(|t| &t.reported).all(|y| y.iter().all(|v| v.is_finite()));
-            assert!(finite, "{} makes the ship fly", entry.name);
+            assert!(finite, "{} gives a state that is not finite", entry.name);
         }
     }
 }
 
 #[test]
-fn sensor_defects_leave_the_ship_alone_and_forces_do_not() {
+fn forces_change_the_motion_and_sensor_defects_do_not() {
     let null = make(&Spec { design: Design::Few, ..Spec::null(Family::Hd, 7) });
     for entry in catalogue().filter(|e| e.name != "water_log") {
         let case = make(&spec(entry.name, Strength::Times(1.0)));
@@ -108,7 +113,7 @@ fn the_library_reads_what_the_concealer_writes() {
 }
 
 #[test]
-fn backgrounds_change_the_data_and_ask_for_their_verdict() {
+fn each_background_changes_the_data_and_has_its_right_verdict() {
     let of = |background| make(&Spec { background, design: Design::Few, ..Spec::null(Family::Hd, 7) });
     let ordinary = of(Background::Ordinary);
     for (background, expected) in [
@@ -126,7 +131,7 @@ fn backgrounds_change_the_data_and_ask_for_their_verdict() {
 }
 
 #[test]
-fn a_push_is_told_to_the_judge_with_its_windows_and_its_equation() {
+fn the_manifest_of_a_push_has_its_windows_and_its_equation() {
     let case = make(&Spec { design: Design::Standard, ..spec("push", Strength::Times(1.0)) });
     let answer = &case.manifest(&[]).answers[0];
     assert!(answer.windows.len() >= 3 && answer.windows.iter().all(|w| (20.0..=240.0).contains(&(w.2 - w.1))));

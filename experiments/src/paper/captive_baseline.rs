@@ -1,5 +1,5 @@
-//! The second baseline: parameters from virtual captive tests on a truth simulator, the way the paper says its p~ was made.
-//! It sees forces under imposed motion, never a manoeuvre; the measuring is `truth::captive`, the reading of the rudder's is here.
+//! The second baseline: parameters from virtual captive tests on a truth simulator, as the paper describes for its p~.
+//! It uses forces under imposed motion, never a manoeuvre; `truth::captive` measures, and lift and drag are read here.
 //!
 //! | test | runs | gives |
 //! |---|---|---|
@@ -7,11 +7,13 @@
 //! | propeller | rudder amidships, ahead speeds and rates, ahead and astern rotation | p0 |
 //! | rudder sweep | angles at self-propulsion and overload points, without and with drift | p4 to p10 |
 
-use super::PaperError;
+use super::error::PaperError;
 use crate::truth::captive::{Range, Row, fit_resistance, fit_side_force, propeller_runs, rudder_sweep, towing};
+use crate::truth::integrate::trimmed_rate;
 use crate::truth::ships::ShipId;
-use crate::truth::{Truth, trimmed_rate};
+use crate::truth::simulator::Truth;
 use nalgebra::{DMatrix, DVector};
+use trimtab::dynamics::Dynamics;
 use trimtab::model::Model;
 use trimtab::state::{Inputs, State};
 
@@ -58,7 +60,7 @@ pub fn captive_baseline(ship: ShipId, model: &Model) -> Result<Model, PaperError
     baseline.name = "captive tests".into();
     let [p1, p2, p3] = resistance;
     baseline.set_eleven(&[side_force, p1, p2, p3, lift[0], lift[1], lift[2], lift[3], drag[0], drag[1], drag[2]]);
-    // What symmetry makes zero comes out of the least squares as rounding.
+    // A parameter that is zero by symmetry comes out of the least squares as rounding.
     for parameter in baseline.parameters.iter_mut().filter(|p| p.free) {
         if parameter.value.abs() < 1e-9 * parameter.scale {
             parameter.value = 0.0;
@@ -67,7 +69,7 @@ pub fn captive_baseline(ship: ShipId, model: &Model) -> Result<Model, PaperError
     Ok(baseline)
 }
 
-/// The rudder sweeps of a ship: at a quarter, half, three quarters and all of her speed, each at the self-propulsion point and at
+/// The rudder sweeps of a ship: at a quarter, half, three quarters and all of its speed, each at the self-propulsion point and at
 /// 1.5 times that rate as in a kick ahead, with drift of 0 and 10 deg to either side.
 pub fn rudder_rows(ship: ShipId, truth: &dyn Truth) -> Vec<Row> {
     let (fastest, hard) = programme(ship);
@@ -90,14 +92,15 @@ pub fn rudder_rows(ship: ShipId, truth: &dyn Truth) -> Vec<Row> {
 
 /// Lift and drag coefficients behind measured rudder forces, by the inflow (u_R, v_R) of `model`.
 ///
-/// The rudder term read backwards: with g = atan2(v_R, u_R), `L = -(X sin g + Y cos g)`, `D = Y sin g - X cos g`,
+/// The rudder term inverted: with g = atan2(v_R, u_R), `L = -(X sin g + Y cos g)`, `D = Y sin g - X cos g`,
 /// `c = 2 (L, D)/(rho A_R U_R^2)`, `a = delta - g`.
 pub fn rudder_points(model: &Model, rows: &[Row]) -> Vec<RudderPoint> {
-    let theta = model.values();
+    let dynamics = Dynamics::new(model, model.values());
     let pressure = 0.5 * model.ship.hull.water_density * model.ship.rudder.area;
     let read = |row: &Row| {
         let state = State::from_array([0.0, 0.0, 0.0, row.u, row.v, row.r]);
-        let flow = model.flow(&theta, &state, &Inputs::actuators(0.0, row.n, row.delta));
+        let inputs = Inputs::actuators(0.0, row.n, row.delta);
+        let flow = dynamics.flow(&dynamics.instant(&state, &inputs));
         let (sin, cos) = flow.rudder_v.atan2(flow.rudder_u).sin_cos();
         let full = pressure * (flow.rudder_u.powi(2) + flow.rudder_v.powi(2));
         let force = row.force.rudder;
@@ -122,12 +125,12 @@ fn polynomial(points: &[RudderPoint], degree: usize, value: impl Fn(&RudderPoint
 mod tests {
     use super::super::case::initial_model;
     use super::*;
-    use crate::truth::Force;
+    use crate::truth::motion::Force;
     use trimtab::physics::Form;
     use trimtab::terms::rudder::Rudder;
 
     #[test]
-    fn a_rudder_that_follows_the_model_is_read_back_exactly() {
+    fn lift_and_drag_of_the_model_s_own_rudder_are_read_back_exactly() {
         for ship in [ShipId::A, ShipId::B] {
             let model = initial_model(ship, Form::Paper).unwrap();
             let theta = model.values();
@@ -135,7 +138,7 @@ mod tests {
             for row in &mut rows {
                 let state = State::from_array([0.0, 0.0, 0.0, row.u, row.v, row.r]);
                 let inputs = Inputs::actuators(0.0, row.n, row.delta);
-                let forces = model.contributions(&theta, &state, &inputs);
+                let forces = Dynamics::new(&model, theta.clone()).contributions(&state, &inputs);
                 let (_, rudder) = forces.iter().find(|(name, _)| *name == "rudder").unwrap();
                 row.force.rudder = Force { x: rudder.x, y: rudder.y, n: rudder.n };
             }
@@ -160,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn captive_parameters_resist_ahead_and_turn_the_ship_the_way_the_rudder_is_put() {
+    fn captive_parameters_have_the_signs_of_a_real_ship() {
         for ship in [ShipId::A, ShipId::B] {
             let baseline = captive_baseline(ship, &initial_model(ship, Form::Paper).unwrap()).unwrap();
             let p = baseline.eleven();

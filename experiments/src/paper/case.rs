@@ -1,8 +1,8 @@
-//! One ship of the paper, from her data set to fitted parameters and the baselines they are judged against.
-//! It draws and prints nothing; how good a fit is, is said by the evaluation.
+//! One ship of the paper: data set, fitted parameters, and the baselines for comparison.
+//! It draws and prints nothing; the evaluation measures how good a fit is.
 
-use super::PaperError;
 use super::captive_baseline::captive_baseline;
+use super::error::PaperError;
 use super::published::{Published, published};
 use crate::truth::dataset::{self, Run, dataset};
 use crate::truth::ships::ShipId;
@@ -16,7 +16,7 @@ use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Method};
 use trimtab::state::Inputs;
 
-/// What may be varied from the way the paper did it.
+/// Settings that may differ from the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setup {
     /// Seed of the data set.
@@ -37,22 +37,22 @@ impl Default for Setup {
 
 /// Explicit Euler as in the paper, in sub-steps of 0.5 s (ship A) and 0.75 s (ship B).
 ///
-/// The paper prints no step. One step a sample is stable, but its own error is a sixth of what the fitted model of ship B is off;
-/// with four it is a twentieth and less. The overall performance prints that error beside the results.
+/// The paper prints no step. One step a sample is stable, but its own error is a sixth of the error of ship B's fitted model;
+/// with four sub-steps it is a twentieth and less. The overall performance prints that error beside the results.
 const INTEGRATION: Integration = Integration { method: Method::Euler, substeps: 4 };
-/// The simulated ships leave residuals far above noise, where Gauss-Newton converges linearly: the last digits are not worth
-/// their iterations, and the polish after the solver gives them back.
+/// The simulated ships leave residuals far above noise, where Gauss-Newton converges linearly: the solver stops early, and the
+/// polish after it gives the last digits.
 const TOLERANCE: f64 = 1e-7;
 
-/// A ship with her data, her fit and her baselines.
+/// A ship with its data, its fit and its baselines.
 pub struct Case {
     /// Which ship.
     pub ship: ShipId,
-    /// What the paper prints for her.
+    /// The paper's numbers for the ship.
     pub published: Published,
-    /// The data set as the truth simulator sailed it.
+    /// The data set of the truth simulator.
     pub runs: Vec<Run>,
-    /// The same, as the model sees it, in the same order.
+    /// The data set as windows of the model, in this order.
     pub windows: Vec<Window>,
     /// Model with the published p~.
     pub published_baseline: Model,
@@ -60,12 +60,12 @@ pub struct Case {
     pub captive_baseline: Model,
     /// The fit to the training runs, from the paper's initial guess.
     pub fit: Fit,
-    /// How all this was made.
+    /// The settings of all this.
     pub setup: Setup,
 }
 
 impl Case {
-    /// Sails the data set, fits the model and makes the baselines.
+    /// Simulates the data set, fits the model and makes the baselines.
     ///
     /// # Errors
     /// An unreadable ship file, captive tests that determine nothing, a fit that cannot be made.
@@ -74,7 +74,7 @@ impl Case {
         Self::from_runs(ship, runs, setup)
     }
 
-    /// The same for a data set that is there already.
+    /// [`Case::prepare`] for a data set at hand.
     ///
     /// # Errors
     /// As [`Case::prepare`].
@@ -101,7 +101,7 @@ impl Case {
         [(&self.published_baseline, "published p~"), (&self.captive_baseline, "captive tests")]
     }
 
-    /// The training runs as the cost sees them.
+    /// The training runs as runs of the cost.
     pub fn training(&self) -> Vec<FitRun> {
         fit_runs(&self.fit.model, &self.windows, &self.setup.fit)
     }
@@ -137,7 +137,7 @@ pub fn initial_model(ship: ShipId, form: Form) -> Result<Model, PaperError> {
     Ok(model)
 }
 
-/// A run as the model sees it: every channel measured without error, started from its first row.
+/// A run as a window of the model: every channel measured without error, started from its first row.
 fn window(ship: ShipId, run: &Run) -> Window {
     Window {
         run: run.name.clone(),

@@ -1,9 +1,10 @@
 //! Figure 2 of the paper: resistance, lift and drag curves, fitted beside both baselines, with the bands the constraints leave.
 //! What the truth simulators measure in captive tests is shown as points; no fit has seen them.
 
+use super::artefact::Artefact;
 use super::captive_baseline::{rudder_points, rudder_rows};
 use super::case::Case;
-use super::{Artefact, PaperError};
+use super::error::PaperError;
 use crate::truth::captive::{Range, towing};
 use std::path::Path;
 use trimtab::fit::{CovarianceKind, Fit};

@@ -1,10 +1,11 @@
 //! Distributions of the errors over all runs: mean deviation of each dimension and cVDM, baselines beside the fit.
-//! It sums nothing up; that is the overall performance.
+//! It makes no summary; the overall performance does.
 
+use super::artefact::Artefact;
 use super::case::Case;
+use super::error::PaperError;
 use super::scenarios::SHOWN;
-use super::sheet::{cell, save};
-use super::{Artefact, PaperError};
+use super::sheet::{Sheet, cell};
 use std::path::Path;
 use trimtab::evaluate::{Comparison, Outcome};
 use trimtab::numerals::sig;
@@ -45,7 +46,8 @@ fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
 
 fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
     let mut table = Table::new(["ship", "part", "quantity", "model", "quarter", "median", "three quarters", "worst"]);
-    let mut rows = Vec::new();
+    let header = ["ship", "part", "quantity", "model", "quarter", "median", "three_quarters", "worst", "runs"];
+    let mut sheet = Sheet::new("distributions_values", header);
     for case in cases {
         let [published, captive] = case.baselines().map(|(model, _)| case.evaluate(model).trajectories);
         let models: [(&str, Color, &[Comparison], Which); 3] = [
@@ -68,7 +70,7 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
                         table.row([case.label(), part, &label, name].map(str::to_owned).into_iter().chain(shown));
                     }
                     let [quarter, median, three, worst] = summary.map(cell);
-                    rows.push([
+                    sheet.row([
                         case.ship.name().to_owned(),
                         part.to_owned(),
                         label.clone(),
@@ -87,8 +89,7 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
         }
         figure.save(&out.join(format!("distributions_{}", case.ship.name())))?;
     }
-    let header = ["ship", "part", "quantity", "model", "quarter", "median", "three_quarters", "worst", "runs"];
-    save(out, "distributions_values", header, rows)?;
+    sheet.save(out)?;
     Ok(format!("{table}\n"))
 }
 

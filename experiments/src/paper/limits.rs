@@ -1,14 +1,14 @@
 //! What limits the fit: the same data fitted without constraints, in the other low-speed form, and with hull and propulsion coefficients set free.
-//! The paper has no such table; it is here because the eleven parameters alone gain less on our captive baseline than the paper's
-//! did on its own, and these are the candidates for why.
+//! The paper has no such table. The eleven parameters alone gain less on our captive baseline than the paper's fit on its own
+//! baseline, and these are the possible reasons.
 
+use super::artefact::Artefact;
 use super::case::{Case, initial_model};
-use super::sheet::{cell, save};
-use super::{Artefact, PaperError};
-use std::fmt::Write;
+use super::error::PaperError;
+use super::sheet::{Sheet, cell};
 use std::path::Path;
-use trimtab::evaluate::{Estimate, EvaluationSettings, evaluate};
-use trimtab::fit::{FitSettings, fit};
+use trimtab::evaluate::{EvaluationSettings, evaluate};
+use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::{Model, Prior};
 use trimtab::numerals::{DASH, fixed, sig};
 use trimtab::physics::Form;
@@ -21,7 +21,7 @@ pub static LIMITS: Artefact = Artefact {
     make,
 };
 
-/// Successive samples that count as one where residuals are set against priors: residuals of a truth without noise are alike over
+/// Successive samples that count as one where residuals are weighed against priors: without noise, residuals are correlated over
 /// some 20 samples.
 const CORRELATED: f64 = 20.0;
 
@@ -60,51 +60,6 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
         "cVDM gain [%]",
         "consistency [%]",
     ]);
-    let mut rows = Vec::new();
-    for case in cases {
-        for variant in &VARIANTS {
-            let (model, settings) = variant.prepare(case)?;
-            let fit = fit(&model, &case.training(), &settings, &mut |_| true)?;
-            for (baseline, name) in case.baselines() {
-                let evaluation = evaluate(
-                    baseline,
-                    &fit.model,
-                    &case.windows,
-                    settings.integration,
-                    settings.max_yaw_rate,
-                    &EvaluationSettings { seed: case.setup.seed, ..EvaluationSettings::default() },
-                );
-                let empty = PaperError::Empty { ship: case.ship.name(), what: "test runs" };
-                let summary = evaluation.summary("test").ok_or(empty)?;
-                let value = |e: Option<Estimate>| e.map(|e| e.value);
-                let percent = |e: Option<Estimate>| value(e).map_or(DASH.into(), |v| fixed(100.0 * v, 1));
-                table.row([
-                    case.label().to_owned(),
-                    variant.name.to_owned(),
-                    fit.estimates.len().to_string(),
-                    if fit.converged { "converged" } else { "not converged" }.to_owned(),
-                    sig(fit.cost, 4),
-                    value(summary.cvdm_fitted).map_or(DASH.into(), |v| fixed(v, 1)),
-                    name.to_owned(),
-                    percent(summary.mari),
-                    percent(summary.cvdm_improvement),
-                    percent(summary.consistency),
-                ]);
-                rows.push([
-                    case.ship.name().to_owned(),
-                    variant.name.to_owned(),
-                    fit.estimates.len().to_string(),
-                    fit.converged.to_string(),
-                    cell(fit.cost),
-                    cell(value(summary.cvdm_fitted)),
-                    name.to_owned(),
-                    cell(value(summary.mari)),
-                    cell(value(summary.cvdm_improvement)),
-                    cell(value(summary.consistency)),
-                ]);
-            }
-        }
-    }
     let header = [
         "ship",
         "variant",
@@ -117,19 +72,74 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
         "cvdm_improvement",
         "consistency",
     ];
-    save(out, "limits_values", header, rows)?;
-    let mut text = format!("{table}\n");
+    let mut sheet = Sheet::new("limits_values", header);
     for case in cases {
-        if let Some(gain) = captive_over_published(case) {
-            let _ = writeln!(
-                text,
-                "{}: captive tests alone take {} % off the mean cVDM of the published p~; a gain on them is of what remains.",
-                case.label(),
-                fixed(100.0 * gain, 1)
-            );
+        for variant in &VARIANTS {
+            let (model, settings) = variant.prepare(case)?;
+            let fit = fit(&model, &case.training(), &settings, &mut |_| true)?;
+            for (baseline, name) in case.baselines() {
+                let [cvdm, mari, gain, consistency] = test_scores(case, baseline, &fit, &settings)?;
+                let percent = |v: Option<f64>| v.map_or(DASH.into(), |v| fixed(100.0 * v, 1));
+                let free = fit.estimates.len().to_string();
+                table.row([
+                    case.label().to_owned(),
+                    variant.name.to_owned(),
+                    free.clone(),
+                    if fit.converged { "converged" } else { "not converged" }.to_owned(),
+                    sig(fit.cost, 4),
+                    cvdm.map_or(DASH.into(), |v| fixed(v, 1)),
+                    name.to_owned(),
+                    percent(mari),
+                    percent(gain),
+                    percent(consistency),
+                ]);
+                sheet.row([
+                    case.ship.name().to_owned(),
+                    variant.name.to_owned(),
+                    free,
+                    fit.converged.to_string(),
+                    cell(fit.cost),
+                    cell(cvdm),
+                    name.to_owned(),
+                    cell(mari),
+                    cell(gain),
+                    cell(consistency),
+                ]);
+            }
         }
     }
-    Ok(text)
+    sheet.save(out)?;
+    let gains: String =
+        cases.iter().filter_map(|case| Some((case, captive_over_published(case)?))).map(sentence).collect();
+    Ok(format!("{table}\n{gains}"))
+}
+
+/// Mean cVDM of the fit \[%\], mARI, cVDM improvement and consistency against a baseline on the test runs.
+fn test_scores(
+    case: &Case,
+    baseline: &Model,
+    fit: &Fit,
+    settings: &FitSettings,
+) -> Result<[Option<f64>; 4], PaperError> {
+    let evaluation = evaluate(
+        baseline,
+        &fit.model,
+        &case.windows,
+        settings.integration,
+        settings.max_yaw_rate,
+        &EvaluationSettings { seed: case.setup.seed, ..EvaluationSettings::default() },
+    );
+    let empty = PaperError::Empty { ship: case.ship.name(), what: "test runs" };
+    let s = evaluation.summary("test").ok_or(empty)?;
+    Ok([s.cvdm_fitted, s.mari, s.cvdm_improvement, s.consistency].map(|e| e.map(|e| e.value)))
+}
+
+fn sentence((case, gain): (&Case, f64)) -> String {
+    format!(
+        "{}: captive tests alone take {} % off the mean cVDM of the published p~; a gain on them is of what remains.\n",
+        case.label(),
+        fixed(100.0 * gain, 1)
+    )
 }
 
 /// Improvement of the mean cVDM of the captive baseline over the published one, test runs \[-\].

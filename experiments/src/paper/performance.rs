@@ -1,9 +1,10 @@
 //! Overall performance: mARI, cVDM improvement and consistency of the fit against both baselines, beside the paper's.
-//! It also measures what the integration adds to the errors; single runs are in other files.
+//! It also measures the error of the integration itself; single runs are in other files.
 
+use super::artefact::Artefact;
 use super::case::Case;
-use super::sheet::{cell, save};
-use super::{Artefact, PaperError};
+use super::error::PaperError;
+use super::sheet::{Sheet, cell};
 use std::fmt::Write;
 use std::path::Path;
 use trimtab::evaluate::{Estimate, EvaluationSettings, Summary, evaluate, predict};
@@ -34,6 +35,43 @@ fn percent(estimate: Option<Estimate>) -> String {
     format!("{}{ends}", fixed(100.0 * estimate.value, 1))
 }
 
+/// The three measures as bars, ours and the paper's, on the test runs.
+#[derive(Default)]
+struct Bars {
+    groups: Vec<String>,
+    ours: [Vec<(f64, f64, f64)>; 3],
+    paper: [Vec<f64>; 3],
+}
+
+impl Bars {
+    fn add(&mut self, group: String, metrics: &[Metric; 3]) {
+        self.groups.push(group);
+        for (i, (_, estimate, printed)) in metrics.iter().enumerate() {
+            let value = estimate.map_or(f64::NAN, |e| e.value);
+            let [lo, hi] = estimate.and_then(|e| e.ci95).unwrap_or([value; 2]);
+            self.ours[i].push((100.0 * value, 100.0 * lo, 100.0 * hi));
+            self.paper[i].push(100.0 * printed.unwrap_or(f64::NAN));
+        }
+    }
+
+    fn figure(&self) -> Figure {
+        let titles = ["mARI", "improvement of mean cVDM", "consistency 1 - Var*/Var~"];
+        let panels = titles.into_iter().enumerate().map(|(i, title)| {
+            Panel::new(title, Axis::categories("", self.groups.clone()), Axis::new("[%]").including(0.0))
+                .with(Layer::bars_with_intervals(
+                    "ours, 95 % bootstrap interval over runs",
+                    FITTED,
+                    self.ours[i].clone(),
+                ))
+                .with(Layer::bars("paper (its own ships and baseline)", GREY, self.paper[i].clone()))
+        });
+        Figure::new("What the fit gains on each baseline, test runs").columns(3).panel_size(1000, 640).with_all(panels)
+    }
+}
+
+/// A measure: name, ours, the paper's.
+type Metric = (&'static str, Option<Estimate>, Option<f64>);
+
 fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
     let mut table = Table::new([
         "ship",
@@ -49,10 +87,9 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
         "paper",
         "better",
     ]);
-    let mut rows = Vec::new();
-    let mut groups = Vec::new();
-    let mut bars: [Vec<(f64, f64, f64)>; 3] = Default::default();
-    let mut paper: [Vec<f64>; 3] = Default::default();
+    let header = ["ship", "baseline", "part", "quantity", "unit", "value", "lo", "hi", "paper"];
+    let mut sheet = Sheet::new("performance_values", header);
+    let mut bars = Bars::default();
     let mut text = String::new();
     for case in cases {
         for (baseline, name) in case.baselines() {
@@ -62,65 +99,33 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
                 let summary = evaluation.summary(part).ok_or(empty)?;
                 // The paper's figures are of its test runs.
                 let printed = |value: f64| (part == "test").then_some(value);
-                let metrics = [
+                let metrics: [Metric; 3] = [
                     ("mARI", summary.mari, printed(case.published.mari)),
                     ("cVDM improvement", summary.cvdm_improvement, printed(case.published.cvdm_improvement)),
                     ("consistency", summary.consistency, printed(case.published.consistency)),
                 ];
                 if part == "test" {
-                    groups.push(format!("{}: {name}", &case.label()[5..]));
-                    for (i, (_, estimate, printed)) in metrics.iter().enumerate() {
-                        let value = estimate.map_or(f64::NAN, |e| e.value);
-                        let [lo, hi] = estimate.and_then(|e| e.ci95).unwrap_or([value; 2]);
-                        bars[i].push((100.0 * value, 100.0 * lo, 100.0 * hi));
-                        paper[i].push(100.0 * printed.unwrap_or(f64::NAN));
-                    }
+                    bars.add(format!("{}: {name}", &case.label()[5..]), &metrics);
                 }
                 let mean = |e: Option<Estimate>| e.map_or(DASH.into(), |e| fixed(e.value, 1));
                 let beside = |value: Option<f64>| value.map_or(DASH.into(), |v| fixed(100.0 * v, 1));
-                table.row([
-                    case.label().to_owned(),
-                    part.to_owned(),
-                    name.to_owned(),
-                    mean(summary.cvdm_baseline),
-                    mean(summary.cvdm_fitted),
-                    percent(metrics[0].1),
-                    beside(metrics[0].2),
-                    percent(metrics[1].1),
-                    beside(metrics[1].2),
-                    percent(metrics[2].1),
-                    beside(metrics[2].2),
-                    format!("{} of {}", summary.better, summary.trajectories),
-                ]);
-                rows.extend(numbers(case, name, part, summary, &metrics));
+                let start = [case.label(), part, name].map(str::to_owned);
+                let means = [mean(summary.cvdm_baseline), mean(summary.cvdm_fitted)];
+                let measured = metrics.iter().flat_map(|(_, ours, paper)| [percent(*ours), beside(*paper)]);
+                let better = format!("{} of {}", summary.better, summary.trajectories);
+                table.row(start.into_iter().chain(means).chain(measured).chain([better]));
+                numbers(case, name, part, summary, &metrics).into_iter().for_each(|row| sheet.row(row));
             }
         }
         let _ = writeln!(text, "{}", integration(case));
     }
-    let header = ["ship", "baseline", "part", "quantity", "unit", "value", "lo", "hi", "paper"];
-    save(out, "performance_values", header, rows)?;
-    let titles = ["mARI", "improvement of mean cVDM", "consistency 1 - Var*/Var~"];
-    let panels = titles.into_iter().enumerate().map(|(i, title)| {
-        Panel::new(title, Axis::categories("", groups.clone()), Axis::new("[%]").including(0.0))
-            .with(Layer::bars_with_intervals("ours, 95 % bootstrap interval over runs", FITTED, bars[i].clone()))
-            .with(Layer::bars("paper (its own ships and baseline)", GREY, paper[i].clone()))
-    });
-    Figure::new("What the fit gains on each baseline, test runs")
-        .columns(3)
-        .panel_size(1000, 640)
-        .with_all(panels)
-        .save(&out.join("performance"))?;
+    sheet.save(out)?;
+    bars.figure().save(&out.join("performance"))?;
     Ok(format!("{table}\n\n{text}"))
 }
 
-/// Everything about one baseline and one part of the split, for the CSV.
-fn numbers(
-    case: &Case,
-    baseline: &str,
-    part: &str,
-    summary: &Summary,
-    metrics: &[(&str, Option<Estimate>, Option<f64>); 3],
-) -> Vec<[String; 9]> {
+/// The rows of one baseline and one part of the split, for the CSV.
+fn numbers(case: &Case, baseline: &str, part: &str, summary: &Summary, metrics: &[Metric; 3]) -> Vec<[String; 9]> {
     let row = |quantity: &str, unit: &str, estimate: Option<Estimate>, paper: Option<f64>| {
         let interval = estimate.and_then(|e| e.ci95);
         [
@@ -147,7 +152,7 @@ fn numbers(
     rows
 }
 
-/// What explicit Euler itself adds, in words.
+/// The error of explicit Euler itself, in words.
 fn integration(case: &Case) -> String {
     let used = case.setup.fit.integration;
     let error =

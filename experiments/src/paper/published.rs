@@ -1,6 +1,5 @@
-//! What the paper prints for ships A and B: parameters and performance, to stand beside ours.
-//! Nothing here enters a fit but the initial guess, and nothing an evaluation but the baseline; the data set statistics of Table 1 are
-//! with the data sets.
+//! Numbers that the paper prints for ships A and B: parameters and performance, for comparison with ours.
+//! Only the initial guess enters a fit, and only the baseline an evaluation; the statistics of Table 1 are in `coverage`.
 
 use crate::truth::ships::ShipId;
 

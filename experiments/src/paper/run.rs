@@ -1,38 +1,49 @@
-//! What the binaries share: the command line, the preparation of both ships, and exit codes.
-//! It makes no table and no figure.
+//! The command line of the binary `paper`: preparation of both ships, the tables and figures asked for, and exit codes.
+//! It makes no table and no figure itself.
 
-use super::case::{Case, Setup};
-use super::{Artefact, PaperError};
-use crate::truth::dataset::SEED;
-use crate::truth::ships::ShipId;
-use clap::Parser;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
+
+use super::artefact::Artefact;
+use super::case::{Case, Setup};
+use super::error::PaperError;
+use super::list::ARTEFACTS;
+use crate::folders::Folder;
+use crate::truth::dataset::SEED;
+use crate::truth::ships::ShipId;
+
 /// Makes tables and figures of the paper anew and prints our numbers beside the paper's.
+///
+/// Exit code 0: done; 1: a fit did not converge; 2: a table or figure could not be made.
 #[derive(Debug, Parser)]
 struct Options {
-    /// Folder for pictures and the CSV behind them.
-    #[arg(long, default_value = "figures")]
-    out: PathBuf,
+    /// Tables and figures to make; all if none is given.
+    #[arg(value_parser = PossibleValuesParser::new(ARTEFACTS.map(|a| a.name)))]
+    names: Vec<String>,
+    #[command(flatten)]
+    folder: Folder,
     /// Seed of the data sets and of the bootstrap.
     #[arg(long, default_value_t = SEED)]
     seed: u64,
 }
 
-/// Makes these tables and figures; exit code 0 if done, 1 if a fit did not converge, 2 if they could not be made.
-pub fn run(artefacts: &[&Artefact]) -> ExitCode {
-    match make(&Options::parse(), artefacts) {
+/// Makes the tables and figures that the command line asks for.
+pub fn run() -> ExitCode {
+    match make(&Options::parse()) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(error) => {
-            eprintln!("error: {error}");
+            eprintln!("paper: {error}");
             ExitCode::from(2)
         }
     }
 }
 
-fn make(options: &Options, artefacts: &[&Artefact]) -> Result<bool, PaperError> {
+fn make(options: &Options) -> Result<bool, PaperError> {
+    let out = options.folder.path();
+    let asked = |a: &&&Artefact| options.names.is_empty() || options.names.iter().any(|name| name == a.name);
     let setup = Setup { seed: options.seed, ..Setup::default() };
     let mut cases = Vec::new();
     for ship in [ShipId::A, ShipId::B] {
@@ -40,8 +51,8 @@ fn make(options: &Options, artefacts: &[&Artefact]) -> Result<bool, PaperError> 
         eprintln!("{}: {}", case.label(), case.fit.brief());
         cases.push(case);
     }
-    for artefact in artefacts {
-        println!("\n# {}\n\n{}", artefact.about, (artefact.make)(&cases, &options.out)?);
+    for artefact in ARTEFACTS.iter().filter(asked) {
+        println!("\n# {}\n\n{}", artefact.about, (artefact.make)(&cases, &out)?);
     }
     Ok(cases.iter().all(|case| case.fit.converged))
 }

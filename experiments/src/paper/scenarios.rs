@@ -1,17 +1,18 @@
 //! Figures 3 to 6 of the paper: single test runs, truth beside baselines and fit, one excellent and one moderate run for each ship.
-//! Which run is shown is decided by a rule and not by hand.
+//! A rule picks the runs; none is chosen by hand.
 //!
 //! The rule: the test runs in order of their cVDM improvement over the published baseline; *excellent* is the run at the 90th
 //! percentile, *moderate* the one at the 50th, by nearest rank.
 
+use super::artefact::Artefact;
 use super::case::Case;
-use super::sheet::{cell, save};
-use super::{Artefact, PaperError};
+use super::error::PaperError;
+use super::sheet::{Sheet, cell};
 use std::fmt::Write;
 use std::path::Path;
 use trimtab::evaluate::{Comparison, predict};
 use trimtab::numerals::{DASH, fixed, sig};
-use trimtab::plot::{Axis, BASELINE, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, east_north};
+use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, east_north};
 use trimtab::recording::{Split, Window};
 use trimtab::report::Table;
 use trimtab::state::{STATE_NAMES, STATES};
@@ -40,7 +41,18 @@ pub const SHOWN: [(&str, f64); STATES] = [
 
 fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
     let mut text = String::new();
-    let mut rows = Vec::new();
+    let header = [
+        "ship",
+        "grade",
+        "run",
+        "quantity",
+        "published_p~",
+        "captive_p~",
+        "fitted",
+        "gain_on_published",
+        "gain_on_captive",
+    ];
+    let mut sheet = Sheet::new("figures3to6_values", header);
     for (i, case) in cases.iter().enumerate() {
         let [published, captive] = case.baselines().map(|(model, _)| case.evaluate(model).trajectories);
         for (j, (grade, percentile)) in RULES.into_iter().enumerate() {
@@ -57,21 +69,10 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
             );
             figure(case, &case.windows[index], &title, before, other).save(&out.join(&name))?;
             let _ = writeln!(text, "{title}\n{}\n", table(before, other));
-            rows.extend(numbers(case, grade, before, other));
+            numbers(case, grade, before, other).into_iter().for_each(|row| sheet.row(row));
         }
     }
-    let header = [
-        "ship",
-        "grade",
-        "run",
-        "quantity",
-        "published_p~",
-        "captive_p~",
-        "fitted",
-        "gain_on_published",
-        "gain_on_captive",
-    ];
-    save(out, "figures3to6_values", header, rows)?;
+    sheet.save(out)?;
     Ok(text)
 }
 
@@ -139,58 +140,72 @@ fn numbers(case: &Case, grade: &str, before: &Comparison, other: &Comparison) ->
     deviations(before, other).into_iter().map(row).collect()
 }
 
+/// A line of the figures: name, colour, states, dashed.
+type Series<'a> = (&'a str, Color, &'a [[f64; STATES]], bool);
+
+fn line((name, color, _, dashed): Series<'_>, points: Vec<(f64, f64)>) -> Layer {
+    let layer = Layer::line(name, color, points);
+    if dashed { layer.dashed() } else { layer }
+}
+
+/// The tracks with ship outlines.
+fn track(case: &Case, series: &[Series<'_>]) -> Panel {
+    let hull = &case.fit.model.ship.hull;
+    let mut panel = Panel::track("track");
+    for &s in series {
+        let (name, color, states, _) = s;
+        let points = states.iter().map(|s| east_north(s[0], s[1])).collect();
+        let poses =
+            (0..=OUTLINES).filter_map(|i| states.get(i * (states.len() - 1) / OUTLINES)).map(|s| [s[0], s[1], s[2]]);
+        let outlines = Layer::hulls(format!("{name}, outline"), color, poses, hull.lpp, hull.breadth);
+        panel = panel.with(line(s, points)).with(outlines.unlisted());
+    }
+    panel
+}
+
 fn figure(case: &Case, window: &Window, title: &str, before: &Comparison, other: &Comparison) -> Figure {
-    let integration = case.setup.fit.integration;
-    let sail = |model| predict(model, window, integration).states;
+    let sail = |model| predict(model, window, case.setup.fit.integration).states;
     let (published, captive, fitted) =
         (sail(&case.published_baseline), sail(&case.captive_baseline), sail(&case.fit.model));
-    // In the order of drawing: the truth lies below what is judged by it.
-    let series: [(&str, trimtab::plot::Color, &[[f64; STATES]], bool); 4] = [
+    // In the order of drawing: the truth lies below the models.
+    let series: [Series<'_>; 4] = [
         ("truth", TRUTH, &window.measured, false),
         ("baseline, published p~", BASELINE, &published, true),
         ("baseline, captive tests", ORANGE, &captive, false),
         ("fitted", FITTED, &fitted, false),
     ];
-    let line = |name: &str, color, points: Vec<(f64, f64)>, dashed| {
-        let layer = Layer::line(name, color, points);
-        if dashed { layer.dashed() } else { layer }
-    };
-    let hull = &case.fit.model.ship.hull;
-    let mut track = Panel::track("track");
-    for (name, color, states, dashed) in series {
-        let points = states.iter().map(|s| east_north(s[0], s[1])).collect();
-        let poses =
-            (0..=OUTLINES).filter_map(|i| states.get(i * (states.len() - 1) / OUTLINES)).map(|s| [s[0], s[1], s[2]]);
-        track = track
-            .with(line(name, color, points, dashed))
-            .with(Layer::hulls(format!("{name}, outline"), color, poses, hull.lpp, hull.breadth).unlisted());
-    }
-    let mut figure = Figure::new(title).columns(4).panel_size(700, 600).with(track);
     let time = || Axis::new("time t [s]");
-    for (i, label) in [(2, "heading psi [deg]"), (3, "surge u [m/s]"), (4, "sway v [m/s]"), (5, "yaw rate r [deg/s]")] {
-        let mut panel = Panel::new("", time(), Axis::new(label));
-        for (name, color, states, dashed) in series {
-            let points = states.iter().enumerate().map(|(k, s)| (k as f64 * window.dt, s[i] * SHOWN[i].1)).collect();
-            panel = panel.with(line(name, color, points, dashed));
-        }
-        figure = figure.with(panel);
-    }
+    let over_time = |(i, label): (usize, &str)| {
+        let points = |states: &[[f64; STATES]]| {
+            states.iter().enumerate().map(|(k, s)| (k as f64 * window.dt, s[i] * SHOWN[i].1)).collect()
+        };
+        Panel::new("", time(), Axis::new(label)).with_all(series.map(|s| line(s, points(s.2))))
+    };
     let input = |label: &str, value: &dyn Fn(usize) -> f64| {
         let points = (0..window.inputs.len()).map(|k| (k as f64 * window.dt, value(k)));
         Panel::new("", time(), Axis::new(label).including(0.0)).with(Layer::line("truth", TRUTH, points))
     };
-    let names: Vec<String> = STATE_NAMES.iter().map(|n| (*n).to_owned()).chain(["cVDM".to_owned()]).collect();
-    let gains = |comparison: &Comparison, which: usize| -> Vec<f64> {
-        let all = deviations(comparison, other);
-        all.iter().map(|(_, d)| gain(d[which], d[2]).map_or(f64::NAN, |g| 100.0 * g)).collect()
-    };
-    let bars = Panel::new("gain in MD and cVDM", Axis::categories("", names), Axis::new("[%]"))
-        .with(Layer::bars("gain on published p~", BASELINE, gains(before, 0)))
-        .with(Layer::bars("gain on captive tests", ORANGE, gains(before, 1)));
-    figure
+    let states = [(2, "heading psi [deg]"), (3, "surge u [m/s]"), (4, "sway v [m/s]"), (5, "yaw rate r [deg/s]")];
+    Figure::new(title)
+        .columns(4)
+        .panel_size(700, 600)
+        .with(track(case, &series))
+        .with_all(states.map(over_time))
         .with(input("propeller n [rpm]", &|k| 60.0 * window.inputs[k].n))
         .with(input("rudder delta [deg]", &|k| window.inputs[k].delta.to_degrees()))
-        .with(bars)
+        .with(gains(before, other))
+}
+
+/// Gains in each mean deviation and in cVDM on both baselines.
+fn gains(before: &Comparison, other: &Comparison) -> Panel {
+    let names: Vec<String> = STATE_NAMES.iter().map(|n| (*n).to_owned()).chain(["cVDM".to_owned()]).collect();
+    let gains = |which: usize| -> Vec<f64> {
+        let all = deviations(before, other);
+        all.iter().map(|(_, d)| gain(d[which], d[2]).map_or(f64::NAN, |g| 100.0 * g)).collect()
+    };
+    Panel::new("gain in MD and cVDM", Axis::categories("", names), Axis::new("[%]"))
+        .with(Layer::bars("gain on published p~", BASELINE, gains(0)))
+        .with(Layer::bars("gain on captive tests", ORANGE, gains(1)))
 }
 
 #[cfg(test)]

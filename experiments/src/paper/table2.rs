@@ -1,9 +1,10 @@
 //! Table 2 of the paper: fitted parameters with 95 % intervals, beside both baselines, the initial guess and the paper's p*.
-//! The paper's p* belongs to ships that are not ours: it stands beside, it is no target.
+//! The paper's p* belongs to other ships: it is a comparison, not a target.
 
+use super::artefact::Artefact;
 use super::case::Case;
-use super::sheet::{cell, save};
-use super::{Artefact, PaperError};
+use super::error::PaperError;
+use super::sheet::{Sheet, cell};
 use std::fmt::Write;
 use std::path::Path;
 use trimtab::fit::Fit;
@@ -19,8 +20,11 @@ pub static TABLE2: Artefact = Artefact {
     make,
 };
 
-/// Value and 95 % interval of each of the eleven, in their order. An interval is absent where the data do not determine it.
-pub fn estimates(fit: &Fit) -> Vec<(&'static str, &'static str, f64, Option<[f64; 2]>)> {
+/// Symbol, unit, value and 95 % interval of a parameter.
+type Estimate = (&'static str, &'static str, f64, Option<[f64; 2]>);
+
+/// The estimates of the eleven, in their order. An interval is absent where the data do not determine it.
+fn estimates(fit: &Fit) -> Vec<Estimate> {
     ELEVEN
         .iter()
         .filter_map(|name| fit.estimates.iter().find(|e| e.name == *name))
@@ -28,67 +32,78 @@ pub fn estimates(fit: &Fit) -> Vec<(&'static str, &'static str, f64, Option<[f64
         .collect()
 }
 
+/// The values of one parameter and our 95 % interval.
+struct Row {
+    symbol: &'static str,
+    unit: &'static str,
+    baseline: f64,
+    captive: f64,
+    guess: f64,
+    paper: f64,
+    ours: f64,
+    interval: Option<[f64; 2]>,
+}
+
+fn rows(case: &Case) -> Vec<Row> {
+    let (published, captive) = (&case.published, case.captive_baseline.eleven());
+    let row = |(i, (symbol, unit, ours, interval)): (usize, Estimate)| Row {
+        symbol,
+        unit,
+        baseline: published.baseline[i],
+        captive: captive[i],
+        guess: published.initial[i],
+        paper: published.fitted[i],
+        ours,
+        interval,
+    };
+    estimates(&case.fit).into_iter().enumerate().map(row).collect()
+}
+
+impl Row {
+    /// The line of the printed table; `least` is the size below which the solver's tolerance makes a number zero.
+    fn printed(&self, least: f64) -> [String; 8] {
+        let show = |v: f64| sig(if v.abs() < least { 0.0 } else { v }, 4);
+        let ends = match self.interval {
+            None => DASH.to_owned(),
+            Some([lo, hi]) if lo == hi => "held by constraints".to_owned(),
+            Some([lo, hi]) => trimtab::numerals::interval(lo, hi, 4),
+        };
+        let [a, b, c, d, e] = [self.baseline, self.captive, self.guess, self.paper, self.ours].map(show);
+        [self.symbol.to_owned(), self.unit.to_owned(), a, b, c, d, e, ends]
+    }
+
+    fn panel(&self) -> Panel {
+        let Self { symbol, unit, .. } = self;
+        let label = if *unit == "-" { (*symbol).to_owned() } else { format!("{symbol} [{unit}]") };
+        let [lo, hi] = self.interval.unwrap_or([self.ours; 2]);
+        let point = |name: &str, color, x: f64, y: f64| Layer::scatter(name, color, [(x, y)]);
+        Panel::new("", Axis::categories("", ["p~", "captive", "guess", "p*", "ours"]), Axis::new(label).including(0.0))
+            .with(Layer::h_line("zero", GREY, 0.0).unlisted().dotted())
+            .with(point("baseline p~, paper", BASELINE, 0.0, self.baseline))
+            .with(point("baseline from captive tests", ORANGE, 1.0, self.captive).marker(Marker::Square))
+            .with(point("initial guess, paper", GREEN, 2.0, self.guess).marker(Marker::Triangle))
+            .with(point("p*, paper (its own ships)", PURPLE, 3.0, self.paper).marker(Marker::Diamond))
+            .with(Layer::errors("p*, ours, with 95 % interval", FITTED, [(4.0, self.ours, lo, hi)]))
+    }
+}
+
 fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
     let mut text = String::new();
-    let mut rows = Vec::new();
+    let header =
+        ["ship", "symbol", "unit", "baseline_paper", "baseline_captive", "guess", "fitted_paper", "fitted", "lo", "hi"];
+    let mut sheet = Sheet::new("table2_values", header);
     for case in cases {
-        let published = &case.published;
-        let captive = case.captive_baseline.eleven();
         let mut table =
             Table::new(["", "unit", "p~ paper", "p~ captive", "guess", "p* paper", "p* ours", "95 % interval"]);
         let mut figure = Figure::new(format!("{}: parameters (Table 2)", case.label())).columns(4).panel_size(720, 430);
-        for (i, (symbol, unit, value, interval)) in estimates(&case.fit).into_iter().enumerate() {
-            // A parameter on a limit is off it by what the solver tolerates.
-            let least = 1e-6 * case.fit.model.parameters[case.fit.model.find(symbol)?].scale;
-            let show = |v: f64| sig(if v.abs() < least { 0.0 } else { v }, 4);
-            let ends = match interval {
-                None => DASH.to_owned(),
-                Some([lo, hi]) if lo == hi => "held by constraints".to_owned(),
-                Some([lo, hi]) => trimtab::numerals::interval(lo, hi, 4),
-            };
-            table.row([
-                symbol.to_owned(),
-                unit.to_owned(),
-                show(published.baseline[i]),
-                show(captive[i]),
-                show(published.initial[i]),
-                show(published.fitted[i]),
-                show(value),
-                ends,
-            ]);
-            rows.push([
-                case.ship.name().to_owned(),
-                symbol.to_owned(),
-                unit.to_owned(),
-                cell(published.baseline[i]),
-                cell(captive[i]),
-                cell(published.initial[i]),
-                cell(published.fitted[i]),
-                cell(value),
-                cell(interval.map(|[lo, _]| lo)),
-                cell(interval.map(|[_, hi]| hi)),
-            ]);
-            let label = if unit == "-" { symbol.to_owned() } else { format!("{symbol} [{unit}]") };
-            let slots = ["p~", "captive", "guess", "p*", "ours"];
-            let [lo, hi] = interval.unwrap_or([value, value]);
-            figure = figure.with(
-                Panel::new("", Axis::categories("", slots), Axis::new(label).including(0.0))
-                    .with(Layer::h_line("zero", GREY, 0.0).unlisted().dotted())
-                    .with(Layer::scatter("baseline p~, paper", BASELINE, [(0.0, published.baseline[i])]))
-                    .with(
-                        Layer::scatter("baseline from captive tests", ORANGE, [(1.0, captive[i])])
-                            .marker(Marker::Square),
-                    )
-                    .with(
-                        Layer::scatter("initial guess, paper", GREEN, [(2.0, published.initial[i])])
-                            .marker(Marker::Triangle),
-                    )
-                    .with(
-                        Layer::scatter("p*, paper (its own ships)", PURPLE, [(3.0, published.fitted[i])])
-                            .marker(Marker::Diamond),
-                    )
-                    .with(Layer::errors("p*, ours, with 95 % interval", FITTED, [(4.0, value, lo, hi)])),
-            );
+        for row in rows(case) {
+            // A parameter on a limit is off it by the solver's tolerance.
+            table.row(row.printed(1e-6 * case.fit.model.parameters[case.fit.model.find(row.symbol)?].scale));
+            let [lo, hi] = [row.interval.map(|i| i[0]), row.interval.map(|i| i[1])].map(cell);
+            let [a, b, c, d, e] = [row.baseline, row.captive, row.guess, row.paper, row.ours].map(cell);
+            let [ship, symbol, unit] = [case.ship.name(), row.symbol, row.unit].map(str::to_owned);
+            sheet.row([ship, symbol, unit, a, b, c, d, e, lo, hi]);
+            figure = figure.with(row.panel());
         }
         figure.save(&out.join(format!("table2_{}", case.ship.name())))?;
         let _ = writeln!(text, "{}: {}\n{table}", case.label(), case.fit.status);
@@ -99,9 +114,7 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
             "Intervals take runs as independent, not residuals: {effect} times the variance of independent residuals.\n"
         );
     }
-    let header =
-        ["ship", "symbol", "unit", "baseline_paper", "baseline_captive", "guess", "fitted_paper", "fitted", "lo", "hi"];
-    save(out, "table2_values", header, rows)?;
+    sheet.save(out)?;
     Ok(text)
 }
 

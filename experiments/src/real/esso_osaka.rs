@@ -1,8 +1,9 @@
-//! Esso Osaka, 3 m: models fitted to training runs, judged on runs kept aside beside two baselines that know no recording.
+//! Esso Osaka, 3 m: models fitted to training runs, judged on test runs beside two baselines that use no recording.
 //! The baselines are the empirical model (Clarke, Inoue) and the published low-speed MMG simulator, both in calm water.
 
+use super::error::RealError;
+use super::hull::Hull;
 use super::published::PublishedMmg;
-use super::{Hull, RealError};
 use trimtab::evaluate::{Comparison, EvaluationSettings, Outcome, Summary, compare, predict, summarise};
 use trimtab::fit::Fit;
 use trimtab::model::Model;
@@ -17,7 +18,7 @@ use trimtab::simulate::Trajectory;
 /// Model files that are fitted, in the order of the tables.
 pub const FITTED_MODELS: [&str; 4] = ["model.toml", "wind.toml", "freed.toml", "freed_wind.toml"];
 
-/// What a panel shows of a state at a time since the start of the window \[s\].
+/// A point of a panel from the time since the start of the window \[s\] and a state.
 type Curve = dyn Fn(f64, &[f64; 6]) -> (f64, f64);
 
 /// A model on every window.
@@ -26,11 +27,11 @@ pub struct Candidate {
     pub name: String,
     /// Prediction of each window.
     pub predicted: Vec<Trajectory>,
-    /// How far it is from what was measured.
+    /// Its deviations from the measured motion.
     pub outcomes: Vec<Outcome>,
 }
 
-/// What the experiment gives.
+/// The results of the experiment.
 pub struct Judged {
     /// Test windows.
     pub windows: Vec<Window>,
@@ -185,7 +186,7 @@ impl Judged {
             .with(panel.with_all(bars))
     }
 
-    /// Of each manoeuvre the test window on which the last candidate is its median, as a track and in heading and speed.
+    /// For each manoeuvre the test window with the median error of the last candidate: track, heading and speed.
     pub fn windows_figure(&self) -> Figure {
         let last = self.candidates.len() - 1;
         let shown = [0, 1, last];

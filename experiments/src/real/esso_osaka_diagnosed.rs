@@ -1,9 +1,14 @@
-//! Esso Osaka, diagnosed: calm-water model and no wind given, what is found is compared with the anemometer that was withheld.
-//! Sensors are mended by the recordings' own kinematics, before any model is asked; nothing here is chosen by its outcome.
+//! Esso Osaka, diagnosed with a calm-water model and without its wind; the findings are compared with the withheld anemometer.
+//! Sensors are mended by the recordings' own kinematics before any model is used; no setting was chosen by its outcome.
 
-use super::diagnosis::{Case, Frame, Pull, Step, by_recording, pulls, runs, sessions, without_term, without_wind};
-use super::kinematics::{Agreement, Mend, held, jumps, median};
-use super::{Hull, RealError};
+use super::agreement::{Agreement, median};
+use super::case::Case;
+use super::error::RealError;
+use super::frame::{Frame, Step};
+use super::hull::Hull;
+use super::mend::{Mend, held, jumps};
+use super::pull::{Pull, pulls};
+use super::runs::{by_recording, runs, sessions, without_term, without_wind};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
@@ -11,28 +16,28 @@ use trimtab::numerals::{fixed, sig};
 use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, RECORDED};
 use trimtab::recording::Split;
 
-/// Over this the changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
+/// Span over which changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 const SPAN: f64 = 20.0;
-/// No ship of 3 m that sails at 0.4 m/s moves or turns as fast \[m/s, rad/s\].
+/// Above the fastest motion and turn of a 3 m ship that sails at 0.4 m/s \[m/s, rad/s\].
 const FASTEST: [f64; 2] = [1.5, 0.5];
-/// Mean wind above which its direction means something \[m/s\].
+/// Mean wind above which its direction is compared \[m/s\].
 const WINDY: f64 = 1.0;
-/// How near the anemometer a direction should be \[rad\].
+/// Largest deviation from the anemometer that counts as near \[rad\].
 const NEAR: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
-/// What the experiment gives.
+/// The results of the experiment.
 pub struct Diagnosed {
-    /// Of each recording.
+    /// Kinematics of each recording.
     pub kinematics: Vec<Agreement>,
     /// Diagnoses.
     pub cases: Vec<Case>,
     /// Questions asked one by one.
     pub steps: Vec<Step>,
-    /// Force in each session of the training runs, blind.
+    /// Force in each session of the training runs, wind withheld.
     pub by_session: Vec<Pull>,
-    /// Force in each recording, blind.
+    /// Force in each recording, wind withheld.
     pub pulls: Vec<Pull>,
-    /// What is left in each session with the measured wind in the model.
+    /// Force in each session with the measured wind in the model.
     pub left: Vec<Pull>,
     /// Load coefficients of the measured wind (drag, side, yaw) with their standard errors.
     pub load: Vec<(f64, f64)>,
@@ -57,8 +62,8 @@ pub fn run() -> Result<Diagnosed, RealError> {
     let (train, test) = (mended(&train, &mends), mended(&test, &mends));
     let (blind, blind_test) = (without_wind(&train), without_wind(&test));
     cases.push(Case::new("mended, wind withheld", &calm, &blind, &blind_test, &settings)?);
-    // The recorded rudder jumps from side to side in a tenth of a second: it is the order. A limit that is named is taken into the
-    // model, as its user would, and everything asked again.
+    // The recorded rudder jumps from side to side in a tenth of a second: it is the order. A limit that is named is added to the
+    // model, as a user would do, and the diagnosis is repeated.
     if let Some(limited) = with_rudder_limit(&calm, &cases[1])? {
         cases.push(Case::new("rudder's limit in, wind withheld", &limited, &blind, &blind_test, &settings)?);
     }
@@ -68,7 +73,7 @@ pub fn run() -> Result<Diagnosed, RealError> {
     let windless = without_term(&fitted.model, "wind")?;
     cases.push(Case::new("best model without its wind, wind given", &windless, &train, &test, &settings)?);
 
-    // One question at a time, with everything else estimated along.
+    // One question at a time, with the other parameters profiled out.
     let train = frame.followed(&train);
     let blind = without_wind(&train);
     let names = sessions(&train);
@@ -117,8 +122,8 @@ fn with_rudder_limit(model: &Model, case: &Case) -> Result<Option<Model>, RealEr
     Ok(Some(out))
 }
 
-/// What to mend in each recording: velocities, which lag the positions by a second, are left out, positions that were
-/// held are left out, windows over jumps of the receiver are left out, and the gyro is put in time and freed from its bias.
+/// The corrections of each recording: velocities, which lag the positions by a second, held positions and windows over jumps of
+/// the receiver are left out, and delay and bias of the gyro are removed.
 fn mends(hull: &Hull, kinematics: &[Agreement]) -> Result<Vec<(String, Mend)>, RealError> {
     let mut out = Vec::new();
     for run in &hull.study.runs {
@@ -182,7 +187,7 @@ impl Diagnosed {
         format!("Propeller walk astern (95 %): {calm} in calm air, {wind} beside wind and forces.")
     }
 
-    /// Directions, sizes, and what the steps are worth on held-out runs.
+    /// Directions and sizes of the forces, and errors of held-out runs.
     pub fn figure(&self) -> Figure {
         let point = |p: &Pull| {
             let (blows, half) = (p.wind_direction().0.to_degrees(), p.direction().1.to_degrees());

@@ -1,7 +1,8 @@
 //! KVLCC2: fitted to the zigzags of the free-running tests, judged on their turning circles, which no fit has seen.
-//! Predictions are trials sailed by the model from the approach of the tests; nothing of a recorded turn enters them.
+//! Predictions are trials simulated from the approach of the tests; no sample of a recorded turn enters them.
 
-use super::{Hull, RealError, settings};
+use super::error::RealError;
+use super::hull::{Hull, settings};
 use trimtab::fit::Fit;
 use trimtab::maneuver::{
     Approach, ManeuverSettings, Side, Track, turning, turning_execute, turning_trial, zigzag, zigzag_executes,
@@ -16,10 +17,10 @@ use trimtab::report::Table;
 /// Rudder angle of the turning circles \[rad\].
 const HARD_OVER: f64 = 35.0 * std::f64::consts::PI / 180.0;
 
-/// One measure of a trial: what it is, what was measured, and what each model predicts.
+/// One measure of a trial: measured, and predicted by each model.
 #[derive(Clone, Debug)]
 pub struct Measure {
-    /// In words, with unit.
+    /// The measure in words, with unit.
     pub what: String,
     /// Whether it is an angle, whose errors are in degrees rather than per cent.
     pub angle: bool,
@@ -38,9 +39,9 @@ impl Measure {
     }
 }
 
-/// A trial as tested and as each model sails it, for pictures.
+/// A trial as tested and as simulated by each model, for pictures.
 pub struct Sailed {
-    /// In words.
+    /// The trial, in words.
     pub name: String,
     /// From the execute on.
     pub measured: Track,
@@ -50,7 +51,7 @@ pub struct Sailed {
     pub predicted: Vec<Track>,
 }
 
-/// What the experiment gives.
+/// The results of the experiment.
 pub struct Outcome {
     /// Names of the models: empirical, eleven parameters, freed.
     pub models: Vec<String>,
@@ -64,7 +65,7 @@ pub struct Outcome {
     pub zigzags: Vec<Sailed>,
 }
 
-/// Fits the models to the zigzags and sails all trials with each.
+/// Fits the models to the zigzags and simulates all trials with each.
 ///
 /// # Errors
 /// [`RealError`].
@@ -76,7 +77,7 @@ pub fn run() -> Result<Outcome, RealError> {
     empirical.name = "empirical".into();
     let models: Vec<&Model> = std::iter::once(&empirical).chain(fits.iter().map(|f| &f.model)).collect();
 
-    // The tests themselves, on a grid fine enough for angles to be read from.
+    // The tests on a grid fine enough for angles.
     let mut fine = hull.study.clone();
     fine.windows.step = Some(0.5);
     let tests = fine.whole_runs(hull.ship.hull.draught)?.windows;
@@ -193,8 +194,8 @@ impl Outcome {
             .zip(&sailed)
             .map(|(m, (theta, approach))| zigzag_trial(m, theta, approach, side, [angle, angle]))
             .collect();
-        // The tests execute at headings counted from a nominal course of 0, from which the ship may have strayed by a degree
-        // at the first execute; overshoots are counted from the same course.
+        // The tests execute at headings counted from a nominal course of 0, from which the ship may be off by a degree at
+        // the first execute; overshoots are counted from that course too.
         let strayed = side.sign() * track.states[first][2];
         let overshoots = measured.overshoots.iter().zip([strayed, -strayed]).map(|(o, s)| o + s);
         for (i, overshoot) in overshoots.enumerate() {

@@ -1,9 +1,13 @@
-//! KVLCC2, diagnosed: tests in a calm basin, in which no wind, current or waves may be found, and a single screw, whose
-//! asymmetry may. The zigzags are diagnosed and the turning circles only prove.
+//! KVLCC2, diagnosed: tests in a calm basin without wind, current or waves, of a ship with one screw and so of unlike sides.
+//! The zigzags are diagnosed; the turning circles are for the proof only.
 
-use super::diagnosis::{Answer, Case, Frame, Step, runs, without_term};
-use super::kinematics::{Agreement, Mend, median};
-use super::{Hull, RealError};
+use super::agreement::{Agreement, median};
+use super::case::Case;
+use super::error::RealError;
+use super::frame::{Answer, Frame, Step};
+use super::hull::Hull;
+use super::mend::Mend;
+use super::runs::{runs, without_term};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
@@ -11,7 +15,7 @@ use trimtab::numerals::{fixed, sig};
 use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED};
 use trimtab::recording::Split;
 
-/// Over this the changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
+/// Span over which changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 pub const SPAN: f64 = 40.0;
 
 /// Parameters of the base model in which port and starboard differ: a mirror-symmetric ship has none of them.
@@ -22,12 +26,12 @@ pub const ONE_SIDED: [&str; 5] =
 pub const NOT_IN_A_BASIN: [&str; 8] =
     ["wind", "mean_wind", "current", "tide", "waves", "wave_drift", "earth_force", "push"];
 
-/// Terms of the best model with its sensors that are left out, one at a time, for the diagnosis to put back.
+/// Terms of the best model with its sensors that are left out, one at a time; the diagnosis should name each.
 pub const PUT_BACK: [&str; 2] = ["time_skew", "yaw_rate_bias"];
 
-/// What the experiment gives.
+/// The results of the experiment.
 pub struct Diagnosed {
-    /// Of each recording.
+    /// Kinematics of each recording.
     pub kinematics: Vec<Agreement>,
     /// Diagnoses.
     pub cases: Vec<Case>,
@@ -37,7 +41,7 @@ pub struct Diagnosed {
     pub asymmetry: (f64, f64),
 }
 
-/// The diagnosis of the zigzags as they were recorded, and what the kinematics of every recording say.
+/// The diagnosis of the zigzags as recorded, and the kinematics of every recording.
 ///
 /// # Errors
 /// [`RealError`].
@@ -48,7 +52,7 @@ pub fn as_recorded() -> Result<(Case, Vec<Agreement>), RealError> {
     Ok((case, Agreement::of_study(&hull, SPAN)?))
 }
 
-/// The recordings that are diagnosed and those that only prove, with the gyro mended as the kinematics of the former say.
+/// The recordings for the diagnosis and those for the proof, with the gyro mended by the kinematics of the former.
 fn gyro_mended(hull: &Hull, kinematics: &[Agreement]) -> Result<(Vec<Run>, Vec<Run>), RealError> {
     let (train, test) = (runs(hull, Split::Train)?, runs(hull, Split::Test)?);
     let seen = || kinematics.iter().filter(|a| train.iter().any(|r| r.name.starts_with(&a.run)));
@@ -61,14 +65,14 @@ fn gyro_mended(hull: &Hull, kinematics: &[Agreement]) -> Result<(Vec<Run>, Vec<R
     Ok((mended(&train), mended(&test)))
 }
 
-/// The diagnosis with all six recordings to learn from and none left for a proof: sides differ most in the turning circles.
+/// The diagnosis with all six recordings as training runs and no proof: port and starboard differ most in the turning circles.
 fn all_recordings(hull: &Hull, kinematics: &[Agreement]) -> Result<Case, RealError> {
     let (train, test) = gyro_mended(hull, kinematics)?;
     let whole = [train, test].concat();
     Case::new("all recordings, gyro mended", &hull.model("model.toml")?, &whole, &[], &Settings::default())
 }
 
-/// The model with hull coefficients freed, fitted to the zigzags: the best there is.
+/// The best model: hull coefficients freed, fitted to the zigzags.
 ///
 /// # Errors
 /// [`RealError`].
@@ -76,8 +80,8 @@ pub fn freed(hull: &Hull) -> Result<Model, RealError> {
     Ok(hull.fitted(&hull.model("freed.toml")?, &hull.windows(Split::Train)?)?.model)
 }
 
-/// The recordings as they are, given to the best model, and then to what the diagnosis made of it without one of the terms that it
-/// had added: is that one put back, and nothing else? In the order of [`PUT_BACK`].
+/// Diagnoses of the unmended recordings: with the best model, then with the improved model of that diagnosis less one of its added
+/// terms, which the diagnosis should name and no other. In the order of [`PUT_BACK`].
 ///
 /// # Errors
 /// [`RealError`].
@@ -92,8 +96,8 @@ pub fn left_out(hull: &Hull, best: &Model) -> Result<Vec<Case>, RealError> {
     Ok(cases)
 }
 
-/// The best model with everything lopsided in it set to zero, and nothing held: are her two sides told apart again? The gyro is
-/// mended.
+/// The diagnosis of the best model with its one-sided parameters set to zero and free: it should report that the sides differ. The
+/// gyro is mended.
 ///
 /// # Errors
 /// [`RealError`].
@@ -124,12 +128,12 @@ pub fn run() -> Result<Diagnosed, RealError> {
 
     cases.extend(left_out(&hull, &best)?);
 
-    // One question at a time on a mirror-symmetric ship, with everything else estimated along.
+    // One question at a time on a mirror-symmetric ship, with the other parameters profiled out.
     let (steps, asymmetry) = asked(&cases[2], &train, &test)?;
     Ok(Diagnosed { kinematics, asymmetry, cases, steps })
 }
 
-/// One question at a time of a mirror-symmetric ship as a diagnosis left her, and the asymmetry of the flow at her rudder with its
+/// One question at a time of the mirror-symmetric ship of a diagnosis, and the asymmetry of the flow at the rudder with its
 /// standard error.
 fn asked(case: &Case, train: &[Run], test: &[Run]) -> Result<(Vec<Step>, (f64, f64)), RealError> {
     let mut frame = Frame::new(&case.diagnosis)?;
@@ -150,7 +154,7 @@ fn asked(case: &Case, train: &[Run], test: &[Run]) -> Result<(Vec<Step>, (f64, f
     Ok((steps, flow.first()))
 }
 
-/// The model of a ship whose port and starboard sides are alike, as far as nothing else is learnt of them.
+/// The model with its one-sided parameters set to zero, still free.
 fn alike(model: &Model) -> Result<Model, RealError> {
     let mut out = model.clone();
     for name in ONE_SIDED {
@@ -160,7 +164,7 @@ fn alike(model: &Model) -> Result<Model, RealError> {
     Ok(out)
 }
 
-/// The same, and held so.
+/// The model with its one-sided parameters set to zero and held.
 fn symmetric(model: &Model) -> Result<Model, RealError> {
     let mut out = alike(model)?;
     for name in ONE_SIDED {
@@ -181,7 +185,7 @@ impl Diagnosed {
         self.cases.iter().flat_map(named).collect()
     }
 
-    /// What was found of the single screw, in words.
+    /// The asymmetry of the flow at the rudder, in words.
     pub fn screw(&self) -> String {
         let (value, error) = self.asymmetry;
         format!(
@@ -191,7 +195,7 @@ impl Diagnosed {
         )
     }
 
-    /// Sensors as found and as the kinematics have them, the ranking, and what the steps are worth on the turning circles.
+    /// Sensor errors as diagnosed and by kinematics, the statistic of each question, and its value on the turning circles.
     pub fn figure(&self) -> Figure {
         let amplitude =
             |name: &str| self.cases[0].diagnosis.findings.iter().flat_map(|f| &f.parameters).find(|p| p.name == name);
@@ -248,7 +252,7 @@ impl Diagnosed {
             .with(proof)
     }
 
-    /// What was concluded of the basin, in words.
+    /// Mechanisms named that a calm basin does not have, in words.
     pub fn basin(&self) -> String {
         let found = self.impossible();
         if found.is_empty() {

@@ -1,5 +1,5 @@
 //! The low-speed MMG simulator published with the Esso Osaka data, in calm water: a baseline for the fitted model.
-//! Its numbers are read from the data set's own files when it is used; none of them is kept here, and nothing is fitted.
+//! Its numbers are read from the data set's own files at each use; none of them is kept here, and nothing is fitted.
 //!
 //! Sources: Miyauchi et al. 2022 (doi 10.1007/s00773-022-00889-3) and Wakita et al. 2022 (doi 10.1007/s00773-021-00867-1),
 //! with the options that their files select: hull after Yoshimura 2009, propeller astern after Hachii, normal force after Fujii,
@@ -22,7 +22,7 @@ pub enum PublishedError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the reader said.
+        /// The reader's error.
         source: csv::Error,
     },
     /// A value is missing or no number.

@@ -1,9 +1,10 @@
-//! Virtual captive tests: a truth simulator held in a planar motion mechanism and measured, the way baseline parameters are made.
-//! It measures and fits the resistance; turning rudder rows into lift and drag needs the fitted model's inflow and is done with that.
+//! Virtual captive tests: a truth simulator held in a planar motion mechanism and measured, as baseline parameters are made.
+//! It measures and fits resistance and side force; lift and drag need the fitted model's inflow and are read in `paper::captive_baseline`.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Contributions, Truth};
+use super::motion::Contributions;
+use super::simulator::Truth;
 
 /// One measured point: the motion and inputs held, and the forces by origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,7 +19,7 @@ pub struct Row {
     pub n: f64,
     /// Rudder angle \[rad\].
     pub delta: f64,
-    /// Measured forces, with hull, propeller and rudder told apart by their own dynamometers.
+    /// Measured forces, with a dynamometer each for hull, propeller and rudder.
     pub force: Contributions,
 }
 
@@ -46,7 +47,7 @@ impl Range {
     }
 }
 
-/// Towing runs on a straight course without propeller and rudder forces: only [`Contributions::hull`] is of use.
+/// Towing runs on a straight course without propeller and rudder forces: only [`Contributions::hull`] is used.
 pub fn towing(truth: &dyn Truth, speeds: Range) -> Vec<Row> {
     speeds.values().map(|u| measure(truth, u, 0.0, 0.0, 0.0, 0.0)).collect()
 }
@@ -98,8 +99,8 @@ pub fn fit_side_force(runs: &[Row]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ships::{ship_a, ship_b};
     use super::*;
+    use crate::truth::ships::{ship_a, ship_b};
 
     #[test]
     fn resistance_fit_recovers_a_cubic_and_refuses_two_speeds() {

@@ -7,7 +7,9 @@
 
 use std::f64::consts::PI;
 
-use super::{Contributions, Environment, Force, Inertia, Inputs, Particulars, State, Truth, smooth_step};
+use super::blend::smooth_step;
+use super::motion::{Force, Particulars};
+use super::simulator::{Inertia, Propulsion, Truth};
 
 /// Hull coefficients of eq. (1), dimensional, for the midship origin. Signs as in the equation (Xud, Yvd, Nrd < 0).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -134,7 +136,7 @@ const SMALL: f64 = 0.05;
 /// Angle of attack up to which the polynomials hold, and from which the rudder is a flat plate \[rad\].
 const BLEND: [f64; 2] = [45.0 * PI / 180.0, 60.0 * PI / 180.0];
 
-/// Ship A of the paper under her fitted rudder and her baseline resistance.
+/// Ship A of the paper with its fitted rudder and its baseline resistance.
 ///
 /// Coefficients: Clarke et al. (1982), Zhou (1983) and Inoue et al. (1981) for the reconstructed hull. Rudder: the published
 /// fitted values, from the zeros and extremes of their curves. Resistance: the published baseline; the fitted one is far off
@@ -192,7 +194,7 @@ pub fn ship_a() -> Hd {
 
 impl Hd {
     /// Inflow speed of the propeller and its thrust before deduction, `(V_A [m/s], T [N])`.
-    pub fn thrust(&self, u: f64, n: f64) -> (f64, f64) {
+    fn thrust(&self, u: f64, n: f64) -> (f64, f64) {
         let p = &self.propeller;
         let ahead = 0.5 * (1.0 + u / u.hypot(SMALL));
         let va = (1.0 - p.wake * ahead) * u;
@@ -203,7 +205,7 @@ impl Hd {
     }
 
     /// Longitudinal and lateral inflow at the rudder, `(u_R, v_R)` \[m/s\].
-    pub fn rudder_inflow(&self, v: f64, r: f64, va: f64, thrust: f64) -> (f64, f64) {
+    fn rudder_inflow(&self, v: f64, r: f64, va: f64, thrust: f64) -> [f64; 2] {
         let (d, q) = (self.propeller.diameter, &self.rudder);
         let gain = 8.0 * thrust / (PI * self.particulars.rho * d * d);
         let ahead = q.race * ((va * va + gain.max(0.0)).sqrt() - va.abs());
@@ -212,27 +214,33 @@ impl Hd {
         let squared = eta * behind * behind.abs() + (1.0 - eta) * va * va.abs();
         // A square root would be infinitely steep at no inflow at all.
         let axial = q.wake_ratio * squared / (squared * squared + (0.1 * SMALL).powi(4)).powf(0.25);
-        (axial, -q.straightening * (v + q.inflow_position * r))
+        [axial, -q.straightening * (v + q.inflow_position * r)]
+    }
+}
+
+impl Truth for Hd {
+    fn particulars(&self) -> &Particulars {
+        &self.particulars
     }
 
-    fn rudder_force(&self, u_r: f64, v_r: f64, delta: f64) -> Force {
-        let (p, q) = (&self.p, &self.rudder);
-        let flow = v_r.atan2(u_r);
-        let turned = delta + q.offset - flow;
-        let a = turned - 2.0 * PI * (turned / (2.0 * PI)).round();
-        let held = a.clamp(-BLEND[1], BLEND[1]);
-        let plate = smooth_step(a.abs(), BLEND[0], BLEND[1]);
-        let lift = p[4] + held * (p[5] + held * (p[6] + held * p[7]));
-        let drag = p[8] + held * (p[9] + held * p[10]);
-        let lift = lift + plate * (1.2 * a.sin() * a.cos() - lift);
-        let drag = drag + plate * (1.2 * a.sin() * a.sin() - drag);
-        let pressure = 0.5 * self.particulars.rho * q.area * (u_r * u_r + v_r * v_r) * q.gain;
-        let (sin, cos) = flow.sin_cos();
-        let y = pressure * (drag * sin - lift * cos);
-        Force { x: -pressure * (drag * cos + lift * sin), y, n: q.position * y }
+    /// The equation's own, with Yrd and Nvd; the part of the added mass in v r is in the coefficients of the hull.
+    fn inertia(&self) -> Inertia {
+        let (h, m) = (&self.hull, self.mass);
+        let mxg = m * self.xg;
+        Inertia {
+            surge: m - h.xud,
+            coupled: [[m - h.yvd, mxg - h.yrd], [mxg - h.nvd, self.yaw_inertia - h.nrd]],
+            carried: [m, m],
+            mxg,
+        }
     }
 
-    /// Everything of the left-hand side but accelerations and rigid-body terms, moved to the right, and -R(u).
+    fn propulsion(&self, u: f64, v: f64, r: f64, n: f64) -> Propulsion {
+        let (va, thrust) = self.thrust(u, n);
+        Propulsion { thrust, rudder_inflow: self.rudder_inflow(v, r, va, thrust) }
+    }
+
+    /// The terms of the left-hand side other than accelerations and rigid-body terms, moved to the right, and -R(u).
     fn hull_force(&self, u: f64, v: f64, r: f64) -> Force {
         let (h, p) = (&self.hull, &self.p);
         let speed = (u * u + v * v + SMALL * SMALL).sqrt();
@@ -252,63 +260,28 @@ impl Hd {
         }
     }
 
-    /// The mass matrix of sway and yaw, `[[m - Yvd, m xG - Yrd], [m xG - Nvd, Iz - Nrd]]`, and m - Xud before it.
-    pub fn masses(&self) -> (f64, [[f64; 2]; 2]) {
-        let (h, m) = (&self.hull, self.mass);
-        let mxg = m * self.xg;
-        (m - h.xud, [[m - h.yvd, mxg - h.yrd], [mxg - h.nvd, self.yaw_inertia - h.nrd]])
-    }
-
-    /// Accelerations through the water (u', v', r') under the ship's own forces and `extra` (X, Y \[N\], N \[N m\]).
-    pub fn accelerations(&self, u: f64, v: f64, r: f64, n: f64, delta: f64, extra: [f64; 3]) -> [f64; 3] {
-        let own = self.force(u, v, r, n, delta).total();
-        let (m, mxg) = (self.mass, self.mass * self.xg);
-        let x = own.x + extra[0] + m * v * r + mxg * r * r;
-        let y = own.y + extra[1] - m * u * r;
-        let yaw = own.n + extra[2] - mxg * u * r;
-        let (surge, [[a, b], [c, d]]) = self.masses();
-        let det = a * d - b * c;
-        [x / surge, (d * y - b * yaw) / det, (a * yaw - c * y) / det]
-    }
-}
-
-impl Truth for Hd {
-    fn particulars(&self) -> &Particulars {
-        &self.particulars
-    }
-
-    /// The symmetric part of the inertia; the equation's own (with Yrd and Nvd) is used in [`Truth::derivative`].
-    fn inertia(&self) -> Inertia {
-        Inertia {
-            mass: self.mass,
-            surge_added: -self.hull.xud,
-            sway_added: -self.hull.yvd,
-            yaw: self.yaw_inertia - self.hull.nrd,
-            xg: self.xg,
-        }
-    }
-
-    fn force(&self, u: f64, v: f64, r: f64, n: f64, delta: f64) -> Contributions {
-        let (va, thrust) = self.thrust(u, n);
-        let (u_r, v_r) = self.rudder_inflow(v, r, va, thrust);
+    fn propeller_force(&self, thrust: f64, _u: f64, _n: f64) -> Force {
         let deduction = if thrust > 0.0 { self.propeller.thrust_deduction } else { 0.0 };
         let x = (1.0 - deduction) * thrust;
         let y = self.p[0] * x;
-        Contributions {
-            hull: self.hull_force(u, v, r),
-            propeller: Force { x, y, n: self.propeller.position * y },
-            rudder: self.rudder_force(u_r, v_r, delta),
-        }
+        Force { x, y, n: self.propeller.position * y }
     }
 
-    fn derivative(&self, t: f64, state: &State, inputs: &Inputs, environment: &Environment) -> [f64; 6] {
-        let (sin, cos) = state.psi.sin_cos();
-        let [north, east] = environment.current;
-        let (u_c, v_c) = (north * cos + east * sin, -north * sin + east * cos);
-        let extra = environment.extra.as_ref().map_or([0.0; 3], |f| f(t, state, inputs));
-        let r = state.r;
-        let [du, dv, dr] = self.accelerations(state.u - u_c, state.v - v_c, r, inputs.n, inputs.delta, extra);
-        [state.u * cos - state.v * sin, state.u * sin + state.v * cos, r, du + v_c * r, dv - u_c * r, dr]
+    fn rudder_force(&self, [u_r, v_r]: [f64; 2], delta: f64) -> Force {
+        let (p, q) = (&self.p, &self.rudder);
+        let flow = v_r.atan2(u_r);
+        let turned = delta + q.offset - flow;
+        let a = turned - 2.0 * PI * (turned / (2.0 * PI)).round();
+        let held = a.clamp(-BLEND[1], BLEND[1]);
+        let plate = smooth_step(a.abs(), BLEND[0], BLEND[1]);
+        let lift = p[4] + held * (p[5] + held * (p[6] + held * p[7]));
+        let drag = p[8] + held * (p[9] + held * p[10]);
+        let lift = lift + plate * (1.2 * a.sin() * a.cos() - lift);
+        let drag = drag + plate * (1.2 * a.sin() * a.sin() - drag);
+        let pressure = 0.5 * self.particulars.rho * q.area * (u_r * u_r + v_r * v_r) * q.gain;
+        let (sin, cos) = flow.sin_cos();
+        let y = pressure * (drag * sin - lift * cos);
+        Force { x: -pressure * (drag * cos + lift * sin), y, n: q.position * y }
     }
 }
 
@@ -317,7 +290,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_accelerates_like_the_library_s_model_of_the_same_equation() {
+    fn accelerations_agree_with_the_library_s_model_of_this_equation() {
         use trimtab::state as lib;
         let text = include_str!("../../ships/a.toml");
         let ship = trimtab::ship::Ship::parse(text, std::path::Path::new("a.toml")).unwrap();
@@ -335,8 +308,9 @@ mod tests {
         ] {
             let state = lib::State { x: 0.0, y: 0.0, psi: 0.4, u, v, r };
             let inputs = lib::Inputs::actuators(0.0, n, delta);
-            let (rates, _) = model.rates(&theta, &state, &inputs, &lib::Force::zero());
-            let own = truth.accelerations(u, v, r, n, delta, [0.0; 3]);
+            let (rates, _) =
+                trimtab::dynamics::Dynamics::new(&model, theta.clone()).rates(&state, &inputs, &lib::Force::zero());
+            let own = truth.inertia().accelerations([u, v, r], &truth.force(u, v, r, n, delta).total());
             for (i, (a, b)) in own.iter().zip(&rates[3..]).enumerate() {
                 let unit = [1e-3, 1e-3, 2e-5][i];
                 assert!((a - b).abs() < 0.02 * b.abs() + unit, "rate {i} at u {u} v {v} r {r}: {a} against {b}");
@@ -345,14 +319,16 @@ mod tests {
     }
 
     #[test]
-    fn without_its_asymmetric_parameters_it_is_the_same_to_port_and_to_starboard() {
+    fn without_its_asymmetric_parameters_port_and_starboard_are_alike() {
         let mut ship = ship_a();
         for i in [0, 4, 6, 9] {
             ship.p[i] = 0.0;
         }
         for (u, v, r, n, delta) in [(5.0, 0.7, -0.01, 2.0, 0.3), (-2.0, 0.5, 0.01, -2.0, 0.2)] {
-            let a = ship.accelerations(u, v, r, n, delta, [0.0; 3]);
-            let b = ship.accelerations(u, -v, -r, n, -delta, [0.0; 3]);
+            let of = |v: f64, r: f64, delta: f64| {
+                ship.inertia().accelerations([u, v, r], &ship.force(u, v, r, n, delta).total())
+            };
+            let (a, b) = (of(v, r, delta), of(-v, -r, -delta));
             assert!((a[0] - b[0]).abs() < 1e-14 && (a[1] + b[1]).abs() < 1e-14 && (a[2] + b[2]).abs() < 1e-16);
         }
     }

@@ -1,9 +1,9 @@
 //! A helmsman and the actuators he works through: helm and telegraph orders along a plan, rudder and engine that lag behind them.
-//! He sees only position, heading, speed and yaw rate; he is a source of realistic inputs, not an autopilot to be judged.
+//! It sees only position, heading, speed and yaw rate; it is a source of realistic inputs, not an autopilot to be judged.
 
 use std::f64::consts::PI;
 
-use super::{Inputs, State};
+use super::motion::{Inputs, State};
 
 /// Steering gear and engine: first-order lag under a rate limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,11 +35,11 @@ impl Actuators {
 /// What the helmsman steers by during a phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Steer {
-    /// Along the route, looking ahead; rudder amidships while she makes sternway.
+    /// Along the route, looking ahead; rudder amidships in sternway.
     Route,
     /// This rudder angle \[rad\].
     Helm(f64),
-    /// Steady on the heading she had when the phase began, altered by this angle \[rad\].
+    /// Steady on the heading at the begin of the phase, altered by this angle \[rad\].
     Alter(f64),
 }
 
@@ -52,7 +52,7 @@ pub enum Until {
     SlowerThan(f64),
     /// When the speed ahead has risen above this \[m/s\].
     FasterThan(f64),
-    /// When she has turned by this angle, either way \[rad\].
+    /// When the ship has turned by this angle, either way \[rad\].
     Turned(f64),
 }
 
@@ -108,7 +108,7 @@ pub struct Helmsman<'a> {
 }
 
 impl<'a> Helmsman<'a> {
-    /// A helmsman who takes the ship of `length` \[m\] at `start`, at time `t` \[s\]; the first leg leads along her heading.
+    /// A helmsman of a ship of `length` \[m\] from `start` at time `t` \[s\] on; the first leg leads along the heading.
     pub fn new(phases: &'a [Phase], legs: &[Leg], style: Style, length: f64, t: f64, start: &State) -> Self {
         let mut course = start.psi;
         let mut waypoints = vec![[start.x, start.y]];
@@ -172,7 +172,7 @@ impl<'a> Helmsman<'a> {
         (self.style.gain * error - self.style.counter * yaw).clamp(-self.style.limit, self.style.limit)
     }
 
-    /// Course to a point on the leg three ship lengths ahead of her; turns to the next leg two lengths early.
+    /// Course to a point on the leg three ship lengths ahead; turns to the next leg two lengths early.
     fn route_course(&mut self, state: &State) -> f64 {
         loop {
             let (from, to) = (self.waypoints[self.target - 1], self.waypoints[self.target]);
@@ -198,9 +198,9 @@ fn wrap(angle: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ships::ship_a;
-    use super::super::{Environment, MAX_STEP, sail, trimmed_rate};
     use super::*;
+    use crate::truth::integrate::{MAX_STEP, sail, trimmed_rate};
+    use crate::truth::ships::ship_a;
 
     const STYLE: Style = Style { gain: 1.5, counter: 1.2, limit: 0.44, stop: 0.6 };
     const GEAR: Actuators = Actuators { rudder_rate: 0.05, rudder_lag: 1.0, engine_rate: 0.1, engine_lag: 5.0 };
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn helmsman_brings_her_onto_the_second_leg() {
+    fn helmsman_steers_the_ship_onto_the_second_leg() {
         let truth = ship_a();
         let n = trimmed_rate(&truth, 5.0, 5.0);
         let phases = [Phase { n, steer: Steer::Route, until: Until::Elapsed(0.0) }];
@@ -229,7 +229,7 @@ mod tests {
         for i in 0..400 {
             let t = i as f64;
             let next = GEAR.follow(&at, &helmsman.order(t, &state), 1.0);
-            state = sail(&truth, t, &state, &at, &next, 1.0, MAX_STEP, &Environment::default());
+            state = sail(&truth, &state, [&at, &next], 1.0, MAX_STEP);
             at = next;
         }
         assert!(wrap(state.psi - 3.5).abs() < 0.05, "heading {}", state.psi);

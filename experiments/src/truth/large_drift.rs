@@ -8,8 +8,9 @@
 use std::f64::consts::PI;
 
 use super::crossflow;
-use super::propeller::OpenWater;
-use super::{Contributions, Force, Inertia, Particulars, Truth, astern_weight};
+use super::motion::{Force, Particulars};
+use super::simulator::{AddedMass, Inertia, Propulsion, Truth};
+use super::slipstream::{Propeller, Rudder};
 
 /// Hull coefficients, on 1/2 rho L d (force) and 1/2 rho L^2 d (moment).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,62 +37,15 @@ pub struct Hull {
     pub yaw_in_moment: f64,
 }
 
-/// Propeller, wake and thrust deduction.
+/// Force law of the flapped rudder blade.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Propeller {
-    /// Diameter D \[m\].
-    pub diameter: f64,
-    /// Open-water law.
-    pub open_water: OpenWater,
-    /// Factor on the open-water thrust, 1 when clean.
-    pub thrust_factor: f64,
-    /// Thrust deduction t, ahead rotation only.
-    pub thrust_deduction: f64,
-    /// Wake fraction on a straight course w_0.
-    pub wake: f64,
-    /// c in w = w_0 exp(-c beta_P^2).
-    pub wake_decay: f64,
-    /// Position x_P / L.
-    pub position: f64,
-    /// Factor on Hachii's side force of the astern screw; 0 for none, negative for a left-handed screw.
-    pub side_force: f64,
-}
-
-/// Flapped rudder.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rudder {
-    /// Area A_R with flap \[m^2\].
-    pub area: f64,
-    /// Span H_R \[m\].
-    pub span: f64,
+pub struct Blade {
     /// Aspect ratio Lambda.
     pub aspect: f64,
     /// Camber of the flap: inflow angle gained per angle of helm.
     pub flap: f64,
     /// Factor on both force coefficients.
     pub gain: f64,
-    /// Steering deduction t_R.
-    pub deduction: f64,
-    /// Rudder force increase a_H.
-    pub hull_increase: f64,
-    /// Its position x_H / L.
-    pub hull_position: f64,
-    /// Position x_R / L.
-    pub position: f64,
-    /// Effective position in the inflow l_R / L.
-    pub inflow_position: f64,
-    /// Flow straightening gamma for inflow from port (v_R < 0) and from starboard.
-    pub straightening: [f64; 2],
-    /// Wake ratio epsilon.
-    pub wake_ratio: f64,
-    /// Race factor kappa.
-    pub race: f64,
-    /// k_x of the suction of an astern screw.
-    pub astern_race: f64,
-    /// C_PR of the inflow behind an astern screw.
-    pub astern_loss: f64,
-    /// Offset added to the rudder angle \[rad\].
-    pub offset: f64,
 }
 
 /// A ship with a flapped rudder at large drift. Every number is public and plain, so that a copy can be altered.
@@ -99,23 +53,33 @@ pub struct Rudder {
 pub struct LargeDrift {
     /// Main particulars.
     pub particulars: Particulars,
-    /// m_x', on 1/2 rho L^2 d.
-    pub surge_added: f64,
-    /// m_y', on 1/2 rho L^2 d.
-    pub sway_added: f64,
-    /// J_z', on 1/2 rho L^4 d.
-    pub yaw_added: f64,
-    /// Radius of gyration k_zz / L about the centre of gravity.
-    pub gyration: f64,
+    /// Added masses and radius of gyration.
+    pub added: AddedMass,
     /// Hull.
     pub hull: Hull,
-    /// Propeller.
+    /// Propeller. Its side force is a factor on Hachii's, negative for a left-handed screw.
     pub propeller: Propeller,
+    /// c in w = w_0 exp(-c beta_P^2).
+    pub wake_decay: f64,
     /// Rudder.
     pub rudder: Rudder,
+    /// Force law of its blade.
+    pub blade: Blade,
 }
 
 impl LargeDrift {
+    /// The coefficients that no chart gives exactly, by reference.
+    pub fn uncertain(&mut self) -> Vec<&mut f64> {
+        let (h, p) = (&mut self.hull, &mut self.propeller);
+        let mut all: Vec<&mut f64> = self.added.each().into();
+        all.extend([&mut h.r0, &mut h.r0_astern, &mut h.xvr, &mut h.yv, &mut h.yr, &mut h.nv, &mut h.nr]);
+        all.extend([&mut h.cross_flow_drag, &mut h.yaw_in_force, &mut h.yaw_in_moment]);
+        all.extend([&mut p.thrust_factor, &mut p.thrust_deduction, &mut p.wake, &mut self.wake_decay]);
+        all.extend([&mut self.blade.flap, &mut self.blade.gain]);
+        all.extend(self.rudder.uncertain());
+        all
+    }
+
     /// The similar ship of this length \[m\], in the same water: coefficients are without dimension and stay.
     #[must_use]
     pub fn scaled(&self, length: f64) -> Self {
@@ -126,6 +90,48 @@ impl LargeDrift {
         ship.rudder.span *= k;
         ship.rudder.area *= k * k;
         ship
+    }
+
+    /// Inflow speed of the propeller V_A \[m/s\]: (1 - w_0 exp(-c beta_P^2)) u, beta_P = atan2(-(v + x_P r), u), for u > 0; else u.
+    fn propeller_inflow(&self, u: f64, v: f64, r: f64) -> f64 {
+        if u <= 0.0 {
+            return u;
+        }
+        let p = &self.propeller;
+        let beta_p = (-(v + p.position * self.particulars.length * r)).atan2(u);
+        u * (1.0 - p.wake * (-self.wake_decay * beta_p * beta_p).exp())
+    }
+
+    /// Normal and tangential coefficients at inflow angle `alpha` with the helm at `delta` \[rad\] (after Lindenburg).
+    ///
+    /// c_N = 1.98 (1/(0.56 + 0.44 |sin a|) - 0.41 (1 - exp(-17/Lambda))) sin a, c_T = 0.00375 cos a - 0.053 |c_N| cos a, with
+    /// a = alpha + flap delta (1 + cos alpha)/2: the flap acts in flow from ahead and has no effect in flow from aft. c_T is positive
+    /// towards the trailing edge; its suction part changes sign with the flow, unlike the source's.
+    fn coefficients(&self, alpha: f64, delta: f64) -> (f64, f64) {
+        let q = &self.blade;
+        let (sin, cos) = (alpha + q.flap * delta * 0.5 * (1.0 + alpha.cos())).sin_cos();
+        let normal = 1.98 * (1.0 / (0.56 + 0.44 * sin.abs()) - 0.41 * (1.0 - (-17.0 / q.aspect).exp())) * sin;
+        let tangential = (0.00375 - 0.053 * normal.abs()) * cos;
+        (q.gain * normal, q.gain * tangential)
+    }
+}
+
+impl Truth for LargeDrift {
+    fn particulars(&self) -> &Particulars {
+        &self.particulars
+    }
+
+    fn inertia(&self) -> Inertia {
+        self.added.inertia(&self.particulars)
+    }
+
+    /// v_R = -gamma (v + l_R r), without any angle, so that it holds at every drift.
+    fn propulsion(&self, u: f64, v: f64, r: f64, n: f64) -> Propulsion {
+        let (s, p, q) = (&self.particulars, &self.propeller, &self.rudder);
+        let va = self.propeller_inflow(u, v, r);
+        let thrust = p.thrust(n, va, s.rho);
+        let lateral = -(v + q.inflow_position * s.length * r);
+        Propulsion { thrust, rudder_inflow: [q.axial_inflow(p, s.rho, [u, n], thrust, va), q.straightened(lateral)] }
     }
 
     /// Yoshimura's unified model:
@@ -146,29 +152,19 @@ impl LargeDrift {
         }
     }
 
-    /// Inflow speed of the propeller V_A \[m/s\]: (1 - w_0 exp(-c beta_P^2)) u, beta_P = atan2(-(v + x_P r), u), for u > 0; else u.
-    pub fn propeller_inflow(&self, u: f64, v: f64, r: f64) -> f64 {
-        if u <= 0.0 {
-            return u;
-        }
-        let p = &self.propeller;
-        let beta_p = (-(v + p.position * self.particulars.length * r)).atan2(u);
-        u * (1.0 - p.wake * (-p.wake_decay * beta_p * beta_p).exp())
-    }
-
     /// Side force of an astern screw after Hachii, piecewise linear in J_s = u/(n D), as measured for Esso Osaka:
     /// Y = 1/2 rho L d (n D)^2 a(J_s), N = 1/2 rho L^2 d (n D)^2 b(J_s). To port (bow to starboard) over most of the range.
     fn propeller_force(&self, thrust: f64, u: f64, n: f64) -> Force {
         let (s, p) = (&self.particulars, &self.propeller);
         let nd = n * p.diameter;
-        let x = thrust * (1.0 - p.thrust_deduction * (1.0 - astern_weight(n, p.diameter, u)));
+        let x = p.effective(thrust, u, n);
         if n >= 0.0 {
             return Force { x, ..Force::default() };
         }
         let scale = p.side_force * s.force_scale();
         // (nD)^2 (c0 + c1 J_s) multiplied out: no quotient by n.
         let line = |c: [f64; 2]| scale * (c[0] * nd * nd + c[1] * nd * u);
-        // In terms of u, since n < 0 turns the limits of J_s = -0.06 and -0.35 round.
+        // In terms of u, since n < 0 reverses the limits of J_s = -0.06 and -0.35.
         let tip = -nd;
         let (force, moment) = if u < 0.06 * tip {
             ([-5.58e-4, 0.0], [2.25e-4, 0.0])
@@ -180,43 +176,9 @@ impl LargeDrift {
         Force { x, y: line(force), n: s.length * line(moment) }
     }
 
-    /// Longitudinal and lateral inflow at the rudder, (u_R, v_R) \[m/s\].
-    ///
-    /// u_R as in the momentum theory of the standard method ahead; with astern rotation the race gives way to the suction
-    /// -k_x sqrt(8 |T|/(pi rho D^2)) and the loss C_PR u^2 (Kitagawa). v_R = -gamma (v + l_R r), without any angle, so that
-    /// it holds at every drift.
-    pub fn rudder_inflow(&self, u: f64, v: f64, r: f64, n: f64, thrust: f64, va: f64) -> (f64, f64) {
-        let (s, p, q) = (&self.particulars, &self.propeller, &self.rudder);
-        let race = 8.0 * thrust / (PI * s.rho * p.diameter * p.diameter);
-        let astern = astern_weight(n, p.diameter, u);
-        let (ratio, astern_loss) = if u >= 0.0 { (q.wake_ratio, q.astern_loss * astern) } else { (1.0, 0.0) };
-        let ahead_gain = q.wake_ratio * q.race * ((va * va + race).max(0.0).sqrt() - va.abs());
-        let astern_gain = -q.astern_race * (-race).max(0.0).sqrt();
-        let behind = ratio * va + (1.0 - astern) * ahead_gain + astern * astern_gain;
-        let beside = ratio * va;
-        let eta = (p.diameter / q.span).min(1.0);
-        let squared = eta * behind * behind.abs() + (1.0 - eta) * beside * beside.abs() + astern_loss * u * u;
-        let cross = -(v + q.inflow_position * s.length * r);
-        let gamma = if cross < 0.0 { q.straightening[0] } else { q.straightening[1] };
-        (squared.signum() * squared.abs().sqrt(), gamma * cross)
-    }
-
-    /// Normal and tangential coefficients at inflow angle `alpha` with the helm at `delta` \[rad\] (after Lindenburg).
-    ///
-    /// c_N = 1.98 (1/(0.56 + 0.44 |sin a|) - 0.41 (1 - exp(-17/Lambda))) sin a, c_T = 0.00375 cos a - 0.053 |c_N| cos a, with
-    /// a = alpha + flap delta (1 + cos alpha)/2: the flap works in flow from ahead and is idle in flow from aft. c_T is positive
-    /// towards the trailing edge; its suction part changes side with the flow, where the source leaves it.
-    fn coefficients(&self, alpha: f64, delta: f64) -> (f64, f64) {
-        let q = &self.rudder;
-        let (sin, cos) = (alpha + q.flap * delta * 0.5 * (1.0 + alpha.cos())).sin_cos();
-        let normal = 1.98 * (1.0 / (0.56 + 0.44 * sin.abs()) - 0.41 * (1.0 - (-17.0 / q.aspect).exp())) * sin;
-        let tangential = (0.00375 - 0.053 * normal.abs()) * cos;
-        (q.gain * normal, q.gain * tangential)
-    }
-
     /// With F_N, F_T = 1/2 rho A_R U_R^2 (c_N, c_T): X = -(1-t_R) (F_N sin(delta) + F_T cos(delta)),
     /// Y = -(1+a_H) (F_N cos(delta) - F_T sin(delta)), N = (x_R + a_H x_H)/(1+a_H) Y.
-    fn rudder_force(&self, u_r: f64, v_r: f64, delta: f64) -> Force {
+    fn rudder_force(&self, [u_r, v_r]: [f64; 2], delta: f64) -> Force {
         let (p, q) = (&self.particulars, &self.rudder);
         let delta = delta + q.offset;
         let (sin, cos) = delta.sin_cos();
@@ -226,46 +188,15 @@ impl LargeDrift {
         Force {
             x: -(1.0 - q.deduction) * pressure * (c_n * sin + c_t * cos),
             y: -(1.0 + q.hull_increase) * side,
-            n: -(q.position + q.hull_increase * q.hull_position) * p.length * side,
-        }
-    }
-}
-
-impl Truth for LargeDrift {
-    fn particulars(&self) -> &Particulars {
-        &self.particulars
-    }
-
-    fn inertia(&self) -> Inertia {
-        let p = &self.particulars;
-        let (mass, scale) = (p.mass(), p.force_scale() * p.length);
-        let radius = self.gyration * p.length;
-        Inertia {
-            mass,
-            surge_added: self.surge_added * scale,
-            sway_added: self.sway_added * scale,
-            yaw: mass * (radius * radius + p.xg * p.xg) + self.yaw_added * scale * p.length * p.length,
-            xg: p.xg,
-        }
-    }
-
-    fn force(&self, u: f64, v: f64, r: f64, n: f64, delta: f64) -> Contributions {
-        let p = &self.propeller;
-        let va = self.propeller_inflow(u, v, r);
-        let thrust = p.thrust_factor * p.open_water.thrust(n, va, p.diameter, self.particulars.rho);
-        let (u_r, v_r) = self.rudder_inflow(u, v, r, n, thrust, va);
-        Contributions {
-            hull: self.hull_force(u, v, r),
-            propeller: self.propeller_force(thrust, u, n),
-            rudder: self.rudder_force(u_r, v_r, delta),
+            n: -q.lever() * p.length * side,
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::ships::ship_b;
     use super::*;
+    use crate::truth::ships::ship_b;
 
     #[test]
     fn mirrored_state_mirrors_the_force_but_for_the_side_force_of_the_screw() {
@@ -310,7 +241,7 @@ mod tests {
         let flapped = |deg: f64| ship.coefficients(deg.to_radians(), deg.to_radians()).0;
         let (low, high, highest) = (flapped(5.0), flapped(40.0), flapped(45.0));
         assert!(highest > high);
-        ship.rudder.flap = 0.0;
+        ship.blade.flap = 0.0;
         let plain = ship.coefficients(5.0_f64.to_radians(), 5.0_f64.to_radians()).0;
         assert!((1.3..1.6).contains(&(low / plain)), "{}", low / plain);
     }

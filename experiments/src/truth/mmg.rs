@@ -1,8 +1,8 @@
 //! The first truth simulator: the standard MMG method (Yasukawa & Yoshimura 2015, J. Mar. Sci. Technol. 20, 37-52), made
-//! four-quadrant. Ahead and at moderate drift it is the standard method to the last digit; it shares nothing with the fitted model.
+//! four-quadrant. Ahead and at moderate drift it is the standard method to the last digit; it is not the fitted model.
 //!
 //! What is added to the standard method, and where it starts:
-//! - Hull: beyond a local drift angle of 35 deg the cubic polynomial gives way, until 65 deg, to a regular low-speed form
+//! - Hull: beyond a local drift angle of 35 deg the cubic polynomial is blended, until 65 deg, into a regular low-speed form
 //!   (Munk-type linear terms with the sign of u, cross-flow drag, resistance that grows to its astern value).
 //! - Propeller: wake and thrust deduction fade out in sternway and with astern rotation; side force of an astern screw.
 //! - Rudder: inflow that passes smoothly through zero speed, the suction of an astern screw (after Kitagawa), stall
@@ -10,9 +10,11 @@
 
 use std::f64::consts::PI;
 
+use super::blend::smooth_step;
 use super::crossflow;
-use super::propeller::OpenWater;
-use super::{Contributions, Force, Inertia, Particulars, Truth, astern_weight, smooth_step};
+use super::motion::{Force, Particulars};
+use super::simulator::{AddedMass, Inertia, Propulsion, Truth};
+use super::slipstream::{Propeller, Rudder};
 
 /// Hull coefficients. Primes: forces on 1/2 rho L d U^2, moments on 1/2 rho L^2 d U^2, v' = v/U, r' = r L/U.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,66 +48,15 @@ pub struct Hull {
     pub cross_flow_drag: f64,
 }
 
-/// Propeller, wake and thrust deduction.
+/// Force law of the rudder blade: normal force f_alpha sin(alpha), with stall.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Propeller {
-    /// Diameter D_P \[m\].
-    pub diameter: f64,
-    /// Open-water law.
-    pub open_water: OpenWater,
-    /// Factor on the open-water thrust, 1 when clean.
-    pub thrust_factor: f64,
-    /// Thrust deduction t_P.
-    pub thrust_deduction: f64,
-    /// Wake fraction on a straight course w_P0.
-    pub wake: f64,
-    /// C1 of the wake in a turn.
-    pub wake_c1: f64,
-    /// C2 for beta_P > 0 and for beta_P < 0.
-    pub wake_c2: [f64; 2],
-    /// Position x_P / L, forward positive.
-    pub position: f64,
-    /// Side force of an astern screw, c in Y_P = -c |X_P| exp(-(J/J0)^2); 0 for none, positive for a right-handed screw.
-    pub side_force: f64,
-    /// J0 of the side force.
-    pub side_force_range: f64,
-}
-
-/// Rudder and its interaction with hull and screw.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rudder {
-    /// Area A_R \[m^2\].
-    pub area: f64,
-    /// Span H_R \[m\].
-    pub span: f64,
+pub struct Blade {
     /// Gradient of the normal force f_alpha.
     pub normal_gradient: f64,
     /// Normal force over sin(alpha) of the stalled rudder.
     pub stalled_gradient: f64,
     /// Factor on the gradient when the flow comes from aft.
     pub reversed_factor: f64,
-    /// Steering deduction t_R.
-    pub deduction: f64,
-    /// Rudder force increase a_H.
-    pub hull_increase: f64,
-    /// Its position x_H / L.
-    pub hull_position: f64,
-    /// Position x_R / L.
-    pub position: f64,
-    /// Effective position in the inflow l_R / L.
-    pub inflow_position: f64,
-    /// Flow straightening gamma_R for beta_R < 0 and for beta_R > 0.
-    pub straightening: [f64; 2],
-    /// Wake ratio epsilon.
-    pub wake_ratio: f64,
-    /// Race factor kappa.
-    pub race: f64,
-    /// k_x of the suction of an astern screw.
-    pub astern_race: f64,
-    /// C_PR of the inflow behind an astern screw.
-    pub astern_loss: f64,
-    /// Offset added to the rudder angle \[rad\].
-    pub offset: f64,
 }
 
 /// A ship under the standard MMG method. Every number is public and plain, so that a copy can be altered.
@@ -113,20 +64,22 @@ pub struct Rudder {
 pub struct Mmg {
     /// Main particulars.
     pub particulars: Particulars,
-    /// m_x', on 1/2 rho L^2 d.
-    pub surge_added: f64,
-    /// m_y', on 1/2 rho L^2 d.
-    pub sway_added: f64,
-    /// J_z', on 1/2 rho L^4 d.
-    pub yaw_added: f64,
-    /// Radius of gyration k_zz / L about the centre of gravity.
-    pub gyration: f64,
+    /// Added masses and radius of gyration.
+    pub added: AddedMass,
     /// Hull.
     pub hull: Hull,
-    /// Propeller.
+    /// Propeller. Its side force astern is Y_P = -c |X_P| exp(-(J/J0)^2).
     pub propeller: Propeller,
+    /// C1 of the wake in a turn.
+    pub wake_c1: f64,
+    /// C2 of the wake in a turn, for beta_P > 0 and for beta_P < 0.
+    pub wake_c2: [f64; 2],
+    /// J0 of the side force of an astern screw.
+    pub side_force_range: f64,
     /// Rudder.
     pub rudder: Rudder,
+    /// Force law of its blade.
+    pub blade: Blade,
 }
 
 /// Local drift angle at which the large-drift hull starts to enter, and at which it is alone \[rad\].
@@ -135,27 +88,25 @@ const LARGE_DRIFT: [f64; 2] = [35.0 * PI / 180.0, 65.0 * PI / 180.0];
 const STALL: [f64; 2] = [40.0 * PI / 180.0, 60.0 * PI / 180.0];
 
 impl Mmg {
+    /// The coefficients that no chart gives exactly, by reference.
+    pub fn uncertain(&mut self) -> Vec<&mut f64> {
+        let (h, p) = (&mut self.hull, &mut self.propeller);
+        let mut all: Vec<&mut f64> = self.added.each().into();
+        all.extend([&mut h.r0, &mut h.r0_astern, &mut h.r0_froude4]);
+        all.extend([&mut h.xvv, &mut h.xvr, &mut h.xrr, &mut h.xvvvv]);
+        all.extend([&mut h.yv, &mut h.yr, &mut h.yvvv, &mut h.yvvr, &mut h.yvrr, &mut h.yrrr]);
+        all.extend([&mut h.nv, &mut h.nr, &mut h.nvvv, &mut h.nvvr, &mut h.nvrr, &mut h.nrrr]);
+        all.extend([&mut h.cross_flow_drag, &mut p.thrust_factor, &mut p.thrust_deduction, &mut p.wake]);
+        all.extend([&mut self.wake_c1, &mut self.blade.normal_gradient]);
+        all.extend(self.rudder.uncertain());
+        all
+    }
+
     /// Weight of the large-drift hull at this velocity, 0..=1.
     ///
     /// Runs on the local drift angle atan2(sqrt(v^2 + (r L/2)^2), u), which is 90 deg when turning on the spot and more in sternway.
     pub fn large_drift_weight(&self, u: f64, v: f64, r: f64) -> f64 {
         smooth_step(v.hypot(0.5 * r * self.particulars.length).atan2(u), LARGE_DRIFT[0], LARGE_DRIFT[1])
-    }
-
-    fn hull_force(&self, u: f64, v: f64, r: f64) -> Force {
-        if u == 0.0 && v == 0.0 && r == 0.0 {
-            return Force::default();
-        }
-        let weight = self.large_drift_weight(u, v, r);
-        let mut total = Force::default();
-        for (part, share) in [(0, 1.0 - weight), (1, weight)] {
-            // A vanishing share is not evaluated: the cubic has no value at U = 0.
-            if share > 0.0 {
-                let f = if part == 0 { self.cubic_hull(u, v, r) } else { self.low_speed_hull(u, v, r) };
-                total = total + Force { x: share * f.x, y: share * f.y, n: share * f.n };
-            }
-        }
-        total
     }
 
     fn resistance(&self, speed: f64) -> f64 {
@@ -196,76 +147,32 @@ impl Mmg {
     ///
     /// Ahead (1 - w_P) u with (1 - w_P)/(1 - w_P0) = 1 + (1 - exp(-C1 |beta_P|)) (C2 - 1), beta_P = beta - x_P' r'
     /// (eqs. 16-18); u itself in sternway. At most the ship's speed through the water is kept: w_P >= 0.
-    pub fn propeller_inflow(&self, u: f64, v: f64, r: f64) -> f64 {
+    fn propeller_inflow(&self, u: f64, v: f64, r: f64) -> f64 {
         if u <= 0.0 {
             return u;
         }
-        let (p, w) = (&self.propeller, &self.propeller);
-        let beta_p = (-v).atan2(u) - p.position * self.particulars.length * r / u.hypot(v);
-        let c2 = if beta_p > 0.0 { w.wake_c2[0] } else { w.wake_c2[1] };
-        let factor = 1.0 + (1.0 - (-w.wake_c1 * beta_p.abs()).exp()) * (c2 - 1.0);
-        u * ((1.0 - w.wake) * factor).min(1.0)
-    }
-
-    fn propeller_force(&self, thrust: f64, u: f64, n: f64) -> Force {
         let p = &self.propeller;
-        let x = thrust * (1.0 - p.thrust_deduction * (1.0 - astern_weight(n, p.diameter, u)));
-        let mut y = 0.0;
-        if n < 0.0 {
-            let ratio = u / (n * p.diameter * p.side_force_range);
-            y = -p.side_force * (-x).max(0.0) * (-ratio * ratio).exp();
-        }
-        Force { x, y, n: p.position * self.particulars.length * y }
+        let beta_p = (-v).atan2(u) - p.position * self.particulars.length * r / u.hypot(v);
+        let c2 = if beta_p > 0.0 { self.wake_c2[0] } else { self.wake_c2[1] };
+        let factor = 1.0 + (1.0 - (-self.wake_c1 * beta_p.abs()).exp()) * (c2 - 1.0);
+        u * ((1.0 - p.wake) * factor).min(1.0)
     }
 
-    /// Longitudinal and lateral inflow at the rudder, (u_R, v_R) \[m/s\].
-    ///
-    /// Ahead u_R = epsilon sqrt(eta (u_P + kappa (sqrt(u_P^2 + 8 T/(pi rho D^2)) - u_P))^2 + (1 - eta) u_P^2), which is
-    /// eq. 21 of the source multiplied out with J; v_R = U gamma_R beta_R, beta_R = beta - l_R' r'. With astern rotation
-    /// the race gives way to the suction -k_x sqrt(8 |T|/(pi rho D^2)) and the loss C_PR u^2 (Kitagawa).
-    pub fn rudder_inflow(&self, u: f64, v: f64, r: f64, n: f64, thrust: f64, va: f64) -> (f64, f64) {
-        let (p, q) = (&self.propeller, &self.rudder);
-        let l = self.particulars.length;
-        // Acceleration of the water through the screw disc far behind it, squared.
-        let race = 8.0 * thrust / (PI * self.particulars.rho * p.diameter * p.diameter);
-        let astern = astern_weight(n, p.diameter, u);
-        let (ratio, astern_loss) = if u >= 0.0 { (q.wake_ratio, q.astern_loss * astern) } else { (1.0, 0.0) };
-        let ahead_gain = q.wake_ratio * q.race * ((va * va + race).max(0.0).sqrt() - va.abs());
-        let astern_gain = -q.astern_race * (-race).max(0.0).sqrt();
-        let behind = ratio * va + (1.0 - astern) * ahead_gain + astern * astern_gain;
-        let beside = ratio * va;
-        let eta = (p.diameter / q.span).min(1.0);
-        let squared = eta * behind * behind.abs() + (1.0 - eta) * beside * beside.abs() + astern_loss * u * u;
-        let u_r = squared.signum() * squared.abs().sqrt();
-
+    /// Lateral flow before the rudder \[m/s\]: U beta_R, beta_R = beta - l_R' r'.
+    fn lateral_flow(&self, u: f64, v: f64, r: f64) -> f64 {
         // U beta of the standard method is an angle times a speed and means nothing beyond 90 deg; there -v takes its place.
         let weight = self.large_drift_weight(u, v, r);
         let drift = -(1.0 - weight) * u.hypot(v) * v.atan2(u) - weight * v;
-        let cross = drift - q.inflow_position * l * r;
-        let gamma = if cross < 0.0 { q.straightening[0] } else { q.straightening[1] };
-        (u_r, gamma * cross)
+        drift - self.rudder.inflow_position * self.particulars.length * r
     }
 
     /// Normal force coefficient f_alpha sin(alpha), stalling beyond 40 deg and weaker in flow from aft.
     fn normal_coefficient(&self, alpha: f64) -> f64 {
-        let q = &self.rudder;
+        let q = &self.blade;
         let from_chord = alpha.sin().abs().asin();
         let attached = if alpha.cos() >= 0.0 { q.normal_gradient } else { q.reversed_factor * q.normal_gradient };
         let stall = smooth_step(from_chord, STALL[0], STALL[1]);
         ((1.0 - stall) * attached + stall * q.stalled_gradient) * alpha.sin()
-    }
-
-    /// F_N = 1/2 rho A_R U_R^2 f_alpha sin(alpha_R); X = -(1-t_R) F_N sin(delta), Y = -(1+a_H) F_N cos(delta),
-    /// N = -(x_R + a_H x_H) F_N cos(delta) (eqs. 19-24).
-    fn rudder_force(&self, u_r: f64, v_r: f64, delta: f64) -> Force {
-        let (p, q) = (&self.particulars, &self.rudder);
-        let delta = delta + q.offset;
-        let normal = 0.5 * p.rho * q.area * (u_r * u_r + v_r * v_r) * self.normal_coefficient(delta - v_r.atan2(u_r));
-        Force {
-            x: -(1.0 - q.deduction) * normal * delta.sin(),
-            y: -(1.0 + q.hull_increase) * normal * delta.cos(),
-            n: -(q.position + q.hull_increase * q.hull_position) * p.length * normal * delta.cos(),
-        }
     }
 }
 
@@ -275,35 +182,63 @@ impl Truth for Mmg {
     }
 
     fn inertia(&self) -> Inertia {
-        let p = &self.particulars;
-        let (mass, scale) = (p.mass(), p.force_scale() * p.length);
-        let radius = self.gyration * p.length;
-        Inertia {
-            mass,
-            surge_added: self.surge_added * scale,
-            sway_added: self.sway_added * scale,
-            yaw: mass * (radius * radius + p.xg * p.xg) + self.yaw_added * scale * p.length * p.length,
-            xg: p.xg,
-        }
+        self.added.inertia(&self.particulars)
     }
 
-    fn force(&self, u: f64, v: f64, r: f64, n: f64, delta: f64) -> Contributions {
-        let p = &self.propeller;
+    fn propulsion(&self, u: f64, v: f64, r: f64, n: f64) -> Propulsion {
+        let (p, q, rho) = (&self.propeller, &self.rudder, self.particulars.rho);
         let va = self.propeller_inflow(u, v, r);
-        let thrust = p.thrust_factor * p.open_water.thrust(n, va, p.diameter, self.particulars.rho);
-        let (u_r, v_r) = self.rudder_inflow(u, v, r, n, thrust, va);
-        Contributions {
-            hull: self.hull_force(u, v, r),
-            propeller: self.propeller_force(thrust, u, n),
-            rudder: self.rudder_force(u_r, v_r, delta),
+        let thrust = p.thrust(n, va, rho);
+        let axial = q.axial_inflow(p, rho, [u, n], thrust, va);
+        Propulsion { thrust, rudder_inflow: [axial, q.straightened(self.lateral_flow(u, v, r))] }
+    }
+
+    fn hull_force(&self, u: f64, v: f64, r: f64) -> Force {
+        if u == 0.0 && v == 0.0 && r == 0.0 {
+            return Force::default();
+        }
+        let weight = self.large_drift_weight(u, v, r);
+        let mut total = Force::default();
+        for (part, share) in [(0, 1.0 - weight), (1, weight)] {
+            // A vanishing share is not evaluated: the cubic has no value at U = 0.
+            if share > 0.0 {
+                let f = if part == 0 { self.cubic_hull(u, v, r) } else { self.low_speed_hull(u, v, r) };
+                total = total + Force { x: share * f.x, y: share * f.y, n: share * f.n };
+            }
+        }
+        total
+    }
+
+    fn propeller_force(&self, thrust: f64, u: f64, n: f64) -> Force {
+        let p = &self.propeller;
+        let x = p.effective(thrust, u, n);
+        let mut y = 0.0;
+        if n < 0.0 {
+            let ratio = u / (n * p.diameter * self.side_force_range);
+            y = -p.side_force * (-x).max(0.0) * (-ratio * ratio).exp();
+        }
+        Force { x, y, n: p.position * self.particulars.length * y }
+    }
+
+    /// F_N = 1/2 rho A_R U_R^2 f_alpha sin(alpha_R); X = -(1-t_R) F_N sin(delta), Y = -(1+a_H) F_N cos(delta),
+    /// N = -(x_R + a_H x_H) F_N cos(delta) (eqs. 19-24).
+    fn rudder_force(&self, [u_r, v_r]: [f64; 2], delta: f64) -> Force {
+        let (p, q) = (&self.particulars, &self.rudder);
+        let delta = delta + q.offset;
+        let normal = 0.5 * p.rho * q.area * (u_r * u_r + v_r * v_r) * self.normal_coefficient(delta - v_r.atan2(u_r));
+        Force {
+            x: -(1.0 - q.deduction) * normal * delta.sin(),
+            y: -(1.0 + q.hull_increase) * normal * delta.cos(),
+            n: -q.lever() * p.length * normal * delta.cos(),
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::ships::{kvlcc2, ship_a};
     use super::*;
+    use crate::truth::propeller::OpenWater;
+    use crate::truth::ships::{kvlcc2, ship_a};
 
     /// The standard method as printed in the source, with its quotients by U and J.
     fn printed(s: &Mmg, u: f64, v: f64, r: f64, n: f64, delta: f64) -> Force {
@@ -327,8 +262,8 @@ mod tests {
             + h.nvrr * vp * rp.powi(2)
             + h.nrrr * rp.powi(3);
         let beta_p = beta - w.position * rp;
-        let c2 = if beta_p > 0.0 { w.wake_c2[0] } else { w.wake_c2[1] };
-        let one_minus_w = (1.0 - w.wake) * (1.0 + (1.0 - (-w.wake_c1 * beta_p.abs()).exp()) * (c2 - 1.0));
+        let c2 = if beta_p > 0.0 { s.wake_c2[0] } else { s.wake_c2[1] };
+        let one_minus_w = (1.0 - w.wake) * (1.0 + (1.0 - (-s.wake_c1 * beta_p.abs()).exp()) * (c2 - 1.0));
         let j = u * one_minus_w / (n * w.diameter);
         let OpenWater::Quadratic { k0, k1, k2, .. } = w.open_water else { panic!("KVLCC2 has a quadratic K_T") };
         let kt = k0 + k1 * j + k2 * j * j;
@@ -340,7 +275,7 @@ mod tests {
         let race = 1.0 + q.race * ((1.0 + 8.0 * kt / (PI * j * j)).sqrt() - 1.0);
         let u_r = q.wake_ratio * u * one_minus_w * (eta * race * race + 1.0 - eta).sqrt();
         let alpha = delta - (v_r / u_r).atan();
-        let normal = 0.5 * p.rho * q.area * (u_r * u_r + v_r * v_r) * q.normal_gradient * alpha.sin();
+        let normal = 0.5 * p.rho * q.area * (u_r * u_r + v_r * v_r) * s.blade.normal_gradient * alpha.sin();
         Force {
             x: scale * xh + (1.0 - w.thrust_deduction) * thrust - (1.0 - q.deduction) * normal * delta.sin(),
             y: scale * yh - (1.0 + q.hull_increase) * normal * delta.cos(),
@@ -372,7 +307,7 @@ mod tests {
     fn mirrored_state_mirrors_the_force_once_the_asymmetries_are_removed() {
         let mut ship = ship_a();
         ship.rudder.straightening = [0.4; 2];
-        ship.propeller.wake_c2 = [1.2; 2];
+        ship.wake_c2 = [1.2; 2];
         ship.propeller.side_force = 0.0;
         for (u, v, r, n, delta) in [
             (5.0, 0.7, -0.01, 2.0, 0.3),

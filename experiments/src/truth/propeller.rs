@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use super::astern_weight;
+use super::blend::astern_weight;
 
 /// Wageningen B4-70, P/D = 0.8: rows `[A_k, B_k]` of 100 C_T*, k = 0..=30.
 #[rustfmt::skip]
@@ -41,42 +41,6 @@ const B470_08: [[f64; 2]; 31] = [
     [-0.0089569, -0.073611],
 ];
 
-/// Wageningen B4-70, P/D = 1.0: rows `[A_k, B_k]` of 100 C_T*, k = 0..=30.
-#[rustfmt::skip]
-const B470_10: [[f64; 2]; 31] = [
-    [2.6617, 0.0],
-    [17.802, -74.797],
-    [1.3828, -1.3632],
-    [2.7871, 10.246],
-    [-1.624, -1.0865],
-    [-5.3084, 4.7346],
-    [0.1918, 1.1355],
-    [3.8318, -0.9318],
-    [-0.22892, -0.72471],
-    [-1.8656, 2.3747],
-    [0.349, 0.86208],
-    [2.2321, 0.0070224],
-    [-0.35976, -0.36422],
-    [0.13606, 0.91758],
-    [0.47192, 0.089383],
-    [0.87235, -0.59364],
-    [-0.35748, -0.070954],
-    [0.35955, 0.48825],
-    [0.52896, -0.090587],
-    [0.21045, -0.81163],
-    [-0.27057, -0.056659],
-    [0.10509, 0.12011],
-    [0.27733, -0.13042],
-    [-0.11596, -0.48187],
-    [-0.1745, 0.045412],
-    [0.040782, -0.019469],
-    [0.099247, -0.21858],
-    [-0.3465, -0.16314],
-    [-0.12357, 0.14865],
-    [0.063929, 0.10185],
-    [0.061933, -0.16735],
-];
-
 /// Law of the open-water thrust.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum OpenWater {
@@ -94,8 +58,6 @@ pub enum OpenWater {
     },
     /// Wageningen B4-70, P/D = 0.8, 31 Fourier terms (Roddy, Hess & Faller 2006, NSWCCD-50-TR-2006/004).
     B470Pitch08,
-    /// Wageningen B4-70, P/D = 1.0, 31 Fourier terms (same source).
-    B470Pitch10,
 }
 
 impl OpenWater {
@@ -105,20 +67,19 @@ impl OpenWater {
             Self::Quadratic { k0, k1, k2, pitch_ratio } => {
                 quadratic_thrust([*k0, *k1, *k2], *pitch_ratio, n, va, diameter, rho)
             }
-            Self::B470Pitch08 => fourier_thrust(&B470_08, n, va, diameter, rho),
-            Self::B470Pitch10 => fourier_thrust(&B470_10, n, va, diameter, rho),
+            Self::B470Pitch08 => fourier_thrust(n, va, diameter, rho),
         }
     }
 }
 
 /// T = C_T*(beta) 1/2 rho (V_A^2 + (0.7 pi n D)^2) pi D^2 / 4, beta = atan2(V_A, 0.7 pi n D),
 /// C_T* = 1/100 sum_k (A_k cos k beta + B_k sin k beta).
-fn fourier_thrust(table: &[[f64; 2]; 31], n: f64, va: f64, diameter: f64, rho: f64) -> f64 {
+fn fourier_thrust(n: f64, va: f64, diameter: f64, rho: f64) -> f64 {
     let tip = 0.7 * PI * n * diameter;
     let (sin, cos) = va.atan2(tip).sin_cos();
     let (mut c, mut s) = (1.0, 0.0);
     let mut sum = 0.0;
-    for [a, b] in table {
+    for [a, b] in B470_08 {
         sum += a * c + b * s;
         (c, s) = (c * cos - s * sin, s * cos + c * sin);
     }
@@ -163,7 +124,6 @@ mod tests {
             let found = kt(OpenWater::B470Pitch08, 1.0, 0.1 * i as f64);
             assert!((found - expected).abs() < 1e-3, "J {} K_T {found}", 0.1 * i as f64);
         }
-        assert!((kt(OpenWater::B470Pitch10, 1.0, 0.0) - 0.450).abs() < 1e-3);
     }
 
     #[test]

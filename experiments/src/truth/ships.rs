@@ -5,10 +5,12 @@
 //! Sources of the regressions: hull Yoshimura & Masumoto (2012), linear part also Kijima (1990); added masses Zhou et al. (1983)
 //! from the Motora charts; interaction from published collections of MMG formulas. What no formula gives is marked "assumed".
 
-use super::Particulars;
 use super::large_drift::{self, LargeDrift};
 use super::mmg::{self, Mmg};
+use super::motion::Particulars;
 use super::propeller::OpenWater;
+use super::simulator::{AddedMass, Truth};
+use super::slipstream::{Propeller, Rudder};
 
 /// Sea water \[kg/m^3\].
 pub const SEA_WATER: f64 = 1025.0;
@@ -33,8 +35,8 @@ impl ShipId {
         }
     }
 
-    /// Her truth simulator.
-    pub fn truth(self) -> Box<dyn super::Truth> {
+    /// The truth simulator of the ship.
+    pub fn truth(self) -> Box<dyn Truth> {
         match self {
             Self::A => Box::new(ship_a()),
             Self::B => Box::new(ship_b()),
@@ -43,7 +45,7 @@ impl ShipId {
 }
 
 /// Added masses over ship mass `(m_x/m, m_y/m)` and radius of gyration of the added yaw inertia over L (Zhou et al. 1983).
-pub fn added_masses(p: &Particulars) -> (f64, f64, f64) {
+fn added_masses(p: &Particulars) -> (f64, f64, f64) {
     let (cb, lb, db) = (p.block(), p.length / p.breadth, p.draught / p.breadth);
     let surge = 0.01
         * (0.398 + 11.97 * cb * (1.0 + 3.73 * db) - 2.89 * cb * lb * (1.0 + 1.13 * db)
@@ -56,11 +58,44 @@ pub fn added_masses(p: &Particulars) -> (f64, f64, f64) {
     (surge, sway, yaw)
 }
 
-/// Added masses as primes: m_x', m_y' on 1/2 rho L^2 d and J_z' on 1/2 rho L^4 d.
-fn added_primes(p: &Particulars) -> [f64; 3] {
+/// Added masses as primes, and a radius of gyration of a quarter of the length.
+fn added_primes(p: &Particulars) -> AddedMass {
     let (surge, sway, yaw) = added_masses(p);
     let mass = p.volume / (0.5 * p.length * p.length * p.draught);
-    [surge * mass, sway * mass, yaw * yaw * mass]
+    AddedMass { surge: surge * mass, sway: sway * mass, yaw: yaw * yaw * mass, gyration: 0.25 }
+}
+
+/// The form parameters that the regressions are made of: Cb, k = 2 d/L and Cb B/L.
+fn form(p: &Particulars) -> (f64, f64, f64) {
+    let cb = p.block();
+    (cb, 2.0 * p.draught / p.length, cb * p.breadth / p.length)
+}
+
+/// Linear derivatives [Y_v, Y_r, N_v, N_r] of a hull (Yoshimura & Masumoto 2012, Kijima 1990).
+fn linear(p: &Particulars, surge_added: f64) -> [f64; 4] {
+    let (_, k, xc) = form(p);
+    [-(0.5 * std::f64::consts::PI * k + 1.4 * xc), surge_added + 0.5 * xc, -k, -0.54 * k + k * k]
+}
+
+/// A rudder behind a hull of this form: interaction from the regressions, the suction of an astern screw after Kitagawa.
+fn rudder_behind(p: &Particulars, area: f64, span: f64, straightening: [f64; 2]) -> Rudder {
+    let (cb, _, xc) = form(p);
+    let wake_ratio = -156.2 * xc * xc + 41.6 * xc - 1.76;
+    Rudder {
+        area,
+        span,
+        deduction: 1.0 - (0.28 * cb + 0.55),
+        hull_increase: 0.627 * cb - 0.153,
+        hull_position: -(0.4 + 0.1 * cb),
+        position: -0.5,
+        inflow_position: -0.9,
+        straightening,
+        wake_ratio,
+        race: 0.6 / wake_ratio,
+        astern_race: 0.288,
+        astern_loss: -0.176,
+        offset: 0.0,
+    }
 }
 
 /// KVLCC2 at full scale (Lpp 320 m), parameters of Yasukawa & Yoshimura (2015).
@@ -71,7 +106,7 @@ pub fn kvlcc2() -> Mmg {
     )
 }
 
-/// The 7 m model of KVLCC2 (L7), parameters of Yasukawa & Yoshimura (2015). She differs from the full scale by her wake.
+/// The 7 m model of KVLCC2 (L7), parameters of Yasukawa & Yoshimura (2015). It differs from the full scale by its wake.
 ///
 /// Draught and x_G are the full-scale ones scaled down; the source prints them rounded to 0.46 m and 0.25 m.
 pub fn kvlcc2_model() -> Mmg {
@@ -91,10 +126,7 @@ fn kvlcc2_at_scale(particulars: Particulars, wake: f64) -> Mmg {
     let scale = particulars.length / 320.0;
     Mmg {
         particulars,
-        surge_added: 0.022,
-        sway_added: 0.223,
-        yaw_added: 0.011,
-        gyration: 0.25,
+        added: AddedMass { surge: 0.022, sway: 0.223, yaw: 0.011, gyration: 0.25 },
         hull: mmg::Hull {
             r0: 0.022,
             // Astern half as much again, as measured for Esso Osaka; the standard method has no value.
@@ -119,24 +151,22 @@ fn kvlcc2_at_scale(particulars: Particulars, wake: f64) -> Mmg {
             // Hoerner at B/2d = 1.39.
             cross_flow_drag: 0.74,
         },
-        propeller: mmg::Propeller {
+        propeller: Propeller {
             diameter: 9.86 * scale,
             open_water: OpenWater::Quadratic { k0: 0.2931, k1: -0.2753, k2: -0.1385, pitch_ratio: 0.721 },
             thrust_factor: 1.0,
             thrust_deduction: 0.220,
             wake,
-            wake_c1: 2.0,
-            wake_c2: [1.6, 1.1],
             position: -0.48,
             side_force: 0.10,
-            side_force_range: 0.35,
         },
-        rudder: mmg::Rudder {
+        wake_c1: 2.0,
+        wake_c2: [1.6, 1.1],
+        side_force_range: 0.35,
+        blade: mmg::Blade { normal_gradient: 2.747, stalled_gradient: 1.3, reversed_factor: 0.7 },
+        rudder: Rudder {
             area: 112.5 * scale * scale,
             span: 15.8 * scale,
-            normal_gradient: 2.747,
-            stalled_gradient: 1.3,
-            reversed_factor: 0.7,
             deduction: 0.387,
             hull_increase: 0.312,
             hull_position: -0.464,
@@ -155,20 +185,18 @@ fn kvlcc2_at_scale(particulars: Particulars, wake: f64) -> Mmg {
 /// Ship A (reconstruction): coastal container ship, 85 m, 1750 DWT, about 195 TEU, single right-handed screw.
 pub fn ship_a() -> Mmg {
     let p = Particulars { length: 85.0, breadth: 13.5, draught: 4.2, volume: 3277.0, xg: 0.0, rho: SEA_WATER };
-    let [mx, my, jz] = added_primes(&p);
-    let cb = p.block();
-    let (k, xc, lb) = (2.0 * p.draught / p.length, cb * p.breadth / p.length, p.length / p.breadth);
+    let added = added_primes(&p);
+    let ((cb, _, xc), lb) = (form(&p), p.length / p.breadth);
     let slender = (1.0 - cb) * lb;
-    let wake_ratio = -156.2 * xc * xc + 41.6 * xc - 1.76;
-    let (aspect, span) = (1.6, 3.56);
+    let [yv, yr, nv, nr] = linear(&p, added.surge);
+    let aspect = 1.6;
+    // Two published regressions of gamma, one for each side: the sides differ less than those of KVLCC2.
+    let straightening = [2.06 * xc + 0.14, -22.2 * xc * xc + 0.02 * xc + 0.68];
     Mmg {
         particulars: p,
-        surge_added: mx,
-        sway_added: my,
-        yaw_added: jz,
-        gyration: 0.25,
+        added,
         hull: mmg::Hull {
-            // Assumed: brings 249 rpm to 8.2 m/s and 95 rpm to 3.2 m/s, and rises with the waves she makes above Fn 0.2.
+            // Assumed: brings 249 rpm to 8.2 m/s and 95 rpm to 3.2 m/s, and rises with wave resistance above Fn 0.2.
             r0: 0.0118,
             r0_astern: 0.0177,
             r0_froude4: 12.0,
@@ -177,14 +205,14 @@ pub fn ship_a() -> Mmg {
             xvr: -1.91 * xc + 0.08,
             xrr: -0.085 * xc + 0.008,
             xvvvv: -6.68 * xc + 1.1,
-            yv: -(0.5 * std::f64::consts::PI * k + 1.4 * xc),
-            yr: mx + 0.5 * xc,
+            yv,
+            yr,
             yvvv: -0.185 * lb + 0.48,
             yvvr: -0.75,
             yvrr: -(0.26 * slender + 0.11),
             yrrr: -0.051,
-            nv: -k,
-            nr: -0.54 * k + k * k,
+            nv,
+            nr,
             nvvv: -(0.66 - 0.69 * cb),
             nvvr: 1.55 * xc - 0.76,
             // Published for KCS. The regression gives -0.25, with which the steady circle shrinks to 1.2 L.
@@ -193,112 +221,78 @@ pub fn ship_a() -> Mmg {
             // Hoerner at B/2d = 1.61.
             cross_flow_drag: 0.70,
         },
-        propeller: mmg::Propeller {
+        propeller: Propeller {
             diameter: 2.85,
             open_water: OpenWater::B470Pitch08,
             thrust_factor: 1.0,
             thrust_deduction: 0.19,
             wake: 0.28,
-            // Assumed; C2 - 1 scaled down from KVLCC2 with the wake fraction.
-            wake_c1: 2.0,
-            wake_c2: [1.35, 1.10],
             position: -0.48,
             side_force: 0.10,
-            side_force_range: 0.35,
         },
-        rudder: mmg::Rudder {
-            area: 7.9,
-            span,
+        // Assumed; C2 - 1 scaled down from KVLCC2 with the wake fraction.
+        wake_c1: 2.0,
+        wake_c2: [1.35, 1.10],
+        side_force_range: 0.35,
+        rudder: rudder_behind(&p, 7.9, 3.56, straightening),
+        blade: mmg::Blade {
             normal_gradient: 6.13 * aspect / (aspect + 2.25),
             stalled_gradient: 1.3,
             reversed_factor: 0.7,
-            deduction: 1.0 - (0.28 * cb + 0.55),
-            hull_increase: 0.627 * cb - 0.153,
-            hull_position: -(0.4 + 0.1 * cb),
-            position: -0.5,
-            inflow_position: -0.9,
-            // Two published regressions of gamma, one for each side: the sides differ less than those of KVLCC2.
-            straightening: [2.06 * xc + 0.14, -22.2 * xc * xc + 0.02 * xc + 0.68],
-            wake_ratio,
-            race: 0.6 / wake_ratio,
-            astern_race: 0.288,
-            astern_loss: -0.176,
-            offset: 0.0,
         },
     }
 }
 
 /// Ship B (reconstruction): container ship of the 130 m class, 8000 DWT, about 700 TEU, flapped rudder, single right-handed screw.
 ///
-/// Her screw is smaller than that of a real ship of this size: what the paper's resistance curve and rpm range imply.
+/// Its screw is smaller than that of a real ship of this size, as the paper's resistance curve and rpm range imply.
 pub fn ship_b() -> LargeDrift {
     let p = Particulars { length: 123.0, breadth: 20.0, draught: 7.3, volume: 12_571.0, xg: 0.0, rho: SEA_WATER };
-    let [mx, my, jz] = added_primes(&p);
-    let cb = p.block();
-    let (k, xc) = (2.0 * p.draught / p.length, cb * p.breadth / p.length);
-    let wake_ratio = -156.2 * xc * xc + 41.6 * xc - 1.76;
+    let added = added_primes(&p);
+    let [yv, yr, nv, nr] = linear(&p, added.surge);
     LargeDrift {
         particulars: p,
-        surge_added: mx,
-        sway_added: my,
-        yaw_added: jz,
-        gyration: 0.25,
+        added,
         hull: large_drift::Hull {
             // Assumed: brings 170 rpm to 6.2 m/s and 93 rpm to 3.6 m/s.
             r0: 0.0060,
             r0_astern: 0.0090,
             // Hasegawa: X_vr = (c_m - 1) m_y, c_m = 1.75 Cb - 0.525.
-            xvr: (1.75 * cb - 1.525) * my,
-            yv: -(0.5 * std::f64::consts::PI * k + 1.4 * xc),
-            yr: mx + 0.5 * xc,
-            nv: -k,
-            nr: -0.54 * k + k * k,
+            xvr: (1.75 * p.block() - 1.525) * added.sway,
+            yv,
+            yr,
+            nv,
+            nr,
             // Hoerner at B/2d = 1.37, with the yaw rate at its plain weight: the strips of a slender container ship. (Esso Osaka,
             // a full tanker, was measured at C_D 0.97, C_rY 2.2, C_rN 0.81.)
             cross_flow_drag: 0.75,
             yaw_in_force: 1.0,
             yaw_in_moment: 1.0,
         },
-        propeller: large_drift::Propeller {
+        propeller: Propeller {
             diameter: 3.2,
             open_water: OpenWater::B470Pitch08,
             thrust_factor: 1.0,
             thrust_deduction: 0.20,
             wake: 0.30,
-            wake_decay: 4.0,
             position: -0.48,
             // Half of Esso Osaka's: the scaling of the law with L d to another ship is an extrapolation.
             side_force: 0.5,
         },
-        rudder: large_drift::Rudder {
-            area: 19.7,
-            span: 5.6,
-            aspect: 1.6,
-            flap: 0.40,
-            gain: 1.0,
-            deduction: 1.0 - (0.28 * cb + 0.55),
-            hull_increase: 0.627 * cb - 0.153,
-            hull_position: -(0.4 + 0.1 * cb),
-            position: -0.5,
-            inflow_position: -0.9,
-            straightening: [0.40; 2],
-            wake_ratio,
-            race: 0.6 / wake_ratio,
-            astern_race: 0.288,
-            astern_loss: -0.176,
-            offset: 0.0,
-        },
+        wake_decay: 4.0,
+        rudder: rudder_behind(&p, 19.7, 5.6, [0.40; 2]),
+        blade: large_drift::Blade { aspect: 1.6, flap: 0.40, gain: 1.0 },
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Truth, trimmed_rate};
     use super::*;
+    use crate::truth::integrate::trimmed_rate;
 
     #[test]
     fn added_masses_of_kvlcc2_are_near_the_published_ones() {
-        let [mx, my, jz] = added_primes(&kvlcc2().particulars);
+        let AddedMass { surge: mx, sway: my, yaw: jz, .. } = added_primes(&kvlcc2().particulars);
         assert!(
             (mx - 0.0231).abs() < 2e-4 && (my - 0.2243).abs() < 1e-3 && (jz - 0.0112).abs() < 1e-4,
             "{mx} {my} {jz}"
@@ -307,7 +301,7 @@ mod tests {
 
     #[test]
     fn masses_are_those_of_the_reconstruction() {
-        for (mass, expected) in [(ship_a().inertia().mass, 3.359e6), (ship_b().inertia().mass, 1.288e7)] {
+        for (mass, expected) in [(ship_a().particulars.mass(), 3.359e6), (ship_b().particulars.mass(), 1.288e7)] {
             assert!((mass / expected - 1.0).abs() < 1e-3, "{mass}");
         }
     }

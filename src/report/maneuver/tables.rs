@@ -1,5 +1,5 @@
 //! Trials in words and numbers: measures in ship lengths, criteria, notes, and the track as CSV.
-//! Nothing is computed here beyond units.
+//! It converts units and computes nothing else.
 
 use crate::maneuver::imo::{Criterion, SHORTEST};
 use crate::maneuver::{Ended, Stopping, Track, Trial, Turning, Zigzag};
@@ -92,7 +92,7 @@ pub fn criteria_table<'a>(trials: impl IntoIterator<Item = (&'a str, &'a [Criter
     table
 }
 
-/// What must be known to read the criteria of this ship, or nothing.
+/// A note on the criteria for a ship that the standard does not bind.
 pub fn criteria_note(ship: &Ship) -> Option<String> {
     (ship.hull.lpp < SHORTEST).then(|| {
         format!(
@@ -102,7 +102,7 @@ pub fn criteria_note(ship: &Ship) -> Option<String> {
     })
 }
 
-/// How a trial ended, where it did not end well.
+/// How a trial ended, if it is not complete.
 pub fn ended_note<M>(trial: &Trial<M>) -> Option<String> {
     match trial.ended {
         Ended::Complete => None,

@@ -1,10 +1,10 @@
 //! Effects of wind, waves, current, bottom and bank, in the forms of Blendermann, Fujiwara, Daidola, Faltinsen, Hirano and the
-//! exponential bank. No form here is the fitter's: cosine and sine wind, constant wave coefficients, 1/distance bank.
+//! exponential bank. No form here is the fitter's, which has cosine and sine wind, constant wave coefficients and a 1/distance bank.
 
 use std::f64::consts::PI;
 
-use super::{ChannelOf, Class, Compare, Draw, Entry, Instant, Physics, vector};
-use crate::conceal::craft::Tweak;
+use super::effect::{ChannelOf, Class, Compare, Draw, Entry, FORCE, Instant, Physics, vector};
+use crate::conceal::tweak::Tweak;
 
 const AIR: f64 = 1.225;
 const GRAVITY: f64 = 9.806_65;
@@ -31,10 +31,7 @@ impl Physics for Current {
     }
 
     fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        match self.tide {
-            None => vec![("north", self.mean[0], "m/s"), ("east", self.mean[1], "m/s")],
-            Some(_) => Vec::new(),
-        }
+        vec![("north", self.mean[0], "m/s"), ("east", self.mean[1], "m/s")]
     }
 }
 
@@ -50,7 +47,7 @@ fn tidal(size: f64, d: &mut Draw<'_>) -> Box<dyn Physics> {
 /// A force law in air: coefficients (C_X, C_Y, C_N) of the angle of attack, 0 for head wind, positive from port.
 type Coefficients = fn(f64) -> [f64; 3];
 
-/// Mean wind with gusts of a tenth of it; the force in still air belongs to the hull's resistance and is taken off.
+/// Mean wind with gusts of a tenth of its speed; the force in still air belongs to the hull's resistance and is subtracted.
 struct Wind {
     mean: [f64; 2],
     law: Coefficients,
@@ -84,7 +81,7 @@ impl Physics for Wind {
         if !self.measured {
             return Vec::new();
         }
-        // Comes from the other side; the anemometer shows the gusts.
+        // A direction is where the wind comes from; the speed contains the gusts.
         let from = (-self.mean[1]).atan2(-self.mean[0]).rem_euclid(2.0 * PI);
         vec![
             ChannelOf {
@@ -100,9 +97,6 @@ impl Physics for Wind {
     }
 
     fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        if self.measured {
-            return Vec::new();
-        }
         vec![("north", self.mean[0], "m/s"), ("east", self.mean[1], "m/s")]
     }
 }
@@ -139,7 +133,7 @@ fn mean_wind(size: f64, d: &mut Draw<'_>) -> Box<dyn Physics> {
 /// Mean second-order wave force.
 struct Waves {
     height: f64,
-    /// Where they travel to \[rad\].
+    /// Direction of travel \[rad\].
     to: f64,
     /// Wave length over ship length; none for the short-wave asymptote.
     ratio: Option<f64>,
@@ -248,7 +242,7 @@ impl Bank {
         let start = self.distance.get(at.run).copied().filter(|d| *d != 0.0)?;
         let across = -at.state.x * at.course.sin() + at.state.y * at.course.cos();
         let side = start.signum();
-        // Which side she sees it on turns with her heading.
+        // The side of the ship on which the bank lies changes with the heading.
         let seen = side * (at.state.psi - at.course).cos().signum();
         Some(((start.abs() - side * across).max(10.0), seen))
     }
@@ -307,128 +301,99 @@ fn gusts(size: f64, d: &mut Draw<'_>) -> Box<dyn Physics> {
 pub const ENTRIES: &[Entry] = &[
     Entry {
         name: "current",
-        class: Class::Force,
         accepted: &["current", "tide"],
-        near: &[],
         unit: "m/s",
         size: 0.15,
         most: 2.0,
-        compare: Compare::Parameters,
-        in_mmg: true,
-        reference: false,
+        compare: Compare::Truth,
         law: "uniform steady current, irrotational (Fossen 2011)",
         build: steady,
+        ..FORCE
     },
     Entry {
         name: "tide",
-        class: Class::Force,
         accepted: &["tide", "current"],
-        near: &[],
         unit: "m/s",
         size: 0.3,
         most: 3.0,
-        compare: Compare::No,
-        in_mmg: true,
-        reference: false,
         law: "current that ramps up and down over 12.4 h",
         build: tidal,
+        ..FORCE
     },
     Entry {
         name: "wind",
-        class: Class::Force,
         accepted: &["wind", "mean_wind"],
-        near: &[],
         unit: "m/s",
         size: 8.0,
         most: 30.0,
-        compare: Compare::No,
-        in_mmg: true,
-        reference: false,
         law: "Blendermann 1994 with gusts, anemometer recorded",
         build: wind,
+        ..FORCE
     },
     Entry {
         name: "mean_wind",
-        class: Class::Force,
         accepted: &["mean_wind", "wind"],
         near: &["earth_force", "wave_drift"],
         unit: "m/s",
         size: 8.0,
         most: 30.0,
-        compare: Compare::Parameters,
-        in_mmg: true,
-        reference: false,
+        compare: Compare::Truth,
         law: "Fujiwara 1998 with gusts, not recorded",
         build: mean_wind,
+        ..FORCE
     },
     Entry {
         name: "wave_drift",
-        class: Class::Force,
         accepted: &["wave_drift", "waves"],
         near: &["earth_force", "mean_wind"],
         unit: "m",
         size: 0.8,
         most: 5.0,
-        compare: Compare::No,
-        in_mmg: true,
-        reference: false,
         law: "Daidola et al. 1986, cubic in the wave length, not recorded",
         build: wave_drift,
+        ..FORCE
     },
     Entry {
         name: "waves",
-        class: Class::Force,
         accepted: &["waves", "wave_drift"],
         near: &["earth_force"],
         unit: "m",
         size: 0.8,
         most: 5.0,
-        compare: Compare::No,
-        in_mmg: true,
-        reference: false,
         law: "Faltinsen et al. 1980, short waves on a wall-sided ship, recorded",
         build: measured_waves,
+        ..FORCE
     },
     Entry {
         name: "shallow",
-        class: Class::Force,
         accepted: &["shallow"],
         near: &["crossflow", "hull_nonlinear", "loading"],
         unit: "d/h",
         size: 0.5,
         most: 0.85,
-        compare: Compare::No,
-        in_mmg: true,
         reference: true,
         law: "Hirano & Kijima effective aspect ratio, Li & Wu added mass, depth not recorded",
         build: shallow,
+        ..FORCE
     },
     Entry {
         name: "bank",
-        class: Class::Force,
         accepted: &["bank"],
-        near: &[],
-        unit: "-",
         size: 0.4,
         most: 5.0,
-        compare: Compare::No,
-        in_mmg: true,
-        reference: false,
         law: "exponential in the distance (PIANC), distances recorded",
         build: bank,
+        ..FORCE
     },
     Entry {
         name: "gusts",
         class: Class::Random,
         accepted: &["gusts", "random"],
-        near: &[],
         unit: "N",
         size: 4000.0,
         most: 5e4,
-        compare: Compare::No,
-        in_mmg: true,
-        reference: false,
         law: "Ornstein-Uhlenbeck force, 20 s",
         build: gusts,
+        ..FORCE
     },
 ];

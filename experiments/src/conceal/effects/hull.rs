@@ -1,8 +1,8 @@
-//! Effects of the hull and of what pushes her from outside: cross-flow, v^3, sternway, loading, fouling, roll, thruster, pushes.
-//! Forms differ from the fitter's: strips with Yoshimura's weights, plain cubic, second-order roll, a cut-off thruster.
+//! Effects of the hull and forces from outside: cross-flow, v^3, sternway, loading, fouling, roll, thruster, pushes.
+//! No form here is the fitter's: strips with Yoshimura's weights, plain cubic, second-order roll, a thruster with a cut-off.
 
-use super::{ChannelOf, Class, Compare, Draw, Entry, Instant, Physics, Window, ramp};
-use crate::conceal::craft::Tweak;
+use super::effect::{ChannelOf, Class, Compare, Draw, Entry, FORCE, Instant, Physics, Window, ramp};
+use crate::conceal::tweak::Tweak;
 use crate::truth::crossflow;
 
 const GRAVITY: f64 = 9.806_65;
@@ -45,7 +45,7 @@ impl Physics for Sternway {
     }
 }
 
-/// More on board than the ship file says: mass and yaw inertia up by a share, the centre of gravity moved.
+/// Another loading than the ship file's: mass and yaw inertia up by a share, the centre of gravity moved.
 struct Loading {
     share: f64,
     xg: f64,
@@ -55,10 +55,6 @@ impl Physics for Loading {
     fn alter(&self, _at: &Instant<'_>, tweak: &mut Tweak) {
         tweak.mass *= 1.0 + self.share;
         tweak.xg += self.xg;
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("mass", self.share, "-")]
     }
 }
 
@@ -112,7 +108,7 @@ struct Thruster {
     bursts: Vec<[[f64; 3]; 2]>,
 }
 
-/// The full thrust that the ship file promises \[N\], and where it acts \[m\].
+/// The full thrust in the ship file \[N\], and its position \[m\].
 pub const THRUSTER: [f64; 2] = [40_000.0, 34.0];
 
 impl Thruster {
@@ -123,7 +119,7 @@ impl Thruster {
                 c * ramp(t, *start, start + 4.0) * (1.0 - ramp(t, start + length, start + length + 4.0))
             })
             .sum();
-        // Bursts may overlap; the lever ends at full.
+        // Bursts may overlap; the command is at most full.
         ordered.clamp(-1.0, 1.0)
     }
 }
@@ -174,7 +170,7 @@ impl Physics for Push {
     fn force(&self, at: &Instant<'_>) -> [f64; 3] {
         let on = |w: &&Window| w.0 == at.run && at.t > w.1 - 1.0 && at.t < w.2 + 1.0;
         let Some((_, start, end)) = self.windows.iter().find(on) else { return [0.0; 3] };
-        // Hard on and hard off within 2 s, piecewise; the fitter's edges are hyperbolic.
+        // On and off within 2 s, piecewise polynomial; the fitter's edges are hyperbolic tangents.
         let y = self.force * ramp(at.t, start - 1.0, start + 1.0) * (1.0 - ramp(at.t, end - 1.0, end + 1.0));
         [self.along * y, y, self.lever * y]
     }
@@ -200,62 +196,52 @@ fn push(size: f64, d: &mut Draw<'_>) -> Box<dyn Physics> {
 pub const ENTRIES: &[Entry] = &[
     Entry {
         name: "crossflow",
-        class: Class::Force,
         accepted: &["crossflow", "hull_nonlinear"],
         near: &["munk", "symmetric"],
-        unit: "-",
         size: 0.4,
         most: 4.0,
-        compare: Compare::No,
-        in_mmg: true,
         reference: true,
         law: "strips with weighted yaw rate (Yoshimura)",
         build: |size, _| Box::new(CrossFlow { drag: size }),
+        ..FORCE
     },
     Entry {
         name: "hull_cubic",
-        class: Class::Force,
         accepted: &["hull_nonlinear", "crossflow"],
         near: &["munk", "symmetric"],
-        unit: "-",
         size: 0.6,
         most: 10.0,
-        compare: Compare::No,
-        in_mmg: true,
         reference: true,
         law: "cubic in sway velocity alone",
         build: |size, _| Box::new(Cubic(size)),
+        ..FORCE
     },
     Entry {
         name: "sternway",
-        class: Class::Force,
         accepted: &["sternway"],
         near: &["symmetric"],
-        unit: "-",
         size: 1.0,
         most: 1.5,
-        compare: Compare::No,
         in_mmg: false,
         reference: true,
         law: "low-speed form of the linear terms, with half as much resistance again astern (Yoshimura)",
         build: |size, _| Box::new(Sternway(size)),
+        ..FORCE
     },
     Entry {
         name: "loading",
-        class: Class::Force,
         accepted: &["loading"],
         near: &["symmetric"],
-        unit: "-",
         size: 0.15,
         most: 0.8,
-        compare: Compare::Parameters,
-        in_mmg: true,
+        compare: Compare::Size("mass"),
         reference: true,
         law: "mass and yaw inertia up by a share, centre of gravity moved by up to 2 % of the length",
         build: |size, d| {
             let shift = d.between(-0.02, 0.02);
             Box::new(Loading { share: size, xg: shift * d.length * (size / 0.15) })
         },
+        ..FORCE
     },
     Entry {
         name: "fouling",
@@ -265,52 +251,41 @@ pub const ENTRIES: &[Entry] = &[
         unit: "dC_F",
         size: 1e-3,
         most: 1e-2,
-        compare: Compare::No,
-        in_mmg: true,
         reference: true,
         law: "more frictional resistance, quadratic: the parameters p1 to p3 can mimic it",
         build: |size, _| Box::new(Fouling(size)),
+        ..FORCE
     },
     Entry {
         name: "roll",
-        class: Class::Force,
         accepted: &["roll"],
         near: &["hull_nonlinear", "symmetric"],
-        unit: "-",
         size: 0.1,
         most: 1.5,
-        compare: Compare::No,
-        in_mmg: true,
         reference: true,
         law: "second-order roll driven by U r (Son & Nomoto structure)",
         build: roll,
+        ..FORCE
     },
     Entry {
         name: "thruster",
-        class: Class::Force,
         accepted: &["thruster"],
-        near: &[],
         unit: "N",
         size: 20_000.0,
         most: 200_000.0,
-        compare: Compare::Parameters,
-        in_mmg: true,
-        reference: false,
+        compare: Compare::Truth,
         law: "quadratic in the Froude number with a cut-off, command recorded",
         build: thruster,
+        ..FORCE
     },
     Entry {
         name: "push",
-        class: Class::Force,
         accepted: &["push"],
-        near: &[],
         unit: "N",
         size: 16_000.0,
         most: 300_000.0,
-        compare: Compare::No,
-        in_mmg: true,
-        reference: false,
         law: "tug or line in a time window of some runs",
         build: push,
+        ..FORCE
     },
 ];

@@ -1,11 +1,11 @@
 //! Effects of screw, engine, rudder and steering gear: walk, wake, race, lags, stall, offsets, limits.
-//! Recorded are always the orders; where an effect delays or bends them, only the ship knows.
+//! The orders are recorded; the positions of delayed or limited actuators are not.
 
 use std::f64::consts::PI;
 
-use super::{Class, Compare, Draw, Entry, Instant, Physics, ramp};
-use crate::conceal::craft::Tweak;
-use crate::truth::{Inputs, State};
+use super::effect::{Class, Compare, Draw, Entry, FORCE, Instant, Physics, ramp};
+use crate::conceal::tweak::Tweak;
+use crate::truth::motion::{Inputs, State};
 
 /// Side force of the screw, right-handed: astern to port at the stern.
 struct Walk {
@@ -55,20 +55,16 @@ impl Physics for WakeInDrift {
     }
 }
 
-/// Part of the thrust is gone.
+/// A loss of part of the thrust.
 struct ThrustLoss(f64);
 
 impl Physics for ThrustLoss {
     fn alter(&self, _at: &Instant<'_>, tweak: &mut Tweak) {
         tweak.thrust *= 1.0 - self.0;
     }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("fraction", self.0, "-")]
-    }
 }
 
-/// The race is stronger or weaker than kappa says.
+/// A race that is stronger or weaker than by kappa.
 struct Race(f64);
 
 impl Physics for Race {
@@ -83,10 +79,6 @@ struct Offset(f64);
 impl Physics for Offset {
     fn alter(&self, _at: &Instant<'_>, tweak: &mut Tweak) {
         tweak.rudder_angle += self.0;
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("offset", self.0, "rad")]
     }
 }
 
@@ -116,16 +108,8 @@ fn lagged(tau: f64, h: f64, from: f64, to: f64, at: f64) -> f64 {
 struct RudderLag(f64);
 
 impl Physics for RudderLag {
-    fn moves_actuators(&self) -> bool {
-        true
-    }
-
     fn actuate(&self, h: f64, orders: [Inputs; 2], at: &Inputs, _state: &State, actual: &mut Inputs) {
         actual.delta = lagged(self.0, h, orders[0].delta, orders[1].delta, at.delta);
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("time", self.0, "s")]
     }
 }
 
@@ -133,10 +117,6 @@ impl Physics for RudderLag {
 struct RateLimit(f64);
 
 impl Physics for RateLimit {
-    fn moves_actuators(&self) -> bool {
-        true
-    }
-
     fn actuate(&self, h: f64, orders: [Inputs; 2], at: &Inputs, _state: &State, actual: &mut Inputs) {
         if self.0 > 0.0 {
             let reach = h / self.0;
@@ -152,16 +132,8 @@ impl Physics for RateLimit {
 struct EngineLag(f64);
 
 impl Physics for EngineLag {
-    fn moves_actuators(&self) -> bool {
-        true
-    }
-
     fn actuate(&self, h: f64, orders: [Inputs; 2], at: &Inputs, _state: &State, actual: &mut Inputs) {
         actual.n = lagged(self.0, h, orders[0].n, orders[1].n, at.n);
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("time", self.0, "s")]
     }
 }
 
@@ -169,87 +141,73 @@ impl Physics for EngineLag {
 pub const ENTRIES: &[Entry] = &[
     Entry {
         name: "walk_astern",
-        class: Class::Force,
         accepted: &["propeller_walk_astern"],
         near: &["propeller_walk_ahead"],
-        unit: "-",
         size: 0.12,
         most: 1.0,
-        compare: Compare::No,
-        in_mmg: true,
-        reference: false,
         law: "share of the thrust, fading as exp(-(J/J0)^2)",
         build: walk_astern,
+        ..FORCE
     },
     Entry {
         name: "walk_ahead",
         class: Class::Absorbed,
         accepted: &["propeller_walk_ahead"],
         near: &["asymmetric", "propeller_walk_astern"],
-        unit: "-",
         size: 0.03,
         most: 0.3,
-        compare: Compare::No,
-        in_mmg: true,
         reference: true,
         law: "proportional to thrust ahead: the parameter p0 can mimic it",
         build: walk_ahead,
+        ..FORCE
     },
     Entry {
         name: "wake_drift",
-        class: Class::Force,
         accepted: &["wake_drift"],
         near: &["symmetric", "thrust_loss"],
-        unit: "-",
         size: 0.6,
         most: 2.5,
-        compare: Compare::No,
-        in_mmg: true,
         reference: true,
         law: "w = w0 (1 - s (1 - exp(-4 beta_P^2)))",
         build: |size, _| Box::new(WakeInDrift(size)),
+        ..FORCE
     },
     Entry {
         name: "thrust_loss",
         class: Class::Absorbed,
         accepted: &["thrust_loss"],
         near: &["fouling", "race", "wake_drift"],
-        unit: "-",
         size: 0.12,
         most: 0.8,
-        compare: Compare::Parameters,
-        in_mmg: true,
+        compare: Compare::Size("fraction"),
         reference: true,
         law: "a share of the thrust; thrust coefficients known within 15 % can mimic it",
         build: |size, _| Box::new(ThrustLoss(size)),
+        ..FORCE
     },
     Entry {
         name: "engine_lag",
-        class: Class::Force,
         accepted: &["engine_lag"],
-        near: &[],
         unit: "s",
         size: 4.0,
         most: 60.0,
-        compare: Compare::Parameters,
-        in_mmg: true,
-        reference: false,
+        compare: Compare::Size("time"),
+        moves_actuators: true,
         law: "first-order shaft behind the recorded telegraph, continuous in time",
         build: |size, _| Box::new(EngineLag(size)),
+        ..FORCE
     },
     Entry {
         name: "race",
         class: Class::Absorbed,
         accepted: &["race"],
         near: &["rudder_stall", "thrust_loss"],
-        unit: "-",
         size: 0.4,
         most: 2.0,
-        compare: Compare::No,
-        in_mmg: true,
         reference: true,
         law: "kappa off its chart: rudder polynomials and race prior can mimic it",
         build: |size, _| Box::new(Race(size)),
+        ..FORCE
     },
     Entry {
         name: "rudder_offset",
@@ -259,53 +217,45 @@ pub const ENTRIES: &[Entry] = &[
         unit: "rad",
         size: 0.03,
         most: 0.3,
-        compare: Compare::Parameters,
-        in_mmg: true,
+        compare: Compare::Size("offset"),
         reference: true,
         law: "constant: the parameter p4 can mimic it",
         build: |size, _| Box::new(Offset(size)),
+        ..FORCE
     },
     Entry {
         name: "rudder_stall",
-        class: Class::Force,
         accepted: &["rudder_stall"],
         near: &["race"],
-        unit: "-",
         size: 0.4,
         most: 1.0,
-        compare: Compare::No,
-        in_mmg: true,
         reference: true,
         law: "a sudden drop of the rudder force beyond 24 to 28 deg",
         build: |size, d| Box::new(Stall { drop: size.min(1.0), onset: d.between(24.0, 28.0).to_radians() }),
+        ..FORCE
     },
     Entry {
         name: "rudder_rate",
-        class: Class::Force,
         accepted: &["rudder_rate", "rudder_lag"],
-        near: &[],
         unit: "s/rad",
         size: 35.0,
         most: 300.0,
-        compare: Compare::No,
-        in_mmg: true,
-        reference: false,
+        moves_actuators: true,
         law: "constant-rate steering gear behind the recorded order",
         build: |size, _| Box::new(RateLimit(size)),
+        ..FORCE
     },
     Entry {
         name: "rudder_lag",
-        class: Class::Force,
         accepted: &["rudder_lag", "rudder_rate"],
-        near: &[],
         unit: "s",
         size: 2.0,
         most: 30.0,
-        compare: Compare::Parameters,
-        in_mmg: true,
-        reference: false,
+        compare: Compare::Size("time"),
+        moves_actuators: true,
         law: "first-order steering gear behind the recorded order, continuous in time",
         build: |size, _| Box::new(RudderLag(size)),
+        ..FORCE
     },
 ];
 

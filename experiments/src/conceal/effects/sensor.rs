@@ -1,23 +1,18 @@
-//! Defects of sensors: the ship moves as she should and is reported otherwise.
-//! Random sensor noise is not here (`noise`): it is in every case.
+//! Defects of sensors: the motion of the ship is right and its report is wrong.
+//! Random sensor noise is not here: it is in every case (`noise`).
 
-use super::{Class, Compare, Draw, Entry, Physics, vector};
-use crate::conceal::sail::Fine;
+use super::effect::{Compare, Entry, Physics, SENSOR, vector};
+use crate::conceal::track::Fine;
 
 /// A constant added to one entry of the state.
 struct Bias {
     entry: usize,
     size: f64,
-    unit: &'static str,
 }
 
 impl Physics for Bias {
-    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine<'_>, y: &mut [f64; 6]) {
+    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
         y[self.entry] += self.size;
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("bias", self.size, self.unit)]
     }
 }
 
@@ -25,13 +20,9 @@ impl Physics for Bias {
 struct LogScale(f64);
 
 impl Physics for LogScale {
-    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine<'_>, y: &mut [f64; 6]) {
+    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
         y[3] *= 1.0 + self.0;
         y[4] *= 1.0 + self.0;
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("error", self.0, "-")]
     }
 }
 
@@ -39,7 +30,7 @@ impl Physics for LogScale {
 struct Antenna([f64; 2]);
 
 impl Physics for Antenna {
-    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine<'_>, y: &mut [f64; 6]) {
+    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
         let [lx, ly] = self.0;
         let (sin, cos) = y[2].sin_cos();
         y[0] += lx * cos - ly * sin;
@@ -57,14 +48,10 @@ impl Physics for Antenna {
 struct Late(f64);
 
 impl Physics for Late {
-    fn measure(&self, _clock: f64, row: usize, fine: &Fine<'_>, y: &mut [f64; 6]) {
+    fn measure(&self, _clock: f64, row: usize, fine: &Fine, y: &mut [f64; 6]) {
         let (then, now) = (fine.at(row, -self.0), fine.at(row, 0.0));
         y[0] += then.x - now.x;
         y[1] += then.y - now.y;
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("position", self.0, "s")]
     }
 }
 
@@ -76,7 +63,7 @@ impl Physics for WaterLog {
         self.0
     }
 
-    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine<'_>, y: &mut [f64; 6]) {
+    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
         let (sin, cos) = y[2].sin_cos();
         y[3] -= self.0[0] * cos + self.0[1] * sin;
         y[4] -= -self.0[0] * sin + self.0[1] * cos;
@@ -87,7 +74,7 @@ impl Physics for WaterLog {
 struct WrongSign(f64);
 
 impl Physics for WrongSign {
-    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine<'_>, y: &mut [f64; 6]) {
+    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
         y[5] *= 1.0 - 2.0 * self.0;
     }
 }
@@ -96,102 +83,108 @@ impl Physics for WrongSign {
 struct WrongUnit(f64);
 
 impl Physics for WrongUnit {
-    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine<'_>, y: &mut [f64; 6]) {
+    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
         let factor = 1.0 + self.0 * (3.6 / 1.852 - 1.0);
         y[3] *= factor;
         y[4] *= factor;
     }
 }
 
-fn antenna(size: f64, d: &mut Draw<'_>) -> Box<dyn Physics> {
-    Box::new(Antenna(vector(size, d.direction())))
-}
-
-const fn sensor(
-    name: &'static str,
-    accepted: &'static [&'static str],
-    unit: &'static str,
-    size: f64,
-    most: f64,
-    compare: Compare,
-    law: &'static str,
-    build: fn(f64, &mut Draw<'_>) -> Box<dyn Physics>,
-) -> Entry {
-    Entry {
-        name,
-        class: Class::Sensor,
-        accepted,
-        near: &[],
-        unit,
-        size,
-        most,
-        compare,
-        in_mmg: true,
-        reference: false,
-        law,
-        build,
-    }
-}
-
-use Compare::{No, Parameters};
-
 /// The effects of this file.
 pub const ENTRIES: &[Entry] = &[
-    sensor("heading_bias", &["heading_bias"], "rad", 0.017, 0.2, Parameters, "constant", |size, _| {
-        Box::new(Bias { entry: 2, size, unit: "rad" })
-    }),
-    sensor("yaw_rate_bias", &["yaw_rate_bias"], "rad/s", 5e-4, 0.01, Parameters, "constant", |size, _| {
-        Box::new(Bias { entry: 5, size, unit: "rad/s" })
-    }),
-    sensor("sway_log_bias", &["sway_log_bias"], "m/s", 0.05, 1.0, Parameters, "constant", |size, _| {
-        Box::new(Bias { entry: 4, size, unit: "m/s" })
-    }),
-    sensor("log_scale", &["log_scale"], "-", 0.03, 0.5, Parameters, "constant share", |size, _| {
-        Box::new(LogScale(size))
-    }),
-    // A fitted hull of unknown Y_r, N_v has a pivot point of its own, some metres from the antenna's.
     Entry {
-        reference: true,
-        ..sensor("antenna", &["antenna"], "m", 8.0, 100.0, Parameters, "rigid-body kinematics", antenna)
+        name: "heading_bias",
+        accepted: &["heading_bias"],
+        unit: "rad",
+        size: 0.017,
+        most: 0.2,
+        compare: Compare::Size("bias"),
+        law: "constant",
+        build: |size, _| Box::new(Bias { entry: 2, size }),
+        ..SENSOR
     },
-    sensor(
-        "time_skew",
-        &["time_skew"],
-        "s",
-        1.0,
-        20.0,
-        Parameters,
-        "the true position of an earlier time",
-        |size, _| Box::new(Late(size)),
-    ),
-    sensor(
-        "water_log",
-        &["water_log", "current", "tide"],
-        "m/s",
-        0.3,
-        2.0,
-        No,
-        "a current, and speeds through the water reported as over ground",
-        |size, d| Box::new(WaterLog(vector(size, d.direction()))),
-    ),
-    sensor(
-        "sign_error",
-        &["sign_error", "unit_error", "sign_or_unit_error", "sign", "audit"],
-        "-",
-        1.0,
-        1.0,
-        No,
-        "yaw rate positive to port",
-        |size, _| Box::new(WrongSign(size)),
-    ),
-    sensor(
-        "unit_error",
-        &["unit_error", "sign_error", "sign_or_unit_error", "unit", "log_scale", "audit"],
-        "-",
-        1.0,
-        1.0,
-        No,
-        "knots under a header of m/s",
-        |size, _| Box::new(WrongUnit(size)),
-    ),
+    Entry {
+        name: "yaw_rate_bias",
+        accepted: &["yaw_rate_bias"],
+        unit: "rad/s",
+        size: 5e-4,
+        most: 0.01,
+        compare: Compare::Size("bias"),
+        law: "constant",
+        build: |size, _| Box::new(Bias { entry: 5, size }),
+        ..SENSOR
+    },
+    Entry {
+        name: "sway_log_bias",
+        accepted: &["sway_log_bias"],
+        unit: "m/s",
+        size: 0.05,
+        most: 1.0,
+        compare: Compare::Size("bias"),
+        law: "constant",
+        build: |size, _| Box::new(Bias { entry: 4, size }),
+        ..SENSOR
+    },
+    Entry {
+        name: "log_scale",
+        accepted: &["log_scale"],
+        size: 0.03,
+        most: 0.5,
+        compare: Compare::Size("error"),
+        law: "constant share",
+        build: |size, _| Box::new(LogScale(size)),
+        ..SENSOR
+    },
+    Entry {
+        name: "antenna",
+        accepted: &["antenna"],
+        unit: "m",
+        size: 8.0,
+        most: 100.0,
+        compare: Compare::Truth,
+        // A fitted hull of unknown Y_r, N_v has a pivot point of its own, some metres from the antenna's.
+        reference: true,
+        law: "rigid-body kinematics",
+        build: |size, d| Box::new(Antenna(vector(size, d.direction()))),
+        ..SENSOR
+    },
+    Entry {
+        name: "time_skew",
+        accepted: &["time_skew"],
+        unit: "s",
+        size: 1.0,
+        most: 20.0,
+        compare: Compare::Size("position"),
+        law: "the true position of an earlier time",
+        build: |size, _| Box::new(Late(size)),
+        ..SENSOR
+    },
+    Entry {
+        name: "water_log",
+        accepted: &["water_log", "current", "tide"],
+        unit: "m/s",
+        size: 0.3,
+        most: 2.0,
+        law: "a current, and speeds through the water reported as over ground",
+        build: |size, d| Box::new(WaterLog(vector(size, d.direction()))),
+        ..SENSOR
+    },
+    Entry {
+        name: "sign_error",
+        accepted: &["sign_error", "unit_error", "sign_or_unit_error", "sign", "audit"],
+        size: 1.0,
+        most: 1.0,
+        law: "yaw rate positive to port",
+        build: |size, _| Box::new(WrongSign(size)),
+        ..SENSOR
+    },
+    Entry {
+        name: "unit_error",
+        accepted: &["unit_error", "sign_error", "sign_or_unit_error", "unit", "log_scale", "audit"],
+        size: 1.0,
+        most: 1.0,
+        law: "knots under a header of m/s",
+        build: |size, _| Box::new(WrongUnit(size)),
+        ..SENSOR
+    },
 ];

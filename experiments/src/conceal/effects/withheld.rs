@@ -1,17 +1,13 @@
 //! Effects that no catalogue of the diagnosis holds: the right answer to them is "not in the catalogue", with the place.
-//! They are kept out of the catalogue on purpose; a mechanism that is added there one day must leave this file.
+//! They are kept out of that catalogue on purpose: an effect whose mechanism is added there must leave this file.
 
-use super::{Class, Compare, Draw, Entry, Instant, Physics, Window, ramp, vector};
-use crate::truth::{Inputs, State};
+use super::effect::{Draw, Entry, Instant, Physics, WITHHELD, Window, ramp, vector};
+use crate::truth::motion::{Inputs, State};
 
 /// Play in the steering gear, half width \[rad\].
 struct DeadBand(f64);
 
 impl Physics for DeadBand {
-    fn moves_actuators(&self) -> bool {
-        true
-    }
-
     fn actuate(&self, _h: f64, orders: [Inputs; 2], at: &Inputs, _state: &State, actual: &mut Inputs) {
         let order = orders[1].delta;
         if (order - at.delta).abs() <= self.0 {
@@ -29,10 +25,6 @@ struct Sag {
 }
 
 impl Physics for Sag {
-    fn moves_actuators(&self) -> bool {
-        true
-    }
-
     fn actuate(&self, _h: f64, orders: [Inputs; 2], _at: &Inputs, state: &State, actual: &mut Inputs) {
         let turn = state.r.abs() * self.length / state.speed().max(0.5);
         actual.n = orders[1].n * (1.0 - self.share * (turn * 3.0).tanh());
@@ -72,7 +64,7 @@ impl Physics for TowLine {
     }
 }
 
-/// Debris caught on one side from some moment on: X = -s u|u|, with a moment.
+/// Debris caught on one side from some time on: X = -s u|u|, with a yaw moment.
 struct Debris {
     drag: f64,
     lever: f64,
@@ -128,63 +120,67 @@ fn patch(size: f64, d: &mut Draw<'_>) -> Box<dyn Physics> {
     Box::new(Patch { force, centre: [d.between(-200.0, 200.0), d.between(-200.0, 200.0)] })
 }
 
-const fn withheld(
-    name: &'static str,
-    near: &'static [&'static str],
-    unit: &'static str,
-    size: f64,
-    most: f64,
-    law: &'static str,
-    build: fn(f64, &mut Draw<'_>) -> Box<dyn Physics>,
-) -> Entry {
-    Entry {
-        name,
-        class: Class::Withheld,
-        accepted: &[],
-        near,
-        unit,
-        size,
-        most,
-        compare: Compare::No,
-        in_mmg: true,
-        reference: false,
-        law,
-        build,
-    }
-}
-
 /// The effects of this file.
 pub const ENTRIES: &[Entry] = &[
-    withheld(
-        "dead_band",
-        &["rudder_lag", "rudder_rate"],
-        "rad",
-        0.04,
-        0.3,
-        "play between order and rudder",
-        |size, _| Box::new(DeadBand(size)),
-    ),
-    withheld(
-        "rpm_sag",
-        &["engine_lag", "thrust_loss", "wake_drift"],
-        "-",
-        0.15,
-        0.9,
-        "revolutions lost in turns",
-        |size, d| Box::new(Sag { share: size, length: d.length }),
-    ),
-    withheld("tanh_moment", &["asymmetric", "symmetric"], "N m", 3e5, 1e7, "yaw moment of tanh(u)", |size, _| {
-        Box::new(TanhMoment(size))
-    }),
-    withheld(
-        "tow_line",
-        &["earth_force", "push"],
-        "N",
-        1.5e4,
-        3e5,
-        "line to a fixed point, slack below 100 m",
-        tow_line,
-    ),
-    withheld("debris", &["push", "fouling"], "N", 1.5e4, 3e5, "drag at 5 m/s from some moment on, off centre", debris),
-    withheld("patch", &["earth_force", "push"], "N", 1.5e4, 3e5, "earth-fixed force in a patch of water", patch),
+    Entry {
+        name: "dead_band",
+        near: &["rudder_lag", "rudder_rate"],
+        unit: "rad",
+        size: 0.04,
+        most: 0.3,
+        moves_actuators: true,
+        law: "play between order and rudder",
+        build: |size, _| Box::new(DeadBand(size)),
+        ..WITHHELD
+    },
+    Entry {
+        name: "rpm_sag",
+        near: &["engine_lag", "thrust_loss", "wake_drift"],
+        size: 0.15,
+        most: 0.9,
+        moves_actuators: true,
+        law: "revolutions lost in turns",
+        build: |size, d| Box::new(Sag { share: size, length: d.length }),
+        ..WITHHELD
+    },
+    Entry {
+        name: "tanh_moment",
+        near: &["asymmetric", "symmetric"],
+        unit: "N m",
+        size: 3e5,
+        most: 1e7,
+        law: "yaw moment of tanh(u)",
+        build: |size, _| Box::new(TanhMoment(size)),
+        ..WITHHELD
+    },
+    Entry {
+        name: "tow_line",
+        near: &["earth_force", "push"],
+        unit: "N",
+        size: 1.5e4,
+        most: 3e5,
+        law: "line to a fixed point, slack below 100 m",
+        build: tow_line,
+        ..WITHHELD
+    },
+    Entry {
+        name: "debris",
+        near: &["push", "fouling"],
+        unit: "N",
+        size: 1.5e4,
+        most: 3e5,
+        law: "drag at 5 m/s from some moment on, off centre",
+        build: debris,
+        ..WITHHELD
+    },
+    Entry {
+        name: "patch",
+        near: &["earth_force", "push"],
+        unit: "N",
+        size: 1.5e4,
+        most: 3e5,
+        law: "earth-fixed force in a patch of water",
+        build: patch,
+        ..WITHHELD
+    },
 ];

@@ -1,0 +1,7 @@
+//! The campaign of concealed cases: which cases there are, the summary of their scores against the aims, and its figure.
+//! Cases are made, diagnosed and judged elsewhere; nothing here runs anything.
+
+pub mod arms;
+pub mod figure;
+pub mod plan;
+pub mod summary;

@@ -1,0 +1,7 @@
+//! The judge: scores a diagnosis of a concealed case after its seal is opened.
+//! It knows a diagnosis only as a file of documented keys and never calls the program that writes it.
+
+pub mod intervals;
+pub mod rules;
+pub mod said;
+pub mod score;

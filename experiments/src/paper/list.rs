@@ -1,0 +1,17 @@
+//! Every table and figure, in the order of the paper.
+//! It makes none.
+
+use super::artefact::Artefact;
+use super::{curves, distributions, gradient, limits, performance, scenarios, table1, table2};
+
+/// Every table and figure.
+pub static ARTEFACTS: [&Artefact; 8] = [
+    &table1::TABLE1,
+    &table2::TABLE2,
+    &performance::PERFORMANCE,
+    &curves::CURVES,
+    &scenarios::SCENARIOS,
+    &distributions::DISTRIBUTIONS,
+    &limits::LIMITS,
+    &gradient::report::GRADIENT,
+];
