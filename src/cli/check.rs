@@ -1,5 +1,5 @@
-//! `trimtab check`: audits the recordings of a study before anything is concluded from them.
-//! What is looked for, and how, is in the library's `check`.
+//! `trimtab check`: audits the recordings of a study before a fit or a diagnosis uses them.
+//! The library's `check` defines the audit; this file prints it.
 
 use super::Answer;
 use super::error::CliError;
