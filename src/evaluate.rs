@@ -477,10 +477,10 @@ impl<'a> Bootstrap<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dynamics::Dynamics;
     use crate::fit::{Cost, CostOptions, Derivatives};
     use crate::physics::Form;
     use crate::recording::Environment;
-    use crate::simulate::report;
     use crate::state::Inputs;
     use std::f64::consts::PI;
     use std::path::Path;
@@ -539,7 +539,7 @@ mod tests {
         let mut windows = windows(&ship, 3);
         for w in &mut windows {
             for (m, inputs) in w.measured.iter_mut().zip(&w.inputs) {
-                *m = report(&off, &theta, m, inputs);
+                *m = Dynamics::new(&off, theta.clone()).report(m, inputs);
             }
             w.initial = w.measured[0];
         }

@@ -3,16 +3,13 @@
 
 use crate::error::suggestion;
 use crate::parameter::ParameterInfo;
-use crate::physics::Inertia;
-use crate::physics::{Adjust, Flow};
-use crate::physics::{AnyTerm, Form, Instant, Number};
-use crate::ship::{Ship, line_of};
-use crate::state::{Force, Inputs, STATES, State};
+use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number};
+use crate::ship::{COEFFICIENTS, Ship, line_of};
+use crate::state::Inputs;
 use crate::terms;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use trimtab_ad::Scalar;
 
 /// Terms that every model has, in this order.
 pub const BASE: [&str; 5] = ["flow", "hull", "resistance", "propeller", "rudder"];
@@ -121,11 +118,23 @@ pub struct Parameter {
     pub scale: f64,
 }
 
-#[derive(Clone)]
-struct Placed {
-    term: &'static dyn AnyTerm,
-    offset: usize,
-    len: usize,
+/// A term and the part of the parameter vector that belongs to it.
+#[derive(Clone, Copy)]
+pub struct Placed {
+    /// The term.
+    pub term: &'static dyn AnyTerm,
+    /// Index of its first parameter.
+    pub offset: usize,
+    /// How many parameters it has.
+    pub len: usize,
+}
+
+impl Placed {
+    /// The term's own part of a parameter vector.
+    #[inline]
+    pub fn part<'a, C>(&self, theta: &'a [C]) -> &'a [C] {
+        &theta[self.offset..self.offset + self.len]
+    }
 }
 
 /// A manoeuvring model of one ship.
@@ -141,6 +150,7 @@ pub struct Model {
     pub parameters: Vec<Parameter>,
     /// Values added to parameters in runs of one session: session name to (parameter index, addition).
     pub sessions: BTreeMap<String, Vec<(usize, f64)>>,
+    catalogue: Catalogue,
     terms: Vec<Placed>,
 }
 
@@ -162,6 +172,10 @@ pub struct ModelFile {
     /// Terms beyond the base terms (flow, hull, resistance, propeller, rudder).
     #[serde(default)]
     pub terms: Vec<String>,
+    /// `hull = "free"` frees every hydrodynamic coefficient of the hull ([`COEFFICIENTS`]) as `prior = "default"` does; mass,
+    /// inertia and centre of gravity stay as the ship file has them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hull: Option<HullSetting>,
     /// Settings by dotted parameter name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub parameters: BTreeMap<String, Setting>,
@@ -171,7 +185,7 @@ pub struct ModelFile {
 }
 
 /// What a model file may say of one parameter; a key left out takes the term's value.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Setting {
     /// Value, and start of a fit.
@@ -188,18 +202,85 @@ pub struct Setting {
     pub upper: Option<f64>,
     /// Prior.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub prior: Option<Prior>,
+    pub prior: Option<PriorSetting>,
+}
+
+/// What a model file may say of the hull as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum HullSetting {
+    /// Every hydrodynamic coefficient is free, with its default prior.
+    Free,
+}
+
+/// A prior as a model file gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PriorSetting {
+    /// `prior = "default"`: frees the parameter, with the value that the ship gives it as mean and the spread that its term
+    /// knows ([`ParameterInfo::spread`]) as standard deviation.
+    Default,
+    /// `prior = { mean = ..., sd = ... }`.
+    Given(Prior),
+}
+
+impl Serialize for PriorSetting {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Default => serializer.serialize_str("default"),
+            Self::Given(prior) => prior.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for PriorSetting {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct WordOrTable;
+        impl<'de> serde::de::Visitor<'de> for WordOrTable {
+            type Value = PriorSetting;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("\"default\" or a table { mean = ..., sd = ... }")
+            }
+            fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<PriorSetting, E> {
+                match word {
+                    "default" => Ok(PriorSetting::Default),
+                    other => Err(E::invalid_value(serde::de::Unexpected::Str(other), &self)),
+                }
+            }
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<PriorSetting, A::Error> {
+                Prior::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(PriorSetting::Given)
+            }
+        }
+        deserializer.deserialize_any(WordOrTable)
+    }
 }
 
 impl Model {
     /// A model of the base terms and those named in `extra`, with default parameters; the paper's eleven are free.
+    ///
+    /// # Errors
+    /// A term or a ship's parameter that is not known, or a mass matrix that is not positive.
     pub fn new(ship: Ship, name: &str, form: Form, extra: &[&str]) -> Result<Self, ModelError> {
+        Self::with_catalogue(terms::standard().clone(), ship, name, form, extra)
+    }
+
+    /// As [`Model::new`], with terms from any catalogue: the project's own and those of other crates.
+    ///
+    /// # Errors
+    /// Those of [`Model::new`].
+    pub fn with_catalogue(
+        catalogue: Catalogue,
+        ship: Ship,
+        name: &str,
+        form: Form,
+        extra: &[&str],
+    ) -> Result<Self, ModelError> {
         let mut model = Self {
             name: name.into(),
             ship,
             form,
             parameters: Vec::new(),
             sessions: BTreeMap::new(),
+            catalogue,
             terms: Vec::new(),
         };
         for term in BASE.iter().chain(extra) {
@@ -215,10 +296,11 @@ impl Model {
             // A ship file may give parameters of terms that this model does not use.
             if let Some(i) = model.index(name) {
                 model.parameters[i].value = *value;
-            } else if !crate::terms::CATALOGUE.iter().any(|t| name.starts_with(&format!("{}.", t.info().name))) {
+            } else if !model.catalogue.iter().any(|t| name.starts_with(&format!("{}.", t.info().name))) {
                 return Err(model.unknown(name));
             }
         }
+        model.check_bounds()?;
         model.check()?;
         Ok(model)
     }
@@ -229,7 +311,7 @@ impl Model {
     /// Those of [`Model::add_term`].
     pub fn complete(&self) -> Result<Self, ModelError> {
         let mut model = self.clone();
-        for term in terms::CATALOGUE {
+        for term in self.catalogue.iter() {
             model.add_term(term.info().name)?;
         }
         Ok(model)
@@ -240,25 +322,32 @@ impl Model {
         if self.terms.iter().any(|t| t.term.info().name == name) {
             return Ok(());
         }
-        let term = terms::find(name).ok_or_else(|| ModelError::UnknownTerm {
+        let term = self.catalogue.find(name).ok_or_else(|| ModelError::UnknownTerm {
             name: name.into(),
-            suggestion: suggestion(name, terms::CATALOGUE.iter().map(|t| t.info().name)),
+            suggestion: suggestion(name, self.catalogue.iter().map(|t| t.info().name)),
         })?;
         let info = term.info();
         self.terms.push(Placed { term, offset: self.parameters.len(), len: info.parameters.len() });
         for parameter in info.parameters {
+            let value = (parameter.default)(&self.ship);
+            let (lower, upper) = self.default_bounds(info.name, parameter);
             self.parameters.push(Parameter {
                 name: format!("{}.{}", info.name, parameter.name),
                 info: parameter,
-                value: (parameter.default)(&self.ship),
+                value,
                 free: false,
-                lower: parameter.lower,
-                upper: parameter.upper,
+                lower,
+                upper,
                 prior: None,
                 scale: (parameter.scale)(&self.ship),
             });
         }
         Ok(())
+    }
+
+    /// The terms that can be added to the model.
+    pub fn catalogue(&self) -> &Catalogue {
+        &self.catalogue
     }
 
     /// Reads a model file.
@@ -291,25 +380,46 @@ impl Model {
     }
 
     /// A model from the content of a model file.
+    ///
+    /// # Errors
+    /// Those of [`Model::new`], and settings that are not possible.
     pub fn from_file(file: &ModelFile, ship: Ship) -> Result<Self, ModelError> {
+        Self::from_file_with(terms::standard().clone(), file, ship)
+    }
+
+    /// As [`Model::from_file`], with terms from any catalogue.
+    ///
+    /// # Errors
+    /// Those of [`Model::from_file`].
+    pub fn from_file_with(catalogue: Catalogue, file: &ModelFile, ship: Ship) -> Result<Self, ModelError> {
         let extra: Vec<&str> = file.terms.iter().map(String::as_str).collect();
-        let mut model = Self::new(ship, &file.name, file.form, &extra)?;
+        let mut model = Self::with_catalogue(catalogue, ship, &file.name, file.form, &extra)?;
+        if file.hull == Some(HullSetting::Free) {
+            model.free_hull();
+        }
         for (name, setting) in &file.parameters {
             let i = model.find(name)?;
+            let default = model.default_prior(i);
             let p = &mut model.parameters[i];
             p.value = setting.value.unwrap_or(p.value);
-            p.free = setting.free.unwrap_or(p.free);
+            p.free = setting.free.unwrap_or(p.free || setting.prior == Some(PriorSetting::Default));
             p.lower = setting.lower.unwrap_or(p.lower);
             p.upper = setting.upper.unwrap_or(p.upper);
-            p.prior = setting.prior.or(p.prior);
+            match setting.prior {
+                Some(PriorSetting::Default) => p.prior = Some(default),
+                Some(PriorSetting::Given(prior)) => p.prior = Some(prior),
+                None => {}
+            }
             if let Some(prior) = p.prior
-                && !(prior.sd > 0.0 && prior.mean.is_finite())
+                && !(prior.sd > 0.0 && prior.sd.is_finite() && prior.mean.is_finite())
             {
-                return Err(ModelError::BadValue {
-                    name: name.clone(),
-                    value: prior.sd,
-                    expected: "a prior needs a finite mean and a positive sd".into(),
-                });
+                let expected = match setting.prior {
+                    Some(PriorSetting::Default) => {
+                        "nothing is known of it beforehand, so that it has no default prior; give prior = { mean = ..., sd = ... }"
+                    }
+                    _ => "a prior needs a finite mean and a positive, finite sd",
+                };
+                return Err(ModelError::BadValue { name: name.clone(), value: prior.sd, expected: expected.into() });
             }
             if !p.value.is_finite() || p.lower > p.upper {
                 return Err(ModelError::BadValue {
@@ -326,24 +436,67 @@ impl Model {
             }
             model.sessions.insert(session.clone(), list);
         }
+        model.check_bounds()?;
         model.check()?;
         Ok(model)
     }
 
+    /// Frees every hydrodynamic coefficient of the hull with its default prior: what `hull = "free"` in a model file does.
+    pub fn free_hull(&mut self) {
+        for i in self.hull_coefficients() {
+            let prior = self.default_prior(i);
+            let p = &mut self.parameters[i];
+            (p.free, p.prior) = (true, Some(prior));
+        }
+    }
+
+    /// Indices of the hydrodynamic coefficients of the hull.
+    fn hull_coefficients(&self) -> Vec<usize> {
+        COEFFICIENTS.iter().filter_map(|(name, _)| self.index(&format!("hull.{name}"))).collect()
+    }
+
+    /// The prior that `prior = "default"` stands for: the ship's value and the term's spread, which is infinite where the term
+    /// knows nothing.
+    pub fn default_prior(&self, parameter: usize) -> Prior {
+        let p = &self.parameters[parameter];
+        let mean = self.ship.parameters.get(&p.name).copied().unwrap_or_else(|| (p.info.default)(&self.ship));
+        Prior { mean, sd: (p.info.spread)(&self.ship) }
+    }
+
+    /// The bounds of a parameter that no model file has changed: those of its term, widened where the estimate of a hull
+    /// coefficient that the ship file does not give lies outside (a regression far from the ships it was made of).
+    fn default_bounds(&self, term: &str, info: &ParameterInfo) -> (f64, f64) {
+        let given = |table: &BTreeMap<String, f64>| table.contains_key(info.name);
+        if term != "hull" || given(&self.ship.coefficients) || given(&self.ship.coefficients_prime) {
+            return (info.lower, info.upper);
+        }
+        let estimate = (info.default)(&self.ship);
+        (info.lower.min(estimate), info.upper.max(estimate))
+    }
+
     /// The model as the content of a model file: every value that differs from its default, every setting of a fit.
     pub fn to_file(&self) -> ModelFile {
+        let as_default = |i: usize| self.parameters[i].prior == Some(self.default_prior(i));
+        let hull = self.hull_coefficients();
+        let hull_is_free = !hull.is_empty() && hull.iter().all(|i| self.parameters[*i].free && as_default(*i));
         let mut parameters = BTreeMap::new();
-        for p in &self.parameters {
+        for (i, p) in self.parameters.iter().enumerate() {
             let default = (p.info.default)(&self.ship);
-            let free_by_default = ELEVEN.contains(&p.name.as_str());
+            let with_hull = hull_is_free && hull.contains(&i);
+            let prior_frees = as_default(i) || with_hull;
+            let free_by_default = ELEVEN.contains(&p.name.as_str()) || prior_frees;
+            let (term, _) = p.name.split_once('.').unwrap_or((&p.name, ""));
+            let (lower, upper) = self.default_bounds(term, p.info);
+            let prior =
+                p.prior.map(|prior| if as_default(i) { PriorSetting::Default } else { PriorSetting::Given(prior) });
             let setting = Setting {
                 value: (p.value != default || p.free).then_some(p.value),
                 free: (p.free != free_by_default).then_some(p.free),
-                lower: (p.lower != p.info.lower).then_some(p.lower),
-                upper: (p.upper != p.info.upper).then_some(p.upper),
-                prior: p.prior,
+                lower: (p.lower != lower).then_some(p.lower),
+                upper: (p.upper != upper).then_some(p.upper),
+                prior: prior.filter(|_| !with_hull),
             };
-            if setting.value.is_some() || setting.free.is_some() || setting.prior.is_some() {
+            if setting != Setting::default() {
                 parameters.insert(p.name.clone(), setting);
             }
         }
@@ -351,6 +504,7 @@ impl Model {
         ModelFile {
             name: self.name.clone(),
             form: self.form,
+            hull: hull_is_free.then_some(HullSetting::Free),
             terms: self.term_names().iter().filter(|t| !BASE.contains(t)).map(ToString::to_string).collect(),
             parameters,
             sessions: self.sessions.iter().map(|(s, list)| (s.clone(), list.iter().map(name_of).collect())).collect(),
@@ -438,129 +592,42 @@ impl Model {
         self.terms.iter().find(|t| t.term.info().name == term).map_or(&[], |t| &theta[t.offset..t.offset + t.len])
     }
 
-    fn check(&self) -> Result<(), ModelError> {
-        let theta = self.values();
-        let flow = self.flow(&theta, &State::constant(&[0.0; STATES]), &Inputs::actuators(0.0, 0.0, 0.0));
-        let inertia = Inertia::new(self.part("hull", &theta), &flow);
-        let determinant = inertia.sway * inertia.yaw - inertia.sway_yaw * inertia.yaw_sway;
-        if determinant > 0.0 && inertia.surge > 0.0 { Ok(()) } else { Err(ModelError::SingularMass { determinant }) }
-    }
-
-    /// Passes a run's inputs through the terms that change them (actuator lag, rudder offset).
-    pub fn drive<S: Number>(&self, theta: &[S], dt: f64, series: &mut [Inputs<S>]) {
-        for t in &self.terms {
-            S::physics(t.term).drive(&theta[t.offset..t.offset + t.len], &self.ship, dt, series);
-        }
-    }
-
-    fn moment<'a, S: Scalar>(&'a self, state: &'a State<S>, inputs: &'a Inputs<S>) -> Instant<'a, S> {
-        Instant { ship: &self.ship, form: self.form, state, inputs }
-    }
-
-    /// The flow that the terms share at an instant.
-    pub fn flow<S: Number>(&self, theta: &[S], state: &State<S>, inputs: &Inputs<S>) -> Flow<S> {
-        self.flow_at(theta, &self.moment(state, inputs))
-    }
-
-    fn flow_at<S: Number>(&self, theta: &[S], at: &Instant<S>) -> Flow<S> {
+    /// The mass matrix of the ship at rest, added mass included, at parameter values `theta`.
+    pub fn inertia_at_rest(&self, theta: &[f64]) -> Inertia<f64> {
         let mut adjust = Adjust::neutral();
-        adjust.current = at.inputs.current;
         for t in &self.terms {
-            S::physics(t.term).adjust(&theta[t.offset..t.offset + t.len], at, &mut adjust);
+            f64::physics(t.term).adjust(t.part(theta), &self.ship, &Inputs::actuators(0.0, 0.0, 0.0), &mut adjust);
         }
-        Flow::new(self.part("flow", theta), at, adjust)
+        Inertia::new(self.part("hull", theta), &adjust)
     }
 
-    /// Time derivative of the state \[x', y', psi', u', v', r'\], and the flow behind it.
-    ///
-    /// The equations are solved in the water frame, where a uniform current exerts no force, and the velocities over ground
-    /// follow from `u' = u_r' + v_c r`, `v' = v_r' - u_c r`. `push` is a force added to that of the terms
-    /// (X, Y \[N\], N \[N m\]).
-    pub fn rates<S: Number>(
-        &self,
-        theta: &[S],
-        state: &State<S>,
-        inputs: &Inputs<S>,
-        push: &Force<S>,
-    ) -> ([S; STATES], Flow<S>) {
-        let at = self.moment(state, inputs);
-        let flow = self.flow_at(theta, &at);
-        (self.rates_in(theta, &at, &flow, push), flow)
+    /// Whether every value is within its bounds.
+    fn check_bounds(&self) -> Result<(), ModelError> {
+        let Some(p) = self.parameters.iter().find(|p| p.value < p.lower || p.value > p.upper) else { return Ok(()) };
+        let (side, limit, key) =
+            if p.value < p.lower { ("least", p.lower, "lower") } else { ("most", p.upper, "upper") };
+        Err(ModelError::BadValue {
+            name: p.name.clone(),
+            value: p.value,
+            expected: format!(
+                "the {} must be at {side} {limit} {}; correct the value, or give the parameter another `{key}` in the model file",
+                p.info.about, p.info.unit
+            )
+            .replace(" -;", ";"),
+        })
     }
 
-    /// [`Model::rates`] without the flow, which is large where numbers carry derivatives: for the steps of a simulation.
-    pub fn rates_alone<S: Number>(
-        &self,
-        theta: &[S],
-        state: &State<S>,
-        inputs: &Inputs<S>,
-        push: &Force<S>,
-    ) -> [S; STATES] {
-        let at = self.moment(state, inputs);
-        self.rates_in(theta, &at, &self.flow_at(theta, &at), push)
-    }
-
-    fn rates_in<S: Number>(&self, theta: &[S], at: &Instant<S>, flow: &Flow<S>, push: &Force<S>) -> [S; STATES] {
-        let state = at.state;
-        let mut force = *push;
-        for t in &self.terms {
-            force += S::physics(t.term).force(&theta[t.offset..t.offset + t.len], at, flow);
+    fn check(&self) -> Result<(), ModelError> {
+        let inertia = self.inertia_at_rest(&self.values());
+        if inertia.is_positive() {
+            Ok(())
+        } else {
+            Err(ModelError::SingularMass { determinant: inertia.determinant() })
         }
-        let inertia = Inertia::new(self.part("hull", theta), flow);
-        let [du, dv, dr] = inertia.solve(&force);
-        let (sin, cos) = state.psi.sin_cos();
-        [
-            state.u * cos - state.v * sin,
-            state.u * sin + state.v * cos,
-            state.r,
-            du + flow.current[1] * state.r,
-            dv - flow.current[0] * state.r,
-            dr,
-        ]
     }
 
-    /// The sum of the terms' forces in a given flow (X, Y \[N\], N \[N m\]).
-    pub fn force<S: Number>(&self, theta: &[S], state: &State<S>, inputs: &Inputs<S>, flow: &Flow<S>) -> Force<S> {
-        let at = self.moment(state, inputs);
-        let mut force = Force::zero();
-        for t in &self.terms {
-            force += S::physics(t.term).force(&theta[t.offset..t.offset + t.len], &at, flow);
-        }
-        force
-    }
-
-    /// The force of each term by name at an instant (X, Y \[N\], N \[N m\]).
-    pub fn contributions(
-        &self,
-        theta: &[f64],
-        state: &State<f64>,
-        inputs: &Inputs<f64>,
-    ) -> Vec<(&'static str, Force<f64>)> {
-        let at = self.moment(state, inputs);
-        let flow = self.flow(theta, state, inputs);
-        self.terms
-            .iter()
-            .map(|t| {
-                let force = f64::physics(t.term).force(&theta[t.offset..t.offset + t.len], &at, &flow);
-                (t.term.info().name, force)
-            })
-            .collect()
-    }
-
-    /// The state as the sensors report it, changed by the sensor terms; `rates` are its time derivatives.
-    pub fn measure<S: Number>(
-        &self,
-        theta: &[S],
-        state: &State<S>,
-        inputs: &Inputs<S>,
-        rates: &[S; STATES],
-        flow: &Flow<S>,
-    ) -> [S; STATES] {
-        let at = self.moment(state, inputs);
-        let mut y = state.to_array();
-        for t in &self.terms {
-            S::physics(t.term).measure(&theta[t.offset..t.offset + t.len], &at, flow, rates, &mut y);
-        }
-        y
+    /// The model's terms with their places in the parameter vector: the base terms first, in the order of [`BASE`].
+    pub fn placed(&self) -> &[Placed] {
+        &self.terms
     }
 }

@@ -1,10 +1,12 @@
 //! From a scenario, a model and parameters to a trajectory: explicit Euler as in the paper, RK4 for audits.
 //! The same code runs on any number type; what happens to the states on the way out is the caller's.
 
+use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::physics::Number;
 use crate::state::{Force, Inputs, STATES, State};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use trimtab_ad::Scalar;
 
 /// How a step is integrated.
@@ -73,16 +75,19 @@ pub fn absurd_speed(model: &Model) -> f64 {
 }
 
 /// Advances a state over one sub-step of length `h` \[s\] under inputs known at its start, middle and end.
-pub fn advance<S: Number>(
-    model: &Model,
-    theta: &[S],
+#[inline(always)]
+fn advance<S: Number>(
+    dynamics: &Dynamics<S::Coefficient>,
     method: Method,
     h: f64,
     state: &[S; STATES],
-    inputs: [&Inputs<S>; 3],
+    inputs: [&Inputs<S::Coefficient>; 3],
     push: &Force<S>,
-) -> [S; STATES] {
-    let f = |s: &[S; STATES], i: &Inputs<S>| model.rates_alone(theta, &State::from_array(*s), i, push);
+) -> [S; STATES]
+where
+    S::Coefficient: Number<Coefficient = S::Coefficient>,
+{
+    let f = |s: &[S; STATES], i: &Inputs<S::Coefficient>| dynamics.rates(&State::from_array(*s), i, push).0;
     let moved = |k: &[S; STATES], h: f64| std::array::from_fn(|j| state[j] + k[j] * h);
     let k1 = f(state, inputs[0]);
     match method {
@@ -99,21 +104,23 @@ pub fn advance<S: Number>(
 /// Advances a state over one sample period, in sub-steps; `inputs` are those at its [`Integration::instants`], both ends
 /// included.
 pub fn step<S: Number>(
-    model: &Model,
-    theta: &[S],
+    dynamics: &Dynamics<S::Coefficient>,
     integration: Integration,
     dt: f64,
     state: &[S; STATES],
-    inputs: &[Inputs<S>],
+    inputs: &[Inputs<S::Coefficient>],
     push: &Force<S>,
-) -> [S; STATES] {
+) -> [S; STATES]
+where
+    S::Coefficient: Number<Coefficient = S::Coefficient>,
+{
     let count = integration.substeps.max(1);
     let stages = integration.instants() / count;
     let h = dt / count as f64;
     let mut state = *state;
     for i in (0..count).map(|i| i * stages) {
         let stage = [&inputs[i], &inputs[i + stages / 2], &inputs[i + stages]];
-        state = advance(model, theta, integration.method, h, &state, stage, push);
+        state = advance(dynamics, integration.method, h, &state, stage, push);
     }
     state
 }
@@ -127,53 +134,68 @@ pub fn between<S: Scalar>(now: &Inputs<S>, next: &Inputs<S>, instants: usize) ->
 /// Inputs as the ship has them, at every instant at which a simulation looks at them: linear between the recorded samples, then
 /// passed through the terms that change them (actuator lag, rate limit, rudder offset). Sample `k` is at
 /// `k` [`Integration::instants`].
-pub fn driven<S: Number>(
-    model: &Model,
-    theta: &[S],
+pub fn driven<'a, C: Number<Coefficient = C>>(
+    dynamics: &Dynamics<C>,
     integration: Integration,
     dt: f64,
-    samples: &[Inputs<S>],
-) -> Vec<Inputs<S>> {
+    samples: &'a [Inputs<C>],
+) -> Cow<'a, [Inputs<C>]> {
     let instants = integration.instants();
+    if instants == 1 && dynamics.extras().is_empty() {
+        return Cow::Borrowed(samples);
+    }
     let mut series = Vec::with_capacity(samples.len() * instants);
     series.extend(samples.first());
     for pair in samples.windows(2) {
         series.extend(between(&pair[0], &pair[1], instants));
     }
-    model.drive(theta, dt / instants as f64, &mut series);
-    series
+    dynamics.drive(dt / instants as f64, &mut series);
+    Cow::Owned(series)
 }
 
-/// Simulates a scenario and hands every sample (index, state) to `sink`, the initial one first.
+/// Simulates under the inputs of [`driven`] and hands every sample (index, state) to `sink`, the initial one first.
 ///
 /// `sink` returns false to stop early. `initial` may carry derivatives.
-pub fn rollout<S: Number>(
-    model: &Model,
-    theta: &[S],
+pub fn rollout<C: Number<Coefficient = C>>(
+    dynamics: &Dynamics<C>,
     integration: Integration,
     dt: f64,
-    inputs: &[Inputs<f64>],
-    initial: &[S; STATES],
-    mut sink: impl FnMut(usize, &[S; STATES]) -> bool,
+    series: &[Inputs<C>],
+    initial: &[C; STATES],
+    mut sink: impl FnMut(usize, &[C; STATES]) -> bool,
 ) {
-    let samples: Vec<Inputs<S>> = inputs.iter().map(Inputs::constant).collect();
-    let series = driven(model, theta, integration, dt, &samples);
     let instants = integration.instants();
     let mut state = *initial;
-    for k in 0..inputs.len() {
-        if !sink(k, &state) || k + 1 == inputs.len() {
+    for k in 0..=series.len().saturating_sub(1) / instants {
+        if !sink(k, &state) || (k + 1) * instants >= series.len() {
             return;
         }
-        state = step(model, theta, integration, dt, &state, &series[k * instants..], &Force::zero());
+        state = step(dynamics, integration, dt, &state, &series[k * instants..], &Force::zero());
     }
 }
 
 /// Simulates a scenario with plain numbers.
 pub fn simulate(model: &Model, theta: &[f64], integration: Integration, scenario: &Scenario) -> Trajectory {
-    let limit = absurd_speed(model);
-    let mut states = Vec::with_capacity(scenario.inputs.len());
+    let dynamics = Dynamics::new(model, theta.to_vec());
+    let series = driven(&dynamics, integration, scenario.dt, &scenario.inputs);
+    sailed(&dynamics, integration, scenario.dt, &series, &scenario.initial)
+}
+
+/// Simulates under inputs that are known at every instant, up to where the simulation diverges.
+fn sailed(
+    dynamics: &Dynamics<f64>,
+    integration: Integration,
+    dt: f64,
+    series: &[Inputs<f64>],
+    initial: &[f64; STATES],
+) -> Trajectory {
+    let limit = absurd_speed(dynamics.model());
+    let mut states = Vec::with_capacity(series.len() / integration.instants() + 1);
     let mut diverged_at = None;
-    rollout(model, theta, integration, scenario.dt, &scenario.inputs, &scenario.initial, |k, s| {
+    if series.is_empty() {
+        return Trajectory { dt, states, diverged_at };
+    }
+    rollout(dynamics, integration, dt, series, initial, |k, s| {
         let sane = s.iter().all(|v| v.is_finite()) && s[3].hypot(s[4]) < limit;
         if sane {
             states.push(*s);
@@ -182,32 +204,24 @@ pub fn simulate(model: &Model, theta: &[f64], integration: Integration, scenario
         }
         sane
     });
-    Trajectory { dt: scenario.dt, states, diverged_at }
+    Trajectory { dt, states, diverged_at }
 }
 
 /// Rounds in which the start of a simulation is looked for.
 const START_ROUNDS: usize = 6;
 
-/// What the sensors report of a state.
-pub fn report<S: Number>(model: &Model, theta: &[S], state: &[S; STATES], inputs: &Inputs<S>) -> [S; STATES] {
-    let state = State::from_array(*state);
-    let (rates, flow) = model.rates(theta, &state, inputs, &Force::zero());
-    model.measure(theta, &state, inputs, &rates, &flow)
-}
-
 /// The state of which the sensors report `initial`, in the channels that are `measured` (1, or 0); the others are as given.
 ///
 /// `x <- x + initial - h(x)`, six times: an error of the sensors by a share e leaves the share e^7 of it.
-pub fn start<S: Number>(
-    model: &Model,
-    theta: &[S],
-    inputs: &Inputs<S>,
-    initial: &[S; STATES],
-    measured: &[S; STATES],
-) -> [S; STATES] {
+pub fn start<C: Number<Coefficient = C>>(
+    dynamics: &Dynamics<C>,
+    inputs: &Inputs<C>,
+    initial: &[C; STATES],
+    measured: &[C; STATES],
+) -> [C; STATES] {
     let mut x = *initial;
     for _ in 0..START_ROUNDS {
-        let y = report(model, theta, &x, inputs);
+        let y = dynamics.report(&x, inputs);
         x = std::array::from_fn(|j| x[j] + (initial[j] - y[j]) * measured[j]);
     }
     x
@@ -221,13 +235,14 @@ pub fn reported(
     scenario: &Scenario,
     measured: &[bool; STATES],
 ) -> Trajectory {
-    let series = driven(model, theta, integration, scenario.dt, &scenario.inputs);
+    let dynamics = Dynamics::new(model, theta.to_vec());
+    let series = driven(&dynamics, integration, scenario.dt, &scenario.inputs);
     let measured = measured.map(|m| f64::from(u8::from(m)));
-    let first = series.first().map(|inputs| start(model, theta, inputs, &scenario.initial, &measured));
+    let first = series.first().map(|inputs| start(&dynamics, inputs, &scenario.initial, &measured));
     let initial = first.unwrap_or(scenario.initial);
-    let mut trajectory = simulate(model, theta, integration, &Scenario { initial, ..scenario.clone() });
+    let mut trajectory = sailed(&dynamics, integration, scenario.dt, &series, &initial);
     for (s, inputs) in trajectory.states.iter_mut().zip(series.iter().step_by(integration.instants())) {
-        *s = report(model, theta, s, inputs);
+        *s = dynamics.report(s, inputs);
     }
     trajectory
 }

@@ -1,7 +1,7 @@
 //! The vocabulary of motion: state, inputs and force, generic over the number type.
 //! Everything here is in SI units and radians; what is read in other units is converted where it is read.
 
-use std::ops::{Add, AddAssign, Mul};
+use std::ops::{Add, AddAssign, Mul, Sub};
 use trimtab_ad::Scalar;
 
 /// Number of entries of a state vector `[x, y, psi, u, v, r]`.
@@ -34,14 +34,17 @@ pub struct State<S> {
 
 impl<S: Scalar> State<S> {
     /// From `[x, y, psi, u, v, r]`.
+    #[inline]
     pub fn from_array([x, y, psi, u, v, r]: [S; STATES]) -> Self {
         Self { x, y, psi, u, v, r }
     }
     /// To `[x, y, psi, u, v, r]`.
+    #[inline]
     pub fn to_array(self) -> [S; STATES] {
         [self.x, self.y, self.psi, self.u, self.v, self.r]
     }
     /// A constant state, with zero derivatives.
+    #[inline]
     pub fn constant(s: &[f64; STATES]) -> Self {
         Self::from_array(s.map(S::from_f64))
     }
@@ -95,6 +98,7 @@ impl<S: Scalar> Inputs<S> {
     }
 
     /// The inputs as a constant of another number type.
+    #[inline]
     pub fn constant(i: &Inputs<f64>) -> Self {
         i.map(S::from_f64)
     }
@@ -102,6 +106,7 @@ impl<S: Scalar> Inputs<S> {
 
 impl<S: Copy> Inputs<S> {
     /// Applies `f` to every entry.
+    #[inline]
     pub fn map<T>(&self, f: impl Fn(S) -> T) -> Inputs<T> {
         Inputs {
             t: f(self.t),
@@ -117,6 +122,7 @@ impl<S: Copy> Inputs<S> {
     }
 
     /// Applies `f` to the entries of two inputs pairwise.
+    #[inline]
     pub fn zip<T>(&self, other: &Self, f: impl Fn(S, S) -> T) -> Inputs<T> {
         let pair = |a: [S; 2], b: [S; 2]| [f(a[0], b[0]), f(a[1], b[1])];
         Inputs {
@@ -135,6 +141,7 @@ impl<S: Copy> Inputs<S> {
 
 impl<S: Scalar> Inputs<S> {
     /// Linear interpolation between two instants, `fraction` of the way from `self` to `next`.
+    #[inline]
     pub fn between(&self, next: &Self, fraction: f64) -> Self {
         self.zip(next, |a, b| a + (b - a) * fraction)
     }
@@ -153,10 +160,12 @@ pub struct Force<S> {
 
 impl<S: Scalar> Force<S> {
     /// No force.
+    #[inline]
     pub fn zero() -> Self {
         Self { x: S::zero(), y: S::zero(), n: S::zero() }
     }
     /// To `[X, Y, N]`.
+    #[inline]
     pub fn to_array(self) -> [S; 3] {
         [self.x, self.y, self.n]
     }
@@ -164,6 +173,7 @@ impl<S: Scalar> Force<S> {
 
 impl<S: Scalar> Add for Force<S> {
     type Output = Self;
+    #[inline]
     fn add(mut self, o: Self) -> Self {
         self += o;
         self
@@ -171,6 +181,7 @@ impl<S: Scalar> Add for Force<S> {
 }
 
 impl<S: Scalar> AddAssign for Force<S> {
+    #[inline]
     fn add_assign(&mut self, o: Self) {
         self.x += o.x;
         self.y += o.y;
@@ -178,8 +189,17 @@ impl<S: Scalar> AddAssign for Force<S> {
     }
 }
 
+impl<S: Scalar> Sub for Force<S> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, o: Self) -> Self {
+        Self { x: self.x - o.x, y: self.y - o.y, n: self.n - o.n }
+    }
+}
+
 impl<S: Scalar> Mul<S> for Force<S> {
     type Output = Self;
+    #[inline]
     fn mul(self, k: S) -> Self {
         Self { x: self.x * k, y: self.y * k, n: self.n * k }
     }

@@ -6,15 +6,16 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use trimtab::dynamics::Dynamics;
+use trimtab::report::terms::{listing, summary};
+use trimtab::sensitivity::{Column, Columns, Plain};
+type Seeded = trimtab_ad::Dual<Lanes, FEW>;
 use trimtab::model::{BASE, Model};
 use trimtab::parameter::Parity;
-use trimtab::physics::Flow;
-use trimtab::physics::Inertia;
-use trimtab::physics::{CHUNK, Curvature, Form, Gradient, GradientLanes, Lanes, NumDual, Number};
+use trimtab::physics::{CHUNK, Curvature, FEW, Form, Gradient, Lanes, NumDual, Number, Reach};
 use trimtab::ship::Ship;
 use trimtab::state::{Force, Inputs, STATES, State};
 use trimtab::terms::CATALOGUE;
-use trimtab::terms::listing::{listing, summary};
 use trimtab_ad::Scalar;
 
 fn ship() -> Ship {
@@ -62,17 +63,17 @@ fn inputs_of<S: Scalar>(x: &[S]) -> Inputs<S> {
 /// All quantities a term can change: rates, sensor report and actuators, at a point `x` followed by the parameters. Actuators
 /// reach the point through a short history, so that lags act.
 const OUTPUTS: usize = 2 * STATES + 2;
-fn outputs<S: Number>(model: &Model, x: &[S]) -> [S; OUTPUTS] {
-    let theta = &x[POINT..];
+fn outputs<S: Number<Coefficient = S>>(model: &Model, x: &[S]) -> [S; OUTPUTS] {
+    let dynamics = Dynamics::new(model, x[POINT..].to_vec());
     let state = State::from_array(std::array::from_fn(|i| x[i]));
     let now = inputs_of(x);
     let shape = [0.2, -0.5, 0.4, 1.3, 0.8, 1.0];
     let mut series: Vec<Inputs<S>> =
         shape.iter().map(|k| Inputs { n: now.n * *k, delta: now.delta * *k, ..now }).collect();
-    model.drive(theta, 2.0, &mut series);
+    dynamics.drive(2.0, &mut series);
     let driven = series[shape.len() - 1];
-    let (rates, flow) = model.rates(theta, &state, &driven, &Force::zero());
-    let reported = model.measure(theta, &state, &driven, &rates, &flow);
+    let (rates, flow) = dynamics.rates(&state, &driven, &Force::zero());
+    let reported = dynamics.measure(&state, &driven, &rates, &flow);
     std::array::from_fn(|i| match i {
         0..STATES => rates[i],
         STATES..12 => reported[i - STATES],
@@ -236,25 +237,22 @@ fn a_force_parameter_changes_rates_through_its_force_only() {
         for (i, p) in model.parameters.iter().enumerate() {
             let (owner, _) = p.name.split_once('.').unwrap();
             let first = model.parameters.iter().position(|q| q.name.split('.').next() == Some(owner)).unwrap();
-            if owner != term || !trimtab::terms::find(term).unwrap().acts_by_force_alone(i - first) {
+            if owner != term || trimtab::terms::find(term).unwrap().reach(i - first) == Reach::Anything {
                 continue;
             }
             seen.insert(term);
             for at in generic() {
                 let x = with_parameters(&model, &at);
                 let y = outputs(&model, &gradient_variables(&x, POINT + i));
-                // The same derivative with the flow and the inertia as plain numbers.
-                let (state, inputs) = (State::from_array(std::array::from_fn(|j| at[j])), inputs_of(&at));
-                let flow = model.flow(&x[POINT..], &state, &inputs);
-                let seeded = gradient_variables(&x, POINT + i);
-                let force = model.force(
-                    &seeded[POINT..],
-                    &State::constant(&state.to_array()),
-                    &Inputs::constant(&inputs),
-                    &Flow::constant(&flow),
-                );
-                let change = Force { x: force.x.eps[0], y: force.y.eps[0], n: force.n.eps[0] };
-                let rates = Inertia::new(model.part("hull", &x[POINT..]), &flow).solve(&change);
+                // The same derivative by the term's own force alone.
+                let state: [f64; STATES] = std::array::from_fn(|j| at[j]);
+                let inputs = inputs_of(&at);
+                let dynamics = Dynamics::new(&model, x[POINT..].to_vec());
+                let (local, flow) = f64::linearise(&dynamics, &state, &inputs, &Force::zero());
+                let columns = Columns::new(&model, &[Column { parameter: i, scale: 1.0 }]);
+                let mut rates = [[0.0; 3]];
+                columns.by_force(&dynamics, &local, &flow, &state, &inputs, &mut rates);
+                let [rates] = rates;
                 let expected = |o: usize| if (3..6).contains(&o) { rates[o - 3] } else { 0.0 };
                 for (o, y) in y.iter().enumerate().filter(|(o, _)| !(STATES..12).contains(o)) {
                     let scale = y.eps[0].abs().max(expected(o).abs()).max(1e-12);
@@ -327,24 +325,24 @@ fn eight_lanes_and_nested_duals_give_the_same_numbers() {
         let points = generic().map(|at| with_parameters(&model, &at));
         let lanes: Vec<Lanes> = (0..points[0].len()).map(|i| Lanes::from_fn(|lane| points[lane][i])).collect();
         let values = outputs(&model, &lanes);
-        for first in (0..lanes.len()).step_by(CHUNK) {
-            let variables: Vec<GradientLanes> = lanes
+        for first in (0..lanes.len()).step_by(FEW) {
+            let variables: Vec<Seeded> = lanes
                 .iter()
                 .enumerate()
                 .map(|(i, x)| match i.checked_sub(first) {
-                    Some(j) if j < CHUNK => GradientLanes::variable(*x, j),
-                    _ => GradientLanes::constant(*x),
+                    Some(j) if j < FEW => Seeded::variable(*x, j),
+                    _ => Seeded::constant(*x),
                 })
                 .collect();
             let found = outputs(&model, &variables);
-            for (lane, x) in points.iter().enumerate() {
+            for (lane, x) in points.iter().enumerate().take(Lanes::LANES) {
                 let expected = outputs(&model, &gradient_variables(x, first));
                 for o in 0..OUTPUTS {
                     let scale = expected[o].re.abs();
                     let what = format!("{term}: output {o}, lane {lane}");
                     assert!(close(values[o].lane(lane), expected[o].re, 0.0), "{what}");
                     assert!(close(found[o].re.lane(lane), expected[o].re, 0.0), "{what}");
-                    for j in 0..CHUNK {
+                    for j in 0..FEW {
                         let i = (first + j).min(x.len() - 1);
                         let size = if i < POINT { SIZES[i] } else { model.parameters[i - POINT].scale };
                         let (a, b) = (found[o].eps[j].lane(lane) * size, expected[o].eps[j] * size);

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
-/// A small study in a folder of its own: eight runs of the demo, cut to 40 steps.
+/// A small study in a folder of its own: four runs of the demo, cut to 40 steps.
 struct Study {
     folder: TempDir,
 }

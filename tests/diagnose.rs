@@ -215,7 +215,7 @@ fn runs_that_the_model_cannot_follow_are_reported() {
 
 #[test]
 fn inputs_missing_for_a_while_are_reported_and_not_taken_for_physics() {
-    let mut data = runs(&model(), &truth_noise(), 30, 101);
+    let mut data = runs(&model(), &truth_noise(), 30, 106);
     data[13].inputs[60..100].iter_mut().for_each(|i| (i.n, i.delta) = (-3.0, -0.6));
     let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
     assert!(d.findings.is_empty(), "{}", d.headline);
@@ -225,7 +225,7 @@ fn inputs_missing_for_a_while_are_reported_and_not_taken_for_physics() {
         "{:?}",
         lost.collect::<Vec<_>>()
     );
-    let clean = case(&[], &[], 101);
+    let clean = case(&[], &[], 106);
     for (found, truth) in d.noise_before.force.iter().zip(clean.noise_before.force) {
         assert!(*found < 1.5 * truth, "{found} for {truth}");
     }

@@ -1,11 +1,11 @@
-//! `Lanes`: eight `f64` side by side in SIMD registers, so that one pass of the physics serves eight trajectories.
+//! `Lanes`: four `f64` side by side in SIMD registers, so that one pass of the physics serves four trajectories.
 //! It is not a vector type: there is no dot product or norm here, and the lanes never mix.
 
 use crate::{Dual, Scalar};
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
-use wide::f64x8;
+use wide::f64x4;
 
-/// Eight independent `f64` computed together.
+/// Four independent `f64` computed together.
 ///
 /// `+ - * / sqrt`, comparisons and `select` give in each lane the same bits as `f64`. The transcendental functions are
 /// polynomials evaluated across the lanes and agree with the standard library to a few units in the last place
@@ -17,23 +17,23 @@ use wide::f64x8;
 ///
 /// let speeds = Lanes::from_fn(|lane| 0.5 * lane as f64);
 /// let drag = speeds * speeds.abs() * 12.0;
-/// assert_eq!(drag.lane(4), 12.0 * 2.0 * 2.0);
+/// assert_eq!(drag.lane(2), 12.0 * 1.0 * 1.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lanes(f64x8);
+pub struct Lanes(f64x4);
 
 /// One flag a lane: the outcome of [`Scalar::less`] on [`Lanes`].
 #[derive(Clone, Copy, Debug)]
-pub struct LaneMask(f64x8);
+pub struct LaneMask(f64x4);
 
 impl Lanes {
     /// How many lanes there are.
-    pub const LANES: usize = 8;
+    pub const LANES: usize = 4;
 
     /// The value `f(lane)` in each lane, called in the order of the lanes.
     #[inline]
     pub fn from_fn(f: impl FnMut(usize) -> f64) -> Self {
-        Self(f64x8::from(std::array::from_fn::<f64, { Self::LANES }, _>(f)))
+        Self(f64x4::from(std::array::from_fn::<f64, { Self::LANES }, _>(f)))
     }
     /// The value in one lane. Panics, as a slice does, when `lane` is not below [`Lanes::LANES`].
     #[inline]
@@ -73,16 +73,16 @@ macro_rules! operator {
     ($Op:ident, $op:ident, $symbol:tt) => {
         impl $Op for Lanes {
             type Output = Self;
-            #[inline]
+            #[inline(always)]
             fn $op(self, other: Self) -> Self {
                 Self(self.0 $symbol other.0)
             }
         }
         impl $Op<f64> for Lanes {
             type Output = Self;
-            #[inline]
+            #[inline(always)]
             fn $op(self, x: f64) -> Self {
-                Self(self.0 $symbol f64x8::splat(x))
+                Self(self.0 $symbol f64x4::splat(x))
             }
         }
     };
@@ -96,7 +96,7 @@ operator!(Div, div, /);
 macro_rules! assign_operator {
     ($Op:ident, $op:ident, $symbol:tt) => {
         impl $Op for Lanes {
-            #[inline]
+            #[inline(always)]
             fn $op(&mut self, other: Self) {
                 *self = *self $symbol other;
             }
@@ -110,36 +110,46 @@ assign_operator!(DivAssign, div_assign, /);
 
 impl Neg for Lanes {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         Self(-self.0)
     }
 }
 
 impl Scalar for Lanes {
+    type Coefficient = Self;
     type Mask = LaneMask;
 
-    #[inline]
-    fn from_f64(x: f64) -> Self {
-        Self(f64x8::splat(x))
+    #[inline(always)]
+    fn lift(coefficient: Self) -> Self {
+        coefficient
     }
-    #[inline]
+    #[inline(always)]
+    fn mul_add(self, factor: Self, summand: Self) -> Self {
+        Self(self.0.mul_add(factor.0, summand.0))
+    }
+
+    #[inline(always)]
+    fn from_f64(x: f64) -> Self {
+        Self(f64x4::splat(x))
+    }
+    #[inline(always)]
     fn value(self) -> f64 {
         self.lane(0)
     }
-    #[inline]
+    #[inline(always)]
     fn is_finite(self) -> bool {
         self.0.is_finite().all()
     }
-    #[inline]
+    #[inline(always)]
     fn less(self, other: Self) -> LaneMask {
         LaneMask(self.0.simd_lt(other.0))
     }
-    #[inline]
+    #[inline(always)]
     fn select(mask: LaneMask, a: Self, b: Self) -> Self {
         Self(mask.0.select(a.0, b.0))
     }
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt())
     }
@@ -159,17 +169,17 @@ impl Scalar for Lanes {
     #[inline]
     fn tanh(self) -> Self {
         // wide's own tanh takes x for tanh(x) below 5e-8, which is 7 ulps off at the upper end; this form needs no case.
-        let t = (self.0.abs() * f64x8::splat(-2.0)).exp_m1();
-        Self((-t / (t + f64x8::splat(2.0))).copysign(self.0))
+        let t = (self.0.abs() * f64x4::splat(-2.0)).exp_m1();
+        Self((-t / (t + f64x4::splat(2.0))).copysign(self.0))
     }
     #[inline]
     fn atan2(self, x: Self) -> Self {
-        let origin = self.0.simd_eq(f64x8::ZERO) & x.0.simd_eq(f64x8::ZERO);
-        Self(origin.select(f64x8::ZERO, self.0.atan2(x.0)))
+        let origin = self.0.simd_eq(f64x4::ZERO) & x.0.simd_eq(f64x4::ZERO);
+        Self(origin.select(f64x4::ZERO, self.0.atan2(x.0)))
     }
     #[inline]
     fn nearest(self) -> Self {
         let even = self.0.round_ties_even();
-        Self((even - self.0).simd_eq(f64x8::HALF).select(even - f64x8::ONE, even))
+        Self((even - self.0).simd_eq(f64x4::HALF).select(even - f64x4::ONE, even))
     }
 }

@@ -8,8 +8,8 @@
 //! | `f64` | the value |
 //! | [`Dual<f64, N>`](Dual) | the value and `N` exact first derivatives |
 //! | [`Dual<Dual<f64, N>, M>`](Dual) | those and `M x N` exact second derivatives |
-//! | [`Lanes`] | eight values |
-//! | [`Dual<Lanes, N>`](Dual) | eight values, each with `N` derivatives |
+//! | [`Lanes`] | four values |
+//! | [`Dual<Lanes, N>`](Dual) | four values, each with `N` derivatives |
 //! | num-dual's `Dual64`, `DualSVec64`, `HyperDual64`, `HyperDualSVec64`, `Dual2SVec64` | as [`Dual`], by an independent implementation |
 //!
 //! # Dual numbers, by an example
@@ -85,7 +85,7 @@
 //!
 //! # Branches
 //!
-//! `if u < 0` has one outcome for one number and eight for lanes. Branches on values are written with
+//! `if u < 0` has one outcome for one number and four for lanes. Branches on values are written with
 //! [`Scalar::select`]; the derivative is that of the arm chosen, and the value of the other arm, even a NaN, is dropped:
 //!
 //! ```
@@ -95,10 +95,10 @@
 //!     S::select(x.less(S::zero()), S::zero(), x.sqrt())
 //! }
 //!
-//! let x = Lanes::from_fn(|lane| if lane < 4 { -1.0 } else { 4.0 });
+//! let x = Lanes::from_fn(|lane| if lane < 2 { -1.0 } else { 4.0 });
 //! let y = root_or_zero(Dual::<Lanes, 1>::variable(x, 0));
 //! assert_eq!((y.lane(0).re, y.lane(0).eps[0]), (0.0, 0.0));
-//! assert_eq!((y.lane(7).re, y.lane(7).eps[0]), (2.0, 0.25));
+//! assert_eq!((y.lane(3).re, y.lane(3).eps[0]), (2.0, 0.25));
 //! ```
 //!
 //! # Corners
@@ -113,7 +113,7 @@ mod num_dual;
 mod scalar;
 pub mod smooth;
 
-pub use dual::Dual;
+pub use dual::{Along, Dual};
 pub use jacobian::{
     CHUNK, GradientCheck, GradientEntry, HESSIAN_CHUNK, ScalarFunction, Step, VectorFunction, central_differences,
     check_gradient, gradient, hessian, hessian_in_chunks, jacobian, jacobian_in_chunks,

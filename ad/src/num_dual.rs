@@ -12,7 +12,13 @@ const TANH_IS_FLAT: f64 = 20.0;
 macro_rules! scalar_from_num_dual {
     ($number:ty $(, const $n:ident)*) => {
         impl<$(const $n: usize),*> Scalar for $number {
+            type Coefficient = Self;
             type Mask = bool;
+
+            #[inline]
+            fn lift(coefficient: Self) -> Self {
+                coefficient
+            }
 
             #[inline]
             fn from_f64(x: f64) -> Self {

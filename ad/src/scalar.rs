@@ -27,12 +27,25 @@ pub trait Scalar:
     + AddAssign
     + SubAssign
     + MulAssign
+    + Add<<Self as Scalar>::Coefficient, Output = Self>
+    + Sub<<Self as Scalar>::Coefficient, Output = Self>
+    + Mul<<Self as Scalar>::Coefficient, Output = Self>
+    + Div<<Self as Scalar>::Coefficient, Output = Self>
 {
+    /// The number that coefficients of a law are given in: the same number, or a plainer one where derivatives are taken
+    /// along directions in which coefficients are constant. A law is written as `p[0] * v * v` whichever it is.
+    type Coefficient: Scalar<Coefficient = Self::Coefficient>
+        + Add<Self, Output = Self>
+        + Sub<Self, Output = Self>
+        + Mul<Self, Output = Self>;
+
     /// The outcome of a comparison: `bool`, or one flag a lane.
     type Mask: Copy;
 
     /// The constant `x` in every lane, with zero derivatives.
     fn from_f64(x: f64) -> Self;
+    /// A coefficient as a number, with zero derivatives where coefficients carry none.
+    fn lift(coefficient: Self::Coefficient) -> Self;
     /// The real part (of the first lane). For messages and decisions outside the dynamics only.
     fn value(self) -> f64;
     /// True when the real part is finite in every lane.
@@ -58,62 +71,73 @@ pub trait Scalar:
     fn atan2(self, x: Self) -> Self;
 
     /// The constant 0.
-    #[inline]
+    #[inline(always)]
     fn zero() -> Self {
         Self::from_f64(0.0)
     }
     /// The constant 1.
-    #[inline]
+    #[inline(always)]
     fn one() -> Self {
         Self::from_f64(1.0)
     }
     /// Sine of an angle in radians.
-    #[inline]
+    #[inline(always)]
     fn sin(self) -> Self {
         self.sin_cos().0
     }
     /// Cosine of an angle in radians.
-    #[inline]
+    #[inline(always)]
     fn cos(self) -> Self {
         self.sin_cos().1
     }
+    /// `self * factor + summand`, in one rounding where the machine can and in two elsewhere.
+    #[inline(always)]
+    fn mul_add(self, factor: Self, summand: Self) -> Self {
+        self * factor + summand
+    }
     /// `self^2`.
-    #[inline]
+    #[inline(always)]
     fn squared(self) -> Self {
         self * self
     }
     /// Absolute value; the derivative at 0 is that of the right-hand branch.
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
         Self::select(self.less(Self::zero()), -self, self)
     }
     /// The larger of two.
-    #[inline]
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(self.less(other), other, self)
     }
     /// The smaller of two.
-    #[inline]
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self::select(other.less(self), other, self)
     }
     /// The integer nearest to the real part, the lower one of two equally near, with zero derivatives.
     ///
     /// The default reads [`Scalar::value`]; a type with lanes must override it.
-    #[inline]
+    #[inline(always)]
     fn nearest(self) -> Self {
         let even = self.value().round_ties_even();
         Self::from_f64(if even - self.value() == 0.5 { even - 1.0 } else { even })
     }
     /// `self` held inside `[lo, hi]`; the derivative vanishes outside.
-    #[inline]
+    #[inline(always)]
     fn clamp(self, lo: f64, hi: f64) -> Self {
         self.max(Self::from_f64(lo)).min(Self::from_f64(hi))
     }
 }
 
 impl Scalar for f64 {
+    type Coefficient = Self;
     type Mask = bool;
+
+    #[inline]
+    fn lift(coefficient: Self) -> Self {
+        coefficient
+    }
 
     #[inline]
     fn from_f64(x: f64) -> Self {

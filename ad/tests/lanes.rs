@@ -70,34 +70,34 @@ proptest! {
 
     #[test]
     fn exponential_is_within_2_ulps(x in -700.0..700.0) {
-        let (ours, std) = (Lanes::from_f64(x).exp().lane(5), f64::exp(x));
+        let (ours, std) = (Lanes::from_f64(x).exp().lane(2), f64::exp(x));
         prop_assert!(ulps(ours, std) <= 2, "exp({x:e}) is {} ulps off", ulps(ours, std));
     }
 
     #[test]
     fn logarithm_is_within_2_ulps(exponent in -690.0..690.0) {
         let x = f64::exp(exponent);
-        let (ours, std) = (Lanes::from_f64(x).ln().lane(5), f64::ln(x));
+        let (ours, std) = (Lanes::from_f64(x).ln().lane(2), f64::ln(x));
         prop_assert!(ulps(ours, std) <= 2, "ln({x:e}) is {} ulps off", ulps(ours, std));
     }
 
     #[test]
     fn logarithm_near_one_is_within_2_ulps(x in 0.5..2.0) {
-        let (ours, std) = (Lanes::from_f64(x).ln().lane(5), f64::ln(x));
+        let (ours, std) = (Lanes::from_f64(x).ln().lane(2), f64::ln(x));
         prop_assert!(ulps(ours, std) <= 2, "ln({x:e}) is {} ulps off", ulps(ours, std));
     }
 
     #[test]
     fn hyperbolic_tangent_is_within_4_ulps(x in -25.0..25.0, decade in -12..1) {
         let x = x * 10f64.powi(decade);
-        let (ours, std) = (Lanes::from_f64(x).tanh().lane(5), f64::tanh(x));
+        let (ours, std) = (Lanes::from_f64(x).tanh().lane(2), f64::tanh(x));
         prop_assert!(ulps(ours, std) <= 4, "tanh({x:e}) is {} ulps off", ulps(ours, std));
     }
 
     #[test]
     fn arc_tangent_is_within_4_ulps(y in -9.0..9.0, x in -9.0..9.0, decade in -12..12) {
         let y = y * 10f64.powi(decade);
-        let (ours, std) = (Lanes::from_f64(y).atan2(Lanes::from_f64(x)).lane(5), f64::atan2(y, x));
+        let (ours, std) = (Lanes::from_f64(y).atan2(Lanes::from_f64(x)).lane(2), f64::atan2(y, x));
         prop_assert!(ulps(ours, std) <= 4, "atan2({y:e}, {x:e}) is {} ulps off", ulps(ours, std));
     }
 
@@ -105,15 +105,15 @@ proptest! {
     fn sine_and_cosine_within_a_turn_are_within_2_ulps(x in -6.3..6.3, decade in -12..1) {
         let x = x * 10f64.powi(decade);
         let (s, c) = Lanes::from_f64(x).sin_cos();
-        prop_assert!(ulps(s.lane(5), x.sin()) <= 2, "sin({x:e}) is {} ulps off", ulps(s.lane(5), x.sin()));
-        prop_assert!(ulps(c.lane(5), x.cos()) <= 2, "cos({x:e}) is {} ulps off", ulps(c.lane(5), x.cos()));
+        prop_assert!(ulps(s.lane(2), x.sin()) <= 2, "sin({x:e}) is {} ulps off", ulps(s.lane(2), x.sin()));
+        prop_assert!(ulps(c.lane(2), x.cos()) <= 2, "cos({x:e}) is {} ulps off", ulps(c.lane(2), x.cos()));
     }
 
     #[test]
     fn sine_and_cosine_of_a_heading_of_many_turns_are_within_one_epsilon(x in -1e6..1e6) {
         let (s, c) = Lanes::from_f64(x).sin_cos();
-        prop_assert!((s.lane(5) - x.sin()).abs() <= f64::EPSILON);
-        prop_assert!((c.lane(5) - x.cos()).abs() <= f64::EPSILON);
+        prop_assert!((s.lane(2) - x.sin()).abs() <= f64::EPSILON);
+        prop_assert!((c.lane(2) - x.cos()).abs() <= f64::EPSILON);
     }
 
     #[test]
@@ -130,7 +130,7 @@ proptest! {
     }
 
     #[test]
-    fn every_function_over_lanes_is_that_of_f64_to_rounding(points in prop::array::uniform8([0.0..1.0, 0.0..1.0])) {
+    fn every_function_over_lanes_is_that_of_f64_to_rounding(points in prop::array::uniform4([0.0..1.0, 0.0..1.0])) {
         for f in Function::ALL {
             let [x, y] = [0, 1].map(|i| Lanes::from_fn(|lane| f.point(points[lane])[i]));
             let lanes = f.of(x, y);
@@ -142,7 +142,7 @@ proptest! {
     }
 
     #[test]
-    fn duals_over_lanes_are_duals_in_each_lane(points in prop::array::uniform8([0.0..1.0, 0.0..1.0])) {
+    fn duals_over_lanes_are_duals_in_each_lane(points in prop::array::uniform4([0.0..1.0, 0.0..1.0])) {
         for f in Function::ALL {
             let [x, y] = [0, 1].map(|i| Lanes::from_fn(|lane| f.point(points[lane])[i]));
             let lanes = f.of(Dual::<Lanes, 2>::variable(x, 0), Dual::variable(y, 1));
@@ -171,21 +171,21 @@ fn arc_tangent_on_the_axes_and_at_infinity_is_that_of_f64() {
 
 #[test]
 fn each_lane_takes_its_own_branch() {
-    let x = Lanes::from_fn(|lane| lane as f64 - 3.5);
+    let x = Lanes::from_fn(|lane| lane as f64 - 1.5);
     let mask = x.less(Lanes::zero());
     let y = Lanes::select(mask, Lanes::from_f64(-1.0), Lanes::from_f64(1.0));
-    assert_eq!(y.to_array(), [-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0]);
-    assert!(mask.lane(3) && !mask.lane(4));
+    assert_eq!(y.to_array(), [-1.0, -1.0, 1.0, 1.0]);
+    assert!(mask.lane(1) && !mask.lane(2));
 }
 
 #[test]
 fn one_lane_that_is_not_finite_makes_the_whole_not_finite() {
     assert!(Lanes::from_fn(|lane| lane as f64).is_finite());
-    assert!(!Lanes::from_fn(|lane| if lane == 7 { f64::NAN } else { 1.0 }).is_finite());
+    assert!(!Lanes::from_fn(|lane| if lane == 3 { f64::NAN } else { 1.0 }).is_finite());
 }
 
 #[test]
 fn the_sum_is_taken_in_the_order_of_the_lanes() {
-    let x = [1e16, 1.0, -1e16, 1.0, 1.0, 1.0, 1.0, 1.0];
+    let x = [1e16, 1.0, -1e16, 1.0];
     assert_eq!(Lanes::from_fn(|lane| x[lane]).sum(), x.iter().sum::<f64>());
 }

@@ -1,19 +1,24 @@
 //! What a user would do otherwise, and the best that could be done: the yardsticks the diagnosis is measured against.
 //! None of it is part of a diagnosis: it names by other rules ([`Refitted`]) or is told the answer ([`oracle`]).
 
+use super::base::base_parameters;
 use super::candidate::{Candidate, Extent, append, applies, candidates};
-use super::compete::enter;
-use super::conclude::{Settings, base_parameters};
+use super::compete::start_with;
 use super::covariance::Z;
-use super::estimate::{Effort, Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
+use super::estimate::{Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
 use super::evidence::Evidence;
 use super::filter::{Column, Filter, Gains, Pass, Run, Wanted};
-use super::noise::{Noise, NoisePrior, guess};
+use super::noise::{Noise, NoisePrior};
+use super::noise_fit::guess;
+use super::optimise::{Damping, Proposal};
+use super::problem::Problem;
 use super::prove::median_distance;
 use super::screen::screen;
+use super::settings::{Settings, TOLD_FINISH, TOLD_START};
 use crate::model::{Model, ModelError};
 use crate::simulate::Integration;
 use crate::state::STATES;
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 /// The model refitted to whole trajectories: its own free parameters by least squares, every residual taken as independent of
@@ -89,6 +94,13 @@ impl Trajectories {
     }
 }
 
+/// How a step is damped, in units of the information's diagonal.
+const DAMPING: Damping =
+    Damping { attempts: 30, least_promise: 0.0, loss: 0.0, first: 0.0, most: 1e6, shrink: 0.2, off: 0.0, trusted: 0.0 };
+
+/// The damping never falls below this.
+const LEAST_DAMPING: f64 = 1e-9;
+
 impl Refitted {
     /// Refits the free parameters of a model by the method of Levenberg and Marquardt. `None` when the model as given runs
     /// away in a free simulation, so that there is nothing to start from.
@@ -108,32 +120,38 @@ impl Refitted {
         // Twice, so that the scores are in units of the residuals there are.
         let first = at(&model, &[1.0; STATES]);
         let mut current = at(&model, &first.variance);
-        let mut damping = 1e-3;
-        for _ in 0..30 {
-            if !current.misfit().is_finite() {
-                return Ok(None);
-            }
+        if !current.misfit().is_finite() {
+            return Ok(None);
+        }
+        let (mut damping, mut attempts) = (1e-3, 30);
+        while attempts > 0 {
             let e = current.evidence(runs, &free);
-            let damped = free.iter().enumerate().map(|(i, f)| {
-                let (precision, pull) = f.prior_terms(&model);
-                (precision + damping * e.total.information[(i, i)], pull)
-            });
-            let (precision, pull): (Vec<f64>, Vec<f64>) = damped.unzip();
-            let step = e.base(&(0..free.len()).collect::<Vec<_>>(), &precision, &pull).step();
-            let mut trial = model.clone();
-            for (f, s) in free.iter().zip(step.iter()) {
-                f.set(&mut trial, f.value(&model) + s * f.column.scale);
-            }
-            let next = at(&trial, &current.variance);
-            let gain = current.misfit() - next.misfit();
-            if gain > 0.0 {
-                (model, current) = (trial, next);
-                damping = f64::max(0.2 * damping, 1e-9);
-            } else {
-                damping *= 10.0;
-            }
+            let propose = |damping: f64| {
+                let damped = free.iter().enumerate().map(|(i, f)| {
+                    let (precision, pull) = f.prior_terms(&model);
+                    (precision + damping * e.total.information[(i, i)], pull)
+                });
+                let (precision, pull): (Vec<f64>, Vec<f64>) = damped.unzip();
+                let step = e.base(&(0..free.len()).collect::<Vec<_>>(), &precision, &pull).step();
+                Some(Proposal { step, promise: f64::INFINITY })
+            };
+            let evaluate = |step: &DVector<f64>| {
+                let mut trial = model.clone();
+                for (f, s) in free.iter().zip(step.iter()) {
+                    f.set(&mut trial, f.value(&model) + s * f.column.scale);
+                }
+                let next = at(&trial, &current.variance);
+                let value = -next.misfit();
+                ((trial, next), value)
+            };
+            let value = -current.misfit();
+            let out = Damping { attempts, ..DAMPING }.search(value, &mut damping, propose, evaluate);
+            attempts -= out.evaluated;
+            damping = damping.max(LEAST_DAMPING);
+            let Some((next, reached)) = out.taken else { break };
+            (model, current) = next;
             // A step that changes the likelihood by less changes no decision.
-            if (gain > 0.0 && gain < 0.1) || damping > 1e6 {
+            if reached - value < 0.1 {
                 break;
             }
         }
@@ -184,12 +202,6 @@ pub struct Told {
     pub extent: Extent,
 }
 
-/// Only what a mechanism is then started from: its parameters and the noise are estimated again with it.
-const START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
-
-/// Told the answer, it has only this one fit to make.
-const FINISH: Effort = Effort { rounds: 8, noise_rounds: 2, noise_iterations: 6, noise_runs: 10 };
-
 /// Median cVDM \[%\] on held-out runs, as the diagnosis' proof measures it, of a model that was told which mechanisms act, and in
 /// which sessions: estimated and refitted as the diagnosis does with what it finds. How far the held-out error can fall when the name
 /// is right. `None` when the catalogue lacks one of them.
@@ -211,24 +223,46 @@ pub fn oracle(
     let first = guess(runs, &full);
     let prior = NoisePrior::around(&first);
     let free = base_parameters(&full, settings.nuisance);
-    let mut current = estimate(&full, integration, runs, &free, &first, &prior, START);
+    let mut current = estimate(&full, integration, runs, &free, &first, &prior, TOLD_START);
     for (told, candidate) in told.iter().zip(chosen) {
-        let (start, free) = started(&current, integration, runs, candidate, &told.extent);
-        current = estimate(&start, integration, runs, &free, &current.noise, &prior, FINISH);
+        let candidates = std::slice::from_ref(candidate);
+        let problem = Problem { integration, runs, candidates, prior: &prior, settings };
+        let (start, free) = started(&current, problem, &told.extent);
+        current = problem.estimate(&start, &free, &current.noise, TOLD_FINISH);
     }
     Ok(Some(median_distance(&current.model, integration, held_out)))
 }
 
-/// The model with a mechanism at the amplitudes that a linear step from the estimate gives, and everything else moved along.
-fn started(
-    found: &Estimate,
-    integration: Integration,
-    runs: &[Run],
-    candidate: &Candidate,
-    extent: &Extent,
-) -> (Model, Vec<FreeParameter>) {
-    let alone = std::slice::from_ref(candidate);
-    let s = screen(found, integration, runs, alone);
+/// The model with the problem's one mechanism at the amplitudes that a linear step from the estimate gives, and everything else
+/// moved along.
+fn started(found: &Estimate, problem: Problem, extent: &Extent) -> (Model, Vec<FreeParameter>) {
+    let s = screen(found, problem.integration, problem.runs, problem.candidates);
     let test = s.test(0, extent);
-    enter(&s, alone, 0, extent, &test.amplitude, found, integration, runs, &found.noise)
+    start_with(&s, 0, extent, &test.amplitude, found, problem, &found.noise)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, model, noise, runs};
+    use crate::simulate::{Scenario, simulate};
+
+    #[test]
+    fn a_filter_without_gains_is_a_free_simulation() {
+        let (model, runs) = (model(), runs(&model(), 3));
+        let filter = Filter::new(&model, RK4, &[]);
+        let t = Trajectories::new(&filter, &runs, &noise(), &[4.0; STATES], true);
+        for (run, pass) in runs.iter().zip(&t.passes) {
+            let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
+            let states = simulate(&model, &model.values_in(&run.session), RK4, &scenario).states;
+            for ((s, m), e) in states.iter().zip(&run.measured).zip(&pass.innovations) {
+                for c in [0, 1, 3, 4, 5] {
+                    assert!((2.0 * e[c] - (m[c] - s[c])).abs() < 1e-9, "{} channel {c}", run.name);
+                }
+            }
+        }
+        // The variances are the mean squares of the residuals, 4 e^2.
+        let squares: f64 = t.passes.iter().flat_map(|p| &p.innovations).map(|e| 4.0 * e[3] * e[3]).sum();
+        assert!((t.variance[3] / (squares / t.used[3]) - 1.0).abs() < 1e-12);
+    }
 }

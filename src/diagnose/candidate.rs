@@ -1,15 +1,17 @@
 //! A mechanism of the catalogue as a candidate of one model: its columns, its amplitudes, and the sessions it acts in.
-//! What the mechanisms are is told in the terms' files, beside the physics.
+//! What the mechanisms are is told in the terms' files, beside the physics; whether one is named is decided elsewhere.
 
+use super::estimate::{Estimate, FreeParameter};
 use super::evidence::Test;
 use super::filter::{Column, Run};
+use super::settings::{BEYOND_BOUNDS, QUARTER_TIDE};
 use crate::model::Model;
-use crate::physics::{Group, Mechanism};
+use crate::physics::{Group, Mechanism, Probe};
 use crate::terms::CATALOGUE;
+use nalgebra::DVector;
 
 /// Whether recordings can possibly show a mechanism: a tide needs a good part of its period.
 pub fn applies(mechanism: &Mechanism, runs: &[Run]) -> bool {
-    const QUARTER_TIDE: f64 = 11_178.0;
     let times = || runs.iter().flat_map(|r| [r.inputs.first(), r.inputs.last()]).flatten().map(|i| i.t);
     let span = times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min);
     mechanism.name != "tide" || span > QUARTER_TIDE
@@ -79,14 +81,57 @@ impl Candidate {
             let away = value - value.clamp(p.lower, p.upper);
             if away == 0.0 { 0.0 } else { (away / error).powi(2) }
         };
-        test.amplitude.iter().enumerate().map(beyond).sum::<f64>() <= BEYOND * test.statistic.max(1.0)
+        test.amplitude.iter().enumerate().map(beyond).sum::<f64>() <= BEYOND_BOUNDS * test.statistic.max(1.0)
+    }
+
+    /// Its free parameters where it acts, group of sessions by group.
+    pub fn parameters(&self, extent: &Extent) -> Vec<FreeParameter> {
+        let of = |sessions: Option<Vec<String>>| {
+            self.columns.iter().map(move |col| FreeParameter {
+                column: Column { probe: Probe::Tangent, ..*col },
+                sessions: sessions.clone(),
+                prior: None,
+            })
+        };
+        extent.parts().into_iter().flat_map(of).collect()
+    }
+
+    /// Where a model holds the coefficients that are not known exactly once it acts.
+    pub fn companions(&self, model: &Model) -> Vec<usize> {
+        self.mechanism.companions.iter().filter_map(|name| model.index(&format!("{}.{name}", self.term))).collect()
+    }
+
+    /// Where its parameters are among the free ones.
+    pub fn positions(&self, free: &[FreeParameter], extent: &Extent) -> Vec<usize> {
+        let same = |f: &FreeParameter, own: &FreeParameter| {
+            f.column.parameter == own.column.parameter && f.prior.is_none() && f.sessions == own.sessions
+        };
+        self.parameters(extent).iter().filter_map(|own| free.iter().position(|f| same(f, own))).collect()
+    }
+
+    /// Adds amplitudes in units of the columns' scales to its parameters; those of single sessions are set to them.
+    pub fn add(&self, model: &mut Model, extent: &Extent, amplitude: &DVector<f64>) {
+        for (p, a) in self.parameters(extent).iter().zip(amplitude.iter()) {
+            let value = a * p.column.scale;
+            p.set(model, value + if p.sessions.is_none() { p.value(model) } else { 0.0 });
+        }
+    }
+
+    /// The model of an estimate without it, and what is free then.
+    pub fn removed(&self, found: &Estimate, extent: &Extent) -> (Model, Vec<FreeParameter>) {
+        let (mut model, mut free) = (found.model.clone(), found.free.clone());
+        let mut places = self.positions(&free, extent);
+        places.sort_unstable();
+        for at in places.into_iter().rev() {
+            let f = free.remove(at);
+            let neutral = (model.parameters[f.column.parameter].info.default)(&model.ship);
+            f.set(&mut model, if f.sessions.is_some() { 0.0 } else { neutral });
+        }
+        (model, free)
     }
 }
 
-/// Share of what a test promises that amplitudes may lose when they are kept inside their bounds.
-const BEYOND: f64 = 0.25;
-
-/// Appends the columns of candidates, and gives where those of each stand.
+/// Appends the columns of candidates, and gives the places of each candidate's own.
 pub fn append(columns: &mut Vec<Column>, candidates: &[Candidate]) -> Vec<Vec<usize>> {
     let mut place = |c: &Candidate| {
         let start = columns.len();
@@ -135,7 +180,7 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn what_promises_a_little_more_than_there_can_be_is_possible_and_the_other_sign_is_not() {
+    fn amplitudes_a_little_beyond_their_bound_are_possible_and_the_other_sign_is_not() {
         let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
         let model = Model::new(ship, "HD", Form::Regular, &[]).unwrap().complete().unwrap();
         let all = candidates(&model, &[]);
@@ -156,5 +201,48 @@ mod tests {
             )
         };
         assert!(possible(0.5) && possible(1.3) && !possible(4.0) && !possible(-0.5));
+    }
+
+    #[test]
+    fn a_mechanism_that_is_added_and_removed_leaves_the_estimate_as_it_was() {
+        use crate::diagnose::example;
+        let model = example::model();
+        let c = example::candidate(&model, "current");
+        for extent in [Extent::All, Extent::In(vec!["a".into()]), Extent::Each(vec!["a".into(), "b".into()])] {
+            let mut found = example::at(&model);
+            let count = found.free.len();
+            let own = c.parameters(&extent);
+            found.free.extend(own.clone());
+            let amplitude = DVector::from_fn(own.len(), |i, _| 0.1 * (i + 1) as f64);
+            c.add(&mut found.model, &extent, &amplitude);
+            for (f, a) in own.iter().zip(amplitude.iter()) {
+                assert!((f.value(&found.model) - a * f.column.scale).abs() < 1e-12, "{extent:?}");
+            }
+            let places = c.positions(&found.free, &extent);
+            assert_eq!(places, (count..count + own.len()).collect::<Vec<_>>());
+            let (bare, free) = c.removed(&found, &extent);
+            assert_eq!(free.len(), count);
+            assert!(["a", "b", "c"].iter().all(|s| bare.values_in(s) == model.values_in(s)), "{extent:?}");
+        }
+    }
+
+    #[test]
+    fn the_size_is_the_amplitude_over_the_floor_by_the_mean_square_over_sessions() {
+        let model = crate::diagnose::example::model();
+        let c = crate::diagnose::example::candidate(&model, "current");
+        let floor = c.mechanism.floor;
+        assert!((c.size(&[3.0 * floor, 4.0 * floor]) - 5.0).abs() < 1e-12);
+        let each = [3.0, 4.0, 0.0, 5.0].map(|a| a * floor);
+        assert!((c.size(&each) - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_tide_needs_recordings_over_a_quarter_of_its_period() {
+        let model = crate::diagnose::example::model();
+        let tide = crate::diagnose::example::candidate(&model, "tide").mechanism;
+        let mut runs = crate::diagnose::example::runs(&model, 2);
+        assert!(!applies(tide, &runs));
+        runs[1].inputs.iter_mut().for_each(|i| i.t += 12_000.0);
+        assert!(applies(tide, &runs));
     }
 }

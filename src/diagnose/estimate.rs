@@ -1,12 +1,18 @@
 //! The best model of a given structure: parameters with priors by Fisher scoring on the filter's scores, noise by maximum
 //! likelihood, in turn. Which parameters are free, and what is concluded, is decided elsewhere.
 
-use super::evidence::{Base, Evidence, RunEvidence, step_inside};
+use super::evidence::{Base, Evidence, RunEvidence};
 use super::filter::{Column, Filter, GATE, Pass, Run, Wanted};
-use super::noise::{Noise, NoisePrior, fit_noise};
+use super::noise::{Noise, NoisePrior};
+use super::noise_fit::fit_noise;
+use super::optimise::{Damping, Outcome, Proposal, Quadratic};
+pub use super::settings::Effort;
+use super::settings::{
+    CALM_ITERATIONS, CALM_SHARE, NOISE_REFUSED, OUTLIER_SHARE, STEP_GAIN, STEP_LONGEST, STEP_LOSS, STEP_SHORTEST,
+};
 use crate::model::{Model, Prior};
 use crate::simulate::Integration;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 /// A free parameter of the estimate.
@@ -101,27 +107,8 @@ pub struct Estimate {
     pub log_posterior: f64,
 }
 
-/// Settings of an estimation.
-#[derive(Clone, Copy, Debug)]
-pub struct Effort {
-    /// Rounds of parameter steps, each followed by a noise estimate while `noise_rounds` last.
-    pub rounds: usize,
-    /// Rounds with a noise estimate.
-    pub noise_rounds: usize,
-    /// BFGS iterations in a noise estimate.
-    pub noise_iterations: usize,
-    /// Runs used for the noise estimate, evenly spread.
-    pub noise_runs: usize,
-}
-
-/// Share of measurements set aside as outliers above which they are none.
-const MANY: f64 = 0.03;
-
-/// A noise that some runs prefer is refused by all when it costs them more than this in log-likelihood.
-const REFUSED: f64 = 10.0;
-
 /// Share of the measurements that passes set aside as outliers.
-fn aside(passes: &[Pass]) -> f64 {
+fn outlier_share(passes: &[Pass]) -> f64 {
     let (outliers, used) = passes.iter().fold((0, 0), |(o, u), p| (o + p.outliers, u + p.used));
     outliers as f64 / (outliers + used).max(1) as f64
 }
@@ -168,37 +155,18 @@ pub fn base_of(evidence: &Evidence, model: &Model, free: &[FreeParameter]) -> Ba
     evidence.base(&(0..free.len()).collect::<Vec<_>>(), &precision, &pull)
 }
 
-/// The quadratic model of the log-posterior in the free parameters, in units of their columns, and how far each may go.
-struct Quadratic {
-    information: DMatrix<f64>,
-    score: DVector<f64>,
-    room: Vec<(f64, f64)>,
-}
-
-impl Quadratic {
-    fn new(Evidence { total, .. }: &Evidence, model: &Model, free: &[FreeParameter]) -> Self {
-        let (mut information, mut score) = (total.information.clone(), total.score.clone());
-        let mut room = Vec::with_capacity(free.len());
-        for (i, f) in free.iter().enumerate() {
-            let (precision, pull) = f.prior_terms(model);
-            information[(i, i)] += precision;
-            score[i] += pull;
-            let (now, (least, most)) = (f.value(model) / f.column.scale, f.bounds(model));
-            room.push((least - now, most - now));
-        }
-        Self { information, score, room }
+/// The quadratic model of the log-posterior in the free parameters, in units of their columns.
+fn quadratic(Evidence { total, .. }: &Evidence, model: &Model, free: &[FreeParameter]) -> Quadratic {
+    let (mut information, mut score) = (total.information.clone(), total.score.clone());
+    let mut room = Vec::with_capacity(free.len());
+    for (i, f) in free.iter().enumerate() {
+        let (precision, pull) = f.prior_terms(model);
+        information[(i, i)] += precision;
+        score[i] += pull;
+        let (now, (least, most)) = (f.value(model) / f.column.scale, f.bounds(model));
+        room.push((least - now, most - now));
     }
-
-    /// The best step within bounds, as if each parameter were held where it is with the precision `damping`.
-    fn step(&self, damping: f64) -> DVector<f64> {
-        let n = self.score.len();
-        step_inside(&(&self.information + DMatrix::from_diagonal_element(n, n, damping)), &self.score, &self.room)
-    }
-
-    /// What a step adds.
-    fn promise(&self, step: &DVector<f64>) -> f64 {
-        step.dot(&(&self.score - 0.5 * &self.information * step))
-    }
+    Quadratic { information, score, room }
 }
 
 /// Log-likelihood plus log-prior of a model.
@@ -219,21 +187,25 @@ pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prio
     let likelihood = |i: &usize| p[*i].log_likelihood / runs[*i].measured.len() as f64;
     let mut order: Vec<usize> = (0..runs.len()).collect();
     order.sort_by(|a, b| likelihood(b).total_cmp(&likelihood(a)));
-    order.truncate((0.6 * runs.len() as f64).ceil() as usize);
+    order.truncate((CALM_SHARE * runs.len() as f64).ceil() as usize);
     order.sort_unstable();
     let some: Vec<&Run> = order.iter().map(|i| &runs[*i]).collect();
     let tangents: Vec<_> = order.iter().filter_map(|i| p[*i].tangent.as_ref()).collect();
-    fit_noise(&some, &tangents, &found.model, &found.noise, prior, GATE, 8)
+    fit_noise(&some, &tangents, &found.model, &found.noise, prior, GATE, CALM_ITERATIONS)
 }
 
-/// A gain in log-posterior below this changes no verdict.
-const ENOUGH: f64 = 0.3;
-
-/// The least damping that is tried when a step fails; below a tenth of it there is none.
-const DAMPING: f64 = 0.3;
-
-/// A step that gains less than this share of what it promised was too long for the quadratic model.
-const TRUSTED: f64 = 0.5;
+/// How a parameter step is damped: parameters that the data hardly determine ask for steps on which the others would fail;
+/// damping, in units of the columns' scales, holds those back and lets the rest move. It stays while the valley bends.
+const DAMPING: Damping = Damping {
+    attempts: 6,
+    least_promise: STEP_GAIN,
+    loss: STEP_LOSS,
+    first: 0.3,
+    most: f64::INFINITY,
+    shrink: 0.3,
+    off: 0.03,
+    trusted: 0.5,
+};
 
 /// Fits the free parameters and the noise, starting from the model's values.
 ///
@@ -252,7 +224,7 @@ pub fn estimate(
 }
 
 /// The same, given up where even twice what the quadratic model promises ends below a log-posterior of `least`.
-pub(super) fn estimate_above(
+pub fn estimate_above(
     least: f64,
     start: &Model,
     integration: Integration,
@@ -262,84 +234,191 @@ pub(super) fn estimate_above(
     prior: &NoisePrior,
     effort: Effort,
 ) -> Estimate {
-    let columns: Vec<Column> = free.iter().map(|f| f.column).collect();
-    let mut model = start.clone();
-    let mut noise = *noise;
-    let log_prior = |m: &Model| free.iter().map(|f| f.log_prior(m)).sum::<f64>();
-    let posterior = |m: &Model, p: &[Pass]| p.iter().map(|p| p.log_likelihood).sum::<f64>() + log_prior(m);
-    let mut current = passes(&model, integration, &columns, runs, &noise, true);
-    let mut value = posterior(&model, &current);
-    // Parameters that the data hardly determine ask for steps on which the others would founder: damping, in units of the
-    // columns' scales, holds those back and lets the rest move (Levenberg, Marquardt). It stays while the valley bends.
+    let columns = free.iter().map(|f| f.column).collect();
+    let fit = Fit { integration, runs, free, columns, prior, effort };
+    let mut point = fit.at(start.clone(), *noise);
     let mut damping = 0.0;
     for round in 0..effort.rounds {
-        let quadratic = Quadratic::new(&evidence(runs, &current, &restrictions(free)), &model, free);
+        let e = evidence(runs, &point.passes, &restrictions(free));
+        let quadratic = quadratic(&e, &point.model, free);
         // A law that bends may hold more than its slope where it starts promises: never before the first step.
-        if round > 0 && least.is_finite() && value + 2.0 * quadratic.promise(&quadratic.step(0.0)) < least {
+        if round > 0 && least.is_finite() && point.value + 2.0 * quadratic.promise(&quadratic.step(0.0)) < least {
             break;
         }
-        let mut moved = false;
-        let mut length: f64 = 0.0;
-        let before = value;
-        for _ in 0..6 {
-            let mut step = quadratic.step(damping);
-            // Never more than ten scales at once: beyond that the linearisation says nothing.
-            length = step.amax();
-            if length > 10.0 {
-                step *= 10.0 / length;
-                length = 10.0;
-            }
-            let promised = quadratic.promise(&step);
-            if promised < ENOUGH {
-                break;
-            }
-            let mut trial = model.clone();
-            for (f, s) in free.iter().zip(step.iter()) {
-                f.set(&mut trial, f.value(&model) + s * f.column.scale);
-            }
-            let trial_passes = passes(&trial, integration, &columns, runs, &noise, true);
-            let trial_value = posterior(&trial, &trial_passes);
-            if trial_value.is_finite() && trial_value > value - 0.01 {
-                moved = true;
-                damping *= 0.3;
-                if trial_value - value < TRUSTED * promised {
-                    damping = damping.max(DAMPING);
-                } else if damping < 0.1 * DAMPING {
-                    damping = 0.0;
-                }
-                (model, current, value) = (trial, trial_passes, trial_value);
-                break;
-            }
-            damping = f64::max(DAMPING, 10.0 * damping);
-        }
-        let settled = !moved || length < 0.03 || value - before < ENOUGH;
+        let (next, length) = fit.step(&point, &quadratic, &mut damping);
+        let settled = match &next {
+            None => true,
+            Some(next) => length < STEP_SHORTEST || next.value - point.value < STEP_GAIN,
+        };
+        point = next.unwrap_or(point);
         if round < effort.noise_rounds {
-            // The noise is fitted to some runs, linearised: where it does not serve all of them, it is fitted to all.
-            let sparse = runs.len().div_ceil(effort.noise_runs.max(1)).max(1);
-            let mut strides = vec![sparse, 1];
-            strides.dedup();
-            for stride in strides {
-                let chosen: Vec<usize> = (0..runs.len()).step_by(stride).collect();
-                let some: Vec<&Run> = chosen.iter().map(|i| &runs[*i]).collect();
-                let tangents: Vec<_> = chosen.iter().filter_map(|i| current[*i].tangent.as_ref()).collect();
-                // Where much is set aside the noise is too small by far, and a gate hides that: everything counts first.
-                let gates = if aside(&current) > MANY { &[f64::INFINITY, GATE][..] } else { &[GATE] };
-                let trial = gates.iter().fold(noise, |noise, gate| {
-                    fit_noise(&some, &tangents, &model, &noise, prior, *gate, effort.noise_iterations)
-                });
-                let trial_passes = passes(&model, integration, &columns, runs, &trial, true);
-                let trial_value = posterior(&model, &trial_passes);
-                if trial_value > value {
-                    (noise, current, value) = (trial, trial_passes, trial_value);
-                    break;
-                }
-                if value - trial_value < REFUSED {
-                    break;
-                }
-            }
+            point = fit.with_noise(point);
         } else if settled {
             break;
         }
     }
-    Estimate { model, noise, free: free.to_vec(), log_posterior: value }
+    Estimate { model: point.model, noise: point.noise, free: free.to_vec(), log_posterior: point.value }
+}
+
+/// A fit of free parameters and noise to runs.
+struct Fit<'a> {
+    integration: Integration,
+    runs: &'a [Run],
+    free: &'a [FreeParameter],
+    columns: Vec<Column>,
+    prior: &'a NoisePrior,
+    effort: Effort,
+}
+
+/// A model and a noise with the passes over all runs.
+struct Point {
+    model: Model,
+    noise: Noise,
+    passes: Vec<Pass>,
+    /// Log-likelihood plus log-prior.
+    value: f64,
+}
+
+impl Fit<'_> {
+    fn at(&self, model: Model, noise: Noise) -> Point {
+        let passes = passes(&model, self.integration, &self.columns, self.runs, &noise, true);
+        let log_prior = self.free.iter().map(|f| f.log_prior(&model)).sum::<f64>();
+        let value = passes.iter().map(|p| p.log_likelihood).sum::<f64>() + log_prior;
+        Point { model, noise, passes, value }
+    }
+
+    /// The point after a step of the parameters, where one gains, and the length of the last step that was tried.
+    fn step(&self, from: &Point, quadratic: &Quadratic, damping: &mut f64) -> (Option<Point>, f64) {
+        let propose = |damping: f64| {
+            let mut step = quadratic.step(damping);
+            let length = step.amax();
+            if length > STEP_LONGEST {
+                step *= STEP_LONGEST / length;
+            }
+            let promise = quadratic.promise(&step);
+            Some(Proposal { step: (step, length.min(STEP_LONGEST)), promise })
+        };
+        let evaluate = |(step, _): &(DVector<f64>, f64)| {
+            let mut model = from.model.clone();
+            for (f, s) in self.free.iter().zip(step.iter()) {
+                f.set(&mut model, f.value(&from.model) + s * f.column.scale);
+            }
+            let point = self.at(model, from.noise);
+            let value = point.value;
+            (point, value)
+        };
+        let Outcome { taken, last, .. } = DAMPING.search(from.value, damping, propose, evaluate);
+        (taken.map(|(point, _)| point), last.map_or(0.0, |(_, length)| length))
+    }
+
+    /// The point with the noise fitted to some runs, linearised; where that noise does not serve all runs, to all of them.
+    fn with_noise(&self, point: Point) -> Point {
+        let sparse = self.runs.len().div_ceil(self.effort.noise_runs.max(1)).max(1);
+        let mut strides = vec![sparse, 1];
+        strides.dedup();
+        for stride in strides {
+            let trial = self.at(point.model.clone(), self.noise(&point, stride));
+            if trial.value > point.value {
+                return trial;
+            }
+            if point.value - trial.value < NOISE_REFUSED {
+                break;
+            }
+        }
+        point
+    }
+
+    /// The noise of every `stride`-th run at a point.
+    fn noise(&self, Point { model, noise, passes, .. }: &Point, stride: usize) -> Noise {
+        let chosen = || (0..self.runs.len()).step_by(stride);
+        let some: Vec<&Run> = chosen().map(|i| &self.runs[i]).collect();
+        let tangents: Vec<_> = chosen().filter_map(|i| passes[i].tangent.as_ref()).collect();
+        // Where many measurements are set aside the noise is too small by far, and a gate hides that: everything counts first.
+        let gates = if outlier_share(passes) > OUTLIER_SHARE { &[f64::INFINITY, GATE][..] } else { &[GATE] };
+        gates.iter().fold(*noise, |noise, gate| {
+            fit_noise(&some, &tangents, model, &noise, self.prior, *gate, self.effort.noise_iterations)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, at, column, model, noise, runs, with};
+    use crate::diagnose::settings::REFIT;
+
+    #[test]
+    fn a_value_stays_inside_its_bounds_and_an_addition_in_a_session_inside_what_the_sum_may_be() {
+        let mut m = with(&[("rudder_offset.offset", 0.3)]);
+        let c = column(&m, "rudder_offset.offset");
+        let addition = FreeParameter { column: c, sessions: Some(vec!["a".into(), "b".into()]), prior: None };
+        let (least, most) = addition.bounds(&m);
+        assert!((least * c.scale + 0.65).abs() < 1e-12 && (most * c.scale - 0.05).abs() < 1e-12);
+        addition.set(&mut m, 0.2);
+        assert!((addition.value(&m) - 0.05).abs() < 1e-12);
+        assert!((m.values_in("b")[c.parameter] - 0.35).abs() < 1e-12 && m.values_in("c")[c.parameter] == 0.3);
+        FreeParameter::common(c, None).set(&mut m, -1.0);
+        assert_eq!(m.parameters[c.parameter].value, -0.35);
+    }
+
+    #[test]
+    fn the_terms_of_a_prior_are_the_slope_and_curvature_of_its_logarithm() {
+        let mut m = model();
+        let f = FreeParameter::uncertain(&m, m.find("hull.Yv").unwrap());
+        assert_eq!((f.prior_terms(&m).1, f.log_prior(&m)), (0.0, 0.0));
+        let unit = f.column.scale;
+        let start = f.value(&m);
+        let mut at = |steps: f64| {
+            f.set(&mut m, start + steps * unit);
+            (f.log_prior(&m), f.prior_terms(&m))
+        };
+        let (low, high) = (at(0.9).0, at(1.1).0);
+        let (middle, (precision, pull)) = at(1.0);
+        assert!(((high - low) / 0.2 - pull).abs() < 1e-9 * pull.abs());
+        assert!(((high - 2.0 * middle + low) / 0.01 + precision).abs() < 1e-6 * precision);
+    }
+
+    #[test]
+    fn a_column_of_some_sessions_takes_no_evidence_from_the_others() {
+        let m = model();
+        let runs = runs(&m, 4);
+        let columns = [column(&m, "rudder.lift1"), column(&m, "current.north")];
+        let p = passes(&m, RK4, &columns, &runs, &noise(), false);
+        let e = evidence(&runs, &p, &[None, Some(vec!["a".into()])]);
+        let in_a: f64 = p.iter().zip(&runs).filter(|(_, r)| r.session == "a").map(|(p, _)| p.score[1]).sum();
+        assert_eq!(e.total.score[1], in_a);
+        assert_eq!((e.sessions["b"].score[1], e.sessions["b"].information[(0, 1)]), (0.0, 0.0));
+        assert!(e.sessions["b"].information[(0, 0)] > 0.0);
+    }
+
+    #[test]
+    fn parameters_off_by_a_tenth_come_back_within_their_standard_errors() {
+        let truth = model();
+        let runs = runs(&truth, 9);
+        let mut start = truth.clone();
+        for i in start.free() {
+            start.parameters[i].value *= 1.1;
+        }
+        let e = at(&truth);
+        let found = estimate(&start, RK4, &runs, &e.free, &noise(), &NoisePrior::around(&noise()), REFIT);
+        assert!(found.log_posterior >= log_posterior(&truth, RK4, &runs, &e.free, &noise()));
+        let p = passes(&found.model, RK4, &e.free.iter().map(|f| f.column).collect::<Vec<_>>(), &runs, &noise(), false);
+        let base = base_of(&evidence(&runs, &p, &restrictions(&e.free)), &found.model, &e.free);
+        for (i, f) in e.free.iter().enumerate() {
+            let off = (f.value(&found.model) - f.value(&truth)) / (f.column.scale * base.inverse[(i, i)].sqrt());
+            assert!(off.abs() < 4.0, "{}: {off}", truth.parameters[f.column.parameter].name);
+        }
+    }
+
+    #[test]
+    fn an_estimate_that_cannot_reach_what_is_asked_is_given_up() {
+        let truth = model();
+        let runs = runs(&truth, 3);
+        let mut start = truth.clone();
+        start.parameters[truth.find("rudder.lift1").unwrap()].value *= 1.5;
+        let (free, prior) = (at(&truth).free, NoisePrior::around(&noise()));
+        let of = |least: f64| estimate_above(least, &start, RK4, &runs, &free, &noise(), &prior, REFIT).log_posterior;
+        let whole = of(f64::NEG_INFINITY);
+        assert!(of(whole + 1e6) < whole && of(whole - 1.0) == whole);
+    }
 }

@@ -1,6 +1,8 @@
 //! Scores and information of all runs, and the small dense algebra that every later step is made of.
 //! It does not know what a column means: names and verdicts are made elsewhere.
 
+use super::algebra::{pick, pseudo_inverse};
+use super::settings::{IDENTIFIABLE_SHARE, SCATTER_GROUPS};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
@@ -57,9 +59,6 @@ impl Test {
         }
     }
 }
-
-/// Directions with less than this share of their information left are not seen at all.
-pub const UNSEEN: f64 = 0.01;
 
 impl Evidence {
     /// Sums the runs in order.
@@ -235,14 +234,14 @@ impl Base {
         let full = DMatrix::from_fn(k, k, |i, j| own[(i, j)] * unit[i] * unit[j]);
         let eigen = SymmetricEigen::new(scaled.clone());
         let full_eigen = SymmetricEigen::new(full);
-        let floor = UNSEEN * full_eigen.eigenvalues.max().max(1.0) * 0.1;
+        let floor = IDENTIFIABLE_SHARE * full_eigen.eigenvalues.max().max(1.0) * 0.1;
         let z = DVector::from_fn(k, |i, _| effective[i] * unit[i]);
         let mut statistic = 0.0;
         let mut degrees = 0;
         let mut amplitude = DVector::zeros(k);
         let mut covariance = DMatrix::zeros(k, k);
         for (l, v) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-            if *l > floor.max(UNSEEN) {
+            if *l > floor.max(IDENTIFIABLE_SHARE) {
                 let along = v.dot(&z);
                 statistic += along * along / l;
                 degrees += 1;
@@ -285,119 +284,17 @@ pub fn chi_squared_p(statistic: f64, degrees: usize) -> f64 {
     ChiSquared::new(degrees as f64).map_or(1.0, |d| d.sf(statistic.max(0.0)).max(f64::MIN_POSITIVE))
 }
 
-/// Fewest groups of runs among which scatter is told; where there are fewer, they are taken for as many.
-pub const KINDS: usize = 5;
-
 /// Standard errors that a 95 % interval reaches to either side once scatter among so many groups of runs has had its say on them
 /// ([`Evidence::scatter`]): Student's t with one degree of freedom less than groups, as an error that few tell is itself uncertain
 /// (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
 fn reach(groups: usize) -> f64 {
-    let degrees = groups.max(KINDS) - 1;
+    let degrees = groups.max(SCATTER_GROUPS) - 1;
     StudentsT::new(0.0, 1.0, degrees as f64).map_or(1.96, |t| t.inverse_cdf(0.975))
-}
-
-/// Rows and columns of a matrix.
-pub fn pick(m: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
-    DMatrix::from_fn(rows.len(), columns.len(), |i, j| m[(rows[i], columns[j])])
-}
-
-/// Rounds in which the set of bounds that hold is looked for: it is nearly always found in three.
-const BOUND_ROUNDS: usize = 20;
-
-/// Rounds in which it is looked for from where a climb ends, and sweeps of a climb.
-const CLIMBS: usize = 20;
-const SWEEPS: usize = 50;
-
-/// Maximises `g's - s'Hs/2` over steps within `room`, each entry's least and most.
-///
-/// What would leave its room goes as far as that lets it, and the others find their best beside it: clipped alone, it would leave
-/// them where only its whole step makes sense. Which bounds hold is found as by Hintermüller, Ito and Kunisch (2003), SIAM J.
-/// Optim. 13, p. 865: those that the present step breaks, and those held that still pull outwards. That set may go in circles;
-/// then it is taken from where a climb, entry by entry, comes to.
-pub fn step_inside(information: &DMatrix<f64>, score: &DVector<f64>, room: &[(f64, f64)]) -> DVector<f64> {
-    let n = score.len();
-    let clamped = |s: &DVector<f64>| DVector::from_fn(n, |i, _| s[i].max(room[i].0).min(room[i].1));
-    let mut held: Vec<Option<f64>> = vec![None; n];
-    let mut point: Option<DVector<f64>> = None;
-    for round in 0..BOUND_ROUNDS + CLIMBS {
-        let inside: Vec<usize> = (0..n).filter(|i| held[*i].is_none()).collect();
-        let at_bounds = DVector::from_fn(n, |i, _| held[i].unwrap_or(0.0));
-        let left = score - information * &at_bounds;
-        let left = DVector::from_fn(inside.len(), |k, _| left[inside[k]]);
-        let best = pseudo_inverse(&pick(information, &inside, &inside)) * left;
-        let mut step = at_bounds;
-        inside.iter().zip(best.iter()).for_each(|(i, s)| step[*i] = *s);
-        let pull = score - information * &step;
-        let outwards = |i: usize, b: f64, pull: f64| {
-            let (least, most) = room[i];
-            (b == least && pull < 0.0) || (b == most && pull > 0.0)
-        };
-        let next: Vec<Option<f64>> = (0..n)
-            .map(|i| match held[i] {
-                None if step[i] < room[i].0 => Some(room[i].0),
-                None if step[i] > room[i].1 => Some(room[i].1),
-                None => None,
-                Some(b) => Some(b).filter(|b| outwards(i, *b, pull[i])),
-            })
-            .collect();
-        if next == held {
-            return clamped(&step);
-        }
-        held = if round + 1 < BOUND_ROUNDS {
-            next
-        } else {
-            let climbed = climb(information, score, room, point.unwrap_or_else(|| clamped(&step)));
-            let pull = score - information * &climbed;
-            let held = (0..n).map(|i| Some(climbed[i]).filter(|b| outwards(i, *b, pull[i]))).collect();
-            point = Some(climbed);
-            held
-        };
-    }
-    point.unwrap_or_else(|| DVector::zeros(n))
-}
-
-/// Sweeps over the entries of a step, each going where it is best beside the others and within its room.
-fn climb(
-    information: &DMatrix<f64>,
-    score: &DVector<f64>,
-    room: &[(f64, f64)],
-    mut step: DVector<f64>,
-) -> DVector<f64> {
-    for _ in 0..SWEEPS {
-        for i in (0..step.len()).filter(|i| information[(*i, *i)] > 0.0) {
-            let slope = score[i] - information.column(i).dot(&step);
-            step[i] = (step[i] + slope / information[(i, i)]).max(room[i].0).min(room[i].1);
-        }
-    }
-    step
-}
-
-/// Inverse of a symmetric positive matrix, scaled to unit diagonal; directions without information get none.
-pub fn pseudo_inverse(m: &DMatrix<f64>) -> DMatrix<f64> {
-    let n = m.nrows();
-    let unit: Vec<f64> = (0..n).map(|i| 1.0 / m[(i, i)].max(f64::MIN_POSITIVE).sqrt()).collect();
-    let scaled = DMatrix::from_fn(n, n, |i, j| 0.5 * (m[(i, j)] + m[(j, i)]) * unit[i] * unit[j]);
-    if let Some(c) = scaled.clone().cholesky() {
-        let inverse = c.inverse();
-        if inverse.iter().all(|v| v.is_finite()) && inverse.amax() < 1e10 {
-            return DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * unit[i] * unit[j]);
-        }
-    }
-    let eigen = SymmetricEigen::new(scaled);
-    let mut inverse = DMatrix::zeros(n, n);
-    for (l, v) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-        if *l > 1e-10 {
-            inverse += v * v.transpose() / *l;
-        }
-    }
-    DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * unit[i] * unit[j])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
-    use proptest::test_runner::RngSeed;
 
     fn one_run(session: &str, score: &[f64], information: &[f64]) -> RunEvidence {
         let n = score.len();
@@ -428,7 +325,7 @@ mod tests {
 
     #[test]
     fn runs_that_scatter_by_group_widen_what_is_known_and_runs_that_do_not_leave_it() {
-        // Eight runs whose scores have the variance that their information of 1 says, and the same with two kinds that pull apart.
+        // Four runs whose scores have the variance that their information of 1 says, and the same with two kinds that pull apart.
         let of = |pull: f64| {
             let signs = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
             let run = |(i, sign): (usize, &f64)| one_run("a", &[sign + if i < 4 { pull } else { -pull }], &[1.0]);
@@ -470,48 +367,5 @@ mod tests {
         let t = e.contrast(&base, &[1]).unwrap();
         assert!(t.statistic.abs() < 1e-9, "{t:?}");
         assert_eq!(t.degrees, 1);
-    }
-
-    #[test]
-    fn what_stops_at_a_bound_leaves_the_others_their_own_best() {
-        // Alone the first would go to 10/3 and take the second to -5/3; held at 1 it leaves it where its own score is spent.
-        let information = DMatrix::from_row_slice(2, 2, &[4.0, 2.0, 2.0, 4.0]);
-        let score = DVector::from_column_slice(&[10.0, 0.0]);
-        let step = step_inside(&information, &score, &[(-1.0, 1.0), (-9.0, 9.0)]);
-        assert!((step[0] - 1.0).abs() < 1e-12 && (step[1] + 0.5).abs() < 1e-12, "{step}");
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig {
-            cases: 20_000,
-            rng_seed: RngSeed::Fixed(20250226),
-            failure_persistence: None,
-            ..ProptestConfig::default()
-        })]
-
-        /// Inside there is no slope left, at a bound it pulls outwards, and nothing that was clipped does better.
-        #[test]
-        fn the_step_is_the_best_inside(
-            entries in prop::collection::vec(-1.0f64..1.0, 36),
-            score in prop::collection::vec(-3.0f64..3.0, 6),
-            least in prop::collection::vec(-1.0f64..0.0, 6),
-            most in prop::collection::vec(0.0f64..1.0, 6),
-        ) {
-            let a = DMatrix::from_row_slice(6, 6, &entries);
-            let information = a.transpose() * a + DMatrix::from_diagonal_element(6, 6, 0.05);
-            let score = DVector::from_vec(score);
-            let room: Vec<(f64, f64)> = least.into_iter().zip(most).collect();
-            let step = step_inside(&information, &score, &room);
-            let slope = &score - &information * &step;
-            let gain = |s: &DVector<f64>| s.dot(&(&score - 0.5 * &information * s));
-            for (i, (least, most)) in room.iter().enumerate() {
-                prop_assert!((*least..=*most).contains(&step[i]));
-                let outwards = (step[i] == *least && slope[i] < 0.0) || (step[i] == *most && slope[i] > 0.0);
-                prop_assert!(outwards || slope[i].abs() < 1e-9, "{i}: slope {} at {}", slope[i], step[i]);
-            }
-            let whole = pseudo_inverse(&information) * &score;
-            let clipped = DVector::from_fn(6, |i, _| whole[i].clamp(room[i].0, room[i].1));
-            prop_assert!(gain(&step) >= gain(&clipped) - 1e-9);
-        }
     }
 }

@@ -8,16 +8,15 @@
 
 use super::covariance::{Discrete, Z, initial, predict};
 use super::noise::Noise;
-use crate::model::Model;
-use crate::physics::Flow;
-use crate::physics::Inertia;
-use crate::physics::Probe;
-use crate::physics::{CHUNK, Gradient, Group};
+use crate::dynamics::Dynamics;
+use crate::model::{BASE, Model};
+use crate::physics::{FEW, Flow, Group, Probe, Reach};
 use crate::recording::Window;
+use crate::sensitivity::{Columns, Local, Plain, columns};
 use crate::simulate::{Integration, Method, driven, step};
 use crate::state::{Force, Inputs, STATES, State};
-use crate::terms::find;
 use nalgebra::{DMatrix, DVector};
+use trimtab_ad::Along;
 
 /// One run as the filter needs it.
 #[derive(Clone, Debug)]
@@ -81,6 +80,11 @@ pub struct Column {
 }
 
 impl Column {
+    /// The column without its probe.
+    fn exact(&self) -> columns::Column {
+        columns::Column { parameter: self.parameter, scale: self.scale }
+    }
+
     /// The exact derivative with respect to a parameter, in units of its scale.
     pub fn tangent(model: &Model, parameter: usize) -> Self {
         Self { parameter, scale: model.parameters[parameter].scale, probe: Probe::Tangent }
@@ -155,36 +159,29 @@ pub struct Wanted<'a> {
     pub exact: bool,
 }
 
+/// A number with derivatives by a few parameters.
+type Few = <f64 as Plain>::Few;
+
 /// A model prepared for passes over many runs with the same columns.
 pub struct Filter<'a> {
     model: &'a Model,
     /// Integration of the step map.
     pub integration: Integration,
     columns: Vec<Column>,
-    chunks: Vec<Chunk>,
+    /// Columns that act by the force of their own term, and which of all columns they are.
+    by_force: (Columns, Vec<usize>),
+    groups: Vec<Together>,
     base: Model,
     senses: bool,
 }
 
-/// Up to [`CHUNK`] columns that are differentiated together.
-struct Chunk {
+/// Up to [`FEW`] columns that are differentiated together through the whole dynamics, or by finite amplitudes.
+struct Together {
     /// The active terms and those that own the columns.
     view: Model,
-    /// The terms that own the columns, alone.
-    owners: Model,
     columns: Vec<usize>,
-    reach: Reach,
-}
-
-/// What a parameter can change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Reach {
-    /// Anything: inputs, inertia, what other terms work with.
-    Everything,
-    /// The force of its own term and nothing else.
-    Force,
-    /// What the sensors report and nothing else.
-    Sensors,
+    /// Whether they change what the sensors report and nothing else.
+    sensors: bool,
 }
 
 /// Innovations larger than this many standard deviations are set aside as outliers.
@@ -200,40 +197,32 @@ impl<'a> Filter<'a> {
                     && !model.sessions.values().flatten().any(|(j, addition)| *j == i && *addition != 0.0)
             })
         };
-        let active: Vec<&str> =
-            model.term_names().into_iter().filter(|t| crate::model::BASE.contains(t) || !neutral(t)).collect();
+        let active: Vec<&str> = model.term_names().into_iter().filter(|t| BASE.contains(t) || !neutral(t)).collect();
         let base = model.restricted(|t| active.contains(&t));
-        let owner = |c: usize| model.parameters[columns[c].parameter].name.split('.').next().unwrap_or("").to_string();
-        let reach = |c: usize| {
-            let Some(term) = find(&owner(c)) else { return Reach::Everything };
-            let prefix = format!("{}.", term.info().name);
-            let first = model.parameters.iter().position(|p| p.name.starts_with(&prefix)).unwrap_or(0);
-            if term.info().group == Group::Sensor {
-                Reach::Sensors
-            } else if term.acts_by_force_alone(columns[c].parameter - first) {
-                Reach::Force
-            } else {
-                Reach::Everything
+        let placed = model.placed();
+        let owner = |c: usize| placed.iter().find(|t| (t.offset..t.offset + t.len).contains(&columns[c].parameter));
+        let of_sensor = |c: usize| owner(c).is_some_and(|t| t.term.info().group == Group::Sensor);
+        let forced = |c: usize| {
+            let by_force = |t: &crate::model::Placed| t.term.reach(columns[c].parameter - t.offset) != Reach::Anything;
+            columns[c].probe == Probe::Tangent && !of_sensor(c) && owner(c).is_some_and(by_force)
+        };
+        let (own, mut rest): (Vec<usize>, Vec<usize>) = (0..columns.len()).partition(|c| forced(*c));
+        let plain: Vec<columns::Column> = own.iter().map(|c| columns[*c].exact()).collect();
+        // Sensors together, the columns of one term side by side.
+        rest.sort_by_key(|c| (of_sensor(*c), columns[*c].parameter, *c));
+        let together = |group: &[usize]| {
+            let owners: Vec<&str> = group.iter().filter_map(|c| owner(*c)).map(|t| t.term.info().name).collect();
+            Together {
+                view: model.restricted(|t| active.contains(&t) || owners.contains(&t)),
+                columns: group.to_vec(),
+                sensors: of_sensor(group[0]),
             }
         };
-        // Columns of like reach together, those of one term side by side.
-        let mut order: Vec<(Reach, usize)> = (0..columns.len()).map(|c| (reach(c), c)).collect();
-        order.sort_by_key(|(reach, c)| (*reach, columns[*c].parameter, *c));
-        let chunks = order
-            .chunk_by(|a, b| a.0 == b.0)
-            .flat_map(|alike| alike.chunks(CHUNK))
-            .map(|chunk| {
-                let owners: Vec<String> = chunk.iter().map(|(_, c)| owner(*c)).collect();
-                Chunk {
-                    view: model.restricted(|t| active.contains(&t) || owners.iter().any(|o| o == t)),
-                    owners: model.restricted(|t| owners.iter().any(|o| o == t)),
-                    columns: chunk.iter().map(|(_, c)| *c).collect(),
-                    reach: chunk[0].0,
-                }
-            })
-            .collect();
-        let senses = active.iter().any(|t| find(t).is_some_and(|t| t.info().group == Group::Sensor));
-        Self { model, integration, columns: columns.to_vec(), chunks, base, senses }
+        let alike = |a: &usize, b: &usize| of_sensor(*a) == of_sensor(*b);
+        let groups = rest.chunk_by(alike).flat_map(|alike| alike.chunks(FEW)).map(together).collect();
+        let senses = base.placed().iter().any(|t| t.term.info().group == Group::Sensor);
+        let by_force = (Columns::new(model, &plain), own);
+        Self { model, integration, columns: columns.to_vec(), by_force, groups, base, senses }
     }
 
     /// Passes over one run.
@@ -243,10 +232,10 @@ impl<'a> Filter<'a> {
         let extra = basis.map_or(0, |(n, _)| n);
         let width = parameters + extra;
         let theta = self.model.values_in(&run.session);
-        let constants: Vec<Gradient> = theta.iter().map(|t| Gradient::constant(*t)).collect();
-        let series = driven(&self.base, &theta, self.integration, run.dt, &run.inputs);
+        let dynamics = Dynamics::new(&self.base, theta.clone());
+        let series = driven(&dynamics, self.integration, run.dt, &run.inputs);
         let instants = self.integration.instants();
-        let seeded: Vec<Seeded> = self.chunks.iter().map(|c| self.seeded(c, &theta, run)).collect();
+        let seeded: Vec<Seeded> = self.groups.iter().map(|g| self.seeded(g, &theta, run)).collect();
 
         let mut z = [0.0; Z];
         z[..STATES].copy_from_slice(&run.initial);
@@ -271,18 +260,19 @@ impl<'a> Filter<'a> {
         let mut rates_now = vec![0.0; 3 * width];
         let mut rates_next = vec![0.0; 3 * width];
         if parameters > 0 && !wanted.exact {
-            self.rate_columns(&seeded, &theta, &series, 0, &run.initial, &[0.0; 3], width, &mut rates_now);
+            let local = f64::linearise(&dynamics, &run.initial, &series[0], &Force::zero());
+            self.rate_columns(&dynamics, &local, &seeded, &series, 0, &run.initial, &[0.0; 3], width, &mut rates_now);
         }
         // The accelerations' Jacobian at both ends of a step carries the linearisation over it.
         let smooth = self.integration == Integration { method: Method::Rk4, substeps: 1 } && !wanted.exact;
         let mut slope =
-            if smooth { self.slope(&constants, &run.initial, &[0.0; 3], &series[0]) } else { Slope::default() };
+            if smooth { slope_at(&dynamics, &run.initial, &[0.0; 3], &series[0]).0 } else { Slope::default() };
         for k in 0..run.measured.len() {
             let now = &series[k * instants];
             let state: [f64; STATES] = std::array::from_fn(|j| z[j]);
             // What the sensors report, and how that changes with state and parameters.
-            let (report, h) = self.report(&constants, &state, now);
-            let sensing = self.sensing_columns(&seeded, &theta, &state, now);
+            let (report, h) = self.report(&dynamics, &state, now);
+            let sensing = self.sensing_columns(&dynamics, &seeded, &state, now);
             if let Some(t) = &mut pass.tangent {
                 t.offset.push(std::array::from_fn(|j| report[j] - state[j]));
             }
@@ -338,7 +328,7 @@ impl<'a> Filter<'a> {
                         }
                     }
                     for (columns, report) in &sensing {
-                        for (c, value) in columns.iter().zip(&report[j].eps) {
+                        for (c, value) in columns.iter().zip(&report[j]) {
                             row[*c] += value;
                         }
                     }
@@ -385,19 +375,29 @@ impl<'a> Filter<'a> {
             let push = [z[6], z[7], z[8]];
             let later = (k + 1) * instants;
             let force = Force { x: push[0], y: push[1], n: push[2] };
-            let image = step(&self.base, &theta, self.integration, run.dt, &state, &series[k * instants..], &force);
+            let image = step(&dynamics, self.integration, run.dt, &state, &series[k * instants..], &force);
             let mut exact = Variation::default();
+            let mut next = None;
             let (a, gamma) = if wanted.frozen.is_some() && width == 0 && !wanted.tangent {
                 Default::default()
             } else if smooth {
-                let end = self.slope(&constants, &image, &push, &series[later]);
+                let (end, local) = slope_at(&dynamics, &image, &push, &series[later]);
+                next = Some(local);
                 let carried = carry(&slope, &end, run.dt);
                 slope = end;
                 carried
             } else {
-                let through = if wanted.exact { seeded.as_slice() } else { &[] };
-                exact =
-                    self.variation(through, &constants, &theta, &series, k * instants, run.dt, &state, &push, width);
+                exact = self.variation(
+                    wanted.exact,
+                    &seeded,
+                    &dynamics,
+                    &series,
+                    k * instants,
+                    run.dt,
+                    &state,
+                    &push,
+                    width,
+                );
                 exact.jacobians()
             };
             forces.clear();
@@ -438,7 +438,19 @@ impl<'a> Filter<'a> {
                     // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any
                     // predictable sensitivity leaves the score unbiased, so that this costs no more than a little power.
                     let faded = push.map(|w| w * noise.fade);
-                    self.rate_columns(&seeded, &theta, &series, later, &image, &faded, width, &mut rates_next);
+                    let local =
+                        next.unwrap_or_else(|| f64::linearise(&dynamics, &image, &series[later], &Force::zero()));
+                    self.rate_columns(
+                        &dynamics,
+                        &local,
+                        &seeded,
+                        &series,
+                        later,
+                        &image,
+                        &faded,
+                        width,
+                        &mut rates_next,
+                    );
                     let half = 0.5 * run.dt;
                     for i in 0..STATES {
                         let row = &mut moved[i * width..i * width + parameters];
@@ -476,22 +488,13 @@ impl<'a> Filter<'a> {
         pass
     }
 
-    /// The Jacobian of the state's rates with respect to state and force.
-    fn slope(&self, theta: &[Gradient], state: &[f64; STATES], push: &[f64; 3], inputs: &Inputs<f64>) -> Slope {
-        let x: [Gradient; STATES] = std::array::from_fn(|j| Gradient::variable(state[j], j));
-        let [fx, fy, fn_]: [Gradient; 3] = std::array::from_fn(|j| Gradient::variable(push[j], STATES + j));
-        let force = Force { x: fx, y: fy, n: fn_ };
-        let rates = self.base.rates_alone(theta, &State::from_array(x), &Inputs::constant(inputs), &force);
-        rates.map(|v| std::array::from_fn(|j| v.eps[j]))
-    }
-
     /// The exact derivatives of the step map with respect to state, force and (where any are seeded) parameters: every stage of
     /// the method carries the variational equation along.
     fn variation(
         &self,
+        through: bool,
         seeded: &[Seeded],
-        constants: &[Gradient],
-        theta: &[f64],
+        dynamics: &Dynamics<f64>,
         series: &[Inputs<f64>],
         from: usize,
         dt: f64,
@@ -499,20 +502,18 @@ impl<'a> Filter<'a> {
         push: &[f64; 3],
         width: usize,
     ) -> Variation {
-        let force = Force { x: push[0], y: push[1], n: push[2] };
-        let width = if seeded.is_empty() { 0 } else { width };
+        let width = if through { width } else { 0 };
         let count = self.integration.substeps.max(1);
         let h = dt / count as f64;
         let mut columns = vec![0.0; 3 * width];
         // Rates of the state and of its derivatives, where both have reached `at` and `v` some instants later.
         let mut rates = |at: &[f64; STATES], v: &Variation, later: usize| {
             let inputs = &series[from + later];
-            let slope = self.slope(constants, at, push, inputs);
+            let (slope, local) = slope_at(dynamics, at, push, inputs);
             if width > 0 {
-                self.rate_columns(seeded, theta, series, from + later, at, push, width, &mut columns);
+                self.rate_columns(dynamics, &local, seeded, series, from + later, at, push, width, &mut columns);
             }
-            let rates = self.base.rates_alone(theta, &State::from_array(*at), inputs, &force);
-            (rates, v.rate(&slope, &columns))
+            (local.0.rates, v.rate(&slope, &columns))
         };
         let mut x = *state;
         let mut v = Variation::start(width);
@@ -541,8 +542,9 @@ impl<'a> Filter<'a> {
     /// Derivatives of the accelerations (u', v', r') with respect to the parameters, row by row, at an instant.
     fn rate_columns(
         &self,
+        dynamics: &Dynamics<f64>,
+        local: &(Local<f64>, Flow<f64>),
         seeded: &[Seeded],
-        theta: &[f64],
         series: &[Inputs<f64>],
         when: usize,
         state: &[f64; STATES],
@@ -550,129 +552,129 @@ impl<'a> Filter<'a> {
         width: usize,
         out: &mut [f64],
     ) {
-        let x = State::from_array(*state);
-        let now = series[when];
-        // Where a parameter changes its own term's force only, the flow and the inertia are numbers.
-        let local = self.chunks.iter().any(|c| c.reach == Reach::Force).then(|| {
-            let flow = self.base.flow(theta, &x, &now);
-            let inertia = Inertia::new(self.base.part("hull", theta), &flow);
-            (flow, Flow::constant(&flow), inertia)
-        });
-        let lifted = State::from_array(state.map(Gradient::constant));
-        for (chunk, seed) in self.chunks.iter().zip(seeded) {
-            match (chunk.reach, &local) {
-                (Reach::Force, Some((flow, constant, inertia))) => {
-                    if seed.tangents {
-                        let inputs = Inputs::constant(&now);
-                        let f = chunk.owners.force(&seed.theta, &lifted, &inputs, constant);
-                        for (lane, c) in chunk.columns.iter().enumerate() {
-                            let [fx, fy, fn_] = [f.x.eps[lane], f.y.eps[lane], f.n.eps[lane]];
-                            let rates = inertia.solve(&Force { x: fx, y: fy, n: fn_ });
-                            (0..3).for_each(|i| out[i * width + c] = rates[i]);
-                        }
-                    }
-                    for probe in &seed.probes {
-                        let f = |side: &Side| chunk.owners.force(&side.theta, &x, &now, flow);
-                        let (high, low) = (f(&probe.high), f(&probe.low));
-                        let difference = Force { x: high.x - low.x, y: high.y - low.y, n: high.n - low.n };
-                        let rates = inertia.solve(&difference);
-                        (0..3).for_each(|i| out[i * width + probe.column] = rates[i] * probe.weight);
+        let mut set = |c: usize, rates: [f64; 3]| (0..3).for_each(|i| out[i * width + c] = rates[i]);
+        let (columns, own) = &self.by_force;
+        let mut rates = vec![[0.0; 3]; own.len()];
+        columns.by_force(dynamics, &local.0, &local.1, state, &series[when], &mut rates);
+        own.iter().zip(rates).for_each(|(c, rates)| set(*c, rates));
+        let [fx, fy, fn_] = *push;
+        for (group, seed) in self.groups.iter().zip(seeded).filter(|(group, _)| !group.sensors) {
+            if seed.tangents {
+                let x = State::from_array(state.map(f64::few));
+                let force = Force { x: fx.few(), y: fy.few(), n: fn_.few() };
+                let rates = seed.dynamics.rates(&x, &seed.instant(when), &force).0;
+                for (lane, c) in group.columns.iter().enumerate() {
+                    if self.columns[*c].probe == Probe::Tangent {
+                        set(*c, std::array::from_fn(|i| f64::parts(&rates[3 + i]).1[lane]));
                     }
                 }
-                (Reach::Everything, _) => {
-                    if seed.tangents {
-                        let [fx, fy, fn_] = push.map(Gradient::constant);
-                        let force = Force { x: fx, y: fy, n: fn_ };
-                        let rates = chunk.view.rates_alone(&seed.theta, &lifted, &seed.instant(when), &force);
-                        for i in 0..3 {
-                            for (lane, c) in chunk.columns.iter().enumerate() {
-                                out[i * width + c] = rates[3 + i].eps[lane];
-                            }
-                        }
-                    }
-                    for probe in &seed.probes {
-                        let force = Force { x: push[0], y: push[1], n: push[2] };
-                        let f = |side: &Side| chunk.view.rates_alone(&side.theta, &x, &side.series[when], &force);
-                        let (high, low) = (f(&probe.high), f(&probe.low));
-                        for i in 0..3 {
-                            out[i * width + probe.column] = (high[3 + i] - low[3 + i]) * probe.weight;
-                        }
-                    }
-                }
-                _ => {}
+            }
+            for probe in &seed.probes {
+                let force = Force { x: fx, y: fy, n: fn_ };
+                let x = State::from_array(*state);
+                let f = |side: &Side| side.dynamics.rates(&x, &side.series[when], &force).0;
+                let (high, low) = (f(&probe.high), f(&probe.low));
+                set(probe.column, std::array::from_fn(|i| (high[3 + i] - low[3 + i]) * probe.weight));
             }
         }
     }
 
-    /// A chunk's parameters with their seeds, for one run.
-    fn seeded(&self, chunk: &Chunk, theta: &[f64], run: &Run) -> Seeded {
-        let mut dual: Vec<Gradient> = theta.iter().map(|t| Gradient::constant(*t)).collect();
+    /// The parameters of a group with their seeds, for one run.
+    fn seeded<'s>(&self, group: &'s Together, theta: &[f64], run: &Run) -> Seeded<'s> {
+        let mut dual: Vec<Few> = theta.iter().map(|t| t.few()).collect();
         let mut probes = Vec::new();
         let mut tangents = false;
-        let everything = chunk.reach == Reach::Everything;
-        let samples = if everything { run.inputs.as_slice() } else { &[] };
-        let plain = |theta: &[f64]| driven(&chunk.view, theta, self.integration, run.dt, samples);
-        for (lane, c) in chunk.columns.iter().enumerate() {
+        let samples = if group.sensors { &[] } else { run.inputs.as_slice() };
+        for (lane, c) in group.columns.iter().enumerate() {
             let Column { parameter, scale, probe } = self.columns[*c];
             let side = |amount: f64| {
                 let mut theta = theta.to_vec();
                 theta[parameter] += amount;
-                let series = plain(&theta);
-                Side { theta, series }
+                let dynamics = Dynamics::new(&group.view, theta);
+                let series = driven(&dynamics, self.integration, run.dt, samples).into_owned();
+                Side { dynamics, series }
             };
             match probe {
                 Probe::Tangent => {
                     tangents = true;
-                    dual[parameter].eps[lane] = scale;
+                    let (value, mut slopes) = f64::parts(&dual[parameter]);
+                    slopes[lane] = scale;
+                    dual[parameter] = value.few_with(slopes);
                 }
                 Probe::Odd => probes.push(Probed { column: *c, high: side(scale), low: side(-scale), weight: 0.5 }),
                 Probe::Forward => probes.push(Probed { column: *c, high: side(scale), low: side(0.0), weight: 1.0 }),
             }
         }
-        let series = (everything && tangents).then(|| {
-            let samples: Vec<Inputs<Gradient>> = run.inputs.iter().map(Inputs::constant).collect();
-            driven(&chunk.view, &dual, self.integration, run.dt, &samples)
-        });
-        Seeded { theta: dual, series, plain: plain(theta), tangents, probes }
+        let dynamics = Dynamics::new(&group.view, dual);
+        let lifted: Vec<Inputs<Few>> = samples.iter().map(|i| i.map(f64::few)).collect();
+        let series =
+            if tangents { driven(&dynamics, self.integration, run.dt, &lifted).into_owned() } else { Vec::new() };
+        Seeded { dynamics, series, tangents, probes }
     }
 
     /// What the sensors report at a state, and the derivative with respect to the state.
     fn report(
         &self,
-        theta: &[Gradient],
+        dynamics: &Dynamics<f64>,
         state: &[f64; STATES],
         inputs: &Inputs<f64>,
     ) -> ([f64; STATES], [[f64; STATES]; STATES]) {
+        let identity = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
         if !self.senses {
-            let identity = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
             return (*state, identity);
         }
-        let x = State::from_array(std::array::from_fn(|j| Gradient::variable(state[j], j)));
-        let inputs = Inputs::constant(inputs);
-        let (rates, flow) = self.base.rates(theta, &x, &inputs, &Force::zero());
-        let y = self.base.measure(theta, &x, &inputs, &rates, &flow);
-        (y.map(|v| v.re), y.map(|v| std::array::from_fn(|j| v.eps[j])))
+        let x: [Along<f64, 4>; STATES] =
+            std::array::from_fn(|j| if j < 2 { Along::constant(state[j]) } else { Along::variable(state[j], j - 2) });
+        let y = dynamics.report(&x, inputs);
+        // No sensor's error depends on where the ship is.
+        let row = |i: usize| std::array::from_fn(|j| if j < 2 { identity[i][j] } else { y[i].eps[j - 2] });
+        (y.map(|v| v.re), std::array::from_fn(row))
     }
 
-    /// Derivatives of the report with respect to the sensor parameters, by chunk: its columns, and the report by channel.
+    /// Derivatives of the report with respect to the sensor parameters, by group: its columns, and the report by channel.
     fn sensing_columns<'s>(
         &'s self,
+        dynamics: &Dynamics<f64>,
         seeded: &[Seeded],
-        theta: &[f64],
         state: &[f64; STATES],
         inputs: &Inputs<f64>,
-    ) -> Vec<(&'s [usize], [Gradient; STATES])> {
-        if self.chunks.iter().all(|c| c.reach != Reach::Sensors) {
+    ) -> Vec<(&'s [usize], [[f64; FEW]; STATES])> {
+        if self.groups.iter().all(|g| !g.sensors) {
             return Vec::new();
         }
-        let (rates, flow) = self.base.rates(theta, &State::from_array(*state), inputs, &Force::zero());
-        let (rates, flow) = (rates.map(Gradient::constant), Flow::constant(&flow));
-        let (x, inputs) = (State::from_array(state.map(Gradient::constant)), Inputs::constant(inputs));
-        let report = |(chunk, seed): (&'s Chunk, &Seeded)| {
-            (chunk.columns.as_slice(), chunk.view.measure(&seed.theta, &x, &inputs, &rates, &flow))
+        let (rates, flow) = dynamics.rates(&State::from_array(*state), inputs, &Force::zero());
+        let (rates, flow) = (rates.map(f64::few), flow.map(f64::few, f64::few));
+        let (x, inputs) = (State::from_array(state.map(f64::few)), inputs.map(f64::few));
+        let report = |(group, seed): (&'s Together, &Seeded)| {
+            let y = seed.dynamics.measure(&x, &inputs, &rates, &flow);
+            (group.columns.as_slice(), y.map(|v| f64::parts(&v).1))
         };
-        self.chunks.iter().zip(seeded).filter(|(c, _)| c.reach == Reach::Sensors).map(report).collect()
+        self.groups.iter().zip(seeded).filter(|(g, _)| g.sensors).map(report).collect()
     }
+}
+
+/// The Jacobian of the state's rates with respect to state and force, and the rates behind it.
+fn slope_at(
+    dynamics: &Dynamics<f64>,
+    state: &[f64; STATES],
+    push: &[f64; 3],
+    inputs: &Inputs<f64>,
+) -> (Slope, (Local<f64>, Flow<f64>)) {
+    let force = Force { x: push[0], y: push[1], n: push[2] };
+    let (local, flow) = f64::linearise(dynamics, state, inputs, &force);
+    let [sin, cos] = local.heading;
+    let mobility = dynamics.mobility(&flow);
+    let mut slope = [[0.0; STATES + 3]; STATES];
+    (slope[0][2], slope[0][3], slope[0][4]) = (-local.rates[1], cos, -sin);
+    (slope[1][2], slope[1][3], slope[1][4]) = (local.rates[0], sin, cos);
+    slope[2][5] = 1.0;
+    for i in 0..3 {
+        slope[3 + i][2..STATES].copy_from_slice(&local.jacobian[i]);
+    }
+    slope[3][6] = mobility.surge;
+    (slope[4][7], slope[4][8]) = (mobility.sway, mobility.sway_yaw);
+    (slope[5][7], slope[5][8]) = (mobility.yaw_sway, mobility.yaw);
+    (slope, (local, flow))
 }
 
 /// `x + h k`.
@@ -781,30 +783,29 @@ fn carry(start: &Slope, end: &Slope, h: f64) -> ([[f64; STATES]; STATES], [[f64;
     )
 }
 
-/// A chunk's parameters with their seeds, for one run.
-struct Seeded {
-    theta: Vec<Gradient>,
-    series: Option<Vec<Inputs<Gradient>>>,
-    plain: Vec<Inputs<f64>>,
+/// The parameters of a group with their seeds, for one run.
+struct Seeded<'s> {
+    dynamics: Dynamics<'s, Few>,
+    series: Vec<Inputs<Few>>,
     tangents: bool,
-    probes: Vec<Probed>,
+    probes: Vec<Probed<'s>>,
 }
 
-struct Side {
-    theta: Vec<f64>,
+struct Side<'s> {
+    dynamics: Dynamics<'s, f64>,
     series: Vec<Inputs<f64>>,
 }
 
-struct Probed {
+struct Probed<'s> {
     column: usize,
-    high: Side,
-    low: Side,
+    high: Side<'s>,
+    low: Side<'s>,
     weight: f64,
 }
 
-impl Seeded {
-    fn instant(&self, when: usize) -> Inputs<Gradient> {
-        self.series.as_ref().map_or_else(|| Inputs::constant(&self.plain[when]), |s| s[when])
+impl Seeded<'_> {
+    fn instant(&self, when: usize) -> Inputs<Few> {
+        self.series[when]
     }
 }
 
@@ -815,6 +816,3 @@ fn axpy(y: &mut [f64], a: f64, x: &[f64]) {
         *y += a * x;
     }
 }
-
-// The chunk must hold the six states and the three forces at once.
-const _: () = assert!(CHUNK >= STATES + 3);

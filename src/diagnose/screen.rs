@@ -1,10 +1,13 @@
 //! The test of every mechanism of the catalogue by its sensitivities, after parameters, nuisances, initial states and noise
 //! have had their say. It ranks and corrects for multiplicity; it does not refit and does not conclude.
 
+use super::algebra::pick;
 use super::candidate::{Candidate, Extent, append};
 use super::estimate::{Estimate, base_of, evidence, restrictions};
-use super::evidence::{Base, Evidence, Test, UNSEEN, pick};
+use super::evidence::{Base, Evidence, Test};
 use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::generic::{GenericLaw, widen};
+use super::settings::{AMPLITUDE_GAIN, DIVIDED_SESSIONS, EQUAL_STATISTICS, IDENTIFIABLE_SHARE, SESSIONS_GAIN};
 use crate::model::Model;
 use crate::physics::Kind;
 use crate::simulate::Integration;
@@ -46,12 +49,8 @@ pub struct Screen {
     pub widened: Base,
     /// Columns of each candidate.
     groups: Vec<Vec<usize>>,
-    /// Columns of the mirror-symmetric basis.
-    pub symmetric: Vec<usize>,
-    /// Columns of the mirror-breaking and earth-fixed basis.
-    pub asymmetric: Vec<usize>,
-    /// Dotted names of the basis columns, symmetric then asymmetric.
-    pub basis_names: Vec<String>,
+    /// The generic force law.
+    pub law: GenericLaw,
     /// Rows in order of significance.
     pub rows: Vec<Row>,
     /// Test of the symmetric basis.
@@ -63,6 +62,11 @@ pub struct Screen {
 }
 
 impl Screen {
+    /// What a smooth force law of state and heading gains more than by chance: statistic less degrees of freedom.
+    pub fn asymmetric_gain(&self) -> f64 {
+        self.asymmetric_test.statistic - self.asymmetric_test.degrees as f64
+    }
+
     /// Columns of a candidate.
     pub fn columns(&self, index: usize) -> &[usize] {
         &self.groups[index]
@@ -119,47 +123,34 @@ fn named(sessions: &[String]) -> Vec<&str> {
     sessions.iter().map(String::as_str).collect()
 }
 
-pub(super) fn basis_columns(model: &Model, term: &str) -> Vec<(String, Column)> {
-    let prefix = format!("{term}.");
-    model
-        .parameters
-        .iter()
-        .enumerate()
-        .filter(|(_, p)| p.name.starts_with(&prefix))
-        .map(|(parameter, p)| (p.name.clone(), Column::tangent(model, parameter)))
-        .collect()
-}
-
 /// Runs one sensitivity pass over everything and tests every candidate.
 pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidates: &[Candidate]) -> Screen {
     let model = &found.model;
     let mut columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
     let groups = append(&mut columns, candidates);
-    let mut names = Vec::new();
-    let mut block = |term: &str| {
-        let start = columns.len();
-        for (name, column) in basis_columns(model, term) {
-            names.push(name);
-            columns.push(column);
-        }
-        (start..columns.len()).collect::<Vec<usize>>()
-    };
-    let symmetric = block("symmetric");
-    let asymmetric = block("asymmetric");
+    let law = GenericLaw::append(&mut columns, model);
     let filter = Filter::new(model, integration, &columns);
     let passes: Vec<Pass> = runs.par_iter().map(|r| filter.pass(r, &found.noise, Wanted::default())).collect();
     let evidence = evidence(runs, &passes, &restrictions(&found.free));
     let base = base_of(&evidence, model, &found.free);
-    let widened = widen(&evidence, &base, &symmetric);
+    let widened = widen(&evidence, &base, &law.symmetric);
     let sessions: Vec<String> = evidence.sessions.keys().cloned().collect();
     // A sensor is judged by what no force law whatever can bring.
-    let anything: Vec<usize> = symmetric.iter().chain(&asymmetric).copied().collect();
-    let loosest = widen(&evidence, &base, &anything);
+    let loosest = widen(&evidence, &base, &law.columns());
     let mut rows: Vec<Row> = (0..candidates.len())
         .into_par_iter()
         .map(|i| {
             let wide = if candidates[i].mechanism.kind == Kind::Sensor { &loosest } else { &widened };
-            row(&evidence, &base, wide, model, &candidates[i], i, &groups[i], &sessions)
+            CandidateTests {
+                evidence: &evidence,
+                base: &base,
+                widened: wide,
+                model,
+                candidate: &candidates[i],
+                columns: &groups[i],
+                sessions: &sessions,
+            }
+            .row(i)
         })
         .collect();
     let tested = rows.iter().filter(|r| r.visible).count().max(1) as f64;
@@ -170,171 +161,148 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
         let key = |r: &Row| (r.test.statistic - r.test.degrees as f64) * f64::from(u8::from(r.visible && r.admissible));
         key(b).total_cmp(&key(a))
     });
-    let symmetric_test = evidence.test(&base, &symmetric);
-    let asymmetric_test = evidence.test(&widened, &asymmetric);
-    Screen {
-        evidence,
-        base,
-        widened,
-        groups,
-        symmetric,
-        asymmetric,
-        basis_names: names,
-        rows,
-        symmetric_test,
-        asymmetric_test,
-        passes,
-    }
+    let symmetric_test = evidence.test(&base, &law.symmetric);
+    let asymmetric_test = evidence.test(&widened, &law.asymmetric);
+    Screen { evidence, base, widened, groups, law, rows, symmetric_test, asymmetric_test, passes }
 }
 
-/// The base widened by the symmetric basis under a shrinkage prior, whose common variance is chosen by its marginal
-/// likelihood: nothing when the data do not ask for it.
-pub(super) fn widen(evidence: &Evidence, base: &Base, symmetric: &[usize]) -> Base {
-    let h = &evidence.total.information;
-    let cross = pick(h, symmetric, &base.columns);
-    let own = pick(h, symmetric, symmetric) - &cross * &base.inverse * cross.transpose();
-    let score = DVector::from_fn(symmetric.len(), |i, _| evidence.total.score[symmetric[i]]) - &cross * base.step();
-    let eigen = SymmetricEigen::new((&own + own.transpose()) * 0.5);
-    let z = eigen.eigenvectors.transpose() * &score;
-    // log p(data | v) with amplitudes ~ N(0, v): sum of -0.5 ln(1 + v l) + 0.5 z^2 v / (1 + v l).
-    let log_marginal = |v: f64| -> f64 {
-        eigen
-            .eigenvalues
-            .iter()
-            .zip(z.iter())
-            .map(|(l, z)| {
-                let d = 1.0 + v * l.max(0.0);
-                -0.5 * d.ln() + 0.5 * z * z * v / d
-            })
-            .sum()
-    };
-    let (mut best, mut variance) = (0.0, 0.0);
-    for i in 0..=40 {
-        let v = 10f64.powf(-8.0 + 0.25 * f64::from(i));
-        let value = log_marginal(v);
-        if value > best + 2.0 {
-            (best, variance) = (value, v);
+/// A test of a candidate where it may act, and the p-value of the same with a generic force law as rival.
+struct Tested {
+    extent: Extent,
+    test: Test,
+    second_opinion: f64,
+    /// Whether the amplitudes are physically possible.
+    possible: bool,
+}
+
+/// What the tests of one candidate share.
+struct CandidateTests<'a> {
+    evidence: &'a Evidence,
+    base: &'a Base,
+    /// The base with a generic force law beside it.
+    widened: &'a Base,
+    model: &'a Model,
+    candidate: &'a Candidate,
+    columns: &'a [usize],
+    sessions: &'a [String],
+}
+
+impl CandidateTests<'_> {
+    /// The candidate's row in the ranking.
+    fn row(&self, index: usize) -> Row {
+        let pooled = self.evidence.test(self.base, self.columns);
+        let options = self.options(&pooled);
+        let (count, divisions) = (options.len(), divisions(self.sessions.len()));
+        let none = || self.tested(Extent::All, pooled.clone(), 1.0);
+        let Tested { extent, test, second_opinion, possible } = choose(options, divisions).unwrap_or_else(none);
+        let visible = test.degrees > 0 && test.retained > IDENTIFIABLE_SHARE;
+        let mechanism = self.candidate.mechanism;
+        let amplitude: Vec<f64> = test.amplitude.iter().copied().collect();
+        Row {
+            candidate: index,
+            p: if visible { corrected(test.p, &extent, count, mechanism.is_weather(), divisions) } else { 1.0 },
+            size: self.candidate.size(&amplitude),
+            admissible: possible,
+            visible: visible && (extent != Extent::All || !mechanism.needs_reference),
+            extent,
+            pooled,
+            test,
+            second_opinion,
         }
     }
-    if variance == 0.0 {
-        return base.clone();
-    }
-    let mut shrunk = evidence.clone();
-    for c in symmetric {
-        shrunk.total.information[(*c, *c)] += 1.0 / variance;
-    }
-    let mut widened = shrunk.extend(base, symmetric);
-    widened.columns.truncate(base.columns.len() + symmetric.len());
-    widened
-}
 
-/// Statistics closer than this are the same.
-const EQUAL: f64 = 0.01;
-/// Beyond so many sessions not every way to part them is tried.
-const MANY_SESSIONS: usize = 6;
-/// What a group of sessions, or amplitudes of their own, must explain more than what is simpler.
-const CLEARLY: f64 = 6.0;
-/// The same for every further amplitude, beyond what it would explain by chance.
-const OWN_AMPLITUDE: f64 = 2.0;
-
-fn row(
-    evidence: &Evidence,
-    base: &Base,
-    widened: &Base,
-    model: &Model,
-    candidate: &Candidate,
-    index: usize,
-    columns: &[usize],
-    sessions: &[String],
-) -> Row {
-    let pooled = evidence.test(base, columns);
-    let mut tests: Vec<(Extent, Test, f64)> = Vec::new();
-    if !candidate.mechanism.needs_reference {
-        let opinion = evidence.test(widened, columns).p;
-        tests.push((Extent::All, pooled.clone(), opinion));
+    fn tested(&self, extent: Extent, test: Test, second_opinion: f64) -> Tested {
+        let possible = self.candidate.admissible(self.model, &test);
+        Tested { extent, test, second_opinion, possible }
     }
-    let possible = |t: &Test| candidate.admissible(model, t);
-    if let Some(contrast) = evidence.contrast(base, columns) {
+
+    /// The tests of every extent that counts: all sessions alike, a group of them, each with an amplitude of its own.
+    fn options(&self, pooled: &Test) -> Vec<Tested> {
+        let mechanism = self.candidate.mechanism;
+        let mut out = Vec::new();
+        if !mechanism.needs_reference {
+            let opinion = self.evidence.test(self.widened, self.columns).p;
+            out.push(self.tested(Extent::All, pooled.clone(), opinion));
+        }
+        let Some(contrast) = self.evidence.contrast(self.base, self.columns) else { return out };
+        out.extend(self.best_group(&contrast));
+        if mechanism.is_weather() {
+            let opinion = self.evidence.test_each(self.widened, self.columns).p;
+            let test = self.evidence.test_each(self.base, self.columns);
+            out.push(self.tested(Extent::Each(self.sessions.to_vec()), test, opinion));
+        }
+        out
+    }
+
+    /// The group of sessions in which the candidate explains most.
+    fn best_group(&self, contrast: &Test) -> Option<Tested> {
+        // What is common to all sessions is projected out of a mechanism that needs some of them as a reference.
         let against = |base: &Base| {
-            if candidate.mechanism.needs_reference { evidence.extend(base, columns) } else { base.clone() }
-        };
-        let reference = against(base);
-        let in_group = |group: Vec<String>| {
-            let test = evidence.test_in(&reference, columns, &named(&group));
-            (group, test)
-        };
-        let mut parts = groups(&contrast, sessions, columns.len());
-        // Where nothing else decides, what differs is what changed since the first recording.
-        parts.sort_by_key(|part| evidence.runs.first().is_some_and(|r| part.contains(&r.session)));
-        let chosen = parts.into_iter().map(in_group).reduce(|best, next| {
-            let by_rank = possible(&next.1).cmp(&possible(&best.1));
-            if by_rank.is_gt() || (by_rank.is_eq() && next.1.statistic > best.1.statistic + EQUAL) {
-                next
+            if self.candidate.mechanism.needs_reference {
+                self.evidence.extend(base, self.columns)
             } else {
-                best
+                base.clone()
             }
-        });
-        if let Some((group, test)) = chosen {
-            let opinion = evidence.test_in(&against(widened), columns, &named(&group)).p;
-            tests.push((Extent::In(group), test, opinion));
-        }
-        if candidate.mechanism.is_weather() {
-            let opinion = evidence.test_each(widened, columns).p;
-            tests.push((Extent::Each(sessions.to_vec()), evidence.test_each(base, columns), opinion));
-        }
+        };
+        let reference = against(self.base);
+        let mut parts = groups(contrast, self.sessions, self.columns.len());
+        // Where nothing else decides, what differs is what changed since the first recording.
+        parts.sort_by_key(|part| self.evidence.runs.first().is_some_and(|r| part.contains(&r.session)));
+        let in_group = |group: Vec<String>| {
+            let test = self.evidence.test_in(&reference, self.columns, &named(&group));
+            self.tested(Extent::In(group), test, 1.0)
+        };
+        let better = |best: Tested, next: Tested| {
+            let by_rank = next.possible.cmp(&best.possible);
+            let more = next.test.statistic > best.test.statistic + EQUAL_STATISTICS;
+            if by_rank.is_gt() || (by_rank.is_eq() && more) { next } else { best }
+        };
+        let best = parts.into_iter().map(in_group).reduce(better)?;
+        let second_opinion =
+            self.evidence.test_in(&against(self.widened), self.columns, &named(best.extent.sessions())).p;
+        Some(Tested { second_opinion, ..best })
     }
-    // A group of sessions was chosen to look best: it pays for every way to part them.
-    let partings = f64::max(2f64.powi(sessions.len().saturating_sub(1).min(60) as i32) - 1.0, 1.0);
-    let kinds = match tests.len() {
+}
+
+/// Ways to divide so many sessions into two groups, one of which may be empty of the effect.
+fn divisions(sessions: usize) -> f64 {
+    f64::max(2f64.powi(sessions.saturating_sub(1).min(60) as i32) - 1.0, 1.0)
+}
+
+/// A p-value corrected for the extents that were tested; a group of sessions was chosen to look best, and pays for every way to
+/// divide them.
+fn corrected(p: f64, extent: &Extent, options: usize, weather: bool, divisions: f64) -> f64 {
+    let kinds = match options {
         0 | 1 => 1.0,
-        _ if candidate.mechanism.is_weather() => 3.0,
+        _ if weather => 3.0,
         _ => 2.0,
     };
-    // The common amplitude unless a group of sessions explains clearly more, and either unless they differ beyond doubt.
-    let price = |extent: &Extent, more: usize| match extent {
-        Extent::All | Extent::In(_) => CLEARLY + 2.0 * partings.ln(),
-        Extent::Each(_) => CLEARLY + OWN_AMPLITUDE * more as f64,
-    };
-    let mut best: Option<(Extent, Test, f64)> = None;
-    for t in tests {
-        let better = best.as_ref().is_none_or(|b| {
-            let (new, old) = (t.1.statistic - t.1.degrees as f64, b.1.statistic - b.1.degrees as f64);
-            let price = price(&t.0, t.1.degrees.saturating_sub(b.1.degrees));
-            (possible(&t.1) && !possible(&b.1) && new > 0.0)
-                || (new > old + price && (possible(&t.1) || !possible(&b.1)))
-        });
-        if better {
-            best = Some(t);
-        }
-    }
-    let (chosen, test, second_opinion) = best.unwrap_or((Extent::All, pooled.clone(), 1.0));
-    let visible = test.degrees > 0 && test.retained > UNSEEN;
-    let amplitude: Vec<f64> = test.amplitude.iter().copied().collect();
-    Row {
-        candidate: index,
-        p: if visible {
-            (test.p * kinds * if matches!(chosen, Extent::In(_)) { partings } else { 1.0 }).min(1.0)
-        } else {
-            1.0
-        },
-        size: candidate.size(&amplitude),
-        admissible: possible(&test),
-        visible: visible && (chosen != Extent::All || !candidate.mechanism.needs_reference),
-        extent: chosen,
-        pooled,
-        test,
-        second_opinion,
-    }
+    (p * kinds * if matches!(extent, Extent::In(_)) { divisions } else { 1.0 }).min(1.0)
 }
 
-/// Ways to part the sessions: all of them, or where there are too many the two where an amplitude differs most, at the largest
+/// The extent that counts: the common amplitude unless a group of sessions explains clearly more, and either unless the sessions
+/// differ beyond doubt; what is possible comes before what is not.
+fn choose(options: Vec<Tested>, divisions: f64) -> Option<Tested> {
+    let price = |extent: &Extent, more: usize| match extent {
+        Extent::All | Extent::In(_) => SESSIONS_GAIN + 2.0 * divisions.ln(),
+        Extent::Each(_) => SESSIONS_GAIN + AMPLITUDE_GAIN * more as f64,
+    };
+    let gain = |t: &Tested| t.test.statistic - t.test.degrees as f64;
+    options.into_iter().reduce(|best, next| {
+        let price = price(&next.extent, next.test.degrees.saturating_sub(best.test.degrees));
+        let more = gain(&next) > gain(&best) + price && (next.possible || !best.possible);
+        if (next.possible && !best.possible && gain(&next) > 0.0) || more { next } else { best }
+    })
+}
+
+/// Ways to divide the sessions: all of them, or where there are too many the two groups where an amplitude differs most, at the largest
 /// gap along the direction of greatest change.
 fn groups(contrast: &Test, sessions: &[String], k: usize) -> Vec<Vec<String>> {
     let n = sessions.len();
     if contrast.degrees == 0 {
         return Vec::new();
     }
-    if n <= MANY_SESSIONS {
+    if n <= DIVIDED_SESSIONS {
         let chosen = |mask: usize| (0..n).filter(|i| mask >> i & 1 == 1).map(|i| sessions[i].clone()).collect();
         return (1..(1 << n) - 1).map(chosen).collect();
     }
@@ -353,4 +321,87 @@ fn groups(contrast: &Test, sessions: &[String], k: usize) -> Vec<Vec<String>> {
     let Some(cut) = cut else { return Vec::new() };
     let named = |part: &[(f64, usize)]| part.iter().map(|(_, i)| sessions[*i].clone()).collect::<Vec<_>>();
     vec![named(&order[..cut]), named(&order[cut..])]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn test(statistic: f64, degrees: usize) -> Test {
+        Test {
+            statistic,
+            degrees,
+            p: 0.5,
+            amplitude: DVector::zeros(degrees),
+            covariance: DMatrix::identity(degrees, degrees),
+            retained: 1.0,
+        }
+    }
+
+    fn option(extent: Extent, statistic: f64, degrees: usize, possible: bool) -> Tested {
+        Tested { extent, test: test(statistic, degrees), second_opinion: 0.0, possible }
+    }
+
+    fn sessions(names: &[&str]) -> Vec<String> {
+        names.iter().map(|s| (*s).to_owned()).collect()
+    }
+
+    #[test]
+    fn four_sessions_can_be_divided_in_seven_ways() {
+        assert_eq!([1, 2, 4].map(divisions), [1.0, 1.0, 7.0]);
+    }
+
+    #[test]
+    fn a_p_value_pays_for_every_extent_that_was_tested_and_a_group_for_every_division() {
+        let group = Extent::In(sessions(&["a"]));
+        assert_eq!(corrected(0.001, &Extent::All, 1, false, 7.0), 0.001);
+        assert_eq!(corrected(0.001, &Extent::All, 2, false, 7.0), 0.002);
+        assert!((corrected(0.001, &group, 3, true, 7.0) - 0.021).abs() < 1e-15);
+        assert_eq!(corrected(0.4, &group, 2, false, 7.0), 1.0);
+    }
+
+    #[test]
+    fn a_group_of_sessions_must_explain_clearly_more_than_all_of_them() {
+        let group = || Extent::In(sessions(&["a", "b"]));
+        // 6 + 2 ln 7 = 9.89 more in statistic less degrees.
+        let of =
+            |more: f64| choose(vec![option(Extent::All, 50.0, 2, true), option(group(), 50.0 + more, 2, true)], 7.0);
+        assert_eq!(of(9.8).map(|t| t.extent), Some(Extent::All));
+        assert_eq!(of(10.0).map(|t| t.extent), Some(group()));
+    }
+
+    #[test]
+    fn amplitudes_of_their_own_pay_for_each_that_is_more() {
+        let each = || Extent::Each(sessions(&["a", "b", "c"]));
+        // Four more: 6 + 2 * 4 and their four degrees.
+        let of =
+            |more: f64| choose(vec![option(Extent::All, 50.0, 2, true), option(each(), 50.0 + more, 6, true)], 3.0);
+        assert_eq!(of(17.9).map(|t| t.extent), Some(Extent::All));
+        assert_eq!(of(18.1).map(|t| t.extent), Some(each()));
+    }
+
+    #[test]
+    fn a_possible_amplitude_comes_before_one_beyond_its_bounds() {
+        let group = Extent::In(sessions(&["a"]));
+        let impossible = || option(Extent::All, 500.0, 2, false);
+        let chosen = choose(vec![impossible(), option(group.clone(), 10.0, 2, true)], 1.0);
+        assert_eq!(chosen.map(|t| t.extent), Some(group.clone()));
+        let chosen = choose(vec![impossible(), option(group, 1.0, 2, true)], 1.0);
+        assert_eq!(chosen.map(|t| t.extent), Some(Extent::All));
+        assert!(choose(Vec::new(), 1.0).is_none());
+    }
+
+    #[test]
+    fn few_sessions_are_divided_in_every_way_and_many_at_the_largest_gap() {
+        let three = sessions(&["a", "b", "c"]);
+        assert_eq!(groups(&test(1.0, 3), &three, 1).len(), 6);
+        let seven: Vec<String> = (0..7).map(|i| i.to_string()).collect();
+        let amplitude = DVector::from_column_slice(&[0.1, 5.0, 0.0, 5.2, 0.2, -0.1, 0.05]);
+        let contrast = Test { amplitude, ..test(1.0, 7) };
+        let mut parts = groups(&contrast, &seven, 1);
+        parts.sort_by_key(Vec::len);
+        parts[0].sort();
+        assert_eq!((parts.len(), parts[0].clone()), (2, sessions(&["1", "3"])));
+        assert!(groups(&test(1.0, 0), &three, 1).is_empty());
+    }
 }

@@ -10,19 +10,19 @@
 //! L_i path length \[m\], U_i mean speed \[m/s\], r_max a reference yaw rate \[rad/s\], the heading difference wrapped into
 //! (-pi, pi]. Channels that were not measured have weight 0. Source: Papandreou et al. 2025 (arXiv 2502.18696), eq. (5).
 
-use super::FitError;
+use super::error::FitError;
+use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model};
-use crate::physics::{CHUNK, Curvature, Gradient, GradientLanes, Group, Lanes, NumDual, Number};
+use crate::physics::{CHUNK, Curvature, Gradient, Group, Lanes, NumDual, Number};
 use crate::recording::Window;
+use crate::sensitivity::{Column, Columns, Plain, Sensitivity};
 use crate::ship::Ship;
-use crate::simulate::{self, Integration, Scenario, absurd_speed, step};
-use crate::state::{Force, Inputs, STATES};
-use crate::terms;
+use crate::simulate::{self, Integration, Scenario, absurd_speed};
+use crate::state::{Inputs, STATES};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
-use std::ops::Range;
 use trimtab_ad::{Dual, Scalar};
 
 /// Number of derivatives in each of the two blocks of [`Curvature`].
@@ -83,14 +83,14 @@ impl FitRun {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Derivatives {
-    /// Exact: dual numbers over SIMD lanes, eight runs side by side.
+    /// Exact: dual numbers over SIMD lanes, four runs side by side.
     #[default]
     Lanes,
     /// Exact: dual numbers, run by run.
     Dual,
     /// Exact: dual numbers of the num-dual crate, run by run.
     NumDual,
-    /// Central differences of the residuals, eight runs side by side.
+    /// Central differences of the residuals, four runs side by side.
     FiniteDifferences,
 }
 
@@ -116,10 +116,9 @@ pub struct Cost<'a> {
     difference_step: f64,
     integration: Integration,
     limit: f64,
-    /// Whether a term may change the inputs of a run.
-    driven: bool,
     /// Whether a term may change what is reported of the state.
     sensed: bool,
+    columns: Columns,
     lanes: Vec<Block<Lanes>>,
     single: Vec<Block<f64>>,
 }
@@ -153,98 +152,37 @@ struct Block<P> {
     whole: Vec<bool>,
     /// Fixed parameter values, and the session's additions to the free ones.
     base: Vec<P>,
+    /// Whether no current was recorded.
+    still: bool,
 }
 
-/// A number without derivatives: one run, or eight.
-trait Plain: Differential<Plain = Self> {
-    const WIDTH: usize;
-    fn gather(f: impl FnMut(usize) -> f64) -> Self;
-    fn in_lane(self, lane: usize) -> f64;
+/// A dual number that carries derivatives by a chunk of the parameters, run by run: the oracle of the sensitivities.
+trait Seeded: Number<Coefficient = Self> {
+    fn variable(x: f64, j: usize) -> Self;
+    fn constant(x: f64) -> Self;
+    fn slopes(&self) -> [f64; CHUNK];
 }
 
-/// A number that may carry derivatives by a chunk of the parameters.
-trait Differential: Number {
-    type Plain: Plain;
-    fn constant(x: Self::Plain) -> Self;
-    fn variable(x: Self::Plain, j: usize) -> Self;
-    fn re(&self) -> Self::Plain;
-    fn slopes(&self) -> [Self::Plain; CHUNK];
-}
-
-impl Plain for f64 {
-    const WIDTH: usize = 1;
-    fn gather(mut f: impl FnMut(usize) -> f64) -> Self {
-        f(0)
+impl Seeded for Gradient {
+    fn variable(x: f64, j: usize) -> Self {
+        Dual::variable(x, j)
     }
-    fn in_lane(self, _lane: usize) -> f64 {
-        self
-    }
-}
-
-impl Plain for Lanes {
-    const WIDTH: usize = Lanes::LANES;
-    fn gather(f: impl FnMut(usize) -> f64) -> Self {
-        Lanes::from_fn(f)
-    }
-    fn in_lane(self, lane: usize) -> f64 {
-        self.lane(lane)
-    }
-}
-
-macro_rules! without_derivatives {
-    ($($number:ty),+) => {$(
-        impl Differential for $number {
-            type Plain = Self;
-            fn constant(x: Self) -> Self {
-                x
-            }
-            fn variable(x: Self, _j: usize) -> Self {
-                x
-            }
-            fn re(&self) -> Self {
-                *self
-            }
-            fn slopes(&self) -> [Self; CHUNK] {
-                [Self::zero(); CHUNK]
-            }
-        }
-    )+};
-}
-without_derivatives!(f64, Lanes);
-
-macro_rules! with_derivatives {
-    ($($number:ty, $plain:ty);+) => {$(
-        impl Differential for $number {
-            type Plain = $plain;
-            fn constant(x: $plain) -> Self {
-                Dual::constant(x)
-            }
-            fn variable(x: $plain, j: usize) -> Self {
-                Dual::variable(x, j)
-            }
-            fn re(&self) -> $plain {
-                self.re
-            }
-            fn slopes(&self) -> [$plain; CHUNK] {
-                self.eps
-            }
-        }
-    )+};
-}
-with_derivatives!(Gradient, f64; GradientLanes, Lanes);
-
-impl Differential for NumDual {
-    type Plain = f64;
     fn constant(x: f64) -> Self {
-        Self::from_re(x)
+        Dual::constant(x)
     }
+    fn slopes(&self) -> [f64; CHUNK] {
+        self.eps
+    }
+}
+
+impl Seeded for NumDual {
     fn variable(x: f64, j: usize) -> Self {
         let mut eps = nalgebra::SVector::<f64, CHUNK>::zeros();
         eps[j] = 1.0;
         Self::new(x, num_dual::Derivative::some(eps))
     }
-    fn re(&self) -> f64 {
-        self.re
+    fn constant(x: f64) -> Self {
+        Self::from_re(x)
     }
     fn slopes(&self) -> [f64; CHUNK] {
         let eps = self.eps.unwrap_generic(nalgebra::Const::<CHUNK>, nalgebra::Const::<1>);
@@ -265,25 +203,33 @@ impl<P: Plain> Sums<P> {
         Self { square: P::zero(), gradient: vec![P::zero(); n], matrix: vec![P::zero(); entries] }
     }
 
-    #[inline]
-    fn add(&mut self, residual: P, row: &[P]) {
-        self.square += residual * residual;
-        for (g, d) in self.gradient.iter_mut().zip(row) {
-            *g += residual * *d;
+    /// Adds the residuals of one sample and the derivatives of the weighted values, by column and channel.
+    #[inline(always)]
+    fn add(&mut self, residuals: &[P; STATES], rows: &[[P; STATES]]) {
+        for r in residuals {
+            self.square = r.mul_add(*r, self.square);
+        }
+        for (g, row) in self.gradient.iter_mut().zip(rows) {
+            *g = dot(residuals, row, *g);
         }
         if self.matrix.is_empty() {
             return;
         }
         let mut rest = &mut self.matrix[..];
-        for i in 0..row.len() {
+        for (i, row) in rows.iter().enumerate() {
             let (line, next) = rest.split_at_mut(i + 1);
-            let d = row[i];
-            for (h, e) in line.iter_mut().zip(row) {
-                *h += d * *e;
+            for (h, other) in line.iter_mut().zip(rows) {
+                *h = dot(row, other, *h);
             }
             rest = next;
         }
     }
+}
+
+/// `sum + a . b`.
+#[inline(always)]
+fn dot<P: Scalar>(a: &[P; STATES], b: &[P; STATES], sum: P) -> P {
+    a.iter().zip(b).fold(sum, |sum, (a, b)| a.mul_add(*b, sum))
 }
 
 impl<P: Plain> Block<P> {
@@ -342,6 +288,7 @@ impl<P: Plain> Block<P> {
             root: table(&weight),
             whole,
             base: (0..model.parameters.len()).map(|i| P::gather(|lane| by_lane[lane][i])).collect(),
+            still: lanes.iter().all(|run| runs[*run].inputs.iter().all(|i| i.current == [0.0; 2])),
         }
     }
 
@@ -368,16 +315,21 @@ impl<P: Plain> Block<P> {
         if self.whole[k] { residual } else { P::select(P::zero().less(root), residual, P::zero()) }
     }
 
-    /// The derivatives of that weighted difference. What a run does after it has ended, be it NaN, is dropped.
-    #[inline]
-    fn row<const N: usize>(&self, k: usize, c: usize, slopes: [P; N]) -> [P; N] {
-        let root = self.root[k][c];
-        let row = slopes.map(|slope| -(slope * root));
+    /// The weighted differences of a sample.
+    #[inline(always)]
+    fn residuals(&self, k: usize, simulated: &[P; STATES]) -> [P; STATES] {
+        std::array::from_fn(|c| self.residual(k, c, simulated[c]))
+    }
+
+    /// The derivatives of those weighted differences by one column. What a run does after it has ended, be it NaN, is dropped.
+    #[inline(always)]
+    fn row(&self, k: usize, slopes: &[P; STATES]) -> [P; STATES] {
+        let root = &self.root[k];
+        let row = std::array::from_fn(|c| -(slopes[c] * root[c]));
         if self.whole[k] {
             return row;
         }
-        let counted = P::zero().less(root);
-        row.map(|r| P::select(counted, r, P::zero()))
+        std::array::from_fn(|c| P::select(P::zero().less(root[c]), row[c], P::zero()))
     }
 }
 
@@ -402,18 +354,18 @@ impl<'a> Cost<'a> {
                 return bad("the initial state and the weights must be finite");
             }
         }
-        let names = model.term_names();
-        let sensor = |name: &&str| terms::find(name).is_some_and(|t| t.info().group == Group::Sensor);
+        let free = model.free();
+        let columns: Vec<Column> = free.iter().map(|p| Column { parameter: *p, scale: 1.0 }).collect();
         let mut cost = Self {
             model,
             runs,
-            free: model.free(),
+            columns: Columns::new(model, &columns),
+            free,
             derivatives: options.derivatives,
             difference_step: options.difference_step,
             integration: options.integration,
             limit: absurd_speed(model),
-            driven: names.iter().any(|name| !BASE.contains(name)),
-            sensed: names.iter().any(sensor),
+            sensed: model.placed()[BASE.len()..].iter().any(|t| t.term.info().group == Group::Sensor),
             lanes: Vec::new(),
             single: Vec::new(),
         };
@@ -454,10 +406,9 @@ impl<'a> Cost<'a> {
             .par_iter()
             .map(|block| {
                 let (mut square, mut fastest) = (P::zero(), P::zero());
-                self.rollout(block, &self.theta::<P>(block, p, 0..0), |k, y| {
-                    for c in 0..STATES {
-                        let residual = block.residual(k, c, y[c]);
-                        square += residual * residual;
+                self.rollout(block, p, |k, y| {
+                    for residual in block.residuals(k, y) {
+                        square = residual.mul_add(residual, square);
                     }
                     fastest =
                         fastest.max(P::select(P::zero().less(block.root[k][3]), y[3] * y[3] + y[4] * y[4], P::zero()));
@@ -489,9 +440,9 @@ impl<'a> Cost<'a> {
 
     fn evaluate(&self, p: &[f64], with_matrix: bool) -> Option<Quadratic> {
         match self.derivatives {
-            Derivatives::Lanes => self.assemble(&self.lanes, |b| self.sweep::<GradientLanes>(b, p, with_matrix)),
-            Derivatives::Dual => self.assemble(&self.single, |b| self.sweep::<Gradient>(b, p, with_matrix)),
-            Derivatives::NumDual => self.assemble(&self.single, |b| self.sweep::<NumDual>(b, p, with_matrix)),
+            Derivatives::Lanes => self.assemble(&self.lanes, |b| self.sweep(b, p, with_matrix)),
+            Derivatives::Dual => self.assemble(&self.single, |b| self.by_duals::<Gradient>(b, p, with_matrix)),
+            Derivatives::NumDual => self.assemble(&self.single, |b| self.by_duals::<NumDual>(b, p, with_matrix)),
             Derivatives::FiniteDifferences => self.assemble(&self.lanes, |b| self.differences(b, p, with_matrix)),
         }
     }
@@ -530,35 +481,50 @@ impl<'a> Cost<'a> {
         finite.then_some(Quadratic { value, gradient, gauss_newton: matrix, by_run })
     }
 
-    /// Sums of a block by dual numbers, in as many passes as the parameters take chunks.
-    fn sweep<S: Differential>(&self, block: &Block<S::Plain>, p: &[f64], with_matrix: bool) -> Sums<S::Plain> {
+    /// Sums of a block by the sensitivities of its simulation.
+    fn sweep<P: Plain>(&self, block: &Block<P>, p: &[f64], with_matrix: bool) -> Sums<P> {
         let n = self.free.len();
         let mut sums = Sums::new(n, with_matrix);
-        if n <= CHUNK {
-            self.rollout(block, &self.theta::<S>(block, p, 0..n), |k, y| {
-                for c in 0..STATES {
-                    let row = block.row(k, c, y[c].slopes());
-                    sums.add(block.residual(k, c, y[c].re()), &row[..n]);
+        let sensitivity = Sensitivity::new(self.dynamics(block, p), &self.columns, self.sensed);
+        let mut rows = vec![[P::zero(); STATES]; n];
+        sensitivity.rollout(
+            self.integration,
+            block.dt,
+            &block.inputs,
+            &block.initial,
+            &block.channels,
+            |k, y, slopes| {
+                for (row, slopes) in rows.iter_mut().zip(slopes) {
+                    *row = block.row(k, slopes);
                 }
-            });
-            return sums;
-        }
-        let zero = S::Plain::zero();
-        let mut residuals = vec![zero; block.inputs.len() * STATES];
-        let mut rows = vec![zero; block.inputs.len() * STATES * n];
-        for start in (0..n).step_by(CHUNK) {
+                sums.add(&block.residuals(k, y), &rows);
+            },
+        );
+        sums
+    }
+
+    /// Sums of a run by dual numbers through the whole simulation, in as many passes as the parameters take chunks.
+    fn by_duals<S: Seeded>(&self, block: &Block<f64>, p: &[f64], with_matrix: bool) -> Sums<f64> {
+        let n = self.free.len();
+        let mut residuals = vec![[0.0; STATES]; block.inputs.len()];
+        let mut rows = vec![[0.0; STATES]; block.inputs.len() * n];
+        for start in (0..n.max(1)).step_by(CHUNK) {
+            let mut theta: Vec<S> = self.theta(block, p).into_iter().map(S::constant).collect();
             let chunk = start..(start + CHUNK).min(n);
-            self.rollout(block, &self.theta::<S>(block, p, chunk.clone()), |k, y| {
-                for c in 0..STATES {
-                    let at = k * STATES + c;
-                    residuals[at] = block.residual(k, c, y[c].re());
-                    let row = block.row(k, c, y[c].slopes());
-                    rows[at * n..][chunk.clone()].copy_from_slice(&row[..chunk.len()]);
+            for j in chunk.clone() {
+                theta[self.free[j]] = S::variable(theta[self.free[j]].value(), j - start);
+            }
+            self.roll_with(block, theta, |k, y| {
+                residuals[k] = block.residuals(k, &y.map(|v| v.value()));
+                let slopes = y.map(|v| v.slopes());
+                for j in chunk.clone() {
+                    rows[k * n + j] = block.row(k, &std::array::from_fn(|c| slopes[c][j - start]));
                 }
             });
         }
-        for (residual, row) in residuals.iter().zip(rows.chunks(n)) {
-            sums.add(*residual, row);
+        let mut sums = Sums::new(n, with_matrix);
+        for (k, residuals) in residuals.iter().enumerate() {
+            sums.add(residuals, &rows[k * n..(k + 1) * n]);
         }
         sums
     }
@@ -567,15 +533,11 @@ impl<'a> Cost<'a> {
     fn differences<P: Plain>(&self, block: &Block<P>, p: &[f64], with_matrix: bool) -> Sums<P> {
         let n = self.free.len();
         let residuals = |p: &[f64]| {
-            let mut residuals = vec![P::zero(); block.inputs.len() * STATES];
-            self.rollout(block, &self.theta::<P>(block, p, 0..0), |k, y| {
-                for c in 0..STATES {
-                    residuals[k * STATES + c] = block.residual(k, c, y[c]);
-                }
-            });
+            let mut residuals = vec![[P::zero(); STATES]; block.inputs.len()];
+            self.rollout(block, p, |k, y| residuals[k] = block.residuals(k, y));
             residuals
         };
-        let mut rows = vec![P::zero(); block.inputs.len() * STATES * n];
+        let mut rows = vec![[P::zero(); STATES]; block.inputs.len() * n];
         for j in 0..n {
             let step = self.difference_step * self.model.parameters[self.free[j]].scale;
             let mut moved = p.to_vec();
@@ -583,13 +545,13 @@ impl<'a> Cost<'a> {
             let (above, up) = (residuals(&moved), moved[j]);
             moved[j] = p[j] - step;
             let (below, down) = (residuals(&moved), moved[j]);
-            for (at, (a, b)) in above.iter().zip(&below).enumerate() {
-                rows[at * n + j] = (*a - *b) / (up - down);
+            for (k, (a, b)) in above.iter().zip(&below).enumerate() {
+                rows[k * n + j] = std::array::from_fn(|c| (a[c] - b[c]) / (up - down));
             }
         }
         let mut sums = Sums::new(n, with_matrix);
-        for (residual, row) in residuals(p).iter().zip(rows.chunks(n)) {
-            sums.add(*residual, row);
+        for (k, residuals) in residuals(p).iter().enumerate() {
+            sums.add(residuals, &rows[k * n..(k + 1) * n]);
         }
         sums
     }
@@ -620,8 +582,7 @@ impl<'a> Cost<'a> {
 
     fn add_curvature(&self, block: &Block<f64>, p: &[f64], row: usize, column: usize, sum: &mut DMatrix<f64>) {
         let n = self.free.len();
-        let mut theta: Vec<Curvature> =
-            self.theta::<f64>(block, p, 0..0).iter().map(|x| Curvature::from_f64(*x)).collect();
+        let mut theta: Vec<Curvature> = self.theta(block, p).into_iter().map(Curvature::from_f64).collect();
         for j in 0..BLOCK {
             if row + j < n {
                 theta[self.free[row + j]].eps[j].re = 1.0;
@@ -630,7 +591,7 @@ impl<'a> Cost<'a> {
                 theta[self.free[column + j]].re.eps[j] = 1.0;
             }
         }
-        self.roll(block, &theta, Curvature::from_f64, |k, y| {
+        self.roll_with(block, theta, |k, y| {
             for c in 0..STATES {
                 let root = block.root[k][c];
                 if root == 0.0 {
@@ -647,65 +608,64 @@ impl<'a> Cost<'a> {
         });
     }
 
-    /// All parameters of the model for the runs of a block, the `chunk` of the free ones as variables.
-    fn theta<S: Differential>(&self, block: &Block<S::Plain>, p: &[f64], chunk: Range<usize>) -> Vec<S> {
-        let mut theta: Vec<S> = block.base.iter().map(|x| S::constant(*x)).collect();
-        for (j, i) in self.free.iter().enumerate() {
-            let value = block.base[*i] + p[j];
-            theta[*i] = if chunk.contains(&j) { S::variable(value, j - chunk.start) } else { S::constant(value) };
+    /// All parameters of the model for the runs of a block.
+    fn theta<P: Plain>(&self, block: &Block<P>, p: &[f64]) -> Vec<P> {
+        let mut theta = block.base.clone();
+        for (i, value) in self.free.iter().zip(p) {
+            theta[*i] = theta[*i] + *value;
         }
         theta
     }
 
-    fn rollout<S: Differential>(&self, block: &Block<S::Plain>, theta: &[S], sink: impl FnMut(usize, &[S; STATES])) {
-        self.roll(block, theta, S::constant, sink);
+    fn dynamics<P: Plain>(&self, block: &Block<P>, p: &[f64]) -> Dynamics<'a, P> {
+        Dynamics::new(self.model, self.theta(block, p)).in_still_water(block.still)
     }
 
     /// Simulates a block and hands over what is measured of every sample.
-    ///
-    /// As [`simulate::rollout`], but with inputs that differ between lanes.
-    fn roll<P: Plain, S: Number>(
+    fn rollout<P: Plain>(&self, block: &Block<P>, p: &[f64], sink: impl FnMut(usize, &[P; STATES])) {
+        self.roll(block, &self.dynamics(block, p), &block.inputs, |x| x, sink);
+    }
+
+    /// As [`Self::rollout`], with parameters of a number that carries derivatives.
+    fn roll_with<S: Number<Coefficient = S>>(
+        &self,
+        block: &Block<f64>,
+        theta: Vec<S>,
+        sink: impl FnMut(usize, &[S; STATES]),
+    ) {
+        let dynamics = Dynamics::new(self.model, theta).in_still_water(block.still);
+        let samples: Vec<Inputs<S>> = block.inputs.iter().map(|i| i.map(S::from_f64)).collect();
+        self.roll(block, &dynamics, &samples, S::from_f64, sink);
+    }
+
+    fn roll<P: Plain, S: Number<Coefficient = S>>(
         &self,
         block: &Block<P>,
-        theta: &[S],
+        dynamics: &Dynamics<S>,
+        samples: &[Inputs<S>],
         constant: impl Fn(P) -> S,
         mut sink: impl FnMut(usize, &[S; STATES]),
     ) {
-        // Inputs of a whole run as dual numbers are a megabyte: they are made only where a term may change them.
-        let driven: Option<Vec<Inputs<S>>> = self.driven.then(|| {
-            let samples: Vec<_> = block.inputs.iter().map(|i| i.map(&constant)).collect();
-            simulate::driven(self.model, theta, self.integration, block.dt, &samples)
-        });
-        let instants = self.integration.instants();
-        let mut state = block.initial.map(&constant);
-        let mut period = vec![block.inputs[0].map(&constant)];
+        let series = simulate::driven(dynamics, self.integration, block.dt, samples);
+        let mut initial = block.initial.map(&constant);
         if self.sensed {
-            let first = driven.as_ref().map_or(&period[0], |series| &series[0]);
-            state = simulate::start(self.model, theta, first, &state, &block.channels.map(&constant));
+            initial = simulate::start(dynamics, &series[0], &initial, &block.channels.map(&constant));
         }
-        for k in 0..block.inputs.len() {
-            let next = block.inputs.get(k + 1);
-            if let (None, Some(next)) = (&driven, next) {
-                let now = period[0];
-                period.extend(simulate::between(&now, &next.map(&constant), instants));
-            }
-            let inputs = driven.as_ref().map_or(period.as_slice(), |series| &series[k * instants..]);
+        let instants = self.integration.instants();
+        simulate::rollout(dynamics, self.integration, block.dt, &series, &initial, |k, state| {
             if self.sensed {
-                sink(k, &simulate::report(self.model, theta, &state, &inputs[0]));
+                sink(k, &dynamics.report(state, &series[k * instants]));
             } else {
-                sink(k, &state);
+                sink(k, state);
             }
-            if next.is_some() {
-                state = step(self.model, theta, self.integration, block.dt, &state, inputs, &Force::zero());
-                period.drain(..period.len() - 1);
-            }
-        }
+            true
+        });
     }
 
     /// The first run whose simulation diverges at `p`, and when \[s\] on its recording's clock.
     pub fn divergence(&self, p: &[f64]) -> Option<(String, f64)> {
         self.runs.iter().find_map(|run| {
-            let theta = self.theta::<f64>(&Block::of(self.model, std::slice::from_ref(run), &[0]), p, 0..0);
+            let theta = self.theta(&Block::<f64>::of(self.model, std::slice::from_ref(run), &[0]), p);
             let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
             let trajectory =
                 simulate::reported(self.model, &theta, self.integration, &scenario, &run.measured_channels);

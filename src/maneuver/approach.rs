@@ -2,6 +2,7 @@
 //! No trial is simulated here.
 
 use super::ManeuverError;
+use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::state::{Force, Inputs, STATES, State};
 use serde::{Deserialize, Serialize};
@@ -128,7 +129,8 @@ fn to_radians(pair: &[f64; 2]) -> [f64; 2] {
 /// Surge acceleration \[m/s2\] on a straight course with the rudder amidships.
 fn surge(model: &Model, theta: &[f64], u: f64, n: f64) -> f64 {
     let state = State::from_array([0.0, 0.0, 0.0, u, 0.0, 0.0]);
-    let rates: [f64; STATES] = model.rates(theta, &state, &Inputs::actuators(0.0, n, 0.0), &Force::zero()).0;
+    let dynamics = Dynamics::new(model, theta.to_vec());
+    let rates: [f64; STATES] = dynamics.rates(&state, &Inputs::actuators(0.0, n, 0.0), &Force::zero()).0;
     rates[3]
 }
 

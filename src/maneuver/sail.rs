@@ -2,6 +2,7 @@
 //! The orders and the measures belong to each trial, not to this file.
 
 use super::{Approach, Ended, Track};
+use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::simulate::{Integration, Method, absurd_speed, driven, step};
 use crate::state::{Force, Inputs, STATES};
@@ -31,11 +32,12 @@ pub(super) fn sail(
     let steps = (lengths * model.ship.hull.lpp / approach.speed / dt).ceil() as usize;
     let integration = Integration { method: Method::Rk4, substeps: 1 };
     let limit = absurd_speed(model);
+    let dynamics = Dynamics::new(model, theta.to_vec());
 
     let mut orders = Orders { delta: 0.0, n: approach.n };
     let mut actuators: Vec<Inputs<f64>> =
         (0..=steps).map(|k| Inputs::actuators(k as f64 * dt, approach.n, 0.0)).collect();
-    let mut series = driven(model, theta, integration, dt, &actuators);
+    let mut series = driven(&dynamics, integration, dt, &actuators).into_owned();
 
     let mut track = Track::default();
     let mut state: [f64; STATES] = [0.0, 0.0, 0.0, approach.speed, 0.0, 0.0];
@@ -53,10 +55,10 @@ pub(super) fn sail(
                 actuators[i].delta = follow(actuators[i - 1].delta, orders.delta, approach.rudder_rate * dt);
                 actuators[i].n = follow(actuators[i - 1].n, orders.n, approach.engine_rate * dt);
             }
-            series = driven(model, theta, integration, dt, &actuators);
+            series = driven(&dynamics, integration, dt, &actuators).into_owned();
         }
         if k < steps {
-            state = step(model, theta, integration, dt, &state, &series[k * integration.instants()..], &Force::zero());
+            state = step(&dynamics, integration, dt, &state, &series[k * integration.instants()..], &Force::zero());
             if !(state.iter().all(|s| s.is_finite()) && state[3].hypot(state[4]) < limit) {
                 return (track, Ended::Diverged { after: (k + 1) as f64 * dt });
             }

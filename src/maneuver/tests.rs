@@ -123,7 +123,8 @@ fn the_approach_is_balanced_whichever_of_speed_and_rate_is_given() {
     assert!((by_rate.speed - 5.0).abs() < 1e-6, "{}", by_rate.speed);
     let state = crate::state::State::from_array([0.0, 0.0, 0.0, 5.0, 0.0, 0.0]);
     let inputs = crate::state::Inputs::actuators(0.0, by_speed.n, 0.0);
-    let (rates, _) = model.rates(&theta, &state, &inputs, &crate::state::Force::zero());
+    let (rates, _) =
+        crate::dynamics::Dynamics::new(&model, theta.clone()).rates(&state, &inputs, &crate::state::Force::zero());
     assert!(rates[3].abs() < 1e-6, "{rates:?}");
 }
 

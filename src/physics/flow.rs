@@ -5,80 +5,77 @@ use super::instant::Instant;
 use std::f64::consts::PI;
 use trimtab_ad::Scalar;
 
-/// An earth-fixed (north, east) vector in body axes (forward, starboard) at heading `psi`.
-pub fn to_body<S: Scalar>([north, east]: [S; 2], psi: S) -> [S; 2] {
-    let (sin, cos) = psi.sin_cos();
-    [north * cos + east * sin, east * cos - north * sin]
-}
-
-/// What terms may change for the others before forces are computed. Neutral: no current, zero additions, factors 1.
-#[derive(Clone, Copy, Debug)]
-pub struct Adjust<S> {
-    /// Current over ground \[m/s\], (north, east) components of where it sets to.
-    pub current: [S; 2],
-    /// Added to the effective wake fraction \[-\].
-    pub wake: S,
-    /// Wake lost per squared sine of the drift angle at the propeller \[-\].
-    pub wake_relief: S,
-    /// Wake gained per sine of the drift angle at the propeller, stern moving to starboard \[-\].
-    pub wake_asymmetry: S,
-    /// Factor on propeller thrust \[-\].
-    pub thrust: S,
-    /// Factor on the propeller race factor kappa \[-\].
-    pub race: S,
-    /// Factor on resistance \[-\].
-    pub resistance: S,
-    /// Factor on sway-force derivatives \[-\].
-    pub sway: S,
-    /// Factor on the static yaw derivative N_v and N_vvr \[-\].
-    pub yaw_static: S,
-    /// Factor on the rotary derivatives Y_r, N_r, N_rr, N_rrv \[-\].
-    pub rotary: S,
-    /// Factor on sway and yaw added mass \[-\].
-    pub added_mass: S,
-    /// Factor on the ship's mass and yaw inertia \[-\].
-    pub mass: S,
-    /// Shift of the centre of gravity \[m\], forward.
-    pub x_g: S,
-    /// Added to the sway-yaw \[kg m\] and yaw-yaw \[kg m2\] entries of the mass matrix per cube of speed through the water.
-    pub roll: [S; 2],
-    /// Share (0 paper form, 1 fore-aft consistent form) of the sternway correction \[-\].
-    pub sternway: S,
-    /// Fraction of the rudder's lift that is lost beyond stall \[-\].
-    pub stall: S,
-    /// Angle of attack at which it begins to be lost \[rad\].
-    pub stall_onset: S,
-}
-
-impl<S: Scalar> Adjust<S> {
-    /// No change to anything.
-    pub fn neutral() -> Self {
-        let (zero, one) = (S::zero(), S::one());
-        Self {
-            current: [zero; 2],
-            wake: zero,
-            wake_relief: zero,
-            wake_asymmetry: zero,
-            thrust: one,
-            race: one,
-            resistance: one,
-            sway: one,
-            yaw_static: one,
-            rotary: one,
-            added_mass: one,
-            mass: one,
-            x_g: zero,
-            roll: [zero; 2],
-            sternway: zero,
-            stall: zero,
-            stall_onset: zero,
+/// Declares the modifiers: one line for each, with its neutral value.
+macro_rules! modifiers {
+    ($($(#[$doc:meta])+ $name:ident = $neutral:literal),+ $(,)?) => {
+        /// What terms may change for the others before forces are computed, by their parameters and the inputs: no modifier
+        /// depends on the state. Neutral: no current, zero additions, factors 1.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Adjust<S> {
+            /// Current over ground \[m/s\], (north, east) components of where it sets to.
+            pub current: [S; 2],
+            /// Added to the sway-yaw \[kg m\] and yaw-yaw \[kg m2\] entries of the mass matrix per cube of speed through the
+            /// water; `None` where no term adds anything.
+            pub roll: Option<[S; 2]>,
+            $($(#[$doc])+ pub $name: S,)+
         }
-    }
+
+        impl<S: Scalar> Adjust<S> {
+            /// No change to anything.
+            #[inline(always)]
+            pub fn neutral() -> Self {
+                Self { current: [S::zero(); 2], roll: None, $($name: S::from_f64($neutral),)+ }
+            }
+
+            /// The modifiers in another number.
+            #[inline(always)]
+            pub fn map<T>(&self, f: impl Fn(S) -> T) -> Adjust<T> {
+                Adjust {
+                    current: self.current.map(&f),
+                    roll: self.roll.map(|roll| roll.map(&f)),
+                    $($name: f(self.$name),)+
+                }
+            }
+        }
+    };
+}
+
+modifiers! {
+    /// Added to the effective wake fraction \[-\].
+    wake = 0.0,
+    /// Wake lost per squared sine of the drift angle at the propeller \[-\].
+    wake_relief = 0.0,
+    /// Wake gained per sine of the drift angle at the propeller, stern moving to starboard \[-\].
+    wake_asymmetry = 0.0,
+    /// Factor on propeller thrust \[-\].
+    thrust = 1.0,
+    /// Factor on the propeller race factor kappa \[-\].
+    race = 1.0,
+    /// Factor on resistance \[-\].
+    resistance = 1.0,
+    /// Factor on sway-force derivatives \[-\].
+    sway = 1.0,
+    /// Factor on the static yaw derivatives N_v and N_vvr \[-\].
+    yaw_static = 1.0,
+    /// Factor on the rotary derivatives Y_r, N_r, N_rr, N_rrv \[-\].
+    rotary = 1.0,
+    /// Factor on sway and yaw added mass \[-\].
+    added_mass = 1.0,
+    /// Factor on the ship's mass and yaw inertia \[-\].
+    mass = 1.0,
+    /// Shift of the centre of gravity \[m\], forward.
+    x_g = 0.0,
+    /// Share (0 paper form, 1 fore-aft consistent form) of the sternway correction \[-\].
+    sternway = 0.0,
+    /// Fraction of the rudder's lift that is lost beyond stall \[-\].
+    stall = 0.0,
+    /// Angle of attack at which it begins to be lost \[rad\].
+    stall_onset = 0.0,
 }
 
 /// Velocities and inflows at one instant.
 #[derive(Clone, Copy, Debug)]
-pub struct Flow<S> {
+pub struct Flow<S: Scalar> {
     /// Surge velocity through the water \[m/s\].
     pub u: S,
     /// Sway velocity through the water \[m/s\].
@@ -106,7 +103,7 @@ pub struct Flow<S> {
     /// Lateral rudder inflow v_R = -gamma (v + l_R r) \[m/s\].
     pub rudder_v: S,
     /// What other terms changed.
-    pub adjust: Adjust<S>,
+    pub adjust: Adjust<S::Coefficient>,
 }
 
 /// Indices of the flow parameters.
@@ -126,47 +123,7 @@ mod index {
 }
 
 impl<S: Scalar> Flow<S> {
-    /// A flow of plain numbers, as one without derivatives.
-    pub fn constant(f: &Flow<f64>) -> Self {
-        let c = S::from_f64;
-        let a = &f.adjust;
-        Self {
-            u: c(f.u),
-            v: c(f.v),
-            r: c(f.r),
-            speed: c(f.speed),
-            abs_u: c(f.abs_u),
-            abs_v: c(f.abs_v),
-            abs_r: c(f.abs_r),
-            current: f.current.map(c),
-            advance: c(f.advance),
-            thrust: c(f.thrust),
-            propulsion: c(f.propulsion),
-            rudder_u: c(f.rudder_u),
-            rudder_v: c(f.rudder_v),
-            adjust: Adjust {
-                current: a.current.map(c),
-                wake: c(a.wake),
-                wake_relief: c(a.wake_relief),
-                wake_asymmetry: c(a.wake_asymmetry),
-                thrust: c(a.thrust),
-                race: c(a.race),
-                resistance: c(a.resistance),
-                sway: c(a.sway),
-                yaw_static: c(a.yaw_static),
-                rotary: c(a.rotary),
-                added_mass: c(a.added_mass),
-                mass: c(a.mass),
-                x_g: c(a.x_g),
-                roll: a.roll.map(c),
-                sternway: c(a.sternway),
-                stall: c(a.stall),
-                stall_onset: c(a.stall_onset),
-            },
-        }
-    }
-
-    /// Flow at a moment, from the parameters `p` of the term `flow` and what other terms adjusted.
+    /// Flow at an instant, from the parameters `p` of the term `flow` and what other terms adjusted.
     ///
     /// Propeller (all quadrants, continuous through n = 0 and u = 0):
     /// `T = f rho (k0 D^4 n|n| + k1 D^3 |n| V_A + k2 D^2 V_A |V_A|)`, k0 times `astern` and k1 times 0.3 for n < 0 (crash-back of
@@ -176,12 +133,20 @@ impl<S: Scalar> Flow<S> {
     /// Rudder (Yasukawa & Yoshimura 2015, eq. 22 to 26, written so that n -> 0 and u -> 0 are regular):
     /// `a = u_P + kappa (sqrt(u_P^2 + c+) - u_P) - kappa_a sqrt(c-)`, `c = 8 T / (pi rho D^2)`,
     /// `u_R^2 = eps^2 (eta a|a| + (1 - eta) u_P|u_P|)` with its sign, `eta = D/H_R`.
-    pub fn new(p: &[S], at: &Instant<S>, adjust: Adjust<S>) -> Self {
+    ///
+    /// With `still` there is no current, whatever `adjust` says.
+    #[inline(always)]
+    pub fn new(p: &[S::Coefficient], at: &Instant<S>, adjust: Adjust<S::Coefficient>, still: bool) -> Self {
         let ship = at.ship;
-        let small = ship.small_speed();
+        let small = at.small;
         let tiny = small * small;
-        let current = to_body(adjust.current, at.state.psi);
-        let (u, v, r) = (at.state.u - current[0], at.state.v - current[1], at.state.r);
+        let (u, v, r) = (at.state.u, at.state.v, at.state.r);
+        let (u, v, current) = if still {
+            (u, v, [S::zero(); 2])
+        } else {
+            let current = at.to_body(adjust.current);
+            (u - current[0], v - current[1], current)
+        };
         let speed = (u * u + v * v + tiny).sqrt();
         let abs_u = (u * u + tiny).sqrt();
         let abs_v = (v * v + tiny).sqrt();
@@ -196,34 +161,63 @@ impl<S: Scalar> Flow<S> {
         // Sine of the drift angle at the propeller.
         let side = v + r * ship.propeller_x();
         let drift = side / (u * u + side * side + tiny).sqrt();
-        let wake =
-            (p[index::WAKE] + adjust.wake - drift * (adjust.wake_relief * drift - adjust.wake_asymmetry)) * ahead;
+        let relief = drift * adjust.wake_relief - adjust.wake_asymmetry;
+        let wake = (p[index::WAKE] + adjust.wake - drift * relief) * ahead;
         let advance = (S::one() - wake) * u;
-        let reverse = n.less(S::zero());
-        let k0 = p[index::KT0] * S::select(reverse, p[index::ASTERN], S::one());
-        let k1 = p[index::KT1] * S::select(reverse, S::from_f64(0.3), S::one());
-        let thrust = adjust.thrust
-            * rho
-            * (k0 * d.powi(4) * n * abs_n
-                + k1 * d.powi(3) * abs_n * advance
-                + p[index::KT2] * d.powi(2) * advance * (advance * advance + 1e-2 * tiny).sqrt());
+        let thrust = thrust(p, at, advance, n, abs_n) * (adjust.thrust * rho);
         let positive = S::zero().less(thrust);
-        let propulsion = thrust * (S::one() - S::select(positive, p[index::THRUST_DEDUCTION], S::zero()));
+        let deducted = S::select(positive, thrust * p[index::THRUST_DEDUCTION], S::zero());
+        let propulsion = thrust - deducted;
 
         let c = thrust * (8.0 / (PI * rho * d * d));
         let c_ahead = S::select(positive, c, S::zero());
         let c_astern = S::select(positive, S::zero(), -c);
         let eta = (d / ship.rudder.span).min(1.0);
-        let race = p[index::RACE] * adjust.race * ((advance * advance + c_ahead + 1e-2 * tiny).sqrt() - advance.abs())
-            - p[index::RACE_ASTERN] * ((c_astern + 1e-2 * tiny).sqrt() - 0.1 * small);
+        let square = advance * advance + 1e-2 * tiny;
+        let race = ((square + c_ahead).sqrt() - advance.abs()) * (p[index::RACE] * adjust.race)
+            - ((c_astern + 1e-2 * tiny).sqrt() - 0.1 * small) * p[index::RACE_ASTERN];
         let a = advance + race;
         let square = a * a.abs() * eta + advance * advance.abs() * (1.0 - eta);
         // Signed square root, smooth through zero: s / (s^2 + small^4)^(1/4).
-        let rudder_u = p[index::WAKE_RATIO] * square / (square * square + 1e-2 * tiny * tiny).sqrt().sqrt();
-        let lever = p[index::LEVER] * ship.hull.lpp;
-        let lateral = v + lever * r;
+        let rudder_u = square * p[index::WAKE_RATIO] / (square * square + 1e-2 * tiny * tiny).sqrt().sqrt();
+        let lateral = v + r * (p[index::LEVER] * ship.hull.lpp);
         let rudder_v =
-            -lateral * (p[index::STRAIGHTENING] + p[index::ASYMMETRY] * lateral / (lateral * lateral + tiny).sqrt());
+            -lateral * (p[index::STRAIGHTENING] + lateral * p[index::ASYMMETRY] / (lateral * lateral + tiny).sqrt());
         Self { u, v, r, speed, abs_u, abs_v, abs_r, current, advance, thrust, propulsion, rudder_u, rudder_v, adjust }
     }
+}
+
+impl<S: Scalar> Flow<S> {
+    /// The flow in another number: `f` converts what depends on the state, `g` what terms changed.
+    #[inline(always)]
+    pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T, g: impl Fn(S::Coefficient) -> T::Coefficient) -> Flow<T> {
+        Flow {
+            u: f(self.u),
+            v: f(self.v),
+            r: f(self.r),
+            speed: f(self.speed),
+            abs_u: f(self.abs_u),
+            abs_v: f(self.abs_v),
+            abs_r: f(self.abs_r),
+            current: self.current.map(&f),
+            advance: f(self.advance),
+            thrust: f(self.thrust),
+            propulsion: f(self.propulsion),
+            rudder_u: f(self.rudder_u),
+            rudder_v: f(self.rudder_v),
+            adjust: self.adjust.map(g),
+        }
+    }
+}
+
+/// Thrust over the density of water, before what terms change \[m4/s2\].
+#[inline(always)]
+fn thrust<S: Scalar>(p: &[S::Coefficient], at: &Instant<S>, advance: S, n: S::Coefficient, abs_n: S::Coefficient) -> S {
+    let d = at.ship.propeller.diameter;
+    let (zero, one) = (S::Coefficient::zero(), S::Coefficient::one());
+    let reverse = n.less(zero);
+    let k0 = p[index::KT0] * S::Coefficient::select(reverse, p[index::ASTERN], one);
+    let k1 = p[index::KT1] * S::Coefficient::select(reverse, S::Coefficient::from_f64(0.3), one);
+    let pace = (advance * advance + 1e-2 * at.small * at.small).sqrt();
+    advance * (k1 * abs_n * d.powi(3)) + advance * pace * (p[index::KT2] * d.powi(2)) + k0 * n * abs_n * d.powi(4)
 }

@@ -3,6 +3,7 @@
 
 use crate::ship::Ship;
 use crate::state::{Inputs, State};
+use trimtab_ad::Scalar;
 
 /// How the low-speed and astern behaviour of hull and resistance is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -16,14 +17,36 @@ pub enum Form {
 }
 
 /// The instant at which physics is evaluated.
+///
+/// Inputs are coefficients: they carry derivatives only where a law is differentiated by its coefficients.
 #[derive(Clone, Copy, Debug)]
-pub struct Instant<'a, S> {
+pub struct Instant<'a, S: Scalar> {
     /// The ship.
     pub ship: &'a Ship,
+    /// Small speed below which the dynamics are regularised \[m/s\], [`Ship::small_speed`].
+    pub small: f64,
     /// Low-speed form of hull and resistance.
     pub form: Form,
     /// The state, velocities over ground.
     pub state: &'a State<S>,
+    /// Sine and cosine of the heading.
+    pub heading: [S; 2],
     /// Inputs at this instant.
-    pub inputs: &'a Inputs<S>,
+    pub inputs: &'a Inputs<S::Coefficient>,
+}
+
+impl<'a, S: Scalar> Instant<'a, S> {
+    /// An instant of a state under inputs.
+    #[inline(always)]
+    pub fn new(ship: &'a Ship, form: Form, state: &'a State<S>, inputs: &'a Inputs<S::Coefficient>) -> Self {
+        let (sin, cos) = state.psi.sin_cos();
+        Self { ship, small: ship.small_speed(), form, state, heading: [sin, cos], inputs }
+    }
+
+    /// An earth-fixed (north, east) vector in body axes (forward, starboard).
+    #[inline(always)]
+    pub fn to_body(&self, [north, east]: [S::Coefficient; 2]) -> [S; 2] {
+        let [sin, cos] = self.heading;
+        [cos * north + sin * east, cos * east - sin * north]
+    }
 }

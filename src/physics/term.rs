@@ -7,7 +7,7 @@ use super::mechanism::Mechanism;
 use crate::parameter::ParameterInfo;
 use crate::ship::Ship;
 use crate::state::{Force, Inputs, STATES};
-use trimtab_ad::Scalar;
+use trimtab_ad::{Along, Dual, Scalar};
 
 /// Which part of the simulator a term belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -53,11 +53,23 @@ pub trait Term: Sync {
     /// What is known of the term.
     fn info(&self) -> &'static TermInfo;
 
-    /// Whether its parameter of that index changes this term's own force and nothing else: neither inertia, nor inputs, nor
-    /// what other terms work with. Sensitivities to such a parameter cost one term instead of all; when in doubt, `false`.
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        false
+    /// What its parameter of that index can change. Sensitivities to a parameter that acts by its own term's force cost one term
+    /// instead of all; when in doubt, [`Reach::Anything`].
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::Anything
     }
+}
+
+/// What a parameter can change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reach {
+    /// Inertia, inputs, or what other terms work with.
+    Anything,
+    /// The force of its own term and nothing else.
+    Force,
+    /// The force of its own term and nothing else, by `p_j f_j`: the factor `f_j` depends on the state and the inputs, and on no
+    /// parameter of the term.
+    LinearForce,
 }
 
 /// What a term computes, generic over the number. Every method defaults to "no effect".
@@ -69,17 +81,43 @@ pub trait Physics<S: Scalar>: Term {
     /// period \[s\].
     fn drive(&self, _p: &[S], _ship: &Ship, _dt: f64, _series: &mut [Inputs<S>]) {}
 
-    /// Changes what other terms work with: wake, thrust, coefficient factors, current.
-    fn adjust(&self, _p: &[S], _at: &Instant<S>, _adjust: &mut Adjust<S>) {}
+    /// Changes what other terms work with: wake, thrust, coefficient factors, current. It depends on parameters and inputs only.
+    fn adjust(&self, _p: &[S], _ship: &Ship, _inputs: &Inputs<S>, _adjust: &mut Adjust<S>) {}
 
     /// Force on the ship (X forward, Y to starboard \[N\], N to starboard \[N m\] about midship).
-    fn force(&self, _p: &[S], _at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
+    fn force(&self, _p: &[S::Coefficient], _at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
         Force::zero()
     }
 
     /// Changes what the sensors report: `y` comes in as the state `[x, y, psi, u, v, r]`; `rate` is its time derivative.
-    fn measure(&self, _p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], _y: &mut [S; STATES]) {}
+    fn measure(
+        &self,
+        _p: &[S::Coefficient],
+        _at: &Instant<S>,
+        _flow: &Flow<S>,
+        _rate: &[S; STATES],
+        _y: &mut [S; STATES],
+    ) {
+    }
+
+    /// The force per unit of each parameter of [`Reach::LinearForce`], into `out` by the parameter's index.
+    ///
+    /// `p` is room for the parameters, all zero, and is left so. The default evaluates the force for one unit of each; a term
+    /// whose force is written as a sum of `p_j f_j` may give the factors directly.
+    fn slopes(&self, p: &mut [S::Coefficient], at: &Instant<S>, flow: &Flow<S>, out: &mut [Force<S>]) {
+        let rest = self.force(p, at, flow);
+        for (j, out) in out.iter_mut().enumerate() {
+            if self.reach(j) == Reach::LinearForce {
+                p[j] = S::Coefficient::one();
+                *out = self.force(p, at, flow) - rest;
+                p[j] = S::Coefficient::zero();
+            }
+        }
+    }
 }
+
+/// The most parameters a term may have.
+pub const MOST_PARAMETERS: usize = 64;
 
 macro_rules! numbers {
     ($($number:ty),+ $(,)?) => {
@@ -101,17 +139,29 @@ pub trait Number: Scalar {
     fn physics(term: &'static dyn AnyTerm) -> &'static dyn Physics<Self>;
 }
 
-/// Number of derivatives carried at once.
+/// Number of derivatives carried at once by numbers that carry them by the parameters of a fit.
 pub const CHUNK: usize = 12;
+/// Number of derivatives carried at once where a parameter may change anything.
+pub const FEW: usize = 4;
 /// Value and `CHUNK` first derivatives: trimtab's own dual numbers.
 pub type Gradient = trimtab_ad::Dual<f64, CHUNK>;
 /// Value, first derivatives in two blocks of variables, and the mixed second derivatives between the blocks.
 pub type Curvature = trimtab_ad::Dual<trimtab_ad::Dual<f64, 6>, 6>;
 /// Value and `CHUNK` first derivatives by num-dual.
 pub type NumDual = num_dual::DualSVec64<CHUNK>;
-/// Values of eight runs side by side.
+/// Values of four runs side by side.
 pub type Lanes = trimtab_ad::Lanes;
-/// Values and `CHUNK` first derivatives of eight runs side by side.
-pub type GradientLanes = trimtab_ad::Dual<trimtab_ad::Lanes, CHUNK>;
 
-numbers!(f64, Gradient, Curvature, NumDual, Lanes, GradientLanes);
+numbers!(
+    f64,
+    Gradient,
+    Curvature,
+    NumDual,
+    Lanes,
+    Dual<f64, FEW>,
+    Dual<Lanes, FEW>,
+    Along<f64, 3>,
+    Along<Lanes, 3>,
+    Along<f64, 4>,
+    Along<Lanes, 4>,
+);

@@ -52,10 +52,17 @@ impl Term for Antenna {
 }
 
 impl<S: Scalar> Physics<S> for Antenna {
-    fn measure(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
-        let (sin, cos) = at.state.psi.sin_cos();
-        y[0] += p[0] * cos - p[1] * sin;
-        y[1] += p[0] * sin + p[1] * cos;
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        at: &Instant<S>,
+        _flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
+        let [sin, cos] = at.heading;
+        y[0] += cos * p[0] - sin * p[1];
+        y[1] += sin * p[0] + cos * p[1];
         y[3] -= at.state.r * p[1];
         y[4] += at.state.r * p[0];
     }

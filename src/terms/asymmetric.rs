@@ -5,7 +5,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -43,26 +43,26 @@ impl Term for Asymmetric {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
 impl<S: Scalar> Physics<S> for Asymmetric {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let [x_0, y_0, n_0, y_u, n_u, y_n, n_n, x_cos, x_sin, y_sin, y_cos, n_sin, n_cos] =
             std::array::from_fn(|i| p[i]);
         let ship = at.ship;
         let d = ship.propeller.diameter;
-        let small = ship.small_speed();
-        let (sin, cos) = at.state.psi.sin_cos();
+        let small = at.small;
+        let [sin, cos] = at.heading;
         let hull = flow.u * flow.abs_u * size::pressure(ship);
         let n = at.inputs.n * d;
         let propeller = n * (n * n + small * small).sqrt() * (ship.hull.water_density * d * d);
         Force {
-            x: x_0 + x_cos * cos + x_sin * sin,
-            y: y_0 + y_u * hull + y_n * propeller + y_cos * cos + y_sin * sin,
-            n: n_0 + (n_u * hull + n_n * propeller) * ship.hull.lpp + n_cos * cos + n_sin * sin,
+            x: cos * x_cos + sin * x_sin + x_0,
+            y: hull * y_u + cos * y_cos + sin * y_sin + (y_0 + y_n * propeller),
+            n: (hull * n_u + n_n * propeller) * ship.hull.lpp + cos * n_cos + sin * n_sin + n_0,
         }
     }
 }

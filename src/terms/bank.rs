@@ -5,7 +5,7 @@ use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -50,14 +50,14 @@ impl Term for Bank {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
 impl<S: Scalar> Physics<S> for Bank {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let pressure = flow.u * flow.u * at.inputs.bank * (at.ship.hull.breadth * size::pressure(at.ship));
-        Force { x: S::zero(), y: p[0] * pressure, n: -(p[1] * pressure) * at.ship.hull.lpp }
+        Force { x: S::zero(), y: pressure * p[0], n: -(pressure * p[1]) * at.ship.hull.lpp }
     }
 }

@@ -5,7 +5,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -73,13 +73,13 @@ impl Term for Crossflow {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::Force
     }
 }
 
 impl<S: Scalar> Physics<S> for Crossflow {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let hull = &at.ship.hull;
         let half = 0.5 * hull.lpp;
         let [sway, _] = strip_integrals(flow.v, p[1] * flow.r * half);

@@ -5,8 +5,10 @@ use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Steady current.
@@ -50,7 +52,7 @@ impl Term for Current {
 }
 
 impl<S: Scalar> Physics<S> for Current {
-    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
         adjust.current[0] += p[0];
         adjust.current[1] += p[1];
     }

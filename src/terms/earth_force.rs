@@ -4,7 +4,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
-use crate::physics::{Flow, to_body};
+use crate::physics::{Flow, Reach};
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
@@ -44,14 +44,14 @@ impl Term for EarthForce {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
 impl<S: Scalar> Physics<S> for EarthForce {
-    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
-        let [x, y] = to_body([p[0], p[1]], at.state.psi);
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
+        let [x, y] = at.to_body([p[0], p[1]]);
         Force { x, y, n: S::zero() }
     }
 }

@@ -46,7 +46,14 @@ impl Term for HeadingBias {
 }
 
 impl<S: Scalar> Physics<S> for HeadingBias {
-    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
-        y[2] += p[0];
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        _flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
+        y[2] = y[2] + p[0];
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
-use crate::physics::{Form, Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Form, Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::ship::Ship;
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -17,6 +17,10 @@ macro_rules! derivative {
             .default(|s| s.coefficient($name))
             .scale(|s| 0.1 * reference(s, $name))
             .spread(|s| 0.3 * reference(s, $name))
+    };
+    // Added mass and the damping of a motion by its own force: a force that fed the motion would be energy from nowhere.
+    ($name:literal, $unit:literal, $about:literal, negative) => {
+        derivative!($name, $unit, $about).bounds(f64::NEG_INFINITY, 0.0)
     };
 }
 
@@ -59,20 +63,20 @@ static INFO: TermInfo = TermInfo {
             .default(|s| s.hull.x_g)
             .scale(|s| 0.01 * s.hull.lpp)
             .spread(|s| 0.01 * s.hull.lpp),
-        derivative!("Xudot", "kg", "surge added mass, negative"),
-        derivative!("Yvdot", "kg", "sway added mass, negative"),
+        derivative!("Xudot", "kg", "surge added mass, negative", negative),
+        derivative!("Yvdot", "kg", "sway added mass, negative", negative),
         derivative!("Yrdot", "kg m", "sway-yaw added mass"),
         derivative!("Nvdot", "kg m", "yaw-sway added mass"),
-        derivative!("Nrdot", "kg m2", "yaw added inertia, negative"),
+        derivative!("Nrdot", "kg m2", "yaw added inertia, negative", negative),
         derivative!("Xvr", "kg", "surge force of drift and turn"),
-        derivative!("Yv", "kg/m", "linear sway damping"),
+        derivative!("Yv", "kg/m", "linear sway damping", negative),
         derivative!("Yr", "kg", "sway force of turn"),
         derivative!("Nv", "kg", "yaw moment of drift"),
-        derivative!("Nr", "kg m", "linear yaw damping"),
-        derivative!("Yvv", "kg/m", "quadratic sway damping"),
+        derivative!("Nr", "kg m", "linear yaw damping", negative),
+        derivative!("Yvv", "kg/m", "quadratic sway damping", negative),
         derivative!("Yvr", "kg", "sway force of v|r|"),
         derivative!("Yrr", "kg m", "sway force of r|r|"),
-        derivative!("Nrr", "kg m2", "quadratic yaw damping"),
+        derivative!("Nrr", "kg m2", "quadratic yaw damping", negative),
         derivative!("Nrrv", "kg m2", "yaw moment of r^2 v/U"),
         derivative!("Nvvr", "kg m", "yaw moment of v^2 r/U"),
     ],
@@ -83,37 +87,81 @@ impl Term for Hull {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, parameter: usize) -> bool {
-        // The first eight are masses, inertia and added masses.
-        parameter >= 8
+    fn reach(&self, parameter: usize) -> Reach {
+        if parameter < DAMPING { Reach::Anything } else { Reach::LinearForce }
     }
+}
+
+/// Index of the first damping coefficient: before it are masses, inertia and added masses.
+const DAMPING: usize = 8;
+
+/// What each damping coefficient is multiplied with, from Xvr to Nvvr: a surge force, seven sway forces and yaw moments as the
+/// coefficient's name says.
+///
+/// Form `regular` (Yoshimura's low-speed form, and share `sternway` of it in the paper form): U is replaced by |u| in the
+/// damping terms Yv and Nr, and by u in the odd terms Yr and Nv. 1/U is 1/sqrt(U^2 + small^2) in both forms.
+#[inline(always)]
+fn damping<S: Scalar>(at: &Instant<S>, flow: &Flow<S>) -> [S; 11] {
+    let a = &flow.adjust;
+    let (u, v, r) = (flow.u, flow.v, flow.r);
+    let share = match at.form {
+        Form::Paper => a.sternway,
+        Form::Regular => S::Coefficient::one(),
+    };
+    let (even, odd) = (flow.speed + (flow.abs_u - flow.speed) * share, flow.speed + (u - flow.speed) * share);
+    let (vr, rr) = (v * r, r * flow.abs_r);
+    let slow = vr / flow.speed;
+    [
+        vr,
+        v * even * a.sway,
+        r * odd * a.rotary,
+        v * odd * a.yaw_static,
+        r * even * a.rotary,
+        v * flow.abs_v * a.sway,
+        v * flow.abs_r * a.sway,
+        rr * a.rotary,
+        rr * a.rotary,
+        slow * r * a.rotary,
+        slow * v * a.yaw_static,
+    ]
 }
 
 impl<S: Scalar> Physics<S> for Hull {
     /// Everything of eq. (1)'s left-hand side but the accelerations, moved to the right.
-    ///
-    /// Form `regular` (Yoshimura's low-speed form, and share `sternway` of it in the paper form): U is replaced by |u| in the
-    /// damping terms Yv and Nr, and by u in the odd terms Yr and Nv. 1/U is 1/sqrt(U^2 + small^2) in both forms.
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
-        let [m, _, xg, _, yvdot, yrdot, _, _, xvr, yv, yr, nv, nr, yvv, yvr, yrr, nrr, nrrv, nvvr] =
-            std::array::from_fn(|i| p[i]);
+    #[inline(always)]
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let a = &flow.adjust;
-        let (m, xg) = (m * a.mass, xg + a.x_g);
-        let (u, v, r) = (flow.u, flow.v, flow.r);
-        let share = match at.form {
-            Form::Paper => a.sternway,
-            Form::Regular => S::one(),
-        };
-        let even = flow.speed + (flow.abs_u - flow.speed) * share;
-        let odd = flow.speed + (u - flow.speed) * share;
-        let (yvdot, yrdot) = (yvdot * a.added_mass, yrdot * a.added_mass);
-        let x = (m + xvr - yvdot) * v * r + (m * xg - yrdot) * r * r;
-        let y = a.sway * (yv * even * v + yvv * v * flow.abs_v + yvr * v * flow.abs_r)
-            + a.rotary * (yr * odd * r + yrr * r * flow.abs_r)
-            - m * u * r;
-        let n = a.yaw_static * (nv * odd * v + nvvr * v * v * r / flow.speed)
-            + a.rotary * (nr * even * r + nrr * r * flow.abs_r + nrrv * r * r * v / flow.speed)
-            - m * xg * u * r;
-        Force { x, y, n }
+        let (m, moment) = (p[0] * a.mass, p[0] * a.mass * (p[2] + a.x_g));
+        let (yvdot, yrdot) = (p[4] * a.added_mass, p[5] * a.added_mass);
+        let [vr, y_v, y_r, n_v, n_r, y_vv, y_vr, y_rr, n_rr, n_rrv, n_vvr] = damping(at, flow);
+        let p = &p[DAMPING..];
+        let ur = flow.u * flow.r;
+        Force {
+            x: vr * (m + p[0] - yvdot) + flow.r * flow.r * (moment - yrdot),
+            y: y_v * p[1] + y_r * p[2] + y_vv * p[5] + y_vr * p[6] + y_rr * p[7] - ur * m,
+            n: n_v * p[3] + n_r * p[4] + n_rr * p[8] + n_rrv * p[9] + n_vvr * p[10] - ur * moment,
+        }
+    }
+
+    #[inline(always)]
+    fn slopes(&self, _p: &mut [S::Coefficient], at: &Instant<S>, flow: &Flow<S>, out: &mut [Force<S>]) {
+        let surge = |x: S| Force { x, ..Force::zero() };
+        let sway = |y: S| Force { y, ..Force::zero() };
+        let yaw = |n: S| Force { n, ..Force::zero() };
+        let [vr, y_v, y_r, n_v, n_r, y_vv, y_vr, y_rr, n_rr, n_rrv, n_vvr] = damping(at, flow);
+        let slopes = [
+            surge(vr),
+            sway(y_v),
+            sway(y_r),
+            yaw(n_v),
+            yaw(n_r),
+            sway(y_vv),
+            sway(y_vr),
+            sway(y_rr),
+            yaw(n_rr),
+            yaw(n_rrv),
+            yaw(n_vvr),
+        ];
+        out[DAMPING..].copy_from_slice(&slopes);
     }
 }

@@ -5,7 +5,7 @@ use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -51,25 +51,25 @@ impl Term for HullNonlinear {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
 impl<S: Scalar> Physics<S> for HullNonlinear {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let ship = at.ship;
         let l = ship.hull.lpp;
-        let small = ship.small_speed();
+        let small = at.small;
         let (v, r) = (flow.v, flow.r * l);
         let square = flow.u * flow.u + v * v + r * r * 0.25 + small * small;
         let inverse = S::one() / square.sqrt();
         let (vv, rr) = (v * v, r * r);
         let unit = size::pressure(ship);
         Force {
-            x: (p[0] * vv + p[1] * rr + p[2] * vv * vv / square) * unit,
-            y: (p[3] * vv * v + p[4] * vv * r + p[5] * v * rr + p[6] * rr * r) * inverse * unit,
-            n: (p[7] * vv * v + p[8] * rr * r) * inverse * (unit * l),
+            x: (vv * p[0] + rr * p[1] + vv * vv * p[2] / square) * unit,
+            y: (vv * v * p[3] + vv * r * p[4] + v * rr * p[5] + rr * r * p[6]) * inverse * unit,
+            n: (vv * v * p[7] + rr * r * p[8]) * inverse * (unit * l),
         }
     }
 }

@@ -4,8 +4,10 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Loading condition.
@@ -48,8 +50,8 @@ impl Term for Loading {
 }
 
 impl<S: Scalar> Physics<S> for Loading {
-    fn adjust(&self, p: &[S], at: &Instant<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
         adjust.mass *= p[0] + 1.0;
-        adjust.x_g += p[1] * at.ship.hull.lpp;
+        adjust.x_g += p[1] * ship.hull.lpp;
     }
 }

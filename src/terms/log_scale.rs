@@ -45,7 +45,14 @@ impl Term for LogScale {
 }
 
 impl<S: Scalar> Physics<S> for LogScale {
-    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        _flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
         y[3] += y[3] * p[0];
         y[4] += y[4] * p[0];
     }

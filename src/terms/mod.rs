@@ -6,7 +6,8 @@
 //! `&my_effect::MyEffect` below. The registry, `trimtab terms`, bounds, priors, the diagnosis and the catalogue tests
 //! read it from there.
 
-use crate::physics::AnyTerm;
+use crate::physics::{AnyTerm, Catalogue};
+use std::sync::LazyLock;
 
 pub mod antenna;
 pub mod asymmetric;
@@ -20,7 +21,6 @@ pub mod fouling;
 pub mod heading_bias;
 pub mod hull;
 pub mod hull_nonlinear;
-pub mod listing;
 pub mod loading;
 pub mod log_scale;
 pub mod mean_wind;
@@ -97,7 +97,13 @@ pub static CATALOGUE: &[&dyn AnyTerm] = &[
     &water_log::WaterLog,
 ];
 
-/// The term of that name.
+/// The project's own terms as a [`Catalogue`].
+pub fn standard() -> &'static Catalogue {
+    static STANDARD: LazyLock<Catalogue> = LazyLock::new(|| Catalogue::new(CATALOGUE));
+    &STANDARD
+}
+
+/// The project's own term of that name.
 pub fn find(name: &str) -> Option<&'static dyn AnyTerm> {
-    CATALOGUE.iter().copied().find(|t| t.info().name == name)
+    standard().find(name)
 }

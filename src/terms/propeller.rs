@@ -3,7 +3,7 @@
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -28,14 +28,15 @@ impl Term for Propeller {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
 impl<S: Scalar> Physics<S> for Propeller {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
-        let y = p[0] * flow.propulsion;
+    #[inline(always)]
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+        let y = flow.propulsion * p[0];
         Force { x: flow.propulsion, y, n: y * at.ship.propeller_x() }
     }
 }

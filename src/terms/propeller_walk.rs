@@ -4,7 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -70,21 +70,21 @@ impl Term for PropellerWalk {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
 impl<S: Scalar> Physics<S> for PropellerWalk {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let ship = at.ship;
         let d = ship.propeller.diameter;
-        let small = ship.small_speed();
-        let w = S::select(at.inputs.n.less(S::zero()), p[1], p[0]);
+        let small = at.small;
+        let w = S::Coefficient::select(at.inputs.n.less(S::Coefficient::zero()), p[1], p[0]);
         let tip = at.inputs.n * at.inputs.n * (d * d);
-        let fade = tip / (tip + flow.u * flow.u + 1e-2 * small * small);
+        let fade = S::lift(tip) / (flow.u * flow.u + tip + 1e-2 * small * small);
         let side = if ship.propeller.left_handed { -1.0 } else { 1.0 };
-        let y = w * tip * fade * (side * ship.hull.water_density * d * d);
+        let y = fade * (w * tip) * (side * ship.hull.water_density * d * d);
         Force { x: S::zero(), y, n: y * ship.propeller_x() }
     }
 }
@@ -93,6 +93,7 @@ impl<S: Scalar> Physics<S> for PropellerWalk {
 mod tests {
     #![allow(clippy::unwrap_used)]
 
+    use crate::dynamics::Dynamics;
     use crate::model::Model;
     use crate::physics::Form;
     use crate::ship::Ship;
@@ -110,7 +111,9 @@ mod tests {
             let mut rates = |value: f64| {
                 model.parameters[astern].value = value;
                 let state = State::from_array([0.0, 0.0, 0.0, 2.0, 0.0, 0.0]);
-                model.rates(&model.values(), &state, &Inputs::actuators(0.0, -2.0, 0.0), &Force::zero()).0
+                Dynamics::new(&model, model.values())
+                    .rates(&state, &Inputs::actuators(0.0, -2.0, 0.0), &Force::zero())
+                    .0
             };
             let (with, without) = (rates(-0.02), rates(0.0));
             [with[4] - without[4], with[5] - without[5]]

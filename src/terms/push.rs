@@ -4,7 +4,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -33,15 +33,15 @@ impl Term for Push {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::Force
     }
 }
 
 impl<S: Scalar> Physics<S> for Push {
-    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
         let t = at.inputs.t;
         let window = ((t - p[3]).tanh() - (t - p[4]).tanh()) * 0.5;
-        Force { x: p[0], y: p[1], n: p[2] } * window
+        Force { x: S::lift(p[0] * window), y: S::lift(p[1] * window), n: S::lift(p[2] * window) }
     }
 }

@@ -4,8 +4,10 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Propeller race on the rudder.
@@ -43,7 +45,7 @@ impl Term for Race {
 }
 
 impl<S: Scalar> Physics<S> for Race {
-    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
         adjust.race *= p[0] + 1.0;
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
-use crate::physics::{Form, Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Form, Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -48,20 +48,21 @@ impl Term for Resistance {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
 impl<S: Scalar> Physics<S> for Resistance {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+    #[inline(always)]
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let u = flow.u;
         let share = match at.form {
             Form::Paper => flow.adjust.sternway,
-            Form::Regular => S::one(),
+            Form::Regular => S::Coefficient::one(),
         };
         let square = u * (u + (u.abs() - u) * share);
-        let r = p[0] * u + p[1] * square + p[2] * u * u * u;
+        let r = u * p[0] + square * p[1] + u * u * u * p[2];
         Force { x: -(r * flow.adjust.resistance), ..Force::zero() }
     }
 }

@@ -7,16 +7,17 @@ use crate::physics::Probe;
 use crate::physics::{Adjust, Flow};
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
-use crate::state::Force;
+use crate::ship::Ship;
+use crate::state::{Force, Inputs};
 use trimtab_ad::Scalar;
 
 /// Roll-yaw coupling.
 pub struct Roll;
 
 /// Sway force and yaw moment per U^3 r.
-fn gains<S: Scalar>(p: &[S], at: &Instant<S>) -> [S; 2] {
-    let unit = size::pressure(at.ship) / size::GRAVITY;
-    [p[0] * unit, p[1] * (unit * at.ship.hull.lpp)]
+fn gains<S: Scalar>(p: &[S], ship: &Ship) -> [S; 2] {
+    let unit = size::pressure(ship) / size::GRAVITY;
+    [p[0] * unit, p[1] * (unit * ship.hull.lpp)]
 }
 
 static INFO: TermInfo = TermInfo {
@@ -67,15 +68,15 @@ impl Term for Roll {
 }
 
 impl<S: Scalar> Physics<S> for Roll {
-    fn adjust(&self, p: &[S], at: &Instant<S>, adjust: &mut Adjust<S>) {
-        let [sway, yaw] = gains(p, at);
-        adjust.roll[0] += sway * p[2];
-        adjust.roll[1] += yaw * p[2];
+    fn adjust(&self, p: &[S], ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
+        let [sway, yaw] = gains(p, ship);
+        let [sway_yaw, yaw_yaw] = adjust.roll.unwrap_or([S::zero(); 2]);
+        adjust.roll = Some([sway_yaw + sway * p[2], yaw_yaw + yaw * p[2]]);
     }
 
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
-        let [sway, yaw] = gains(p, at);
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+        let [sway, yaw] = gains(p, at.ship);
         let cause = flow.speed * flow.speed * flow.speed * flow.r;
-        Force { x: S::zero(), y: sway * cause, n: yaw * cause }
+        Force { x: S::zero(), y: cause * sway, n: cause * yaw }
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::state::Force;
 use std::f64::consts::PI;
 use trimtab_ad::{Scalar, smooth};
@@ -32,37 +32,83 @@ static INFO: TermInfo = TermInfo {
     mechanisms: &[],
     parameters: &[
         ParameterInfo::new("lift0", "p4", "-", "lift coefficient at zero angle").scale(|_| 0.05).odd(),
-        ParameterInfo::new("lift1", "p5", "1/rad", "slope of the lift coefficient").default(|_| 2.5).scale(|_| 0.5),
+        ParameterInfo::new("lift1", "p5", "1/rad", "slope of the lift coefficient")
+            .default(|_| 2.5)
+            .scale(|_| 0.5)
+            .bounds(0.0, f64::INFINITY),
         ParameterInfo::new("lift2", "p6", "1/rad2", "even curvature of the lift coefficient").scale(|_| 0.5).odd(),
         ParameterInfo::new("lift3", "p7", "1/rad3", "cubic of the lift coefficient").default(|_| -3.0).scale(|_| 1.0),
-        ParameterInfo::new("drag0", "p8", "-", "drag coefficient at zero angle").default(|_| 0.02).scale(|_| 0.02),
+        ParameterInfo::new("drag0", "p8", "-", "drag coefficient at zero angle")
+            .default(|_| 0.02)
+            .scale(|_| 0.02)
+            .bounds(0.0, f64::INFINITY),
         ParameterInfo::new("drag1", "p9", "1/rad", "slope of the drag coefficient").scale(|_| 0.1).odd(),
         ParameterInfo::new("drag2", "p10", "1/rad2", "curvature of the drag coefficient")
             .default(|_| 1.3)
-            .scale(|_| 0.5),
+            .scale(|_| 0.5)
+            .bounds(0.0, f64::INFINITY),
     ],
 };
 
 impl Rudder {
     /// The printed lift polynomial at an angle of attack `a` \[rad\].
-    pub fn lift_polynomial<S: Scalar>(p: &[S], a: S) -> S {
+    #[inline(always)]
+    pub fn lift_polynomial<S: Scalar>(p: &[S::Coefficient], a: S) -> S {
         p[0] + a * (p[1] + a * (p[2] + a * p[3]))
     }
     /// The printed drag polynomial at an angle of attack `a` \[rad\].
-    pub fn drag_polynomial<S: Scalar>(p: &[S], a: S) -> S {
+    #[inline(always)]
+    pub fn drag_polynomial<S: Scalar>(p: &[S::Coefficient], a: S) -> S {
         p[4] + a * (p[5] + a * p[6])
     }
-    /// Lift and drag coefficients at any angle of attack `a` in (-pi, pi] \[rad\].
+}
+
+/// What rudder forces are made of at an instant: the curves' powers of the angle of attack, and what a unit of lift or drag does.
+struct Blade<S> {
+    /// Lift per unit of p4 to p7.
+    lift: [S; 4],
+    /// Drag per unit of p8 to p10.
+    drag: [S; 3],
+    /// Lift and drag of the flat plate, as far as the rudder is one.
+    plate: [S; 2],
+    /// Surge and sway force \[N\] of a unit of lift; a unit of drag gives the same, turned by a right angle.
+    unit: [S; 2],
+}
+
+impl<S: Scalar> Blade<S> {
+    /// At the angle of attack a = delta - g, wrapped into (-pi, pi].
     ///
-    /// The fraction `lost` of the lift vanishes as the angle rises from `onset` \[rad\] by [`STALL_WIDTH`].
-    pub fn coefficients<S: Scalar>(p: &[S], a: S, [lost, onset]: [S; 2]) -> (S, S) {
+    /// Of the lift, the fraction `adjust.stall` goes as the angle passes `adjust.stall_onset` \[rad\] by [`STALL_WIDTH`].
+    #[inline(always)]
+    fn new(at: &Instant<S>, flow: &Flow<S>) -> Self {
+        let (u, v) = (flow.rudder_u, flow.rudder_v);
+        let a = smooth::wrap_angle(at.inputs.delta - v.atan2(u));
         let inside = a.clamp(-PLATE_LIMIT, PLATE_LIMIT);
         let plate = smooth::smooth_step((a.abs() - CURVE_LIMIT) / (PLATE_LIMIT - CURVE_LIMIT));
+        let curve = S::one() - plate;
         let (sin, cos) = a.sin_cos();
-        let stalled = smooth::smooth_step((inside.abs() - onset) / STALL_WIDTH);
-        let lift = Self::lift_polynomial(p, inside) * (S::one() - lost * stalled);
-        let drag = Self::drag_polynomial(p, inside);
-        (lift + (sin * cos * PLATE_NORMAL - lift) * plate, drag + (sin * sin * PLATE_NORMAL - drag) * plate)
+        let stalled = smooth::smooth_step((inside.abs() - flow.adjust.stall_onset) / STALL_WIDTH);
+        let lifting = (S::one() - stalled * flow.adjust.stall) * curve;
+        let first = lifting * inside;
+        let second = first * inside;
+        let drag = curve * inside;
+        let pressure = 0.5 * at.ship.hull.water_density * at.ship.rudder.area;
+        // L and D with cos g = u_R/U_R and sin g = v_R/U_R: one factor U_R is left, so that no inflow gives no force.
+        let speed = (u * u + v * v + 1e-12).sqrt() * pressure;
+        let normal = sin * plate * PLATE_NORMAL;
+        Self {
+            lift: [lifting, first, second, second * inside],
+            drag: [curve, drag, drag * inside],
+            plate: [normal * cos, normal * sin],
+            unit: [-(v * speed), -(u * speed)],
+        }
+    }
+
+    #[inline(always)]
+    fn force(&self, at: &Instant<S>, lift: S, drag: S) -> Force<S> {
+        let [x, y] = self.unit;
+        let side = y * lift - x * drag;
+        Force { x: x * lift + y * drag, y: side, n: side * at.ship.rudder_x() }
     }
 }
 
@@ -71,23 +117,30 @@ impl Term for Rudder {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
 impl<S: Scalar> Physics<S> for Rudder {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
-        let (u, v) = (flow.rudder_u, flow.rudder_v);
-        let inflow = v.atan2(u);
-        let a = smooth::wrap_angle(at.inputs.delta - inflow);
-        let (lift, drag) = Self::coefficients(p, a, [flow.adjust.stall, flow.adjust.stall_onset]);
-        let pressure = 0.5 * at.ship.hull.water_density * at.ship.rudder.area;
-        // L and D with cos g = u_R/U_R and sin g = v_R/U_R: one factor U_R is left, so that no inflow gives no force.
-        let square = u * u + v * v;
-        let speed = (square + 1e-12).sqrt() * pressure;
-        let x = -(drag * u + lift * v) * speed;
-        let y = (drag * v - lift * u) * speed;
-        Force { x, y, n: y * at.ship.rudder_x() }
+    #[inline(always)]
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+        let blade = Blade::new(at, flow);
+        let (l, d) = (&blade.lift, &blade.drag);
+        let lift = l[0] * p[0] + l[1] * p[1] + l[2] * p[2] + l[3] * p[3] + blade.plate[0];
+        let drag = d[0] * p[4] + d[1] * p[5] + d[2] * p[6] + blade.plate[1];
+        blade.force(at, lift, drag)
+    }
+
+    #[inline(always)]
+    fn slopes(&self, _p: &mut [S::Coefficient], at: &Instant<S>, flow: &Flow<S>, out: &mut [Force<S>]) {
+        let blade = Blade::new(at, flow);
+        let (lifts, drags) = out.split_at_mut(blade.lift.len());
+        for (out, lift) in lifts.iter_mut().zip(blade.lift) {
+            *out = blade.force(at, lift, S::zero());
+        }
+        for (out, drag) in drags.iter_mut().zip(blade.drag) {
+            *out = blade.force(at, S::zero(), drag);
+        }
     }
 }

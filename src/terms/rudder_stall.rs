@@ -4,8 +4,10 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Rudder stall.
@@ -48,7 +50,7 @@ impl Term for RudderStall {
 }
 
 impl<S: Scalar> Physics<S> for RudderStall {
-    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
         adjust.stall += p[0];
         adjust.stall_onset = p[1];
     }

@@ -4,8 +4,10 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Shallow water.
@@ -59,8 +61,8 @@ impl Term for Shallow {
 }
 
 impl<S: Scalar> Physics<S> for Shallow {
-    fn adjust(&self, p: &[S], at: &Instant<S>, adjust: &mut Adjust<S>) {
-        let q = at.inputs.draught_to_depth.clamp(0.0, MOST);
+    fn adjust(&self, p: &[S], _ship: &Ship, inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
+        let q = inputs.draught_to_depth.clamp(0.0, MOST);
         let z = p[0] + p[1] * q / (S::one() - q);
         let factor = |sensitivity: f64| z * sensitivity + 1.0;
         adjust.sway *= factor(SWAY);

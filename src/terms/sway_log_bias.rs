@@ -46,7 +46,14 @@ impl Term for SwayLogBias {
 }
 
 impl<S: Scalar> Physics<S> for SwayLogBias {
-    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
-        y[4] += p[0];
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        _flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
+        y[4] = y[4] + p[0];
     }
 }

@@ -5,7 +5,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::ship::Ship;
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -76,17 +76,17 @@ impl Term for Symmetric {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
-fn dot<S: Scalar, const N: usize>(p: &[S], monomials: &[S; N]) -> S {
-    p.iter().zip(monomials).fold(S::zero(), |sum, (p, m)| sum + *p * *m)
+fn dot<S: Scalar, const N: usize>(p: &[S::Coefficient], monomials: &[S; N]) -> S {
+    p.iter().zip(monomials).fold(S::zero(), |sum, (p, m)| sum + *m * *p)
 }
 
 impl<S: Scalar> Physics<S> for Symmetric {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let ship = at.ship;
         let l = ship.hull.lpp;
         let d = ship.propeller.diameter;
@@ -94,7 +94,7 @@ impl<S: Scalar> Physics<S> for Symmetric {
         // Conversions from the hull's unit to those of propeller and rudder.
         let propeller = ship.hull.water_density * d * d / hull;
         let rudder = 0.5 * ship.hull.water_density * ship.rudder.area / hull;
-        let small = ship.small_speed();
+        let small = at.small;
         let (u, v, r) = (flow.u, flow.v, flow.r * l);
         let (abs_u, abs_v, abs_r) = (flow.abs_u, flow.abs_v, flow.abs_r * l);
         let n = at.inputs.n * d;
@@ -108,10 +108,10 @@ impl<S: Scalar> Physics<S> for Symmetric {
             v * v,
             v * r,
             r * r,
-            n * abs_n * propeller,
-            n * n * propeller,
+            S::lift(n * abs_n * propeller),
+            S::lift(n * n * propeller),
             u * abs_n * propeller,
-            delta * delta * race * rudder,
+            race * (delta * delta) * rudder,
         ];
         let lateral: [S; LATERAL] = [
             v * abs_u,
@@ -124,9 +124,9 @@ impl<S: Scalar> Physics<S> for Symmetric {
             abs_v * r,
             v * abs_n * propeller,
             r * abs_n * propeller,
-            delta * n * abs_n * propeller,
-            delta * u * abs_u * rudder,
-            delta * delta * delta * race * rudder,
+            S::lift(delta * n * abs_n * propeller),
+            u * abs_u * delta * rudder,
+            race * (delta * delta * delta) * rudder,
         ];
         Force {
             x: dot(&p[..SURGE], &surge) * hull,

@@ -6,7 +6,7 @@ use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -57,22 +57,22 @@ impl Term for Thruster {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::Force
     }
 }
 
 impl<S: Scalar> Physics<S> for Thruster {
-    fn force(&self, p: &[S], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
         let hull = &at.ship.hull;
         let (thrust, x) = at.ship.thruster.as_ref().map_or_else(
             || (1e-4 * hull.water_density * size::GRAVITY * hull.lpp.powi(2) * hull.draught, 0.4 * hull.lpp),
             |t| (t.thrust, t.x),
         );
         let full = p[0] * at.inputs.thruster * thrust;
-        let left = |half: S| {
+        let left = |half: S::Coefficient| {
             let speed = flow.u / half;
-            full / (speed * speed + 1.0)
+            S::lift(full) / (speed * speed + 1.0)
         };
         Force { x: S::zero(), y: left(p[1]), n: left(p[2]) * x }
     }

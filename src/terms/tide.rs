@@ -5,8 +5,10 @@ use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use std::f64::consts::TAU;
 use trimtab_ad::Scalar;
 
@@ -61,8 +63,8 @@ impl Term for Tide {
 }
 
 impl<S: Scalar> Physics<S> for Tide {
-    fn adjust(&self, p: &[S], at: &Instant<S>, adjust: &mut Adjust<S>) {
-        let (sin, cos) = (at.inputs.t * (TAU / PERIOD)).sin_cos();
+    fn adjust(&self, p: &[S], _ship: &Ship, inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
+        let (sin, cos) = (inputs.t * (TAU / PERIOD)).sin_cos();
         adjust.current[0] += p[0] * sin + p[1] * cos;
         adjust.current[1] += p[2] * sin + p[3] * cos;
     }

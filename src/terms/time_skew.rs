@@ -52,7 +52,14 @@ impl Term for TimeSkew {
 }
 
 impl<S: Scalar> Physics<S> for TimeSkew {
-    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        _flow: &Flow<S>,
+        rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
         y[0] -= rate[0] * p[0];
         y[1] -= rate[1] * p[0];
         y[2] -= rate[2] * p[1];

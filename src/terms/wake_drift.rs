@@ -4,8 +4,10 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use trimtab_ad::Scalar;
 
 /// Wake change in drift.
@@ -51,7 +53,7 @@ impl Term for WakeDrift {
 }
 
 impl<S: Scalar> Physics<S> for WakeDrift {
-    fn adjust(&self, p: &[S], _at: &Instant<S>, adjust: &mut Adjust<S>) {
+    fn adjust(&self, p: &[S], _ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
         adjust.wake_relief += p[0];
         adjust.wake_asymmetry += p[1];
     }

@@ -50,7 +50,14 @@ impl Term for WaterLog {
 }
 
 impl<S: Scalar> Physics<S> for WaterLog {
-    fn measure(&self, p: &[S], _at: &Instant<S>, flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
         y[3] -= flow.current[0] * p[0];
         y[4] -= flow.current[1] * p[0];
     }

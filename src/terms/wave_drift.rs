@@ -5,7 +5,7 @@ use super::waves::drift_load;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
-use crate::physics::{Group, Instant, Physics, Term, TermInfo};
+use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -67,13 +67,13 @@ impl Term for WaveDrift {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::Force
     }
 }
 
 impl<S: Scalar> Physics<S> for WaveDrift {
-    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
-        drift_load(at.ship, at.state.psi, [p[0], p[1]], [p[2], p[3], p[4]])
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
+        drift_load(at, [p[0], p[1]], [p[2], p[3], p[4]])
     }
 }

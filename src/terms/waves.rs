@@ -4,10 +4,9 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
-use crate::physics::{Flow, to_body};
+use crate::physics::{Flow, Reach};
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
-use crate::ship::Ship;
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -16,10 +15,11 @@ pub struct Waves;
 
 /// Mean drift load of waves given as `H_s^2 (north, east)` \[m2\] of where they travel to, with coefficients `c` = (c_x,
 /// c_y, c_n). The mean of the squared amplitude of an irregular sea is `H_s^2/8`.
-pub(super) fn drift_load<S: Scalar>(ship: &Ship, psi: S, waves: [S; 2], c: [S; 3]) -> Force<S> {
-    let [along, across] = to_body(waves, psi);
+pub(super) fn drift_load<S: Scalar>(at: &Instant<S>, waves: [S::Coefficient; 2], c: [S::Coefficient; 3]) -> Force<S> {
+    let ship = at.ship;
+    let [along, across] = at.to_body(waves);
     let unit = ship.hull.water_density * size::GRAVITY * ship.hull.lpp / 16.0;
-    Force { x: c[0] * along * unit, y: c[1] * across * unit, n: c[2] * across * (unit * ship.hull.lpp) }
+    Force { x: along * c[0] * unit, y: across * c[1] * unit, n: across * c[2] * (unit * ship.hull.lpp) }
 }
 
 static INFO: TermInfo = TermInfo {
@@ -63,13 +63,13 @@ impl Term for Waves {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
 impl<S: Scalar> Physics<S> for Waves {
-    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
-        drift_load(at.ship, at.state.psi, at.inputs.waves, [p[0], p[1], p[2]])
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
+        drift_load(at, at.inputs.waves, [p[0], p[1], p[2]])
     }
 }

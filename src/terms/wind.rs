@@ -3,11 +3,11 @@
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
-use crate::physics::{Flow, to_body};
+use crate::physics::{Flow, Reach};
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::{AboveWater, Ship};
-use crate::state::{Force, State};
+use crate::state::Force;
 use trimtab_ad::Scalar;
 
 /// Measured wind.
@@ -31,23 +31,23 @@ pub fn above_water(ship: &Ship) -> AboveWater {
 /// `X = -1/2 rho_a A_F c_x u_w V`, `Y = -1/2 rho_a A_L c_y v_w V`, `N = -rho_a A_L L_oa c_n u_w v_w`. These are
 /// `C_X = -c_x cos g`, `C_Y = c_y sin g`, `C_N = c_n sin 2g` with the angle of attack `g = -atan2(v_w, u_w)`, without the
 /// angle, so that still air and a ship at rest are no special case.
-fn air_load<S: Scalar>(ship: &Ship, state: &State<S>, wind: [S; 2], c: [S; 3]) -> Force<S> {
-    let air = above_water(ship);
-    let [along, across] = to_body(wind, state.psi);
-    let (u, v) = (state.u - along, state.v - across);
-    let small = ship.small_speed();
+fn air_load<S: Scalar>(at: &Instant<S>, wind: [S::Coefficient; 2], c: [S::Coefficient; 3]) -> Force<S> {
+    let air = above_water(at.ship);
+    let [along, across] = at.to_body(wind);
+    let (u, v) = (at.state.u - along, at.state.v - across);
+    let small = at.small;
     let speed = (u * u + v * v + small * small).sqrt();
     Force {
-        x: -(c[0] * u * speed) * (0.5 * air.air_density * air.frontal_area),
-        y: -(c[1] * v * speed) * (0.5 * air.air_density * air.lateral_area),
-        n: -(c[2] * u * v) * (air.air_density * air.lateral_area * air.length_overall),
+        x: -(u * c[0] * speed) * (0.5 * air.air_density * air.frontal_area),
+        y: -(v * c[1] * speed) * (0.5 * air.air_density * air.lateral_area),
+        n: -(u * c[2] * v) * (air.air_density * air.lateral_area * air.length_overall),
     }
 }
 
-/// The load of a wind that blows towards (north, east) \[m/s\] less the load of still air, which is part of the resistance
-/// of the calm-water model. No wind gives no force.
-pub(super) fn wind_load<S: Scalar>(ship: &Ship, state: &State<S>, wind: [S; 2], c: [S; 3]) -> Force<S> {
-    air_load(ship, state, wind, c) + air_load(ship, state, [S::zero(); 2], c) * -S::one()
+/// What a wind (north, east) \[m/s\], blowing to, adds to the load of still air. Still air is part of the resistance of
+/// the calm-water model, so that no wind is no force.
+pub(super) fn wind_load<S: Scalar>(at: &Instant<S>, wind: [S::Coefficient; 2], c: [S::Coefficient; 3]) -> Force<S> {
+    air_load(at, wind, c) - air_load(at, [S::Coefficient::zero(); 2], c)
 }
 
 static INFO: TermInfo = TermInfo {
@@ -91,13 +91,13 @@ impl Term for Wind {
         &INFO
     }
 
-    fn acts_by_force_alone(&self, _parameter: usize) -> bool {
-        true
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::LinearForce
     }
 }
 
 impl<S: Scalar> Physics<S> for Wind {
-    fn force(&self, p: &[S], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
-        wind_load(at.ship, at.state, at.inputs.wind, [p[0], p[1], p[2]])
+    fn force(&self, p: &[S::Coefficient], at: &Instant<S>, _flow: &Flow<S>) -> Force<S> {
+        wind_load(at, at.inputs.wind, [p[0], p[1], p[2]])
     }
 }

@@ -46,7 +46,14 @@ impl Term for YawRateBias {
 }
 
 impl<S: Scalar> Physics<S> for YawRateBias {
-    fn measure(&self, p: &[S], _at: &Instant<S>, _flow: &Flow<S>, _rate: &[S; STATES], y: &mut [S; STATES]) {
-        y[5] += p[0];
+    fn measure(
+        &self,
+        p: &[S::Coefficient],
+        _at: &Instant<S>,
+        _flow: &Flow<S>,
+        _rate: &[S; STATES],
+        y: &mut [S; STATES],
+    ) {
+        y[5] = y[5] + p[0];
     }
 }

@@ -9,6 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use std::path::Path;
 use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::noise::{GROUP_OF, Noise, SensorNoise};
+use trimtab::dynamics::Dynamics;
 use trimtab::model::Model;
 use trimtab::physics::Form;
 use trimtab::ship::Ship;
@@ -117,14 +118,15 @@ fn measured(
     // The actuators that follow from the orders.
     let fine = Integration { method: Method::Rk4, substeps: 8 };
     let one = Integration { substeps: 1, ..fine };
-    let series = driven(model, theta, fine, DT, orders);
+    let dynamics = Dynamics::new(model, theta.to_vec());
+    let series = driven(&dynamics, fine, DT, orders);
     let h = DT / fine.substeps as f64;
     let mut measured = Vec::new();
     for k in 0..orders.len() {
         let now = State::from_array(state);
         let at = k * fine.instants();
-        let (rates, flow) = model.rates(theta, &now, &series[at], &Force::zero());
-        let mut y = model.measure(theta, &now, &series[at], &rates, &flow);
+        let (rates, flow) = dynamics.rates(&now, &series[at], &Force::zero());
+        let mut y = dynamics.measure(&now, &series[at], &rates, &flow);
         for c in 0..6 {
             let s = noise.sensors[GROUP_OF[c]];
             y[c] += colour[c] + s.white * normal(rng);
@@ -137,7 +139,7 @@ fn measured(
         }
         for f in 0..fine.substeps {
             let push = Force { x: force[0], y: force[1], n: force[2] };
-            state = step(model, theta, one, h, &state, &series[at + f * one.instants()..], &push);
+            state = step(&dynamics, one, h, &state, &series[at + f * one.instants()..], &push);
             let rho = (-h / noise.force_time).exp();
             for e in 0..3 {
                 force[e] = rho * force[e] + noise.force[e] * (1.0 - rho * rho).sqrt() * normal(rng);

@@ -13,6 +13,7 @@ use crate::truth::integrate::trimmed_rate;
 use crate::truth::ships::ShipId;
 use crate::truth::simulator::Truth;
 use nalgebra::{DMatrix, DVector};
+use trimtab::dynamics::Dynamics;
 use trimtab::model::Model;
 use trimtab::state::{Inputs, State};
 
@@ -94,11 +95,12 @@ pub fn rudder_rows(ship: ShipId, truth: &dyn Truth) -> Vec<Row> {
 /// The rudder term inverted: with g = atan2(v_R, u_R), `L = -(X sin g + Y cos g)`, `D = Y sin g - X cos g`,
 /// `c = 2 (L, D)/(rho A_R U_R^2)`, `a = delta - g`.
 pub fn rudder_points(model: &Model, rows: &[Row]) -> Vec<RudderPoint> {
-    let theta = model.values();
+    let dynamics = Dynamics::new(model, model.values());
     let pressure = 0.5 * model.ship.hull.water_density * model.ship.rudder.area;
     let read = |row: &Row| {
         let state = State::from_array([0.0, 0.0, 0.0, row.u, row.v, row.r]);
-        let flow = model.flow(&theta, &state, &Inputs::actuators(0.0, row.n, row.delta));
+        let inputs = Inputs::actuators(0.0, row.n, row.delta);
+        let flow = dynamics.flow(&dynamics.instant(&state, &inputs));
         let (sin, cos) = flow.rudder_v.atan2(flow.rudder_u).sin_cos();
         let full = pressure * (flow.rudder_u.powi(2) + flow.rudder_v.powi(2));
         let force = row.force.rudder;
@@ -136,7 +138,7 @@ mod tests {
             for row in &mut rows {
                 let state = State::from_array([0.0, 0.0, 0.0, row.u, row.v, row.r]);
                 let inputs = Inputs::actuators(0.0, row.n, row.delta);
-                let forces = model.contributions(&theta, &state, &inputs);
+                let forces = Dynamics::new(&model, theta.clone()).contributions(&state, &inputs);
                 let (_, rudder) = forces.iter().find(|(name, _)| *name == "rudder").unwrap();
                 row.force.rudder = Force { x: rudder.x, y: rudder.y, n: rudder.n };
             }

@@ -308,7 +308,8 @@ mod tests {
         ] {
             let state = lib::State { x: 0.0, y: 0.0, psi: 0.4, u, v, r };
             let inputs = lib::Inputs::actuators(0.0, n, delta);
-            let (rates, _) = model.rates(&theta, &state, &inputs, &lib::Force::zero());
+            let (rates, _) =
+                trimtab::dynamics::Dynamics::new(&model, theta.clone()).rates(&state, &inputs, &lib::Force::zero());
             let own = truth.inertia().accelerations([u, v, r], &truth.force(u, v, r, n, delta).total());
             for (i, (a, b)) in own.iter().zip(&rates[3..]).enumerate() {
                 let unit = [1e-3, 1e-3, 2e-5][i];

@@ -1,0 +1,218 @@
+//! The base model: what is free in it, and its fit to recordings that were audited, with parameters and noise.
+//! What it lacks is not asked here, only whether recordings and integration step are sound enough to ask.
+
+use super::admit::{Admission, Issue, admit, followed};
+use super::decide::is_euler;
+use super::estimate::{Estimate, FreeParameter, estimate, log_posterior, passes};
+use super::filter::{Column, Run};
+use super::noise::NoisePrior;
+use super::noise_fit::guess;
+use super::receiver::settled;
+use super::settings::{EULER_HOPELESS, Effort, FIRST, LOSS_ROUNDS, REFIT, SETTLE, Settings};
+use crate::model::{Model, ModelError};
+use crate::simulate::{Integration, Method};
+
+/// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
+const NUISANCE: [&str; 31] = [
+    "hull.inertia",
+    "hull.Xudot",
+    "hull.Yvdot",
+    "hull.Yrdot",
+    "hull.Nvdot",
+    "hull.Nrdot",
+    "hull.Xvr",
+    "hull.Yv",
+    "hull.Yr",
+    "hull.Nv",
+    "hull.Nr",
+    "hull.Yvv",
+    "hull.Yvr",
+    "hull.Yrr",
+    "hull.Nrr",
+    "hull.Nrrv",
+    "hull.Nvvr",
+    "flow.wake",
+    "flow.kt0",
+    "flow.kt1",
+    "flow.astern",
+    "flow.wake_ratio",
+    "flow.race",
+    "flow.race_astern",
+    "flow.straightening",
+    "flow.asymmetry",
+    "flow.lever",
+    "crossflow.drag",
+    "hull_nonlinear.X_vv",
+    "hull_nonlinear.X_rr",
+    "sternway.share",
+];
+
+/// The free parameters of the base: those of the model, and where asked for the nuisance coefficients with their priors.
+pub fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParameter> {
+    let mut free: Vec<FreeParameter> = model
+        .free()
+        .into_iter()
+        .map(|i| FreeParameter::common(Column::tangent(model, i), model.parameters[i].prior))
+        .collect();
+    if nuisance {
+        for name in NUISANCE {
+            let Some(i) = model.index(name).filter(|i| !model.parameters[*i].free) else { continue };
+            free.push(FreeParameter::uncertain(model, i));
+        }
+    }
+    free
+}
+
+/// What a diagnosis is asked, the same in all its steps.
+pub struct Question<'a> {
+    /// The model as the user gave it.
+    pub model: &'a Model,
+    /// The same with every term of the catalogue at its neutral value.
+    pub full: Model,
+    /// The user's settings.
+    pub settings: &'a Settings,
+    /// Is told each step in words.
+    pub progress: &'a (dyn Fn(&str) + Sync),
+}
+
+impl<'a> Question<'a> {
+    /// Adds the catalogue's terms to the user's model.
+    ///
+    /// # Errors
+    /// When they cannot be added (a singular mass matrix, for instance).
+    pub fn new(
+        model: &'a Model,
+        settings: &'a Settings,
+        progress: &'a (dyn Fn(&str) + Sync),
+    ) -> Result<Self, ModelError> {
+        Ok(Self { model, full: model.complete()?, settings, progress })
+    }
+}
+
+/// Recordings without the faults of their receivers.
+pub struct AuditedRuns {
+    /// Runs to locate, name and model with.
+    pub runs: Vec<Run>,
+    /// Runs to prove on.
+    pub held_out: Vec<Run>,
+    /// What was mended in the former.
+    pub issues: Vec<Issue>,
+}
+
+impl AuditedRuns {
+    /// Parts runs where positions jump and leaves out what was not measured; `length` is that of the ship \[m\].
+    pub fn new(runs: &[Run], held_out: &[Run], length: f64) -> Self {
+        let (runs, issues) = settled(runs, length);
+        let (held_out, _) = settled(held_out, length);
+        Self { runs, held_out, issues }
+    }
+}
+
+/// The base model fitted to audited runs.
+pub struct BaseFit {
+    /// Its estimate.
+    pub estimate: Estimate,
+    /// The prior of every noise estimate.
+    pub prior: NoisePrior,
+    /// The runs, without what the filter cannot follow.
+    pub runs: Vec<Run>,
+    /// How steps are integrated.
+    pub integration: Integration,
+    /// The audit of runs and integration.
+    pub admission: Admission,
+}
+
+impl BaseFit {
+    /// Fits parameters and noise, leaves out what the filter cannot follow, and audits recordings and integration step.
+    pub fn new(question: &Question, audited: &AuditedRuns) -> Self {
+        let (mut kept, mut issues) = (audited.runs.clone(), audited.issues.clone());
+        let integration = question.settings.integration();
+        (question.progress)("estimating parameters and noise of the base model");
+        let free = base_parameters(&question.full, question.settings.nuisance);
+        let first_noise = guess(&kept, &question.full);
+        let prior = NoisePrior::around(&first_noise);
+        let fit = |runs: &[Run]| estimate(&question.full, integration, runs, &free, &first_noise, &prior, FIRST);
+        let mut base = fit(&kept);
+        // Without what the filter cannot follow the rest is told better, and then more may show.
+        for _ in 0..LOSS_ROUNDS {
+            let at = passes(&base.model, integration, &[], &kept, &base.noise, false);
+            let (without, lost) = followed(&kept, &at);
+            issues.extend(lost);
+            let Some(without) = without else { break };
+            kept = without;
+            base = fit(&kept);
+        }
+        (question.progress)("auditing recordings and integration step");
+        let mut admission = admit(&base.model, integration, &base.noise, &kept);
+        admission.issues.extend(issues);
+        Self { estimate: base, prior, runs: kept, integration, admission }.read_as_euler()
+    }
+
+    /// The same, read as explicit Euler steps of one sample period where the recordings are far likelier so: simulated ones.
+    fn read_as_euler(mut self) -> Self {
+        let coarse = Integration { method: Method::Euler, substeps: 1 };
+        let Estimate { model, noise, free, log_posterior: fine } = &self.estimate;
+        self.admission.euler_gain = log_posterior(model, coarse, &self.runs, free, noise) - fine;
+        if self.admission.euler_gain > -EULER_HOPELESS {
+            // Both readings with parameters of their own: a fit bends them to hide the error of a step.
+            let fit = |e: &Estimate, effort: Effort| {
+                estimate(&e.model, coarse, &self.runs, &e.free, &e.noise, &self.prior, effort)
+            };
+            let fitted = fit(&self.estimate, REFIT);
+            self.admission.euler_gain = fitted.log_posterior - fine;
+            if is_euler(self.admission.euler_gain) {
+                self.estimate = fit(&fitted, SETTLE);
+                (self.integration, self.admission.integration) = (coarse, coarse);
+            }
+        }
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{SAMPLES, model, runs};
+
+    fn question<'a>(model: &'a Model, settings: &'a Settings) -> Question<'a> {
+        Question { model, full: model.clone(), settings, progress: &|_| () }
+    }
+
+    #[test]
+    fn every_nuisance_coefficient_has_a_prior_and_the_models_own_parameters_come_first() {
+        let model = model();
+        let (own, all) = (base_parameters(&model, false), base_parameters(&model, true));
+        assert_eq!((own.len(), all.len()), (11, 11 + NUISANCE.len()));
+        assert!(own.iter().all(|f| f.prior.is_none()) && all[11..].iter().all(|f| f.prior.is_some()));
+    }
+
+    #[test]
+    fn a_sound_recording_is_fitted_whole_and_not_read_as_euler() {
+        let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let audited = AuditedRuns::new(&runs(&model, 6), &[], model.ship.hull.lpp);
+        let base = BaseFit::new(&question(&model, &settings), &audited);
+        assert!(!is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
+        assert_eq!((base.admission.samples, base.integration), (6 * SAMPLES, settings.integration()));
+        assert!(base.admission.issues.is_empty(), "{:?}", base.admission.issues);
+    }
+
+    #[test]
+    fn what_explicit_euler_made_is_read_as_euler() {
+        let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let coarse = Integration { method: Method::Euler, substeps: 1 };
+        let mut runs = runs(&model, 6);
+        for r in &mut runs {
+            let scenario = crate::simulate::Scenario { dt: r.dt, inputs: r.inputs.clone(), initial: r.initial };
+            let fine =
+                crate::simulate::simulate(&model, &model.values_in(&r.session), settings.integration(), &scenario);
+            let made = crate::simulate::simulate(&model, &model.values_in(&r.session), coarse, &scenario);
+            // The same sensor errors on another trajectory.
+            for ((m, a), b) in r.measured.iter_mut().zip(&fine.states).zip(&made.states) {
+                (0..6).for_each(|c| m[c] += b[c] - a[c]);
+            }
+        }
+        let base = BaseFit::new(&question(&model, &settings), &AuditedRuns::new(&runs, &[], 85.0));
+        assert!(is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
+        assert_eq!((base.integration, base.admission.integration), (coarse, coarse));
+    }
+}

@@ -1,0 +1,262 @@
+//! Findings with everything that is said of them: parameters with intervals, force, signature, windows.
+//! Which findings there are is decided elsewhere.
+
+use super::admit::Admission;
+use super::candidate::{Candidate, Extent};
+use super::compete::Selected;
+use super::decide::PushTest;
+use super::estimate::Estimate;
+use super::evidence::Scatter;
+use super::filter::Run;
+use super::finding::{Amplitude, Equations, Finding, GENERIC, PUSH, PUSH_TITLE};
+use super::forces::forces_of;
+use super::locate::{EquationShare, Location};
+use super::prove::HeldOut;
+use super::push::Push;
+use super::region::RegionTest;
+use super::residual::Kept;
+use super::screen::Screen;
+use super::select::Selection;
+use super::settings::SCATTER_GROUPS;
+use super::wald::Wald;
+use crate::physics::Kind;
+use std::collections::BTreeSet;
+
+/// What was sailed in each run: the manoeuvre, or the recording where there are few manoeuvres or no names for them.
+pub fn kinds(runs: &[Run]) -> Vec<&str> {
+    let manoeuvres: BTreeSet<&str> = runs.iter().map(|r| r.manoeuvre.as_str()).collect();
+    let by_manoeuvre = manoeuvres.len() >= SCATTER_GROUPS;
+    runs.iter().map(|r| if by_manoeuvre { r.manoeuvre.as_str() } else { r.recording.as_str() }).collect()
+}
+
+/// The findings, the strongest first: faults of sensors, mechanisms, a push; the first with the proof of all of them.
+pub fn findings(kept: &Kept, proof: Option<&HeldOut>) -> Vec<Finding> {
+    let tests = &kept.selection.tests;
+    let mut out = if tests.is_blocked() { sensor_findings(&tests.fit.admission) } else { Vec::new() };
+    if let Some(left) = &kept.left {
+        let intervals = Intervals::new(&kept.selection.estimate, &tests.fit.runs, &left.screen);
+        out.extend(kept.selection.mechanisms.iter().map(|m| mechanism_finding(m, &kept.selection, &intervals)));
+    }
+    out.extend(kept.push.as_ref().map(|p| push_finding(p, &tests.location)));
+    if let Some(f) = out.first_mut() {
+        f.held_out = proof.cloned();
+    }
+    out
+}
+
+/// The uncertainty of every free parameter of an estimate: the ship's own forces may have another form, and manoeuvres of a kind
+/// may pull a parameter their way.
+struct Intervals {
+    wald: Wald,
+    scatter: Scatter,
+}
+
+impl Intervals {
+    fn new(found: &Estimate, runs: &[Run], s: &Screen) -> Self {
+        let n = found.free.len();
+        let wald = Wald::of(found, s.widened.inverse.view((0, 0), (n, n)).into_owned());
+        Self { wald, scatter: s.evidence.scatter(&s.widened, &kinds(runs)) }
+    }
+
+    /// A candidate's parameters with their intervals, session by session where each has its own.
+    fn amplitudes(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> Vec<Amplitude> {
+        let places = c.positions(&found.free, extent);
+        let Wald { value, covariance } = self.wald.part(&places);
+        let k = c.columns.len();
+        let amplitude = |i: usize| {
+            let col = &c.columns[i % k];
+            let name = match extent {
+                Extent::Each(sessions) => format!("{} [{}]", c.names[i % k], sessions[i / k]),
+                Extent::All | Extent::In(_) => c.names[i % k].clone(),
+            };
+            let error = covariance[(i, i)].max(0.0).sqrt() * self.scatter.factors[places[i]] * col.scale;
+            let unit = found.model.parameters[col.parameter].info.unit;
+            Amplitude::within(name, value[i] * col.scale, unit, error, self.scatter.reach)
+        };
+        (0..value.len()).map(amplitude).collect()
+    }
+}
+
+/// A mechanism with its parameters and what is said of it.
+fn mechanism_finding(a: &Selected, Selection { tests, estimate, .. }: &Selection, intervals: &Intervals) -> Finding {
+    let c = &tests.candidates[a.candidate];
+    Finding {
+        mechanism: c.mechanism.name.into(),
+        title: c.mechanism.title.into(),
+        kind: c.mechanism.kind,
+        confidence_set: a.set.iter().map(|i| tests.candidates[*i].mechanism.name.to_string()).collect(),
+        why: a.why.clone(),
+        sessions: a.extent.sessions().to_vec(),
+        by_session: matches!(a.extent, Extent::Each(_)),
+        statistic: a.statistic,
+        p: a.p,
+        equations: force_shares(c, estimate, &tests.fit.runs, &tests.location),
+        windows: Vec::new(),
+        region: strongest_region(&tests.location.regions),
+        signature: signature(c, &tests.screen),
+        parameters: intervals.amplitudes(estimate, c, &a.extent),
+        held_out: None,
+    }
+}
+
+/// Mean square force that a mechanism brings, by equation: with it less without it, at the filtered states, in units in which
+/// the equations compare.
+fn force_shares(c: &Candidate, found: &Estimate, runs: &[Run], location: &Location) -> Equations {
+    if c.mechanism.kind == Kind::Sensor {
+        return location.equations.into();
+    }
+    let own: Vec<usize> = c.columns.iter().map(|col| col.parameter).collect();
+    let forces = forces_of(&found.model, &own, runs);
+    let mut sums = [0.0; 3];
+    for f in &forces {
+        for e in 0..3 {
+            sums[e] += f[e] * f[e];
+        }
+    }
+    let count = forces.len() as f64;
+    let l = found.model.ship.hull.lpp;
+    let rms: [f64; 3] = std::array::from_fn(|e| (sums[e] / count.max(1.0)).sqrt());
+    // A moment counts by the force pair at a quarter of the length.
+    let weight = [rms[0].powi(2), rms[1].powi(2), (rms[2] / (0.25 * l)).powi(2)];
+    let total = weight.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let share = |e: usize| EquationShare { share: weight[e] / total, rms: rms[e], sigma: location.equations[e].sigma };
+    Equations { x: share(0), y: share(1), n: share(2) }
+}
+
+/// The region in which the unexplained force is most significant.
+fn strongest_region(regions: &[RegionTest]) -> Option<String> {
+    regions.first().filter(|r| r.p < 0.01).map(|r| r.region.clone())
+}
+
+/// How a mechanism behaves, in words.
+fn signature(c: &Candidate, s: &Screen) -> String {
+    let mut words = match c.mechanism.kind {
+        Kind::Environment => "earth-fixed: it turns with the heading in body axes".to_string(),
+        Kind::Ship => "body-fixed: it goes with the ship's own motion".to_string(),
+        Kind::Actuator => "it goes with the actuator's history".to_string(),
+        Kind::Sensor => "no force: positions and velocities do not agree with each other".to_string(),
+    };
+    if s.asymmetric_test.p < 1e-3 {
+        words.push_str("; it breaks port-starboard symmetry or depends on heading");
+    }
+    words
+}
+
+/// What the audit of the recordings already shows to be wrong: a unit or a sign.
+fn sensor_findings(admission: &Admission) -> Vec<Finding> {
+    admission
+        .issues
+        .iter()
+        .filter(|i| i.blocking)
+        .map(|i| Finding {
+            mechanism: i.mechanism.into(),
+            title: format!("{} of `{}`", if i.mechanism == "sign_error" { "the sign" } else { "the unit" }, i.channel),
+            kind: Kind::Sensor,
+            confidence_set: vec![i.mechanism.into()],
+            why: i.text.clone(),
+            sessions: Vec::new(),
+            by_session: false,
+            statistic: 0.0,
+            p: 0.0,
+            equations: Equations::default(),
+            windows: Vec::new(),
+            region: None,
+            signature: "no force: channels contradict each other by a factor that units or signs explain".into(),
+            parameters: Vec::new(),
+            held_out: None,
+        })
+        .collect()
+}
+
+/// A push with its windows; in few recordings one of two.
+fn push_finding(push: &Push, location: &Location) -> Finding {
+    let names = [("push.x", "N"), ("push.y", "N"), ("push.n", "N m")];
+    let mut confidence_set = vec![PUSH.to_owned()];
+    let mut why = "the same unknown force stands in windows of time, is absent outside them, and no smooth law of the ship's state \
+                   gives it"
+        .to_owned();
+    if PushTest::from(push).in_few_recordings() {
+        confidence_set.push(GENERIC.into());
+        why.push_str("; in so few recordings it may as well be the ship's own forces in a state that no other visits");
+    }
+    Finding {
+        mechanism: PUSH.into(),
+        title: PUSH_TITLE.into(),
+        kind: Kind::Environment,
+        confidence_set,
+        why,
+        sessions: Vec::new(),
+        by_session: false,
+        statistic: push.statistic,
+        p: push.windows.iter().map(|w| w.p).fold(1.0, f64::min),
+        equations: location.equations.into(),
+        windows: push.windows.clone(),
+        region: None,
+        signature: "time-local".into(),
+        parameters: (0..3)
+            .map(|e| Amplitude::new(names[e].0.into(), push.force[e], names[e].1, push.error[e]))
+            .collect(),
+        held_out: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, at, candidate, model, noise, runs, with};
+    use crate::diagnose::locate::locate;
+    use crate::diagnose::push::Window;
+
+    #[test]
+    fn runs_are_grouped_by_manoeuvre_where_there_are_enough_and_else_by_recording() {
+        let mut runs = runs(&model(), 6);
+        assert_eq!(kinds(&runs)[4], "run 4");
+        for (r, name) in runs.iter_mut().zip(["turn", "zigzag", "stop", "pull-out", "spiral", "turn"]) {
+            r.manoeuvre = name.into();
+        }
+        assert_eq!(kinds(&runs), ["turn", "zigzag", "stop", "pull-out", "spiral", "turn"]);
+    }
+
+    #[test]
+    fn the_shares_of_a_force_are_those_of_its_components_with_the_moment_as_a_pair_at_a_quarter_of_the_length() {
+        let found = at(&with(&[("earth_force.north", 3000.0), ("earth_force.east", 0.0)]));
+        let runs = runs(&model(), 6);
+        let location = locate(&found, RK4, &runs);
+        let shares = force_shares(&candidate(&found.model, "earth_force"), &found, &runs, &location);
+        assert!((shares.x.share + shares.y.share + shares.n.share - 1.0).abs() < 1e-12);
+        // Turned with the heading, it is as large as it is.
+        assert!((shares.x.rms.hypot(shares.y.rms) / 3000.0 - 1.0).abs() < 1e-6 && shares.n.share < 1e-9);
+        assert_eq!(shares.y.sigma, noise().force[1]);
+    }
+
+    #[test]
+    fn a_push_in_two_recordings_may_be_something_the_catalogue_does_not_hold() {
+        let location = locate(&at(&model()), RK4, &runs(&model(), 2));
+        let window = |i: usize| Window {
+            run: format!("run {i}"),
+            session: "a".into(),
+            start: 0.0,
+            end: 30.0,
+            force: [0.0; 3],
+            error: [1.0; 3],
+            statistic: 50.0,
+            p: 0.1f64.powi(i as i32),
+            index: i,
+            samples: (0, 10),
+        };
+        let push = |count: usize| Push {
+            force: [0.0, 1e4, 0.0],
+            error: [1e2; 3],
+            statistic: 300.0,
+            sideways: 0.9,
+            mirrored: 0.0,
+            windows: (0..count).map(window).collect(),
+        };
+        let (two, three) = (push_finding(&push(2), &location), push_finding(&push(3), &location));
+        assert_eq!(
+            (two.confidence_set.as_slice(), three.confidence_set.len()),
+            ([PUSH, GENERIC].map(String::from).as_slice(), 1)
+        );
+        assert!((three.p - 0.01).abs() < 1e-15 && three.parameters[1].ci95[1] > 1e4);
+    }
+}

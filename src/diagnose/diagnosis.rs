@@ -1,0 +1,206 @@
+//! The document of a diagnosis: verdict, findings, and every test that led to them.
+//! It holds and computes nothing; the steps that fill it are in other files.
+
+use super::admit::Admission;
+use super::decide::Verdict;
+use super::finding::Finding;
+use super::generic::SurrogateTerm;
+use super::locate::Location;
+use super::noise::Noise;
+use super::prove::HeldOut;
+use super::settings::Settings;
+use super::sides::Sides;
+use crate::model::Model;
+use serde::Serialize;
+
+/// One row of the ranking.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ranked {
+    /// Mechanism.
+    pub mechanism: String,
+    /// Plain words.
+    pub title: String,
+    /// Twice the gain in log-likelihood that the scores promise.
+    pub statistic: f64,
+    /// Degrees of freedom.
+    pub degrees: usize,
+    /// Corrected p-value.
+    pub p: f64,
+    /// Amplitudes \[units of the parameters\]; one session after the other where each has its own.
+    pub amplitude: Vec<f64>,
+    /// Size over the smallest size worth naming.
+    pub size: f64,
+    /// Whether the sign is possible.
+    pub admissible: bool,
+    /// Share of information left after base parameters and nuisances.
+    pub retained: f64,
+    /// p-value with a free mirror-symmetric discrepancy as rival.
+    pub second_opinion: f64,
+    /// Sessions in which it acts; empty for all.
+    pub sessions: Vec<String>,
+    /// Whether each of these sessions has an amplitude of its own.
+    pub by_session: bool,
+}
+
+/// A mechanism that cannot be seen, and why.
+#[derive(Clone, Debug, Serialize)]
+pub struct Absorbed {
+    /// Mechanism.
+    pub mechanism: String,
+    /// Share of information left.
+    pub retained: f64,
+    /// What mimics it.
+    pub by: String,
+}
+
+/// The smallest size of a mechanism that would have been seen.
+#[derive(Clone, Debug, Serialize)]
+pub struct Detectable {
+    /// Mechanism.
+    pub mechanism: String,
+    /// Size that is seen in 80 % of such data sets.
+    pub size: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+/// How far a parameter moved.
+#[derive(Clone, Debug, Serialize)]
+pub struct Move {
+    /// Dotted name.
+    pub name: String,
+    /// Before the findings.
+    pub before: f64,
+    /// After.
+    pub after: f64,
+    /// Standard error after.
+    pub error: f64,
+    /// Difference in standard errors.
+    pub moved: f64,
+}
+
+/// How much of what was allowed for in the hull coefficients was used.
+#[derive(Clone, Debug, Serialize)]
+pub struct Budget {
+    /// Dotted name.
+    pub name: String,
+    /// Prior mean.
+    pub prior: f64,
+    /// Prior standard deviation.
+    pub sd: f64,
+    /// Estimate.
+    pub value: f64,
+    /// Distance from the prior mean in prior standard deviations.
+    pub used: f64,
+}
+
+/// Tests of a generic discrepancy.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Adequacy {
+    /// p-value of mirror-symmetric force terms: the ship's own forces have another form.
+    pub symmetric: f64,
+    /// p-value of mirror-breaking and earth-fixed force terms.
+    pub asymmetric: f64,
+}
+
+/// Two mechanisms and how alike they are on these data.
+#[derive(Clone, Debug, Serialize)]
+pub struct Likeness {
+    /// One.
+    pub a: String,
+    /// The other.
+    pub b: String,
+    /// Cosine of the principal angle after the base is projected out: 1 when they cannot be told apart.
+    pub cosine: f64,
+}
+
+/// A trial worth sailing next.
+#[derive(Clone, Debug, Serialize)]
+pub struct NextTrial {
+    /// The trial.
+    pub trial: String,
+    /// What it would decide.
+    pub why: String,
+}
+
+/// The unknown force along one run, as the filter estimates it.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    /// Index of the run.
+    pub index: usize,
+    /// The run.
+    pub run: String,
+    /// Its session.
+    pub session: String,
+    /// Time \[s\].
+    pub time: Vec<f64>,
+    /// Filtered state `[x, y, psi, u, v, r]`.
+    pub state: Vec<[f64; 6]>,
+    /// Propeller rate \[1/s\] and rudder angle \[rad\].
+    pub inputs: Vec<[f64; 2]>,
+    /// Unknown force under the base model: X, Y \[N\], N \[N m\].
+    pub before: Vec<[f64; 3]>,
+    /// Unknown force with the findings.
+    pub after: Vec<[f64; 3]>,
+    /// Standard deviation of the former.
+    pub sd: Vec<[f64; 3]>,
+}
+
+/// Everything a diagnosis says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Diagnosis {
+    /// Layout of this document.
+    pub schema: &'static str,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// One sentence.
+    pub headline: String,
+    /// What was found, strongest first.
+    pub findings: Vec<Finding>,
+    /// Audit of recordings and numerics.
+    pub admission: Admission,
+    /// Noise under the base model.
+    pub noise_before: Noise,
+    /// Noise with the findings.
+    pub noise_after: Noise,
+    /// Unexplained force under the base model.
+    pub location: Location,
+    /// Unexplained force that is left.
+    pub location_after: Option<Location>,
+    /// The ranking under the base model.
+    pub ranking: Vec<Ranked>,
+    /// Mechanisms that cannot be seen.
+    pub absorbed: Vec<Absorbed>,
+    /// Sizes that would have been seen.
+    pub detectable: Vec<Detectable>,
+    /// Pairs of mechanisms that look alike on these data.
+    pub confusable: Vec<Likeness>,
+    /// Generic tests under the base model.
+    pub adequacy_before: Adequacy,
+    /// Generic tests with the findings.
+    pub adequacy_after: Adequacy,
+    /// A sparse surrogate for what the catalogue does not hold.
+    pub surrogate: Vec<SurrogateTerm>,
+    /// How far the model's own parameters moved.
+    pub moves: Vec<Move>,
+    /// Whether the ship's own two sides differ.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sides: Option<Sides>,
+    /// Hull error budget used.
+    pub hull_budget: Vec<Budget>,
+    /// Which trial to sail next.
+    pub next_trial: Option<NextTrial>,
+    /// Proof on held-out runs.
+    pub held_out: Option<HeldOut>,
+    /// Settings used.
+    pub settings: Settings,
+    /// The unknown force along every run, before and after, for pictures.
+    #[serde(skip)]
+    pub traces: Vec<Trace>,
+    /// The improved model, as a model file.
+    #[serde(skip)]
+    pub model: Model,
+    /// The base model, refitted.
+    #[serde(skip)]
+    pub base: Model,
+}

@@ -1,0 +1,126 @@
+//! Which mechanisms of a ranking may be named, alone and beside others, before any of them is refitted.
+//! It compares numbers of the score tests with the settings; it estimates nothing.
+
+use super::candidate::{Candidate, Extent};
+use super::compete::Selected;
+use super::screen::{Row, Screen};
+use super::settings::{FURTHER_P, FURTHER_SHARE, OWN_PHYSICS_ALPHA, SECOND_OPINION_P, SMALLEST_SIZE, Settings};
+use crate::physics::{Kind, Mechanism};
+
+/// The mechanisms that may be named beside those that were selected, the most significant first. `alone` says that nothing was
+/// found yet, neither a mechanism nor a push nor a coarse integration step.
+pub fn eligible<'s>(
+    s: &'s Screen,
+    candidates: &[Candidate],
+    selected: &[Selected],
+    alone: bool,
+    settings: &Settings,
+) -> Vec<&'s Row> {
+    let may = |r: &&Row| may_be_named(r, candidates, settings) && (alone || may_be_further(r, selected, candidates));
+    s.rows.iter().filter(may).collect()
+}
+
+/// Whether a mechanism may be named: identifiable, significant, of possible sign and worthwhile size, and not just the ship's own
+/// forces in another form.
+pub fn may_be_named(r: &Row, candidates: &[Candidate], settings: &Settings) -> bool {
+    let m = candidates[r.candidate].mechanism;
+    r.visible
+        && r.admissible
+        && r.p < significance(m, settings)
+        && r.size >= SMALLEST_SIZE
+        && r.second_opinion < SECOND_OPINION_P
+}
+
+/// The chance of a false name that a mechanism's test is allowed. Sessions differ in what was sailed, and a ship's forces in
+/// another form then differ between them: the ship's own physics must be more significant.
+fn significance(m: &Mechanism, settings: &Settings) -> f64 {
+    let own = m.needs_reference && m.kind == Kind::Ship;
+    if own { OWN_PHYSICS_ALPHA * settings.alpha } else { settings.alpha }
+}
+
+/// Whether a further mechanism may be named beside those that were selected: it must be beyond doubt, and more than what an
+/// imperfect form of an earlier one leaves behind.
+pub fn may_be_further(r: &Row, selected: &[Selected], candidates: &[Candidate]) -> bool {
+    let m = candidates[r.candidate].mechanism;
+    let left_by = |a: &Selected| {
+        let first = candidates[a.candidate].mechanism;
+        // Changes of the ship's own forces between sessions: the form of the first cannot be told from a second.
+        let between_sessions = a.extent != Extent::All && r.extent != Extent::All;
+        (between_sessions && m.needs_reference && first.needs_reference)
+            || (m.looks_like(first) && r.test.statistic < FURTHER_SHARE * a.statistic)
+    };
+    r.p < FURTHER_P && selected.iter().all(|a| a.candidate != r.candidate && !left_by(a))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::evidence::Test;
+    use crate::diagnose::example;
+    use nalgebra::{DMatrix, DVector};
+
+    fn list() -> Vec<Candidate> {
+        let model = example::model();
+        ["current", "mean_wind", "earth_force", "heading_bias"].map(|n| example::candidate(&model, n)).into()
+    }
+
+    /// A row that may be named.
+    fn row(candidate: usize, statistic: f64) -> Row {
+        let test = Test {
+            statistic,
+            degrees: 2,
+            p: 1e-12,
+            amplitude: DVector::zeros(2),
+            covariance: DMatrix::identity(2, 2),
+            retained: 1.0,
+        };
+        Row {
+            candidate,
+            pooled: test.clone(),
+            extent: Extent::All,
+            test,
+            p: 1e-12,
+            size: 2.0,
+            admissible: true,
+            visible: true,
+            second_opinion: 1e-6,
+        }
+    }
+
+    fn selected(candidate: usize, statistic: f64) -> Selected {
+        Selected { candidate, extent: Extent::All, statistic, p: 0.0, set: vec![candidate], why: String::new() }
+    }
+
+    #[test]
+    fn a_mechanism_must_be_identifiable_significant_possible_large_and_more_than_another_form() {
+        let (list, settings) = (list(), Settings::default());
+        let may = |r: &Row| may_be_named(r, &list, &settings);
+        assert!(may(&row(0, 60.0)));
+        assert!(may(&Row { p: 0.0099, ..row(0, 60.0) }) && !may(&Row { p: 0.01, ..row(0, 60.0) }));
+        assert!(!may(&Row { size: 0.99, ..row(0, 60.0) }));
+        assert!(!may(&Row { admissible: false, ..row(0, 60.0) }));
+        assert!(!may(&Row { visible: false, ..row(0, 60.0) }));
+        assert!(!may(&Row { second_opinion: 0.01, ..row(0, 60.0) }));
+    }
+
+    #[test]
+    fn physics_of_the_ship_that_needs_a_reference_session_must_be_fifty_times_as_significant() {
+        let model = example::model();
+        let all = super::super::candidate::candidates(&model, &[]);
+        let own = |c: &Candidate| c.mechanism.needs_reference && c.mechanism.kind == Kind::Ship;
+        let (settings, index) = (Settings::default(), all.iter().position(own).unwrap());
+        let may = |p: f64| may_be_named(&Row { p, ..row(index, 60.0) }, &all, &settings);
+        assert!(may(0.00019) && !may(0.0002));
+    }
+
+    #[test]
+    fn a_further_mechanism_must_be_beyond_doubt_another_and_no_remainder_of_a_look_alike() {
+        let list = list();
+        let may = |r: &Row, taken: &[Selected]| may_be_further(r, taken, &list);
+        assert!(may(&row(0, 60.0), &[]) && !may(&Row { p: 1e-6, ..row(0, 60.0) }, &[]));
+        assert!(!may(&row(0, 60.0), &[selected(0, 10.0)]));
+        // Mean wind and a force fixed on the earth look alike, a compass looks like neither.
+        assert!(!may(&row(1, 39.0), &[selected(2, 100.0)]) && may(&row(1, 40.0), &[selected(2, 100.0)]));
+        assert!(may(&row(3, 39.0), &[selected(2, 100.0)]));
+    }
+}

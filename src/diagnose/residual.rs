@@ -1,0 +1,168 @@
+//! What the model with the selected mechanisms leaves unexplained, and the table of every test that the verdict turns on.
+//! It tests and collects; the verdict on the table is made elsewhere.
+
+use super::base::Question;
+use super::compete::Selected;
+use super::decide::{Decision, MechanismTest, PlaceTest, PushTest, ResidualTests, TestTable};
+use super::estimate::Estimate;
+use super::filter::Run;
+use super::finding::PUSH;
+use super::locate::{Location, locate};
+use super::place::Place;
+use super::push::{Push, sharpened};
+use super::screen::{Screen, screen};
+use super::select::Selection;
+
+/// The tests of what the selected mechanisms leave.
+pub struct Left {
+    /// The score tests of all mechanisms at the estimate.
+    pub screen: Screen,
+    /// Where unknown forces act.
+    pub location: Location,
+}
+
+/// The selected mechanisms with the tests of what they leave.
+pub struct Residual {
+    /// The mechanisms.
+    pub selection: Selection,
+    /// What they leave; `None` without any.
+    pub left: Option<Left>,
+}
+
+impl Residual {
+    /// Tests what the selected mechanisms leave, as the base model was tested.
+    pub fn new(question: &Question, selection: Selection) -> Self {
+        (question.progress)("checking what is left");
+        let (tests, found) = (&selection.tests, &selection.estimate);
+        let left = (!selection.mechanisms.is_empty()).then(|| {
+            let screen = screen(found, tests.fit.integration, &tests.fit.runs, &tests.candidates);
+            let mut location = locate(found, tests.fit.integration, &tests.fit.runs);
+            location.push = tests.search.event(&location);
+            Left { screen, location }
+        });
+        Self { selection, left }
+    }
+
+    /// Every test that the verdict turns on.
+    pub fn table(&self, question: &Question) -> TestTable {
+        let Selection { tests, push, mechanisms, .. } = &self.selection;
+        let admission = &tests.fit.admission;
+        let test = |a: &Selected| {
+            let m = tests.candidates[a.candidate].mechanism;
+            MechanismTest { kind: m.kind, weather: m.is_weather(), statistic: a.statistic, set_size: a.set.len() }
+        };
+        let [surge, sway, _] = tests.fit.estimate.noise.force;
+        TestTable {
+            audit_blocks: tests.is_blocked(),
+            euler_gain: admission.euler_gain,
+            runs: tests.fit.runs.len(),
+            samples: admission.samples,
+            unknown_force: surge.max(sway),
+            turning_force: turning_force(&tests.fit.estimate, &tests.fit.runs),
+            form_holds: tests.search.form_holds,
+            push_allowed: question.settings.allows(PUSH),
+            push_in_base: push.as_ref().map(PushTest::from),
+            base: residual_tests(&tests.screen, &tests.location),
+            mechanisms: mechanisms.iter().map(test).collect(),
+            selected: self.left.as_ref().map(|l| residual_tests(&l.screen, &l.location)),
+        }
+    }
+
+    /// What is kept of it by a decision.
+    pub fn decided(self, decision: &Decision) -> Kept {
+        let Self { mut selection, left } = self;
+        let place = left.as_ref().and_then(|l| l.location.place.clone());
+        let left = left.filter(|_| decision.keeps_mechanisms);
+        if !decision.keeps_mechanisms {
+            selection.mechanisms.clear();
+            selection.estimate = selection.tests.fit.estimate.clone();
+        }
+        let location = left.as_ref().map_or(&selection.tests.location, |l| &l.location);
+        let push = selection.push.take().or_else(|| location.push.clone()).filter(|_| decision.names_push);
+        let fit = &selection.tests.fit;
+        let push = push.map(|p| sharpened(&p, &selection.estimate, fit.integration, &fit.runs));
+        Kept { selection, left, push, place }
+    }
+}
+
+/// What a decision keeps of the selected mechanisms, and what is named beside them.
+pub struct Kept {
+    /// The mechanisms; none where they were refuted.
+    pub selection: Selection,
+    /// What they leave; `None` without any.
+    pub left: Option<Left>,
+    /// The push that is named.
+    pub push: Option<Push>,
+    /// Whether an earth-fixed force differs from place to place beside the mechanisms, refuted ones included.
+    pub place: Option<Place>,
+}
+
+/// The tests of what a model leaves, from a screen and a location at it.
+fn residual_tests(s: &Screen, location: &Location) -> ResidualTests {
+    ResidualTests {
+        asymmetric_p: s.asymmetric_test.p,
+        asymmetric_gain: s.asymmetric_gain(),
+        push: location.push.as_ref().map(PushTest::from),
+        place: location.place.as_ref().map(|p| PlaceTest { statistic: p.statistic, degrees: p.degrees, p: p.p }),
+    }
+}
+
+/// The force that turns a ship at its mean speed, m u^2 / L \[N\].
+fn turning_force(found: &Estimate, runs: &[Run]) -> f64 {
+    let hull = &found.model.ship.hull;
+    let (mut speed, mut count) = (0.0, 0.0);
+    for r in runs {
+        for s in r.measured.iter().filter(|s| s[3].is_finite()) {
+            speed += s[3].abs();
+            count += 1.0;
+        }
+    }
+    let u = speed / f64::max(count, 1.0);
+    hull.mass * u * u / hull.lpp
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::base::{AuditedRuns, BaseFit};
+    use crate::diagnose::decide::{Verdict, decide};
+    use crate::diagnose::event::{BaseTests, Opening};
+    use crate::diagnose::example::{SAMPLES, at, model, runs, with};
+    use crate::diagnose::settings::Settings;
+    use crate::model::Model;
+
+    #[test]
+    fn the_turning_force_is_mass_times_speed_squared_over_length() {
+        let found = at(&model());
+        let mut runs = runs(&found.model, 2);
+        runs.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[3] = -2.0);
+        runs[0].measured[3][3] = f64::NAN;
+        let hull = &found.model.ship.hull;
+        assert!((turning_force(&found, &runs) / (4.0 * hull.mass / hull.lpp) - 1.0).abs() < 1e-12);
+    }
+
+    fn residual(question: &Question, truth: &Model) -> Residual {
+        let audited = AuditedRuns::new(&runs(truth, 12), &[], truth.ship.hull.lpp);
+        let tests = BaseTests::new(question, BaseFit::new(question, &audited));
+        Residual::new(question, Selection::new(question, Opening { tests, push: None, first: None }))
+    }
+
+    #[test]
+    fn the_table_holds_what_was_selected_and_a_refuted_selection_leaves_the_base_model() {
+        let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let question = Question { model: &model, full: model.clone(), settings: &settings, progress: &|_| () };
+        let residual = residual(&question, &with(&[("current.north", 0.3)]));
+        let table = residual.table(&question);
+        assert_eq!((table.runs, table.samples, table.audit_blocks), (12, 12 * SAMPLES, false));
+        assert!(table.mechanisms.len() == 1 && table.mechanisms[0].weather && table.mechanisms[0].statistic > 100.0);
+        // What the current explains is no longer left.
+        let left = table.selected.map_or(f64::NAN, |s| s.asymmetric_gain);
+        assert!(left < 0.1 * table.base.asymmetric_gain, "{left} {}", table.base.asymmetric_gain);
+        let decision = decide(&table);
+        assert_eq!((decision.verdict, decision.keeps_mechanisms), (Verdict::Named, true));
+        let base = residual.selection.tests.fit.estimate.clone();
+        let kept = residual.decided(&Decision { keeps_mechanisms: false, ..decision });
+        assert!(kept.selection.mechanisms.is_empty() && kept.left.is_none());
+        assert_eq!(kept.selection.estimate.log_posterior, base.log_posterior);
+    }
+}

@@ -1,0 +1,248 @@
+//! Forward selection of mechanisms, one after the other, with removal of those that a later one makes needless and replacement
+//! of those that another explains better beside it. Tests and refits are in other files; the verdict is not made here.
+
+use super::admit::followed;
+use super::base::Question;
+use super::compete::{Selected, amplitudes, compare, compete, form_tolerance};
+use super::decide::is_euler;
+use super::eligible::{eligible, may_be_further, may_be_named};
+use super::estimate::{Estimate, passes};
+use super::event::{BaseTests, Opening};
+use super::evidence::chi_squared_p;
+use super::problem::Problem;
+use super::push::Push;
+use super::refit::refit;
+use super::screen::{Row, Screen, screen};
+use super::settings::{PARAMETER_PRICE, REFIT, REMOVAL_ALPHA, SETTLE, SMALLEST_SIZE, Settings};
+use super::wald::Wald;
+use crate::physics::Kind;
+
+/// The mechanisms that were selected, in the model that holds them.
+pub struct Selection {
+    /// The tests of the base model.
+    pub tests: BaseTests,
+    /// The push that was put into the base model.
+    pub push: Option<Push>,
+    /// The mechanisms, in the order in which they were found.
+    pub mechanisms: Vec<Selected>,
+    /// The estimate with them; that of the base model without any.
+    pub estimate: Estimate,
+}
+
+impl Selection {
+    /// Selects mechanisms one after the other while a further one may be named. Recordings with a wrong unit or sign give none.
+    pub fn new(question: &Question, Opening { tests, push, mut first }: Opening) -> Self {
+        let estimate = tests.fit.estimate.clone();
+        let mut out = Self { tests, push, mechanisms: Vec::new(), estimate };
+        if out.tests.is_blocked() {
+            return out;
+        }
+        for _ in 0..question.settings.most {
+            let Some((mechanism, estimate)) = first.take().or_else(|| out.next(question)) else { break };
+            out.mechanisms.push(mechanism);
+            out.estimate = estimate;
+            out.remove_needless(question.settings);
+            out.leave_out_lost(question.settings);
+        }
+        out.replace(question.settings);
+        out
+    }
+
+    /// The estimate with all mechanisms, refitted through Ipopt.
+    pub fn refitted(mut self, question: &Question) -> Self {
+        if !self.mechanisms.is_empty() {
+            (question.progress)("refitting the whole model through Ipopt");
+            let fit = &self.tests.fit;
+            // Without Ipopt's answer the estimate by Fisher scoring is kept.
+            if let Ok(refitted) = refit(&self.estimate, fit.integration, &fit.runs) {
+                self.estimate = refitted;
+            }
+        }
+        self
+    }
+
+    /// The best further mechanism, with the estimate that holds it.
+    fn next(&self, question: &Question) -> Option<(Selected, Estimate)> {
+        let problem = self.tests.problem(question.settings);
+        let latest;
+        let screen: &Screen = if self.mechanisms.is_empty() {
+            &self.tests.screen
+        } else {
+            latest = screen(&self.estimate, problem.integration, problem.runs, problem.candidates);
+            &latest
+        };
+        // A push that was found first is a finding already, and so is a coarse step.
+        let by_euler = is_euler(self.tests.fit.admission.euler_gain);
+        let alone = self.mechanisms.is_empty() && self.push.is_none() && !by_euler;
+        let leaders = eligible(screen, problem.candidates, &self.mechanisms, alone, question.settings);
+        compete(screen, leaders, &self.estimate, problem, question.progress)
+    }
+
+    /// Removes a mechanism that a later one made needless.
+    fn remove_needless(&mut self, settings: &Settings) {
+        let Some((_, earlier)) = self.mechanisms.split_last().filter(|(_, earlier)| !earlier.is_empty()) else {
+            return;
+        };
+        let problem = self.tests.problem(settings);
+        let all = Wald::at(&self.estimate, problem.integration, problem.runs);
+        let needless = earlier.iter().position(|a| {
+            let c = &problem.candidates[a.candidate];
+            let w = amplitudes(&all, &self.estimate, c, &a.extent);
+            chi_squared_p(w.statistic(), w.value.len()) > REMOVAL_ALPHA * settings.alpha
+                || c.size(w.value.as_slice()) < SMALLEST_SIZE
+        });
+        let Some(i) = needless else { return };
+        let needless = self.mechanisms.remove(i);
+        let (model, free) = problem.candidates[needless.candidate].removed(&self.estimate, &needless.extent);
+        self.estimate = problem.estimate(&model, &free, &self.estimate.noise, SETTLE);
+    }
+
+    /// Leaves out stretches that the filter does not follow: with more physics in it the model may follow in so many runs that
+    /// the few left are not its fault.
+    fn leave_out_lost(&mut self, settings: &Settings) {
+        let fit = &mut self.tests.fit;
+        let at = passes(&self.estimate.model, fit.integration, &[], &fit.runs, &self.estimate.noise, false);
+        let (Some(kept), lost) = followed(&fit.runs, &at) else { return };
+        fit.admission.issues.extend(lost);
+        fit.runs = kept;
+        let problem = self.tests.problem(settings);
+        let again = [&self.tests.fit.estimate, &self.estimate].map(|e| problem.again(e, SETTLE));
+        let screen = screen(&again[0], problem.integration, problem.runs, problem.candidates);
+        self.tests.screen = screen;
+        [self.tests.fit.estimate, self.estimate] = again;
+    }
+
+    /// Compares every mechanism from outside the ship again, beside those that were found after it: what it explained alone,
+    /// another may explain better beside them.
+    fn replace(&mut self, settings: &Settings) {
+        for i in 0..self.mechanisms.len().saturating_sub(1) {
+            let problem = self.tests.problem(settings);
+            let Some((entry, found)) = rival_of(&self.mechanisms, i, &self.estimate, problem) else { continue };
+            self.mechanisms[i] = entry;
+            if let Some(found) = found {
+                self.estimate = found;
+            }
+        }
+    }
+}
+
+/// The best explanation in the place of mechanism `i`, from outside the ship: with its estimate where it is another mechanism and
+/// better than the present one, without where it is the same; `None` where the present one is kept as it is.
+fn rival_of(
+    selected: &[Selected],
+    i: usize,
+    current: &Estimate,
+    problem: Problem,
+) -> Option<(Selected, Option<Estimate>)> {
+    let Problem { integration, runs, candidates, settings, .. } = problem;
+    let outside = |candidate: usize| candidates[candidate].mechanism.kind == Kind::Environment;
+    let present = &selected[i];
+    if !outside(present.candidate) {
+        return None;
+    }
+    let (model, free) = candidates[present.candidate].removed(current, &present.extent);
+    let rest = problem.estimate(&model, &free, &current.noise, REFIT);
+    let others: Vec<Selected> = selected.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, a)| a.clone()).collect();
+    let s = screen(&rest, integration, runs, candidates);
+    let may = |r: &&Row| {
+        outside(r.candidate) && may_be_named(r, candidates, settings) && may_be_further(r, &others, candidates)
+    };
+    let leaders: Vec<&Row> = s.rows.iter().filter(may).collect();
+    let (entry, found) = compare(&s, &leaders, &rest, problem)?;
+    if entry.candidate == present.candidate && entry.extent == present.extent {
+        return Some((entry, None));
+    }
+    // The present one was estimated to the end, beside what came after it: another must do better than that, and a force without
+    // a cause better than any cause that comes near.
+    let value = |a: &Selected, e: &Estimate| {
+        let parameters = candidates[a.candidate].positions(&e.free, &a.extent).len();
+        e.log_posterior - PARAMETER_PRICE * parameters as f64
+    };
+    let is_stand_in = |a: &Selected| candidates[a.candidate].mechanism.stand_in;
+    let tolerance = if is_stand_in(&entry) && !is_stand_in(present) {
+        form_tolerance(found.log_posterior - rest.log_posterior)
+    } else {
+        0.0
+    };
+    (value(&entry, &found) - value(present, current) > tolerance).then_some((entry, Some(found)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::base::{AuditedRuns, BaseFit};
+    use crate::diagnose::candidate::Extent;
+    use crate::diagnose::example::{model, runs, with};
+    use crate::model::Model;
+
+    /// The selection on twelve runs of a truth, the model's own parameters free.
+    fn selection(truth: &Model, settings: &Settings) -> Selection {
+        let model = model();
+        let question = Question { model: &model, full: model.clone(), settings, progress: &|_| () };
+        let audited = AuditedRuns::new(&runs(truth, 12), &[], model.ship.hull.lpp);
+        let tests = BaseTests::new(&question, BaseFit::new(&question, &audited));
+        Selection::new(&question, Opening { tests, push: None, first: None })
+    }
+
+    fn names(s: &Selection) -> Vec<&str> {
+        s.mechanisms.iter().map(|m| s.tests.candidates[m.candidate].mechanism.name).collect()
+    }
+
+    fn plain() -> Settings {
+        Settings { nuisance: false, ..Settings::default() }
+    }
+
+    #[test]
+    fn nothing_is_selected_where_nothing_is_missing_and_a_current_where_one_flows() {
+        assert!(names(&selection(&model(), &plain())).is_empty());
+        let s = selection(&with(&[("current.north", 0.3)]), &plain());
+        assert_eq!(names(&s), ["current"]);
+        let north = s.estimate.model.find("current.north").unwrap();
+        assert!((s.estimate.model.parameters[north].value - 0.3).abs() < 0.03);
+        assert!(s.estimate.log_posterior > s.tests.fit.estimate.log_posterior + 50.0);
+    }
+
+    #[test]
+    fn at_most_so_many_mechanisms_are_selected_as_the_user_allows() {
+        let settings = Settings { most: 0, ..plain() };
+        assert!(selection(&with(&[("current.north", 0.3)]), &settings).mechanisms.is_empty());
+    }
+
+    /// A selection with mechanisms in it that were never refitted.
+    fn holding(s: &mut Selection, names: &[&str]) {
+        for name in names {
+            let candidate = s.tests.candidates.iter().position(|c| c.mechanism.name == *name).unwrap();
+            s.estimate.free.extend(s.tests.candidates[candidate].parameters(&Extent::All));
+            let (set, why) = (vec![candidate], String::new());
+            s.mechanisms.push(Selected { candidate, extent: Extent::All, statistic: 0.0, p: 0.0, set, why });
+        }
+        let problem = s.tests.problem(&Settings::default()).again(&s.estimate, SETTLE);
+        s.estimate = problem;
+    }
+
+    #[test]
+    fn an_earlier_mechanism_that_does_nothing_beside_a_later_one_is_removed_and_one_that_acts_is_not() {
+        let settings = Settings { most: 0, ..plain() };
+        let mut s = selection(&with(&[("current.north", 0.3)]), &settings);
+        holding(&mut s, &["earth_force", "current"]);
+        let free = s.estimate.free.len();
+        s.remove_needless(&plain());
+        assert_eq!((names(&s), s.estimate.free.len()), (vec!["current"], free - 2));
+        s.remove_needless(&plain());
+        assert_eq!(names(&s), ["current"]);
+    }
+
+    #[test]
+    fn a_look_alike_that_explains_better_beside_a_later_mechanism_takes_the_place_of_the_earlier() {
+        let settings = Settings { most: 0, ..plain() };
+        let mut s = selection(&with(&[("current.north", 0.3)]), &settings);
+        holding(&mut s, &["earth_force", "heading_bias"]);
+        let before = s.estimate.log_posterior;
+        s.replace(&plain());
+        assert_eq!(names(&s), ["current", "heading_bias"]);
+        assert!(s.estimate.log_posterior > before);
+        // Compared again, the better one stays.
+        s.replace(&plain());
+        assert_eq!(names(&s), ["current", "heading_bias"]);
+    }
+}

@@ -1,0 +1,285 @@
+//! Carries a simulation and its derivatives by parameters through every step: `S' = A S + B` at each stage of the method, so
+//! that the result is the exact derivative of the discrete simulation. What is done with it is the caller's affair.
+
+use super::columns::Columns;
+use super::local::{Local, Plain};
+use crate::dynamics::Dynamics;
+use crate::physics::FEW;
+use crate::simulate::{Integration, Method, driven, start};
+use crate::state::{Force, Inputs, STATES, State};
+use std::borrow::Cow;
+
+/// Derivatives of the state `[x, y, psi, u, v, r]` by one column.
+pub type StateSlope<P> = [P; STATES];
+
+/// Columns that are differentiated together through the whole dynamics.
+struct Group<'m, P: Plain> {
+    columns: Vec<usize>,
+    dynamics: Dynamics<'m, P::Few>,
+}
+
+/// A model at parameter values, ready to be simulated together with its derivatives by some columns.
+pub struct Sensitivity<'m, P: Plain> {
+    dynamics: Dynamics<'m, P>,
+    columns: &'m Columns,
+    anything: Vec<Group<'m, P>>,
+    /// All columns in groups, where a term changes what sensors report.
+    reported: Vec<Group<'m, P>>,
+}
+
+/// The inputs of one run: as recorded, as the ship has them, and with derivatives by the groups of columns.
+pub struct Drive<'a, P: Plain> {
+    /// Inputs at every instant at which a simulation looks at them.
+    pub series: Cow<'a, [Inputs<P>]>,
+    anything: Vec<Vec<Inputs<P::Few>>>,
+    reported: Vec<Vec<Inputs<P::Few>>>,
+}
+
+/// Room for the parameters' own part in the accelerations at each stage of a step.
+#[derive(Clone, Debug, Default)]
+pub struct Stages<P>([Vec<[P; 3]>; 4]);
+
+impl<P: Plain> Stages<P> {
+    /// Room for a number of columns.
+    pub fn new(columns: usize) -> Self {
+        Self(std::array::from_fn(|_| vec![[P::zero(); 3]; columns]))
+    }
+}
+
+impl<'m, P: Plain> Sensitivity<'m, P> {
+    /// Sensitivities to `columns` at the parameter values of `dynamics`. `sensed` tells whether a term of the model changes what
+    /// sensors report.
+    pub fn new(dynamics: Dynamics<'m, P>, columns: &'m Columns, sensed: bool) -> Self {
+        let group = |group: &[usize]| {
+            let theta = columns.seeded(dynamics.theta(), group);
+            let few = Dynamics::new(dynamics.model(), theta).in_still_water(dynamics.is_still());
+            Group { columns: group.to_vec(), dynamics: few }
+        };
+        let anything = columns.anything().iter().map(|g| group(g)).collect();
+        let all: Vec<usize> = if sensed { (0..columns.len()).collect() } else { Vec::new() };
+        let reported = all.chunks(FEW).map(group).collect();
+        Self { dynamics, columns, anything, reported }
+    }
+
+    /// The equations of motion behind it.
+    pub fn dynamics(&self) -> &Dynamics<'m, P> {
+        &self.dynamics
+    }
+
+    /// The inputs of a run from those at its samples.
+    pub fn drive<'a>(&self, integration: Integration, dt: f64, samples: &'a [Inputs<P>]) -> Drive<'a, P> {
+        let drives = !self.dynamics.extras().is_empty();
+        let lifted = |groups: &[Group<P>]| -> Vec<Vec<Inputs<P::Few>>> {
+            if !drives || groups.is_empty() {
+                return Vec::new();
+            }
+            let samples: Vec<Inputs<P::Few>> = samples.iter().map(|i| i.map(P::few)).collect();
+            groups.iter().map(|g| driven(&g.dynamics, integration, dt, &samples).into_owned()).collect()
+        };
+        Drive {
+            series: driven(&self.dynamics, integration, dt, samples),
+            anything: lifted(&self.anything),
+            reported: lifted(&self.reported),
+        }
+    }
+
+    /// The rates at an instant with their Jacobian, and into `out` the accelerations' derivatives by the columns.
+    #[inline]
+    pub fn stage(
+        &self,
+        drive: &Drive<P>,
+        when: usize,
+        state: &[P; STATES],
+        push: &Force<P>,
+        out: &mut [[P; 3]],
+    ) -> Local<P> {
+        let inputs = &drive.series[when];
+        let (local, flow) = P::linearise(&self.dynamics, state, inputs, push);
+        self.columns.by_force(&self.dynamics, &local, &flow, state, inputs, out);
+        if !self.anything.is_empty() {
+            let lifted = State::from_array(state.map(P::few));
+            let push = Force { x: push.x.few(), y: push.y.few(), n: push.n.few() };
+            for (g, group) in self.anything.iter().enumerate() {
+                let inputs = drive.anything.get(g).map_or_else(|| inputs.map(P::few), |series| series[when]);
+                let rates = group.dynamics.rates(&lifted, &inputs, &push).0;
+                let slopes: [[P; FEW]; 3] = std::array::from_fn(|i| P::parts(&rates[3 + i]).1);
+                for (lane, c) in group.columns.iter().enumerate() {
+                    out[*c] = std::array::from_fn(|i| slopes[i][lane]);
+                }
+            }
+        }
+        local
+    }
+
+    /// Advances a state and its derivatives over one sample period that begins at instant `from` of the run.
+    pub fn step(
+        &self,
+        integration: Integration,
+        dt: f64,
+        drive: &Drive<P>,
+        from: usize,
+        state: &mut [P; STATES],
+        slopes: &mut [StateSlope<P>],
+        stages: &mut Stages<P>,
+    ) {
+        let count = integration.substeps.max(1);
+        let h = dt / count as f64;
+        let calm = Force::zero();
+        for i in 0..count {
+            match integration.method {
+                Method::Euler => {
+                    let local = self.stage(drive, from + i, state, &calm, &mut stages.0[0]);
+                    if self.dynamics.is_still() {
+                        euler::<P, false>(&local, h, slopes, &stages.0[0]);
+                    } else {
+                        euler::<P, true>(&local, h, slopes, &stages.0[0]);
+                    }
+                    *state = moved(state, h, &local.rates);
+                }
+                Method::Rk4 => {
+                    let at = from + 2 * i;
+                    let [b1, b2, b3, b4] = &mut stages.0;
+                    let one = self.stage(drive, at, state, &calm, b1);
+                    let two = self.stage(drive, at + 1, &moved(state, 0.5 * h, &one.rates), &calm, b2);
+                    let three = self.stage(drive, at + 1, &moved(state, 0.5 * h, &two.rates), &calm, b3);
+                    let four = self.stage(drive, at + 2, &moved(state, h, &three.rates), &calm, b4);
+                    let locals = [one, two, three, four];
+                    for (c, slope) in slopes.iter_mut().enumerate() {
+                        let own: [[P; 3]; 4] = std::array::from_fn(|s| stages.0[s][c]);
+                        *slope = runge_kutta(&locals, h, slope, &own);
+                    }
+                    let k: [[P; STATES]; 4] = std::array::from_fn(|s| locals[s].rates);
+                    *state =
+                        std::array::from_fn(|j| state[j] + (k[0][j] + (k[1][j] + k[2][j]) * 2.0 + k[3][j]) * (h / 6.0));
+                }
+            }
+        }
+    }
+
+    /// Simulates a run of `samples` samples and hands what its sensors report, with the derivatives by the columns, to `sink`.
+    ///
+    /// `initial` is what the sensors report at the start in the channels that are `measured` (1, or 0), see [`start`].
+    pub fn rollout(
+        &self,
+        integration: Integration,
+        dt: f64,
+        samples: &[Inputs<P>],
+        initial: &[P; STATES],
+        measured: &[P; STATES],
+        mut sink: impl FnMut(usize, &[P; STATES], &[StateSlope<P>]),
+    ) {
+        let drive = self.drive(integration, dt, samples);
+        let mut stages = Stages::new(self.columns.len());
+        let mut slopes = vec![[P::zero(); STATES]; self.columns.len()];
+        let mut reports = slopes.clone();
+        let mut state = *initial;
+        for (g, group) in self.reported.iter().enumerate() {
+            let inputs = drive.reported.get(g).map_or_else(|| drive.series[0].map(P::few), |series| series[0]);
+            let begun = start(&group.dynamics, &inputs, &initial.map(P::few), &measured.map(P::few));
+            state = spread(&group.columns, &begun, &mut slopes);
+        }
+        if !self.reported.is_empty() && self.columns.is_empty() {
+            state = start(&self.dynamics, &drive.series[0], initial, measured);
+        }
+        for k in 0..samples.len() {
+            let at = k * integration.instants();
+            if self.reported.is_empty() {
+                sink(k, &state, &slopes);
+            } else {
+                let report = self.report(&drive, at, &state, &slopes, &mut reports);
+                sink(k, &report, &reports);
+            }
+            if k + 1 < samples.len() {
+                self.step(integration, dt, &drive, at, &mut state, &mut slopes, &mut stages);
+            }
+        }
+    }
+
+    /// What the sensors report of a state, and into `reports` its derivatives by the columns.
+    fn report(
+        &self,
+        drive: &Drive<P>,
+        when: usize,
+        state: &[P; STATES],
+        slopes: &[StateSlope<P>],
+        reports: &mut [StateSlope<P>],
+    ) -> [P; STATES] {
+        let mut report = *state;
+        for (g, group) in self.reported.iter().enumerate() {
+            let inputs = drive.reported.get(g).map_or_else(|| drive.series[when].map(P::few), |series| series[when]);
+            let lifted: [P::Few; STATES] = std::array::from_fn(|j| {
+                let mut few = [P::zero(); FEW];
+                for (few, c) in few.iter_mut().zip(&group.columns) {
+                    *few = slopes[*c][j];
+                }
+                state[j].few_with(few)
+            });
+            report = spread(&group.columns, &group.dynamics.report(&lifted, &inputs), reports);
+        }
+        report
+    }
+}
+
+/// The values of numbers with derivatives; the derivatives go to their columns.
+fn spread<P: Plain>(columns: &[usize], x: &[P::Few; STATES], slopes: &mut [StateSlope<P>]) -> [P; STATES] {
+    std::array::from_fn(|j| {
+        let (value, few) = P::parts(&x[j]);
+        for (c, slope) in columns.iter().zip(few) {
+            slopes[*c][j] = slope;
+        }
+        value
+    })
+}
+
+/// `x + h k`.
+#[inline(always)]
+fn moved<P: Plain>(x: &[P; STATES], h: f64, k: &[P; STATES]) -> [P; STATES] {
+    std::array::from_fn(|j| x[j] + k[j] * h)
+}
+
+/// The rate of a column: the Jacobian of the rates times the column, and the parameter's own part in the accelerations.
+///
+/// Positions follow kinematics: `d(x')/d psi = -y'`, `d(y')/d psi = x'`. Without `HEADING` no acceleration depends on psi.
+#[inline(always)]
+fn rate<P: Plain, const HEADING: bool>(local: &Local<P>, s: &StateSlope<P>, own: &[P; 3]) -> StateSlope<P> {
+    let [sin, cos] = local.heading;
+    let [_, _, psi, u, v, r] = *s;
+    let acceleration = |i: usize| {
+        let row = &local.jacobian[i];
+        let sum = row[3].mul_add(r, row[2].mul_add(v, row[1].mul_add(u, own[i])));
+        if HEADING { row[0].mul_add(psi, sum) } else { sum }
+    };
+    [
+        cos.mul_add(u, -(sin.mul_add(v, local.rates[1] * psi))),
+        sin.mul_add(u, cos.mul_add(v, local.rates[0] * psi)),
+        r,
+        acceleration(0),
+        acceleration(1),
+        acceleration(2),
+    ]
+}
+
+/// Columns after one step of Euler's method.
+#[inline(always)]
+fn euler<P: Plain, const HEADING: bool>(local: &Local<P>, h: f64, slopes: &mut [StateSlope<P>], own: &[[P; 3]]) {
+    let h = P::from_f64(h);
+    for (slope, own) in slopes.iter_mut().zip(own) {
+        let k = rate::<P, HEADING>(local, slope, own);
+        *slope = std::array::from_fn(|j| k[j].mul_add(h, slope[j]));
+    }
+}
+
+/// A column after one step of the classical Runge-Kutta method, from the Jacobians at its four stages.
+#[inline]
+pub fn runge_kutta<P: Plain>(
+    locals: &[Local<P>; 4],
+    h: f64,
+    slope: &StateSlope<P>,
+    own: &[[P; 3]; 4],
+) -> StateSlope<P> {
+    let k1 = rate::<P, true>(&locals[0], slope, &own[0]);
+    let k2 = rate::<P, true>(&locals[1], &moved(slope, 0.5 * h, &k1), &own[1]);
+    let k3 = rate::<P, true>(&locals[2], &moved(slope, 0.5 * h, &k2), &own[2]);
+    let k4 = rate::<P, true>(&locals[3], &moved(slope, h, &k3), &own[3]);
+    std::array::from_fn(|j| slope[j] + (k1[j] + (k2[j] + k3[j]) * 2.0 + k4[j]) * (h / 6.0))
+}

@@ -1,0 +1,225 @@
+//! The parameters that sensitivities are carried to, grouped by what they can change, and their own part in the accelerations.
+//! How that part is carried through time is the chain's affair.
+
+use super::local::{Local, Plain};
+use crate::dynamics::Dynamics;
+use crate::model::{BASE, Model, Placed};
+use crate::physics::{FEW, Flow, Group, Instant, MOST_PARAMETERS, Mobility, Number, Physics, Reach, Term};
+use crate::state::{Force, Inputs, STATES, State};
+use crate::terms::hull::Hull;
+use crate::terms::propeller::Propeller;
+use crate::terms::resistance::Resistance;
+use crate::terms::rudder::Rudder;
+
+/// A parameter that sensitivities are carried to, in units of `scale`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Column {
+    /// Index of the parameter in the model.
+    pub parameter: usize,
+    /// Unit: the sensitivity is to `parameter / scale`.
+    pub scale: f64,
+}
+
+/// A column of one term: index of the parameter in the term, index of the column, unit.
+type Own = (usize, usize, f64);
+
+/// The columns of one term that act by its own force.
+#[derive(Clone)]
+struct Owned {
+    term: Placed,
+    columns: Vec<Own>,
+}
+
+/// Columns grouped by what their parameters can change.
+#[derive(Clone)]
+pub struct Columns {
+    /// All of them, in the order in which results are given.
+    all: Vec<Column>,
+    /// Linear in the force of hull, resistance, propeller and rudder.
+    base: [Vec<Own>; 4],
+    /// Linear in the force of another term.
+    linear: Vec<Owned>,
+    /// In the force of their own term, at most [`FEW`] each.
+    force: Vec<Owned>,
+    /// What may change anything, at most [`FEW`] together.
+    anything: Vec<Vec<usize>>,
+    /// What changes the reports of sensors alone.
+    sensors: Vec<usize>,
+}
+
+impl Columns {
+    /// Groups the columns for a model.
+    pub fn new(model: &Model, columns: &[Column]) -> Self {
+        let mut out = Self {
+            all: columns.to_vec(),
+            base: Default::default(),
+            linear: Vec::new(),
+            force: Vec::new(),
+            anything: Vec::new(),
+            sensors: Vec::new(),
+        };
+        let mut anything = Vec::new();
+        for (place, term) in model.placed().iter().enumerate() {
+            let inside = |p: usize| (term.offset..term.offset + term.len).contains(&p);
+            let (mut linear, mut force) = (Vec::new(), Vec::new());
+            for (c, column) in columns.iter().enumerate().filter(|(_, c)| inside(c.parameter)) {
+                let own = (column.parameter - term.offset, c, column.scale);
+                match term.term.reach(own.0) {
+                    _ if term.term.info().group == Group::Sensor => out.sensors.push(c),
+                    Reach::LinearForce => linear.push(own),
+                    Reach::Force => force.push(own),
+                    Reach::Anything => anything.push(c),
+                }
+            }
+            if (1..BASE.len()).contains(&place) {
+                out.base[place - 1] = linear;
+            } else if !linear.is_empty() {
+                out.linear.push(Owned { term: *term, columns: linear });
+            }
+            out.force.extend(force.chunks(FEW).map(|columns| Owned { term: *term, columns: columns.to_vec() }));
+        }
+        out.anything = anything.chunks(FEW).map(<[usize]>::to_vec).collect();
+        out
+    }
+
+    /// How many columns there are.
+    pub fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// The columns, in order.
+    pub fn all(&self) -> &[Column] {
+        &self.all
+    }
+
+    /// The columns that may change anything, in the groups in which they are differentiated.
+    pub fn anything(&self) -> &[Vec<usize>] {
+        &self.anything
+    }
+
+    /// The columns that change the reports of sensors alone.
+    pub fn sensors(&self) -> &[usize] {
+        &self.sensors
+    }
+
+    /// Parameter values with the derivatives of a group of columns.
+    pub fn seeded<P: Plain>(&self, theta: &[P], group: &[usize]) -> Vec<P::Few> {
+        let mut seeded: Vec<P::Few> = theta.iter().map(|x| x.few()).collect();
+        for (lane, c) in group.iter().enumerate() {
+            let Column { parameter, scale } = self.all[*c];
+            let (value, mut slopes) = P::parts(&seeded[parameter]);
+            slopes[lane] = P::from_f64(scale);
+            seeded[parameter] = value.few_with(slopes);
+        }
+        seeded
+    }
+
+    /// Derivatives of the accelerations (u', v', r') by the columns that act by the force of their own term, into `out`.
+    #[inline(always)]
+    pub fn by_force<P: Plain>(
+        &self,
+        dynamics: &Dynamics<P>,
+        local: &Local<P>,
+        flow: &Flow<P>,
+        state: &[P; STATES],
+        inputs: &Inputs<P>,
+        out: &mut [[P; 3]],
+    ) {
+        let state = State::from_array(*state);
+        let model = dynamics.model();
+        let at = &Instant {
+            ship: &model.ship,
+            small: model.ship.small_speed(),
+            form: model.form,
+            state: &state,
+            heading: local.heading,
+            inputs,
+        };
+        let mobility = dynamics.mobility(flow);
+        own::<P, Hull, 19>(&Hull, &self.base[0], at, flow, &mobility, out);
+        own::<P, Resistance, 3>(&Resistance, &self.base[1], at, flow, &mobility, out);
+        own::<P, Propeller, 1>(&Propeller, &self.base[2], at, flow, &mobility, out);
+        own::<P, Rudder, 7>(&Rudder, &self.base[3], at, flow, &mobility, out);
+        if self.linear.is_empty() && self.force.is_empty() {
+            return;
+        }
+        for owned in &self.linear {
+            let mut forces = [Force::zero(); MOST_PARAMETERS];
+            let forces = &mut forces[..owned.term.len];
+            let mut room = [P::zero(); MOST_PARAMETERS];
+            P::physics(owned.term.term).slopes(&mut room[..owned.term.len], at, flow, forces);
+            write(&owned.columns, forces, &mobility, out);
+        }
+        for owned in &self.force {
+            nonlinear(dynamics, owned, at, flow, &mobility, out);
+        }
+    }
+}
+
+/// Forces per unit parameter as accelerations per unit column.
+#[inline(always)]
+fn write<P: Plain>(columns: &[Own], forces: &[Force<P>], mobility: &Mobility<P>, out: &mut [[P; 3]]) {
+    for (j, c, scale) in columns {
+        let rates = mobility.accelerations(&forces[*j]);
+        out[*c] = if *scale == 1.0 { rates } else { rates.map(|rate| rate * *scale) };
+    }
+}
+
+/// The columns of a base term with `L` parameters, all linear in its force.
+#[inline(always)]
+fn own<P: Plain, T: Physics<P> + Term, const L: usize>(
+    term: &T,
+    columns: &[Own],
+    at: &Instant<P>,
+    flow: &Flow<P>,
+    mobility: &Mobility<P>,
+    out: &mut [[P; 3]],
+) {
+    if columns.is_empty() {
+        return;
+    }
+    let mut forces = [Force::zero(); L];
+    term.slopes(&mut [P::zero(); L], at, flow, &mut forces);
+    write(columns, &forces, mobility, out);
+}
+
+/// Columns that are not linear in their own term's force: by dual numbers through that term alone.
+fn nonlinear<P: Plain>(
+    dynamics: &Dynamics<P>,
+    owned: &Owned,
+    at: &Instant<P>,
+    flow: &Flow<P>,
+    mobility: &Mobility<P>,
+    out: &mut [[P; 3]],
+) {
+    let mut p = [P::zero().few(); MOST_PARAMETERS];
+    let p = &mut p[..owned.term.len];
+    for (p, value) in p.iter_mut().zip(owned.term.part(dynamics.theta())) {
+        *p = value.few();
+    }
+    for (lane, (j, _, scale)) in owned.columns.iter().enumerate() {
+        let mut slopes = [P::zero(); FEW];
+        slopes[lane] = P::from_f64(*scale);
+        p[*j] = P::parts(&p[*j]).0.few_with(slopes);
+    }
+    let state = State::from_array(at.state.to_array().map(P::few));
+    let inputs = at.inputs.map(P::few);
+    let lifted = Instant {
+        ship: at.ship,
+        small: at.small,
+        form: at.form,
+        state: &state,
+        heading: at.heading.map(P::few),
+        inputs: &inputs,
+    };
+    let force = <P::Few as Number>::physics(owned.term.term).force(p, &lifted, &flow.map(P::few, P::few));
+    let parts = [force.x, force.y, force.n].map(|f| P::parts(&f).1);
+    for (lane, (_, c, _)) in owned.columns.iter().enumerate() {
+        out[*c] = mobility.accelerations(&Force { x: parts[0][lane], y: parts[1][lane], n: parts[2][lane] });
+    }
+}

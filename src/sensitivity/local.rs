@@ -1,0 +1,119 @@
+//! The rates of the state at an instant with their exact Jacobian by heading and velocities, for one run or for a few side by side.
+//! Positions have no part in it: no force depends on where the ship is.
+
+use crate::dynamics::Dynamics;
+use crate::physics::{FEW, Flow, Number};
+use crate::state::{Force, Inputs, STATES, State};
+use trimtab_ad::{Along, Dual, Lanes, Scalar};
+
+/// Rates of the state, and how the accelerations change with it.
+#[derive(Clone, Copy, Debug)]
+pub struct Local<P> {
+    /// Rates of `[x, y, psi, u, v, r]`.
+    pub rates: [P; STATES],
+    /// Jacobian of (u', v', r') by (psi, u, v, r).
+    pub jacobian: [[P; 4]; 3],
+    /// Sine and cosine of the heading.
+    pub heading: [P; 2],
+}
+
+/// A number without derivatives, for one run or for several side by side, that simulations are differentiated over.
+pub trait Plain: Number<Coefficient = Self> {
+    /// The number with [`FEW`] derivatives by parameters.
+    type Few: Number<Coefficient = Self::Few>;
+    /// How many runs it holds.
+    const WIDTH: usize;
+    /// A number from one value a run.
+    fn gather(f: impl FnMut(usize) -> f64) -> Self;
+    /// The value of one run.
+    fn in_lane(self, lane: usize) -> f64;
+    /// Without derivatives.
+    fn few(self) -> Self::Few;
+    /// With given derivatives.
+    fn few_with(self, slopes: [Self; FEW]) -> Self::Few;
+    /// Value and derivatives.
+    fn parts(few: &Self::Few) -> (Self, [Self; FEW]);
+    /// Rates and their Jacobian at a state, and what the terms share there, under a force `push` beside that of the terms.
+    fn linearise(
+        dynamics: &Dynamics<Self>,
+        state: &[Self; STATES],
+        inputs: &Inputs<Self>,
+        push: &Force<Self>,
+    ) -> (Local<Self>, Flow<Self>);
+}
+
+macro_rules! plain {
+    ($number:ty, $width:expr, |$f:ident| $gather:expr, |$x:ident, $i:ident| $lane:expr) => {
+        impl Plain for $number {
+            type Few = Dual<$number, FEW>;
+            const WIDTH: usize = $width;
+            #[inline]
+            #[allow(unused_mut)]
+            fn gather(mut $f: impl FnMut(usize) -> f64) -> Self {
+                $gather
+            }
+            #[inline]
+            fn in_lane(self, $i: usize) -> f64 {
+                let $x = self;
+                $lane
+            }
+            #[inline]
+            fn few(self) -> Self::Few {
+                Dual::constant(self)
+            }
+            #[inline]
+            fn few_with(self, slopes: [Self; FEW]) -> Self::Few {
+                Dual { re: self, eps: slopes }
+            }
+            #[inline]
+            fn parts(few: &Self::Few) -> (Self, [Self; FEW]) {
+                (few.re, few.eps)
+            }
+            #[inline(always)]
+            fn linearise(
+                dynamics: &Dynamics<Self>,
+                state: &[Self; STATES],
+                inputs: &Inputs<Self>,
+                push: &Force<Self>,
+            ) -> (Local<Self>, Flow<Self>) {
+                let [_, _, psi, u, v, r] = *state;
+                if dynamics.is_still() && dynamics.extras().is_empty() {
+                    let x = [Along::constant(psi), Along::variable(u, 0), Along::variable(v, 1), Along::variable(r, 2)];
+                    along::<$number, 3>(dynamics, state, x, inputs, push, |[u, v, r]| [Self::zero(), u, v, r])
+                } else {
+                    let x =
+                        [Along::variable(psi, 0), Along::variable(u, 1), Along::variable(v, 2), Along::variable(r, 3)];
+                    along::<$number, 4>(dynamics, state, x, inputs, push, |slopes| slopes)
+                }
+            }
+        }
+    };
+}
+plain!(f64, 1, |f| f(0), |x, _lane| x);
+plain!(Lanes, Lanes::LANES, |f| Lanes::from_fn(f), |x, lane| x.lane(lane));
+
+/// Rates and Jacobian by one evaluation along `N` directions.
+#[inline(always)]
+fn along<P: Plain, const N: usize>(
+    dynamics: &Dynamics<P>,
+    state: &[P; STATES],
+    [psi, u, v, r]: [Along<P, N>; 4],
+    inputs: &Inputs<P>,
+    push: &Force<P>,
+    row: impl Fn([P; N]) -> [P; 4],
+) -> (Local<P>, Flow<P>)
+where
+    Along<P, N>: Number<Coefficient = P>,
+{
+    let constant = Along::<P, N>::constant;
+    let moving = State { x: constant(state[0]), y: constant(state[1]), psi, u, v, r };
+    let push = Force { x: constant(push.x), y: constant(push.y), n: constant(push.n) };
+    let (rates, flow) = dynamics.rates_in_place(&moving, inputs, &push);
+    let (sin, cos) = psi.sin_cos();
+    let local = Local {
+        rates: rates.map(|rate| rate.re),
+        jacobian: [row(rates[3].eps), row(rates[4].eps), row(rates[5].eps)],
+        heading: [sin.re, cos.re],
+    };
+    (local, flow.map(|x| x.re, |c| c))
+}
