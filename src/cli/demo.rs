@@ -13,6 +13,7 @@ use trimtab::evaluate::Evaluation;
 use trimtab::fit::Fit;
 use trimtab::maneuver::{Side, turning_trial};
 use trimtab::model::Model;
+use trimtab::numerals::{DASH, interval, sig};
 use trimtab::recording::Split;
 use trimtab::report::Table;
 use trimtab::report::maneuver::{turning_figure, turning_table};
