@@ -27,6 +27,7 @@ use crate::recording::{Split, Window};
 use crate::ship::Ship;
 use crate::simulate::{Integration, Scenario, Trajectory, reported};
 use crate::state::{STATE_NAMES, STATES};
+use crate::validity::{self, Coverage};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -227,6 +228,8 @@ pub struct Evaluation {
     pub trajectories: Vec<Comparison>,
     /// By split (`test`, `train`), then by manoeuvre and by session of the test trajectories where there are several.
     pub summaries: Vec<Summary>,
+    /// How much of the recordings lies outside the ranges over which the terms of the fitted model are valid.
+    pub validity: Coverage,
     /// r_max \[rad/s\].
     pub max_yaw_rate: f64,
     /// Resamples of the bootstrap.
@@ -301,7 +304,9 @@ pub fn evaluate(
     let after = predict_all(fitted, windows, integration);
     let trajectories: Vec<Comparison> =
         windows.iter().zip(before.iter().zip(&after)).map(|(w, p)| compare(w, fitted, max_yaw_rate, p)).collect();
+    let samples = windows.iter().flat_map(|w| validity::samples(&w.measured, &w.measured_channels, &w.inputs));
     Evaluation {
+        validity: validity::outside(fitted, samples),
         baseline: baseline.name.clone(),
         fitted: fitted.name.clone(),
         summaries: summaries(&trajectories, settings),

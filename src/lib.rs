@@ -1,5 +1,68 @@
 //! Automatic differentiation for ship dynamics: fit an interpretable manoeuvring model to recordings of a ship, and find
 //! the physics it lacks.
+//!
+//! The whole job on the example study that is built in, forty recordings of a container ship of 85 m made by a simulator
+//! that knows more physics than the model has:
+//!
+//! ```
+//! use trimtab::{EvaluationSettings, FitRun, FitSettings, Run, Settings, diagnose, evaluate, fit};
+//!
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     // A model with eleven free parameters, 32 recordings to fit it to, and 8 that are kept aside.
+//!     let study = trimtab::demo::example()?;
+//!
+//!     // Least squares through the simulation, with exact gradients.
+//!     let settings = FitSettings::default();
+//!     let runs: Vec<_> = study.train.iter().map(|w| FitRun::of(w, &study.model.ship, settings.max_yaw_rate)).collect();
+//!     let fitted = fit(&study.model, &runs, &settings, &mut |_| true)?;
+//!     println!("{}", fitted.brief());
+//!     assert!(fitted.converged);
+//!
+//!     // How well does it predict recordings it has not seen, beside the published parameters?
+//!     let (integration, rate) = (settings.integration, settings.max_yaw_rate);
+//!     let judged =
+//!         evaluate(&study.baseline, &fitted.model, &study.test, integration, rate, &EvaluationSettings::default());
+//!     let summary = judged.summary("test").ok_or("no test run")?;
+//!     println!("better on {} of {} runs", summary.runs_better, summary.runs);
+//!     assert!(summary.runs_better > summary.runs_worse);
+//!
+//!     // Which physics does it lack?
+//!     let of = |windows: &[_]| windows.iter().map(Run::from).collect::<Vec<_>>();
+//!     let diagnosis =
+//!         diagnose(&fitted.model, &of(&study.train), &of(&study.test), &Settings::default(), &|step| println!("{step}"))?;
+//!     println!("{}", diagnosis.headline);
+//!     assert!(!diagnosis.ranking.is_empty());
+//!     Ok(())
+//! }
+//! ```
+//!
+//! # Where to go on
+//!
+//! | to | see |
+//! |---|---|
+//! | fit recordings of your own | [`recording`], [`study`], `examples/fit_csv.rs` |
+//! | write a physical effect of your own | [`physics`], [`terms`], `examples/own_term.rs` |
+//! | choose how derivatives are taken | [`fit::Derivatives`], `examples/gradients.rs` |
+//! | simulate | [`simulate`](mod@simulate), [`maneuver`] |
+//! | know where a term's law is valid | [`validity`] |
+//! | use numbers that carry derivatives elsewhere | the crate [`trimtab_ad`], which knows no ship |
+//!
+//! Units are SI and radians; x is north, y east, psi clockwise from north, v, r and delta positive to starboard.
+//! Divergence and failed convergence are results, not panics; errors say what, where and what to do next.
+//!
+//! # What to set in your own project
+//!
+//! * `fit` calls Ipopt through the crate `ipopt-sys`. On Debian and its relatives install `coinor-libipopt-dev cmake libclang-dev
+//!   g++ pkg-config`, and set `IPOPT_NO_PKG_CONFIG=1` while building: Debian's pkg-config file asks for a static libm, which
+//!   does not link. In a project this is three lines of `.cargo/config.toml`, which cargo does not take from a dependency:
+//!
+//!   ```toml
+//!   [env]
+//!   IPOPT_NO_PKG_CONFIG = "1"
+//!   ```
+//! * Simulations run on SIMD lanes eight at a time. On x86-64 they are fast only where the compiler may use AVX2 (every
+//!   machine since about 2015): `rustflags = ["-C", "target-cpu=x86-64-v3"]` under `[build]`. Without, results are the same and
+//!   a fit takes several times as long.
 
 pub mod check;
 pub mod demo;
@@ -23,3 +86,15 @@ pub mod simulate;
 pub mod state;
 pub mod study;
 pub mod terms;
+pub mod validity;
+
+pub use diagnose::{Diagnosis, Run, Settings, Verdict, diagnose};
+pub use evaluate::{Evaluation, EvaluationSettings, evaluate};
+pub use fit::{Fit, FitRun, FitSettings, fit};
+pub use model::Model;
+pub use physics::Form;
+pub use recording::{ColumnMap, Labels, Recording, Split, Window, WindowSettings};
+pub use ship::Ship;
+pub use simulate::{Integration, Method, Scenario, Trajectory, simulate};
+pub use state::{Force, Inputs, State};
+pub use study::Study;

@@ -38,7 +38,8 @@ JSON: result.baseline, result.fitted (names), result.summaries[] with group (tes
     `session: ...` of test), runs, trajectories, md_baseline, md_fitted, md_improvement (x, y, psi, u, v, r), cvdm_baseline, \
     cvdm_fitted [%], cvdm_improvement, mari, consistency [-] (each value and ci95), better, worse, runs_better, runs_worse, \
     diverged_baseline, diverged_fitted, worst, most_worsened; result.trajectories[] with run, split, baseline and fitted (md, \
-    cvdm, or diverged_after [s]). A number that does not exist is absent.";
+    cvdm, or diverged_after [s]); result.validity (share_outside of the samples; outside[] with term, quantity, range, share, \
+    met). A number that does not exist is absent.";
 
 /// Judges a model on the test runs, against a baseline
 #[derive(Debug, clap::Args)]
@@ -120,6 +121,7 @@ pub fn text(study: &str, evaluation: &Evaluation) -> String {
             text += &format!("`{name}` diverged on {count} of {} trajectories; {left}.\n", main.trajectories);
         }
     }
+    text += &format!("{}\n", evaluation.validity.line());
     if evaluation.summaries.len() > 1 {
         text += &format!("\n{}", groups(&evaluation.summaries, compared));
     }

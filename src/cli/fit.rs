@@ -31,7 +31,8 @@ JSON: result.converged, result.status, result.estimates[] (name, symbol, unit, s
     at_bound), result.start_cost, result.cost, result.prior_cost, result.residual_variance, result.active[] (sentence, rule), \
     result.undetermined[] (words, standard_deviation), result.covariance_gauss_newton, result.covariance_sandwich, \
     result.correlations (rows of numbers in the order of the estimates, null where the data do not determine a parameter), \
-    result.runs, result.recordings, result.residuals, result.iterations, result.counts, result.seconds, result.settings.
+    result.validity (share_outside of the samples; outside[] with term, quantity, range, share, met: where the data leave the \
+    range over which a term is valid), result.runs, result.recordings, result.residuals, result.iterations, result.counts, result.seconds, result.settings.
 
 Exit code 1 if the fit did not converge; its result is written all the same.";
 

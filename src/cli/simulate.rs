@@ -12,6 +12,7 @@ use trimtab::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
 use trimtab::recording::{Split, Window};
 use trimtab::report::Table;
 use trimtab::simulate::Trajectory;
+use trimtab::validity::{self, Coverage};
 
 const LONG: &str = "\
 Simulates every recording of a study (or every window of it, where the study cuts them) with the study's model or another: \
@@ -28,7 +29,8 @@ cVDM is the mean deviation over position, heading and velocities, each relative 
 With --out: simulate.json, simulations.csv, tracks.png and .csv, and trajectories/RUN.csv, each in the layout of a \
     recording, so that a simulation can be read like a measurement.
 JSON: result.model, result.runs[] with run, split, start_time [s], duration [s], steps, md (x, y [m], psi [rad], u, v [m/s], \
-    r [rad/s]) and cvdm [%], or diverged_after [s].
+    r [rad/s]) and cvdm [%], or diverged_after [s]; result.validity (share_outside of the recorded samples; outside[] with term, \
+    quantity, range, share, met).
 
 Exit code 2 if a simulation diverges, after everything else was written.";
 
@@ -46,6 +48,7 @@ pub struct Args {
 struct Report<'a> {
     model: &'a str,
     runs: Vec<Row<'a>>,
+    validity: Coverage,
 }
 
 #[derive(Serialize)]
@@ -93,8 +96,10 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         }
     }
     output.figure("tracks", || figure(&model.name, &windows, &trajectories))?;
-    let text = format!("{} simulated with `{}`:\n\n{table}", loaded.study.name, model.name);
-    let report = Report { model: &model.name, runs: rows };
+    let samples = windows.iter().flat_map(|w| validity::samples(&w.measured, &w.measured_channels, &w.inputs));
+    let validity = validity::outside(model, samples);
+    let text = format!("{} simulated with `{}`:\n\n{table}\n\n{}", loaded.study.name, model.name, validity.line());
+    let report = Report { model: &model.name, runs: rows, validity };
     output.finish(&text, &report)?;
     let diverged = report.runs.iter().find_map(|r| match r.outcome {
         Outcome::Diverged { diverged_after } => Some((r.run, diverged_after)),

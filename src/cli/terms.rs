@@ -24,7 +24,8 @@ Examples:
   trimtab terms hull --ship ship.toml  with the values that a ship's particulars imply
 
 With --out: terms.json, parameters.csv.
-JSON: result.terms[] with name, title, group, base (every model has it), equation, source, needs[], and parameters[] with \
+JSON: result.terms[] with name, title, group, base (every model has it), equation, source, needs[], validity (ranges[] with \
+    quantity, range, words; widens[], source), and parameters[] with \
     name, symbol, unit, about, lower, upper (absent: no bound), one_sided (makes port and starboard differ), and with --ship \
     default, scale (size of a relevant change), spread (prior standard deviation; absent: no prior).";
 

@@ -52,6 +52,7 @@ pub mod signal;
 
 pub use decide::Verdict;
 pub use diagnosis::Diagnosis;
+pub use filter::Run;
 pub use finding::Finding;
 pub use pipeline::diagnose;
 pub use settings::Settings;

@@ -17,6 +17,7 @@ use super::sides::sides;
 use super::summary::{absorbed, adequacy, budget, confusable, detectable, moves, ranking, traces};
 use super::words::{Missing, headline, next_trial};
 use crate::model::{Model, ModelError};
+use crate::validity::{self, Coverage};
 
 /// Diagnoses a model against recordings.
 ///
@@ -58,6 +59,11 @@ fn proof(question: &Question, kept: &Kept, held_out: &[Run]) -> Option<HeldOut> 
     Some(prove(before, after, Some(&generic), tests.fit.integration, held_out, question.settings.seed))
 }
 
+/// How much of the runs lies outside the ranges of a model's terms.
+fn coverage(model: &Model, runs: &[Run]) -> Coverage {
+    validity::outside(model, runs.iter().flat_map(|r| validity::samples(&r.measured, &r.channels, &r.inputs)))
+}
+
 /// Everything that the diagnosis says.
 fn report(question: &Question, kept: &Kept, decision: &Decision, proof: Option<HeldOut>) -> Diagnosis {
     let (tests, found) = (&kept.selection.tests, &kept.selection.estimate);
@@ -73,6 +79,7 @@ fn report(question: &Question, kept: &Kept, decision: &Decision, proof: Option<H
     };
     let findings = findings(kept, proof.as_ref());
     let verdict = decision.verdict;
+    let improved = trimmed(&found.model, question.model, &found.free);
     Diagnosis {
         schema: "trimtab-diagnosis/1",
         verdict,
@@ -100,7 +107,8 @@ fn report(question: &Question, kept: &Kept, decision: &Decision, proof: Option<H
         findings,
         settings: question.settings.clone(),
         traces: traces(&fit.runs, first, last),
-        model: trimmed(&found.model, question.model, &found.free),
+        validity: coverage(&improved, &fit.runs),
+        model: improved,
         base: trimmed(&base.model, question.model, &base.free),
     }
 }

@@ -12,6 +12,7 @@ use super::subspace::inverse;
 use super::task::Task;
 use crate::ipopt::Counts;
 use crate::model::Model;
+use crate::validity::{self, Coverage};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::time::Instant;
@@ -61,6 +62,8 @@ pub struct Fit {
     /// The model with the estimates in place.
     #[serde(skip)]
     pub model: Model,
+    /// How much of the data lies outside the ranges over which the terms are valid.
+    pub validity: Coverage,
     /// Whether the solver found an optimum.
     pub converged: bool,
     /// How it ended and what residuals say against it, in one line.
@@ -160,7 +163,9 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
     let statistics = ResidualStatistics::of(task, &model);
     let covariances = Covariances::of(task, &end, cost, statistics.likeness);
     let doubts = statistics.doubts(&covariances, task.scales.len());
+    let samples = task.runs.iter().flat_map(|r| validity::samples(&r.measured, &r.measured_channels, &r.inputs));
     Fit {
+        validity: validity::outside(&model, samples),
         converged: end.converged,
         headline: headline(end.converged, &end.words, &doubts),
         doubts,

@@ -62,6 +62,14 @@ impl Recording {
         read::read(path, map)
     }
 
+    /// Reads a recording from the text of a file; `path` is used in messages and, without its ending, as the name.
+    ///
+    /// # Errors
+    /// As [`Recording::read`], but for a file that cannot be opened.
+    pub fn parse(text: &str, path: &Path, map: &ColumnMap) -> Result<Self, RecordingError> {
+        read::parse(text, path, map)
+    }
+
     /// A recording from arrays already in SI units and the project's frames; `t` must be among them.
     ///
     /// # Errors

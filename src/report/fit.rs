@@ -49,7 +49,8 @@ impl Fit {
 
     /// The whole report.
     pub fn report(&self) -> String {
-        let sections = [self.course(), self.table(), self.active_constraints(), self.what_is_open()];
+        let sections =
+            [self.course(), self.table(), self.active_constraints(), self.what_is_open(), self.validity.line()];
         sections.join("\n\n") + "\n"
     }
 

@@ -4,7 +4,7 @@
 use super::table::Table;
 use crate::numerals::{DASH, sig};
 use crate::parameter::{ParameterInfo, Parity};
-use crate::physics::{Group, TermInfo};
+use crate::physics::{Group, Quantity, TermInfo, Validity, range_in_words};
 use crate::ship::Ship;
 use crate::terms::CATALOGUE;
 use serde::Serialize;
@@ -27,8 +27,54 @@ pub struct Entry {
     pub source: &'static str,
     /// Recorded channels it needs.
     pub needs: &'static [&'static str],
+    /// Where its law is valid.
+    pub validity: ValidityEntry,
     /// Its parameters.
     pub parameters: Vec<ParameterEntry>,
+}
+
+/// Where the law of a term is valid, for printing and for JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct ValidityEntry {
+    /// Its ranges; empty where it is valid anywhere.
+    pub ranges: Vec<RangeEntry>,
+    /// Terms whose range it widens to its own.
+    pub widens: &'static [&'static str],
+    /// Where the ranges come from.
+    pub source: &'static str,
+}
+
+/// One range, absent (`null` in JSON) where it is open.
+#[derive(Clone, Debug, Serialize)]
+pub struct RangeEntry {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Lowest and highest value \[SI\].
+    pub range: [Option<f64>; 2],
+    /// The range in words.
+    pub words: String,
+}
+
+impl ValidityEntry {
+    fn new(validity: &'static Validity) -> Self {
+        let open = |x: f64| x.is_finite().then_some(x);
+        let entry = |(quantity, range): (Quantity, [f64; 2])| RangeEntry {
+            quantity,
+            range: range.map(open),
+            words: range_in_words(quantity, range),
+        };
+        Self { ranges: validity.limits().map(entry).collect(), widens: validity.widens, source: validity.source }
+    }
+
+    fn in_words(&self) -> String {
+        let ranges: Vec<String> = self.ranges.iter().map(|r| format!("{} {}", r.quantity.words(), r.words)).collect();
+        let ranges = if ranges.is_empty() { "anywhere".to_owned() } else { ranges.join(", ") };
+        let widens = match self.widens {
+            [] => String::new(),
+            terms => format!("; widens the range of {} to its own", terms.join(" and ")),
+        };
+        format!("valid for: {ranges}{widens} ({})", self.source)
+    }
 }
 
 /// A parameter of a term. A bound or value that does not exist is absent (`null` in JSON).
@@ -94,6 +140,7 @@ impl Entry {
             equation: info.equation,
             source: info.source,
             needs: info.needs,
+            validity: ValidityEntry::new(&info.validity),
             parameters: info.parameters.iter().map(|p| ParameterEntry::new(info.name, p, ship)).collect(),
         }
     }
@@ -128,6 +175,7 @@ impl fmt::Display for Entry {
         if !self.needs.is_empty() {
             writeln!(f, "  needs the recorded channel {}", self.needs.join(", "))?;
         }
+        writeln!(f, "  {}", self.validity.in_words())?;
         let value = |x: Option<f64>| x.map_or(DASH.into(), |x| sig(x, 4));
         let with_ship = self.parameters.iter().any(|p| p.default.is_some());
         let mut header = vec!["parameter", "symbol", "unit", "bounds"];

@@ -40,6 +40,7 @@ pub(super) fn model(d: &Diagnosis) -> Vec<String> {
         format!("parameters that had absorbed the effect: {}", list.join(", "))
     });
     lines.extend(d.sides.as_ref().map(|s| own_sides(s, units)));
+    lines.push(d.validity.line());
     lines
 }
 
