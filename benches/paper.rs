@@ -3,76 +3,11 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
-use std::path::Path;
-use trimtab::fit::cost::weights;
-use trimtab::fit::{Cost, CostOptions, Derivatives, FitRun, FitSettings, Hessian, Limits, fit};
-use trimtab::model::Model;
-use trimtab::physics::Form;
-use trimtab::ship::Ship;
-use trimtab::simulate::{Integration, Scenario, simulate};
-use trimtab::state::Inputs;
+use trimtab::fit::{Derivatives, FitSettings, Hessian, fit};
 
-const STAR: [f64; 11] = [-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370];
-const RUNS: usize = 165;
-const STEPS: usize = 120;
-
-fn ship_a() -> Model {
-    let path = format!("{}/experiments/ships/a.toml", env!("CARGO_MANIFEST_DIR"));
-    Ship::read(Path::new(&path))
-        .map_err(|e| e.to_string())
-        .and_then(|ship| Model::new(ship, "HD", Form::Paper, &[]).map_err(|e| e.to_string()))
-        .unwrap_or_else(|e| unreachable!("{e}"))
-}
-
-fn path(states: &[[f64; 6]]) -> f64 {
-    states.windows(2).map(|s| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1])).sum()
-}
-
-fn mean_speed(states: &[[f64; 6]]) -> f64 {
-    states.iter().map(|s| s[3].hypot(s[4])).sum::<f64>() / states.len() as f64
-}
-
-/// Runs of the model with p*, ahead and astern, with a weaving rudder, and with a disturbance that no parameter explains.
-fn recordings(dt: f64) -> Vec<FitRun> {
-    let mut truth = ship_a();
-    truth.set_eleven(&STAR);
-    (0..RUNS)
-        .map(|i| {
-            let phase = i as f64;
-            let input = |k: usize| {
-                let t = k as f64 * dt;
-                let n = 1.6 + 1.8 * (0.7 * phase).sin() + 1.5 * (t / 50.0 + phase).sin();
-                Inputs::actuators(t, n, 0.5 * (t / (15.0 + 20.0 * (1.3 * phase).sin().abs()) + 2.0 * phase).sin())
-            };
-            let inputs: Vec<Inputs<f64>> = (0..STEPS).map(input).collect();
-            let initial = [0.0, 0.0, phase, 3.3 + 2.0 * (2.1 * phase).sin(), 0.0, 0.0];
-            let scenario = Scenario { dt, inputs: inputs.clone(), initial };
-            let mut measured = simulate(&truth, &truth.values(), Integration::default(), &scenario).states;
-            let weights = weights(&truth.ship, path(&measured), mean_speed(&measured), 0.0314);
-            for (k, m) in measured.iter_mut().enumerate() {
-                m[0] += (0.1 * k as f64 + phase).sin();
-                m[1] += (0.1 * k as f64 + 2.0 * phase).cos();
-                m[4] += 0.02 * (0.2 * k as f64 + phase).cos();
-            }
-            FitRun {
-                name: format!("run {i}"),
-                session: String::new(),
-                start_time: 0.0,
-                dt,
-                inputs,
-                measured,
-                measured_channels: [true; 6],
-                initial,
-                weights,
-            }
-        })
-        .collect()
-}
-
-fn cost<'a>(model: &'a Model, runs: &'a [FitRun], derivatives: Derivatives) -> Cost<'a> {
-    let options = CostOptions { derivatives, difference_step: 1e-5, integration: Integration::default() };
-    Cost::new(model, runs, options).unwrap_or_else(|e| unreachable!("{e}"))
-}
+#[path = "support/case.rs"]
+mod case;
+use case::{cost, recordings, settings, ship_a};
 
 const SOURCES: [(&str, Derivatives); 4] = [
     ("lanes", Derivatives::Lanes),
@@ -117,9 +52,7 @@ fn evaluations(c: &mut Criterion) {
 
 fn full_fits(c: &mut Criterion) {
     let (model, runs) = (ship_a(), recordings(3.0));
-    let mut settings = FitSettings::default();
-    settings.constraints.limits = Limits::Paper;
-    settings.constraints.tolerance = 2e-3;
+    let settings = settings();
     let mut group = c.benchmark_group("full fit");
     group.sample_size(10);
     for (name, derivatives, hessian) in [

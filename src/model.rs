@@ -4,7 +4,7 @@
 use crate::error::suggestion;
 use crate::parameter::ParameterInfo;
 use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number, TermInfo};
-use crate::ship::{Ship, line_of};
+use crate::ship::{COEFFICIENTS, Ship, line_of};
 use crate::state::Inputs;
 use crate::terms;
 use serde::{Deserialize, Serialize};
@@ -172,6 +172,10 @@ pub struct ModelFile {
     /// Terms beyond the base terms (flow, hull, resistance, propeller, rudder).
     #[serde(default)]
     pub terms: Vec<String>,
+    /// `hull = "free"` frees every hydrodynamic coefficient of the hull ([`COEFFICIENTS`]) as `prior = "default"` does; mass,
+    /// inertia and centre of gravity stay as the ship file has them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hull: Option<HullSetting>,
     /// Settings by dotted parameter name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub parameters: BTreeMap<String, Setting>,
@@ -181,7 +185,7 @@ pub struct ModelFile {
 }
 
 /// What a model file may say of one parameter; a key left out takes the term's value.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Setting {
     /// Value, and start of a fit.
@@ -198,7 +202,56 @@ pub struct Setting {
     pub upper: Option<f64>,
     /// Prior.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub prior: Option<Prior>,
+    pub prior: Option<PriorSetting>,
+}
+
+/// What a model file may say of the hull as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum HullSetting {
+    /// Every hydrodynamic coefficient is free, with its default prior.
+    Free,
+}
+
+/// A prior as a model file gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PriorSetting {
+    /// `prior = "default"`: frees the parameter, with the value that the ship gives it as mean and the spread that its term
+    /// knows ([`ParameterInfo::spread`]) as standard deviation.
+    Default,
+    /// `prior = { mean = ..., sd = ... }`.
+    Given(Prior),
+}
+
+impl Serialize for PriorSetting {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Default => serializer.serialize_str("default"),
+            Self::Given(prior) => prior.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for PriorSetting {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct WordOrTable;
+        impl<'de> serde::de::Visitor<'de> for WordOrTable {
+            type Value = PriorSetting;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("\"default\" or a table { mean = ..., sd = ... }")
+            }
+            fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<PriorSetting, E> {
+                match word {
+                    "default" => Ok(PriorSetting::Default),
+                    other => Err(E::invalid_value(serde::de::Unexpected::Str(other), &self)),
+                }
+            }
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<PriorSetting, A::Error> {
+                Prior::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(PriorSetting::Given)
+            }
+        }
+        deserializer.deserialize_any(WordOrTable)
+    }
 }
 
 impl Model {
@@ -247,6 +300,7 @@ impl Model {
                 return Err(model.unknown(name));
             }
         }
+        model.check_bounds()?;
         model.check()?;
         Ok(model)
     }
@@ -275,13 +329,15 @@ impl Model {
         let info = term.info();
         self.terms.push(Placed { term, offset: self.parameters.len(), len: info.parameters.len() });
         for parameter in info.parameters {
+            let value = (parameter.default)(&self.ship);
+            let (lower, upper) = self.default_bounds(info.name, parameter);
             self.parameters.push(Parameter {
                 name: format!("{}.{}", info.name, parameter.name),
                 info: parameter,
-                value: (parameter.default)(&self.ship),
+                value,
                 free: false,
-                lower: parameter.lower,
-                upper: parameter.upper,
+                lower,
+                upper,
                 prior: None,
                 scale: (parameter.scale)(&self.ship),
             });
@@ -338,22 +394,32 @@ impl Model {
     pub fn from_file_with(catalogue: Catalogue, file: &ModelFile, ship: Ship) -> Result<Self, ModelError> {
         let extra: Vec<&str> = file.terms.iter().map(String::as_str).collect();
         let mut model = Self::with_catalogue(catalogue, ship, &file.name, file.form, &extra)?;
+        if file.hull == Some(HullSetting::Free) {
+            model.free_hull();
+        }
         for (name, setting) in &file.parameters {
             let i = model.find(name)?;
+            let default = model.default_prior(i);
             let p = &mut model.parameters[i];
             p.value = setting.value.unwrap_or(p.value);
-            p.free = setting.free.unwrap_or(p.free);
+            p.free = setting.free.unwrap_or(p.free || setting.prior == Some(PriorSetting::Default));
             p.lower = setting.lower.unwrap_or(p.lower);
             p.upper = setting.upper.unwrap_or(p.upper);
-            p.prior = setting.prior.or(p.prior);
+            match setting.prior {
+                Some(PriorSetting::Default) => p.prior = Some(default),
+                Some(PriorSetting::Given(prior)) => p.prior = Some(prior),
+                None => {}
+            }
             if let Some(prior) = p.prior
-                && !(prior.sd > 0.0 && prior.mean.is_finite())
+                && !(prior.sd > 0.0 && prior.sd.is_finite() && prior.mean.is_finite())
             {
-                return Err(ModelError::BadValue {
-                    name: name.clone(),
-                    value: prior.sd,
-                    expected: "a prior needs a finite mean and a positive sd".into(),
-                });
+                let expected = match setting.prior {
+                    Some(PriorSetting::Default) => {
+                        "nothing is known of it beforehand, so that it has no default prior; give prior = { mean = ..., sd = ... }"
+                    }
+                    _ => "a prior needs a finite mean and a positive, finite sd",
+                };
+                return Err(ModelError::BadValue { name: name.clone(), value: prior.sd, expected: expected.into() });
             }
             if !p.value.is_finite() || p.lower > p.upper {
                 return Err(ModelError::BadValue {
@@ -370,24 +436,67 @@ impl Model {
             }
             model.sessions.insert(session.clone(), list);
         }
+        model.check_bounds()?;
         model.check()?;
         Ok(model)
     }
 
+    /// Frees every hydrodynamic coefficient of the hull with its default prior: what `hull = "free"` in a model file does.
+    pub fn free_hull(&mut self) {
+        for i in self.hull_coefficients() {
+            let prior = self.default_prior(i);
+            let p = &mut self.parameters[i];
+            (p.free, p.prior) = (true, Some(prior));
+        }
+    }
+
+    /// Indices of the hydrodynamic coefficients of the hull.
+    fn hull_coefficients(&self) -> Vec<usize> {
+        COEFFICIENTS.iter().filter_map(|(name, _)| self.index(&format!("hull.{name}"))).collect()
+    }
+
+    /// The prior that `prior = "default"` stands for: the ship's value and the term's spread, which is infinite where the term
+    /// knows nothing.
+    pub fn default_prior(&self, parameter: usize) -> Prior {
+        let p = &self.parameters[parameter];
+        let mean = self.ship.parameters.get(&p.name).copied().unwrap_or_else(|| (p.info.default)(&self.ship));
+        Prior { mean, sd: (p.info.spread)(&self.ship) }
+    }
+
+    /// The bounds of a parameter that no model file has changed: those of its term, widened where the estimate of a hull
+    /// coefficient that the ship file does not give lies outside (a regression far from the ships it was made of).
+    fn default_bounds(&self, term: &str, info: &ParameterInfo) -> (f64, f64) {
+        let given = |table: &BTreeMap<String, f64>| table.contains_key(info.name);
+        if term != "hull" || given(&self.ship.coefficients) || given(&self.ship.coefficients_prime) {
+            return (info.lower, info.upper);
+        }
+        let estimate = (info.default)(&self.ship);
+        (info.lower.min(estimate), info.upper.max(estimate))
+    }
+
     /// The model as the content of a model file: every value that differs from its default, every setting of a fit.
     pub fn to_file(&self) -> ModelFile {
+        let as_default = |i: usize| self.parameters[i].prior == Some(self.default_prior(i));
+        let hull = self.hull_coefficients();
+        let hull_is_free = !hull.is_empty() && hull.iter().all(|i| self.parameters[*i].free && as_default(*i));
         let mut parameters = BTreeMap::new();
-        for p in &self.parameters {
+        for (i, p) in self.parameters.iter().enumerate() {
             let default = (p.info.default)(&self.ship);
-            let free_by_default = ELEVEN.contains(&p.name.as_str());
+            let with_hull = hull_is_free && hull.contains(&i);
+            let prior_frees = as_default(i) || with_hull;
+            let free_by_default = ELEVEN.contains(&p.name.as_str()) || prior_frees;
+            let (term, _) = p.name.split_once('.').unwrap_or((&p.name, ""));
+            let (lower, upper) = self.default_bounds(term, p.info);
+            let prior =
+                p.prior.map(|prior| if as_default(i) { PriorSetting::Default } else { PriorSetting::Given(prior) });
             let setting = Setting {
                 value: (p.value != default || p.free).then_some(p.value),
                 free: (p.free != free_by_default).then_some(p.free),
-                lower: (p.lower != p.info.lower).then_some(p.lower),
-                upper: (p.upper != p.info.upper).then_some(p.upper),
-                prior: p.prior,
+                lower: (p.lower != lower).then_some(p.lower),
+                upper: (p.upper != upper).then_some(p.upper),
+                prior: prior.filter(|_| !with_hull),
             };
-            if setting.value.is_some() || setting.free.is_some() || setting.prior.is_some() {
+            if setting != Setting::default() {
                 parameters.insert(p.name.clone(), setting);
             }
         }
@@ -395,6 +504,7 @@ impl Model {
         ModelFile {
             name: self.name.clone(),
             form: self.form,
+            hull: hull_is_free.then_some(HullSetting::Free),
             terms: self.term_names().iter().filter(|t| !BASE.contains(t)).map(ToString::to_string).collect(),
             parameters,
             sessions: self.sessions.iter().map(|(s, list)| (s.clone(), list.iter().map(name_of).collect())).collect(),
@@ -487,15 +597,38 @@ impl Model {
         self.terms.iter().find(|t| t.term.info().name == term).map_or(&[], |t| &theta[t.offset..t.offset + t.len])
     }
 
-    fn check(&self) -> Result<(), ModelError> {
-        let theta = self.values();
+    /// The mass matrix of the ship at rest, added mass included, at parameter values `theta`.
+    pub fn inertia_at_rest(&self, theta: &[f64]) -> Inertia<f64> {
         let mut adjust = Adjust::neutral();
         for t in &self.terms {
-            f64::physics(t.term).adjust(t.part(&theta), &self.ship, &Inputs::actuators(0.0, 0.0, 0.0), &mut adjust);
+            f64::physics(t.term).adjust(t.part(theta), &self.ship, &Inputs::actuators(0.0, 0.0, 0.0), &mut adjust);
         }
-        let inertia = Inertia::new(self.part("hull", &theta), &adjust);
-        let determinant = inertia.determinant();
-        if determinant > 0.0 && inertia.surge > 0.0 { Ok(()) } else { Err(ModelError::SingularMass { determinant }) }
+        Inertia::new(self.part("hull", theta), &adjust)
+    }
+
+    /// Whether every value is within its bounds.
+    fn check_bounds(&self) -> Result<(), ModelError> {
+        let Some(p) = self.parameters.iter().find(|p| p.value < p.lower || p.value > p.upper) else { return Ok(()) };
+        let (side, limit, key) =
+            if p.value < p.lower { ("least", p.lower, "lower") } else { ("most", p.upper, "upper") };
+        Err(ModelError::BadValue {
+            name: p.name.clone(),
+            value: p.value,
+            expected: format!(
+                "the {} must be at {side} {limit} {}; correct the value, or give the parameter another `{key}` in the model file",
+                p.info.about, p.info.unit
+            )
+            .replace(" -;", ";"),
+        })
+    }
+
+    fn check(&self) -> Result<(), ModelError> {
+        let inertia = self.inertia_at_rest(&self.values());
+        if inertia.is_positive() {
+            Ok(())
+        } else {
+            Err(ModelError::SingularMass { determinant: inertia.determinant() })
+        }
     }
 
     /// The model's terms with their places in the parameter vector: the base terms first, in the order of [`BASE`].

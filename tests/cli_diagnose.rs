@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 use support::{model, runs, truth_noise};
-use trimtab::diagnose::report::KEYS;
+use trimtab::report::diagnosis::keys;
 
 /// Runs the command in a folder.
 fn trimtab(folder: &Path, arguments: &[&str]) -> Output {
@@ -118,11 +118,11 @@ fn every_key_of_the_document_is_explained_and_none_is_null() {
         "sides.parameters[]",
     ];
     let explained = |path: &str| {
-        KEYS.iter().any(|(k, _)| *k == path || k.strip_suffix("[]") == Some(path))
+        keys().any(|(k, _)| k == path || k.strip_suffix("[]") == Some(path))
             || elsewhere.iter().chain(&lists).any(|k| path.starts_with(k))
     };
     let missing: Vec<&String> = found.iter().filter(|p| !explained(p)).collect();
-    assert!(missing.is_empty(), "not in KEYS: {missing:?}");
+    assert!(missing.is_empty(), "not in keys.txt: {missing:?}");
     assert!(!CASE.document.to_string().contains("null"));
 }
 
@@ -141,7 +141,7 @@ fn no_key_is_explained_that_the_document_cannot_have() {
         "findings[].region",
         "ranking[].sessions",
     ];
-    for (key, _) in KEYS {
+    for (key, _) in keys() {
         let bare = key.trim_end_matches("[]");
         let there =
             found.iter().any(|p| p == bare || p.starts_with(&format!("{key}.")) || p.starts_with(&format!("{bare}.")));
@@ -152,12 +152,12 @@ fn no_key_is_explained_that_the_document_cannot_have() {
 #[test]
 fn the_summary_has_seven_parts_in_order_and_no_missing_number() {
     let summary = text(&CASE.output.stdout);
-    let headings = ["VERDICT", "WHERE", "MODEL", "PROOF", "STILL OPEN", "BLIND TO", "NEXT TRIAL"];
+    let headings = ["VERDICT", "WHERE", "MODEL", "PROOF", "STILL OPEN", "LIMITS", "NEXT TRIAL"];
     let places: Vec<usize> =
         headings.iter().enumerate().map(|(i, h)| summary.find(&format!(" {} {h}", i + 1)).unwrap()).collect();
     assert!(places.is_sorted(), "{summary}");
     assert!(summary.contains("steady current") && summary.contains("setting towards"), "{summary}");
-    assert!(summary.contains("port and starboard of the ship herself"), "{summary}");
+    assert!(summary.contains("port and starboard of the ship itself"), "{summary}");
     assert!(!summary.contains("NaN") && !summary.contains("inf "), "{summary}");
     assert!(summary.lines().all(|l| l.chars().count() <= 104), "{summary}");
 }
@@ -178,7 +178,7 @@ fn other_commands_take_the_improved_model_and_it_is_better_than_the_base() {
 #[test]
 fn the_report_is_one_file_that_needs_nothing_else() {
     let page = std::fs::read_to_string(CASE.folder.join("results/report.html")).unwrap();
-    for heading in ["Verdict", "Where", "Model", "Proof", "Still open", "Blind to", "Next trial"] {
+    for heading in ["Verdict", "Where", "Model", "Proof", "Still open", "Limits", "Next trial"] {
         assert!(page.contains(&format!(">{heading}</h2>")), "{heading}");
     }
     let mut pieces = page.split("src=\"data:image/png;base64,");

@@ -6,7 +6,8 @@ use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
 use trimtab::check::{Audit, Issue, Severity, StudyAudit, audit_study};
-use trimtab::report::{Table, fixed, sig};
+use trimtab::numerals::{fixed, sig};
+use trimtab::report::Table;
 
 const LONG: &str = "\
 Audits the recordings of a study before anything is concluded from them: units and signs, gaps and missing values, frozen \

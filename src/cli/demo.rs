@@ -11,10 +11,11 @@ use std::path::PathBuf;
 use trimtab::demo;
 use trimtab::evaluate::Evaluation;
 use trimtab::fit::Fit;
-use trimtab::maneuver::figure::{turning_figure, turning_table};
 use trimtab::maneuver::{Side, turning_trial};
+use trimtab::numerals::{DASH, interval, sig};
 use trimtab::recording::Split;
-use trimtab::report::{DASH, Table, interval, sig};
+use trimtab::report::Table;
+use trimtab::report::maneuver::{turning_figure, turning_table};
 
 const LONG: &str = "\
 Runs the whole job on a built-in example: forty recordings of a coastal container ship of 85 m (made by a simulator with \

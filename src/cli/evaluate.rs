@@ -8,8 +8,10 @@ use super::output::{Output, OutputArgs, csv_text, progress};
 use std::path::PathBuf;
 use trimtab::evaluate::{Comparison, Estimate, Evaluation, Outcome, Summary, evaluate, predict};
 use trimtab::model::Model;
+use trimtab::numerals::{DASH, sig};
+use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
 use trimtab::recording::{Split, Window};
-use trimtab::report::{Axis, BASELINE, DASH, FITTED, Figure, GREY, Layer, Panel, RECORDED, Table, east_north, sig};
+use trimtab::report::Table;
 use trimtab::simulate::Integration;
 use trimtab::state::STATE_NAMES;
 
@@ -298,7 +300,7 @@ fn improvement(s: &Summary) -> Figure {
     });
     let axis = Axis::categories("", names);
     let title = format!("Improvement on the baseline, {} runs (95 % intervals)", s.group);
-    Figure::new(title).panel_size(1200, 620).legend(trimtab::report::Legend::Off).with(
+    Figure::new(title).panel_size(1200, 620).legend(trimtab::plot::Legend::Off).with(
         Panel::new("", axis, Axis::new("improvement [%]").including(0.0))
             .with(Layer::bars_with_intervals("improvement", FITTED, bars))
             .with(Layer::h_line("none", GREY, 0.0)),

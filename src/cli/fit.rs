@@ -7,8 +7,8 @@ use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
 use trimtab::fit::{Fit, FitRun, FitSettings, fit};
 use trimtab::model::Model;
+use trimtab::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
 use trimtab::recording::{Split, Window};
-use trimtab::report::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
 
@@ -17,7 +17,7 @@ Fits the free parameters of the model to the training runs of the study: weighte
     simulation, with exact gradients, under the constraints of [fit.constraints]. Which parameters are free, their bounds and \
     priors are in the model file; without any setting they are the paper's eleven (p0 to p10).
 
-The report gives every estimate with standard error and 95 % interval, the constraints that hold the fit back, what the \
+The report gives every estimate with standard error and 95 % interval, the active constraints, what the \
     data do not determine, and how the solver ended.";
 
 const AFTER: &str = "\

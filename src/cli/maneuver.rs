@@ -7,13 +7,15 @@ use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, progress};
 use clap::Subcommand;
 use serde::Serialize;
-use trimtab::maneuver::figure::{
+use trimtab::maneuver::{Approach, Ended, ManeuverSettings, Side, Trial, stopping_trial, turning_trial, zigzag_trial};
+use trimtab::model::Model;
+use trimtab::numerals::sig;
+use trimtab::plot::Figure;
+use trimtab::report::Table;
+use trimtab::report::maneuver::{
     criteria_note, criteria_table, ended_note, stopping_figure, stopping_table, track_csv, turning_figure,
     turning_table, zigzag_figure, zigzag_table,
 };
-use trimtab::maneuver::{Approach, Ended, ManeuverSettings, Side, Trial, stopping_trial, turning_trial, zigzag_trial};
-use trimtab::model::Model;
-use trimtab::report::{Figure, Table, sig};
 use trimtab::state::Inputs;
 use trimtab::validity::{self, Coverage};
 

@@ -7,8 +7,10 @@ use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
 use serde::Serialize;
 use trimtab::evaluate::{Outcome, outcome, predict_all};
+use trimtab::numerals::sig;
+use trimtab::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
 use trimtab::recording::{Split, Window};
-use trimtab::report::{BLUE, Figure, GREY, Layer, Panel, RECORDED, Table, east_north, sig};
+use trimtab::report::Table;
 use trimtab::simulate::Trajectory;
 use trimtab::validity::{self, Coverage};
 

@@ -7,9 +7,9 @@ use super::output::{Output, OutputArgs, csv_text};
 use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::error::suggestion;
+use trimtab::report::terms::{Entry, listing, summary};
 use trimtab::ship::Ship;
 use trimtab::terms::CATALOGUE;
-use trimtab::terms::listing::{Entry, listing, summary};
 
 const LONG: &str = "\
 Lists every physical effect (term) that a model can be made of: what it is, its equation and source, the recorded channels \

@@ -5,7 +5,7 @@ use super::filter::{Filter, GATE, Pass, Run, Wanted};
 use super::noise::Noise;
 use super::receiver::piece;
 use crate::model::Model;
-use crate::report::sig;
+use crate::numerals::sig;
 use crate::simulate::{Integration, Method};
 use crate::state::{STATE_NAMES, STATES};
 use rayon::prelude::*;

@@ -168,3 +168,51 @@ impl BaseFit {
         self
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{SAMPLES, model, runs};
+
+    fn question<'a>(model: &'a Model, settings: &'a Settings) -> Question<'a> {
+        Question { model, full: model.clone(), settings, progress: &|_| () }
+    }
+
+    #[test]
+    fn every_nuisance_coefficient_has_a_prior_and_the_models_own_parameters_come_first() {
+        let model = model();
+        let (own, all) = (base_parameters(&model, false), base_parameters(&model, true));
+        assert_eq!((own.len(), all.len()), (11, 11 + NUISANCE.len()));
+        assert!(own.iter().all(|f| f.prior.is_none()) && all[11..].iter().all(|f| f.prior.is_some()));
+    }
+
+    #[test]
+    fn a_sound_recording_is_fitted_whole_and_not_read_as_euler() {
+        let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let audited = AuditedRuns::new(&runs(&model, 6), &[], model.ship.hull.lpp);
+        let base = BaseFit::new(&question(&model, &settings), &audited);
+        assert!(!is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
+        assert_eq!((base.admission.samples, base.integration), (6 * SAMPLES, settings.integration()));
+        assert!(base.admission.issues.is_empty(), "{:?}", base.admission.issues);
+    }
+
+    #[test]
+    fn what_explicit_euler_made_is_read_as_euler() {
+        let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let coarse = Integration { method: Method::Euler, substeps: 1 };
+        let mut runs = runs(&model, 6);
+        for r in &mut runs {
+            let scenario = crate::simulate::Scenario { dt: r.dt, inputs: r.inputs.clone(), initial: r.initial };
+            let fine =
+                crate::simulate::simulate(&model, &model.values_in(&r.session), settings.integration(), &scenario);
+            let made = crate::simulate::simulate(&model, &model.values_in(&r.session), coarse, &scenario);
+            // The same sensor errors on another trajectory.
+            for ((m, a), b) in r.measured.iter_mut().zip(&fine.states).zip(&made.states) {
+                (0..6).for_each(|c| m[c] += b[c] - a[c]);
+            }
+        }
+        let base = BaseFit::new(&question(&model, &settings), &AuditedRuns::new(&runs, &[], 85.0));
+        assert!(is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
+        assert_eq!((base.integration, base.admission.integration), (coarse, coarse));
+    }
+}

@@ -240,3 +240,29 @@ fn started(found: &Estimate, problem: Problem, extent: &Extent) -> (Model, Vec<F
     let test = s.test(0, extent);
     start_with(&s, 0, extent, &test.amplitude, found, problem, &found.noise)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, model, noise, runs};
+    use crate::simulate::{Scenario, simulate};
+
+    #[test]
+    fn a_filter_without_gains_is_a_free_simulation() {
+        let (model, runs) = (model(), runs(&model(), 3));
+        let filter = Filter::new(&model, RK4, &[]);
+        let t = Trajectories::new(&filter, &runs, &noise(), &[4.0; STATES], true);
+        for (run, pass) in runs.iter().zip(&t.passes) {
+            let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
+            let states = simulate(&model, &model.values_in(&run.session), RK4, &scenario).states;
+            for ((s, m), e) in states.iter().zip(&run.measured).zip(&pass.innovations) {
+                for c in [0, 1, 3, 4, 5] {
+                    assert!((2.0 * e[c] - (m[c] - s[c])).abs() < 1e-9, "{} channel {c}", run.name);
+                }
+            }
+        }
+        // The variances are the mean squares of the residuals, 4 e^2.
+        let squares: f64 = t.passes.iter().flat_map(|p| &p.innovations).map(|e| 4.0 * e[3] * e[3]).sum();
+        assert!((t.variance[3] / (squares / t.used[3]) - 1.0).abs() < 1e-12);
+    }
+}

@@ -19,7 +19,8 @@ mod eligible;
 pub mod estimate;
 mod event;
 pub mod evidence;
-pub mod figures;
+#[cfg(test)]
+mod example;
 pub mod finding;
 mod generic;
 mod improved;
@@ -45,7 +46,6 @@ pub mod push;
 pub mod receiver;
 pub mod refit;
 pub mod region;
-pub mod report;
 pub mod screen;
 pub mod sides;
 pub mod signal;

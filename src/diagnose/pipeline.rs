@@ -83,7 +83,7 @@ fn report(question: &Question, kept: &Kept, decision: &Decision, proof: Option<H
     Diagnosis {
         schema: "trimtab-diagnosis/1",
         verdict,
-        headline: headline(verdict, &findings, &fit.admission, missing.as_ref()),
+        headline: headline(verdict, &findings, missing.as_ref()),
         next_trial: missing
             .as_ref()
             .map(Missing::next_trial)

@@ -4,7 +4,7 @@
 use super::admit::Issue;
 use super::filter::Run;
 use super::prove::median;
-use crate::report::sig;
+use crate::numerals::sig;
 use nalgebra::SMatrix;
 use trimtab_ad::smooth::wrap_angle;
 

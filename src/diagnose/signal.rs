@@ -111,3 +111,31 @@ impl Signal {
         Base { score: DVector::from_fn(self.null.free.len(), |i, _| difference.total.score[i]), ..base }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{model, runs, with};
+
+    #[test]
+    fn no_change_has_no_signal_and_twice_the_effect_has_twice_the_signal() -> Result<(), ModelError> {
+        let without = runs(&model(), 6);
+        let signal = Signal::new(&model(), &without, &Settings::default())?;
+        let of = |north: f64| signal.ratio(&runs(&with(&[("current.north", north)]), 6), "current");
+        assert!(signal.ratio(&without, "current") < 1e-9);
+        let (once, twice) = (of(0.01), of(0.02));
+        assert!(once > 0.3 && (twice / once - 2.0).abs() < 0.1, "{once} {twice}");
+        assert_eq!(signal.ratio(&without, "no such mechanism"), 0.0);
+        Ok(())
+    }
+
+    #[test]
+    fn a_force_in_a_window_is_seen_there_and_not_where_it_is_absent() -> Result<(), ModelError> {
+        let without = runs(&model(), 6);
+        let signal = Signal::new(&model(), &without, &Settings::default())?;
+        let with = runs(&with(&[("earth_force.north", 4000.0)]), 6);
+        assert!(signal.ratio_in(&with, &[(1, 20, 40)]) > 2.0);
+        assert!(signal.ratio_in(&without, &[(1, 20, 40)]) < 1e-9);
+        Ok(())
+    }
+}

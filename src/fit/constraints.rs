@@ -10,15 +10,18 @@
 //! | `lift_starboard` | c_L(a) \[-\] | (iv) 0 <= c_L <= 1, a >= 0 | 1 to 45 deg |
 //! | `drag` | c_D(a) \[-\] | (v) 0 <= c_D <= 1.5 | -45 to 45 deg |
 //! | `drag_zero` | c_D(0) \[-\] | (v) c_D(0) <= 0.05 | once |
+//! | `thrust` | K_T(J) \[-\] | not there: K_T >= 0 | advance ratios J from 0 to 0.5 |
 //!
 //! Readings of the paper (Papandreou et al. 2025, arXiv 2502.18696), whose own p* breaks the printed text: (i) cannot hold
 //! over the recorded speeds of its ships, `limits = "paper"` imposes it up to 5.4 m/s; (iii) is printed with the rudder's
 //! subscript; (iv) at a = 0 would force p4 = 0, so the grid leaves zero out, and it cannot hold beyond 45 degrees, where
-//! every such cubic changes sign.
+//! every such cubic changes sign. A propeller that drives a ship pushes: up to the advance ratios of a loaded propeller its
+//! thrust coefficient is positive.
 
-use super::FitError;
+use super::error::FitError;
 use crate::model::Model;
 use crate::physics::{Form, Number};
+use crate::terms::flow::FlowTerm;
 use crate::terms::resistance::Resistance;
 use crate::terms::rudder::Rudder;
 use serde::{Deserialize, Serialize};
@@ -41,7 +44,7 @@ pub struct Rule {
     /// Whether the rule is imposed (default: yes).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on: Option<bool>,
-    /// First sample: surge speed \[m/s\] or angle of attack \[deg\].
+    /// First sample: surge speed \[m/s\], angle of attack \[deg\] or advance ratio \[-\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<f64>,
     /// Last sample, same unit.
@@ -82,6 +85,8 @@ pub struct ConstraintSettings {
     pub drag: Rule,
     /// c_D at zero angle.
     pub drag_zero: Rule,
+    /// K_T over advance ratios \[-\].
+    pub thrust: Rule,
 }
 
 /// A curve of the model, linear in the parameters.
@@ -92,6 +97,7 @@ enum Curve {
     SideForce,
     Lift,
     Drag,
+    Thrust,
 }
 
 impl Curve {
@@ -106,6 +112,7 @@ impl Curve {
             Curve::SideForce => model.part("propeller", theta)[0],
             Curve::Lift => Rudder::lift_polynomial(rudder, S::from_f64(x.to_radians())),
             Curve::Drag => Rudder::drag_polynomial(rudder, S::from_f64(x.to_radians())),
+            Curve::Thrust => FlowTerm::thrust_coefficient(model.part("flow", theta), S::from_f64(x)),
         }
     }
 
@@ -116,6 +123,7 @@ impl Curve {
             Curve::SideForce => "p0".into(),
             Curve::Lift => format!("c_L({x:.1} deg)"),
             Curve::Drag => format!("c_D({x:.1} deg)"),
+            Curve::Thrust => format!("K_T(J = {x:.2})"),
         }
     }
 
@@ -123,7 +131,7 @@ impl Curve {
         match self {
             Curve::Resistance => "N",
             Curve::ResistanceSlope => "N s/m",
-            Curve::SideForce | Curve::Lift | Curve::Drag => "",
+            Curve::SideForce | Curve::Lift | Curve::Drag | Curve::Thrust => "",
         }
     }
 }
@@ -153,6 +161,11 @@ impl Row {
         self.constant + self.coefficients.iter().zip(p).map(|(a, p)| a * p).sum::<f64>()
     }
 
+    /// Its change, in its own unit, over one scale in every free parameter: what its unit is for the solver.
+    pub(super) fn size(&self, scales: &[f64]) -> f64 {
+        self.coefficients.iter().zip(scales).map(|(a, s)| (a * s).powi(2)).sum::<f64>().sqrt()
+    }
+
     /// How far outside its limits the quantity is at `p`; 0 inside.
     pub fn violation(&self, p: &[f64]) -> f64 {
         let value = self.value(p);
@@ -172,7 +185,7 @@ impl Row {
 }
 
 /// Smallest and largest recorded surge speed \[m/s\]; `[0, 0]` where none was recorded.
-pub fn speed_range(runs: &[super::FitRun]) -> [f64; 2] {
+pub fn speed_range(runs: &[super::cost::FitRun]) -> [f64; 2] {
     let recorded = runs.iter().filter(|r| r.measured_channels[3]).flat_map(|r| r.measured.iter().map(|m| m[3]));
     let start = runs.iter().map(|r| r.initial[3]);
     recorded.chain(start).filter(|u| u.is_finite()).fold([0.0, 0.0], |[lo, hi], u| [lo.min(u), hi.max(u)])
@@ -193,7 +206,7 @@ pub fn rows(model: &Model, settings: &ConstraintSettings, speeds: [f64; 2]) -> R
     let paper = settings.limits == Limits::Paper;
     let (highest, upper) = if paper { (5.4, 80e3) } else { (fastest, f64::INFINITY) };
     let lift = |from: f64, to: f64, lower: f64| [from, to, 1.0, lower, lower + 1.0];
-    let defaults: [(&str, Curve, Rule, [f64; 5]); 7] = [
+    let defaults: [(&str, Curve, Rule, [f64; 5]); 8] = [
         ("resistance", Curve::Resistance, settings.resistance, [0.0, highest, highest.max(1e-6) / 54.0, 0.0, upper]),
         (
             "resistance_slope",
@@ -206,6 +219,7 @@ pub fn rows(model: &Model, settings: &ConstraintSettings, speeds: [f64; 2]) -> R
         ("lift_starboard", Curve::Lift, settings.lift_starboard, lift(1.0, 45.0, 0.0)),
         ("drag", Curve::Drag, settings.drag, [-45.0, 45.0, 1.0, 0.0, 1.5]),
         ("drag_zero", Curve::Drag, settings.drag_zero, [0.0, 0.0, 1.0, f64::NEG_INFINITY, 0.05]),
+        ("thrust", Curve::Thrust, settings.thrust, [0.0, 0.5, 0.05, 0.0, f64::INFINITY]),
     ];
     let mut rows = Vec::new();
     for (name, curve, rule, [from, to, step, lower, upper]) in defaults {

@@ -10,7 +10,7 @@
 //! L_i path length \[m\], U_i mean speed \[m/s\], r_max a reference yaw rate \[rad/s\], the heading difference wrapped into
 //! (-pi, pi]. Channels that were not measured have weight 0. Source: Papandreou et al. 2025 (arXiv 2502.18696), eq. (5).
 
-use super::FitError;
+use super::error::FitError;
 use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model};
 use crate::physics::{CHUNK, Curvature, Gradient, Group, Lanes, NumDual, Number};

@@ -1,7 +1,10 @@
 //! The same fit from many starts, to see whether there is more than one place to end.
 //! It keeps every outcome, good or bad, and picks none.
 
-use super::{Fit, FitError, FitRun, FitSettings, fit};
+use super::cost::FitRun;
+use super::error::FitError;
+use super::settings::FitSettings;
+use super::summary::{Fit, fit};
 use crate::model::Model;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -32,16 +35,6 @@ pub struct StartOutcome {
     pub start: Vec<f64>,
     /// The fit, or why there is none.
     pub outcome: Result<Fit, FitError>,
-}
-
-impl StartOutcome {
-    /// One line: where it ended, or why it did not.
-    pub fn brief(&self) -> String {
-        match &self.outcome {
-            Ok(fit) => fit.brief(),
-            Err(error) => error.to_string(),
-        }
-    }
 }
 
 /// Fits from each start in turn, in an order and from values that depend on the seed alone.

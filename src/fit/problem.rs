@@ -2,11 +2,25 @@
 //! It decides nothing about what is fitted and reports nothing: it translates, and remembers what evaluations share.
 
 use super::constraints::Row;
-use super::cost::{Cost, Quadratic};
-use super::ipopt::{IterationReport, Nlp};
-use super::{Hessian, Progress};
+use super::cost::{Cost, FitRun, Quadratic};
+use super::settings::Hessian;
+use super::task::Task;
+use crate::ipopt::{IterationReport, Nlp};
 use crate::model::Model;
 use nalgebra::{DMatrix, DVector};
+
+/// Where a running fit stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Iteration of the solver.
+    pub iteration: usize,
+    /// Cost, priors included.
+    pub cost: f64,
+    /// Largest violation of a constraint, scaled.
+    pub violation: f64,
+    /// Largest entry of the gradient of the Lagrangian, scaled.
+    pub optimality: f64,
+}
 
 /// Priors on the free parameters, as residuals beside those of the data.
 ///
@@ -44,52 +58,54 @@ impl Priors {
     }
 }
 
+/// A point in the parameters' own units, and its cost with priors.
+#[derive(Clone, Debug)]
+pub(super) struct Point {
+    pub p: Vec<f64>,
+    pub total: f64,
+}
+
 /// The program in `z = p / scale`, with each constraint row divided by its size over a change of one scale.
 pub(super) struct Problem<'a, 'f> {
+    pub task: &'a Task<'a>,
+    /// The cost that is minimised: the task's, or that of its runs cut into shorter pieces.
     pub cost: &'a Cost<'a>,
-    pub rows: &'a [Row],
     pub priors: &'a Priors,
-    pub scales: &'a [f64],
-    /// Bounds of the parameters, in their own units.
-    pub bounds: &'a [(f64, f64)],
     /// Start, in the parameters' own units.
     pub start: &'a [f64],
     /// Factor from cost to the solver's objective: one over the mean number of samples of a run, so that it is of order one.
     pub factor: f64,
-    pub hessian: Hessian,
     pub progress: &'f mut dyn FnMut(&Progress) -> bool,
+    /// The best feasible point of all that were evaluated.
+    pub best: Option<Point>,
+    /// Number of points evaluated.
+    pub evaluated: usize,
     cached: Option<(Vec<f64>, Quadratic)>,
-}
-
-/// The size of a row over a change of one scale in every parameter: what its solver unit is.
-pub(super) fn row_size(row: &Row, scales: &[f64]) -> f64 {
-    row.coefficients.iter().zip(scales).map(|(a, s)| (a * s).powi(2)).sum::<f64>().sqrt()
 }
 
 impl<'a, 'f> Problem<'a, 'f> {
     pub fn new(
+        task: &'a Task<'a>,
         cost: &'a Cost<'a>,
-        rows: &'a [Row],
+        runs: &[FitRun],
         priors: &'a Priors,
-        scales: &'a [f64],
-        bounds: &'a [(f64, f64)],
         start: &'a [f64],
-        factor: f64,
-        hessian: Hessian,
         progress: &'f mut dyn FnMut(&Progress) -> bool,
     ) -> Self {
-        Self { cost, rows, priors, scales, bounds, start, factor, hessian, progress, cached: None }
+        let samples: usize = runs.iter().map(|r| r.measured.len()).sum();
+        let factor = runs.len() as f64 / samples.max(1) as f64;
+        Self { task, cost, priors, start, factor, progress, best: None, evaluated: 0, cached: None }
     }
 
     fn unscaled(&self, z: &[f64]) -> Vec<f64> {
-        z.iter().zip(self.scales).map(|(z, s)| z * s).collect()
+        z.iter().zip(&self.task.scales).map(|(z, s)| z * s).collect()
     }
 
     /// Value, gradient and Gauss-Newton matrix of the data's part at a point, computed once for all that ask.
     fn quadratic(&mut self, z: &[f64]) -> Option<&Quadratic> {
         if self.cached.as_ref().is_none_or(|(at, _)| at != z) {
             let p = self.unscaled(z);
-            let quadratic = match self.hessian {
+            let quadratic = match self.task.settings.hessian {
                 Hessian::GaussNewton => self.cost.quadratic(&p),
                 Hessian::Exact | Hessian::LimitedMemory => self.cost.with_gradient(&p),
             };
@@ -97,39 +113,52 @@ impl<'a, 'f> Problem<'a, 'f> {
         }
         self.cached.as_ref().map(|(_, quadratic)| quadratic)
     }
+
+    fn keep_if_best(&mut self, p: Vec<f64>, total: f64) {
+        if self.best.as_ref().is_none_or(|best| total < best.total) && self.task.is_feasible(&p) {
+            self.best = Some(Point { p: self.task.within_bounds(&p), total });
+        }
+    }
 }
 
 impl Nlp for Problem<'_, '_> {
     fn variables(&self) -> usize {
-        self.scales.len()
+        self.task.scales.len()
     }
 
     fn constraints(&self) -> usize {
-        self.rows.len()
+        self.task.rows.len()
     }
 
     fn variable_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
-        for (j, ((lo, hi), scale)) in self.bounds.iter().zip(self.scales).enumerate() {
+        for (j, ((lo, hi), scale)) in self.task.bounds.iter().zip(&self.task.scales).enumerate() {
             (lower[j], upper[j]) = (lo / scale, hi / scale);
         }
     }
 
     fn constraint_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
-        for (i, row) in self.rows.iter().enumerate() {
-            let size = row_size(row, self.scales);
+        for (i, row) in self.task.rows.iter().enumerate() {
+            let size = row.size(&self.task.scales);
             (lower[i], upper[i]) = ((row.lower - row.constant) / size, (row.upper - row.constant) / size);
         }
     }
 
     fn start(&self, z: &mut [f64]) {
-        for (z, (p, scale)) in z.iter_mut().zip(self.start.iter().zip(self.scales)) {
+        for (z, (p, scale)) in z.iter_mut().zip(self.start.iter().zip(&self.task.scales)) {
             *z = p / scale;
         }
     }
 
     fn objective(&mut self, z: &[f64]) -> Option<f64> {
+        self.evaluated += 1;
         let p = self.unscaled(z);
-        Some(self.factor * (self.cost.value(&p)? + self.priors.value(&p)))
+        // Without a value the solver steps back.
+        if !self.task.has_mass(&p) {
+            return None;
+        }
+        let total = self.cost.value(&p)? + self.priors.value(&p);
+        self.keep_if_best(p, total);
+        Some(self.factor * total)
     }
 
     fn gradient(&mut self, z: &[f64], gradient: &mut [f64]) -> bool {
@@ -137,15 +166,15 @@ impl Nlp for Problem<'_, '_> {
         let Some(mut total) = self.quadratic(z).map(|q| q.gradient.clone()) else { return false };
         self.priors.add_gradient(&p, &mut total);
         for (j, g) in gradient.iter_mut().enumerate() {
-            *g = self.factor * total[j] * self.scales[j];
+            *g = self.factor * total[j] * self.task.scales[j];
         }
         true
     }
 
     fn constraint_values(&mut self, z: &[f64], values: &mut [f64]) -> bool {
-        for (value, row) in values.iter_mut().zip(self.rows) {
-            let linear: f64 = row.coefficients.iter().zip(self.scales).zip(z).map(|((a, s), z)| a * s * z).sum();
-            *value = linear / row_size(row, self.scales);
+        for (value, row) in values.iter_mut().zip(&self.task.rows) {
+            let linear: f64 = row.coefficients.iter().zip(&self.task.scales).zip(z).map(|((a, s), z)| a * s * z).sum();
+            *value = linear / row.size(&self.task.scales);
         }
         true
     }
@@ -155,14 +184,14 @@ impl Nlp for Problem<'_, '_> {
             let nonzero = row.coefficients.iter().enumerate().filter(|(_, a)| **a != 0.0);
             nonzero.map(move |(j, _)| (i, j)).collect::<Vec<_>>()
         };
-        self.rows.iter().enumerate().flat_map(entries).collect()
+        self.task.rows.iter().enumerate().flat_map(entries).collect()
     }
 
     fn jacobian_values(&mut self, _z: &[f64], values: &mut [f64]) -> bool {
         let mut values = values.iter_mut();
-        for row in self.rows {
-            let size = row_size(row, self.scales);
-            let nonzero = row.coefficients.iter().zip(self.scales).filter(|(a, _)| **a != 0.0);
+        for row in &self.task.rows {
+            let size = row.size(&self.task.scales);
+            let nonzero = row.coefficients.iter().zip(&self.task.scales).filter(|(a, _)| **a != 0.0);
             for ((a, scale), value) in nonzero.zip(&mut values) {
                 *value = a * scale / size;
             }
@@ -171,19 +200,19 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn hessian_structure(&self) -> Vec<(usize, usize)> {
-        (0..self.scales.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).collect()
+        (0..self.task.scales.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).collect()
     }
 
     fn hessian_values(&mut self, z: &[f64], factor: f64, _multipliers: &[f64], values: &mut [f64]) -> bool {
         let p = self.unscaled(z);
-        let matrix = match self.hessian {
+        let matrix = match self.task.settings.hessian {
             Hessian::Exact => self.cost.hessian(&p),
             _ => self.quadratic(z).map(|q| q.gauss_newton.clone()),
         };
         let Some(mut matrix) = matrix else { return false };
         self.priors.add_hessian(&mut matrix);
         for ((i, j), value) in self.hessian_structure().into_iter().zip(values) {
-            *value = factor * self.factor * matrix[(i, j)] * self.scales[i] * self.scales[j];
+            *value = factor * self.factor * matrix[(i, j)] * self.task.scales[i] * self.task.scales[j];
         }
         true
     }

@@ -2,7 +2,6 @@
 //! It neither fits nor judges a model: a poor model gives poor numbers, and only the IMO criteria are compared with them.
 
 mod approach;
-pub mod figure;
 pub mod imo;
 mod sail;
 mod stopping;

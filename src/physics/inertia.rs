@@ -78,3 +78,10 @@ impl<C: Copy> Mobility<C> {
         [f.x * self.surge, f.y * self.sway + f.n * self.sway_yaw, f.y * self.yaw_sway + f.n * self.yaw]
     }
 }
+
+impl Inertia<f64> {
+    /// Whether the matrix can be inverted and every mass is positive: only then is it a ship's.
+    pub fn is_positive(&self) -> bool {
+        self.surge > 0.0 && self.sway > 0.0 && self.yaw > 0.0 && self.determinant() > 0.0
+    }
+}

@@ -44,7 +44,7 @@ static INFO: TermInfo = TermInfo {
             .default(|s| s.propeller.thrust_coefficients[1])
             .scale(|s| 0.1 * s.propeller.thrust_coefficients[0])
             .spread(|s| 0.3 * s.propeller.thrust_coefficients[0])
-            .bounds(-2.0, 1.0),
+            .bounds(-2.0, 0.0),
         ParameterInfo::new("kt2", "k2", "-", "curvature of the thrust coefficient")
             .default(|s| s.propeller.thrust_coefficients[2])
             .scale(|s| 0.1 * s.propeller.thrust_coefficients[0])
@@ -87,6 +87,13 @@ static INFO: TermInfo = TermInfo {
             .bounds(-2.0, 0.0),
     ],
 };
+
+impl FlowTerm {
+    /// The thrust coefficient K_T at an advance ratio J of a propeller that turns ahead.
+    pub fn thrust_coefficient<S: Scalar>(p: &[S], j: S) -> S {
+        p[2] + j * (p[3] + j * p[4])
+    }
+}
 
 impl Term for FlowTerm {
     fn info(&self) -> &'static TermInfo {

@@ -19,6 +19,10 @@ macro_rules! derivative {
             .scale(|s| 0.1 * reference(s, $name))
             .spread(|s| 0.3 * reference(s, $name))
     };
+    // Added mass and the damping of a motion by its own force: a force that fed the motion would be energy from nowhere.
+    ($name:literal, $unit:literal, $about:literal, negative) => {
+        derivative!($name, $unit, $about).bounds(f64::NEG_INFINITY, 0.0)
+    };
 }
 
 /// The size of a coefficient for scaling: its estimate, kept away from zero by a usual size of its kind.
@@ -68,20 +72,20 @@ static INFO: TermInfo = TermInfo {
             .default(|s| s.hull.x_g)
             .scale(|s| 0.01 * s.hull.lpp)
             .spread(|s| 0.01 * s.hull.lpp),
-        derivative!("Xudot", "kg", "surge added mass, negative"),
-        derivative!("Yvdot", "kg", "sway added mass, negative"),
+        derivative!("Xudot", "kg", "surge added mass, negative", negative),
+        derivative!("Yvdot", "kg", "sway added mass, negative", negative),
         derivative!("Yrdot", "kg m", "sway-yaw added mass"),
         derivative!("Nvdot", "kg m", "yaw-sway added mass"),
-        derivative!("Nrdot", "kg m2", "yaw added inertia, negative"),
+        derivative!("Nrdot", "kg m2", "yaw added inertia, negative", negative),
         derivative!("Xvr", "kg", "surge force of drift and turn"),
-        derivative!("Yv", "kg/m", "linear sway damping"),
+        derivative!("Yv", "kg/m", "linear sway damping", negative),
         derivative!("Yr", "kg", "sway force of turn"),
         derivative!("Nv", "kg", "yaw moment of drift"),
-        derivative!("Nr", "kg m", "linear yaw damping"),
-        derivative!("Yvv", "kg/m", "quadratic sway damping"),
+        derivative!("Nr", "kg m", "linear yaw damping", negative),
+        derivative!("Yvv", "kg/m", "quadratic sway damping", negative),
         derivative!("Yvr", "kg", "sway force of v|r|"),
         derivative!("Yrr", "kg m", "sway force of r|r|"),
-        derivative!("Nrr", "kg m2", "quadratic yaw damping"),
+        derivative!("Nrr", "kg m2", "quadratic yaw damping", negative),
         derivative!("Nrrv", "kg m2", "yaw moment of r^2 v/U"),
         derivative!("Nvvr", "kg m", "yaw moment of v^2 r/U"),
     ],

@@ -38,14 +38,21 @@ static INFO: TermInfo = TermInfo {
     mechanisms: &[],
     parameters: &[
         ParameterInfo::new("lift0", "p4", "-", "lift coefficient at zero angle").scale(|_| 0.05).odd(),
-        ParameterInfo::new("lift1", "p5", "1/rad", "slope of the lift coefficient").default(|_| 2.5).scale(|_| 0.5),
+        ParameterInfo::new("lift1", "p5", "1/rad", "slope of the lift coefficient")
+            .default(|_| 2.5)
+            .scale(|_| 0.5)
+            .bounds(0.0, f64::INFINITY),
         ParameterInfo::new("lift2", "p6", "1/rad2", "even curvature of the lift coefficient").scale(|_| 0.5).odd(),
         ParameterInfo::new("lift3", "p7", "1/rad3", "cubic of the lift coefficient").default(|_| -3.0).scale(|_| 1.0),
-        ParameterInfo::new("drag0", "p8", "-", "drag coefficient at zero angle").default(|_| 0.02).scale(|_| 0.02),
+        ParameterInfo::new("drag0", "p8", "-", "drag coefficient at zero angle")
+            .default(|_| 0.02)
+            .scale(|_| 0.02)
+            .bounds(0.0, f64::INFINITY),
         ParameterInfo::new("drag1", "p9", "1/rad", "slope of the drag coefficient").scale(|_| 0.1).odd(),
         ParameterInfo::new("drag2", "p10", "1/rad2", "curvature of the drag coefficient")
             .default(|_| 1.3)
-            .scale(|_| 0.5),
+            .scale(|_| 0.5)
+            .bounds(0.0, f64::INFINITY),
     ],
 };
 

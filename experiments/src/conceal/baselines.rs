@@ -121,7 +121,7 @@ mod tests {
     use crate::conceal::family::Family;
     use crate::conceal::spec::Spec;
     use crate::conceal::strength::ForceMeter;
-    use trimtab::diagnose::report::mechanism_names;
+    use trimtab::report::diagnosis::mechanism_names;
 
     #[test]
     fn rivals_run_on_nulls_and_the_oracle_on_visible_effects() {

@@ -9,9 +9,9 @@ use crate::truth::captive::{Range, towing};
 use std::path::Path;
 use trimtab::fit::{CovarianceKind, Fit};
 use trimtab::model::Model;
-use trimtab::report::{
-    Axis, BASELINE, DASH, FITTED, Figure, LIMIT, Layer, Marker, ORANGE, PURPLE, Panel, TRUTH, Table, fixed, sig,
-};
+use trimtab::numerals::{DASH, fixed, sig};
+use trimtab::plot::{Axis, BASELINE, FITTED, Figure, LIMIT, Layer, Marker, ORANGE, PURPLE, Panel, TRUTH};
+use trimtab::report::Table;
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
 

@@ -8,8 +8,10 @@ use super::scenarios::SHOWN;
 use super::sheet::{Sheet, cell};
 use std::path::Path;
 use trimtab::evaluate::{Comparison, Outcome};
+use trimtab::numerals::sig;
+use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel};
 use trimtab::recording::Split;
-use trimtab::report::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel, Table, sig};
+use trimtab::report::Table;
 use trimtab::state::STATES;
 
 /// Error distributions.

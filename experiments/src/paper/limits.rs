@@ -10,8 +10,9 @@ use std::path::Path;
 use trimtab::evaluate::{EvaluationSettings, evaluate};
 use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::{Model, Prior};
+use trimtab::numerals::{DASH, fixed, sig};
 use trimtab::physics::Form;
-use trimtab::report::{DASH, Table, fixed, sig};
+use trimtab::report::Table;
 
 /// What limits the fit.
 pub static LIMITS: Artefact = Artefact {

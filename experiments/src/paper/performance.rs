@@ -9,8 +9,10 @@ use std::fmt::Write;
 use std::path::Path;
 use trimtab::evaluate::{Estimate, EvaluationSettings, Summary, evaluate, predict};
 use trimtab::model::Model;
+use trimtab::numerals::{DASH, fixed};
+use trimtab::plot::{Axis, FITTED, Figure, GREY, Layer, Panel};
 use trimtab::recording::{Split, Window};
-use trimtab::report::{Axis, DASH, FITTED, Figure, GREY, Layer, Panel, Table, fixed};
+use trimtab::report::Table;
 use trimtab::simulate::{Integration, Method};
 use trimtab::state::{STATE_NAMES, STATE_UNITS};
 

@@ -11,10 +11,10 @@ use super::sheet::{Sheet, cell};
 use std::fmt::Write;
 use std::path::Path;
 use trimtab::evaluate::{Comparison, predict};
+use trimtab::numerals::{DASH, fixed, sig};
+use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, east_north};
 use trimtab::recording::{Split, Window};
-use trimtab::report::{
-    Axis, BASELINE, Color, DASH, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, Table, east_north, fixed, sig,
-};
+use trimtab::report::Table;
 use trimtab::state::{STATE_NAMES, STATES};
 
 /// Figures 3 to 6.

@@ -4,8 +4,9 @@
 use super::error::RealError;
 use super::hull::Hull;
 use nalgebra::{DMatrix, DVector};
+use trimtab::numerals::{fixed, sig};
 use trimtab::recording::{Channel, Recording};
-use trimtab::report::{Table, fixed, sig};
+use trimtab::report::Table;
 
 /// Whether the channels of one recording agree.
 #[derive(Clone, Debug)]

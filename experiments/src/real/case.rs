@@ -6,7 +6,8 @@ use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::prove::HeldOut;
 use trimtab::diagnose::{Diagnosis, Settings, diagnose};
 use trimtab::model::Model;
-use trimtab::report::{Table, fixed, sig};
+use trimtab::numerals::{fixed, sig};
+use trimtab::report::Table;
 
 use super::error::RealError;
 

@@ -7,11 +7,12 @@ use super::published::PublishedMmg;
 use trimtab::evaluate::{Comparison, EvaluationSettings, Outcome, Summary, compare, predict, summarise};
 use trimtab::fit::Fit;
 use trimtab::model::Model;
-use trimtab::recording::{Split, Window};
-use trimtab::report::{
-    Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, ORANGE, PURPLE, Panel, RECORDED, Table, east_north,
-    fixed,
+use trimtab::numerals::fixed;
+use trimtab::plot::{
+    Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, ORANGE, PURPLE, Panel, RECORDED, east_north,
 };
+use trimtab::recording::{Split, Window};
+use trimtab::report::Table;
 use trimtab::simulate::Trajectory;
 
 /// Model files that are fitted, in the order of the tables.
@@ -167,7 +168,7 @@ impl Judged {
     }
 
     fn color(candidate: usize) -> Color {
-        [BASELINE, ORANGE, PURPLE, trimtab::report::SKY, GREEN, FITTED][candidate.min(5)]
+        [BASELINE, ORANGE, PURPLE, trimtab::plot::SKY, GREEN, FITTED][candidate.min(5)]
     }
 
     /// Mean cVDM by manoeuvre, a bar a candidate.

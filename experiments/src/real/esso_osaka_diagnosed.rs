@@ -12,8 +12,9 @@ use super::runs::{by_recording, runs, sessions, without_term, without_wind};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
+use trimtab::numerals::{fixed, sig};
+use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, RECORDED};
 use trimtab::recording::Split;
-use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, RECORDED, fixed, sig};
 
 /// Span over which changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 const SPAN: f64 = 20.0;

@@ -11,7 +11,8 @@ use trimtab::diagnose::prove::{HeldOut, prove};
 use trimtab::diagnose::receiver::settled;
 use trimtab::diagnose::{Diagnosis, Settings};
 use trimtab::model::{Model, Prior};
-use trimtab::report::{Table, fixed, sig};
+use trimtab::numerals::{fixed, sig};
+use trimtab::report::Table;
 use trimtab::simulate::Integration;
 
 use super::case::held_out_columns;

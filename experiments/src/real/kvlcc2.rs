@@ -9,10 +9,10 @@ use trimtab::maneuver::{
     zigzag_trial,
 };
 use trimtab::model::Model;
+use trimtab::numerals::fixed;
+use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, Panel, RECORDED, east_north};
 use trimtab::recording::{Split, Window};
-use trimtab::report::{
-    Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, Panel, RECORDED, Table, east_north, fixed,
-};
+use trimtab::report::Table;
 
 /// Rudder angle of the turning circles \[rad\].
 const HARD_OVER: f64 = 35.0 * std::f64::consts::PI / 180.0;

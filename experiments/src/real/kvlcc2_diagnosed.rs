@@ -11,8 +11,9 @@ use super::runs::{runs, without_term};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
+use trimtab::numerals::{fixed, sig};
+use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED};
 use trimtab::recording::Split;
-use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED, fixed, sig};
 
 /// Span over which changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 pub const SPAN: f64 = 40.0;

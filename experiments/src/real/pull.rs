@@ -3,7 +3,8 @@
 
 use nalgebra::{Matrix2, Vector2};
 use trimtab::diagnose::filter::Run;
-use trimtab::report::{Table, fixed};
+use trimtab::numerals::fixed;
+use trimtab::report::Table;
 
 use super::frame::Answer;
 use super::runs::sessions;

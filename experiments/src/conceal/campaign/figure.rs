@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use trimtab::report::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, Panel};
+use trimtab::plot::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, Panel};
 
 use super::arms::{LOPSIDED, MODELS, Question, SHOWN, WAYS, arm, lopsided, named_right, reached, single};
 use super::plan::OTHER_HULLS;

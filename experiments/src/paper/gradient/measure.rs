@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use trimtab::fit::{Cost, CostOptions, Derivatives, FitRun, FitSettings, Hessian, Progress, fit};
 use trimtab::model::Model;
-use trimtab::report::{BLUE, Color, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
+use trimtab::plot::{BLUE, Color, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
 use trimtab::simulate::{Integration, Method};
 
 use crate::paper::case::Case;

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use trimtab::fit::FitRun;
 use trimtab::model::Model;
-use trimtab::report::{Axis, BLUE, DASH, Figure, Layer, Legend, ORANGE, Panel, SKY, Table, VERMILLION, fixed, sig};
+use trimtab::numerals::{DASH, fixed, sig};
+use trimtab::plot::{Axis, BLUE, Figure, Layer, Legend, ORANGE, Panel, SKY, VERMILLION};
+use trimtab::report::Table;
 
 use super::measure::{Course, WAYS, Way, accuracies, course, gradient_times};
 use crate::paper::artefact::Artefact;

@@ -1,0 +1,318 @@
+//! What the residuals of a fit say against taking it at its word: model error, windows that are too long, residuals alike.
+//! It computes three statistics and compares each with a limit; it changes no estimate.
+//!
+//! With the weighted residual `e_c(k)` of channel c at sample k of a run,
+//!
+//! | statistic | definition | limit | reason for the limit |
+//! |---|---|---|---|
+//! | model error | `mean e^2 / mean s^2`, `s_c^2 = mean (e_c(k+1) - 2 e_c(k) + e_c(k-1))^2 / 6` | 10 | less than a tenth of the residual variance is the sensors' |
+//! | growth | exponent b of `rms e ~ t^b` between the second and the last quarter of the windows | 1 | an error of the velocity grows linearly; what grows faster is the instability of an open loop |
+//! | likeness | integrated autocorrelation `1 + 2 sum rho(l)`, and the design effect over recordings | 2 | standard errors of independent residuals are 1.4 times too small |
+//!
+//! The second difference of white noise of variance s^2 has the variance 6 s^2, and a smooth error has next to none: it is
+//! taken of the residuals, from which the simulation has removed most of the motion, so that it measures the sensors. Sources:
+//! von Neumann, Ann. Math. Stat. 12 (1941) 367-395 for successive differences; Kish, Survey Sampling (1965), for the design
+//! effect.
+
+use super::covariance::Covariances;
+use super::task::Task;
+use crate::model::Model;
+use crate::simulate::{Scenario, reported};
+use crate::state::STATES;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use trimtab_ad::smooth::wrap_angle;
+
+/// Residual variance over the sensors' from which on a cost is far above its noise.
+pub const MODEL_ERROR_LIMIT: f64 = 10.0;
+
+/// Exponent of the growth of errors along a window from which on windows are too long.
+pub const GROWTH_LIMIT: f64 = 1.0;
+
+/// How many residuals may count as one before they are called clustered.
+pub const LIKENESS_LIMIT: f64 = 2.0;
+
+/// Noise below which no sensor goes, as a share of what a residual is measured in (path length, pi, speed, r_max).
+const FINEST: f64 = 1e-6;
+
+/// Autocorrelation below which the sum over lags ends: beyond it is scatter.
+const UNCORRELATED: f64 = 0.05;
+
+/// Windows over which autocorrelations are taken, evenly drawn where there are more.
+const WINDOWS: usize = 1000;
+
+/// A reason not to take a fit at its word.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Doubt {
+    /// What is wrong.
+    pub kind: DoubtKind,
+    /// The statistic.
+    pub value: f64,
+    /// The limit that it exceeds.
+    pub limit: f64,
+    /// In words, with what to do.
+    pub sentence: String,
+}
+
+/// Kinds of doubt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DoubtKind {
+    /// The cost is far above what the noise of the sensors leaves.
+    ModelError,
+    /// The windows are too long to be predicted in open loop.
+    WindowsTooLong,
+    /// Residuals of a run or a recording are alike.
+    Clustered,
+}
+
+/// The statistics behind the doubts; one is absent where there are too few samples for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ResidualStatistics {
+    /// Variance of the residuals over that of the sensors.
+    pub model_error: Option<f64>,
+    /// Exponent b of the growth of errors along the windows, `rms e ~ t^b`.
+    pub growth: Option<f64>,
+    /// Standard error of `growth` over the recordings; absent with fewer than three.
+    pub growth_error: Option<f64>,
+    /// How many successive residuals of a run count as one.
+    pub likeness: Option<f64>,
+}
+
+/// Weighted residuals of one run: an entry is NaN where nothing was measured.
+struct Residuals<'a> {
+    recording: &'a str,
+    values: Vec<[f64; STATES]>,
+}
+
+impl ResidualStatistics {
+    /// The statistics of a model on the runs of a task.
+    pub(super) fn of(task: &Task, model: &Model) -> Self {
+        let residuals: Vec<Residuals> = task.runs.par_iter().map(|run| residuals(task, model, run)).collect();
+        let growth = growth(&residuals);
+        Self {
+            model_error: model_error(&residuals),
+            growth: growth.map(|g| g.0),
+            growth_error: growth.and_then(|g| g.1),
+            likeness: likeness(&residuals),
+        }
+    }
+
+    /// What the statistics say against the fit.
+    pub(super) fn doubts(&self, covariances: &Covariances, parameters: usize) -> Vec<Doubt> {
+        let model_error = self.model_error.filter(|r| *r > MODEL_ERROR_LIMIT).map(|value| Doubt {
+            kind: DoubtKind::ModelError,
+            value,
+            limit: MODEL_ERROR_LIMIT,
+            sentence: format!(
+                "the residuals have {value:.0} times the variance of the sensors' noise: the error of the model is what is \
+                 left, and estimates make up for physics it lacks; look for it with `trimtab diagnose`"
+            ),
+        });
+        let surely = |b: f64| b - 2.0 * self.growth_error.unwrap_or(0.0);
+        let growth = self.growth.filter(|b| surely(*b) > GROWTH_LIMIT).map(|value| Doubt {
+            kind: DoubtKind::WindowsTooLong,
+            value,
+            limit: GROWTH_LIMIT,
+            sentence: format!(
+                "errors grow as t^{value:.1} along the windows, faster than linearly: the windows are too long to be predicted \
+                 in open loop; shorten `window` in the study"
+            ),
+        });
+        [model_error, growth, self.clustered(covariances, parameters)].into_iter().flatten().collect()
+    }
+
+    fn clustered(&self, covariances: &Covariances, parameters: usize) -> Option<Doubt> {
+        // Independent recordings give a design effect of 1 with this scatter.
+        let freedom = covariances.clusters.saturating_sub(1) * parameters;
+        let by_chance = 1.0 + 3.0 * (2.0 / freedom.max(1) as f64).sqrt();
+        let by_recording = covariances.design_effect.filter(|d| *d > LIKENESS_LIMIT.max(by_chance));
+        let by_sample = self.likeness.filter(|l| *l > LIKENESS_LIMIT);
+        let value = by_recording.unwrap_or(0.0).max(by_sample.unwrap_or(0.0));
+        (value > 0.0).then(|| Doubt {
+            kind: DoubtKind::Clustered,
+            value,
+            limit: LIKENESS_LIMIT,
+            sentence: format!(
+                "residuals are alike within runs and recordings: {value:.0} of them say as much as one independent residual; \
+                 intervals allow for it as far as {} {} can tell",
+                covariances.clusters,
+                if covariances.clusters == 1 { "recording" } else { "recordings" }
+            ),
+        })
+    }
+}
+
+/// The first line of a fit: how it ended, and what is said against it.
+pub(super) fn headline(converged: bool, words: &str, doubts: &[Doubt]) -> String {
+    if !converged {
+        return format!("NOT CONVERGED: {words}");
+    }
+    match doubts {
+        [] => format!("Converged: {words}"),
+        doubts => {
+            let sentences: Vec<&str> = doubts.iter().map(|d| d.sentence.as_str()).collect();
+            format!("Converged, but IN DOUBT: {}", sentences.join(". Also, "))
+        }
+    }
+}
+
+fn residuals<'a>(task: &Task, model: &Model, run: &'a super::cost::FitRun) -> Residuals<'a> {
+    let theta = model.values_in(&run.session);
+    let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
+    let predicted = reported(model, &theta, task.settings.integration, &scenario, &run.measured_channels);
+    let of_sample = |(measured, simulated): (&[f64; STATES], &[f64; STATES])| {
+        std::array::from_fn(|c| {
+            if !run.measured_channels[c] || run.weights[c] <= 0.0 {
+                return f64::NAN;
+            }
+            let difference = measured[c] - simulated[c];
+            run.weights[c].sqrt() * if c == 2 { wrap_angle(difference) } else { difference }
+        })
+    };
+    Residuals { recording: &run.name, values: run.measured.iter().zip(&predicted.states).map(of_sample).collect() }
+}
+
+/// Mean square of the residuals over that of the sensors' noise.
+fn model_error(residuals: &[Residuals]) -> Option<f64> {
+    let (mut square, mut noise) = (0.0, 0.0);
+    for c in 0..STATES {
+        let values = residuals.iter().flat_map(|r| &r.values).map(|e| e[c]).filter(|e| e.is_finite());
+        let (sum, count) = values.fold((0.0, 0.0), |(sum, count), e| (sum + e * e, count + 1.0));
+        let second = |w: &[[f64; STATES]]| w[2][c] - 2.0 * w[1][c] + w[0][c];
+        let seconds = residuals.iter().flat_map(|r| r.values.windows(3)).map(second).filter(|d| d.is_finite());
+        let (differences, triples) = seconds.fold((0.0, 0.0), |(sum, n), d| (sum + d * d / 6.0, n + 1.0));
+        if triples > 0.0 {
+            square += sum;
+            noise += count * f64::max(differences / triples, FINEST * FINEST);
+        }
+    }
+    (noise > 0.0).then(|| square / noise)
+}
+
+/// Exponent of the growth of the residuals along the windows, with its standard error over the recordings.
+fn growth(residuals: &[Residuals]) -> Option<(f64, Option<f64>)> {
+    // Mean squares in the second and in the last quarter, whose middles are at 3/8 and 7/8 of the window.
+    let mean_square = |values: &[[f64; STATES]]| {
+        let finite = values.iter().flatten().filter(|e| e.is_finite());
+        let (sum, count) = finite.fold((0.0, 0.0), |(sum, count), e| (sum + e * e, count + 1.0));
+        if count > 0.0 { sum / count } else { 0.0 }
+    };
+    let mut by_recording: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
+    for r in residuals {
+        let quarter = r.values.len() / 4;
+        if quarter < 2 {
+            continue;
+        }
+        let sums = by_recording.entry(r.recording).or_default();
+        sums[0] += mean_square(&r.values[quarter..2 * quarter]);
+        sums[1] += mean_square(&r.values[r.values.len() - quarter..]);
+    }
+    let exponent = |[early, late]: &[f64; 2]| {
+        (*early > FINEST * FINEST && *late > 0.0).then(|| 0.5 * (late / early).ln() / (7.0_f64 / 3.0).ln())
+    };
+    let exponents: Vec<f64> = by_recording.values().filter_map(exponent).collect();
+    let n = exponents.len() as f64;
+    let mean = exponents.iter().sum::<f64>() / n;
+    let scatter = exponents.iter().map(|b| (b - mean).powi(2)).sum::<f64>();
+    mean.is_finite().then(|| (mean, (n > 2.0).then(|| (scatter / (n * (n - 1.0))).sqrt())))
+}
+
+/// How many successive residuals count as one: `1 + 2 sum rho(l)` over the lags up to where rho is lost in scatter.
+fn likeness(residuals: &[Residuals]) -> Option<f64> {
+    let every = residuals.len().div_ceil(WINDOWS).max(1);
+    let drawn: Vec<&Residuals> = residuals.iter().step_by(every).collect();
+    let longest = drawn.iter().map(|r| r.values.len()).max()?;
+    let product = |lag: usize| {
+        let of_run = |r: &&Residuals| {
+            let mut sum = (0.0, 0.0);
+            for (a, b) in r.values.iter().zip(r.values.iter().skip(lag)) {
+                for (a, b) in a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite()) {
+                    sum = (sum.0 + a * b, sum.1 + 1.0);
+                }
+            }
+            sum
+        };
+        let (sum, count) =
+            drawn.par_iter().map(of_run).collect::<Vec<_>>().iter().fold((0.0, 0.0), |s, p| (s.0 + p.0, s.1 + p.1));
+        if count > 0.0 { sum / count } else { 0.0 }
+    };
+    let variance = product(0);
+    if variance <= FINEST * FINEST {
+        return None;
+    }
+    let correlations = (1..longest / 2).map(|lag| product(lag) / variance).take_while(|rho| *rho > UNCORRELATED);
+    Some(1.0 + 2.0 * correlations.sum::<f64>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    /// Twelve recordings of two windows of 120 samples: what `error` gives at a sample, plus white noise.
+    fn made(noise: f64, error: impl Fn(usize, usize) -> f64) -> Vec<(String, Vec<[f64; STATES]>)> {
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        let window = |w: usize, rng: &mut ChaCha8Rng| {
+            let sample = |k: usize, rng: &mut ChaCha8Rng| {
+                let white: f64 = StandardNormal.sample(rng);
+                [noise * white + error(w, k), f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN]
+            };
+            (0..120).map(|k| sample(k, rng)).collect()
+        };
+        (0..24).map(|w| (format!("recording {}", w / 2), window(w, &mut rng))).collect()
+    }
+
+    fn view(made: &[(String, Vec<[f64; STATES]>)]) -> Vec<Residuals<'_>> {
+        made.iter().map(|(name, values)| Residuals { recording: name, values: values.clone() }).collect()
+    }
+
+    #[test]
+    fn white_noise_alone_gives_no_reason_to_doubt() {
+        let white = made(0.01, |_, _| 0.0);
+        let residuals = view(&white);
+        assert!((model_error(&residuals).unwrap() - 1.0).abs() < 0.1);
+        let (growth, error) = growth(&residuals).unwrap();
+        assert!(growth.abs() < 0.1 && error.unwrap() < 0.1, "{growth} {error:?}");
+        assert!((likeness(&residuals).unwrap() - 1.0).abs() < 0.2);
+    }
+
+    #[test]
+    fn a_smooth_error_above_the_noise_is_a_model_error_and_makes_residuals_alike() {
+        let wave = made(0.01, |w, k| 0.1 * (0.1 * k as f64 + w as f64).sin());
+        let residuals = view(&wave);
+        // Variance 0.005 of the wave over 0.0001 of the noise.
+        let ratio = model_error(&residuals).unwrap();
+        assert!((40.0..60.0).contains(&ratio), "{ratio}");
+        assert!(likeness(&residuals).unwrap() > 10.0);
+        assert!(growth(&residuals).unwrap().0 < 0.5);
+    }
+
+    #[test]
+    fn the_exponent_of_growth_is_found() {
+        for power in [0.5, 1.0, 2.0] {
+            let grown = made(0.0, |w, k| (1.0 + 0.1 * w as f64) * (k as f64 / 120.0).powf(power));
+            let (found, error) = growth(&view(&grown)).unwrap();
+            assert!((found - power).abs() < 0.05, "t^{power}: {found} +- {error:?}");
+        }
+    }
+
+    #[test]
+    fn an_exact_fit_is_not_doubted_for_the_shape_of_its_rounding() {
+        let exact = made(0.0, |w, k| 1e-9 * (0.1 * k as f64 + w as f64).sin());
+        let residuals = view(&exact);
+        assert!(model_error(&residuals).unwrap() < 1.0);
+        assert_eq!((growth(&residuals), likeness(&residuals)), (None, None));
+    }
+
+    #[test]
+    fn the_first_line_says_what_is_in_doubt() {
+        let doubt = Doubt { kind: DoubtKind::ModelError, value: 50.0, limit: 10.0, sentence: "model error".into() };
+        assert_eq!(headline(true, "solved", &[]), "Converged: solved");
+        assert!(headline(true, "solved", &[doubt.clone()]).starts_with("Converged, but IN DOUBT: model error"));
+        assert!(headline(false, "stopped", &[doubt]).starts_with("NOT CONVERGED: stopped"));
+    }
+}

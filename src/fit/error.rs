@@ -1,0 +1,69 @@
+//! Why there is no fit.
+//! A fit that does not converge is a result and no error: see [`Fit::status`](super::Fit::status).
+
+use crate::ipopt::IpoptError;
+
+/// Why there is no fit.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// There is nothing to fit to.
+    #[error("there are no recordings to fit to; mark at least one run of the study for training")]
+    NoRuns,
+    /// There is nothing to fit.
+    #[error("no parameter is free; set `free = true` for at least one parameter in the model file")]
+    NothingFree,
+    /// A run that the cost cannot use.
+    #[error("run `{run}`: {what}")]
+    BadRun {
+        /// The run.
+        run: String,
+        /// What is wrong.
+        what: String,
+    },
+    /// A setting that makes no sense.
+    #[error("[fit] {name} = {value}: {expected}")]
+    BadSetting {
+        /// Its key.
+        name: &'static str,
+        /// The value found.
+        value: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// A constraint rule that cannot be imposed.
+    #[error("[fit.constraints] {rule}: {what}")]
+    BadRule {
+        /// Its key.
+        rule: String,
+        /// What is wrong, and what to do.
+        what: String,
+    },
+    /// The simulation diverges at the start.
+    #[error(
+        "the simulation of run `{run}` diverges at t = {time:.1} s with the starting parameters; start from parameters that \
+         can be simulated, or use shorter windows or more integration sub-steps"
+    )]
+    Diverged {
+        /// The run.
+        run: String,
+        /// When \[s\], on the recording's clock.
+        time: f64,
+    },
+    /// The constraints contradict each other.
+    #[error(
+        "the constraints contradict each other: where the solver gave up, {sentence} is still broken by {violation:.3e}; relax \
+         [fit.constraints] {rule}, or the bounds of its parameters"
+    )]
+    Infeasible {
+        /// Key of the rule that is broken most.
+        rule: &'static str,
+        /// What it asks for.
+        sentence: String,
+        /// By how much it is broken, in its own unit.
+        violation: f64,
+    },
+    /// The solver could not start.
+    #[error("the solver could not start: {0}")]
+    Solver(#[from] IpoptError),
+}

@@ -1,0 +1,127 @@
+//! Stages of a fit: runs cut into shorter pieces, each started from its own measured state, before the whole runs are fitted.
+//! It cuts runs and says into how many parts; what is done with the pieces is the work of `solve`.
+//!
+//! The cost of a run simulated in open loop has one basin near the ship and many far from it: a hull coefficient that is wrong
+//! by a third turns the simulated ship out of step with the recorded one, and from there on its track says nothing of which way
+//! to go. Over a shorter piece the same error has not grown yet. So the shortest pieces over which errors grow no faster than
+//! linearly are fitted first, then pieces twice as long, then the whole runs. Source of the idea: multiple shooting, Bock, in
+//! Modelling of Chemical Reaction Systems (1981) 102-125; here the states at the cuts are the measured ones.
+
+use super::cost::{Cost, FitRun};
+use super::task::Task;
+
+/// Steps that a piece has at least.
+const MIN_STEPS: usize = 10;
+
+/// Parts into which a run is cut at most.
+const MAX_PARTS: usize = 8;
+
+/// Ratio of the costs of runs and of their halves up to which errors grow no faster than linearly: an error e = a t has a mean
+/// square over a time T of a^2 T^2/3, four times that over half the time.
+const LINEAR: f64 = 4.0;
+
+/// Number of parts of the first stage of a fit, 1 for no stages: where hull coefficients are free, which decide whether the
+/// ship holds its course, the fewest parts over which the errors of the start grow no faster than linearly.
+pub(super) fn parts(task: &Task) -> usize {
+    let frees_hull = task.cost.free().iter().any(|i| task.model.parameters[*i].name.starts_with("hull."));
+    if !frees_hull {
+        return 1;
+    }
+    let longest = task.runs.iter().map(|r| r.measured.len().saturating_sub(1)).max().unwrap_or(0);
+    let cost = |parts: usize| {
+        let pieces = cut(task.runs, parts);
+        Cost::new(task.model, &pieces, task.cost_options()).ok()?.value(&task.start).map(|c| c * pieces.len() as f64)
+    };
+    let mut parts = 1;
+    let mut here = cost(parts);
+    while parts < MAX_PARTS && longest / (2 * parts) >= MIN_STEPS {
+        let halves = cost(2 * parts);
+        if let (Some(here), Some(halves)) = (here, halves)
+            && here <= LINEAR * halves
+        {
+            break;
+        }
+        (parts, here) = (2 * parts, halves);
+    }
+    parts
+}
+
+/// The numbers of parts of the stages before the whole runs: `parts`, then half as many, down to 2.
+pub(super) fn falling(parts: usize) -> impl Iterator<Item = usize> {
+    std::iter::successors(Some(parts), |p| Some(p / 2)).take_while(|p| *p > 1)
+}
+
+/// Every run cut into `parts` pieces of equal length, each started from the state measured there.
+///
+/// A run whose state is not measured at a cut stays in one piece there. Pieces keep the weights and the name of their run.
+pub(super) fn cut(runs: &[FitRun], parts: usize) -> Vec<FitRun> {
+    runs.iter().flat_map(|run| cut_run(run, parts)).collect()
+}
+
+fn cut_run(run: &FitRun, parts: usize) -> Vec<FitRun> {
+    let steps = run.measured.len().saturating_sub(1);
+    if parts < 2 || steps / parts < MIN_STEPS {
+        return vec![run.clone()];
+    }
+    let known = |k: &usize| run.measured_channels.iter().all(|c| *c) && run.measured[*k].iter().all(|v| v.is_finite());
+    let inner = (1..parts).map(|i| i * steps / parts).filter(known);
+    let cuts: Vec<usize> = std::iter::once(0).chain(inner).chain([steps]).collect();
+    let piece = |ends: &[usize]| {
+        let (from, to) = (ends[0], ends[1]);
+        FitRun {
+            inputs: run.inputs[from..=to].to_vec(),
+            measured: run.measured[from..=to].to_vec(),
+            initial: if from == 0 { run.initial } else { run.measured[from] },
+            start_time: run.start_time + from as f64 * run.dt,
+            ..run.clone()
+        }
+    };
+    cuts.windows(2).map(piece).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::Inputs;
+
+    fn run(steps: usize) -> FitRun {
+        FitRun {
+            name: "a".into(),
+            session: String::new(),
+            start_time: 100.0,
+            dt: 0.5,
+            inputs: (0..=steps).map(|k| Inputs::actuators(k as f64, 1.0, 0.0)).collect(),
+            measured: (0..=steps).map(|k| [k as f64; 6]).collect(),
+            measured_channels: [true; 6],
+            initial: [-1.0; 6],
+            weights: [1.0; 6],
+        }
+    }
+
+    #[test]
+    fn pieces_share_the_sample_at_a_cut_and_start_from_what_was_measured_there() {
+        let pieces = cut(&[run(40)], 2);
+        assert_eq!(pieces.iter().map(|p| p.measured.len()).collect::<Vec<_>>(), [21, 21]);
+        assert_eq!(pieces[0].initial, [-1.0; 6]);
+        assert_eq!(pieces[1].initial, [20.0; 6]);
+        assert_eq!(pieces[1].measured[0], [20.0; 6]);
+        assert_eq!(pieces[1].start_time, 110.0);
+    }
+
+    #[test]
+    fn a_run_is_left_whole_where_it_is_short_or_its_state_is_not_known() {
+        assert_eq!(cut(&[run(19)], 2).len(), 1);
+        let mut gap = run(40);
+        gap.measured[20][4] = f64::NAN;
+        assert_eq!(cut(&[gap], 2).len(), 1);
+        let mut unmeasured = run(40);
+        unmeasured.measured_channels[4] = false;
+        assert_eq!(cut(&[unmeasured], 2).len(), 1);
+    }
+
+    #[test]
+    fn stages_double_the_length_of_the_pieces() {
+        assert_eq!(falling(8).collect::<Vec<_>>(), [8, 4, 2]);
+        assert_eq!(falling(1).count(), 0);
+    }
+}

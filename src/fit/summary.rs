@@ -1,0 +1,248 @@
+//! The outcome of a fit: estimates with their uncertainty, what held them back, what it cost; and [`fit`], which joins the steps.
+//! It solves nothing and prints nothing; the words are in [`report`](super::report).
+
+use super::cost::{Cost, FitRun};
+use super::covariance::{Covariance, CovarianceKind, Covariances, in_words};
+use super::doubts::{Doubt, ResidualStatistics, headline};
+use super::error::FitError;
+use super::problem::Progress;
+use super::settings::FitSettings;
+use super::solve::End;
+use super::subspace::inverse;
+use super::task::Task;
+use crate::ipopt::Counts;
+use crate::model::Model;
+use crate::validity::{self, Coverage};
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::time::Instant;
+
+/// What a fit says of one parameter.
+#[derive(Clone, Debug, Serialize)]
+pub struct Estimate {
+    /// Dotted name.
+    pub name: String,
+    /// Symbol.
+    pub symbol: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Value at the start.
+    pub start: f64,
+    /// Estimate.
+    pub value: f64,
+    /// Standard error; absent where the data do not determine the parameter, 0 where active constraints fix it.
+    pub standard_error: Option<f64>,
+    /// 95 % interval, absent with the standard error.
+    pub interval: Option<[f64; 2]>,
+    /// `lower` or `upper` where the estimate lies on a bound that holds it back.
+    pub at_bound: Option<&'static str>,
+}
+
+/// A constraint that holds the fit back.
+#[derive(Clone, Debug, Serialize)]
+pub struct Active {
+    /// In words: `R'(1.31 m/s) >= 0 N s/m`.
+    pub sentence: String,
+    /// Key of its rule, or `bounds`.
+    pub rule: &'static str,
+}
+
+/// A combination of parameters and how well the data determine it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Combination {
+    /// In words, each parameter in units of its scale: `0.71 p5 - 0.70 p7`.
+    pub words: String,
+    /// Its standard deviation from the data alone, in the same units; absent where the data say nothing at all.
+    pub standard_deviation: Option<f64>,
+}
+
+/// The outcome of a fit.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fit {
+    /// The model with the estimates in place.
+    #[serde(skip)]
+    pub model: Model,
+    /// Whether the solver found an optimum.
+    pub converged: bool,
+    /// How it ended and what residuals say against it, in one line.
+    pub headline: String,
+    /// How it ended, in words: what stopped the solver, and whether its last point is the one returned.
+    pub status: String,
+    /// What residuals say against taking the fit at its word.
+    pub doubts: Vec<Doubt>,
+    /// The statistics behind the doubts.
+    pub residual_statistics: ResidualStatistics,
+    /// The free parameters.
+    pub estimates: Vec<Estimate>,
+    /// Which covariance `covariance`, `correlations` and the standard errors are.
+    pub covariance_kind: CovarianceKind,
+    /// Covariance with residuals taken as independent.
+    pub covariance_gauss_newton: Covariance,
+    /// Covariance with recordings taken as independent; absent with fewer than two.
+    pub covariance_sandwich: Option<Covariance>,
+    /// Correlations of the estimates.
+    pub correlations: Covariance,
+    /// How many times larger the variances are than independent residuals would make them; absent with fewer than two
+    /// recordings.
+    pub design_effect: Option<f64>,
+    /// Constraints and bounds that hold the fit back.
+    pub active: Vec<Active>,
+    /// Combinations the data determine to no better than one scale unit, the worst first.
+    pub undetermined: Vec<Combination>,
+    /// Cost at the start, without priors.
+    pub start_cost: f64,
+    /// Cost at the end, without priors.
+    pub cost: f64,
+    /// What the priors add to it.
+    pub prior_cost: f64,
+    /// What they add at the start, with the same weight; a fit never ends above cost and priors of a feasible start.
+    pub start_prior_cost: f64,
+    /// Parts into which runs were cut for the first stage of the fit; 1 without stages.
+    pub first_stage_parts: usize,
+    /// Variance of the weighted residuals.
+    pub residual_variance: f64,
+    /// Number of runs.
+    pub runs: usize,
+    /// Number of recordings they come from.
+    pub recordings: usize,
+    /// Number of residuals.
+    pub residuals: usize,
+    /// Number of constraint rows.
+    pub constraints: usize,
+    /// Iterations of the solver.
+    pub iterations: usize,
+    /// Evaluations by the solver.
+    #[serde(serialize_with = "serialize_counts")]
+    pub counts: Counts,
+    /// How much of the data lies outside the ranges over which the terms are valid.
+    pub validity: Coverage,
+    /// Time taken \[s\].
+    pub seconds: f64,
+    /// The settings.
+    pub settings: FitSettings,
+}
+
+fn serialize_counts<S: serde::Serializer>(counts: &Counts, serializer: S) -> Result<S::Ok, S::Error> {
+    use serde::ser::SerializeStruct;
+    let mut s = serializer.serialize_struct("Counts", 5)?;
+    s.serialize_field("objective", &counts.objective)?;
+    s.serialize_field("gradient", &counts.gradient)?;
+    s.serialize_field("constraints", &counts.constraints)?;
+    s.serialize_field("jacobian", &counts.jacobian)?;
+    s.serialize_field("hessian", &counts.hessian)?;
+    s.end()
+}
+
+/// Fits the free parameters of `model` to `runs`, starting from their values.
+///
+/// `progress` is called once per iteration; it stops the fit by returning false. A fit that does not converge is a result:
+/// [`Fit::converged`] is false and [`Fit::status`] says why.
+///
+/// # Errors
+/// See [`FitError`]: nothing to fit or to fit to, unusable runs or settings, a simulation that diverges at the start,
+/// constraints that contradict each other.
+pub fn fit(
+    model: &Model,
+    runs: &[FitRun],
+    settings: &FitSettings,
+    progress: &mut dyn FnMut(&Progress) -> bool,
+) -> Result<Fit, FitError> {
+    let clock = Instant::now();
+    settings.check()?;
+    let cost = Cost::new(model, runs, settings.cost_options())?;
+    let task = Task::new(model, &cost, runs, settings)?;
+    let mut end = task.solve(progress)?;
+    task.polish(&mut end);
+    Ok(describe(&task, end, clock))
+}
+
+/// The outcome of a task from where it ended.
+fn describe(task: &Task, end: End, clock: Instant) -> Fit {
+    let cost = task.cost.value(&end.p).unwrap_or(task.start_cost);
+    let model = task.model_at(&end.p);
+    let statistics = ResidualStatistics::of(task, &model);
+    let covariances = Covariances::of(task, &end, cost, statistics.likeness);
+    let doubts = statistics.doubts(&covariances, task.scales.len());
+    let samples = task.runs.iter().flat_map(|r| validity::samples(&r.measured, &r.measured_channels, &r.inputs));
+    Fit {
+        validity: validity::outside(&model, samples),
+        converged: end.converged,
+        headline: headline(end.converged, &end.words, &doubts),
+        doubts,
+        residual_statistics: statistics,
+        status: end.words.clone(),
+        estimates: estimates(task, &end, &covariances),
+        covariance_kind: covariances.kind,
+        covariance_gauss_newton: covariances.table(task, &covariances.independent),
+        covariance_sandwich: (covariances.clusters > 1).then(|| covariances.table(task, &covariances.sandwich)),
+        correlations: covariances.correlations(task),
+        design_effect: covariances.design_effect,
+        active: active(task, &end),
+        undetermined: undetermined(task, &covariances),
+        start_cost: task.start_cost,
+        cost,
+        prior_cost: end.priors.value(&end.p),
+        start_prior_cost: end.priors.value(&task.start),
+        first_stage_parts: end.parts,
+        residual_variance: task.variance(cost),
+        runs: task.runs.len(),
+        recordings: covariances.clusters,
+        residuals: task.cost.residuals(),
+        constraints: task.rows.len(),
+        iterations: end.work.iterations,
+        counts: end.work.counts,
+        seconds: clock.elapsed().as_secs_f64(),
+        settings: *task.settings,
+        model,
+    }
+}
+
+fn estimates(task: &Task, end: &End, covariances: &Covariances) -> Vec<Estimate> {
+    let quantile = StudentsT::new(0.0, 1.0, covariances.freedom as f64).map_or(1.96, |t| t.inverse_cdf(0.975));
+    let estimate = |(j, i): (usize, &usize)| {
+        let parameter = &task.model.parameters[*i];
+        let standard_error = covariances.standard_error(task, j);
+        Estimate {
+            name: parameter.name.clone(),
+            symbol: parameter.info.symbol,
+            unit: parameter.info.unit,
+            start: task.start[j],
+            value: end.p[j],
+            standard_error,
+            interval: standard_error.map(|e| [end.p[j] - quantile * e, end.p[j] + quantile * e]),
+            at_bound: end.active.bounds.iter().find(|(b, _)| *b == j).map(|(_, side)| *side),
+        }
+    };
+    task.cost.free().iter().enumerate().map(estimate).collect()
+}
+
+/// What holds the solution back, in words.
+fn active(task: &Task, end: &End) -> Vec<Active> {
+    let row = |i: &usize| Active { sentence: task.rows[*i].sentence(&end.p), rule: task.rows[*i].rule };
+    let bound = |(j, side): &(usize, &str)| {
+        let (sign, limit) = if *side == "lower" { (">=", task.bounds[*j].0) } else { ("<=", task.bounds[*j].1) };
+        let symbol = task.model.parameters[task.cost.free()[*j]].info.symbol;
+        Active { sentence: format!("{symbol} {sign} {limit}"), rule: "bounds" }
+    };
+    end.active.rows.iter().map(row).chain(end.active.bounds.iter().map(bound)).collect()
+}
+
+/// Combinations that the data alone determine to no better than one scale unit, the worst first.
+fn undetermined(task: &Task, covariances: &Covariances) -> Vec<Combination> {
+    let names: Vec<&str> = task.cost.free().iter().map(|i| task.model.parameters[*i].info.symbol).collect();
+    let by_data = inverse(&covariances.data, &covariances.directions);
+    let inflation = match covariances.kind {
+        CovarianceKind::Sandwich => covariances.design_effect.unwrap_or(1.0).max(1.0),
+        CovarianceKind::Correlated => covariances.likeness,
+        CovarianceKind::GaussNewton => 1.0,
+    };
+    let mut undetermined = Vec::new();
+    for (rank, (curvature, direction)) in by_data.directions.iter().enumerate().rev() {
+        let deviation = (covariances.unit * inflation / curvature).sqrt();
+        let standard_deviation = (rank < by_data.rank && deviation.is_finite()).then_some(deviation);
+        if standard_deviation.is_none_or(|s| s > 1.0) {
+            undetermined.push(Combination { words: in_words(direction, &names), standard_deviation });
+        }
+    }
+    undetermined
+}

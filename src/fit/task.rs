@@ -1,0 +1,185 @@
+//! What stays fixed during a fit: model, cost, runs, constraint rows, and the scales, bounds and start of the free parameters.
+//! It prepares and translates; it neither solves nor judges a solution.
+
+use super::constraints::{self, Row};
+use super::cost::{Cost, CostOptions, FitRun};
+use super::error::FitError;
+use super::settings::FitSettings;
+use super::subspace::null_space;
+use crate::model::{Model, Parameter};
+use nalgebra::{DMatrix, DVector};
+
+/// Share of its largest possible value that the product of the off-diagonal entries of the sway-yaw mass matrix may reach.
+const MASS_MARGIN: f64 = 0.9;
+
+/// Scaled violation below which a constraint counts as kept: what the solver's own relaxation of its bounds may leave.
+const KEPT: f64 = 1e-7;
+
+/// What stays fixed during a fit.
+pub(super) struct Task<'a> {
+    pub model: &'a Model,
+    pub cost: &'a Cost<'a>,
+    pub runs: &'a [FitRun],
+    pub settings: &'a FitSettings,
+    pub rows: Vec<Row>,
+    pub scales: Vec<f64>,
+    pub bounds: Vec<(f64, f64)>,
+    pub start: Vec<f64>,
+    /// Cost at the start; infinite where its simulation diverges.
+    pub start_cost: f64,
+    /// Sessions whose additions to the parameters enter the runs.
+    sessions: Vec<String>,
+}
+
+/// Rows and bounds that hold a point back.
+pub(super) struct ActiveSet {
+    pub rows: Vec<usize>,
+    /// Index of the free parameter, and which bound.
+    pub bounds: Vec<(usize, &'static str)>,
+}
+
+impl<'a> Task<'a> {
+    pub fn new(
+        model: &'a Model,
+        cost: &'a Cost<'a>,
+        runs: &'a [FitRun],
+        settings: &'a FitSettings,
+    ) -> Result<Self, FitError> {
+        let free: Vec<&Parameter> = cost.free().iter().map(|i| &model.parameters[*i]).collect();
+        if free.is_empty() {
+            return Err(FitError::NothingFree);
+        }
+        let rows = constraints::rows(model, &settings.constraints, constraints::speed_range(runs))?;
+        let mut bounds: Vec<(f64, f64)> = free.iter().map(|p| (p.lower, p.upper)).collect();
+        keep_mass_matrix_positive(model, &free, &mut bounds);
+        let start: Vec<f64> = free.iter().zip(&bounds).map(|(p, (lo, hi))| p.value.max(*lo).min(*hi)).collect();
+        let start_cost = cost.value(&start).unwrap_or(f64::INFINITY);
+        let scales = free.iter().map(|p| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 }).collect();
+        let mut sessions: Vec<String> = runs.iter().map(|r| r.session.clone()).collect();
+        sessions.sort();
+        sessions.dedup();
+        sessions.retain(|s| model.sessions.contains_key(s));
+        sessions.push(String::new());
+        Ok(Self { model, cost, runs, settings, rows, scales, bounds, start, start_cost, sessions })
+    }
+
+    /// How costs of this task are evaluated.
+    pub fn cost_options(&self) -> CostOptions {
+        self.settings.cost_options()
+    }
+
+    /// The error of a start whose simulation diverges.
+    pub fn diverged(&self) -> FitError {
+        let first = || (self.runs[0].name.clone(), self.runs[0].start_time);
+        let (run, time) = self.cost.divergence(&self.start).unwrap_or_else(first);
+        FitError::Diverged { run, time }
+    }
+
+    /// The model with the free parameters at `p`.
+    pub fn model_at(&self, p: &[f64]) -> Model {
+        let mut model = self.model.clone();
+        for (i, value) in self.cost.free().iter().zip(p) {
+            model.parameters[*i].value = *value;
+        }
+        model
+    }
+
+    /// Whether the mass matrix at `p` can be inverted, in every session: a point where it cannot is no ship.
+    pub fn has_mass(&self, p: &[f64]) -> bool {
+        self.sessions.iter().all(|session| {
+            let mut theta = self.model.values();
+            for (i, value) in self.cost.free().iter().zip(p) {
+                theta[*i] = *value;
+            }
+            for (i, addition) in self.model.sessions.get(session).into_iter().flatten() {
+                theta[*i] += addition;
+            }
+            self.model.inertia_at_rest(&theta).is_positive()
+        })
+    }
+
+    /// Whether `p` is within every bound and constraint, and the mass matrix can be inverted there.
+    pub fn is_feasible(&self, p: &[f64]) -> bool {
+        let inside =
+            |((p, (lo, hi)), scale): ((&f64, &(f64, f64)), &f64)| *p >= lo - KEPT * scale && *p <= hi + KEPT * scale;
+        p.iter().zip(&self.bounds).zip(&self.scales).all(inside)
+            && self.rows.iter().all(|row| row.violation(p) <= KEPT * row.size(&self.scales))
+            && self.has_mass(p)
+    }
+
+    /// `p` put back within the bounds.
+    pub fn within_bounds(&self, p: &[f64]) -> Vec<f64> {
+        p.iter().zip(&self.bounds).map(|(p, (lower, upper))| p.max(*lower).min(*upper)).collect()
+    }
+
+    /// Variance of the weighted residuals of a cost over `runs` runs, at a given value.
+    pub fn variance_of(&self, cost: &Cost, runs: usize, value: f64) -> f64 {
+        let freedom = cost.residuals().saturating_sub(self.scales.len()).max(1);
+        value * runs as f64 / freedom as f64
+    }
+
+    /// Variance of the weighted residuals at a given value of the fit's cost.
+    pub fn variance(&self, value: f64) -> f64 {
+        self.variance_of(self.cost, self.runs.len(), value)
+    }
+
+    /// Directions in scaled parameters along which no active constraint changes.
+    pub fn free_directions(&self, active: &ActiveSet) -> DMatrix<f64> {
+        let n = self.scales.len();
+        let mut normals: Vec<DVector<f64>> = Vec::new();
+        for i in &active.rows {
+            let row = &self.rows[*i];
+            let size = row.size(&self.scales);
+            let scaled = row.coefficients.iter().zip(&self.scales).map(|(a, s)| a * s / size);
+            normals.push(DVector::from_iterator(n, scaled));
+        }
+        for (j, _) in &active.bounds {
+            let mut normal = DVector::zeros(n);
+            normal[*j] = 1.0;
+            normals.push(normal);
+        }
+        null_space(&normals, n)
+    }
+
+    /// A matrix or vector by the parameters, by the scaled parameters.
+    pub fn scaled(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)] * self.scales[i] * self.scales[j])
+    }
+
+    pub fn scaled_vector(&self, vector: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(vector.len(), |i, _| vector[i] * self.scales[i])
+    }
+}
+
+/// Tightens the bounds of Yrdot and Nvdot so that no values of the free added masses make the mass matrix singular.
+///
+/// With m, Iz and xG fixed, `m - Yvdot >= a` and `Iz - Nrdot >= b` follow from the bounds of Yvdot and Nrdot; the determinant
+/// `(m-Yvdot)(Iz-Nrdot) - (m xG-Yrdot)(m xG-Nvdot)` is then positive wherever the two off-diagonal entries are within
+/// `sqrt(0.9 a b)`. A physical added-mass matrix is well within it: `Yrdot^2 <= Yvdot Nrdot`. Where m, Iz or xG is free, or a
+/// term changes them, bounds cannot say it: [`Task::has_mass`] then keeps the solver's points inside.
+fn keep_mass_matrix_positive(model: &Model, free: &[&Parameter], bounds: &mut [(f64, f64)]) {
+    let position = |name: &str| free.iter().position(|p| p.name == name);
+    let value = |name: &str| model.index(name).map_or(0.0, |i| model.parameters[i].value);
+    if ["hull.mass", "hull.inertia", "hull.x_g"].iter().any(|name| position(name).is_some()) {
+        return;
+    }
+    let largest = |name: &str| position(name).map_or_else(|| value(name), |j| bounds[j].1);
+    let (sway, yaw) = (value("hull.mass") - largest("hull.Yvdot"), value("hull.inertia") - largest("hull.Nrdot"));
+    let product = MASS_MARGIN * sway * yaw;
+    if !(sway > 0.0 && yaw > 0.0 && product.is_finite()) {
+        return;
+    }
+    let moment = value("hull.mass") * value("hull.x_g");
+    for (name, other) in [("hull.Yrdot", "hull.Nvdot"), ("hull.Nvdot", "hull.Yrdot")] {
+        let Some(j) = position(name) else { continue };
+        // Beside a fixed other entry only the product counts.
+        let reach = match position(other) {
+            Some(_) => product.sqrt(),
+            None => product / (moment - value(other)).abs().max(1e-12 * product.sqrt()),
+        };
+        let (lower, upper) = (bounds[j].0.max(moment - reach), bounds[j].1.min(moment + reach));
+        if lower <= upper {
+            bounds[j] = (lower, upper);
+        }
+    }
+}
