@@ -106,63 +106,16 @@ fn dimension(i: usize) -> (f64, &'static str) {
 
 /// The evaluation as text.
 pub fn text(study: &str, evaluation: &Evaluation) -> String {
-    let mut text = String::new();
     let Some(main) = evaluation.summaries.first() else {
         return format!("{study}: no trajectory to judge.");
     };
     let compared = main.md_baseline != main.md_fitted || main.cvdm_baseline != main.cvdm_fitted;
-    let (baseline, fitted) = (&evaluation.baseline, &evaluation.fitted);
-    let counts = |s: &Summary| format!("{} runs, {} trajectories", s.runs, s.trajectories);
-    if compared {
-        text += &format!(
-            "{study}: `{fitted}` against the baseline `{baseline}`, {} runs: {}\n\n",
-            main.group,
-            counts(main)
-        );
-        let mut table = Table::new(["", "baseline", "fitted", "improvement [%]"]);
-        for i in 0..STATE_NAMES.len() {
-            let (scale, unit) = dimension(i);
-            table.row([
-                format!("MD {} [{unit}]", STATE_NAMES[i]),
-                number(main.md_baseline[i], scale),
-                number(main.md_fitted[i], scale),
-                with_interval(main.md_improvement[i], 100.0),
-            ]);
-        }
-        table.row([
-            "cVDM [%]".to_owned(),
-            with_interval(main.cvdm_baseline, 1.0),
-            with_interval(main.cvdm_fitted, 1.0),
-            with_interval(main.cvdm_improvement, 100.0),
-        ]);
-        table.row(["mARI".into(), String::new(), String::new(), with_interval(main.mari, 100.0)]);
-        table.row(["consistency".into(), String::new(), String::new(), with_interval(main.consistency, 100.0)]);
-        text += &format!("{table}\n\n");
-        text += &format!(
-            "Better on {} of {} trajectories, worse on {}; better on {} of {} runs, worse on {}.\n",
-            main.better, main.trajectories, main.worse, main.runs_better, main.runs, main.runs_worse
-        );
-        if let Some(w) = &main.most_worsened {
-            text += &format!("Most worsened: {} ({} against {}).\n", w.run, cvdm(&w.fitted), cvdm(&w.baseline));
-        }
-    } else {
-        text += &format!("{study}: deviations of `{fitted}`, {} runs: {}\n\n", main.group, counts(main));
-        let mut table = Table::new(["", "mean", "95 % interval"]);
-        for i in 0..STATE_NAMES.len() {
-            let (scale, unit) = dimension(i);
-            table.row([
-                format!("MD {} [{unit}]", STATE_NAMES[i]),
-                number(main.md_fitted[i], scale),
-                interval(main.md_fitted[i], scale),
-            ]);
-        }
-        table.row(["cVDM [%]".to_owned(), number(main.cvdm_fitted, 1.0), interval(main.cvdm_fitted, 1.0)]);
-        text += &format!("{table}\n\nGive --model or --baseline to compare two models.\n");
-    }
+    let mut text =
+        if compared { comparison(study, evaluation, main) } else { deviations(study, &evaluation.fitted, main) };
     if let Some(w) = &main.worst {
         text += &format!("Worst run: {} ({}).\n", w.run, cvdm(&w.fitted));
     }
-    for (name, count) in [(baseline, main.diverged_baseline), (fitted, main.diverged_fitted)] {
+    for (name, count) in [(&evaluation.baseline, main.diverged_baseline), (&evaluation.fitted, main.diverged_fitted)] {
         if count > 0 {
             let left = "the means above leave these trajectories out";
             text += &format!("`{name}` diverged on {count} of {} trajectories; {left}.\n", main.trajectories);
@@ -173,6 +126,61 @@ pub fn text(study: &str, evaluation: &Evaluation) -> String {
         text += &format!("\n{}", groups(&evaluation.summaries, compared));
     }
     text
+}
+
+/// Which runs a summary is of, and how many.
+fn counts(s: &Summary) -> String {
+    format!("{} runs: {} runs, {} trajectories", s.group, s.runs, s.trajectories)
+}
+
+/// Two models beside each other.
+fn comparison(study: &str, evaluation: &Evaluation, main: &Summary) -> String {
+    let mut table = Table::new(["", "baseline", "fitted", "improvement [%]"]);
+    for i in 0..STATE_NAMES.len() {
+        let (scale, unit) = dimension(i);
+        table.row([
+            format!("MD {} [{unit}]", STATE_NAMES[i]),
+            number(main.md_baseline[i], scale),
+            number(main.md_fitted[i], scale),
+            with_interval(main.md_improvement[i], 100.0),
+        ]);
+    }
+    table.row([
+        "cVDM [%]".to_owned(),
+        with_interval(main.cvdm_baseline, 1.0),
+        with_interval(main.cvdm_fitted, 1.0),
+        with_interval(main.cvdm_improvement, 100.0),
+    ]);
+    table.row(["mARI".into(), String::new(), String::new(), with_interval(main.mari, 100.0)]);
+    table.row(["consistency".into(), String::new(), String::new(), with_interval(main.consistency, 100.0)]);
+    let (baseline, fitted) = (&evaluation.baseline, &evaluation.fitted);
+    let mut text = format!("{study}: `{fitted}` against the baseline `{baseline}`, {}\n\n{table}\n\n", counts(main));
+    text += &format!(
+        "Better on {} of {} trajectories, worse on {}; better on {} of {} runs, worse on {}.\n",
+        main.better, main.trajectories, main.worse, main.runs_better, main.runs, main.runs_worse
+    );
+    if let Some(w) = &main.most_worsened {
+        text += &format!("Most worsened: {} ({} against {}).\n", w.run, cvdm(&w.fitted), cvdm(&w.baseline));
+    }
+    text
+}
+
+/// One model alone.
+fn deviations(study: &str, fitted: &str, main: &Summary) -> String {
+    let mut table = Table::new(["", "mean", "95 % interval"]);
+    for i in 0..STATE_NAMES.len() {
+        let (scale, unit) = dimension(i);
+        table.row([
+            format!("MD {} [{unit}]", STATE_NAMES[i]),
+            number(main.md_fitted[i], scale),
+            interval(main.md_fitted[i], scale),
+        ]);
+    }
+    table.row(["cVDM [%]".to_owned(), number(main.cvdm_fitted, 1.0), interval(main.cvdm_fitted, 1.0)]);
+    format!(
+        "{study}: deviations of `{fitted}`, {}\n\n{table}\n\nGive --model or --baseline to compare two models.\n",
+        counts(main)
+    )
 }
 
 fn interval(e: Option<Estimate>, scale: f64) -> String {

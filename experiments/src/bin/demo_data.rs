@@ -3,7 +3,14 @@
 
 use std::path::Path;
 
+use clap::Parser;
+
+/// Writes the data that `trimtab demo` embeds into src/demo.
+#[derive(Parser)]
+struct Arguments {}
+
 fn main() -> std::io::Result<()> {
+    Arguments::parse();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/demo");
     std::fs::create_dir_all(&folder)?;
     for (name, text) in trimtab_experiments::demo::files() {

@@ -1,8 +1,11 @@
 //! Diagnoses Esso Osaka without its wind, compares the findings with the withheld anemometer, then diagnoses with the wind.
 //! The recordings are not part of the project: the study file says where they are looked for.
 
+use std::path::Path;
 use std::process::ExitCode;
-use trimtab_experiments::folders::figures;
+
+use clap::Parser;
+use trimtab_experiments::folders::{Folder, exit};
 use trimtab_experiments::real::agreement::table;
 use trimtab_experiments::real::case::findings_table;
 use trimtab_experiments::real::error::RealError;
@@ -11,17 +14,18 @@ use trimtab_experiments::real::frame::steps_table;
 use trimtab_experiments::real::output::{write_csv, write_png};
 use trimtab_experiments::real::pull::pulls_table;
 
-fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("diagnose_esso_osaka: {error}");
-            ExitCode::from(2)
-        }
-    }
+/// Diagnoses Esso Osaka without its wind and compares the findings with the anemometer.
+#[derive(Parser)]
+struct Arguments {
+    #[command(flatten)]
+    folder: Folder,
 }
 
-fn run() -> Result<(), RealError> {
+fn main() -> ExitCode {
+    exit("diagnose_esso_osaka", run(&Arguments::parse().folder.path()))
+}
+
+fn run(folder: &Path) -> Result<(), RealError> {
     let found = esso_osaka_diagnosed::run()?;
     let kinematics = table(&found.kinematics);
     let findings = findings_table(&found.cases);
@@ -38,7 +42,6 @@ fn run() -> Result<(), RealError> {
     println!("What is left of it in each session once the measured wind is in the model:\n{left}");
     println!("{}", found.agreement());
     println!("{}\n{}", found.load(), found.walk());
-    let folder = figures();
     write_csv(&folder.join("diagnose_esso_osaka.csv"), &findings)?;
     write_csv(&folder.join("diagnose_esso_osaka_kinematics.csv"), &kinematics)?;
     write_csv(&folder.join("diagnose_esso_osaka_sessions.csv"), &by_session)?;

@@ -124,15 +124,19 @@ impl Lines<'_> {
     /// One line or two for each other arm.
     fn arms(&mut self) {
         let s = self.scores;
-        self.share("absorbed effects named all the same", Aim::Most(0.0), arm(s, "absorbed").map(|s| s.absorbed_named));
+        self.share("absorbed effects named", Aim::Most(0.0), arm(s, "absorbed").map(|s| s.absorbed_named));
         let wrong = |name| arm(s, name).map(|s| s.wrong_confident);
         self.share("wrong confident name, effects outside the catalogue", Aim::Most(0.1), wrong("withheld"));
         let pairs = arm(s, "compound").map(|s| s.some_right_none_wrong);
         self.share("pairs and triples: some right, none wrong", Aim::Least(0.95), pairs);
-        self.share("pairs and triples: exactly those", NO_AIM, arm(s, "compound").map(|s| s.exact));
-        self.share("no reference session for what needs one: wrong confident name", Aim::Most(0.1), wrong("pooled"));
+        self.share("pairs and triples: all named and no other", NO_AIM, arm(s, "compound").map(|s| s.exact));
+        self.share(
+            "effects that need a reference session, without one: wrong confident name",
+            Aim::Most(0.1),
+            wrong("pooled"),
+        );
         self.share("effect in some sessions only: first name right", NO_AIM, arm(s, "contrast").map(named_right));
-        self.share("designs that cannot tell: wrong confident name", Aim::Most(0.1), wrong("design"));
+        self.share("designs with poor excitation: wrong confident name", Aim::Most(0.1), wrong("design"));
     }
 
     /// The other hulls, and the two sides of every ship with a known asymmetry.
@@ -153,8 +157,8 @@ impl Lines<'_> {
             let mut line = |what: &str, aim: Aim, of: fn(&Score) -> Option<bool>| {
                 self.share(&format!("{}: {what}", family.name()), aim, here.clone().map(of));
             };
-            line("her two sides said to differ", NO_AIM, |s| s.sides_differ);
-            line("of those, with the right sign of the flow's", NO_AIM, right_side);
+            line("port and starboard reported to differ", NO_AIM, |s| s.sides_differ);
+            line("of these, sign of the flow's asymmetry right", NO_AIM, right_side);
             line("true asymmetry of the flow in the 90 % interval", Aim::Calibrated, |s| s.asymmetry_covered);
         }
     }
@@ -172,7 +176,7 @@ impl Lines<'_> {
         for snr in [6.0, 12.0] {
             for way in &WAYS {
                 let aim = if way.name == DIAGNOSIS { NO_AIM } else { baseline };
-                let what = format!("right name, seen or not, at SNR {snr}: {}", way.name);
+                let what = format!("right name, detected or not, at SNR {snr}: {}", way.name);
                 self.share(&what, aim, single(self.scores, None, snr).map(way.right));
             }
         }
@@ -290,12 +294,15 @@ mod tests {
             Some(Found::Share(s)) => (s.hits, s.of),
             _ => (0, 0),
         };
-        assert_eq!(counts("right name, seen or not, at SNR 12: diagnosis"), (1, 2));
-        assert_eq!(counts("right name, seen or not, at SNR 12: iid BIC"), (0, 1));
-        assert_eq!(counts("right name, seen or not, at SNR 12: sparse regression"), (0, 0));
+        assert_eq!(counts("right name, detected or not, at SNR 12: diagnosis"), (1, 2));
+        assert_eq!(counts("right name, detected or not, at SNR 12: iid BIC"), (0, 1));
+        assert_eq!(counts("right name, detected or not, at SNR 12: sparse regression"), (0, 0));
         let of = |name: &str| find(&format!("median held-out cVDM at SNR 12 [%]: {name}"));
-        assert_eq!(of("refit only, the paper's way"), Some(Found::Number(3.0)));
-        assert_eq!((of("with what it named"), of("oracle")), (Some(Found::Number(2.0)), Some(Found::Number(1.0))));
+        assert_eq!(of("refit only, the paper's method"), Some(Found::Number(3.0)));
+        assert_eq!(
+            (of("with the mechanisms named"), of("oracle")),
+            (Some(Found::Number(2.0)), Some(Found::Number(1.0)))
+        );
         assert_eq!(find("cases without a score"), Some(Found::Number(1.0)));
     }
 }
