@@ -1,5 +1,5 @@
 //! The diagnosis: where recordings and simulation part, which physics was left out, and the proof on unseen runs.
-//! One noise model (sensors, unknown force, initial states) stands behind every step.
+//! One noise model (sensors, unknown force, initial states) is behind every step.
 //!
 //! The steps are: admit the recordings ([`admit`]), estimate parameters and noise ([`estimate`]), locate unknown forces
 //! ([`locate`]), test every mechanism of the catalogue by its sensitivities ([`screen`]), refit the leaders, and compare
