@@ -4,7 +4,7 @@
 use super::names::about;
 use super::phrases::{UNDECIDED, adequacy_words, amplitude, p_value};
 use crate::diagnose::Diagnosis;
-use crate::diagnose::conclude::Amplitude;
+use crate::diagnose::finding::Amplitude;
 use crate::diagnose::sides::Sides;
 use crate::numerals::sig;
 use crate::report::units::Units;

@@ -3,7 +3,7 @@
 
 use super::phrases::{equations, forces, p_value, percent, window};
 use crate::diagnose::Diagnosis;
-use crate::diagnose::locate::Window;
+use crate::diagnose::push::Window;
 use crate::numerals::fixed;
 use crate::physics::Kind;
 use crate::report::units::Units;
