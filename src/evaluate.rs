@@ -7,8 +7,8 @@
 //!
 //! - Mean deviation of each dimension: `MD = (1/K) sum_k |d|` \[unit of the dimension\].
 //! - `cVDM = (100/K) sum_k ( |dx|/L + |dy|/L + |dpsi|/pi + |du|/U + |dv|/U + |dr|/r_max )` \[%\] with the length L of the
-//!   measured path, the mean measured speed U and a reference yaw rate r_max, as in the cost of a fit. Channels that were not
-//!   measured are left out, of the sum and of the means below.
+//!   measured path, the mean measured speed U and a reference yaw rate r_max, as in the cost of a fit. Values that were not
+//!   measured are left out, K of each channel being the samples that were; a channel never measured is left out of the means below.
 //! - Relative improvement of a dimension over the baseline (marked ~): `(MD~ - MD*)/MD~`; its mean over the dimensions is
 //!   the trajectory's average relative improvement, and `mARI` is the median of that over the trajectories. The paper's
 //!   wording ("median of the average relative improvement") would also allow the mean over the dimensions of each
@@ -21,9 +21,9 @@
 //! A simulation that diverges has no deviation. It is counted, counts as worse than any that does not, and the other numbers
 //! are of the trajectories that neither model diverges on.
 
-use crate::fit::FitRun;
+use crate::fit::cost::weights;
 use crate::model::Model;
-use crate::recording::{Split, Window};
+use crate::recording::{Run, Split};
 use crate::ship::Ship;
 use crate::simulate::{Integration, Scenario, Trajectory, reported};
 use crate::state::{STATE_NAMES, STATES};
@@ -243,47 +243,48 @@ impl Evaluation {
 }
 
 /// The scenario of a window: its inputs and initial state.
-impl From<&Window> for Scenario {
-    fn from(window: &Window) -> Self {
+impl From<&Run> for Scenario {
+    fn from(window: &Run) -> Self {
         Self { dt: window.dt, inputs: window.inputs.clone(), initial: window.initial }
     }
 }
 
 /// What a model predicts the sensors to report over a window that starts where they report its initial state, with the parameter
 /// additions of the window's session.
-pub fn predict(model: &Model, window: &Window, integration: Integration) -> Trajectory {
+pub fn predict(model: &Model, window: &Run, integration: Integration) -> Trajectory {
     let theta = model.values_in(&window.session);
-    reported(model, &theta, integration, &Scenario::from(window), &window.measured_channels)
+    reported(model, &theta, integration, &Scenario::from(window), &window.channels())
 }
 
 /// Predictions of every window, in order.
-pub fn predict_all(model: &Model, windows: &[Window], integration: Integration) -> Vec<Trajectory> {
+pub fn predict_all(model: &Model, windows: &[Run], integration: Integration) -> Vec<Trajectory> {
     windows.par_iter().map(|w| predict(model, w, integration)).collect()
 }
 
 /// The outcome of a prediction of a window; `max_yaw_rate` is r_max \[rad/s\].
-pub fn outcome(window: &Window, predicted: &Trajectory, ship: &Ship, max_yaw_rate: f64) -> Outcome {
-    let weights = FitRun::of(window, ship, max_yaw_rate).weights;
+pub fn outcome(window: &Run, predicted: &Trajectory, ship: &Ship, max_yaw_rate: f64) -> Outcome {
+    let weights = weights(ship, window, max_yaw_rate);
     let diverged = |sample: usize| Outcome::Diverged { diverged_after: sample as f64 * window.dt };
     if let Some(sample) = predicted.diverged_at {
         return diverged(sample);
     }
     let mut sums = [0.0; STATES];
-    let steps = window.steps().min(predicted.states.len().saturating_sub(1));
+    let mut counts = [0_usize; STATES];
     for (s, m) in predicted.states.iter().zip(&window.measured).skip(1) {
         for i in 0..STATES {
-            let difference = s[i] - m[i];
+            let Some(m) = m[i] else { continue };
+            let difference = s[i] - m;
             sums[i] += if i == 2 { wrap_angle(difference).abs() } else { difference.abs() };
+            counts[i] += 1;
         }
     }
-    let md = sums.map(|s| s / steps.max(1) as f64);
-    let measured = (0..STATES).filter(|&i| window.measured_channels[i]);
-    let cvdm = measured.map(|i| 100.0 * md[i] * weights[i]).sum::<f64>();
+    let md: [Option<f64>; STATES] = std::array::from_fn(|i| (counts[i] > 0).then(|| sums[i] / counts[i] as f64));
+    let cvdm = (0..STATES).filter_map(|i| Some(100.0 * md[i]? * weights[i])).sum::<f64>();
     // A sensor term with absurd parameters can report what no number holds, from a simulation that ran through.
     if !cvdm.is_finite() {
         return diverged(0);
     }
-    Outcome::Simulated(Deviation { md: std::array::from_fn(|i| window.measured_channels[i].then_some(md[i])), cvdm })
+    Outcome::Simulated(Deviation { md, cvdm })
 }
 
 /// Judges `fitted` against `baseline` on windows, each simulated from the window's initial state.
@@ -292,7 +293,7 @@ pub fn outcome(window: &Window, predicted: &Trajectory, ship: &Ship, max_yaw_rat
 pub fn evaluate(
     baseline: &Model,
     fitted: &Model,
-    windows: &[Window],
+    windows: &[Run],
     integration: Integration,
     max_yaw_rate: f64,
     settings: &EvaluationSettings,
@@ -314,18 +315,18 @@ pub fn evaluate(
 
 /// Compares two predictions of a window, the baseline's first.
 pub fn compare(
-    window: &Window,
+    window: &Run,
     model: &Model,
     max_yaw_rate: f64,
     (baseline, fitted): (&Trajectory, &Trajectory),
 ) -> Comparison {
     let ship = &model.ship;
     Comparison {
-        run: window.run.clone(),
+        run: window.recording.clone(),
         session: window.session.clone(),
         manoeuvre: window.manoeuvre.clone(),
         split: window.split,
-        start_time: window.start_time,
+        start_time: window.start_time(),
         duration: window.duration(),
         baseline: outcome(window, baseline, ship, max_yaw_rate),
         fitted: outcome(window, fitted, ship, max_yaw_rate),
@@ -479,7 +480,7 @@ mod tests {
     use super::*;
     use crate::fit::{Cost, CostOptions, Derivatives};
     use crate::physics::Form;
-    use crate::recording::Environment;
+    use crate::recording::{measured, or_nan};
     use crate::simulate::report;
     use crate::state::Inputs;
     use std::f64::consts::PI;
@@ -495,28 +496,25 @@ mod tests {
     }
 
     /// Windows sailed by the model itself under rudder angles that differ from window to window.
-    fn windows(model: &Model, count: usize) -> Vec<Window> {
+    fn windows(model: &Model, count: usize) -> Vec<Run> {
         (0..count)
             .map(|i| {
                 let angle = 0.04 * (i as f64 - 2.0);
                 let inputs: Vec<_> = (0..=40).map(|k| Inputs::actuators(5.0 * k as f64, 2.0, angle)).collect();
                 let initial = [0.0, 0.0, 0.3 * i as f64, 4.0, 0.0, 0.0];
-                let mut window = Window {
-                    run: format!("run_{i}"),
+                let mut window = Run {
+                    name: format!("run_{i} 0 s"),
+                    recording: format!("run_{i}"),
                     session: format!("day {}", i % 2),
                     manoeuvre: "turn".into(),
                     split: Split::Test,
-                    start_time: 0.0,
                     dt: 5.0,
-                    measured: vec![initial; inputs.len()],
+                    measured: vec![initial.map(Some); inputs.len()],
                     inputs,
-                    measured_channels: [true; STATES],
                     initial,
-                    has: Environment::default(),
-                    order: Default::default(),
-                    water: None,
+                    disturbed: Vec::new(),
                 };
-                window.measured = predict(model, &window, Integration::default()).states;
+                window.measured = measured(&predict(model, &window, Integration::default()).states);
                 window
             })
             .collect()
@@ -539,11 +537,11 @@ mod tests {
         let mut windows = windows(&ship, 3);
         for w in &mut windows {
             for (m, inputs) in w.measured.iter_mut().zip(&w.inputs) {
-                *m = report(&off, &theta, m, inputs);
+                *m = report(&off, &theta, &or_nan(m), inputs).map(Some);
             }
-            w.initial = w.measured[0];
+            w.initial = or_nan(&w.measured[0]);
         }
-        let cvdm = |model: &Model, w: &Window| {
+        let cvdm = |model: &Model, w: &Run| {
             let Outcome::Simulated(d) = outcome(w, &predict(model, w, Integration::default()), &ship.ship, R_MAX)
             else {
                 panic!("diverged")
@@ -556,10 +554,14 @@ mod tests {
         // A fit sees the same: its cost has its least value, nothing, at the sensors' own errors, and is level there.
         let at = off.find("log_scale.error").unwrap();
         off.parameters.iter_mut().enumerate().for_each(|(i, p)| p.free = i == at);
-        let runs: Vec<FitRun> = windows.iter().map(|w| FitRun::of(w, &ship.ship, R_MAX)).collect();
         for derivatives in [Derivatives::Lanes, Derivatives::NumDual] {
-            let options = CostOptions { derivatives, difference_step: 1e-6, integration: Integration::default() };
-            let cost = Cost::new(&off, &runs, options).unwrap();
+            let options = CostOptions {
+                max_yaw_rate: R_MAX,
+                derivatives,
+                difference_step: 1e-6,
+                integration: Integration::default(),
+            };
+            let cost = Cost::new(&off, &windows, options).unwrap();
             let (here, there) = (cost.with_gradient(&[0.08]).unwrap(), cost.with_gradient(&[0.06]).unwrap());
             assert!(here.value < 1e-9 && there.value > 1e-4, "{} {}", here.value, there.value);
             let h = 1e-5;
@@ -574,7 +576,7 @@ mod tests {
         model
     }
 
-    fn evaluated(baseline: &Model, fitted: &Model, windows: &[Window]) -> Evaluation {
+    fn evaluated(baseline: &Model, fitted: &Model, windows: &[Run]) -> Evaluation {
         evaluate(baseline, fitted, windows, Integration::default(), R_MAX, &EvaluationSettings::default())
     }
 
@@ -665,8 +667,7 @@ mod tests {
         let truth = model();
         let mut windows = windows(&truth, 4);
         for w in &mut windows {
-            w.measured_channels[4] = false;
-            w.measured.iter_mut().for_each(|m| m[4] = 0.0);
+            w.measured.iter_mut().for_each(|m| m[4] = None);
         }
         let evaluation = evaluated(&changed(0.2), &truth, &windows);
         assert_eq!(evaluation.trajectories[1].fitted.deviation().unwrap().md[4], None);

@@ -9,10 +9,10 @@ use support::{model, runs, truth_noise};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::baseline::{Refitted, Told, oracle};
 use trimtab::diagnose::candidate::Extent;
-use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::noise::Noise;
 use trimtab::diagnose::prove::median_distance;
 use trimtab::model::Model;
+use trimtab::recording::Run;
 use trimtab::simulate::{Integration, Method};
 
 /// The base model with a current.

@@ -36,7 +36,7 @@ fn write_study(folder: &Path, count: usize, [north, east]: [f64; 2]) {
     for (i, run) in runs(&truth, &truth_noise(), count, 1).iter().enumerate() {
         let mut rows = "t [s],x [m],y [m],psi [rad],u [m/s],v [m/s],r [rad/s],n [rps],delta [rad]\n".to_owned();
         for (m, input) in run.measured.iter().zip(&run.inputs) {
-            let [x, y, psi, u, v, r] = m;
+            let [x, y, psi, u, v, r] = m.map(Option::unwrap);
             writeln!(rows, "{},{x},{y},{psi},{u},{v},{r},{},{}", input.t, input.n, input.delta).unwrap();
         }
         std::fs::write(folder.join(format!("{i}.csv")), rows).unwrap();

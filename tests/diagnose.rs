@@ -4,12 +4,12 @@
 
 mod support;
 
-use support::{STAR, commanded, model, runs, truth_noise};
-use trimtab::diagnose::filter::Run;
+use support::{STAR, add, commanded, model, runs, truth_noise};
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::model::Model;
 use trimtab::parameter::Parity;
 use trimtab::physics::Form;
+use trimtab::recording::{Channel, Labels, Measured, Recording, Run, WindowSettings};
 use trimtab::state::Inputs;
 
 /// Thirty runs to learn from and ten to prove on, of a ship that has what the base model lacks.
@@ -41,6 +41,37 @@ fn nothing_is_found_where_nothing_is_missing() {
     assert!(d.detectable.iter().any(|m| m.mechanism == "current" && m.size > 0.0 && m.size < 0.1));
 }
 
+/// The run as it is read back from a recording without columns for u and v.
+fn without_velocity(run: &Run) -> Run {
+    let column = |c: usize| run.measured.iter().map(|m| m[c].unwrap()).collect::<Vec<f64>>();
+    let input = |f: fn(&Inputs<f64>) -> f64| run.inputs.iter().map(f).collect::<Vec<f64>>();
+    let channels = vec![
+        (Channel::T, input(|i| i.t)),
+        (Channel::X, column(0)),
+        (Channel::Y, column(1)),
+        (Channel::Psi, column(2)),
+        (Channel::R, column(5)),
+        (Channel::N, input(|i| i.n)),
+        (Channel::Delta, input(|i| i.delta)),
+    ];
+    let (name, session, manoeuvre) = (run.recording.clone(), run.session.clone(), run.manoeuvre.clone());
+    let labels = Labels { run: name, session, manoeuvre, split: run.split };
+    let recording = Recording::from_channels(&run.recording, channels).unwrap();
+    recording.windows(&labels, &WindowSettings::whole(model().ship.hull.draught)).unwrap().windows.remove(0)
+}
+
+#[test]
+fn velocities_that_were_not_measured_are_not_taken_for_gusts() {
+    let whole = runs(&model(), &truth_noise(), 24, 101);
+    let data: Vec<Run> = whole.iter().map(without_velocity).collect();
+    for run in &data {
+        assert_eq!(run.channels(), [true, true, true, false, false, true]);
+        assert!((run.mean_speed() - run.path_length() / run.duration()).abs() < 1e-9 && run.mean_speed() > 0.5);
+    }
+    let d = diagnose(&model(), &data[..18], &data[18..], &Settings::default(), &|_| ()).unwrap();
+    assert_eq!((d.verdict, d.findings.len()), (Verdict::NothingMissing, 0), "{}", d.headline);
+}
+
 #[test]
 fn a_current_is_named_with_its_set_and_improves_unseen_runs() {
     let d = case(&[("current.north", 0.1)], &[], 3);
@@ -65,12 +96,12 @@ fn a_wind_stays_a_wind_when_a_current_is_found_beside_it() {
 fn scaled(run: &Run, k: f64) -> Run {
     let time = k.sqrt();
     let units = [k, k, 1.0, time, time, 1.0 / time];
-    let state = |s: &[f64; 6]| std::array::from_fn(|i| s[i] * units[i]);
+    let state = |s: &Measured| std::array::from_fn(|i| s[i].map(|v| v * units[i]));
     Run {
         dt: run.dt * time,
         inputs: run.inputs.iter().map(|i| Inputs::actuators(i.t * time, i.n / time, i.delta)).collect(),
         measured: run.measured.iter().map(state).collect(),
-        initial: state(&run.initial),
+        initial: std::array::from_fn(|i| run.initial[i] * units[i]),
         ..run.clone()
     }
 }
@@ -175,11 +206,11 @@ fn a_current_that_is_the_same_in_every_session_is_not_split() {
 fn a_receiver_that_jumps_is_no_push() {
     let mut data = runs(&model(), &truth_noise(), 30, 101);
     for (i, run) in data.iter_mut().enumerate().filter(|(i, _)| i % 3 == 0) {
-        let (psi, at) = (run.measured[60][2], 50 + i);
+        let (psi, at) = (run.measured[60][2].unwrap(), 50 + i);
         // Ahead, as a clock that slips would have it, which is what a push from astern does.
         for m in &mut run.measured[at..] {
-            m[0] += 12.0 * psi.cos();
-            m[1] += 12.0 * psi.sin();
+            add(m, 0, 12.0 * psi.cos());
+            add(m, 1, 12.0 * psi.sin());
         }
     }
     let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
@@ -193,7 +224,7 @@ fn a_receiver_that_jumps_is_no_push() {
 fn slipped(every: usize) -> (Diagnosis, Vec<String>) {
     let mut data = runs(&model(), &truth_noise(), 30, 101);
     for run in data.iter_mut().skip(1).step_by(every) {
-        run.measured[60..].iter_mut().for_each(|m| m[2] += 1.0);
+        run.measured[60..].iter_mut().for_each(|m| add(m, 2, 1.0));
     }
     let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
     let lost = d.admission.issues.iter().filter(|i| i.mechanism == "lost" && !i.blocking);
@@ -323,7 +354,7 @@ fn a_force_in_one_part_of_the_water_is_no_weather() {
         run.clone_from(&with[i]);
         // Sailed elsewhere: 3 km to the east.
         run.initial[1] += 3000.0;
-        run.measured.iter_mut().for_each(|m| m[1] += 3000.0);
+        run.measured.iter_mut().for_each(|m| add(m, 1, 3000.0));
     }
     let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
     assert_eq!((d.verdict, d.findings.len()), (Verdict::NotInCatalogue, 0), "{}", d.headline);

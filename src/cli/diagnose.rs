@@ -7,10 +7,9 @@ use super::fit::model_text;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, print, progress};
 use std::path::PathBuf;
-use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::{Settings, Verdict, diagnose, figures, report};
 use trimtab::error::suggestion;
-use trimtab::recording::{Split, Window};
+use trimtab::recording::{Run, Split};
 
 const LONG: &str = "\
 Compares the recordings of a study with its model, and answers with evidence:
@@ -69,9 +68,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let loaded = Loaded::new(&args.study)?;
     let settings = settings(args, loaded.diagnose_settings()?)?;
     let windows = loaded.windows()?.windows;
-    let of =
-        |split: Split| -> Vec<Run> { windows.iter().filter(|w: &&Window| w.split == split).map(Run::from).collect() };
-    let (train, held_out) = (of(Split::Train), of(Split::Test));
+    let (train, held_out): (Vec<Run>, Vec<Run>) = windows.into_iter().partition(|w| w.split == Split::Train);
     if train.is_empty() {
         loaded.windows_of(Split::Train)?;
     }

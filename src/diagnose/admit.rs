@@ -1,10 +1,11 @@
 //! Before any physics is claimed: are the recordings consistent with themselves, and is the integration step fine enough?
 //! It judges data and numerics only.
 
-use super::filter::{Filter, GATE, Pass, Run, Wanted};
+use super::filter::{Filter, GATE, Pass, Wanted};
 use super::noise::Noise;
 use super::receiver::piece;
 use crate::model::Model;
+use crate::recording::{Run, or_nan};
 use crate::report::sig;
 use crate::simulate::{Integration, Method};
 use crate::state::{STATE_NAMES, STATES};
@@ -160,34 +161,29 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
         // Differences over several samples, so that sensor noise does not drown the motion.
         let span = 3.min(r.measured.len().saturating_sub(1)).max(1);
         for w in r.measured.windows(2 * span + 1) {
+            let w: Vec<[f64; STATES]> = w.iter().map(or_nan).collect();
             let (a, m, b) = (&w[0], &w[span], &w[2 * span]);
             let dt = 2.0 * span as f64 * r.dt;
-            if r.channels[2] && r.channels[5] {
-                let mean = w.iter().map(|s| s[5]).sum::<f64>() / w.len() as f64;
-                if (b[2] - a[2]).is_finite() && mean.is_finite() {
-                    rate.push(((b[2] - a[2]) / dt, mean));
-                }
+            let mean = w.iter().map(|s| s[5]).sum::<f64>() / w.len() as f64;
+            if (b[2] - a[2]).is_finite() && mean.is_finite() {
+                rate.push(((b[2] - a[2]) / dt, mean));
             }
-            if r.channels[0] && r.channels[1] && r.channels[2] && r.channels[3] {
-                let (dx, dy) = ((b[0] - a[0]) / dt, (b[1] - a[1]) / dt);
-                let along = dx * m[2].cos() + dy * m[2].sin();
-                let mean = w.iter().map(|s| s[3]).sum::<f64>() / w.len() as f64;
-                if along.is_finite() && mean.is_finite() {
-                    surge.push((along, mean));
-                }
+            let (dx, dy) = ((b[0] - a[0]) / dt, (b[1] - a[1]) / dt);
+            let along = dx * m[2].cos() + dy * m[2].sin();
+            let mean = w.iter().map(|s| s[3]).sum::<f64>() / w.len() as f64;
+            if along.is_finite() && mean.is_finite() {
+                surge.push((along, mean));
             }
         }
-        for s in &r.measured {
-            if s[2].is_finite() {
-                cos += s[2].cos();
-                sin += s[2].sin();
-                count += 1.0;
-            }
+        for heading in r.measured.iter().filter_map(|m| m[2]) {
+            cos += heading.cos();
+            sin += heading.sin();
+            count += 1.0;
         }
         for j in 0..6 {
-            let values: Vec<f64> = r.measured.iter().map(|m| m[j]).filter(|v| v.is_finite()).collect();
+            let values: Vec<f64> = r.measured.iter().filter_map(|m| m[j]).collect();
             let frozen = values.len() > 20 && values.windows(2).all(|w| w[0] == w[1]);
-            if r.channels[j] && frozen {
+            if frozen {
                 issues.push(Issue {
                     channel: STATE_NAMES[j].into(),
                     mechanism: "frozen",
@@ -216,8 +212,10 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
     // A rudder that turns the ship the wrong way.
     let turn: Vec<(f64, f64)> = runs
         .iter()
-        .flat_map(|r| r.measured.iter().zip(&r.inputs).filter(|(_, i)| i.n > 0.0).map(|(m, i)| (i.delta, m[5])))
-        .filter(|(d, m)| d.is_finite() && m.is_finite())
+        .flat_map(|r| {
+            r.measured.iter().zip(&r.inputs).filter(|(_, i)| i.n > 0.0).filter_map(|(m, i)| Some((i.delta, m[5]?)))
+        })
+        .filter(|(d, _)| d.is_finite())
         .collect();
     if let Some((slope, correlation)) = gain(&turn)
         && correlation < -0.5

@@ -2,9 +2,10 @@
 //! What the mechanisms are is told in the terms' files, beside the physics.
 
 use super::evidence::Test;
-use super::filter::{Column, Run};
+use super::filter::Column;
 use crate::model::Model;
 use crate::physics::{Group, Mechanism};
+use crate::recording::Run;
 use crate::terms::CATALOGUE;
 
 /// Whether recordings can possibly show a mechanism: a tide needs a good part of its period.

@@ -7,13 +7,14 @@ use super::estimate::{
     Effort, Estimate, FreeParameter, base_of, estimate, estimate_above, evidence, log_posterior, passes, restrictions,
 };
 use super::evidence::{chi_squared_p, pick};
-use super::filter::{Column, Run};
+use super::filter::Column;
 use super::forces::undoes;
 use super::noise::{Noise, NoisePrior};
 use super::screen::{Row, Screen, screen};
 use crate::model::Model;
 use crate::physics::Kind;
 use crate::physics::Probe;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
 

@@ -8,7 +8,7 @@ use super::compete::{
 };
 use super::estimate::{Effort, Estimate, FreeParameter, calm_noise, estimate, log_posterior, passes};
 use super::evidence::{KINDS, Scatter};
-use super::filter::{Column, Run};
+use super::filter::Column;
 use super::forces::forces_of;
 use super::locate::{EquationShare, Location, Place, Push, RegionTest, Window, locate, sharpened};
 use super::noise::{Noise, NoisePrior, guess};
@@ -20,6 +20,7 @@ use super::sides::{Sides, sides};
 use crate::model::{Model, ModelError};
 use crate::physics::Kind;
 use crate::physics::Probe;
+use crate::recording::Run;
 use crate::simulate::{Integration, Method};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -844,8 +845,13 @@ fn gusty(found: &Estimate, runs: &[Run]) -> bool {
     let m = &found.model.ship.hull;
     let (mut speed, mut count) = (0.0, 0.0);
     for r in runs {
-        for s in r.measured.iter().filter(|s| s[3].is_finite()) {
-            speed += s[3].abs();
+        let mut surge = r.measured.iter().filter_map(|s| s[3]).peekable();
+        if surge.peek().is_none() {
+            speed += r.mean_speed() * r.measured.len() as f64;
+            count += r.measured.len() as f64;
+        }
+        for u in surge {
+            speed += u.abs();
             count += 1.0;
         }
     }

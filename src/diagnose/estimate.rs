@@ -2,9 +2,10 @@
 //! likelihood, in turn. Which parameters are free, and what is concluded, is decided elsewhere.
 
 use super::evidence::{Base, Evidence, RunEvidence, step_inside};
-use super::filter::{Column, Filter, GATE, Pass, Run, Wanted};
+use super::filter::{Column, Filter, GATE, Pass, Wanted};
 use super::noise::{Noise, NoisePrior, fit_noise};
 use crate::model::{Model, Prior};
+use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;

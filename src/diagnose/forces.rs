@@ -3,10 +3,10 @@
 
 use super::candidate::Candidate;
 use super::estimate::Estimate;
-use super::filter::Run;
 use crate::model::Model;
 use crate::parameter::Parity;
 use crate::physics::Inertia;
+use crate::recording::{Run, or_nan};
 use crate::state::{Force, State};
 
 /// Every so many samples are looked at.
@@ -37,10 +37,10 @@ pub(super) fn forces_of(model: &Model, parameters: &[usize], runs: &[Run]) -> Ve
         model.drive(&with, r.dt, &mut a);
         neutral.drive(&bare, r.dt, &mut b);
         for ((m, i), j) in r.measured.iter().zip(&a).zip(&b).step_by(STRIDE) {
-            if m.iter().any(|v| !v.is_finite()) {
+            if m.contains(&None) {
                 continue;
             }
-            let state = State::from_array(*m);
+            let state = State::from_array(or_nan(m));
             let (x, flow) = model.rates(&with, &state, i, &Force::zero());
             let (y, _) = neutral.rates(&bare, &state, j, &Force::zero());
             let inertia = Inertia::new(model.part("hull", &with), &flow);

@@ -3,10 +3,11 @@
 
 use super::estimate::{Estimate, base_of, restrictions};
 use super::evidence::{Base, Evidence, RunEvidence, chi_squared_p, pick};
-use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::filter::{Column, Filter, Pass, Wanted};
 use super::noise::Noise;
 use super::screen::{basis_columns, widen};
 use crate::model::Model;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -137,7 +138,7 @@ impl Chart {
     /// Of all measured positions but the outermost two per cent each way.
     fn of(runs: &[Run]) -> Option<Self> {
         let limits = |axis: usize| {
-            let all = runs.iter().flat_map(|r| &r.measured).map(|m| m[axis]).filter(|v| v.is_finite());
+            let all = runs.iter().flat_map(|r| &r.measured).filter_map(|m| m[axis]);
             let mut all = Data::new(all.collect::<Vec<f64>>());
             (all.quantile(0.02), all.quantile(0.98))
         };
@@ -620,6 +621,7 @@ mod tests {
     use super::*;
     use crate::diagnose::noise::guess;
     use crate::physics::Form;
+    use crate::recording::Split;
     use crate::ship::Ship;
     use crate::state::{Inputs, STATES};
     use rand::{RngExt, SeedableRng};
@@ -651,10 +653,10 @@ mod tests {
                 recording: format!("run {index}"),
                 session: "one".into(),
                 manoeuvre: String::new(),
+                split: Split::Train,
                 dt: 2.0,
                 inputs: (0..count * LENGTH).map(|k| Inputs::actuators(2.0 * k as f64, 1.0, 0.0)).collect(),
-                measured: vec![[0.0; STATES]; count * LENGTH],
-                channels: [true; STATES],
+                measured: vec![[Some(0.0); STATES]; count * LENGTH],
                 initial: [0.0; STATES],
                 disturbed: Vec::new(),
             };

@@ -2,8 +2,9 @@
 //! It says nothing of the ship; its numbers are estimated by maximum likelihood in `fit_noise`.
 
 use super::covariance::{Discrete, Z, initial, predict};
-use super::filter::{Run, Tangent};
+use super::filter::{Tangent, boost};
 use crate::model::Model;
+use crate::recording::{Run, or_nan};
 use crate::state::STATES;
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
@@ -138,10 +139,7 @@ fn innovations<S: Scalar>(
     let mut p = initial(noise, model);
     for k in 0..run.measured.len() {
         for j in 0..STATES {
-            let y = run.measured[k][j];
-            if !run.channels[j] || !y.is_finite() {
-                continue;
-            }
+            let Some(y) = run.measured[k][j] else { continue };
             let mut error = -(z[j] + z[9 + j]) + (y - tangent.offset[k][j]);
             if j == 2 {
                 error = trimtab_ad::smooth::wrap_angle(error);
@@ -164,7 +162,7 @@ fn innovations<S: Scalar>(
             break;
         }
         z = move_mean(&z, tangent, k, noise);
-        predict(&mut p, &tangent.a[k], &tangent.gamma[k], noise, run.boost(k));
+        predict(&mut p, &tangent.a[k], &tangent.gamma[k], noise, boost(run, k));
     }
     out
 }
@@ -316,6 +314,7 @@ pub fn guess(runs: &[Run], model: &Model) -> Noise {
             .iter()
             .flat_map(|r| {
                 r.measured.windows(4).flat_map(move |w| {
+                    let w: Vec<[f64; STATES]> = w.iter().map(or_nan).collect();
                     channels
                         .iter()
                         .map(move |&j| (w[3][j] - 3.0 * w[2][j] + 3.0 * w[1][j] - w[0][j]).abs() / 20f64.sqrt())

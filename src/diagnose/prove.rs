@@ -1,9 +1,10 @@
 //! The proof: models against each other on runs that no earlier step has touched, in free simulation and in likelihood.
 //! It fits nothing.
 
-use super::filter::{Filter, Run, Wanted};
+use super::filter::{Filter, Wanted};
 use super::noise::Noise;
 use crate::model::Model;
+use crate::recording::Run;
 use crate::simulate::{Integration, Scenario, reported};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -89,12 +90,11 @@ pub fn score(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
 /// and mean speed U of the recording (Papandreou et al. 2025); r_max is 3 U / ship length.
 fn distances(model: &Model, integration: Integration, run: &Run) -> Option<(f64, [f64; 6])> {
     let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
-    let t = reported(model, &model.values_in(&run.session), integration, &scenario, &run.channels);
+    let t = reported(model, &model.values_in(&run.session), integration, &scenario, &run.channels());
     if t.diverged_at.is_some() {
         return None;
     }
-    let finite: Vec<&[f64; 6]> = run.measured.iter().filter(|m| m[0].is_finite() && m[1].is_finite()).collect();
-    let path: f64 = finite.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum();
+    let path = run.path_length();
     let duration = run.dt * (run.measured.len().max(2) - 1) as f64;
     let l = model.ship.hull.lpp;
     let path = path.max(0.1 * l);
@@ -104,8 +104,8 @@ fn distances(model: &Model, integration: Integration, run: &Run) -> Option<(f64,
     let mut counts = [0.0; 6];
     for (s, m) in t.states.iter().zip(&run.measured) {
         for j in 0..6 {
-            if run.channels[j] && m[j].is_finite() {
-                let mut d = s[j] - m[j];
+            if let Some(m) = m[j] {
+                let mut d = s[j] - m;
                 if j == 2 {
                     d = trimtab_ad::smooth::wrap_angle(d);
                 }

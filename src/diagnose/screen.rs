@@ -4,9 +4,10 @@
 use super::candidate::{Candidate, Extent, append};
 use super::estimate::{Estimate, base_of, evidence, restrictions};
 use super::evidence::{Base, Evidence, Test, UNSEEN, pick};
-use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::filter::{Column, Filter, Pass, Wanted};
 use crate::model::Model;
 use crate::physics::Kind;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rayon::prelude::*;

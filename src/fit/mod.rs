@@ -22,11 +22,12 @@ pub mod report;
 mod uncertainty;
 
 pub use constraints::{ConstraintSettings, Limits, Rule};
-pub use cost::{Cost, CostOptions, Derivatives, FitRun, Quadratic};
+pub use cost::{Cost, CostOptions, Derivatives, Quadratic};
 pub use ipopt::Counts;
 pub use multistart::{MultiStart, StartOutcome, multi_start};
 
 use crate::model::Model;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use constraints::Row;
 use ipopt::{HessianMode, IpoptError, OptionValue, Options, Solution, Status};
@@ -188,6 +189,7 @@ impl FitSettings {
 
     fn cost_options(&self) -> CostOptions {
         CostOptions {
+            max_yaw_rate: self.max_yaw_rate,
             derivatives: self.derivatives,
             difference_step: self.difference_step,
             integration: self.integration,
@@ -337,7 +339,7 @@ fn serialize_counts<S: serde::Serializer>(counts: &Counts, serializer: S) -> Res
 /// constraints that contradict each other.
 pub fn fit(
     model: &Model,
-    runs: &[FitRun],
+    runs: &[Run],
     settings: &FitSettings,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Fit, FitError> {
@@ -354,7 +356,7 @@ pub fn fit(
 struct Task<'a> {
     model: &'a Model,
     cost: &'a Cost<'a>,
-    runs: &'a [FitRun],
+    runs: &'a [Run],
     settings: &'a FitSettings,
     rows: Vec<Row>,
     scales: Vec<f64>,
@@ -381,12 +383,7 @@ struct ActiveSet {
 }
 
 impl<'a> Task<'a> {
-    fn new(
-        model: &'a Model,
-        cost: &'a Cost<'a>,
-        runs: &'a [FitRun],
-        settings: &'a FitSettings,
-    ) -> Result<Self, FitError> {
+    fn new(model: &'a Model, cost: &'a Cost<'a>, runs: &'a [Run], settings: &'a FitSettings) -> Result<Self, FitError> {
         let free: Vec<&crate::model::Parameter> = cost.free().iter().map(|i| &model.parameters[*i]).collect();
         if free.is_empty() {
             return Err(FitError::NothingFree);
@@ -395,7 +392,8 @@ impl<'a> Task<'a> {
         let bounds: Vec<(f64, f64)> = free.iter().map(|p| (p.lower, p.upper)).collect();
         let start: Vec<f64> = free.iter().map(|p| p.value.max(p.lower).min(p.upper)).collect();
         let Some(start_cost) = cost.value(&start) else {
-            let (run, time) = cost.divergence(&start).unwrap_or_else(|| (runs[0].name.clone(), runs[0].start_time));
+            let (run, time) =
+                cost.divergence(&start).unwrap_or_else(|| (runs[0].recording.clone(), runs[0].start_time()));
             return Err(FitError::Diverged { run, time });
         };
         let scales = free.iter().map(|p| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 }).collect();
@@ -595,9 +593,9 @@ impl<'a> Task<'a> {
         };
         for (run, score) in self.runs.iter().zip(scores) {
             let score = self.scaled_vector(score);
-            match clusters.iter_mut().find(|(name, _)| *name == run.name) {
+            match clusters.iter_mut().find(|(name, _)| *name == run.recording) {
                 Some((_, sum)) => *sum += score,
-                None => clusters.push((&run.name, score)),
+                None => clusters.push((&run.recording, score)),
             }
         }
         let clusters: Vec<DVector<f64>> = clusters.into_iter().map(|(_, score)| score).collect();

@@ -7,10 +7,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::path::Path;
-use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::noise::{GROUP_OF, Noise, SensorNoise};
 use trimtab::model::Model;
 use trimtab::physics::Form;
+use trimtab::recording::{Measured, Run, Split, measured};
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Method, driven, step};
 use trimtab::state::{Force, Inputs, State};
@@ -31,6 +31,11 @@ pub fn truth_noise() -> Noise {
         force: [2e3, 2e3, 6e4],
         force_time: 20.0,
     }
+}
+
+/// Adds to what was measured in one channel.
+pub fn add(m: &mut Measured, channel: usize, amount: f64) {
+    m[channel] = m[channel].map(|v| v + amount);
 }
 
 pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
@@ -87,7 +92,7 @@ pub fn commanded(
             let one = Integration { substeps: 1, ..fine };
             let series = driven(model, &theta, fine, dt, &inputs);
             let h = dt / fine.substeps as f64;
-            let mut measured = Vec::new();
+            let mut states = Vec::new();
             for k in 0..121 {
                 let now = State::from_array(state);
                 let at = k * fine.instants();
@@ -99,7 +104,7 @@ pub fn commanded(
                     let rho = (-dt / s.time).exp();
                     colour[c] = rho * colour[c] + s.coloured * (1.0 - rho * rho).sqrt() * normal(&mut rng);
                 }
-                measured.push(y);
+                states.push(y);
                 if k == 120 {
                     break;
                 }
@@ -117,11 +122,11 @@ pub fn commanded(
                 recording: format!("run {i}"),
                 session,
                 manoeuvre: String::new(),
+                split: Split::Train,
                 dt,
                 inputs,
-                initial: measured[0],
-                measured,
-                channels: [true; 6],
+                initial: states[0],
+                measured: measured(&states),
                 disturbed: Vec::new(),
             }
         })

@@ -6,8 +6,9 @@ use super::sheet::{cell, save};
 use super::{Artefact, PaperError};
 use std::path::Path;
 use std::time::Instant;
-use trimtab::fit::{Cost, CostOptions, Derivatives, FitRun, FitSettings, Hessian, Progress, fit};
+use trimtab::fit::{Cost, CostOptions, Derivatives, FitSettings, Hessian, Progress, fit};
 use trimtab::model::Model;
+use trimtab::recording::Run;
 use trimtab::report::{
     Axis, BLUE, Color, DASH, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, SKY, Table, VERMILLION, fixed, sig,
 };
@@ -264,12 +265,7 @@ struct Accuracies {
 }
 
 /// The gradient at the model's values by scaled parameters, as the solver sees it; absent where a simulation diverges.
-fn gradient(
-    model: &Model,
-    runs: &[FitRun],
-    derivatives: Derivatives,
-    step: f64,
-) -> Result<Option<Vec<f64>>, PaperError> {
+fn gradient(model: &Model, runs: &[Run], derivatives: Derivatives, step: f64) -> Result<Option<Vec<f64>>, PaperError> {
     let cost = cost(model, runs, derivatives, step)?;
     let p: Vec<f64> = model.free().iter().map(|i| model.parameters[*i].value).collect();
     let scaled = |gradient: &[f64]| -> Vec<f64> {
@@ -280,15 +276,16 @@ fn gradient(
 
 fn cost<'a>(
     model: &'a Model,
-    runs: &'a [FitRun],
+    runs: &'a [Run],
     derivatives: Derivatives,
     difference_step: f64,
 ) -> Result<Cost<'a>, PaperError> {
-    let options = CostOptions { derivatives, difference_step, integration: INTEGRATION };
+    let max_yaw_rate = FitSettings::default().max_yaw_rate;
+    let options = CostOptions { max_yaw_rate, derivatives, difference_step, integration: INTEGRATION };
     Ok(Cost::new(model, runs, options)?)
 }
 
-fn accuracies(case: &Case, model: &Model, runs: &[FitRun]) -> Result<Accuracies, PaperError> {
+fn accuracies(case: &Case, model: &Model, runs: &[Run]) -> Result<Accuracies, PaperError> {
     let diverged = || PaperError::Diverged { ship: case.ship.name() };
     let exact = gradient(model, runs, Derivatives::Lanes, 1e-5)?.ok_or_else(diverged)?;
     let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|x| x * x).sum::<f64>().sqrt();
@@ -306,7 +303,7 @@ fn accuracies(case: &Case, model: &Model, runs: &[FitRun]) -> Result<Accuracies,
     Ok(Accuracies { steps, oracle: error(&oracle) })
 }
 
-fn course(case: &Case, model: &Model, runs: &[FitRun], way: &Way) -> Result<Course, PaperError> {
+fn course(case: &Case, model: &Model, runs: &[Run], way: &Way) -> Result<Course, PaperError> {
     let settings = FitSettings {
         derivatives: way.derivatives,
         difference_step: way.step,
@@ -334,7 +331,7 @@ fn course(case: &Case, model: &Model, runs: &[FitRun], way: &Way) -> Result<Cour
 }
 
 /// Time of a gradient over that of a cost, both eight runs side by side.
-fn gradient_times(model: &Model, runs: &[FitRun]) -> Result<[(&'static str, f64); 4], PaperError> {
+fn gradient_times(model: &Model, runs: &[Run]) -> Result<[(&'static str, f64); 4], PaperError> {
     let p: Vec<f64> = model.free().iter().map(|i| model.parameters[*i].value).collect();
     let shortest = |work: &dyn Fn() -> bool| {
         let time = || {

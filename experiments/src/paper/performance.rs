@@ -8,7 +8,7 @@ use std::fmt::Write;
 use std::path::Path;
 use trimtab::evaluate::{Estimate, EvaluationSettings, Summary, evaluate, predict};
 use trimtab::model::Model;
-use trimtab::recording::{Split, Window};
+use trimtab::recording::{Run, Split, measured};
 use trimtab::report::{Axis, DASH, FITTED, Figure, GREY, Layer, Panel, Table, fixed};
 use trimtab::simulate::{Integration, Method};
 use trimtab::state::{STATE_NAMES, STATE_UNITS};
@@ -162,13 +162,13 @@ fn integration(case: &Case) -> String {
 }
 
 /// Mean cVDM \[%\] between a model's test trajectories under an integration and under a fine RK4.
-fn integration_error(model: &Model, windows: &[Window], integration: Integration, max_yaw_rate: f64) -> Option<f64> {
-    let exact: Vec<Window> = windows
+fn integration_error(model: &Model, windows: &[Run], integration: Integration, max_yaw_rate: f64) -> Option<f64> {
+    let exact: Vec<Run> = windows
         .iter()
         .filter(|w| w.split == Split::Test)
         .filter_map(|w| {
             let trajectory = predict(model, w, AUDIT);
-            trajectory.diverged_at.is_none().then(|| Window { measured: trajectory.states, ..w.clone() })
+            trajectory.diverged_at.is_none().then(|| Run { measured: measured(&trajectory.states), ..w.clone() })
         })
         .collect();
     let settings = EvaluationSettings { resamples: 0, ..EvaluationSettings::default() };

@@ -10,7 +10,7 @@ use super::{Artefact, PaperError};
 use std::fmt::Write;
 use std::path::Path;
 use trimtab::evaluate::{Comparison, predict};
-use trimtab::recording::{Split, Window};
+use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::{
     Axis, BASELINE, DASH, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, Table, east_north, fixed, sig,
 };
@@ -139,14 +139,15 @@ fn numbers(case: &Case, grade: &str, before: &Comparison, other: &Comparison) ->
     deviations(before, other).into_iter().map(row).collect()
 }
 
-fn figure(case: &Case, window: &Window, title: &str, before: &Comparison, other: &Comparison) -> Figure {
+fn figure(case: &Case, window: &Run, title: &str, before: &Comparison, other: &Comparison) -> Figure {
     let integration = case.setup.fit.integration;
     let sail = |model| predict(model, window, integration).states;
     let (published, captive, fitted) =
         (sail(&case.published_baseline), sail(&case.captive_baseline), sail(&case.fit.model));
+    let measured: Vec<[f64; STATES]> = window.measured.iter().map(or_nan).collect();
     // In the order of drawing: the truth lies below what is judged by it.
     let series: [(&str, trimtab::report::Color, &[[f64; STATES]], bool); 4] = [
-        ("truth", TRUTH, &window.measured, false),
+        ("truth", TRUTH, &measured, false),
         ("baseline, published p~", BASELINE, &published, true),
         ("baseline, captive tests", ORANGE, &captive, false),
         ("fitted", FITTED, &fitted, false),

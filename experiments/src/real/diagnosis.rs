@@ -7,13 +7,13 @@ use trimtab::diagnose::admit::followed;
 use trimtab::diagnose::conclude::Amplitude;
 use trimtab::diagnose::estimate::{Effort, FreeParameter, base_of, estimate, evidence, passes, restrictions};
 use trimtab::diagnose::evidence::Test;
-use trimtab::diagnose::filter::{Column, Run};
+use trimtab::diagnose::filter::Column;
 use trimtab::diagnose::noise::{Noise, NoisePrior};
 use trimtab::diagnose::prove::{HeldOut, prove};
 use trimtab::diagnose::receiver::settled;
 use trimtab::diagnose::{Diagnosis, Settings, diagnose};
 use trimtab::model::{Model, Prior};
-use trimtab::recording::Split;
+use trimtab::recording::{Run, Split};
 use trimtab::report::{Table, fixed, sig};
 use trimtab::simulate::Integration;
 
@@ -22,7 +22,7 @@ use trimtab::simulate::Integration;
 /// # Errors
 /// [`RealError::Study`].
 pub fn runs(hull: &Hull, split: Split) -> Result<Vec<Run>, RealError> {
-    Ok(hull.windows(split)?.iter().map(Run::from).collect())
+    hull.windows(split)
 }
 
 /// The runs as if no wind had been recorded.

@@ -5,9 +5,8 @@ use super::diagnosis::{Case, Frame, Pull, Step, by_recording, pulls, runs, sessi
 use super::kinematics::{Agreement, Mend, held, jumps, median};
 use super::{Hull, RealError};
 use trimtab::diagnose::Settings;
-use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
-use trimtab::recording::Split;
+use trimtab::recording::{Run, Split};
 use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, RECORDED, fixed, sig};
 
 /// Over this the changes of position and heading are compared with integrals of velocity and yaw rate \[s\].

@@ -5,9 +5,8 @@ use super::diagnosis::{Answer, Case, Frame, Step, runs, without_term};
 use super::kinematics::{Agreement, Mend, median};
 use super::{Hull, RealError};
 use trimtab::diagnose::Settings;
-use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
-use trimtab::recording::Split;
+use trimtab::recording::{Run, Split};
 use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED, fixed, sig};
 
 /// Over this the changes of position and heading are compared with integrals of velocity and yaw rate \[s\].

@@ -10,9 +10,9 @@ pub mod kvlcc2_diagnosed;
 pub mod published;
 
 use std::path::{Path, PathBuf};
-use trimtab::fit::{Fit, FitRun, FitSettings, fit};
+use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::{Model, ModelError};
-use trimtab::recording::{Split, Window};
+use trimtab::recording::{Run, Split};
 use trimtab::report::{Figure, FigureError, Table};
 use trimtab::ship::{Ship, ShipError};
 use trimtab::study::{Study, StudyError};
@@ -96,7 +96,7 @@ impl Hull {
     ///
     /// # Errors
     /// [`RealError::Study`].
-    pub fn windows(&self, split: Split) -> Result<Vec<Window>, RealError> {
+    pub fn windows(&self, split: Split) -> Result<Vec<Run>, RealError> {
         let windows = self.study.windows(self.ship.hull.draught)?.windows;
         Ok(windows.into_iter().filter(|w| w.split == split).collect())
     }
@@ -105,9 +105,8 @@ impl Hull {
     ///
     /// # Errors
     /// [`RealError::Fit`].
-    pub fn fitted(&self, model: &Model, windows: &[Window]) -> Result<Fit, RealError> {
-        let runs: Vec<FitRun> = windows.iter().map(|w| FitRun::of(w, &self.ship, self.fit.max_yaw_rate)).collect();
-        let mut fit = fit(model, &runs, &self.fit, &mut |_| true)?;
+    pub fn fitted(&self, model: &Model, windows: &[Run]) -> Result<Fit, RealError> {
+        let mut fit = fit(model, windows, &self.fit, &mut |_| true)?;
         if !fit.converged {
             fit.model.name += " (not converged)";
         }
