@@ -1,7 +1,7 @@
 //! Automatic differentiation for ship dynamics: fit an interpretable manoeuvring model to recordings of a ship, and find
 //! the physics it lacks.
 
-pub mod check;
+pub mod audit;
 pub mod demo;
 pub mod diagnose;
 pub mod error;

@@ -72,6 +72,29 @@ fn velocities_that_were_not_measured_are_not_taken_for_gusts() {
     assert_eq!((d.verdict, d.findings.len()), (Verdict::NothingMissing, 0), "{}", d.headline);
 }
 
+/// Recordings of which the diagnosis must say first what is wrong with them, each with the fault, and the channel.
+type Fault = (&'static str, &'static str, fn(&mut Run));
+
+#[test]
+fn a_wrong_unit_or_sign_is_told_before_any_physics() {
+    let faults: [Fault; 4] = [
+        ("sign_error", "r", |run| run.measured.iter_mut().for_each(|m| m[5] = m[5].map(|r| -r))),
+        ("unit_error", "u", |run| run.measured.iter_mut().for_each(|m| m[3] = m[3].map(|u| u / 0.514_444))),
+        ("unit_error", "u", |run| {
+            run.measured.iter_mut().for_each(|m| (m[3], m[4]) = (m[3].map(|u| 3.6 * u), None));
+        }),
+        ("sign_error", "delta", |run| run.inputs.iter_mut().for_each(|i| i.delta = -i.delta)),
+    ];
+    for (fault, channel, spoil) in faults {
+        let mut data = runs(&model(), &truth_noise(), 24, 101);
+        data.iter_mut().for_each(spoil);
+        let d = diagnose(&model(), &data[..18], &data[18..], &Settings::default(), &|_| ()).unwrap();
+        assert_eq!(d.verdict, Verdict::Sensor, "{fault} of {channel}: {}", d.headline);
+        let first = d.admission.issues.iter().find(|i| i.blocking()).unwrap();
+        assert_eq!((first.fault, first.channel.unwrap().name()), (fault, channel), "{first:?}");
+    }
+}
+
 #[test]
 fn a_current_is_named_with_its_set_and_improves_unseen_runs() {
     let d = case(&[("current.north", 0.1)], &[], 3);
@@ -215,7 +238,7 @@ fn a_receiver_that_jumps_is_no_push() {
     }
     let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
     assert!(d.findings.is_empty(), "{}", d.headline);
-    let jumped = d.admission.issues.iter().filter(|i| i.mechanism == "jump" && !i.blocking);
+    let jumped = d.admission.issues.iter().filter(|i| i.fault == "jump" && !i.blocking());
     assert_eq!(jumped.count(), 10);
     assert_eq!(d.admission.runs, 40);
 }
@@ -227,7 +250,7 @@ fn slipped(every: usize) -> (Diagnosis, Vec<String>) {
         run.measured[60..].iter_mut().for_each(|m| add(m, 2, 1.0));
     }
     let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
-    let lost = d.admission.issues.iter().filter(|i| i.mechanism == "lost" && !i.blocking);
+    let lost = d.admission.issues.iter().filter(|i| i.fault == "lost" && !i.blocking());
     let texts = lost.map(|i| i.text.clone()).collect();
     (d, texts)
 }
@@ -241,7 +264,7 @@ fn runs_that_the_model_cannot_follow_are_told() {
     let (d, texts) = slipped(4);
     assert!(texts.len() == 1 && texts[0].contains("of 30 runs"), "{texts:?}");
     assert_eq!(d.admission.samples, 30 * 121);
-    assert!(case(&[], &[], 11).admission.issues.iter().all(|i| i.mechanism != "lost"));
+    assert!(case(&[], &[], 11).admission.issues.iter().all(|i| i.fault != "lost"));
 }
 
 #[test]
@@ -250,7 +273,7 @@ fn inputs_that_were_not_logged_for_a_while_are_told_and_pass_for_no_physics() {
     data[13].inputs[60..100].iter_mut().for_each(|i| (i.n, i.delta) = (-3.0, -0.6));
     let d = diagnose(&model(), &data, &[], &Settings::default(), &|_| ()).unwrap();
     assert!(d.findings.is_empty(), "{}", d.headline);
-    let lost = d.admission.issues.iter().filter(|i| i.mechanism == "lost").map(|i| i.text.as_str());
+    let lost = d.admission.issues.iter().filter(|i| i.fault == "lost").map(|i| i.text.as_str());
     assert!(
         lost.clone().count() >= 1 && lost.clone().all(|t| t.starts_with("run 13")),
         "{:?}",

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
-use trimtab::check::{Severity, audit};
+use trimtab::audit::{Severity, audit};
 use trimtab::recording::{Channel, Recording, Split};
 use trimtab::study::Study;
 

@@ -7,6 +7,7 @@ use super::fit::model_text;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, print, progress};
 use std::path::PathBuf;
+use trimtab::audit::Issue;
 use trimtab::diagnose::{Settings, Verdict, diagnose, figures, report};
 use trimtab::error::suggestion;
 use trimtab::recording::{Run, Split};
@@ -106,7 +107,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         print(&(report::summary(&diagnosis, name) + &written))?;
     }
     let unanswered =
-        diagnosis.verdict == Verdict::Insufficient || diagnosis.admission.issues.iter().any(|i| i.blocking);
+        diagnosis.verdict == Verdict::Insufficient || diagnosis.admission.issues.iter().any(Issue::blocking);
     Ok(if unanswered { Answer::No } else { Answer::Yes })
 }
 

@@ -13,10 +13,10 @@ use super::forces::forces_of;
 use super::locate::{EquationShare, Location, Place, Push, RegionTest, Window, locate, sharpened};
 use super::noise::{Noise, NoisePrior, guess};
 use super::prove::{HeldOut, prove};
-use super::receiver::settled;
 use super::refit::refit;
 use super::screen::{Row, Screen, screen};
 use super::sides::{Sides, sides};
+use crate::audit::{Issue, settled};
 use crate::model::{Model, ModelError};
 use crate::physics::Kind;
 use crate::physics::Probe;
@@ -557,7 +557,7 @@ pub fn diagnose(
     let mut location = locate(&null, integration, &runs);
     progress("testing every mechanism");
     let mut first = screen(&null, integration, &runs, &list);
-    let blocked = admission.issues.iter().any(|i| i.blocking);
+    let blocked = admission.issues.iter().any(Issue::blocking);
 
     let form_holds = first.symmetric_test.p > FORM_HOLDS;
     let null_noise = null.noise;
@@ -1097,17 +1097,27 @@ fn signature(c: &Candidate, s: &Screen) -> String {
     words
 }
 
+/// A blocking fault of a channel in words.
+fn title_of_fault(issue: &Issue) -> String {
+    let what = match issue.fault {
+        "sign_error" => "the sign",
+        "axes_error" => "the axes",
+        _ => "the unit",
+    };
+    format!("{what} of `{}`", issue.channel.map_or("the recordings", crate::recording::Channel::name))
+}
+
 /// What the audit of the recordings already shows to be wrong: a unit or a sign.
 fn sensor_findings(admission: &Admission) -> Vec<Finding> {
     admission
         .issues
         .iter()
-        .filter(|i| i.blocking)
+        .filter(|i| i.blocking())
         .map(|i| Finding {
-            mechanism: i.mechanism.into(),
-            title: format!("{} of `{}`", if i.mechanism == "sign_error" { "the sign" } else { "the unit" }, i.channel),
+            mechanism: i.fault.into(),
+            title: title_of_fault(i),
             kind: Kind::Sensor,
-            confidence_set: vec![i.mechanism.into()],
+            confidence_set: vec![i.fault.into()],
             why: i.text.clone(),
             sessions: Vec::new(),
             by_session: false,
@@ -1288,7 +1298,7 @@ fn headline(verdict: Verdict, findings: &[Finding], admission: &Admission, unlis
         }),
         Verdict::Sensor => findings.first().map_or_else(
             || {
-                let first = admission.issues.iter().find(|i| i.blocking);
+                let first = admission.issues.iter().find(|i| i.blocking());
                 format!("Your sensor, not your ship: {}.", first.map_or("", |i| i.text.as_str()))
             },
             |f| format!("Your sensor, not your ship: {}.", list(f)),

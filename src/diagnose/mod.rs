@@ -20,7 +20,6 @@ mod forces;
 pub mod locate;
 pub mod noise;
 pub mod prove;
-pub mod receiver;
 pub mod refit;
 pub mod report;
 pub mod screen;

@@ -81,7 +81,7 @@ pub const KEYS: &[(&str, &str)] = &[
     ("admission.issues[].channel", "the channel"),
     (
         "admission.issues[].mechanism",
-        "sign_error, unit_error, frozen, held (repeated samples), start (a first fix that the next ones contradict), jump (of the \
+        "sign_error, unit_error, axes_error, frozen, held (repeated samples), start (a first fix that the next ones contradict), jump (of the \
          position) or lost (measurements in a row that the model cannot follow)",
     ),
     ("admission.issues[].text", "what is seen"),
@@ -433,10 +433,10 @@ fn verdict(d: &Diagnosis) -> Vec<String> {
     }
     let mut said: BTreeMap<&str, usize> = BTreeMap::new();
     for i in &d.admission.issues {
-        let word = if i.blocking { "mend first" } else { "note" };
-        let before = said.entry(i.mechanism).or_default();
+        let word = if i.blocking() { "mend first" } else { "note" };
+        let before = said.entry(i.fault).or_default();
         *before += 1;
-        if i.blocking || *before <= NOTES {
+        if i.blocking() || *before <= NOTES {
             lines.push(format!("{word}: {}; {}", i.text, i.next_step));
         }
     }

@@ -3,6 +3,7 @@
 
 use super::{Hull, RealError};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use trimtab::audit::settled;
 use trimtab::diagnose::admit::followed;
 use trimtab::diagnose::conclude::Amplitude;
 use trimtab::diagnose::estimate::{Effort, FreeParameter, base_of, estimate, evidence, passes, restrictions};
@@ -10,7 +11,6 @@ use trimtab::diagnose::evidence::Test;
 use trimtab::diagnose::filter::Column;
 use trimtab::diagnose::noise::{Noise, NoisePrior};
 use trimtab::diagnose::prove::{HeldOut, prove};
-use trimtab::diagnose::receiver::settled;
 use trimtab::diagnose::{Diagnosis, Settings, diagnose};
 use trimtab::model::{Model, Prior};
 use trimtab::recording::{Run, Split};

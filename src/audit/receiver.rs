@@ -1,9 +1,8 @@
 //! What a receiver did that no ship can: jumps, values held while the ship sailed on, and a wild first fix.
 //! It judges recordings by themselves, before any model is asked; what a force could have done it leaves alone.
 
-use super::admit::Issue;
-use super::prove::median;
-use crate::recording::{Run, or_nan};
+use super::issue::{Issue, Severity};
+use crate::recording::{Channel, Run, or_nan};
 use crate::report::sig;
 use crate::state::STATES;
 use nalgebra::SMatrix;
@@ -41,18 +40,14 @@ pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
         }
         if let Some((from, to)) = held.first() {
             let samples: usize = held.iter().map(|(from, to)| to - from + 1).sum();
-            issues.push(Issue {
-                channel: "x, y, psi".into(),
-                mechanism: "held",
-                text: format!(
-                    "{}: position and heading repeat, and then catch up, first from {} to {} s, {samples} samples in all",
-                    run.name,
-                    sig(run.inputs[*from].t, 5),
-                    sig(run.inputs[*to].t, 5)
-                ),
-                next_step: "these samples are taken as not measured".into(),
-                blocking: false,
-            });
+            let text = format!(
+                "{}: position and heading repeat, and then catch up, first from {} to {} s, {samples} samples in all",
+                run.name,
+                sig(run.inputs[*from].t, 5),
+                sig(run.inputs[*to].t, 5)
+            );
+            let next = "a diagnosis takes these samples as not measured";
+            issues.push(Issue::new(Severity::Note, "held", text, next).of(Channel::X));
         }
     }
     let mut parted = Vec::with_capacity(out.len());
@@ -63,26 +58,22 @@ pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
         };
         let times: Vec<String> = jumps.iter().map(|j| sig(run.inputs[j.sample].t, 5)).collect();
         let longest = jumps.iter().map(|j| j.length).fold(first.length, f64::max);
-        issues.push(Issue {
-            channel: "x, y".into(),
-            mechanism: "jump",
-            text: format!(
-                "{}: the position jumps at {} s, by up to {} m, as no force moves the ship",
-                run.name,
-                times.join(", "),
-                sig(longest, 2)
-            ),
-            next_step: "the run is parted there: no force is read off the jump".into(),
-            blocking: false,
-        });
+        let text = format!(
+            "{}: the position jumps at {} s, by up to {} m, as no force moves the ship",
+            run.name,
+            times.join(", "),
+            sig(longest, 2)
+        );
+        let next = "a diagnosis parts the run there, so that no force is read off the jump";
+        issues.push(Issue::new(Severity::Note, "jump", text, next).of(Channel::X));
         parted.extend(parts(&run, &jumps));
     }
     issues.extend(from_second(&mut parted));
     (parted, issues)
 }
 
-/// Names and units of position and heading.
-const CHANNELS: [(&str, &str); 3] = [("x", "m"), ("y", "m"), ("psi", "rad")];
+/// Position and heading, with their units.
+const CHANNELS: [(Channel, &str); 3] = [(Channel::X, "m"), (Channel::Y, "m"), (Channel::Psi, "rad")];
 
 /// How far a sample is from the line through the four after it; NaN where one is not measured.
 fn departure(run: &Run, k: usize, c: usize) -> f64 {
@@ -115,17 +106,13 @@ fn from_second(runs: &mut [Run]) -> Vec<Issue> {
         };
         let Some(c) = (0..3).find(wild) else { continue };
         let (channel, unit) = CHANNELS[c];
-        issues.push(Issue {
-            channel: channel.into(),
-            mechanism: "start",
-            text: format!(
-                "{}: the first {channel} is {} {unit} from where those after it come from",
-                run.name,
-                sig(departure(run, 0, c).abs(), 2)
-            ),
-            next_step: "the run is taken from its second sample on".into(),
-            blocking: false,
-        });
+        let text = format!(
+            "{}: the first {channel} is {} {unit} from where those after it come from",
+            run.name,
+            sig(departure(run, 0, c).abs(), 2)
+        );
+        let next = "a diagnosis takes the run from its second sample on";
+        issues.push(Issue::new(Severity::Note, "start", text, next).of(channel));
         run.inputs.remove(0);
         run.measured.remove(0);
         let second = run.measured[0];
@@ -135,7 +122,7 @@ fn from_second(runs: &mut [Run]) -> Vec<Issue> {
 }
 
 /// The samples `from..to` of a run as a run of its own; `None` where they are too few to say anything.
-pub(super) fn piece(run: &Run, from: usize, to: usize) -> Option<Run> {
+pub fn piece(run: &Run, from: usize, to: usize) -> Option<Run> {
     // Where a channel is not measured at the start, the last value before it stands in.
     let last = |c: usize| run.measured[..=from].iter().rev().find_map(|m| m[c]);
     (to >= from + 2 * SIDE).then(|| Run {
@@ -159,6 +146,13 @@ fn parts(run: &Run, jumps: &[Jump]) -> Vec<Run> {
     edges.extend(jumps.iter().map(|j| j.sample));
     edges.push(run.measured.len());
     edges.windows(2).filter_map(|edge| piece(run, edge[0], edge[1])).collect()
+}
+
+/// The middle of some values, of which there is one at least.
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[sorted.len() / 2]
 }
 
 /// Weights that read a step between the two middle samples off a row of positions, whatever parabola they lie on, one of them
@@ -326,7 +320,7 @@ mod tests {
         assert!(before.recording == "run 3" && after.recording == "run 3" && before.name != after.name);
         assert!(after.initial.map(Some) == after.measured[0] && after.inputs[0].t == before.inputs[69].t + before.dt);
         assert_eq!(issues.len(), 1);
-        assert!(issues[0].mechanism == "jump" && !issues[0].blocking && issues[0].text.contains("run 3"), "{issues:?}");
+        assert!(issues[0].fault == "jump" && !issues[0].blocking() && issues[0].text.contains("run 3"), "{issues:?}");
     }
 
     #[test]
@@ -352,9 +346,9 @@ mod tests {
         }
         let whole = runs.clone();
         let (runs, issues) = settled(&runs, LENGTH);
-        assert!(issues.iter().all(|i| i.mechanism == "start" && !i.blocking), "{issues:?}");
-        let told = |name: &str, channel: &str| issues.iter().any(|i| i.channel == channel && i.text.starts_with(name));
-        assert!(issues.len() == 2 && told("run 1", "y") && told("run 6", "psi"), "{issues:?}");
+        assert!(issues.iter().all(|i| i.fault == "start" && !i.blocking()), "{issues:?}");
+        let told = |name: &str, channel| issues.iter().any(|i| i.channel == Some(channel) && i.text.starts_with(name));
+        assert!(issues.len() == 2 && told("run 1", Channel::Y) && told("run 6", Channel::Psi), "{issues:?}");
         for (i, (run, whole)) in runs.iter().zip(&whole).enumerate() {
             let from = usize::from(i == 1 || i == 6);
             assert_eq!(run.measured, whole.measured[from..]);
@@ -383,6 +377,6 @@ mod tests {
         let missing = |r: &Run| (0..r.measured.len()).filter(|k| r.measured[*k][0].is_none()).collect::<Vec<_>>();
         assert_eq!(missing(&runs[2]), [41, 42, 43]);
         assert!(missing(&runs[5]).is_empty());
-        assert!(issues.iter().any(|i| i.mechanism == "held" && i.text.contains("run 2")), "{issues:?}");
+        assert!(issues.iter().any(|i| i.fault == "held" && i.text.contains("run 2")), "{issues:?}");
     }
 }
