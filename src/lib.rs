@@ -16,5 +16,6 @@ pub mod report;
 pub mod ship;
 pub mod simulate;
 pub mod state;
+pub mod statistics;
 pub mod study;
 pub mod terms;

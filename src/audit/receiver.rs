@@ -5,6 +5,7 @@ use super::issue::{Issue, Severity};
 use crate::recording::{Channel, Run, or_nan};
 use crate::report::sig;
 use crate::state::STATES;
+use crate::statistics::median;
 use nalgebra::SMatrix;
 use trimtab_ad::smooth::wrap_angle;
 
@@ -95,7 +96,7 @@ fn from_second(runs: &mut [Run]) -> Vec<Issue> {
         };
         let all: Vec<f64> = runs.iter().flat_map(of).filter(|d| d.is_finite()).collect();
         // The median of a normal variable's size is 0.6745 of its standard deviation.
-        if all.len() < ENOUGH { f64::INFINITY } else { median(&all) / 0.6745 }
+        if all.len() < ENOUGH { f64::INFINITY } else { median(all).map_or(f64::INFINITY, |m| m / 0.6745) }
     };
     let spreads: [f64; 3] = std::array::from_fn(spread);
     let mut issues = Vec::new();
@@ -148,13 +149,6 @@ fn parts(run: &Run, jumps: &[Jump]) -> Vec<Run> {
     edges.windows(2).filter_map(|edge| piece(run, edge[0], edge[1])).collect()
 }
 
-/// The middle of some values, of which there is one at least.
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted[sorted.len() / 2]
-}
-
 /// Weights that read a step between the two middle samples off a row of positions, whatever parabola they lie on, one of them
 /// left out where asked.
 fn weights(left_out: Option<usize>) -> [f64; 2 * SIDE] {
@@ -187,13 +181,11 @@ pub fn jumps(runs: &[Run], length: f64) -> Vec<Vec<Jump>> {
         rows.windows(2 * SIDE).map(|rows| [step(rows, 0), step(rows, 1)]).collect()
     };
     let steps: Vec<Vec<[f64; 2]>> = rows.iter().map(steps_of).collect();
-    let mut sizes: Vec<f64> = steps.iter().flatten().flatten().map(|s| s.abs()).filter(|s| s.is_finite()).collect();
-    if sizes.len() < ENOUGH {
-        return vec![Vec::new(); runs.len()];
-    }
-    sizes.sort_by(f64::total_cmp);
+    let sizes: Vec<f64> = steps.iter().flatten().flatten().map(|s| s.abs()).filter(|s| s.is_finite()).collect();
+    let enough = sizes.len() >= ENOUGH;
+    let Some(usual) = median(sizes).filter(|_| enough) else { return vec![Vec::new(); runs.len()] };
     // The median of a normal variable's size is 0.6745 of its standard deviation.
-    let noise = BEYOND_NOISE * sizes[sizes.len() / 2] / 0.6745;
+    let noise = BEYOND_NOISE * usual / 0.6745;
     let (mut squares, mut count) = (0.0, 0.0);
     for (run, rows) in runs.iter().zip(&rows) {
         for rows in rows.windows(2 * SIDE) {

@@ -1,8 +1,9 @@
 //! Scores and information of all runs, and the small dense algebra that every later step is made of.
 //! It does not know what a column means: names and verdicts are made elsewhere.
 
+pub use crate::statistics::chi_squared_p;
+use crate::statistics::student_quantile;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
 /// Score and information of one run.
@@ -277,14 +278,6 @@ fn retained_share(reduced: &DMatrix<f64>, own: &DMatrix<f64>) -> f64 {
     SymmetricEigen::new(symmetric).eigenvalues.min().clamp(0.0, 1.0)
 }
 
-/// Upper tail of chi-squared; 1 for no degrees of freedom. Underflows to the smallest positive number, not to zero.
-pub fn chi_squared_p(statistic: f64, degrees: usize) -> f64 {
-    if degrees == 0 || !statistic.is_finite() {
-        return 1.0;
-    }
-    ChiSquared::new(degrees as f64).map_or(1.0, |d| d.sf(statistic.max(0.0)).max(f64::MIN_POSITIVE))
-}
-
 /// Fewest groups of runs among which scatter is told; where there are fewer, they are taken for as many.
 pub const KINDS: usize = 5;
 
@@ -292,8 +285,7 @@ pub const KINDS: usize = 5;
 /// ([`Evidence::scatter`]): Student's t with one degree of freedom less than groups, as an error that few tell is itself uncertain
 /// (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
 fn reach(groups: usize) -> f64 {
-    let degrees = groups.max(KINDS) - 1;
-    StudentsT::new(0.0, 1.0, degrees as f64).map_or(1.96, |t| t.inverse_cdf(0.975))
+    student_quantile(0.975, (groups.max(KINDS) - 1) as f64)
 }
 
 /// Rows and columns of a matrix.

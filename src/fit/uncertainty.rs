@@ -13,6 +13,7 @@
 //! the second only takes the recordings as independent of each other, and needs several of them. Source: White, Econometrica
 //! 50 (1982) 1-25 and Liang & Zeger, Biometrika 73 (1986) 13-22 for the sandwich.
 
+pub(super) use crate::statistics::clustered_variance as meat;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Directions whose curvature is below this share of the largest count as not determined at all.
@@ -64,16 +65,6 @@ impl Inverse {
         let loose = &self.directions[self.rank..];
         (0..self.matrix.nrows()).map(|i| loose.iter().all(|(_, d)| d[i].abs() < 1e-3)).collect()
     }
-}
-
-/// The middle of the sandwich: `c/(c-1) sum_c g_c g_c^T` over c clusters.
-pub(super) fn meat(clusters: &[DVector<f64>], n: usize) -> DMatrix<f64> {
-    let mut sum = DMatrix::zeros(n, n);
-    for g in clusters {
-        sum += g * g.transpose();
-    }
-    let c = clusters.len() as f64;
-    if c > 1.0 { sum * (c / (c - 1.0)) } else { sum }
 }
 
 /// A direction in words: its largest entries by name, `0.71 p5 - 0.70 p7`.
@@ -134,11 +125,5 @@ mod tests {
         assert_eq!(inverse.rank, 2);
         assert_eq!(inverse.determined(), [false, false, true]);
         assert_eq!(in_words(&inverse.directions[2].1, &["x", "y", "w"]), "0.89 y - 0.45 x");
-    }
-
-    #[test]
-    fn clusters_that_repeat_a_score_add_its_square_not_its_size() {
-        let m = meat(&[vector(&[1.0, 0.0]), vector(&[-1.0, 0.0])], 2);
-        assert_eq!(m, DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0]));
     }
 }

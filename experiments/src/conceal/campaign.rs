@@ -7,13 +7,13 @@ use serde::Serialize;
 use trimtab::report::{
     Axis, BASELINE, BLUE, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, ORACLE, ORANGE, PURPLE, Panel, SKY, Table,
 };
+use trimtab::statistics::{Share, mean, median};
 
 use super::craft::Family;
 use super::design::Design;
 use super::effects::{Class, Entry, catalogue, find};
 use super::judge::Score;
 use super::seal::digest;
-use super::statistics::{Share, mean, median};
 use super::{Background, Spec, Strength};
 
 /// Seed of the committed campaign, fixed before any case was diagnosed.
@@ -472,37 +472,47 @@ pub fn summary(all: &[Score]) -> Vec<Line> {
         lines.push(Line { what: what.into(), target: target.into(), found: found.map(Found::Number), met });
     };
     for family in OTHERS {
-        let sizes = arm(OTHER_HULLS).filter(|s| s.family == family.name() && reached(s)).map(|s| s.size_error);
+        let sizes = arm(OTHER_HULLS).filter(|s| s.family == family.name() && reached(s)).filter_map(|s| s.size_error);
         number(&format!("{}: median error of the size", family.name()), "<= 0.10", median(sizes), &at_most(0.1));
     }
     for family in LOPSIDED {
         let here = || lopsided(scores, family);
         let error = |s: &Score| Some((s.asymmetry_found? - s.asymmetry?).abs());
         let what = |what: &str| format!("{}: median {what} of the flow at the rudder", family.name());
-        number(&what("true asymmetry"), "-", median(here().map(|s| s.asymmetry.map(f64::abs))), &|_| true);
-        number(&what("error of the asymmetry"), "-", median(here().map(error)), &|_| true);
+        number(&what("true asymmetry"), "-", median(here().filter_map(|s| s.asymmetry.map(f64::abs))), &|_| true);
+        number(&what("error of the asymmetry"), "-", median(here().filter_map(error)), &|_| true);
     }
-    number("mean size of the confidence set at SNR 12", "<= 1.6", mean(twelve().map(|s| s.set_size)), &at_most(1.6));
+    number(
+        "mean size of the confidence set at SNR 12",
+        "<= 1.6",
+        mean(twelve().filter_map(|s| s.set_size)),
+        &at_most(1.6),
+    );
     number(
         "mean window overlap (IoU) at SNR 12",
         ">= 0.8",
-        mean(twelve().filter(|s| s.effects == "push").map(|s| s.window_iou)),
+        mean(twelve().filter(|s| s.effects == "push").filter_map(|s| s.window_iou)),
         &at_least(0.8),
     );
-    number("median error of the size at SNR 12", "<= 0.10", median(twelve().map(|s| s.size_error)), &at_most(0.1));
+    number(
+        "median error of the size at SNR 12",
+        "<= 0.10",
+        median(twelve().filter_map(|s| s.size_error)),
+        &at_most(0.1),
+    );
     number(
         "median share of the held-out gap closed at SNR 12",
         ">= 0.90",
-        median(twelve().map(|s| s.gap_closed)),
+        median(twelve().filter_map(|s| s.gap_closed)),
         &at_least(0.9),
     );
     // The same cases in all four rows: those of which the oracle could be told.
     let compared = || twelve().filter(|s| s.oracle_held_out.is_some());
     for model in &MODELS {
         let what = format!("median held-out cVDM at SNR 12 [%]: {}", model.name);
-        number(&what, model.target, median(compared().map(model.score)), &|_| true);
+        number(&what, model.target, median(compared().filter_map(model.score)), &|_| true);
     }
-    number("median time of a diagnosis [s]", "<= 5", median(scores.iter().map(|s| s.seconds)), &at_most(5.0));
+    number("median time of a diagnosis [s]", "<= 5", median(scores.iter().filter_map(|s| s.seconds)), &at_most(5.0));
     number("cases without a score", "0", Some((all.len() - scores.len()) as f64), &at_most(0.0));
     lines
 }
@@ -656,7 +666,7 @@ pub fn figure(scores: &[Score]) -> Figure {
         // The same cases for all: those of which the oracle could be told.
         let at = |snr: f64| {
             let cases = single(scores, None, snr).filter(|s| s.oracle_held_out.is_some());
-            median(cases.map(model.score)).map(|value| (snr, value))
+            median(cases.filter_map(model.score)).map(|value| (snr, value))
         };
         errors = errors.with(Layer::line(model.name, model.color, steps.into_iter().filter_map(at)));
     }

@@ -16,7 +16,6 @@ pub mod noise;
 pub mod runner;
 pub mod sail;
 pub mod seal;
-pub mod statistics;
 pub mod strength;
 
 use std::path::PathBuf;

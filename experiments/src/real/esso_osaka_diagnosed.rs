@@ -2,12 +2,13 @@
 //! Sensors are mended by the recordings' own kinematics, before any model is asked; nothing here is chosen by its outcome.
 
 use super::diagnosis::{Case, Frame, Pull, Step, by_recording, pulls, runs, sessions, without_term, without_wind};
-use super::kinematics::{Agreement, Mend, held, jumps, median};
+use super::kinematics::{Agreement, Mend, held, jumps};
 use super::{Hull, RealError};
 use trimtab::diagnose::Settings;
 use trimtab::model::Model;
 use trimtab::recording::{Run, Split};
 use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, RECORDED, fixed, sig};
+use trimtab::statistics::median;
 
 /// Over this the changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 const SPAN: f64 = 20.0;
@@ -127,7 +128,7 @@ fn mends(hull: &Hull, kinematics: &[Agreement]) -> Result<Vec<(String, Mend)>, R
         let mend = Mend {
             no_velocity: true,
             held: held(&recording, 2),
-            rate_delay: median(kinematics.iter().filter(same).map(|a| a.rate_delay)),
+            rate_delay: median(kinematics.iter().filter(same).map(|a| a.rate_delay)).unwrap_or(f64::NAN),
             rate_bias: own.map_or(0.0, |a| a.rate_bias),
             jumps: jumps(&recording, FASTEST[0], FASTEST[1]),
         };
@@ -151,7 +152,7 @@ impl Diagnosed {
         let of = |list: Vec<&Pull>| {
             let near = list.iter().filter(|p| p.turned().abs() <= NEAR).count();
             let covered = list.iter().filter(|p| p.turned().abs() <= p.direction().1).count();
-            let off = median(list.iter().map(|p| p.turned().abs().to_degrees()));
+            let off = median(list.iter().map(|p| p.turned().abs().to_degrees())).unwrap_or(f64::NAN);
             format!(
                 "{near} of {} within 20 deg of the anemometer, median {} deg off, {covered} inside their own 95 % interval",
                 list.len(),

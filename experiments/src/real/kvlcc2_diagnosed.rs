@@ -2,12 +2,13 @@
 //! asymmetry may. The zigzags are diagnosed and the turning circles only prove.
 
 use super::diagnosis::{Answer, Case, Frame, Step, runs, without_term};
-use super::kinematics::{Agreement, Mend, median};
+use super::kinematics::{Agreement, Mend};
 use super::{Hull, RealError};
 use trimtab::diagnose::Settings;
 use trimtab::model::Model;
 use trimtab::recording::{Run, Split};
 use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED, fixed, sig};
+use trimtab::statistics::median;
 
 /// Over this the changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 pub const SPAN: f64 = 40.0;
@@ -51,8 +52,8 @@ fn gyro_mended(hull: &Hull, kinematics: &[Agreement]) -> Result<(Vec<Run>, Vec<R
     let (train, test) = (runs(hull, Split::Train)?, runs(hull, Split::Test)?);
     let seen = || kinematics.iter().filter(|a| train.iter().any(|r| r.name.starts_with(&a.run)));
     let mend = Mend {
-        rate_delay: median(seen().map(|a| a.rate_delay)),
-        rate_bias: median(seen().map(|a| a.rate_bias)),
+        rate_delay: median(seen().map(|a| a.rate_delay)).unwrap_or(f64::NAN),
+        rate_bias: median(seen().map(|a| a.rate_bias)).unwrap_or(f64::NAN),
         ..Mend::default()
     };
     let mended = |runs: &[Run]| runs.iter().filter_map(|r| mend.applied(r)).collect::<Vec<_>>();
