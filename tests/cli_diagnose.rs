@@ -176,6 +176,39 @@ fn the_improved_model_is_taken_by_other_commands_and_beats_the_base() {
 }
 
 #[test]
+fn a_diagnosis_and_an_evaluation_give_the_same_proof_to_the_last_digit() {
+    let pair = ["evaluate", "study.toml", "--model", "results/improved.toml", "--baseline", "results/base.toml"];
+    let output = trimtab(&CASE.folder, &[&pair[..], &["--json"]].concat());
+    let evaluation: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (evaluation, proof) = (&evaluation["result"], &CASE.document["held_out"]);
+    let main = evaluation["summaries"].as_array().unwrap().iter().find(|s| s["group"] == "test").unwrap();
+    let same = [
+        ("before", &main["cvdm_baseline"]["value"]),
+        ("after", &main["cvdm_fitted"]["value"]),
+        ("improvement", &main["cvdm_improvement"]["value"]),
+        ("ci95", &main["cvdm_improvement"]["ci95"]),
+        ("better", &main["better"]),
+        ("worse", &main["worse"]),
+        ("runs", &main["trajectories"]),
+    ];
+    for (key, value) in same {
+        assert!(!value.is_null() && &proof[key] == value, "{key}: {} {value}", proof[key]);
+    }
+    let test = evaluation["trajectories"].as_array().unwrap().iter().filter(|t| t["split"] == "test");
+    let (before, after) = (proof["runs_before"].as_array().unwrap(), proof["runs_after"].as_array().unwrap());
+    assert_eq!(before.len(), 6);
+    for ((t, before), after) in test.zip(before).zip(after) {
+        assert_eq!((&t["baseline"]["cvdm"], &t["fitted"]["cvdm"]), (&before["cvdm"], &after["cvdm"]));
+    }
+    // And as printed.
+    let (table, summary) = (trimtab(&CASE.folder, &pair), text(&CASE.output.stdout));
+    let row = text(&table.stdout).lines().find(|l| l.contains("cVDM [%]")).unwrap().to_owned();
+    let words: Vec<&str> = summary.split_whitespace().collect();
+    let at = words.windows(3).position(|w| w[0] == "cVDM" && w[2] == "%").unwrap();
+    assert!(row.contains(words[at + 1]) && row.contains(words[at + 4]), "{row}: {:?}", &words[at..at + 6]);
+}
+
+#[test]
 fn the_report_is_one_file_that_needs_nothing_else() {
     let page = std::fs::read_to_string(CASE.folder.join("results/report.html")).unwrap();
     for heading in ["Verdict", "Where", "Model", "Proof", "Still open", "Blind to", "Next trial"] {

@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use trimtab::audit::Issue;
 use trimtab::diagnose::{Settings, Verdict, diagnose, figures, report};
 use trimtab::error::suggestion;
+use trimtab::evaluate::Judging;
 use trimtab::recording::{Run, Split};
 
 const LONG: &str = "\
@@ -67,7 +68,8 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("diagnose", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
-    let settings = settings(args, loaded.diagnose_settings()?)?;
+    let mut settings = settings(args, loaded.diagnose_settings()?)?;
+    settings.judging = Judging::new(&loaded.fit_settings()?, loaded.evaluation_settings()?);
     let windows = loaded.windows()?.windows;
     let (train, held_out): (Vec<Run>, Vec<Run>) = windows.into_iter().partition(|w| w.split == Split::Train);
     if train.is_empty() {

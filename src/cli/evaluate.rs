@@ -6,7 +6,7 @@ use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
 use std::path::PathBuf;
-use trimtab::evaluate::{Comparison, Estimate, Evaluation, Outcome, Summary, evaluate, predict};
+use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Summary, predict, prove};
 use trimtab::model::Model;
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::{Axis, BASELINE, DASH, FITTED, Figure, GREY, Layer, Panel, RECORDED, Table, east_north, sig};
@@ -79,7 +79,7 @@ pub fn judge(loaded: &Loaded, baseline: &Model, model: &Model, windows: &[Run]) 
     let fit = loaded.fit_settings()?;
     let settings = loaded.evaluation_settings()?;
     let bar = progress(format!("evaluating {} windows", windows.len()));
-    let evaluation = evaluate(baseline, model, windows, fit.integration, fit.max_yaw_rate, &settings);
+    let evaluation = prove(baseline, model, windows, &Judging::new(&fit, settings));
     bar.finish_and_clear();
     Ok(evaluation)
 }

@@ -9,8 +9,9 @@ use super::estimate::{Effort, Estimate, FreeParameter, base_of, estimate, eviden
 use super::evidence::Evidence;
 use super::filter::{Column, Filter, Gains, Pass, Wanted};
 use super::noise::{Noise, NoisePrior, guess};
-use super::prove::median_distance;
+use super::prove::mean_cvdm;
 use super::screen::screen;
+use crate::evaluate::Judging;
 use crate::model::{Model, ModelError};
 use crate::recording::Run;
 use crate::simulate::Integration;
@@ -170,11 +171,15 @@ impl Refitted {
         out
     }
 
-    /// Median cVDM \[%\] on held-out runs, as the diagnosis' proof measures it.
+    /// Mean cVDM \[%\] on held-out runs, as the diagnosis' proof measures it.
     pub fn held_out(&self, runs: &[Run]) -> f64 {
-        median_distance(&self.model, self.integration, runs)
+        let judging = Judging { integration: self.integration, ..Settings::default().judging };
+        mean_cvdm(&self.model, runs, &judging).unwrap_or(DIVERGED)
     }
 }
+
+/// A model that diverges on a run kept aside counts as this far off \[%\], not as missing.
+const DIVERGED: f64 = 1e4;
 
 /// A mechanism that the oracle is told of.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -217,7 +222,8 @@ pub fn oracle(
         let (start, free) = started(&current, integration, runs, candidate, &told.extent);
         current = estimate(&start, integration, runs, &free, &current.noise, &prior, FINISH);
     }
-    Ok(Some(median_distance(&current.model, integration, held_out)))
+    let judging = Judging { integration, ..Settings::default().judging };
+    Ok(Some(mean_cvdm(&current.model, held_out, &judging).unwrap_or(DIVERGED)))
 }
 
 /// The model with a mechanism at the amplitudes that a linear step from the estimate gives, and everything else moved along.

@@ -17,6 +17,8 @@ use super::refit::refit;
 use super::screen::{Row, Screen, screen};
 use super::sides::{Sides, sides};
 use crate::audit::{Issue, settled};
+use crate::evaluate::{EvaluationSettings, Judging};
+use crate::fit::FitSettings;
 use crate::model::{Model, ModelError};
 use crate::physics::Kind;
 use crate::physics::Probe;
@@ -42,6 +44,16 @@ pub struct Settings {
     pub substeps: usize,
     /// Seed of the bootstrap.
     pub seed: u64,
+    /// How the proof simulates and weighs the runs kept aside. A study has it in the tables `[fit]` and `[evaluate]`, so that a
+    /// diagnosis and an evaluation print the same numbers.
+    #[serde(skip, default = "judging")]
+    pub judging: Judging,
+}
+
+/// As a fit would judge, but by the integration of a diagnosis.
+fn judging() -> Judging {
+    let integration = Integration { method: Method::Rk4, substeps: 1 };
+    Judging { integration, ..Judging::new(&FitSettings::default(), EvaluationSettings::default()) }
 }
 
 impl Settings {
@@ -53,7 +65,15 @@ impl Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { alpha: 0.01, most: 3, withhold: Vec::new(), nuisance: true, substeps: 1, seed: 20250226 }
+        Self {
+            alpha: 0.01,
+            most: 3,
+            withhold: Vec::new(),
+            nuisance: true,
+            substeps: 1,
+            seed: 20250226,
+            judging: judging(),
+        }
     }
 }
 
@@ -514,7 +534,6 @@ pub fn diagnose(
 ) -> Result<Diagnosis, ModelError> {
     let full = model.complete()?;
     let (mut sound, mut odd) = settled(runs, full.ship.hull.lpp);
-    let (sound_held_out, _) = settled(held_out, full.ship.hull.lpp);
     let mut integration = settings.integration();
     let free = base_parameters(&full, settings.nuisance);
     progress("estimating parameters and noise of the base model");
@@ -530,7 +549,7 @@ pub fn diagnose(
         sound = kept;
         null = estimate(&full, integration, &sound, &free, &first_noise, &prior, FIRST);
     }
-    let (runs, held_out) = (sound.as_slice(), sound_held_out.as_slice());
+    let runs = sound.as_slice();
     progress("auditing recordings and integration step");
     let mut admission = admit(&null.model, integration, &null.noise, runs);
     admission.issues.extend(odd);
@@ -701,7 +720,7 @@ pub fn diagnose(
             Some(&generic),
             integration,
             held_out,
-            settings.seed,
+            &settings.judging,
         )
     });
 

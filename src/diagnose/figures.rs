@@ -547,14 +547,14 @@ fn held_out(d: &Diagnosis) -> Option<Figure> {
         .with(Layer::line("change", GREY, joined).unlisted().width(2.0))
         .with(Layer::scatter("base model, refitted", BASELINE, rows().map(|(i, p)| (p.1, i))))
         .with(Layer::scatter("improved model", FITTED, rows().map(|(i, p)| (p.2, i))).marker(Marker::Diamond))
-        .with(Layer::v_line("median, base", BASELINE, h.before).dotted().unlisted())
-        .with(Layer::v_line("median, improved", FITTED, h.after).dotted().unlisted());
+        .with(Layer::v_line("mean, base", BASELINE, h.before.unwrap_or(f64::NAN)).dotted().unlisted())
+        .with(Layer::v_line("mean, improved", FITTED, h.after.unwrap_or(f64::NAN)).dotted().unlisted());
     let dots = match h.generic {
-        Some(g) => dots.with(Layer::v_line("median with a generic force law", GREY, g).dashed()),
+        Some(g) => dots.with(Layer::v_line("mean with a generic force law", GREY, g).dashed()),
         None => dots,
     };
     Some(
-        Figure::new("Runs kept aside, before and after (dotted: medians)")
+        Figure::new("Runs kept aside, before and after (dotted: means)")
             .panel_size(1240, 150 + 40 * pairs.len() as u32)
             .with(dots),
     )

@@ -55,22 +55,21 @@ pub const KEYS: &[(&str, &str)] = &[
     ("findings[].held_out", "as held_out; with the first finding, for all of them together"),
     ("held_out", "the proof: base model refitted (before) against improved model (after) on runs not used otherwise"),
     ("held_out.runs", "held-out runs"),
-    ("held_out.before", "median cVDM of the free simulation, before [%]"),
+    ("held_out.before", "mean cVDM of the free simulation, before [%], as `trimtab evaluate` has it"),
     ("held_out.after", "after [%]"),
-    ("held_out.improvement", "median over runs of 1 - after/before"),
-    ("held_out.ci95", "its 95 % bootstrap interval over runs"),
+    ("held_out.improvement", "1 - after/before"),
+    ("held_out.ci95", "its 95 % bootstrap interval over recordings"),
     ("held_out.better", "runs that got better"),
     ("held_out.worse", "runs that got worse"),
     ("held_out.worst_run", "the run that lost most, or gained least"),
     ("held_out.worst_improvement", "its improvement; negative is worse"),
-    ("held_out.generic", "median cVDM with a generic force law of the same data instead [%]"),
+    ("held_out.generic", "mean cVDM with a generic force law of the same data instead [%]"),
     ("held_out.log_likelihood_gain", "gain in log-likelihood over all held-out runs"),
     ("held_out.whiteness", "mean square of standardised innovations, before and after; 1 is as the noise model says"),
     ("held_out.runs_before[]", "run by run, before"),
     ("held_out.runs_before[].run", "name of the run"),
     ("held_out.runs_before[].cvdm", "cVDM [%]; absent when the simulation diverged"),
     ("held_out.runs_before[].mean_distance", "mean distance in x, y [m], psi [rad], u, v [m/s], r [rad/s]"),
-    ("held_out.runs_before[].log_likelihood", "log-likelihood under the filter"),
     ("held_out.runs_after[]", "run by run, after, with the same keys"),
     ("admission", "audit of recordings and integration step"),
     ("admission.runs", "training runs"),
@@ -649,6 +648,11 @@ fn own_sides(s: &Sides, units: Units) -> String {
     format!("port and starboard of the ship herself differ, as with a single screw: {differ} ({p}){by}")
 }
 
+/// A cVDM in words.
+fn percentage(cvdm: Option<f64>) -> String {
+    cvdm.map_or("–".to_owned(), |v| sig(v, 3))
+}
+
 fn proof(d: &Diagnosis) -> Vec<String> {
     let Some(h) = &d.held_out else {
         return vec!["no runs were kept aside, so nothing is proven; mark some with `split = \"test\"`".to_owned()];
@@ -657,21 +661,22 @@ fn proof(d: &Diagnosis) -> Vec<String> {
         return vec![format!(
             "nothing to prove; base model, refitted, on {} unseen runs: cVDM {} %",
             h.runs,
-            sig(h.before, 3)
+            percentage(h.before)
         )];
     }
+    let gain = h.improvement.map_or("–".to_owned(), percent);
+    let interval = h.ci95.map_or("no interval with fewer than three recordings".to_owned(), |[low, high]| {
+        format!("95 % {} to {}", percent(low), percent(high))
+    });
     let mut lines = vec![format!(
-        "{} unseen runs: cVDM {} % before, {} % after (median improvement {}, 95 % {} to {}); {} better, {} worse",
+        "{} unseen runs: cVDM {} % before, {} % after (improvement {gain}, {interval}); {} better, {} worse",
         h.runs,
-        sig(h.before, 3),
-        sig(h.after, 3),
-        percent(h.improvement),
-        percent(h.ci95[0]),
-        percent(h.ci95[1]),
+        percentage(h.before),
+        percentage(h.after),
         h.better,
         h.worse
     )];
-    if h.ci95[0] <= 0.0 {
+    if h.ci95.is_some_and(|[low, _]| low <= 0.0) {
         lines.push("the interval reaches zero: these unseen runs do not confirm the gain".to_owned());
     }
     if let (Some(run), Some(change)) = (&h.worst_run, h.worst_improvement) {

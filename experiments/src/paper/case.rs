@@ -7,7 +7,7 @@ use super::published::{Published, published};
 use crate::truth::dataset::{self, Run, dataset};
 use crate::truth::ships::ShipId;
 use std::path::Path;
-use trimtab::evaluate::{Evaluation, EvaluationSettings, evaluate};
+use trimtab::evaluate::{Evaluation, EvaluationSettings, Judging, prove};
 use trimtab::fit::{Fit, FitSettings, Limits, fit};
 use trimtab::model::Model;
 use trimtab::physics::Form;
@@ -108,9 +108,8 @@ impl Case {
 
     /// The fit judged against a baseline, on all runs; the summary `test` is of those held out.
     pub fn evaluate(&self, baseline: &Model) -> Evaluation {
-        let settings = &self.setup.fit;
-        let evaluation = EvaluationSettings { seed: self.setup.seed, ..EvaluationSettings::default() };
-        evaluate(baseline, &self.fit.model, &self.windows, settings.integration, settings.max_yaw_rate, &evaluation)
+        let bootstrap = EvaluationSettings { seed: self.setup.seed, ..EvaluationSettings::default() };
+        prove(baseline, &self.fit.model, &self.windows, &Judging::new(&self.setup.fit, bootstrap))
     }
 }
 

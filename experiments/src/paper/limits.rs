@@ -7,7 +7,7 @@ use super::sheet::{cell, save};
 use super::{Artefact, PaperError};
 use std::fmt::Write;
 use std::path::Path;
-use trimtab::evaluate::{Estimate, EvaluationSettings, evaluate};
+use trimtab::evaluate::{Estimate, EvaluationSettings, Judging, prove};
 use trimtab::fit::{FitSettings, fit};
 use trimtab::model::{Model, Prior};
 use trimtab::physics::Form;
@@ -65,14 +65,8 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
             let (model, settings) = variant.prepare(case)?;
             let fit = fit(&model, &case.training(), &settings, &mut |_| true)?;
             for (baseline, name) in case.baselines() {
-                let evaluation = evaluate(
-                    baseline,
-                    &fit.model,
-                    &case.windows,
-                    settings.integration,
-                    settings.max_yaw_rate,
-                    &EvaluationSettings { seed: case.setup.seed, ..EvaluationSettings::default() },
-                );
+                let bootstrap = EvaluationSettings { seed: case.setup.seed, ..EvaluationSettings::default() };
+                let evaluation = prove(baseline, &fit.model, &case.windows, &Judging::new(&settings, bootstrap));
                 let empty = PaperError::Empty { ship: case.ship.name(), what: "test runs" };
                 let summary = evaluation.summary("test").ok_or(empty)?;
                 let value = |e: Option<Estimate>| e.map(|e| e.value);

@@ -6,7 +6,7 @@ use super::sheet::{cell, save};
 use super::{Artefact, PaperError};
 use std::fmt::Write;
 use std::path::Path;
-use trimtab::evaluate::{Estimate, EvaluationSettings, Summary, evaluate, predict};
+use trimtab::evaluate::{Estimate, EvaluationSettings, Judging, Summary, predict, prove};
 use trimtab::model::Model;
 use trimtab::recording::{Run, Split, measured};
 use trimtab::report::{Axis, DASH, FITTED, Figure, GREY, Layer, Panel, Table, fixed};
@@ -172,5 +172,6 @@ fn integration_error(model: &Model, windows: &[Run], integration: Integration, m
         })
         .collect();
     let settings = EvaluationSettings { resamples: 0, ..EvaluationSettings::default() };
-    evaluate(model, model, &exact, integration, max_yaw_rate, &settings).summary("test")?.cvdm_fitted.map(|e| e.value)
+    let judging = Judging { integration, max_yaw_rate, settings };
+    prove(model, model, &exact, &judging).summary("test")?.cvdm_fitted.map(|e| e.value)
 }

@@ -12,6 +12,7 @@ use trimtab::diagnose::filter::Column;
 use trimtab::diagnose::noise::{Noise, NoisePrior};
 use trimtab::diagnose::prove::{HeldOut, prove};
 use trimtab::diagnose::{Diagnosis, Settings, diagnose};
+use trimtab::evaluate::Judging;
 use trimtab::model::{Model, Prior};
 use trimtab::recording::{Run, Split};
 use trimtab::report::{Table, fixed, sig};
@@ -92,10 +93,10 @@ pub fn findings_table(cases: &[Case]) -> Table {
             || vec![String::new(); 6],
             |h| {
                 vec![
-                    fixed(h.before, 1),
-                    fixed(h.after, 1),
-                    fixed(100.0 * h.improvement, 1),
-                    format!("[{}, {}]", fixed(100.0 * h.ci95[0], 1), fixed(100.0 * h.ci95[1], 1)),
+                    percent(h.before, 1.0),
+                    percent(h.after, 1.0),
+                    percent(h.improvement, 100.0),
+                    interval(h.ci95),
                     format!("{} / {}", h.better, h.worse),
                     fixed(h.log_likelihood_gain, 0),
                 ]
@@ -264,11 +265,10 @@ impl Frame {
         Answer { test, model: found.model }
     }
 
-    /// One model against another on held-out runs, parted where positions jump.
+    /// One model against another on held-out runs.
     pub fn prove(&self, before: &Model, after: &Model, held_out: &[Run]) -> HeldOut {
-        let seed = Settings::default().seed;
-        let (held_out, _) = settled(held_out, self.model.ship.hull.lpp);
-        prove((before, &self.noise), (after, &self.noise), None, self.integration, &held_out, seed)
+        let judging = Judging { integration: self.integration, ..Settings::default().judging };
+        prove((before, &self.noise), (after, &self.noise), None, self.integration, held_out, &judging)
     }
 
     /// A question with its proof.
@@ -287,6 +287,16 @@ impl Answer {
     pub fn first(&self) -> (f64, f64) {
         (self.test.amplitude[0], self.test.covariance[(0, 0)].max(0.0).sqrt())
     }
+}
+
+/// A number of a proof, times a factor; blank where there is none.
+fn percent(value: Option<f64>, factor: f64) -> String {
+    value.map_or_else(String::new, |v| fixed(factor * v, 1))
+}
+
+/// The interval of a share, in per cent.
+fn interval(ci95: Option<[f64; 2]>) -> String {
+    ci95.map_or_else(String::new, |[low, high]| format!("[{}, {}]", fixed(100.0 * low, 1), fixed(100.0 * high, 1)))
 }
 
 /// Sessions of runs, in their order.
@@ -440,10 +450,10 @@ pub fn steps_table(steps: &[Step]) -> Table {
             degrees.to_string(),
             if p < 1e-12 { "< 1e-12".into() } else { sig(p, 2) },
             h.runs.to_string(),
-            fixed(h.before, 1),
-            fixed(h.after, 1),
-            fixed(100.0 * h.improvement, 1),
-            format!("[{}, {}]", fixed(100.0 * h.ci95[0], 1), fixed(100.0 * h.ci95[1], 1)),
+            percent(h.before, 1.0),
+            percent(h.after, 1.0),
+            percent(h.improvement, 100.0),
+            interval(h.ci95),
             format!("{} / {}", h.better, h.worse),
             fixed(h.log_likelihood_gain, 0),
         ]);

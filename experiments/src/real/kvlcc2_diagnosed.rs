@@ -225,10 +225,10 @@ impl Diagnosed {
         let proof = Panel::new(
             "turning circles, held out",
             Axis::categories("", names),
-            Axis::new("median cVDM [%]").including(0.0),
+            Axis::new("mean cVDM [%]").including(0.0),
         )
-        .with(Layer::bars("mirror-symmetric", BASELINE, held(&|s| s.held_out.before)))
-        .with(Layer::bars("with what the label names", GREEN, held(&|s| s.held_out.after)));
+        .with(Layer::bars("mirror-symmetric", BASELINE, held(&|s| s.held_out.before.unwrap_or(f64::NAN))))
+        .with(Layer::bars("with what the label names", GREEN, held(&|s| s.held_out.after.unwrap_or(f64::NAN))));
         Figure::new("KVLCC2: what the diagnosis finds in a calm basin")
             .columns(2)
             .panel_size(900, 600)
