@@ -4,13 +4,14 @@
 use super::blocks::{Blocks, block_length, choices};
 use super::estimate::{Estimate, base_of, evidence, restrictions};
 use super::evidence::{Base, Evidence};
-use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::filter::{Column, Filter, Pass, Wanted};
 use super::generic::{GenericLaw, widen};
 use super::place::{Chart, PARTS, Place, place};
 pub use super::push::Window;
 use super::push::{Push, pushes, significant};
 use super::region::{REGIONS, RegionTest, regions};
 use crate::model::Model;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
 use rayon::prelude::*;

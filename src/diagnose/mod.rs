@@ -43,7 +43,6 @@ mod optimise;
 pub mod place;
 pub mod prove;
 pub mod push;
-pub mod receiver;
 pub mod refit;
 pub mod region;
 pub mod screen;
@@ -52,7 +51,6 @@ pub mod signal;
 
 pub use decide::Verdict;
 pub use diagnosis::Diagnosis;
-pub use filter::Run;
 pub use finding::Finding;
 pub use pipeline::diagnose;
 pub use settings::Settings;

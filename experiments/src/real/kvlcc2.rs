@@ -11,7 +11,7 @@ use trimtab::maneuver::{
 use trimtab::model::Model;
 use trimtab::numerals::fixed;
 use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, Panel, RECORDED, east_north};
-use trimtab::recording::{Split, Window};
+use trimtab::recording::{Run, Split};
 use trimtab::report::Table;
 
 /// Rudder angle of the turning circles \[rad\].
@@ -132,7 +132,7 @@ impl Outcome {
     /// Adds a turning circle if it is to this side.
     fn add_turn(
         &mut self,
-        test: &Window,
+        test: &Run,
         side: Side,
         models: &[&Model],
         trial: &ManeuverSettings,
@@ -171,7 +171,7 @@ impl Outcome {
         let shown = from_execute(&track, execute);
         let held = (0..shown.len()).rev().find(|&k| (shown.delta[k] - measured.rudder).abs() < 0.05 * HARD_OVER);
         self.circles.push(Sailed {
-            name: test.run.clone(),
+            name: test.recording.clone(),
             end: held.map_or(0.0, |k| shown.t[k]),
             measured: shown,
             predicted: trials.into_iter().map(|t| t.track).collect(),
@@ -179,7 +179,7 @@ impl Outcome {
         Ok(())
     }
 
-    fn add_zigzag(&mut self, test: &Window, models: &[&Model], trial: &ManeuverSettings) -> Result<(), RealError> {
+    fn add_zigzag(&mut self, test: &Run, models: &[&Model], trial: &ManeuverSettings) -> Result<(), RealError> {
         let track = Track::recorded(test);
         let executes = zigzag_executes(&track);
         let Some(&first) = executes.first() else { return Ok(()) };
@@ -209,7 +209,7 @@ impl Outcome {
         }
         let shown = from_execute(&track, first);
         self.zigzags.push(Sailed {
-            name: test.run.clone(),
+            name: test.recording.clone(),
             end: shown.t.last().copied().unwrap_or(0.0),
             measured: shown,
             predicted: trials.into_iter().map(|t| t.track).collect(),
