@@ -1,7 +1,7 @@
 //! `trimtab fit`: fits the free parameters of a study's model to its training runs, and reports estimates with intervals.
 //! The library makes the fit and its report; this file calls it, shows progress and writes files.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};

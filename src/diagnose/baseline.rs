@@ -196,7 +196,7 @@ impl Refitted {
     }
 }
 
-/// A model that diverges on a run kept aside counts as this far off \[%\], not as missing.
+/// A model that diverges on a test run counts as this far off \[%\], not as missing.
 const DIVERGED: f64 = 1e4;
 
 /// A mechanism that the oracle is told of.
@@ -208,7 +208,7 @@ pub struct Told {
     pub extent: Extent,
 }
 
-/// Median cVDM \[%\] on held-out runs, as the diagnosis' proof measures it, of a model that was told which mechanisms act, and in
+/// Mean cVDM \[%\] on held-out runs, as the diagnosis' proof measures it, of a model that was told which mechanisms act, and in
 /// which sessions: estimated and refitted as the diagnosis does with what it finds. How far the held-out error can fall when the name
 /// is right. `None` when the catalogue lacks one of them.
 ///

@@ -55,10 +55,3 @@ pub use finding::Finding;
 pub use pipeline::diagnose;
 pub use settings::Settings;
 pub use signal::Signal;
-
-/// The types of the document under the name that the report and the figures import them by.
-pub mod conclude {
-    pub use super::decide::Verdict;
-    pub use super::diagnosis::{Diagnosis, Ranked, Trace};
-    pub use super::finding::{Amplitude, Finding, GENERIC, PUSH, PUSH_TITLE};
-}

@@ -10,6 +10,7 @@ fn percentage(cvdm: Option<f64>) -> String {
     cvdm.map_or(DASH.to_owned(), |v| sig(v, 3))
 }
 
+/// What the findings gain on the test runs.
 pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     let Some(h) = &d.held_out else {
         return vec!["there are no test runs, so nothing is proven; mark some with `split = \"test\"`".to_owned()];
