@@ -84,6 +84,7 @@ pub mod state;
 pub mod statistics;
 pub mod study;
 pub mod terms;
+pub mod units;
 pub mod validity;
 
 pub use diagnose::{Diagnosis, Settings, Verdict, diagnose};

@@ -1,6 +1,7 @@
 //! A ship's fixed particulars, read from a TOML file and checked once, and the empirical hull coefficients they imply.
 //! It holds no fitted parameter: parameters belong to the terms that use them, and take their defaults from here.
 
+use crate::units::GRAVITY;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -352,7 +353,7 @@ impl Ship {
 
     /// Small speed below which the dynamics are regularised \[m/s\]: 0.002 sqrt(g L) (5.8 cm/s for an 85 m ship).
     pub fn small_speed(&self) -> f64 {
-        0.002 * (9.80665 * self.hull.lpp).sqrt()
+        0.002 * (GRAVITY * self.hull.lpp).sqrt()
     }
 
     /// A dimensional hull coefficient (SI): from the file (`coefficients`, then `coefficients_prime`), else estimated.

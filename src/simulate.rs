@@ -5,6 +5,7 @@ use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::physics::Number;
 use crate::state::{Force, Inputs, STATES, State};
+use crate::units::GRAVITY;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use trimtab_ad::Scalar;
@@ -71,7 +72,7 @@ pub struct Trajectory {
 
 /// Speed over ground beyond which a simulation is called diverged: 10 sqrt(g L) \[m/s\].
 pub fn absurd_speed(model: &Model) -> f64 {
-    10.0 * (9.80665 * model.ship.hull.lpp).sqrt()
+    10.0 * (GRAVITY * model.ship.hull.lpp).sqrt()
 }
 
 /// Advances a state over one sub-step of length `h` \[s\] under inputs known at its start, middle and end.

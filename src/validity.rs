@@ -6,6 +6,7 @@ use crate::model::Model;
 use crate::physics::{Flow, Form, Quantity, Validity, range_in_words};
 use crate::recording::{Run, or_nan};
 use crate::state::{Inputs, STATES, State};
+use crate::units::GRAVITY;
 use serde::Serialize;
 use std::borrow::Borrow;
 
@@ -121,7 +122,7 @@ fn value(quantity: Quantity, model: &Model, inputs: &Inputs<f64>, flow: &Flow<f6
     let hull = &model.ship.hull;
     let tip = inputs.n * model.ship.propeller.diameter;
     Some(match quantity {
-        Quantity::Froude => flow.u / (9.80665 * hull.lpp).sqrt(),
+        Quantity::Froude => flow.u / (GRAVITY * hull.lpp).sqrt(),
         // Below the small speed of the ship the direction of motion is noise.
         Quantity::Drift if flow.u.hypot(flow.v) < model.ship.small_speed() => 0.0,
         Quantity::Drift => flow.v.abs().atan2(flow.u.abs()),

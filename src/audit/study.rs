@@ -6,7 +6,7 @@ use super::receiver::settled;
 use super::record::{Audit, audit};
 use crate::recording::Split;
 use crate::ship::Ship;
-use crate::study::{Run, Study, StudyError};
+use crate::study::{Listed, Study, StudyError};
 use serde::Serialize;
 
 /// The audit of a study: every run, and what comes of cutting them.
@@ -88,7 +88,7 @@ fn sides(study: &Study) -> Vec<Issue> {
 }
 
 /// The audit of a run that could not be read.
-fn unreadable(run: &Run, error: &StudyError) -> Audit {
+fn unreadable(run: &Listed, error: &StudyError) -> Audit {
     Audit {
         run: run.labels.run.clone(),
         path: run.file.clone(),

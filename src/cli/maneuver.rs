@@ -17,6 +17,7 @@ use trimtab::report::maneuver::{
     turning_table, zigzag_figure, zigzag_table,
 };
 use trimtab::state::Inputs;
+use trimtab::units::GRAVITY;
 use trimtab::validity::{self, Coverage};
 
 const LONG: &str = "\
@@ -220,7 +221,7 @@ fn text<M>(p: &Prepared, trials: &[Trial<M>], table: &Table) -> String {
         p.model.name,
         sig(ship.hull.lpp, 4),
         sig(a.speed, 4),
-        sig(a.speed / (9.80665 * ship.hull.lpp).sqrt(), 2),
+        sig(a.speed / (GRAVITY * ship.hull.lpp).sqrt(), 2),
         sig(a.n * 60.0, 4),
         sig(a.rudder_rate.to_degrees(), 3),
         criteria_table(trials.iter().map(|t| (t.name.as_str(), t.criteria.as_slice()))),

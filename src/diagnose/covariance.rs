@@ -4,6 +4,7 @@
 use super::noise::{GROUP_OF, Noise};
 use crate::model::Model;
 use crate::state::STATES;
+use crate::units::GRAVITY;
 use trimtab_ad::{Lanes, Scalar};
 
 /// Length of the filter state `[x y psi u v r | w_X w_Y w_N | e_1 .. e_6]`.
@@ -59,7 +60,7 @@ impl Discrete<Lanes> {
 pub fn initial<S: Scalar>(noise: &Discrete<S>, model: &Model) -> Square<S> {
     let mut p = [[S::zero(); Z]; Z];
     let l = model.ship.hull.lpp;
-    let speed = (9.80665 * l).sqrt();
+    let speed = (GRAVITY * l).sqrt();
     let wide = [0.5 * l, 0.5 * l, 0.2, 0.05 * speed, 0.05 * speed, 0.1 * speed / l];
     for (i, w) in wide.iter().enumerate() {
         p[i][i] = S::from_f64(w * w);

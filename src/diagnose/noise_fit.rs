@@ -9,6 +9,7 @@ use super::settings::{NOISE_STEP_GAIN, NOISE_STEP_LONGEST};
 use crate::model::Model;
 use crate::recording::{Run, or_nan};
 use crate::state::STATES;
+use crate::units::GRAVITY;
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 use trimtab_ad::{Lanes, Scalar};
@@ -243,7 +244,7 @@ pub fn guess(runs: &[Run], model: &Model) -> Noise {
         sizes.get(sizes.len() / 2).map_or(0.0, |m| m / 0.6745)
     };
     let l = model.ship.hull.lpp;
-    let speed = (9.80665 * l).sqrt();
+    let speed = (GRAVITY * l).sqrt();
     // Below these floors a sensor is exact for every purpose of a manoeuvring model.
     let floors = [1e-4 * l, 2e-4, 1e-4 * speed, 1e-4 * speed / l];
     let dt = runs.iter().map(|r| r.dt).fold(f64::INFINITY, f64::min).clamp(1e-3, 60.0);

@@ -6,6 +6,7 @@ use super::filter::Pass;
 use crate::model::Model;
 use crate::recording::Run;
 use crate::state::{Inputs, State};
+use crate::units::GRAVITY;
 use serde::Serialize;
 
 /// A region of state and inputs in which a force acts that the model does not have.
@@ -29,7 +30,7 @@ pub struct RegionTest {
 pub type Predicate = fn(&Model, &State<f64>, &Inputs<f64>) -> bool;
 
 fn speed_unit(model: &Model) -> f64 {
-    (9.80665 * model.ship.hull.lpp).sqrt()
+    (GRAVITY * model.ship.hull.lpp).sqrt()
 }
 
 fn quadrant(s: &State<f64>, q: i32) -> bool {

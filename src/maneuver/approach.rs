@@ -5,6 +5,7 @@ use super::error::ManeuverError;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::state::{Force, Inputs, STATES, State};
+use crate::units::GRAVITY;
 use serde::{Deserialize, Serialize};
 
 /// Settings of the trials, the table `[maneuver]` of a study. A setting left out is derived from the ship.
@@ -72,12 +73,11 @@ impl ManeuverSettings {
     pub fn approach(&self, model: &Model, theta: &[f64]) -> Result<Approach, ManeuverError> {
         self.check()?;
         let length = model.ship.hull.lpp;
-        let gravity = 9.80665;
         let (speed, n, balanced) = match (self.speed, self.n_rpm) {
             (Some(speed), Some(rpm)) => (speed, rpm / 60.0, false),
             (None, Some(rpm)) => (balanced_speed(model, theta, rpm / 60.0)?, rpm / 60.0, true),
             (speed, None) => {
-                let speed = speed.unwrap_or(FROUDE * (gravity * length).sqrt());
+                let speed = speed.unwrap_or(FROUDE * (GRAVITY * length).sqrt());
                 (speed, balanced_rate(model, theta, speed)?, true)
             }
         };
@@ -143,7 +143,7 @@ fn balanced_rate(model: &Model, theta: &[f64], speed: f64) -> Result<f64, Maneuv
 
 /// The lowest speed ahead \[m/s\] that a propeller rate \[rps\] holds.
 fn balanced_speed(model: &Model, theta: &[f64], n: f64) -> Result<f64, ManeuverError> {
-    let limit = 2.0 * (9.80665 * model.ship.hull.lpp).sqrt();
+    let limit = 2.0 * (GRAVITY * model.ship.hull.lpp).sqrt();
     first_root(|u| surge(model, theta, u, n), 0.0, limit, -1.0).ok_or(ManeuverError::NoSpeed { n })
 }
 

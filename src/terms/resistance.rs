@@ -6,6 +6,7 @@ use crate::physics::Flow;
 use crate::physics::Validity;
 use crate::physics::{Form, Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::state::Force;
+use crate::units::GRAVITY;
 use trimtab_ad::Scalar;
 
 /// Surge resistance.
@@ -35,7 +36,7 @@ static INFO: TermInfo = TermInfo {
 /// Resistance of order 1/2 rho L d u^2 0.02 at Froude number 0.2, spread over the powers of u.
 fn rate<const POWER: i32>(ship: &crate::ship::Ship) -> f64 {
     let h = &ship.hull;
-    let u = 0.2 * (9.80665 * h.lpp).sqrt();
+    let u = 0.2 * (GRAVITY * h.lpp).sqrt();
     0.5 * h.water_density * h.lpp * h.draught * 0.02 * u.powi(2 - POWER)
 }
 

@@ -3,8 +3,7 @@
 
 use crate::ship::Ship;
 
-/// Acceleration of gravity \[m/s2\].
-pub const GRAVITY: f64 = 9.80665;
+pub use crate::units::GRAVITY;
 
 /// Speed at Froude number 1, sqrt(g L) \[m/s\]: 28.9 m/s for an 85 m ship.
 pub fn speed(ship: &Ship) -> f64 {

@@ -8,6 +8,7 @@ use crate::diagnose::diagnosis::Trace;
 use crate::numerals::sig;
 use crate::plot::{Axis, BASELINE, Color, Figure, GREY, Layer, Legend, Panel, nice_step};
 use crate::report::units::Units;
+use crate::units::GRAVITY;
 use std::collections::BTreeMap;
 
 /// Something by which samples are sorted; `None` where it has no meaning.
@@ -61,7 +62,7 @@ pub(super) fn pattern(d: &Diagnosis) -> Option<Sketch> {
         return None;
     }
     let units = Units::of(&d.base.ship);
-    let slow = 0.01 * (9.80665 * d.base.ship.hull.lpp).sqrt();
+    let slow = 0.01 * (GRAVITY * d.base.ship.hull.lpp).sqrt();
     let rate = |t: &Trace, k: usize| Some(t.inputs[k][0]);
     let rudder = |t: &Trace, k: usize| Some(t.inputs[k][1].to_degrees());
     let drift = move |t: &Trace, k: usize| {

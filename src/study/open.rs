@@ -1,0 +1,229 @@
+//! The study: paths, runs and settings, checked; recordings are read and cut into windows by it.
+//! Ship, model and the tables of the commands are read by those who use them.
+
+use super::error::StudyError;
+use super::file::{RunEntry, RunTable, StudyFile, read_table};
+use super::listed::{Listed, label};
+use super::settings::window_settings;
+use super::split::{SplitBy, SplitRule};
+use crate::error::suggestion;
+use crate::recording::{ColumnMap, Recording, Split, WindowSettings, Windows, key_line, line_at, toml_problem};
+use std::path::{Path, PathBuf};
+
+/// A study, with every path resolved against the folder of its file.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// The study file.
+    pub path: PathBuf,
+    /// Name, for headings.
+    pub name: String,
+    /// Ship file.
+    pub ship: PathBuf,
+    /// Model file.
+    pub model: PathBuf,
+    /// Runs, in the order listed.
+    pub runs: Vec<Listed>,
+    /// The rule that split the runs; `None` when the table of runs says.
+    pub split: Option<SplitRule>,
+    /// How runs are cut into windows; `from`, `to` and `draught` are set for each run by [`Study::settings`].
+    pub windows: WindowSettings,
+    /// Table `[fit]`.
+    pub fit: toml::Table,
+    /// Table `[evaluate]`.
+    pub evaluate: toml::Table,
+    /// Table `[diagnose]`.
+    pub diagnose: toml::Table,
+    /// Table `[maneuver]`.
+    pub maneuver: toml::Table,
+    /// The file that lists the runs.
+    runs_path: PathBuf,
+    text: String,
+}
+
+impl Study {
+    /// Reads and checks a study file and its table of runs; recordings are not opened yet.
+    ///
+    /// # Errors
+    /// [`StudyError`], with file and line.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let text = std::fs::read_to_string(path).map_err(|source| StudyError::Read {
+            path: path.to_owned(),
+            what: "study",
+            source,
+        })?;
+        Self::parse(&text, path)
+    }
+
+    /// Checks the text of a study file that stands, or would stand, at `path`.
+    ///
+    /// # Errors
+    /// [`StudyError`], with file and line.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, StudyError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let fail = |line, message| StudyError::Parse { path: path.to_owned(), line, message };
+        let file: StudyFile = toml::from_str(text).map_err(|e| {
+            let (line, message) = toml_problem(text, &e);
+            fail(line, message)
+        })?;
+        let here = |key: &str| key_line(text, key);
+        let windows = window_settings(&file, text, path)?;
+        if let Some(rule) = file.split.filter(|r| !(0.0..1.0).contains(&r.test)) {
+            let text = format!("`test` = {} is not a share from 0 to 1; the paper's is 0.125", rule.test);
+            return Err(fail(here("test"), text));
+        }
+        let data = data_folder(&file.data.0, folder).map_err(|tried| StudyError::NoData {
+            path: path.to_owned(),
+            line: here("data"),
+            tried,
+        })?;
+        let (entries, runs_path) = match file.runs {
+            RunTable::Listed(entries) => {
+                let line = |e: &toml::Spanned<RunEntry>| line_at(text, e.span().start);
+                (entries.into_iter().map(|e| (line(&e), e.into_inner())).collect(), path.to_owned())
+            }
+            RunTable::File(table) => {
+                let table = folder.join(table);
+                (read_table(&table)?, table)
+            }
+        };
+        let shared_map = file.column_map.map(|m| folder.join(m));
+        let (runs, split) = label(entries, file.split, &runs_path, &data, folder, shared_map.as_deref())?;
+        Ok(Self {
+            path: path.to_owned(),
+            name: file.name,
+            ship: folder.join(file.ship),
+            model: folder.join(file.model),
+            runs,
+            split,
+            windows,
+            fit: file.fit,
+            evaluate: file.evaluate,
+            diagnose: file.diagnose,
+            maneuver: file.maneuver,
+            runs_path,
+            text: text.to_owned(),
+        })
+    }
+
+    /// The column map of a run.
+    ///
+    /// # Errors
+    /// [`StudyError::Recording`] when the map cannot be read.
+    pub fn column_map(&self, run: &Listed) -> Result<ColumnMap, StudyError> {
+        Ok(run.column_map.as_deref().map_or_else(|| Ok(ColumnMap::default()), ColumnMap::read)?)
+    }
+
+    /// Reads the recording of a run, under the run's name.
+    ///
+    /// # Errors
+    /// [`StudyError::MissingFile`] or [`StudyError::Recording`].
+    pub fn recording(&self, run: &Listed) -> Result<Recording, StudyError> {
+        if !run.file.is_file() {
+            return Err(StudyError::MissingFile {
+                path: self.runs_path.clone(),
+                line: run.line,
+                file: run.file.clone(),
+                suggestion: near_file(&run.file),
+            });
+        }
+        let mut recording = Recording::read(&run.file, &self.column_map(run)?)?;
+        recording.name.clone_from(&run.labels.run);
+        Ok(recording)
+    }
+
+    /// The window settings of a run; `draught` \[m\] is the ship's.
+    pub fn settings(&self, run: &Listed, draught: f64) -> WindowSettings {
+        WindowSettings { from: run.from, to: run.to, draught, ..self.windows.clone() }
+    }
+
+    /// Reads every run and cuts it into windows, in the order listed; `draught` \[m\] is the ship's.
+    ///
+    /// # Errors
+    /// The first [`StudyError`] in the order of the runs.
+    pub fn windows(&self, draught: f64) -> Result<Windows, StudyError> {
+        let mut all = Windows::default();
+        for run in &self.runs {
+            let one = self.recording(run)?.windows(&run.labels, &self.settings(run, draught))?;
+            all.windows.extend(one.windows);
+            all.skipped.extend(one.skipped);
+        }
+        Ok(all)
+    }
+
+    /// Every run as one window, start to end: for trials that must be simulated whole. `draught` \[m\] is the ship's.
+    ///
+    /// # Errors
+    /// The first [`StudyError`] in the order of the runs.
+    pub fn whole_runs(&self, draught: f64) -> Result<Windows, StudyError> {
+        let mut study = self.clone();
+        study.windows = WindowSettings { window: None, overlap: 0.0, ..study.windows };
+        study.windows(draught)
+    }
+
+    /// How the runs were split, in one sentence.
+    pub fn split_in_words(&self) -> String {
+        let test = self.runs.iter().filter(|r| r.labels.split == Split::Test).count();
+        let counts = format!("{} runs train, {test} test", self.runs.len() - test);
+        match self.split {
+            None => format!("{counts}, as listed"),
+            Some(rule) => {
+                let by = match rule.by {
+                    SplitBy::Run => "run",
+                    SplitBy::Session => "session",
+                };
+                format!("{counts}, drawn by {by} with seed {}", rule.seed)
+            }
+        }
+    }
+
+    /// The line at which `key` of table `[table]` is set, for messages about it; the table's own line when it is not.
+    pub fn line_of(&self, table: &str, key: &str) -> usize {
+        let heading = format!("[{table}");
+        let start = self.text.lines().position(|l| l.trim_start().starts_with(&heading));
+        let Some(start) = start else { return 1 };
+        let inside = self.text.lines().skip(start + 1).take_while(|l| !l.starts_with('['));
+        let sets = |l: &str| l.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('='));
+        start + 1 + inside.enumerate().find(|(_, l)| sets(l)).map_or(0, |(i, _)| i + 1)
+    }
+}
+
+/// The first of the candidate folders that exists; the study's own folder without candidates.
+///
+/// `$NAME` at the start of a candidate is an environment variable; a relative candidate is relative to the study.
+fn data_folder(candidates: &[String], folder: &Path) -> Result<PathBuf, String> {
+    if candidates.is_empty() {
+        return Ok(folder.to_owned());
+    }
+    let mut tried = Vec::new();
+    for candidate in candidates {
+        let path = match candidate.strip_prefix('$') {
+            None => folder.join(candidate),
+            Some(rest) => {
+                let (variable, tail) = rest.split_once('/').unwrap_or((rest, ""));
+                match std::env::var_os(variable) {
+                    None => {
+                        tried.push(format!("`${variable}` is not set"));
+                        continue;
+                    }
+                    Some(value) => Path::new(&value).join(tail),
+                }
+            }
+        };
+        if path.is_dir() {
+            return Ok(path);
+        }
+        tried.push(format!("{} does not exist", path.display()));
+    }
+    Err(tried.join(", "))
+}
+
+/// A file of a like name beside a missing one.
+fn near_file(file: &Path) -> String {
+    let (Some(folder), Some(name)) = (file.parent(), file.file_name()) else { return String::new() };
+    let names: Vec<String> = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| entry.ok().map(|e| e.file_name().to_string_lossy().into_owned()))
+        .collect();
+    suggestion(&name.to_string_lossy(), names.iter().map(String::as_str))
+}

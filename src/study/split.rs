@@ -1,0 +1,60 @@
+//! The split: which runs train and which test, drawn by a rule where the table of runs does not say.
+//! It knows runs by name and session alone.
+
+use crate::recording::{Labels, Split};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use serde::{Deserialize, Serialize};
+
+/// How runs are divided where the table of runs does not say.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SplitRule {
+    /// What stays together.
+    pub by: SplitBy,
+    /// Share of it that is kept aside for testing.
+    pub test: f64,
+    /// Seed of the shuffle.
+    pub seed: u64,
+}
+
+/// What stays together on one side of the split.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SplitBy {
+    /// Each run on its own.
+    #[default]
+    Run,
+    /// All runs of a session: the harder test, since runs of a session share weather and loading.
+    Session,
+}
+
+impl Default for SplitRule {
+    fn default() -> Self {
+        Self { by: SplitBy::Run, test: 0.125, seed: 1 }
+    }
+}
+
+/// Draws the test side: groups in the order listed are shuffled by the seed and the first ones taken.
+pub(super) fn draw<'a>(labels: impl Iterator<Item = &'a mut Labels>, rule: SplitRule) {
+    let mut labels: Vec<&mut Labels> = labels.collect();
+    let group = |l: &Labels| match rule.by {
+        SplitBy::Run => l.run.clone(),
+        SplitBy::Session => l.session.clone(),
+    };
+    let mut groups: Vec<String> = Vec::new();
+    for label in &labels {
+        if !groups.contains(&group(label)) {
+            groups.push(group(label));
+        }
+    }
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(rule.seed);
+    groups.shuffle(&mut rng);
+    // A study with a test side has at least one group on each side, when it has two.
+    let wanted = (rule.test * groups.len() as f64).round() as usize;
+    let least = usize::from(rule.test > 0.0 && groups.len() > 1);
+    groups.truncate(wanted.clamp(least, groups.len().saturating_sub(1).max(least)));
+    for label in &mut labels {
+        label.split = if groups.contains(&group(label)) { Split::Test } else { Split::Train };
+    }
+}
