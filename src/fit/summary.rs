@@ -62,8 +62,6 @@ pub struct Fit {
     /// The model with the estimates in place.
     #[serde(skip)]
     pub model: Model,
-    /// How much of the data lies outside the ranges over which the terms are valid.
-    pub validity: Coverage,
     /// Whether the solver found an optimum.
     pub converged: bool,
     /// How it ended and what residuals say against it, in one line.
@@ -116,6 +114,8 @@ pub struct Fit {
     /// Evaluations by the solver.
     #[serde(serialize_with = "serialize_counts")]
     pub counts: Counts,
+    /// How much of the data lies outside the ranges over which the terms are valid.
+    pub validity: Coverage,
     /// Time taken \[s\].
     pub seconds: f64,
     /// The settings.
