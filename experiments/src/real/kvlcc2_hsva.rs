@@ -8,8 +8,10 @@ use trimtab::evaluate::{outcome, predict_all};
 use trimtab::fit::{Fit, FitError, FitRun, MultiStart, Rule, fit, multi_start};
 use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::Model;
+use trimtab::numerals::{fixed, sig};
+use trimtab::plot::Figure;
 use trimtab::recording::{Split, Window};
-use trimtab::report::{Figure, Table, fixed, sig};
+use trimtab::report::Table;
 
 /// Upper limits of the resistance under which the freed fit is repeated \[N\]; about 35 N is right.
 pub const LIMITS: [Option<f64>; 5] = [Some(60.0), Some(100.0), Some(200.0), Some(400.0), None];
