@@ -7,10 +7,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::path::Path;
-use trimtab::fit::cost::weights;
-use trimtab::fit::{CovarianceKind, DoubtKind, Fit, FitRun, FitSettings, MultiStart, Rule, fit, multi_start};
+use trimtab::fit::{CovarianceKind, DoubtKind, Fit, FitSettings, MultiStart, Rule, fit, multi_start};
 use trimtab::model::Model;
 use trimtab::physics::Form;
+use trimtab::recording::{Run, Split};
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Scenario, simulate};
 use trimtab::state::Inputs;
@@ -50,7 +50,7 @@ fn settings() -> FitSettings {
 }
 
 /// Zigzags of 5 to 35 degrees and turns, two windows each, started from the true state; `extra` is added to what is measured.
-fn recordings(truth: &Model, count: usize, noise: f64, extra: impl Fn(usize, usize) -> [f64; 6]) -> Vec<FitRun> {
+fn recordings(truth: &Model, count: usize, noise: f64, extra: impl Fn(usize, usize) -> [f64; 6]) -> Vec<Run> {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let mut runs = Vec::new();
     for i in 0..count {
@@ -73,19 +73,20 @@ fn recordings(truth: &Model, count: usize, noise: f64, extra: impl Fn(usize, usi
                 let added = extra(2 * i + w, k - start);
                 std::array::from_fn(|c| {
                     let white: f64 = StandardNormal.sample(&mut rng);
-                    states[k][c] + noise * NOISE[c] * white + added[c]
+                    Some(states[k][c] + noise * NOISE[c] * white + added[c])
                 })
             });
-            runs.push(FitRun {
-                name: format!("run {i}"),
+            runs.push(Run {
+                name: format!("run {i} from {start}"),
+                recording: format!("run {i}"),
                 session: String::new(),
-                start_time: start as f64 * DT,
+                manoeuvre: String::new(),
+                split: Split::Train,
                 dt: DT,
                 inputs: inputs[samples.clone()].to_vec(),
                 measured: measured.collect(),
-                measured_channels: [true; 6],
                 initial: states[start],
-                weights: weights(&truth.ship, 4.0 * SAMPLES as f64, 4.0, 0.0314),
+                disturbed: Vec::new(),
             });
         }
     }
@@ -96,7 +97,7 @@ fn unspoiled(_: usize, _: usize) -> [f64; 6] {
     [0.0; 6]
 }
 
-fn quiet(model: &Model, runs: &[FitRun], settings: &FitSettings) -> Fit {
+fn quiet(model: &Model, runs: &[Run], settings: &FitSettings) -> Fit {
     fit(model, runs, settings, &mut |_| true).unwrap()
 }
 
@@ -127,7 +128,7 @@ fn a_fit_stopped_anywhere_is_no_worse_than_its_start() {
 fn a_freed_hull_ends_at_one_optimum_whatever_limits_the_resistance_and_wherever_it_starts() {
     let runs = recordings(&truth(), 6, 1.0, unspoiled);
     let mut ends = Vec::new();
-    for upper in [Some(40e3), Some(200e3), None] {
+    for upper in [Some(200e3), Some(400e3), None] {
         let mut settings = settings();
         settings.constraints.resistance = Rule { upper, ..Rule::default() };
         let fit = quiet(&freed(), &runs, &settings);
@@ -140,7 +141,12 @@ fn a_freed_hull_ends_at_one_optimum_whatever_limits_the_resistance_and_wherever_
     }
     let total = |fit: &Fit| fit.cost + fit.prior_cost;
     for fit in &ends {
-        assert!((total(fit) / total(&ends[0]) - 1.0).abs() < 1e-3, "{}", fit.brief());
+        assert!(
+            (total(fit) / total(&ends[0]) - 1.0).abs() < 1e-3,
+            "{} {:?}",
+            fit.brief(),
+            ends.iter().map(total).collect::<Vec<_>>()
+        );
     }
 }
 
@@ -217,7 +223,7 @@ fn windows_over_which_an_open_loop_runs_away_are_told_from_those_over_which_it_d
         let grown = 2e3 * (k as f64 / SAMPLES as f64).powi(3);
         std::array::from_fn(|c| grown * NOISE[c])
     };
-    let exponent = |runs: &[FitRun]| {
+    let exponent = |runs: &[Run]| {
         let mut fixed = truth();
         fixed.parameters.iter_mut().for_each(|p| p.free = p.name == "propeller.side_force");
         quiet(&fixed, runs, &settings())
@@ -236,7 +242,7 @@ fn intervals_of_few_recordings_allow_for_residuals_that_are_alike() {
     assert_eq!(fit.covariance_kind, CovarianceKind::Correlated);
     let likeness = fit.residual_statistics.likeness.unwrap();
     assert!(likeness > 3.0, "{likeness}");
-    let j = fit.estimates.iter().position(|e| e.symbol == "p5").unwrap();
+    let j = fit.estimates.iter().position(|e| e.symbol == "p0").unwrap();
     let independent = fit.covariance_gauss_newton[j][j].unwrap().sqrt();
     let error = fit.estimates[j].standard_error.unwrap();
     assert!((error / independent / likeness.sqrt() - 1.0).abs() < 1e-6, "{error} {independent} {likeness}");

@@ -5,10 +5,11 @@
 
 use super::candidate::{Candidate, candidates};
 use super::estimate::Estimate;
-use super::filter::{Column, Run};
+use super::filter::Column;
 use super::noise::{Noise, SensorNoise};
 use crate::model::Model;
 use crate::physics::Form;
+use crate::recording::{Run, Split, measured};
 use crate::ship::Ship;
 use crate::simulate::{Integration, Method, Scenario, simulate};
 use crate::state::Inputs;
@@ -53,7 +54,7 @@ fn run(model: &Model, i: usize, rng: &mut ChaCha8Rng) -> Run {
     let dt = 3.0;
     let input = |k: usize| {
         let t = dt * k as f64;
-        let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let delta = match i % 3 {
             0 => side * 0.4,
             1 => side * 0.3 * (t / 25.0).sin(),
@@ -64,7 +65,7 @@ fn run(model: &Model, i: usize, rng: &mut ChaCha8Rng) -> Run {
     };
     let inputs: Vec<Inputs<f64>> = (0..SAMPLES).map(input).collect();
     let initial = [0.0, 0.0, 2.4 * i as f64, 4.0, 0.0, 0.0];
-    let session = if i / 2 % 2 == 0 { "a" } else { "b" };
+    let session = if (i / 2).is_multiple_of(2) { "a" } else { "b" };
     let scenario = Scenario { dt, inputs: inputs.clone(), initial };
     let states = simulate(model, &model.values_in(session), RK4, &scenario).states;
     let sizes = [0.3, 0.3, 0.002, 0.02, 0.02, 0.0005];
@@ -74,17 +75,17 @@ fn run(model: &Model, i: usize, rng: &mut ChaCha8Rng) -> Run {
             s[c] + sizes[c] * e
         })
     };
-    let measured: Vec<[f64; 6]> = states.iter().map(&mut measure).collect();
+    let samples: Vec<[f64; 6]> = states.iter().map(&mut measure).collect();
     Run {
         name: format!("run {i}"),
         recording: format!("run {i}"),
         session: session.into(),
         manoeuvre: ["turn", "zigzag", "stop"][i % 3].into(),
+        split: Split::Train,
         dt,
         inputs,
-        initial: measured[0],
-        measured,
-        channels: [true; 6],
+        initial: samples[0],
+        measured: measured(&samples),
         disturbed: Vec::new(),
     }
 }
