@@ -177,11 +177,11 @@ fn x_ticks(frame: &Frame, canvas: &mut Canvas, axis: &Axis) -> f32 {
     }
 }
 
-/// Ticks and labels to the left of the plot.
-pub(super) fn y_axis(frame: &Frame, canvas: &mut Canvas, axis: &Axis) {
-    let Rect { left, top, right, bottom } = frame.plot;
+/// Ticks and labels to the left of the plot, in a cell this wide.
+pub(super) fn y_axis(frame: &Frame, canvas: &mut Canvas, axis: &Axis, cell_w: f32) {
+    let Rect { left, top, bottom, .. } = frame.plot;
     let ticks = if let Some(labels) = axis.labels() {
-        let (labels, stride) = row_labels(frame.plot, labels, right - left + left);
+        let (labels, stride) = row_labels(frame.plot, labels, cell_w);
         for (i, lines) in labels.iter().enumerate().step_by(stride) {
             let Some(y) = frame.y_at(i as f64) else { continue };
             let first = 0.5 * (lines.len() as f32 - 1.0);

@@ -40,7 +40,7 @@ pub(super) fn draw(figure: &Figure) -> Canvas {
     shared.draw(&mut canvas, (EDGE, strip_top));
     for row in rows {
         for (j, cell_of_row) in row.cells.iter().enumerate() {
-            cell_of_row.draw(&mut canvas, (EDGE + j as f32 * cell.0, top));
+            cell_of_row.draw(&mut canvas, (EDGE + j as f32 * cell.0, top), cell.0);
         }
         top += row.height;
     }
@@ -125,7 +125,7 @@ impl<'a> Row<'a> {
 }
 
 impl Cell<'_> {
-    fn draw(&self, canvas: &mut Canvas, (left, top): Px) {
+    fn draw(&self, canvas: &mut Canvas, (left, top): Px, width: f32) {
         let plot = Rect {
             left: left + self.plot.left,
             top: top + self.plot.top,
@@ -138,12 +138,12 @@ impl Cell<'_> {
         let line = |k: f32| (plot.left, strip_top - title_height + (k + 0.5) * HEADING * LEADING);
         canvas.lines(&title, Anchor::Start, Run::Across, bold(HEADING), line);
         self.strip.draw(canvas, (plot.left, strip_top));
-        draw_panel(&Frame::new(self.panel, plot), canvas, self.panel);
+        draw_panel(&Frame::new(self.panel, plot), canvas, self.panel, width);
     }
 }
 
-/// Draws a panel: spans, grid, layers, axes, remarks, in this order.
-fn draw_panel(frame: &Frame, canvas: &mut Canvas, panel: &Panel) {
+/// Draws a panel in a cell this wide: spans, grid, layers, axes, remarks, in this order.
+fn draw_panel(frame: &Frame, canvas: &mut Canvas, panel: &Panel, cell_w: f32) {
     let plot = frame.plot;
     canvas.clip_to(plot);
     for layer in panel.layers.iter().filter(|l| is_span(l)) {
@@ -161,12 +161,33 @@ fn draw_panel(frame: &Frame, canvas: &mut Canvas, panel: &Panel) {
     canvas.clip_to(canvas.bounds());
     canvas.stroke_rect(plot, 1.5, FRAME);
     x_axis(frame, canvas, &panel.x);
-    y_axis(frame, canvas, &panel.y);
+    y_axis(frame, canvas, &panel.y, cell_w);
     if !panel.layers.iter().any(has_data) {
         canvas.text("no data", plot.center(), Anchor::Middle, Run::Across, Type { color: FRAME, ..ink(HEADING) });
     }
     draw_remarks(frame, canvas, panel);
     if let Some((name, range)) = heatmap {
         color_bar(plot, canvas, name, range);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::axis::Axis;
+    use crate::plot::canvas::Shape;
+
+    #[test]
+    fn labels_of_categories_are_cut_to_the_same_width_in_every_column() {
+        let label = "a mechanism with a name that is far too long for the margin of a small panel";
+        let panel = || Panel::new("", Axis::new("x"), Axis::categories("", [label, "short"]));
+        let sheet = draw(&Figure::new("").columns(3).panel_size(600, 300).with_all([panel(), panel(), panel()]));
+        let is_label = |text: &&String| text.starts_with("a mechanism") || text.ends_with('…');
+        let texts =
+            sheet.shapes.iter().filter_map(|s| if let Shape::Text { text, .. } = s { Some(text) } else { None });
+        let labels: Vec<&String> = texts.filter(is_label).collect();
+        assert_eq!(labels.len() % 3, 0, "{labels:?}");
+        let (first, rest) = labels.split_at(labels.len() / 3);
+        assert!(!first.is_empty() && rest.chunks(first.len()).all(|column| column == first), "{labels:?}");
     }
 }

@@ -51,13 +51,7 @@ pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
         lines.push(d.headline.clone());
     }
     for f in &d.findings {
-        let size = match &f.sessions {
-            each if f.by_session => {
-                let of = |s: &String| Some(format!("{s} {}", size_of(f, Some(s.as_str()), units)?));
-                format!(": {}", each.iter().filter_map(of).collect::<Vec<_>>().join("; "))
-            }
-            _ => size_of(f, None, units).map_or(String::new(), |s| format!(", {s}")),
-        };
+        let size = size(f, units);
         let sessions = sessions(d, f);
         lines.push(format!(
             "{}{size}{sessions}: {} after correction for the number of mechanisms tested",
@@ -93,6 +87,16 @@ fn notes(issues: &[Issue]) -> Vec<String> {
     let more = noted.into_iter().filter(|(_, count)| *count > NOTES);
     lines.extend(more.map(|(what, count)| format!("note: {} more runs with `{what}`", count - NOTES)));
     lines
+}
+
+/// The size of a finding, session by session where each has its own; nothing for a mechanism without one.
+fn size(f: &Finding, units: Units) -> String {
+    if !f.by_session {
+        return size_of(f, None, units).map_or(String::new(), |s| format!(", {s}"));
+    }
+    let of = |s: &String| Some(format!("{s} {}", size_of(f, Some(s.as_str()), units)?));
+    let each: Vec<String> = f.sessions.iter().filter_map(of).collect();
+    if each.is_empty() { String::new() } else { format!(": {}", each.join("; ")) }
 }
 
 /// In which sessions a finding acts, named by the shorter list.
