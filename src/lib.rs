@@ -4,7 +4,8 @@
 //! The whole job on the example study that is built in, forty recordings of a container ship of 85 m made by a simulator
 //! that knows more physics than the model has:
 //!
-//! ```
+#![cfg_attr(feature = "ipopt", doc = "```")]
+#![cfg_attr(not(feature = "ipopt"), doc = "```ignore")]
 //! use trimtab::{EvaluationSettings, FitRun, FitSettings, Run, Settings, diagnose, evaluate, fit};
 //!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -50,6 +51,16 @@
 //! Units are SI and radians; x is north, y east, psi clockwise from north, v, r and delta positive to starboard.
 //! Divergence and failed convergence are results, not panics; errors say what, where and what to do next.
 //!
+//! # Cargo features
+//!
+//! | feature | gives | without it |
+//! |---|---|---|
+//! | `ipopt` | `fit`, and the refit of a diagnosis' result | no C++ dependency; a diagnosis keeps its own estimate by Fisher scoring |
+//! | `plot` | `plot`, figures and the HTML page of a diagnosis | tables, summaries in words and JSON remain |
+//! | `cli` | the command `trimtab`; needs the two others | the library alone |
+//!
+//! All are on by default; `default-features = false` leaves simulation, trials, sensitivities, audit, evaluation and diagnosis.
+//!
 //! # What to set in your own project
 //!
 //! * `fit` calls Ipopt through the crate `ipopt-sys`. On Debian and its relatives install `coinor-libipopt-dev cmake libclang-dev
@@ -77,6 +88,7 @@ pub mod model;
 pub mod numerals;
 pub mod parameter;
 pub mod physics;
+#[cfg(feature = "plot")]
 pub mod plot;
 pub mod recording;
 pub mod report;
@@ -90,10 +102,12 @@ pub mod validity;
 
 pub use diagnose::{Diagnosis, Run, Settings, Verdict, diagnose};
 pub use evaluate::{Evaluation, EvaluationSettings, evaluate};
-pub use fit::{Fit, FitRun, FitSettings, fit};
+#[cfg(feature = "ipopt")]
+pub use fit::{Fit, fit};
+pub use fit::{FitRun, FitSettings};
 pub use model::Model;
 pub use physics::Form;
-pub use recording::{ColumnMap, Labels, Recording, Split, Window, WindowSettings};
+pub use recording::{Channel, ColumnMap, Labels, Recording, Split, Window, WindowSettings};
 pub use ship::Ship;
 pub use simulate::{Integration, Method, Scenario, Trajectory, simulate};
 pub use state::{Force, Inputs, State};

@@ -44,6 +44,7 @@ pub mod place;
 pub mod prove;
 pub mod push;
 pub mod receiver;
+#[cfg(feature = "ipopt")]
 pub mod refit;
 pub mod region;
 pub mod screen;
