@@ -1,7 +1,7 @@
-//! `trimtab check`: audits the recordings of a study before anything is concluded from them.
-//! What is looked for, and how, is in the library's `check`.
+//! `trimtab check`: audits the recordings of a study before a fit or a diagnosis uses them.
+//! The library's `check` defines the audit; this file prints it.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};

@@ -1,7 +1,7 @@
 //! `trimtab diagnose`: where the simulation differs from the recordings, which physics is missing, and the proof on unseen runs.
 //! The library makes the diagnosis, its report and its figures; this file calls it, shows progress and writes files.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::fit::model_text;
 use super::load::{Loaded, StudyArgs};

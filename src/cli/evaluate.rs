@@ -1,7 +1,7 @@
 //! `trimtab evaluate`: how well a model predicts the test runs, beside a baseline.
 //! The library computes the measures; this file prints, tabulates and draws them.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};

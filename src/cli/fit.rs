@@ -1,7 +1,7 @@
 //! `trimtab fit`: fits the free parameters of a study's model to its training runs, and reports estimates with intervals.
 //! The library makes the fit and its report; this file calls it, shows progress and writes files.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
@@ -15,7 +15,14 @@ use trimtab::terms::rudder::Rudder;
 const LONG: &str = "\
 Fits the free parameters of the model to the training runs of the study: weighted nonlinear least squares through the \
     simulation, with exact gradients, under the constraints of [fit.constraints]. Which parameters are free, their bounds and \
-    priors are in the model file; without any setting they are the paper's eleven (p0 to p10).
+    priors are in the model file; without any setting they are the paper's eleven (p0 to p10). There, `hull = \"free\"` at the top \
+    frees every hydrodynamic coefficient of the hull, and `prior = \"default\"` in [parameters.\"NAME\"] frees one: each with its \
+    estimate as mean and the spread that its term knows (`trimtab terms`) as standard deviation.
+
+A fit returns the best feasible point of all that it evaluated, never one above a feasible start, and says what stopped the \
+    solver. Damping, added mass, thrust and drag keep their physical signs (the bounds of each term), and the mass matrix stays \
+    invertible. Its first line says what the residuals say against it: a cost far above the noise of the sensors, windows \
+    too long to be predicted in open loop, residuals that are alike.
 
 The report gives every estimate with standard error and 95 % interval, the active constraints, what the \
     data do not determine, and how the solver ended.";
@@ -27,8 +34,10 @@ Example:
 
 With --out: fitted.toml (a model file with the estimates, which every command takes as --model), fit.json, fit.txt (the \
     report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end).
-JSON: result.converged, result.status, result.estimates[] (name, symbol, unit, start, value, standard_error, interval, \
-    at_bound), result.start_cost, result.cost, result.prior_cost, result.residual_variance, result.active[] (sentence, rule), \
+JSON: result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
+    value, limit, sentence), result.residual_statistics (model_error, growth, growth_error, likeness), result.estimates[] \
+    (name, symbol, unit, start, value, standard_error, interval, at_bound), result.start_cost, result.start_prior_cost, \
+    result.cost, result.prior_cost, result.first_stage_parts, result.residual_variance, result.active[] (sentence, rule), \
     result.undetermined[] (words, standard_deviation), result.covariance_gauss_newton, result.covariance_sandwich, \
     result.correlations (rows of numbers in the order of the estimates, null where the data do not determine a parameter), \
     result.validity (share_outside of the samples; outside[] with term, quantity, range, share, met: where the data leave the \

@@ -1,7 +1,7 @@
 //! `trimtab simulate`: simulates the recordings of a study from their recorded start with their recorded inputs.
 //! It compares no models; it prints how far each simulation is from the measured motion.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};

@@ -1,5 +1,5 @@
 //! The base model: what is free in it, and its fit to recordings that were audited, with parameters and noise.
-//! What it lacks is not asked here, only whether recordings and integration step are sound enough to ask.
+//! What physics it lacks is tested elsewhere; here recordings and integration step are audited.
 
 use super::admit::{Admission, Issue, admit, followed};
 use super::decide::is_euler;
@@ -63,15 +63,15 @@ pub fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParameter> {
     free
 }
 
-/// What a diagnosis is asked, the same in all its steps.
+/// The inputs that all steps of a diagnosis share.
 pub struct Question<'a> {
     /// The model as the user gave it.
     pub model: &'a Model,
-    /// The same with every term of the catalogue at its neutral value.
+    /// The user's model with every term of the catalogue at its neutral value.
     pub full: Model,
     /// The user's settings.
     pub settings: &'a Settings,
-    /// Is told each step in words.
+    /// Receives the name of each step.
     pub progress: &'a (dyn Fn(&str) + Sync),
 }
 
@@ -133,7 +133,7 @@ impl BaseFit {
         let prior = NoisePrior::around(&first_noise);
         let fit = |runs: &[Run]| estimate(&question.full, integration, runs, &free, &first_noise, &prior, FIRST);
         let mut base = fit(&kept);
-        // Without what the filter cannot follow the rest is told better, and then more may show.
+        // Without these stretches the estimate is better, and further stretches may show.
         for _ in 0..LOSS_ROUNDS {
             let at = passes(&base.model, integration, &[], &kept, &base.noise, false);
             let (without, lost) = followed(&kept, &at);
@@ -148,7 +148,7 @@ impl BaseFit {
         Self { estimate: base, prior, runs: kept, integration, admission }.read_as_euler()
     }
 
-    /// The same, read as explicit Euler steps of one sample period where the recordings are far likelier so: simulated ones.
+    /// The base fit with explicit Euler steps of one sample period, where the recordings are far likelier so: simulated ones.
     fn read_as_euler(mut self) -> Self {
         let coarse = Integration { method: Method::Euler, substeps: 1 };
         let Estimate { model, noise, free, log_posterior: fine } = &self.estimate;
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn what_explicit_euler_made_is_read_as_euler() {
+    fn recordings_made_by_explicit_euler_are_read_as_euler() {
         let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
         let coarse = Integration { method: Method::Euler, substeps: 1 };
         let mut runs = runs(&model, 6);

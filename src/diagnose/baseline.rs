@@ -1,5 +1,5 @@
-//! What a user would do otherwise, and the best that could be done: the yardsticks the diagnosis is measured against.
-//! None of it is part of a diagnosis: it names by other rules ([`Refitted`]) or is told the answer ([`oracle`]).
+//! Rival methods that the diagnosis is compared with: what a user would do otherwise, and the best that could be done.
+//! None of it is part of a diagnosis: a rival names by other rules ([`Refitted`]) or is given the answer ([`oracle`]).
 
 use super::base::base_parameters;
 use super::candidate::{Candidate, Extent, append, applies, candidates};
@@ -14,7 +14,7 @@ use super::optimise::{Damping, Proposal};
 use super::problem::Problem;
 use super::prove::median_distance;
 use super::screen::screen;
-use super::settings::{Settings, TOLD_FINISH, TOLD_START};
+use super::settings::{GIVEN_FINISH, GIVEN_START, Settings};
 use crate::model::{Model, ModelError};
 use crate::simulate::Integration;
 use crate::state::STATES;
@@ -46,7 +46,7 @@ pub struct BicGain {
     pub mechanism: String,
     /// Amplitudes that the trajectories can see.
     pub degrees: usize,
-    /// How far the criterion falls: `N ln(RSS_0/RSS_1) - k ln N`; the mechanism is worth having when this is positive.
+    /// Decrease of the criterion: `N ln(RSS_0/RSS_1) - k ln N`; the mechanism is worth having when this is positive.
     pub gain: f64,
 }
 
@@ -85,7 +85,7 @@ impl Trajectories {
     /// Minus twice the log-likelihood at the variances that fit best; infinite when a simulation diverged.
     fn misfit(&self) -> f64 {
         let sum: f64 = (0..STATES).map(|j| self.used[j] * self.variance[j].ln()).sum();
-        // Residuals that are not a number were not counted: the likelihood tells.
+        // Residuals that are not a number were not counted: the likelihood shows them.
         if self.passes.iter().all(|p| p.log_likelihood.is_finite()) { sum } else { f64::INFINITY }
     }
 
@@ -98,7 +98,7 @@ impl Trajectories {
 const DAMPING: Damping =
     Damping { attempts: 30, least_promise: 0.0, loss: 0.0, first: 0.0, most: 1e6, shrink: 0.2, off: 0.0, trusted: 0.0 };
 
-/// The damping never falls below this.
+/// Least damping.
 const LEAST_DAMPING: f64 = 1e-9;
 
 impl Refitted {
@@ -193,7 +193,7 @@ impl Refitted {
     }
 }
 
-/// A mechanism that the oracle is told of.
+/// A mechanism that the oracle is given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Told {
     /// Its name in the catalogue.
@@ -223,12 +223,12 @@ pub fn oracle(
     let first = guess(runs, &full);
     let prior = NoisePrior::around(&first);
     let free = base_parameters(&full, settings.nuisance);
-    let mut current = estimate(&full, integration, runs, &free, &first, &prior, TOLD_START);
+    let mut current = estimate(&full, integration, runs, &free, &first, &prior, GIVEN_START);
     for (told, candidate) in told.iter().zip(chosen) {
         let candidates = std::slice::from_ref(candidate);
         let problem = Problem { integration, runs, candidates, prior: &prior, settings };
         let (start, free) = started(&current, problem, &told.extent);
-        current = problem.estimate(&start, &free, &current.noise, TOLD_FINISH);
+        current = problem.estimate(&start, &free, &current.noise, GIVEN_FINISH);
     }
     Ok(Some(median_distance(&current.model, integration, held_out)))
 }

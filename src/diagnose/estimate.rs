@@ -223,7 +223,7 @@ pub fn estimate(
     estimate_above(f64::NEG_INFINITY, start, integration, runs, free, noise, prior, effort)
 }
 
-/// The same, given up where even twice what the quadratic model promises ends below a log-posterior of `least`.
+/// As [`estimate`], given up where even twice what the quadratic model promises ends below a log-posterior of `least`.
 pub fn estimate_above(
     least: f64,
     start: &Model,
@@ -420,5 +420,30 @@ mod tests {
         let of = |least: f64| estimate_above(least, &start, RK4, &runs, &free, &noise(), &prior, REFIT).log_posterior;
         let whole = of(f64::NEG_INFINITY);
         assert!(of(whole + 1e6) < whole && of(whole - 1.0) == whole);
+    }
+
+    #[test]
+    fn the_score_of_a_column_does_not_depend_on_the_columns_beside_it_nor_much_on_the_rule_over_a_step() {
+        use crate::diagnose::candidate::{append, candidates};
+        use crate::diagnose::generic::GenericLaw;
+        let m = with(&[("current.north", 0.1), ("mean_wind.east", 5.0)]);
+        let runs = runs(&model(), 3);
+        let mut columns: Vec<Column> =
+            crate::diagnose::base::base_parameters(&m, true).iter().map(|f| f.column).collect();
+        append(&mut columns, &candidates(&m, &[]));
+        GenericLaw::append(&mut columns, &m);
+        let pass = |columns: &[Column], exact: bool| {
+            let filter = Filter::new(&m, RK4, columns);
+            filter.pass(&runs[2], &noise(), Wanted { exact, ..Wanted::default() })
+        };
+        let (all, exact) = (pass(&columns, false), pass(&columns, true));
+        for (i, c) in columns.iter().enumerate() {
+            let alone = pass(&[*c], false);
+            let name = &m.parameters[c.parameter].name;
+            let near = |a: f64, b: f64, by: f64| (a - b).abs() <= by * a.abs().max(b.abs()) + 1e-9;
+            let (h, own) = (all.information[(i, i)], alone.information[(0, 0)]);
+            assert!(near(h, own, 1e-9) && near(all.score[i], alone.score[0], 1e-9), "{name}: {h} {own}");
+            assert!(near(h, exact.information[(i, i)], 0.1), "{name}: {h} {}", exact.information[(i, i)]);
+        }
     }
 }

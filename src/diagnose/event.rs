@@ -58,7 +58,7 @@ impl BaseTests {
         self.fit.admission.issues.iter().any(|i| i.blocking)
     }
 
-    /// The same with the windows of a push disturbed: there the unknown force may be anything.
+    /// The tests with the windows of a push disturbed: there the unknown force may be anything.
     fn disturbed(mut self, push: &Push, settings: &Settings) -> Self {
         for w in &push.windows {
             self.fit.runs[w.index].disturbed.push(w.samples);

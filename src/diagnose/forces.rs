@@ -1,5 +1,5 @@
 //! The force that some parameters of a model bring at the recorded states: with them less without them.
-//! It measures what a model says; whether the model is right is not asked here.
+//! It takes a model at its word; whether the model is right is tested elsewhere.
 
 use super::candidate::Candidate;
 use super::estimate::Estimate;

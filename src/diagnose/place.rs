@@ -1,5 +1,5 @@
 //! Whether an earth-fixed force differs from place to place: a force of its own in each part of the water that was sailed.
-//! Weather is the same everywhere; what differs has another cause, which is not asked here.
+//! Weather is the same everywhere; a force that differs has another cause, which is not sought here.
 
 use super::evidence::{Base, Evidence};
 use super::filter::Run;
@@ -10,7 +10,7 @@ use statrs::statistics::{Data, OrderStatistics};
 /// A force fixed on the earth that differs between parts of the water.
 #[derive(Clone, Debug, Serialize)]
 pub struct Place {
-    /// Southern and northern limit of the part where it stands out most \[m\].
+    /// Southern and northern limit of the part where the force is most significant \[m\].
     pub north: [f64; 2],
     /// Western and eastern limit \[m\].
     pub east: [f64; 2],
@@ -71,7 +71,7 @@ pub fn place(chart: &Chart, evidence: &Evidence, base: &Base, first: usize, unit
         |part: &usize| (0..2).all(|i| evidence.total.information[(first + 2 * part + i, first + 2 * part + i)] > 1e-6);
     let parts: Vec<usize> = (0..PARTS).filter(sailed).collect();
     let own: Vec<usize> = parts.iter().flat_map(|part| [first + 2 * part, first + 2 * part + 1]).collect();
-    // What is the same everywhere is the weather.
+    // A force that is the same everywhere is weather.
     let weather = first + 2 * PARTS;
     let test = evidence.test(&evidence.extend(base, &[weather, weather + 1]), &own);
     let weight = |j: &usize| -> f64 {

@@ -1,5 +1,5 @@
 //! Forward selection of mechanisms, one after the other, with removal of those that a later one makes needless and replacement
-//! of those that another explains better beside it. Tests and refits are in other files; the verdict is not made here.
+//! of those in whose place another explains more. Tests and refits are in other files; the verdict is not made here.
 
 use super::admit::followed;
 use super::base::Question;

@@ -1,5 +1,5 @@
 //! Whether port and starboard of the ship differ: the effect of a single screw on the flow and of a rudder off its zero, by
-//! parameters that are free in every estimate. It is told beside the verdict and is no finding: no physics is missing for it.
+//! parameters that are free in every estimate. It is reported beside the verdict and is no finding: no physics is missing for it.
 
 use super::estimate::{Estimate, FreeParameter};
 use super::evidence::{Scatter, chi_squared_p};

@@ -1,4 +1,4 @@
-//! How strong an effect is, as the diagnosis would see it: the yardstick by which concealed effects are graded.
+//! The signal-to-noise ratio of an effect for the diagnosis, by which concealed effects are graded.
 //! It decides nothing and names nothing.
 
 use super::base::base_parameters;
@@ -46,8 +46,8 @@ impl Signal {
     }
 
     /// Signal-to-noise ratio of the change from the runs without to the same runs with the effect (same noise), along a
-    /// mechanism: the square root of the noncentrality of its test after parameters, nuisances, initial states and noise have
-    /// had their say. 0 for a mechanism that is not in the catalogue.
+    /// mechanism: the square root of the noncentrality of its score test, with parameters, nuisance coefficients, initial states
+    /// and noise profiled out. 0 for a mechanism that is not in the catalogue.
     ///
     /// For a mechanism that needs a reference, the test is the one between sessions.
     pub fn ratio(&self, with: &[Run], mechanism: &str) -> f64 {
@@ -83,7 +83,7 @@ impl Signal {
         test.statistic.max(0.0).sqrt()
     }
 
-    /// The same for one constant force (X, Y, N) in windows of some runs: index of the run, first and last sample.
+    /// The ratio for one constant force (X, Y, N) in windows of some runs: index of the run, first and last sample.
     pub fn ratio_in(&self, with: &[Run], windows: &[(usize, usize, usize)]) -> f64 {
         let free = self.null.free.len();
         let filter = Filter::new(&self.null.model, self.integration, &self.columns[..free]);

@@ -1,4 +1,4 @@
-//! The lists of a diagnosis beside its findings: ranking, what cannot be seen, what would have been, what moved.
+//! The lists of a diagnosis beside its findings: ranking, absorbed and detectable mechanisms, moved parameters.
 //! They are read off the tests of the base model and the estimates; nothing is tested or decided here.
 
 use super::candidate::{Candidate, Extent};
@@ -14,7 +14,7 @@ use crate::physics::Probe;
 use crate::simulate::Integration;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Likeness above which a pair of mechanisms is told.
+/// Likeness above which a pair of mechanisms is listed.
 const ALIKE: f64 = 0.7;
 
 /// Power at which a mechanism counts as detectable.

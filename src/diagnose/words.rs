@@ -10,7 +10,7 @@ use super::place::Place;
 use super::push::Window;
 use crate::numerals::sig;
 
-/// What is missing and not in the catalogue, as far as it can be told.
+/// What is missing and not in the catalogue, as far as the tests show it.
 pub enum Missing<'a> {
     /// A law of state and inputs, with a surrogate for it.
     Law(Vec<SurrogateTerm>),
@@ -50,7 +50,7 @@ impl Missing<'_> {
         }
     }
 
-    /// The trial that tells most of it.
+    /// The trial that shows it best.
     pub fn next_trial(&self) -> NextTrial {
         let (trial, why) = match self {
             Self::Law(_) => (

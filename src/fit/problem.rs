@@ -156,7 +156,12 @@ impl Nlp for Problem<'_, '_> {
         if !self.task.has_mass(&p) {
             return None;
         }
-        let total = self.cost.value(&p)? + self.priors.value(&p);
+        // Nearly every point that is tried is accepted: its derivatives are computed with its value.
+        let value = match self.task.settings.hessian {
+            Hessian::GaussNewton => self.quadratic(z)?.value,
+            Hessian::Exact | Hessian::LimitedMemory => self.cost.value(&p)?,
+        };
+        let total = value + self.priors.value(&p);
         self.keep_if_best(p, total);
         Some(self.factor * total)
     }

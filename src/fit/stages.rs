@@ -23,8 +23,7 @@ const LINEAR: f64 = 4.0;
 /// Number of parts of the first stage of a fit, 1 for no stages: where hull coefficients are free, which decide whether the
 /// ship holds its course, the fewest parts over which the errors of the start grow no faster than linearly.
 pub(super) fn parts(task: &Task) -> usize {
-    let frees_hull = task.cost.free().iter().any(|i| task.model.parameters[*i].name.starts_with("hull."));
-    if !frees_hull {
+    if !frees_hull(task) {
         return 1;
     }
     let longest = task.runs.iter().map(|r| r.measured.len().saturating_sub(1)).max().unwrap_or(0);
@@ -44,6 +43,11 @@ pub(super) fn parts(task: &Task) -> usize {
         (parts, here) = (2 * parts, halves);
     }
     parts
+}
+
+/// Whether a hull coefficient is free.
+pub(super) fn frees_hull(task: &Task) -> bool {
+    task.cost.free().iter().any(|i| task.model.parameters[*i].name.starts_with("hull."))
 }
 
 /// The numbers of parts of the stages before the whole runs: `parts`, then half as many, down to 2.

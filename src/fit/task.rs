@@ -183,3 +183,47 @@ fn keep_mass_matrix_positive(model: &Model, free: &[&Parameter], bounds: &mut [(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::Form;
+    use crate::ship::Ship;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use std::path::Path;
+
+    #[test]
+    fn no_values_within_the_bounds_make_the_mass_matrix_singular() {
+        let path = format!("{}/experiments/ships/a.toml", env!("CARGO_MANIFEST_DIR"));
+        let mut model = Model::new(Ship::read(Path::new(&path)).unwrap(), "HD", Form::Paper, &[]).unwrap();
+        for freed in [&["Yvdot", "Yrdot", "Nvdot", "Nrdot"][..], &["Yrdot"], &["Nvdot", "Yvdot"]] {
+            for p in &mut model.parameters {
+                p.free = freed.iter().any(|name| p.name == format!("hull.{name}"));
+            }
+            let free: Vec<&Parameter> = model.parameters.iter().filter(|p| p.free).collect();
+            let mut bounds: Vec<(f64, f64)> = free.iter().map(|p| (p.lower, p.upper)).collect();
+            keep_mass_matrix_positive(&model, &free, &mut bounds);
+            let values = |p: &Parameter, (lower, upper): (f64, f64), share: f64| {
+                let (lower, upper) = (lower.max(-1e3 * p.scale), upper.min(1e3 * p.scale));
+                lower + share * (upper - lower)
+            };
+            let mut random = ChaCha8Rng::seed_from_u64(1);
+            for _ in 0..1000 {
+                let mut theta = model.values();
+                for (p, b) in free.iter().zip(&bounds) {
+                    // Corners as often as what is between them.
+                    let share = if random.random_bool(0.5) {
+                        f64::from(random.random_range(0..2))
+                    } else {
+                        random.random_range(0.0..1.0)
+                    };
+                    theta[model.index(&p.name).unwrap_or(0)] = values(p, *b, share);
+                }
+                assert!(model.inertia_at_rest(&theta).is_positive(), "{theta:?}");
+            }
+            // The estimates themselves are inside.
+            assert!(free.iter().zip(&bounds).all(|(p, (lower, upper))| p.value > *lower && p.value < *upper));
+        }
+    }
+}

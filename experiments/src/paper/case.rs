@@ -68,7 +68,7 @@ impl Case {
     /// Simulates the data set, fits the model and makes the baselines.
     ///
     /// # Errors
-    /// An unreadable ship file, captive tests that determine nothing, a fit that cannot be made.
+    /// An unreadable ship file, captive tests that do not determine a parameter, an impossible fit.
     pub fn prepare(ship: ShipId, setup: Setup) -> Result<Self, PaperError> {
         let runs = dataset(ship, setup.seed);
         Self::from_runs(ship, runs, setup)

@@ -1,5 +1,5 @@
 //! Figure 2 of the paper: resistance, lift and drag curves, fitted beside both baselines, with the bands the constraints leave.
-//! What the truth simulators measure in captive tests is shown as points; no fit has seen them.
+//! Captive tests on the truth simulators are shown as points; no fit has used them.
 
 use super::artefact::Artefact;
 use super::captive_baseline::{rudder_points, rudder_rows};

@@ -45,7 +45,7 @@ pub struct Diagnosed {
     pub walks: [(f64, f64); 2],
 }
 
-/// Runs everything.
+/// Makes every diagnosis and asks every question.
 ///
 /// # Errors
 /// [`RealError`].

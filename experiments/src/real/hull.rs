@@ -25,7 +25,7 @@ impl Hull {
     /// Opens the study `studies/NAME/study.toml`; the recordings are found as the study says.
     ///
     /// # Errors
-    /// [`RealError`]; [`super::error::is_absent`] tells whether the recordings are absent.
+    /// [`RealError`]; [`super::error::is_absent`] is true if the recordings are absent.
     pub fn open(name: &str) -> Result<Self, RealError> {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies").join(name).join("study.toml");
         let study = Study::read(&path)?;

@@ -106,7 +106,7 @@ pub fn sides_made_alike(hull: &Hull, best: &Model, kinematics: &[Agreement]) -> 
     Case::new("best model, its sides made alike", &alike(best)?, &train, &test, &Settings::default())
 }
 
-/// Runs everything.
+/// Makes every diagnosis and asks every question.
 ///
 /// # Errors
 /// [`RealError`].

@@ -4,11 +4,12 @@
 use super::names::about;
 use super::phrases::{UNDECIDED, adequacy_words, amplitude, p_value};
 use crate::diagnose::Diagnosis;
-use crate::diagnose::conclude::Amplitude;
+use crate::diagnose::finding::Amplitude;
 use crate::diagnose::sides::Sides;
 use crate::numerals::sig;
 use crate::report::units::Units;
 
+/// What was added to the model, and how its own parameters moved.
 pub(super) fn model(d: &Diagnosis) -> Vec<String> {
     let units = Units::of(&d.base.ship);
     let mut lines = Vec::new();

@@ -5,6 +5,7 @@ use super::phrases::percent;
 use crate::diagnose::Diagnosis;
 use crate::numerals::{fixed, sig};
 
+/// What the findings gain on the test runs.
 pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     let Some(h) = &d.held_out else {
         return vec!["there are no test runs, so nothing is proven; mark some with `split = \"test\"`".to_owned()];

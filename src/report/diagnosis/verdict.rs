@@ -43,6 +43,7 @@ pub fn verdict_words(verdict: Verdict) -> &'static str {
     }
 }
 
+/// The verdict with its findings, and notes on the recordings.
 pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
     let units = Units::of(&d.base.ship);
     let mut lines = vec![verdict_words(d.verdict).to_owned()];

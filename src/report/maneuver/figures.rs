@@ -1,5 +1,5 @@
 //! Figures of trials: the track with ship outlines, and rudder, heading and speed over time.
-//! Nothing is computed here beyond units.
+//! Nothing is computed here beyond units; measures are in `tables`.
 
 use crate::maneuver::{Side, Stopping, Track, Trial, Turning, Zigzag};
 use crate::plot::{Axis, BLUE, Color, Figure, GREY, Layer, Legend, Panel, VERMILLION, east_north};
@@ -30,25 +30,30 @@ fn track_panel<'a, M: 'a>(title: &str, ship: &Ship, trials: impl Iterator<Item =
         let (track, color) = (&trial.track, color(trial.side));
         let points = thinned(track).map(|k| east_north(track.states[k][0], track.states[k][1]));
         panel = panel.with(Layer::line(&trial.name, color, points));
-        // Outlines at equal distances along the track, no closer than a length and a half.
-        let length = track.distance(0, track.len().saturating_sub(1));
-        let spacing = (length / OUTLINES as f64).max(1.5 * ship.hull.lpp);
-        let mut poses = Vec::new();
-        let (mut sailed, mut next) = (0.0, 0.0);
-        for k in 0..track.len() {
-            if k > 0 {
-                sailed += track.distance(k - 1, k);
-            }
-            if sailed >= next || k + 1 == track.len() {
-                let [x, y, psi, ..] = track.states[k];
-                poses.push([x, y, psi]);
-                next += spacing;
-            }
-        }
+        let poses = outlines(track, ship.hull.lpp);
         panel =
             panel.with(Layer::hulls(&trial.name, color, poses, ship.hull.lpp, ship.hull.breadth).unlisted().width(2.0));
     }
     panel
+}
+
+/// Positions and headings at equal distances along a track, no closer than a length and a half.
+fn outlines(track: &Track, lpp: f64) -> Vec<[f64; 3]> {
+    let length = track.distance(0, track.len().saturating_sub(1));
+    let spacing = (length / OUTLINES as f64).max(1.5 * lpp);
+    let mut poses = Vec::new();
+    let (mut sailed, mut next) = (0.0, 0.0);
+    for k in 0..track.len() {
+        if k > 0 {
+            sailed += track.distance(k - 1, k);
+        }
+        if sailed >= next || k + 1 == track.len() {
+            let [x, y, psi, ..] = track.states[k];
+            poses.push([x, y, psi]);
+            next += spacing;
+        }
+    }
+    poses
 }
 
 fn over_time<M>(trial: &Trial<M>, value: impl Fn(&Track, usize) -> f64) -> Vec<(f64, f64)> {

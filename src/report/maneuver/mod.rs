@@ -1,5 +1,5 @@
-//! Trials for people: tables of measures, notes, tracks as CSV, and figures.
-//! It simulates no trial and measures nothing: that is the module `maneuver`.
+//! Trials for people: figures, tables and notes.
+//! The trials and their measures are [`crate::maneuver`]'s.
 
 #[cfg(feature = "plot")]
 mod figures;

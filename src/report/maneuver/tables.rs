@@ -1,9 +1,9 @@
-//! Tables and notes of trials: measures in ship lengths beside the criteria, how a trial ended, and its track as CSV.
-//! Nothing is computed here beyond units.
+//! Trials in words and numbers: measures in ship lengths, criteria, notes, and the track as CSV.
+//! It converts units and computes nothing else.
 
 use crate::maneuver::imo::{Criterion, SHORTEST};
 use crate::maneuver::{Ended, Stopping, Track, Trial, Turning, Zigzag};
-use crate::numerals::fixed;
+use crate::numerals::{DASH, fixed, sig};
 use crate::report::table::Table;
 use crate::ship::Ship;
 
@@ -14,84 +14,63 @@ fn optional(x: Option<f64>, scale: f64, decimals: usize) -> String {
     x.map_or_else(|| "not reached".into(), |x| fixed(x * scale, decimals))
 }
 
-/// Turning circles, a row a trial.
-pub fn turning_table(ship: &Ship, trials: &[Trial<Turning>]) -> Table {
-    let l = 1.0 / ship.hull.lpp;
-    let mut table = Table::new([
-        "trial",
-        "advance [L]",
-        "transfer [L]",
-        "tactical diameter [L]",
-        "steady diameter [L]",
-        "speed loss [%]",
-        "drift [deg]",
-        "time to 90 [s]",
-        "time to 180 [s]",
-    ]);
+/// A column of a table of measures: its heading, and its cell from the measures and the reciprocal ship length \[1/m\].
+type Column<M> = (&'static str, fn(&M, f64) -> String);
+
+/// Measures of trials, a row a trial.
+fn measures<M>(ship: &Ship, trials: &[Trial<M>], columns: &[Column<M>]) -> Table {
+    let per_length = 1.0 / ship.hull.lpp;
+    let mut table = Table::new(["trial"].into_iter().chain(columns.iter().map(|c| c.0)));
     for t in trials {
-        let m = &t.measures;
-        table.row([
-            t.name.clone(),
-            optional(m.advance, l, 2),
-            optional(m.transfer, l, 2),
-            optional(m.tactical_diameter, l, 2),
-            optional(m.steady.map(|s| s.diameter), l, 2),
-            optional(m.steady.map(|s| s.speed_loss), 100.0, 0),
-            optional(m.steady.map(|s| s.drift.to_degrees()), 1.0, 1),
-            optional(m.time_90, 1.0, 1),
-            optional(m.time_180, 1.0, 1),
-        ]);
+        let cells = columns.iter().map(|(_, cell)| cell(&t.measures, per_length));
+        table.row([t.name.clone()].into_iter().chain(cells));
     }
     table.wrapped(WIDTH)
+}
+
+/// Turning circles, a row a trial.
+pub fn turning_table(ship: &Ship, trials: &[Trial<Turning>]) -> Table {
+    let columns: [Column<Turning>; 8] = [
+        ("advance [L]", |m, l| optional(m.advance, l, 2)),
+        ("transfer [L]", |m, l| optional(m.transfer, l, 2)),
+        ("tactical diameter [L]", |m, l| optional(m.tactical_diameter, l, 2)),
+        ("steady diameter [L]", |m, l| optional(m.steady.map(|s| s.diameter), l, 2)),
+        ("speed loss [%]", |m, _| optional(m.steady.map(|s| s.speed_loss), 100.0, 0)),
+        ("drift [deg]", |m, _| optional(m.steady.map(|s| s.drift.to_degrees()), 1.0, 1)),
+        ("time to 90 [s]", |m, _| optional(m.time_90, 1.0, 1)),
+        ("time to 180 [s]", |m, _| optional(m.time_180, 1.0, 1)),
+    ];
+    measures(ship, trials, &columns)
+}
+
+/// The `i`-th overshoot of a zigzag \[deg\].
+fn overshoot(m: &Zigzag, i: usize) -> String {
+    optional(m.overshoots.get(i).map(|o| o.to_degrees()), 1.0, 1)
 }
 
 /// Zigzags, a row a trial.
 pub fn zigzag_table(ship: &Ship, trials: &[Trial<Zigzag>]) -> Table {
-    let mut table = Table::new([
-        "trial",
-        "overshoot 1 [deg]",
-        "overshoot 2 [deg]",
-        "overshoot 3 [deg]",
-        "initial turning [L]",
-        "reach [s]",
-        "period [s]",
-    ]);
-    for t in trials {
-        let m = &t.measures;
-        let overshoot = |i: usize| optional(m.overshoots.get(i).map(|o| o.to_degrees()), 1.0, 1);
-        table.row([
-            t.name.clone(),
-            overshoot(0),
-            overshoot(1),
-            overshoot(2),
-            optional(m.initial_turning, 1.0 / ship.hull.lpp, 2),
-            optional(m.reach, 1.0, 1),
-            optional(m.period, 1.0, 1),
-        ]);
-    }
-    table.wrapped(WIDTH)
+    let columns: [Column<Zigzag>; 6] = [
+        ("overshoot 1 [deg]", |m, _| overshoot(m, 0)),
+        ("overshoot 2 [deg]", |m, _| overshoot(m, 1)),
+        ("overshoot 3 [deg]", |m, _| overshoot(m, 2)),
+        ("initial turning [L]", |m, l| optional(m.initial_turning, l, 2)),
+        ("reach [s]", |m, _| optional(m.reach, 1.0, 1)),
+        ("period [s]", |m, _| optional(m.period, 1.0, 1)),
+    ];
+    measures(ship, trials, &columns)
 }
 
 /// A crash stop as a table of one row.
 pub fn stopping_table(ship: &Ship, trial: &Trial<Stopping>) -> Table {
-    let (m, l) = (&trial.measures, 1.0 / ship.hull.lpp);
-    let mut table = Table::new([
-        "trial",
-        "track reach [L]",
-        "head reach [L]",
-        "lateral deviation [L]",
-        "heading change [deg]",
-        "time [s]",
-    ]);
-    table.row([
-        trial.name.clone(),
-        optional(m.track_reach, l, 2),
-        optional(m.head_reach, l, 2),
-        optional(m.lateral_deviation, l, 2),
-        optional(m.heading_change.map(f64::to_degrees), 1.0, 1),
-        optional(m.time, 1.0, 1),
-    ]);
-    table.wrapped(WIDTH)
+    let columns: [Column<Stopping>; 5] = [
+        ("track reach [L]", |m, l| optional(m.track_reach, l, 2)),
+        ("head reach [L]", |m, l| optional(m.head_reach, l, 2)),
+        ("lateral deviation [L]", |m, l| optional(m.lateral_deviation, l, 2)),
+        ("heading change [deg]", |m, _| optional(m.heading_change.map(f64::to_degrees), 1.0, 1)),
+        ("time [s]", |m, _| optional(m.time, 1.0, 1)),
+    ];
+    measures(ship, std::slice::from_ref(trial), &columns)
 }
 
 /// The IMO criteria beside the measures, a row a criterion.
@@ -99,7 +78,7 @@ pub fn criteria_table<'a>(trials: impl IntoIterator<Item = (&'a str, &'a [Criter
     let mut table = Table::new(["trial", "IMO MSC.137(76)", "measured", "limit", "unit", "verdict"]);
     for (name, criteria) in trials {
         for c in criteria {
-            let number = |x: Option<f64>| x.map_or_else(|| crate::numerals::DASH.into(), |x| fixed(x, 2));
+            let number = |x: Option<f64>| x.map_or(DASH.into(), |x| fixed(x, 2));
             table.row([
                 name.to_owned(),
                 c.name.clone(),
@@ -118,7 +97,7 @@ pub fn criteria_note(ship: &Ship) -> Option<String> {
     (ship.hull.lpp < SHORTEST).then(|| {
         format!(
             "The standard binds ships of {SHORTEST:.0} m and more; for L = {} m its limits are shown for comparison.",
-            crate::numerals::sig(ship.hull.lpp, 3)
+            sig(ship.hull.lpp, 3)
         )
     })
 }
