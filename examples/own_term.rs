@@ -8,8 +8,8 @@ use std::error::Error;
 use trimtab::parameter::ParameterInfo;
 use trimtab::physics::{Flow, Group, Instant, Kind, Mechanism, Physics, Probe, Reach, Term, TermInfo, Validity};
 use trimtab::{
-    Channel, FitRun, FitSettings, Force, Form, Inputs, Integration, Labels, Method, Model, Recording, Run, Scenario,
-    Settings, Split, Window, WindowSettings, demo, diagnose, fit, report, simulate, terms,
+    Channel, FitSettings, Force, Form, Inputs, Integration, Labels, Method, Model, Recording, Run, Scenario, Settings,
+    Split, WindowSettings, demo, diagnose, fit, report, simulate, terms,
 };
 use trimtab_ad::Scalar;
 
@@ -69,20 +69,22 @@ impl<S: Scalar> Physics<S> for Rotor {
 const DT: f64 = 2.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let ship = demo::example()?.model.ship;
-    let catalogue = terms::standard().with(&Rotor);
     let wind = [("wind.drag", 0.7), ("wind.side", 0.8), ("wind.yaw", 0.1)];
-    let mut believed =
-        Model::with_catalogue(catalogue.clone(), ship.clone(), "without rotor", Form::Regular, &["wind"])?;
+    let mut believed = Model::with_catalogue(
+        terms::standard().with(&Rotor),
+        demo::example()?.model.ship,
+        "without rotor",
+        Form::Regular,
+        &["wind"],
+    )?;
     believed.set(&wind)?;
     believed.set_eleven(&[-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370]);
     let mut truth = believed.clone();
     truth.add_term("rotor")?;
     truth.set(&[("rotor.lift_area", 300.0)])?;
 
-    let windows = sail(&truth)?;
-    let of = |split| windows.iter().filter(move |w: &&Window| w.split == split).map(Run::from).collect::<Vec<_>>();
-    let diagnosis = diagnose(&believed, &of(Split::Train), &of(Split::Test), &Settings::default(), &|_| ())?;
+    let (test, train): (Vec<Run>, Vec<Run>) = runs_of(&truth)?.into_iter().partition(|run| run.split == Split::Test);
+    let diagnosis = diagnose(&believed, &train, &test, &Settings::default(), &|_| ())?;
     println!("{}", report::diagnosis::summary(&diagnosis, "a ship with a rotor"));
 
     let mut model = believed;
@@ -90,18 +92,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rotor = model.find("rotor.lift_area")?;
     model.parameters[rotor].free = true;
     let settings = FitSettings::default();
-    let runs: Vec<FitRun> = windows.iter().map(|w| FitRun::of(w, &ship, settings.max_yaw_rate)).collect();
-    let fitted = fit(&model, &runs, &settings, &mut |_| true)?;
+    let fitted = fit(&model, &train, &settings, &mut |_| true)?;
     println!("{}", fitted.brief());
     println!("rotor.lift_area: true 300, fitted {:.1} m2", fitted.model.parameters[rotor].value);
     Ok(())
 }
 
 /// Twenty-four runs of four minutes on all headings in 10 m/s of wind, measured with noise; every sixth is kept aside.
-fn sail(truth: &Model) -> Result<Vec<Window>, Box<dyn Error>> {
+fn runs_of(truth: &Model) -> Result<Vec<Run>, Box<dyn Error>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let fine = Integration { method: Method::Rk4, substeps: 4 };
-    let mut windows = Vec::new();
+    let mut runs = Vec::new();
     for run in 0..24 {
         let inputs = orders(run);
         let heading = f64::from(run) * 2.4;
@@ -111,9 +112,9 @@ fn sail(truth: &Model) -> Result<Vec<Window>, Box<dyn Error>> {
         let recording = measured(&name, &inputs, &track.states, &mut random)?;
         let split = if run % 6 == 5 { Split::Test } else { Split::Train };
         let labels = Labels { run: name.clone(), session: "day 1".into(), manoeuvre: String::new(), split };
-        windows.extend(recording.windows(&labels, &WindowSettings::whole(truth.ship.hull.draught))?.windows);
+        runs.extend(recording.windows(&labels, &WindowSettings::whole(truth.ship.hull.draught))?.windows);
     }
-    Ok(windows)
+    Ok(runs)
 }
 
 /// Turns, zigzags and steps of the propeller.

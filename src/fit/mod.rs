@@ -42,7 +42,7 @@ mod task;
 #[cfg(feature = "ipopt")]
 pub use crate::ipopt::Counts;
 pub use constraints::{ConstraintSettings, Limits, Rule};
-pub use cost::{Cost, CostOptions, Derivatives, FitRun, Quadratic};
+pub use cost::{Cost, CostOptions, Derivatives, Quadratic};
 #[cfg(feature = "ipopt")]
 pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 #[cfg(feature = "ipopt")]

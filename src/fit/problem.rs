@@ -2,11 +2,12 @@
 //! It decides nothing about what is fitted and reports nothing: it translates, and remembers what evaluations share.
 
 use super::constraints::Row;
-use super::cost::{Cost, FitRun, Quadratic};
+use super::cost::{Cost, Quadratic};
 use super::settings::Hessian;
 use super::task::Task;
 use crate::ipopt::{IterationReport, Nlp};
 use crate::model::Model;
+use crate::recording::Run;
 use nalgebra::{DMatrix, DVector};
 
 /// Where a running fit stands.
@@ -87,7 +88,7 @@ impl<'a, 'f> Problem<'a, 'f> {
     pub fn new(
         task: &'a Task<'a>,
         cost: &'a Cost<'a>,
-        runs: &[FitRun],
+        runs: &[Run],
         priors: &'a Priors,
         start: &'a [f64],
         progress: &'f mut dyn FnMut(&Progress) -> bool,

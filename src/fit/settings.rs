@@ -97,6 +97,7 @@ impl FitSettings {
     /// The part of the settings that a [`Cost`](super::Cost) takes.
     pub fn cost_options(&self) -> CostOptions {
         CostOptions {
+            max_yaw_rate: self.max_yaw_rate,
             derivatives: self.derivatives,
             difference_step: self.difference_step,
             integration: self.integration,
