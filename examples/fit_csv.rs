@@ -3,9 +3,7 @@
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use trimtab::{
-    ColumnMap, FitSettings, Form, Labels, Model, Recording, Ship, Split, WindowSettings, demo, fit, validity,
-};
+use trimtab::{ColumnMap, FitSettings, Form, Labels, Model, Recording, Ship, Split, WindowSettings, demo, fit};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
@@ -35,8 +33,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         true
     })?;
     println!("{}", fitted.report());
-    let samples = runs.iter().flat_map(validity::samples);
-    println!("{}", validity::outside(&fitted.model, samples).line());
 
     let path = std::env::temp_dir().join("trimtab_fitted.toml");
     std::fs::write(&path, toml::to_string(&fitted.model.to_file())?)?;

@@ -4,7 +4,8 @@
 //! The whole job on the example study that is built in, forty recordings of a container ship of 85 m made by a simulator
 //! that knows more physics than the model has:
 //!
-//! ```
+#![cfg_attr(feature = "ipopt", doc = "```")]
+#![cfg_attr(not(feature = "ipopt"), doc = "```ignore")]
 //! use trimtab::{EvaluationSettings, FitSettings, Judging, Settings, diagnose, fit, prove};
 //!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -47,6 +48,16 @@
 //! Units are SI and radians; x is north, y east, psi clockwise from north, v, r and delta positive to starboard.
 //! Divergence and failed convergence are results, not panics; errors say what, where and what to do next.
 //!
+//! # Cargo features
+//!
+//! | feature | gives | without it |
+//! |---|---|---|
+//! | `ipopt` | `fit`, and the refit of a diagnosis' result | no C++ dependency; a diagnosis keeps its own estimate by Fisher scoring |
+//! | `plot` | `plot`, figures and the HTML page of a diagnosis | tables, summaries in words and JSON remain |
+//! | `cli` | the command `trimtab`; needs the two others | the library alone |
+//!
+//! All are on by default; `default-features = false` leaves simulation, trials, sensitivities, audit, evaluation and diagnosis.
+//!
 //! # What to set in your own project
 //!
 //! * `fit` calls Ipopt through the crate `ipopt-sys`. On Debian and its relatives install `coinor-libipopt-dev cmake libclang-dev
@@ -57,7 +68,7 @@
 //!   [env]
 //!   IPOPT_NO_PKG_CONFIG = "1"
 //!   ```
-//! * Simulations run on SIMD lanes eight at a time. On x86-64 they are fast only where the compiler may use AVX2 (every
+//! * Simulations run on SIMD lanes, several at a time. On x86-64 they are fast only where the compiler may use AVX2 (every
 //!   machine since about 2015): `rustflags = ["-C", "target-cpu=x86-64-v3"]` under `[build]`. Without, results are the same and
 //!   a fit takes several times as long.
 
@@ -74,6 +85,7 @@ pub mod model;
 pub mod numerals;
 pub mod parameter;
 pub mod physics;
+#[cfg(feature = "plot")]
 pub mod plot;
 pub mod recording;
 pub mod report;
@@ -89,10 +101,12 @@ pub mod validity;
 
 pub use diagnose::{Diagnosis, Settings, Verdict, diagnose};
 pub use evaluate::{Evaluation, EvaluationSettings, Judging, prove};
-pub use fit::{Fit, FitSettings, fit};
+pub use fit::FitSettings;
+#[cfg(feature = "ipopt")]
+pub use fit::{Fit, fit};
 pub use model::Model;
 pub use physics::Form;
-pub use recording::{ColumnMap, Labels, Recording, Run, Split, WindowSettings};
+pub use recording::{Channel, ColumnMap, Labels, Recording, Run, Split, WindowSettings};
 pub use ship::Ship;
 pub use simulate::{Integration, Method, Scenario, Trajectory, simulate};
 pub use state::{Force, Inputs, State};

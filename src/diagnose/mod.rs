@@ -50,6 +50,7 @@ pub mod place;
 mod problem;
 pub mod prove;
 pub mod push;
+#[cfg(feature = "ipopt")]
 pub mod refit;
 pub mod region;
 mod residual;

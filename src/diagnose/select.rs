@@ -11,6 +11,7 @@ use super::event::{BaseTests, Opening};
 use super::evidence::chi_squared_p;
 use super::problem::Problem;
 use super::push::Push;
+#[cfg(feature = "ipopt")]
 use super::refit::refit;
 use super::screen::{Row, Screen, screen};
 use super::settings::{PARAMETER_PRICE, REFIT, REMOVAL_ALPHA, SETTLE, SMALLEST_SIZE, Settings};
@@ -48,7 +49,14 @@ impl Selection {
         out
     }
 
+    /// The estimate with all mechanisms, as Fisher scoring left it: this build has no Ipopt.
+    #[cfg(not(feature = "ipopt"))]
+    pub fn refitted(self, _question: &Question) -> Self {
+        self
+    }
+
     /// The estimate with all mechanisms, refitted through Ipopt.
+    #[cfg(feature = "ipopt")]
     pub fn refitted(mut self, question: &Question) -> Self {
         if !self.mechanisms.is_empty() {
             (question.progress)("refitting the whole model through Ipopt");

@@ -163,7 +163,7 @@ impl Row {
     }
 
     /// Its change, in its own unit, over one scale in every free parameter: what its unit is for the solver.
-    pub(super) fn size(&self, scales: &[f64]) -> f64 {
+    pub fn size(&self, scales: &[f64]) -> f64 {
         self.coefficients.iter().zip(scales).map(|(a, s)| (a * s).powi(2)).sum::<f64>().sqrt()
     }
 

@@ -1,6 +1,7 @@
 //! Why there is no fit.
 //! A fit that does not converge is a result and no error: see [`Fit::status`](super::Fit::status).
 
+#[cfg(feature = "ipopt")]
 use crate::ipopt::IpoptError;
 
 /// Why there is no fit.
@@ -64,6 +65,7 @@ pub enum FitError {
         violation: f64,
     },
     /// The solver could not start.
+    #[cfg(feature = "ipopt")]
     #[error("the solver could not start: {0}")]
     Solver(#[from] IpoptError),
 }

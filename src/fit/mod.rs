@@ -18,25 +18,40 @@
 
 pub mod constraints;
 pub mod cost;
+#[cfg(feature = "ipopt")]
 mod covariance;
+#[cfg(feature = "ipopt")]
 mod doubts;
 mod error;
+#[cfg(feature = "ipopt")]
 pub mod multistart;
+#[cfg(feature = "ipopt")]
 mod problem;
 mod settings;
+#[cfg(feature = "ipopt")]
 mod solve;
+#[cfg(feature = "ipopt")]
 mod stages;
+#[cfg(feature = "ipopt")]
 mod subspace;
+#[cfg(feature = "ipopt")]
 mod summary;
+#[cfg(feature = "ipopt")]
 mod task;
 
+#[cfg(feature = "ipopt")]
 pub use crate::ipopt::Counts;
 pub use constraints::{ConstraintSettings, Limits, Rule};
 pub use cost::{Cost, CostOptions, Derivatives, Quadratic};
+#[cfg(feature = "ipopt")]
 pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
+#[cfg(feature = "ipopt")]
 pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;
+#[cfg(feature = "ipopt")]
 pub use multistart::{MultiStart, StartOutcome, multi_start};
+#[cfg(feature = "ipopt")]
 pub use problem::Progress;
 pub use settings::{FitSettings, Hessian};
+#[cfg(feature = "ipopt")]
 pub use summary::{Active, Combination, Estimate, Fit, fit};

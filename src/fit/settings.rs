@@ -75,7 +75,11 @@ impl Default for FitSettings {
 }
 
 impl FitSettings {
-    pub(super) fn check(&self) -> Result<(), FitError> {
+    /// Whether the settings make sense.
+    ///
+    /// # Errors
+    /// [`FitError::BadSetting`] for a number that must be positive and is not.
+    pub fn check(&self) -> Result<(), FitError> {
         let positive = [
             ("difference_step", self.difference_step),
             ("tolerance", self.tolerance),
@@ -90,7 +94,8 @@ impl FitSettings {
         }
     }
 
-    pub(super) fn cost_options(&self) -> CostOptions {
+    /// The part of the settings that a [`Cost`](super::Cost) takes.
+    pub fn cost_options(&self) -> CostOptions {
         CostOptions {
             max_yaw_rate: self.max_yaw_rate,
             derivatives: self.derivatives,

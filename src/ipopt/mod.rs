@@ -24,6 +24,8 @@
 //! - Some failures leave zeros instead of the objective and the constraint values in Ipopt's answer: after a failure these are
 //!   evaluated anew, and where that is impossible there is no [`Solution`] but [`IpoptError::NoIterate`].
 //!
+//! Without the cargo feature `ipopt` only the options are left, which the settings of a fit name.
+//!
 //! | file | what |
 //! |---|---|
 //! | `nlp` | what a problem must be able to evaluate |
@@ -33,17 +35,26 @@
 //! | `ffi` | the C interface: the only file of the project that contains `unsafe` |
 //! | `solve` | one solve from the problem to the solution |
 
+#[cfg(feature = "ipopt")]
 mod ffi;
+#[cfg(feature = "ipopt")]
 mod nlp;
 mod options;
+#[cfg(feature = "ipopt")]
 mod problem;
+#[cfg(feature = "ipopt")]
 mod solve;
+#[cfg(feature = "ipopt")]
 mod status;
-#[cfg(test)]
+#[cfg(all(test, feature = "ipopt"))]
 mod tests;
 
+#[cfg(feature = "ipopt")]
 pub use nlp::{IterationReport, Nlp};
 pub use options::{DEFAULT_HISTORY, HessianMode, OptionValue, Options};
+#[cfg(feature = "ipopt")]
 pub use problem::Counts;
+#[cfg(feature = "ipopt")]
 pub use solve::{Solution, solve};
+#[cfg(feature = "ipopt")]
 pub use status::{IpoptError, Status};

@@ -2,12 +2,15 @@
 //! It computes nothing beyond units, and no calculation imports it.
 
 pub mod diagnosis;
+#[cfg(feature = "ipopt")]
 mod fit;
+#[cfg(feature = "plot")]
 mod html;
 pub mod maneuver;
 mod table;
 pub mod terms;
 mod units;
 
+#[cfg(feature = "plot")]
 pub use html::{Page, Section};
 pub use table::Table;

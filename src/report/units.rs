@@ -40,6 +40,7 @@ impl Units {
     }
 
     /// For the force in an equation: the factor from SI, and the label of an axis, `surge X [kN]`.
+    #[cfg(feature = "plot")]
     pub(super) fn axis(self, equation: usize) -> (f64, String) {
         let (name, unit, motion) = EQUATIONS[equation];
         let (factor, unit) = self.human(unit);

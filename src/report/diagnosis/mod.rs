@@ -2,30 +2,41 @@
 //! It computes no statistics; everything it says is in [`Diagnosis`](crate::diagnose::Diagnosis), turned into units that people
 //! use (kN, degrees).
 
+#[cfg(feature = "plot")]
 mod change;
 mod document;
+#[cfg(feature = "plot")]
 mod evidence;
 mod findings;
+#[cfg(feature = "plot")]
 mod force;
 mod limits;
 mod location;
 mod names;
+#[cfg(feature = "plot")]
 mod page;
 mod parts;
+#[cfg(feature = "plot")]
 mod pattern;
 mod phrases;
+#[cfg(feature = "plot")]
 mod picture;
+#[cfg(feature = "plot")]
 mod pictures;
 mod proof;
+#[cfg(feature = "plot")]
 mod stages;
 mod summary;
 mod verdict;
 
 pub use document::{document, keys, keys_listing};
 pub use names::{mechanism_names, title_of};
+#[cfg(feature = "plot")]
 pub use page::page;
 pub use parts::{Part, parts};
+#[cfg(feature = "plot")]
 pub use picture::Picture;
+#[cfg(feature = "plot")]
 pub use pictures::pictures;
 pub use summary::summary;
 pub use verdict::{subject, verdict_words};
