@@ -37,7 +37,6 @@ const LONGEST: usize = 80;
 /// Files that still use what is above them: from, to.
 const UPWARD: &[(&str, &str)] = &[
     ("src/diagnose/admit.rs", "src/report/table.rs"),
-    ("src/diagnose/conclude.rs", "src/report/table.rs"),
     ("src/diagnose/figures.rs", "src/report/axis.rs"),
     ("src/diagnose/figures.rs", "src/report/figure.rs"),
     ("src/diagnose/figures.rs", "src/report/palette.rs"),
@@ -97,8 +96,6 @@ const CIRCLES: &[&[&str]] = &[
         "src/cli/terms.rs",
     ],
     &["src/diagnose/admit.rs", "src/diagnose/receiver.rs"],
-    &["src/diagnose/compete.rs", "src/diagnose/conclude.rs", "src/diagnose/sides.rs"],
-    &["src/diagnose/covariance.rs", "src/diagnose/filter.rs", "src/diagnose/noise.rs"],
     &["src/diagnose/figures.rs", "src/diagnose/report.rs"],
     &["src/fit/constraints.rs", "src/fit/cost.rs", "src/fit/mod.rs", "src/fit/problem.rs"],
     &[
@@ -136,13 +133,8 @@ const LONG: &[(&str, &str)] = &[
     ("src/check.rs", "completeness"),
     ("src/check.rs", "velocity"),
     ("src/diagnose/admit.rs", "admit"),
-    ("src/diagnose/compete.rs", "compete"),
-    ("src/diagnose/conclude.rs", "diagnose"),
-    ("src/diagnose/estimate.rs", "estimate_above"),
     ("src/diagnose/figures.rs", "sketches"),
     ("src/diagnose/filter.rs", "pass"),
-    ("src/diagnose/locate.rs", "locate"),
-    ("src/diagnose/screen.rs", "row"),
     ("src/fit/mod.rs", "describe"),
     ("src/fit/report.rs", "report"),
     ("src/recording/read.rs", "parse"),

@@ -10,7 +10,7 @@ use super::problem::Problem;
 use super::screen::{Row, Screen};
 use super::settings::{
     Effort, FORM_TOLERANCE, IMPLAUSIBLE, INDISTINGUISHABLE, PARAMETER_PRICE, REFIT, RIVAL_GAP, RIVAL_LIKENESS,
-    RIVAL_SHARE, RIVALS, SETTLE, SMALLEST_SIZE, UNRELATED_LIKENESS,
+    RIVAL_SHARE, RIVALS, SETTLE, SMALLEST_SIZE, STARTS, STARTS_OF_SQUARES, UNRELATED_LIKENESS,
 };
 use super::wald::Wald;
 use crate::model::Model;
@@ -142,10 +142,10 @@ pub fn start_with(
         let value = log_posterior(&model, problem.integration, problem.runs, &current.free, noise);
         (model, value)
     };
-    let mut starts: Vec<_> = [1.0, 0.3, 0.1].map(|share| at(share, &(amplitude * share))).into();
+    let mut starts: Vec<_> = STARTS.map(|share| at(share, &(amplitude * share))).into();
     if c.mechanism.probe == Probe::Odd {
         starts.push(at(1.0, &rooted(amplitude, c.columns.len().max(1))));
-        starts.extend([3.0, 10.0, 30.0].map(|share| at(0.0, &(amplitude * share))));
+        starts.extend(STARTS_OF_SQUARES.map(|share| at(0.0, &(amplitude * share))));
     }
     let best = starts.into_iter().reduce(|a, b| if b.1 > a.1 { b } else { a });
     let model = best.map_or_else(|| current.model.clone(), |(model, _)| model);
@@ -280,7 +280,9 @@ impl Competition<'_> {
             let alike: Vec<String> = others.iter().map(alike).collect();
             return format!("these fit within {width:.0} units of log-likelihood of each other: {}", alike.join(", "));
         }
-        let Some(next) = entries.get(1) else { return "no other mechanism of the catalogue comes near".into() };
+        let Some(next) = entries.get(1) else {
+            return "no other mechanism of the catalogue fits nearly as well".into();
+        };
         // A refit that was given up may have been further ahead than it got.
         let (over, by) = if next.value < least { ("over ", best - least) } else { ("", best - next.value) };
         format!("next best, {}, fits {over}{by:.0} units of log-likelihood worse", title(next))

@@ -5,10 +5,10 @@ use super::evidence::{Base, Evidence, RunEvidence};
 use super::filter::{Column, Filter, GATE, Pass, Run, Wanted};
 use super::noise::{Noise, NoisePrior};
 use super::noise_fit::fit_noise;
-use super::optimise::{Damping, Outcome, Proposal, Quadratic};
+use super::optimise::{Outcome, Proposal, Quadratic};
 pub use super::settings::Effort;
 use super::settings::{
-    CALM_ITERATIONS, CALM_SHARE, NOISE_REFUSED, OUTLIER_SHARE, STEP_GAIN, STEP_LONGEST, STEP_LOSS, STEP_SHORTEST,
+    CALM_ITERATIONS, CALM_SHARE, NOISE_REFUSED, OUTLIER_SHARE, STEP_DAMPING, STEP_GAIN, STEP_LONGEST, STEP_SHORTEST,
 };
 use crate::model::{Model, Prior};
 use crate::simulate::Integration;
@@ -194,19 +194,6 @@ pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prio
     fit_noise(&some, &tangents, &found.model, &found.noise, prior, GATE, CALM_ITERATIONS)
 }
 
-/// How a parameter step is damped: parameters that the data hardly determine ask for steps on which the others would fail;
-/// damping, in units of the columns' scales, holds those back and lets the rest move. It stays while the valley bends.
-const DAMPING: Damping = Damping {
-    attempts: 6,
-    least_promise: STEP_GAIN,
-    loss: STEP_LOSS,
-    first: 0.3,
-    most: f64::INFINITY,
-    shrink: 0.3,
-    off: 0.03,
-    trusted: 0.5,
-};
-
 /// Fits the free parameters and the noise, starting from the model's values.
 ///
 /// A step that lowers the log-posterior is tried again with more damping, at most five times. Values stay inside the parameters'
@@ -307,7 +294,7 @@ impl Fit<'_> {
             let value = point.value;
             (point, value)
         };
-        let Outcome { taken, last, .. } = DAMPING.search(from.value, damping, propose, evaluate);
+        let Outcome { taken, last, .. } = STEP_DAMPING.search(from.value, damping, propose, evaluate);
         (taken.map(|(point, _)| point), last.map_or(0.0, |(_, length)| length))
     }
 

@@ -60,7 +60,7 @@ pub fn absorbed(s: &Screen, list: &[Candidate]) -> Vec<Absorbed> {
                 "the ship's own hull, propeller and rudder coefficients, which are not known well enough; \
                  a session without it would show it"
             } else {
-                "the model's own parameters, or there is nothing in these data that it acts on"
+                "the model's own parameters, or nothing in these data depends on it"
             };
             Absorbed { mechanism: c.mechanism.name.into(), retained: r.pooled.retained, by: by.into() }
         })
