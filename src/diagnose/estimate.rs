@@ -169,6 +169,15 @@ fn quadratic(Evidence { total, .. }: &Evidence, model: &Model, free: &[FreeParam
     Quadratic { information, score, room }
 }
 
+/// The model after a step of the free parameters, in units of their columns; values stay inside their bounds.
+pub fn moved(model: &Model, free: &[FreeParameter], step: &DVector<f64>) -> Model {
+    let mut out = model.clone();
+    for (f, s) in free.iter().zip(step.iter()) {
+        f.set(&mut out, f.value(model) + s * f.column.scale);
+    }
+    out
+}
+
 /// Log-likelihood plus log-prior of a model.
 pub fn log_posterior(
     model: &Model,
@@ -286,11 +295,7 @@ impl Fit<'_> {
             Some(Proposal { step: (step, length.min(STEP_LONGEST)), promise })
         };
         let evaluate = |(step, _): &(DVector<f64>, f64)| {
-            let mut model = from.model.clone();
-            for (f, s) in self.free.iter().zip(step.iter()) {
-                f.set(&mut model, f.value(&from.model) + s * f.column.scale);
-            }
-            let point = self.at(model, from.noise);
+            let point = self.at(moved(&from.model, self.free, step), from.noise);
             let value = point.value;
             (point, value)
         };
