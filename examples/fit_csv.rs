@@ -4,7 +4,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use trimtab::{
-    ColumnMap, FitRun, FitSettings, Form, Labels, Model, Recording, Ship, Split, WindowSettings, demo, fit, validity,
+    ColumnMap, FitSettings, Form, Labels, Model, Recording, Ship, Split, WindowSettings, demo, fit, validity,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -27,8 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let labels = Labels { run: name.clone(), session: name, manoeuvre: String::new(), split: Split::Train };
         // Windows of four minutes: errors of a simulation grow with its length.
         let cut = WindowSettings { window: Some(240.0), ..WindowSettings::whole(ship.hull.draught) };
-        let windows = recording.windows(&labels, &cut)?.windows;
-        runs.extend(windows.iter().map(|w| FitRun::of(w, &ship, settings.max_yaw_rate)));
+        runs.extend(recording.windows(&labels, &cut)?.windows);
     }
 
     let fitted = fit(&model, &runs, &settings, &mut |p| {
@@ -36,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         true
     })?;
     println!("{}", fitted.report());
-    let samples = runs.iter().flat_map(|r| r.measured.iter().zip(&r.inputs));
+    let samples = runs.iter().flat_map(validity::samples);
     println!("{}", validity::outside(&fitted.model, samples).line());
 
     let path = std::env::temp_dir().join("trimtab_fitted.toml");

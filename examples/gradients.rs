@@ -3,13 +3,12 @@
 
 use std::error::Error;
 use trimtab::fit::{Cost, CostOptions, Derivatives};
-use trimtab::{FitRun, FitSettings, demo, fit};
+use trimtab::{FitSettings, demo, fit};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let study = demo::example()?;
     let settings = FitSettings::default();
-    let runs: Vec<FitRun> =
-        study.train.iter().map(|w| FitRun::of(w, &study.model.ship, settings.max_yaw_rate)).collect();
+    let runs = &study.train;
 
     println!("A fit of {} recordings, eleven parameters:", runs.len());
     println!("{:38} {:>10} {:>10} {:>10} {:>10}", "derivatives", "iterations", "gradients", "seconds", "cost");
@@ -21,14 +20,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("central differences, step 1e-10", Derivatives::FiniteDifferences, 1e-10),
     ] {
         let settings = FitSettings { derivatives, difference_step: step, ..settings };
-        let fitted = fit(&study.model, &runs, &settings, &mut |_| true)?;
+        let fitted = fit(&study.model, runs, &settings, &mut |_| true)?;
         let end = if fitted.converged { format!("{:.6}", fitted.cost) } else { "no end".into() };
         println!("{words:38} {:10} {:10} {:10.2} {end:>10}", fitted.iterations, fitted.counts.gradient, fitted.seconds);
     }
 
     let gradient = |derivatives, difference_step| -> Result<Vec<f64>, Box<dyn Error>> {
-        let options = CostOptions { derivatives, difference_step, integration: settings.integration };
-        let cost = Cost::new(&study.model, &runs, options)?;
+        let options = CostOptions {
+            max_yaw_rate: settings.max_yaw_rate,
+            derivatives,
+            difference_step,
+            integration: settings.integration,
+        };
+        let cost = Cost::new(&study.model, runs, options)?;
         let start: Vec<f64> = cost.free().iter().map(|i| study.model.parameters[*i].value).collect();
         Ok(cost.with_gradient(&start).ok_or("the simulation diverges at the start")?.gradient.as_slice().to_vec())
     };

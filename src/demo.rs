@@ -2,7 +2,7 @@
 //! The data are not made here: the binary `demo_data` of the experiments wrote them, and a test there compares them with its output.
 
 use crate::model::{Model, ModelError};
-use crate::recording::{ColumnMap, Labels, Recording, RecordingError, Split, Window, WindowSettings};
+use crate::recording::{ColumnMap, Labels, Recording, RecordingError, Run, Split, WindowSettings};
 use crate::ship::{Ship, ShipError};
 use std::path::Path;
 
@@ -41,9 +41,9 @@ pub struct Example {
     /// The model with the published parameters, against which a fitted one is judged.
     pub baseline: Model,
     /// The recordings to fit to, 32 of them.
-    pub train: Vec<Window>,
+    pub train: Vec<Run>,
     /// The recordings kept aside, 8 of them.
-    pub test: Vec<Window>,
+    pub test: Vec<Run>,
 }
 
 /// Why the example study could not be read.
@@ -103,8 +103,8 @@ mod tests {
         for (side, split) in [(&example.train, Split::Train), (&example.test, Split::Test)] {
             for (memory, disk) in side.iter().zip(windows.iter().filter(|w| w.split == split)) {
                 assert_eq!(
-                    (&memory.run, &memory.session, &memory.manoeuvre, memory.split),
-                    (&disk.run, &disk.session, &disk.manoeuvre, disk.split)
+                    (&memory.recording, &memory.session, &memory.manoeuvre, memory.split),
+                    (&disk.recording, &disk.session, &disk.manoeuvre, disk.split)
                 );
                 assert_eq!((&memory.inputs, &memory.measured), (&disk.inputs, &disk.measured));
             }

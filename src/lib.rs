@@ -5,7 +5,7 @@
 //! that knows more physics than the model has:
 //!
 //! ```
-//! use trimtab::{EvaluationSettings, FitRun, FitSettings, Run, Settings, diagnose, evaluate, fit};
+//! use trimtab::{EvaluationSettings, FitSettings, Judging, Settings, diagnose, fit, prove};
 //!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
 //!     // A model with eleven free parameters, 32 recordings to fit it to, and 8 that are kept aside.
@@ -13,23 +13,20 @@
 //!
 //!     // Least squares through the simulation, with exact gradients.
 //!     let settings = FitSettings::default();
-//!     let runs: Vec<_> = study.train.iter().map(|w| FitRun::of(w, &study.model.ship, settings.max_yaw_rate)).collect();
-//!     let fitted = fit(&study.model, &runs, &settings, &mut |_| true)?;
+//!     let fitted = fit(&study.model, &study.train, &settings, &mut |_| true)?;
 //!     println!("{}", fitted.brief());
 //!     assert!(fitted.converged);
 //!
 //!     // How well does it predict recordings it has not seen, beside the published parameters?
-//!     let (integration, rate) = (settings.integration, settings.max_yaw_rate);
-//!     let judged =
-//!         evaluate(&study.baseline, &fitted.model, &study.test, integration, rate, &EvaluationSettings::default());
+//!     let judging = Judging::new(&settings, EvaluationSettings::default());
+//!     let judged = prove(&study.baseline, &fitted.model, &study.test, &judging);
 //!     let summary = judged.summary("test").ok_or("no test run")?;
 //!     println!("better on {} of {} runs", summary.runs_better, summary.runs);
 //!     assert!(summary.runs_better > summary.runs_worse);
 //!
 //!     // Which physics does it lack?
-//!     let of = |windows: &[_]| windows.iter().map(Run::from).collect::<Vec<_>>();
-//!     let diagnosis =
-//!         diagnose(&fitted.model, &of(&study.train), &of(&study.test), &Settings::default(), &|step| println!("{step}"))?;
+//!     let settings = Settings { judging, ..Settings::default() };
+//!     let diagnosis = diagnose(&fitted.model, &study.train, &study.test, &settings, &|step| println!("{step}"))?;
 //!     println!("{}", diagnosis.headline);
 //!     assert!(!diagnosis.ranking.is_empty());
 //!     Ok(())
@@ -64,7 +61,7 @@
 //!   machine since about 2015): `rustflags = ["-C", "target-cpu=x86-64-v3"]` under `[build]`. Without, results are the same and
 //!   a fit takes several times as long.
 
-pub mod check;
+pub mod audit;
 pub mod demo;
 pub mod diagnose;
 pub mod dynamics;
@@ -84,16 +81,17 @@ pub mod sensitivity;
 pub mod ship;
 pub mod simulate;
 pub mod state;
+pub mod statistics;
 pub mod study;
 pub mod terms;
 pub mod validity;
 
-pub use diagnose::{Diagnosis, Run, Settings, Verdict, diagnose};
-pub use evaluate::{Evaluation, EvaluationSettings, evaluate};
-pub use fit::{Fit, FitRun, FitSettings, fit};
+pub use diagnose::{Diagnosis, Settings, Verdict, diagnose};
+pub use evaluate::{Evaluation, EvaluationSettings, Judging, prove};
+pub use fit::{Fit, FitSettings, fit};
 pub use model::Model;
 pub use physics::Form;
-pub use recording::{ColumnMap, Labels, Recording, Split, Window, WindowSettings};
+pub use recording::{ColumnMap, Labels, Recording, Run, Split, WindowSettings};
 pub use ship::Ship;
 pub use simulate::{Integration, Method, Scenario, Trajectory, simulate};
 pub use state::{Force, Inputs, State};

@@ -4,6 +4,7 @@
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::physics::{Flow, Form, Quantity, Validity, range_in_words};
+use crate::recording::{Run, or_nan};
 use crate::state::{Inputs, STATES, State};
 use serde::Serialize;
 use std::borrow::Borrow;
@@ -78,14 +79,9 @@ pub fn outside<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
     Coverage { samples: count, share_outside: share(anywhere, count), outside }
 }
 
-/// The samples of a run for [`outside`]: states with NaN in the channels that were not measured, and the inputs.
-pub fn samples<'a>(
-    measured: &'a [[f64; STATES]],
-    channels: &'a [bool; STATES],
-    inputs: &'a [Inputs<f64>],
-) -> impl Iterator<Item = ([f64; STATES], &'a Inputs<f64>)> {
-    let known = |y: &[f64; STATES]| std::array::from_fn(|j| if channels[j] { y[j] } else { f64::NAN });
-    measured.iter().map(known).zip(inputs)
+/// The samples of a run for [`outside`]: states with NaN where a channel has no value, and the inputs.
+pub fn samples(run: &Run) -> impl Iterator<Item = ([f64; STATES], &Inputs<f64>)> {
+    run.measured.iter().map(or_nan).zip(&run.inputs)
 }
 
 fn share(part: usize, whole: usize) -> f64 {
@@ -212,6 +208,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+    use crate::recording::{Split, measured};
     use crate::ship::Ship;
     use std::path::Path;
 
@@ -291,10 +288,23 @@ mod tests {
         let mut blind = at(5.0, 0.0, 2.0, 0.0);
         blind.0[4] = f64::NAN;
         assert_eq!(outside(&model(Form::Paper, &[]), [blind, at(5.0, 0.0, 2.0, 0.0)]).samples, 1);
-        // A channel that was not measured reads 0, which is no state of rest.
+        // A channel that was not measured is no state of rest.
         let (state, inputs) = at(5.0, 0.0, 2.0, 0.0);
-        let without_sway = [true, true, true, true, false, true];
-        let run = samples(&[state], &without_sway, &[inputs]).map(|(y, i)| (y, *i)).collect::<Vec<_>>();
-        assert_eq!(outside(&model(Form::Paper, &[]), run).samples, 0);
+        let mut run = Run {
+            name: "ahead 0 s".into(),
+            recording: "ahead".into(),
+            session: String::new(),
+            manoeuvre: String::new(),
+            split: Split::Train,
+            dt: 1.0,
+            inputs: vec![inputs],
+            measured: measured(&[state]),
+            initial: state,
+            disturbed: Vec::new(),
+        };
+        let count = |run: &Run| outside(&model(Form::Paper, &[]), samples(run)).samples;
+        assert_eq!(count(&run), 1);
+        run.measured[0][4] = None;
+        assert_eq!(count(&run), 0);
     }
 }

@@ -36,7 +36,7 @@ fn write_study(folder: &Path, count: usize, [north, east]: [f64; 2]) {
     for (i, run) in runs(&truth, &truth_noise(), count, 1).iter().enumerate() {
         let mut rows = "t [s],x [m],y [m],psi [rad],u [m/s],v [m/s],r [rad/s],n [rps],delta [rad]\n".to_owned();
         for (m, input) in run.measured.iter().zip(&run.inputs) {
-            let [x, y, psi, u, v, r] = m;
+            let [x, y, psi, u, v, r] = m.map(Option::unwrap);
             writeln!(rows, "{},{x},{y},{psi},{u},{v},{r},{},{}", input.t, input.n, input.delta).unwrap();
         }
         std::fs::write(folder.join(format!("{i}.csv")), rows).unwrap();
@@ -173,6 +173,39 @@ fn other_commands_take_the_improved_model_and_it_is_better_than_the_base() {
     let improved = evaluate("results/improved.toml");
     let main = &improved["result"]["summaries"][0];
     assert!(main["cvdm_fitted"]["value"].as_f64() < main["cvdm_baseline"]["value"].as_f64(), "{main}");
+}
+
+#[test]
+fn a_diagnosis_and_an_evaluation_give_the_same_proof_to_the_last_digit() {
+    let pair = ["evaluate", "study.toml", "--model", "results/improved.toml", "--baseline", "results/base.toml"];
+    let output = trimtab(&CASE.folder, &[&pair[..], &["--json"]].concat());
+    let evaluation: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (evaluation, proof) = (&evaluation["result"], &CASE.document["held_out"]);
+    let main = evaluation["summaries"].as_array().unwrap().iter().find(|s| s["group"] == "test").unwrap();
+    let same = [
+        ("before", &main["cvdm_baseline"]["value"]),
+        ("after", &main["cvdm_fitted"]["value"]),
+        ("improvement", &main["cvdm_improvement"]["value"]),
+        ("ci95", &main["cvdm_improvement"]["ci95"]),
+        ("better", &main["better"]),
+        ("worse", &main["worse"]),
+        ("runs", &main["trajectories"]),
+    ];
+    for (key, value) in same {
+        assert!(!value.is_null() && &proof[key] == value, "{key}: {} {value}", proof[key]);
+    }
+    let test = evaluation["trajectories"].as_array().unwrap().iter().filter(|t| t["split"] == "test");
+    let (before, after) = (proof["runs_before"].as_array().unwrap(), proof["runs_after"].as_array().unwrap());
+    assert_eq!(before.len(), 6);
+    for ((t, before), after) in test.zip(before).zip(after) {
+        assert_eq!((&t["baseline"]["cvdm"], &t["fitted"]["cvdm"]), (&before["cvdm"], &after["cvdm"]));
+    }
+    // And as printed.
+    let (table, summary) = (trimtab(&CASE.folder, &pair), text(&CASE.output.stdout));
+    let row = text(&table.stdout).lines().find(|l| l.contains("cVDM [%]")).unwrap().to_owned();
+    let words: Vec<&str> = summary.split_whitespace().collect();
+    let at = words.windows(3).position(|w| w[0] == "cVDM" && w[2] == "%").unwrap();
+    assert!(row.contains(words[at + 1]) && row.contains(words[at + 4]), "{row}: {:?}", &words[at..at + 6]);
 }
 
 #[test]

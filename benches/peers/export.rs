@@ -8,8 +8,10 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 use trimtab::fit::constraints::{self, Row};
-use trimtab::fit::{Derivatives, Fit, FitRun, fit};
+use trimtab::fit::cost::weights;
+use trimtab::fit::{Derivatives, Fit, FitSettings, fit};
 use trimtab::model::Model;
+use trimtab::recording::{Run, or_nan};
 use trimtab::terms::rudder;
 
 #[path = "../support/case.rs"]
@@ -35,7 +37,7 @@ fn main() -> Result<()> {
 fn export(directory: &Path) -> Result<()> {
     std::fs::create_dir_all(directory)?;
     let (model, runs) = (case::ship_a(), case::recordings(DT));
-    write_runs(&directory.join("runs.csv"), &runs)?;
+    write_runs(&directory.join("runs.csv"), &model, &runs)?;
     write_samples(&directory.join("samples.csv"), &runs)?;
     write_json(&directory.join("constants.json"), &constants(&model, &runs))?;
     let rows = constraints::rows(&model, &case::settings().constraints, constraints::speed_range(&runs))?;
@@ -54,23 +56,24 @@ fn header(first: &[&str], prefix: &str) -> Vec<String> {
 }
 
 /// One line a run: initial state and the square of each channel's factor on its residual.
-fn write_runs(path: &Path, runs: &[FitRun]) -> Result<()> {
+fn write_runs(path: &Path, model: &Model, runs: &[Run]) -> Result<()> {
     let mut file = csv::Writer::from_path(path)?;
     file.write_record(header(&["run"], "initial_").into_iter().chain(header(&[], "weight_")))?;
     for (i, run) in runs.iter().enumerate() {
-        let numbers = run.initial.iter().chain(&run.weights).map(ToString::to_string);
+        let weights = weights(&model.ship, run, FitSettings::default().max_yaw_rate);
+        let numbers = run.initial.iter().chain(&weights).map(ToString::to_string);
         file.write_record(std::iter::once(i.to_string()).chain(numbers))?;
     }
     Ok(file.flush()?)
 }
 
 /// One line a sample: inputs and measured state.
-fn write_samples(path: &Path, runs: &[FitRun]) -> Result<()> {
+fn write_samples(path: &Path, runs: &[Run]) -> Result<()> {
     let mut file = csv::Writer::from_path(path)?;
     file.write_record(header(&["run", "step", "n", "delta"], "measured_"))?;
     for (i, run) in runs.iter().enumerate() {
         for (k, (inputs, measured)) in run.inputs.iter().zip(&run.measured).enumerate() {
-            let numbers = [inputs.n, inputs.delta].into_iter().chain(*measured).map(|x| x.to_string());
+            let numbers = [inputs.n, inputs.delta].into_iter().chain(or_nan(measured)).map(|x| x.to_string());
             file.write_record([i.to_string(), k.to_string()].into_iter().chain(numbers))?;
         }
     }
@@ -91,7 +94,7 @@ fn write_constraints(path: &Path, rows: &[Row]) -> Result<()> {
 }
 
 /// What the equations need: the ship, the values of all parameters, and the free ones with start, bounds and scale.
-fn constants(model: &Model, runs: &[FitRun]) -> Value {
+fn constants(model: &Model, runs: &[Run]) -> Value {
     let ship = &model.ship;
     let values: Map<String, Value> = model.parameters.iter().map(|p| (p.name.clone(), json!(p.value))).collect();
     let bound = |x: f64| x.is_finite().then_some(x);
@@ -128,7 +131,7 @@ fn start(model: &Model) -> Vec<f64> {
 }
 
 /// The answers a tool that does the same fit must give.
-fn expected(model: &Model, runs: &[FitRun]) -> Result<Value> {
+fn expected(model: &Model, runs: &[Run]) -> Result<Value> {
     let cost = case::cost(model, runs, Derivatives::Dual);
     let p = start(model);
     let at_start = cost.quadratic(&p).ok_or("the simulation diverges at the start")?;

@@ -2,10 +2,10 @@
 //! It times nothing itself; the bench and the export for other tools include this file, so that both use one case.
 
 use std::path::Path;
-use trimtab::fit::cost::weights;
-use trimtab::fit::{Cost, CostOptions, Derivatives, FitRun, FitSettings, Limits};
+use trimtab::fit::{Cost, CostOptions, Derivatives, FitSettings, Limits};
 use trimtab::model::Model;
 use trimtab::physics::Form;
+use trimtab::recording::{Run, Split, measured};
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Scenario, simulate};
 use trimtab::state::Inputs;
@@ -23,16 +23,8 @@ pub fn ship_a() -> Model {
         .unwrap_or_else(|e| unreachable!("{e}"))
 }
 
-fn path(states: &[[f64; 6]]) -> f64 {
-    states.windows(2).map(|s| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1])).sum()
-}
-
-fn mean_speed(states: &[[f64; 6]]) -> f64 {
-    states.iter().map(|s| s[3].hypot(s[4])).sum::<f64>() / states.len() as f64
-}
-
 /// Runs of the model with p*, ahead and astern, with the rudder weaving, and a disturbance that no parameter explains.
-pub fn recordings(dt: f64) -> Vec<FitRun> {
+pub fn recordings(dt: f64) -> Vec<Run> {
     let mut truth = ship_a();
     truth.set_eleven(&STAR);
     (0..RUNS)
@@ -46,31 +38,32 @@ pub fn recordings(dt: f64) -> Vec<FitRun> {
             let inputs: Vec<Inputs<f64>> = (0..STEPS).map(input).collect();
             let initial = [0.0, 0.0, phase, 3.3 + 2.0 * (2.1 * phase).sin(), 0.0, 0.0];
             let scenario = Scenario { dt, inputs: inputs.clone(), initial };
-            let mut measured = simulate(&truth, &truth.values(), Integration::default(), &scenario).states;
-            let weights = weights(&truth.ship, path(&measured), mean_speed(&measured), 0.0314);
-            for (k, m) in measured.iter_mut().enumerate() {
+            let mut states = simulate(&truth, &truth.values(), Integration::default(), &scenario).states;
+            for (k, m) in states.iter_mut().enumerate() {
                 m[0] += (0.1 * k as f64 + phase).sin();
                 m[1] += (0.1 * k as f64 + 2.0 * phase).cos();
                 m[4] += 0.02 * (0.2 * k as f64 + phase).cos();
             }
-            FitRun {
+            Run {
                 name: format!("run {i}"),
+                recording: format!("run {i}"),
                 session: String::new(),
-                start_time: 0.0,
+                manoeuvre: String::new(),
+                split: Split::Train,
                 dt,
                 inputs,
-                measured,
-                measured_channels: [true; 6],
+                measured: measured(&states),
                 initial,
-                weights,
+                disturbed: Vec::new(),
             }
         })
         .collect()
 }
 
 /// The cost of a model against runs, its derivatives from the source named.
-pub fn cost<'a>(model: &'a Model, runs: &'a [FitRun], derivatives: Derivatives) -> Cost<'a> {
-    let options = CostOptions { derivatives, difference_step: 1e-5, integration: Integration::default() };
+pub fn cost<'a>(model: &'a Model, runs: &'a [Run], derivatives: Derivatives) -> Cost<'a> {
+    let options =
+        CostOptions { max_yaw_rate: 0.0314, derivatives, difference_step: 1e-5, integration: Integration::default() };
     Cost::new(model, runs, options).unwrap_or_else(|e| unreachable!("{e}"))
 }
 

@@ -1,7 +1,7 @@
 //! `trimtab demo`: a complete study, from recordings to a fitted model, in seconds and without any file of the user's.
 //! It calls the other commands' functions, and writes the study so that a user can repeat each command on it.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs};

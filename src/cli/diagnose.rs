@@ -1,16 +1,17 @@
 //! `trimtab diagnose`: where the simulation differs from the recordings, which physics is missing, and the proof on unseen runs.
 //! The library makes the diagnosis, its report and its figures; this file calls it, shows progress and writes files.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::fit::model_text;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, print, progress};
 use std::path::PathBuf;
-use trimtab::diagnose::filter::Run;
+use trimtab::audit::Issue;
 use trimtab::diagnose::{Settings, Verdict, diagnose};
 use trimtab::error::suggestion;
-use trimtab::recording::{Split, Window};
+use trimtab::evaluate::Judging;
+use trimtab::recording::{Run, Split};
 use trimtab::report::diagnosis::{document, keys_listing, mechanism_names, page, pictures, summary};
 
 const LONG: &str = "\
@@ -67,11 +68,10 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("diagnose", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
-    let settings = settings(args, loaded.diagnose_settings()?)?;
+    let mut settings = settings(args, loaded.diagnose_settings()?)?;
+    settings.judging = Judging::new(&loaded.fit_settings()?, loaded.evaluation_settings()?);
     let windows = loaded.windows()?.windows;
-    let of =
-        |split: Split| -> Vec<Run> { windows.iter().filter(|w: &&Window| w.split == split).map(Run::from).collect() };
-    let (train, held_out) = (of(Split::Train), of(Split::Test));
+    let (train, held_out): (Vec<Run>, Vec<Run>) = windows.into_iter().partition(|w| w.split == Split::Train);
     if train.is_empty() {
         loaded.windows_of(Split::Train)?;
     }
@@ -109,7 +109,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         print(&(summary(&diagnosis, name) + &written))?;
     }
     let unanswered =
-        diagnosis.verdict == Verdict::Insufficient || diagnosis.admission.issues.iter().any(|i| i.blocking);
+        diagnosis.verdict == Verdict::Insufficient || diagnosis.admission.issues.iter().any(Issue::blocking);
     Ok(if unanswered { Answer::No } else { Answer::Yes })
 }
 

@@ -1,16 +1,16 @@
 //! `trimtab evaluate`: how well a model predicts the test runs, beside a baseline.
 //! The library computes the measures; this file prints, tabulates and draws them.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
 use std::path::PathBuf;
-use trimtab::evaluate::{Comparison, Estimate, Evaluation, Outcome, Summary, evaluate, predict};
+use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Summary, predict, prove};
 use trimtab::model::Model;
 use trimtab::numerals::{DASH, sig};
 use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
-use trimtab::recording::{Split, Window};
+use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
 use trimtab::simulate::Integration;
 use trimtab::state::STATE_NAMES;
@@ -78,11 +78,11 @@ pub fn baseline(loaded: &Loaded, given: Option<&PathBuf>) -> Result<Model, CliEr
 }
 
 /// Judges a model with the settings of the study.
-pub fn judge(loaded: &Loaded, baseline: &Model, model: &Model, windows: &[Window]) -> Result<Evaluation, CliError> {
+pub fn judge(loaded: &Loaded, baseline: &Model, model: &Model, windows: &[Run]) -> Result<Evaluation, CliError> {
     let fit = loaded.fit_settings()?;
     let settings = loaded.evaluation_settings()?;
     let bar = progress(format!("evaluating {} windows", windows.len()));
-    let evaluation = evaluate(baseline, model, windows, fit.integration, fit.max_yaw_rate, &settings);
+    let evaluation = prove(baseline, model, windows, &Judging::new(&fit, settings));
     bar.finish_and_clear();
     Ok(evaluation)
 }
@@ -232,7 +232,7 @@ pub fn write(
     output: &mut Output,
     evaluation: &Evaluation,
     models: [&Model; 2],
-    windows: &[Window],
+    windows: &[Run],
     integration: Integration,
 ) -> Result<(), CliError> {
     output.file("trajectories.csv", &trajectories(&evaluation.trajectories)?)?;
@@ -335,7 +335,7 @@ fn cvdm_figure(test: &[&Comparison]) -> Figure {
 }
 
 /// Tracks of test trajectories, recorded and under both models: best, median and worst of the fitted model.
-fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Window], integration: Integration) -> Figure {
+fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Run], integration: Integration) -> Figure {
     let mut order: Vec<usize> = (0..windows.len()).filter(|&i| windows[i].split == Split::Test).collect();
     let size = |i: usize| evaluation.trajectories[i].fitted.deviation().map_or(f64::INFINITY, |d| d.cvdm);
     order.sort_by(|&a, &b| size(a).total_cmp(&size(b)));
@@ -349,11 +349,11 @@ fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Window], inte
     for (word, i) in chosen {
         let w = &windows[i];
         let shown = [
-            ("recorded", RECORDED, w.measured.clone()),
+            ("recorded", RECORDED, w.measured.iter().map(or_nan).collect()),
             ("baseline", BASELINE, predict(models[0], w, integration).states),
             ("fitted", FITTED, predict(models[1], w, integration).states),
         ];
-        let mut track = Panel::track(format!("{word}: {}, {}", w.run, cvdm(&evaluation.trajectories[i].fitted)));
+        let mut track = Panel::track(format!("{word}: {}, {}", w.recording, cvdm(&evaluation.trajectories[i].fitted)));
         let mut heading = Panel::new("", Axis::new("time [s]"), Axis::new("heading psi [deg]"));
         for (name, color, states) in shown {
             let stride = (states.len() / 6).max(1);

@@ -1,7 +1,7 @@
 //! `trimtab maneuver`: the standard trials with any model, their measures, and the IMO criteria beside them.
 //! The library sails and measures the trials; this file prints, tabulates and draws them.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, progress};

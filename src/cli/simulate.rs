@@ -1,7 +1,7 @@
 //! `trimtab simulate`: simulates the recordings of a study from their recorded start with their recorded inputs.
 //! It compares no models; it prints how far each simulation is from the measured motion.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
@@ -9,7 +9,7 @@ use serde::Serialize;
 use trimtab::evaluate::{Outcome, outcome, predict_all};
 use trimtab::numerals::sig;
 use trimtab::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
-use trimtab::recording::{Split, Window};
+use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
 use trimtab::simulate::Trajectory;
 use trimtab::validity::{self, Coverage};
@@ -73,15 +73,15 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let trajectories = predict_all(model, &windows, settings.integration);
     bar.finish_and_clear();
 
-    let row = |(w, t): (&'_ Window, &Trajectory)| outcome(w, t, &model.ship, settings.max_yaw_rate);
+    let row = |(w, t): (&Run, &Trajectory)| outcome(w, t, &model.ship, settings.max_yaw_rate);
     let outcomes: Vec<Outcome> = windows.iter().zip(&trajectories).map(row).collect();
     let rows: Vec<Row<'_>> = windows
         .iter()
         .zip(&outcomes)
         .map(|(w, o)| Row {
-            run: &w.run,
+            run: &w.recording,
             split: w.split,
-            start_time: w.start_time,
+            start_time: w.start_time(),
             duration: w.duration(),
             steps: w.steps(),
             outcome: *o,
@@ -96,7 +96,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         }
     }
     output.figure("tracks", || figure(&model.name, &windows, &trajectories))?;
-    let samples = windows.iter().flat_map(|w| validity::samples(&w.measured, &w.measured_channels, &w.inputs));
+    let samples = windows.iter().flat_map(|w| validity::samples(w));
     let validity = validity::outside(model, samples);
     let text = format!("{} simulated with `{}`:\n\n{table}\n\n{}", loaded.study.name, model.name, validity.line());
     let report = Report { model: &model.name, runs: rows, validity };
@@ -149,14 +149,19 @@ fn table(rows: &[Row<'_>]) -> Table {
 }
 
 /// The name of a window's file: its run, with its start where the run has several.
-pub fn file_name(windows: &[Window], i: usize) -> String {
+pub fn file_name(windows: &[Run], i: usize) -> String {
     let w = &windows[i];
-    let safe: String = w.run.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
-    if windows.iter().filter(|o| o.run == w.run).count() > 1 { format!("{safe}_{:.0}s", w.start_time) } else { safe }
+    let safe: String =
+        w.recording.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+    if windows.iter().filter(|o| o.recording == w.recording).count() > 1 {
+        format!("{safe}_{:.0}s", w.start_time())
+    } else {
+        safe
+    }
 }
 
 /// A trajectory in the layout of a recording.
-fn recording(window: &Window, trajectory: &Trajectory) -> String {
+fn recording(window: &Run, trajectory: &Trajectory) -> String {
     let mut text = String::from("t [s],x [m],y [m],psi [rad],u [m/s],v [m/s],r [rad/s],n [rps],delta [rad]\n");
     for (k, [x, y, psi, u, v, r]) in trajectory.states.iter().enumerate() {
         let i = &window.inputs[k];
@@ -166,17 +171,18 @@ fn recording(window: &Window, trajectory: &Trajectory) -> String {
 }
 
 /// Tracks of the first windows, test before train: measured and simulated.
-fn figure(model: &str, windows: &[Window], trajectories: &[Trajectory]) -> Figure {
+fn figure(model: &str, windows: &[Run], trajectories: &[Trajectory]) -> Figure {
     const PANELS: usize = 12;
     let mut order: Vec<usize> = (0..windows.len()).collect();
     order.sort_by_key(|&i| windows[i].split == Split::Train);
     let panels = order.into_iter().take(PANELS).map(|i| {
         let (w, t) = (&windows[i], &trajectories[i]);
         let track = |states: &[[f64; 6]]| states.iter().map(|s| east_north(s[0], s[1])).collect::<Vec<_>>();
-        let start = east_north(w.measured[0][0], w.measured[0][1]);
+        let start = east_north(w.initial[0], w.initial[1]);
         let mut panel = Panel::track(file_name(windows, i));
-        if w.measured_channels[0] && w.measured_channels[1] {
-            panel = panel.with(Layer::line("recorded", RECORDED, track(&w.measured)));
+        let recorded: Vec<[f64; 6]> = w.measured.iter().map(or_nan).collect();
+        if recorded.iter().any(|s| s[0].is_finite() && s[1].is_finite()) {
+            panel = panel.with(Layer::line("recorded", RECORDED, track(&recorded)));
         }
         panel.with(Layer::line("simulated", BLUE, track(&t.states)).dashed()).with(Layer::scatter(
             "start",

@@ -1,7 +1,7 @@
 //! `trimtab terms`: the catalogue of physical effects, with equation, source and parameters.
 //! The library holds the catalogue and its listing; this file prints them.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::output::{Output, OutputArgs, csv_text};
 use serde::Serialize;

@@ -1,15 +1,16 @@
 //! The base model: what is free in it, and its fit to recordings that were audited, with parameters and noise.
 //! What physics it lacks is tested elsewhere; here recordings and integration step are audited.
 
-use super::admit::{Admission, Issue, admit, followed};
+use super::admit::{Admission, admit, followed};
 use super::decide::is_euler;
 use super::estimate::{Estimate, FreeParameter, estimate, log_posterior, passes};
-use super::filter::{Column, Run};
+use super::filter::Column;
 use super::noise::NoisePrior;
 use super::noise_fit::guess;
-use super::receiver::settled;
 use super::settings::{EULER_HOPELESS, Effort, FIRST, LOSS_ROUNDS, REFIT, SETTLE, Settings};
+use crate::audit::{Issue, settled};
 use crate::model::{Model, ModelError};
+use crate::recording::Run;
 use crate::simulate::{Integration, Method};
 
 /// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
@@ -93,18 +94,15 @@ impl<'a> Question<'a> {
 pub struct AuditedRuns {
     /// Runs to locate, name and model with.
     pub runs: Vec<Run>,
-    /// Runs to prove on.
-    pub held_out: Vec<Run>,
-    /// What was mended in the former.
+    /// What was mended in them.
     pub issues: Vec<Issue>,
 }
 
 impl AuditedRuns {
     /// Parts runs where positions jump and leaves out what was not measured; `length` is that of the ship \[m\].
-    pub fn new(runs: &[Run], held_out: &[Run], length: f64) -> Self {
+    pub fn new(runs: &[Run], length: f64) -> Self {
         let (runs, issues) = settled(runs, length);
-        let (held_out, _) = settled(held_out, length);
-        Self { runs, held_out, issues }
+        Self { runs, issues }
     }
 }
 
@@ -189,7 +187,7 @@ mod tests {
     #[test]
     fn a_sound_recording_is_fitted_whole_and_not_read_as_euler() {
         let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
-        let audited = AuditedRuns::new(&runs(&model, 6), &[], model.ship.hull.lpp);
+        let audited = AuditedRuns::new(&runs(&model, 6), model.ship.hull.lpp);
         let base = BaseFit::new(&question(&model, &settings), &audited);
         assert!(!is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
         assert_eq!((base.admission.samples, base.integration), (6 * SAMPLES, settings.integration()));
@@ -208,10 +206,10 @@ mod tests {
             let made = crate::simulate::simulate(&model, &model.values_in(&r.session), coarse, &scenario);
             // The same sensor errors on another trajectory.
             for ((m, a), b) in r.measured.iter_mut().zip(&fine.states).zip(&made.states) {
-                (0..6).for_each(|c| m[c] += b[c] - a[c]);
+                (0..6).for_each(|c| m[c] = m[c].map(|v| v + b[c] - a[c]));
             }
         }
-        let base = BaseFit::new(&question(&model, &settings), &AuditedRuns::new(&runs, &[], 85.0));
+        let base = BaseFit::new(&question(&model, &settings), &AuditedRuns::new(&runs, 85.0));
         assert!(is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
         assert_eq!((base.integration, base.admission.integration), (coarse, coarse));
     }

@@ -3,10 +3,11 @@
 
 use super::estimate::{Estimate, FreeParameter};
 use super::evidence::Test;
-use super::filter::{Column, Run};
+use super::filter::Column;
 use super::settings::{BEYOND_BOUNDS, QUARTER_TIDE};
 use crate::model::Model;
 use crate::physics::{Group, Mechanism, Probe};
+use crate::recording::Run;
 use crate::terms::CATALOGUE;
 use nalgebra::DVector;
 

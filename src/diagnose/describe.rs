@@ -7,7 +7,6 @@ use super::compete::Selected;
 use super::decide::PushTest;
 use super::estimate::Estimate;
 use super::evidence::Scatter;
-use super::filter::Run;
 use super::finding::{Amplitude, Equations, Finding, GENERIC, PUSH, PUSH_TITLE};
 use super::forces::forces_of;
 use super::locate::{EquationShare, Location};
@@ -19,7 +18,9 @@ use super::screen::Screen;
 use super::select::Selection;
 use super::settings::SCATTER_GROUPS;
 use super::wald::Wald;
+use crate::audit::Issue;
 use crate::physics::Kind;
+use crate::recording::{Channel, Run};
 use std::collections::BTreeSet;
 
 /// What was sailed in each run: the manoeuvre, or the recording where there are few manoeuvres or no names for them.
@@ -142,17 +143,27 @@ fn signature(c: &Candidate, s: &Screen) -> String {
     words
 }
 
+/// A blocking fault of a channel in words.
+fn title_of_fault(issue: &Issue) -> String {
+    let what = match issue.fault {
+        "sign_error" => "the sign",
+        "axes_error" => "the axes",
+        _ => "the unit",
+    };
+    format!("{what} of `{}`", issue.channel.map_or("the recordings", Channel::name))
+}
+
 /// What the audit of the recordings already shows to be wrong: a unit or a sign.
 fn sensor_findings(admission: &Admission) -> Vec<Finding> {
     admission
         .issues
         .iter()
-        .filter(|i| i.blocking)
+        .filter(|i| i.blocking())
         .map(|i| Finding {
-            mechanism: i.mechanism.into(),
-            title: format!("{} of `{}`", if i.mechanism == "sign_error" { "the sign" } else { "the unit" }, i.channel),
+            mechanism: i.fault.into(),
+            title: title_of_fault(i),
             kind: Kind::Sensor,
-            confidence_set: vec![i.mechanism.into()],
+            confidence_set: vec![i.fault.into()],
             why: i.text.clone(),
             sessions: Vec::new(),
             by_session: false,

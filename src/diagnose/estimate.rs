@@ -2,7 +2,7 @@
 //! likelihood, in turn. Which parameters are free, and what is concluded, is decided elsewhere.
 
 use super::evidence::{Base, Evidence, RunEvidence};
-use super::filter::{Column, Filter, GATE, Pass, Run, Wanted};
+use super::filter::{Column, Filter, GATE, Pass, Wanted};
 use super::noise::{Noise, NoisePrior};
 use super::noise_fit::fit_noise;
 use super::optimise::{Outcome, Proposal, Quadratic};
@@ -11,6 +11,7 @@ use super::settings::{
     CALM_ITERATIONS, CALM_SHARE, NOISE_REFUSED, OUTLIER_SHARE, STEP_DAMPING, STEP_GAIN, STEP_LONGEST, STEP_SHORTEST,
 };
 use crate::model::{Model, Prior};
+use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::DVector;
 use rayon::prelude::*;

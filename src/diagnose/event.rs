@@ -7,7 +7,6 @@ use super::compete::{Selected, compete};
 use super::decide::{PushTest, form_holds, is_euler};
 use super::eligible::{eligible, may_be_named};
 use super::estimate::{Estimate, calm_noise};
-use super::filter::Run;
 use super::finding::PUSH;
 use super::locate::{Location, locate};
 use super::noise::{Noise, NoisePrior};
@@ -15,6 +14,8 @@ use super::problem::Problem;
 use super::push::Push;
 use super::screen::{Screen, screen};
 use super::settings::{SETTLE, Settings};
+use crate::audit::Issue;
+use crate::recording::Run;
 use crate::simulate::Integration;
 
 /// The base model with every test of what it lacks.
@@ -55,7 +56,7 @@ impl BaseTests {
 
     /// Whether the audit found a unit or a sign that is wrong.
     pub fn is_blocked(&self) -> bool {
-        self.fit.admission.issues.iter().any(|i| i.blocking)
+        self.fit.admission.issues.iter().any(Issue::blocking)
     }
 
     /// The tests with the windows of a push disturbed: there the unknown force may be anything.
@@ -179,7 +180,7 @@ mod tests {
 
     fn tests(model: &Model, settings: &Settings) -> BaseTests {
         let question = Question { model, full: model.clone(), settings, progress: &|_| () };
-        let audited = AuditedRuns::new(&runs(model, 6), &[], model.ship.hull.lpp);
+        let audited = AuditedRuns::new(&runs(model, 6), model.ship.hull.lpp);
         BaseTests::new(&question, BaseFit::new(&question, &audited))
     }
 

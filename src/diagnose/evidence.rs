@@ -3,8 +3,9 @@
 
 use super::algebra::{pick, pseudo_inverse};
 use super::settings::{IDENTIFIABLE_SHARE, SCATTER_GROUPS};
+pub use crate::statistics::chi_squared_p;
+use crate::statistics::student_quantile;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
 /// Score and information of one run.
@@ -276,20 +277,11 @@ fn retained_share(reduced: &DMatrix<f64>, own: &DMatrix<f64>) -> f64 {
     SymmetricEigen::new(symmetric).eigenvalues.min().clamp(0.0, 1.0)
 }
 
-/// Upper tail of chi-squared; 1 for no degrees of freedom. Underflows to the smallest positive number, not to zero.
-pub fn chi_squared_p(statistic: f64, degrees: usize) -> f64 {
-    if degrees == 0 || !statistic.is_finite() {
-        return 1.0;
-    }
-    ChiSquared::new(degrees as f64).map_or(1.0, |d| d.sf(statistic.max(0.0)).max(f64::MIN_POSITIVE))
-}
-
 /// Standard errors that a 95 % interval reaches to either side, where scatter among so many groups of runs has widened them
 /// ([`Evidence::scatter`]): Student's t with one degree of freedom less than groups, as an error that few tell is itself uncertain
 /// (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
 fn reach(groups: usize) -> f64 {
-    let degrees = groups.max(SCATTER_GROUPS) - 1;
-    StudentsT::new(0.0, 1.0, degrees as f64).map_or(1.96, |t| t.inverse_cdf(0.975))
+    student_quantile(0.975, (groups.max(SCATTER_GROUPS) - 1) as f64)
 }
 
 #[cfg(test)]

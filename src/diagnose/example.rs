@@ -5,10 +5,11 @@
 
 use super::candidate::{Candidate, candidates};
 use super::estimate::Estimate;
-use super::filter::{Column, Run};
+use super::filter::Column;
 use super::noise::{Noise, SensorNoise};
 use crate::model::Model;
 use crate::physics::Form;
+use crate::recording::{Run, Split, measured};
 use crate::ship::Ship;
 use crate::simulate::{Integration, Method, Scenario, simulate};
 use crate::state::Inputs;
@@ -74,17 +75,17 @@ fn run(model: &Model, i: usize, rng: &mut ChaCha8Rng) -> Run {
             s[c] + sizes[c] * e
         })
     };
-    let measured: Vec<[f64; 6]> = states.iter().map(&mut measure).collect();
+    let samples: Vec<[f64; 6]> = states.iter().map(&mut measure).collect();
     Run {
         name: format!("run {i}"),
         recording: format!("run {i}"),
         session: session.into(),
         manoeuvre: ["turn", "zigzag", "stop"][i % 3].into(),
+        split: Split::Train,
         dt,
         inputs,
-        initial: measured[0],
-        measured,
-        channels: [true; 6],
+        initial: samples[0],
+        measured: measured(&samples),
         disturbed: Vec::new(),
     }
 }

@@ -3,11 +3,11 @@
 
 use super::candidate::Candidate;
 use super::estimate::Estimate;
-use super::filter::Run;
 use super::settings::{CANCELLED_SHARE, FORCE_STRIDE};
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::parameter::Parity;
+use crate::recording::{Run, or_nan};
 use crate::state::{Force, State};
 
 /// The model with some parameters neutral, in every session.
@@ -34,10 +34,10 @@ pub fn forces_of(model: &Model, parameters: &[usize], runs: &[Run]) -> Vec<[f64;
         with.drive(r.dt, &mut a);
         bare.drive(r.dt, &mut b);
         for ((m, i), j) in r.measured.iter().zip(&a).zip(&b).step_by(FORCE_STRIDE) {
-            if m.iter().any(|v| !v.is_finite()) {
+            if m.contains(&None) {
                 continue;
             }
-            let state = State::from_array(*m);
+            let state = State::from_array(or_nan(m));
             let (x, flow) = with.rates(&state, i, &Force::zero());
             let (y, _) = bare.rates(&state, j, &Force::zero());
             let inertia = with.inertia(&flow);
@@ -84,7 +84,7 @@ mod tests {
         let of = |m: &Model| forces_of(m, &[m.find("earth_force.north").unwrap()], &runs);
         assert!(of(&model()).iter().flatten().all(|f| *f == 0.0));
         let model = with(&[("earth_force.north", 1000.0)]);
-        let headings = runs.iter().flat_map(|r| r.measured.iter().step_by(FORCE_STRIDE)).map(|m| m[2]);
+        let headings = runs.iter().flat_map(|r| r.measured.iter().step_by(FORCE_STRIDE)).map(|m| m[2].unwrap());
         for (f, psi) in of(&model).iter().zip(headings) {
             let expected = [1000.0 * psi.cos(), -1000.0 * psi.sin(), 0.0];
             // The moment is what is left of inertia times acceleration; its unit is the force times the length.
@@ -98,7 +98,7 @@ mod tests {
         let model = with(&[("earth_force.north", 1000.0)]);
         let mut runs = runs(&model, 1);
         let all = forces_of(&model, &[model.find("earth_force.north").unwrap()], &runs).len();
-        runs[0].measured[0][4] = f64::NAN;
+        runs[0].measured[0][4] = None;
         assert_eq!(forces_of(&model, &[model.find("earth_force.north").unwrap()], &runs).len(), all - 1);
     }
 

@@ -4,12 +4,13 @@
 use super::blocks::{Blocks, block_length, choices};
 use super::estimate::{Estimate, base_of, evidence, restrictions};
 use super::evidence::{Base, Evidence};
-use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::filter::{Column, Filter, Pass, Wanted};
 use super::generic::{GenericLaw, widen};
 use super::place::{Chart, PARTS, Place, place};
 use super::push::{Push, Window, pushes, significant};
 use super::region::{REGIONS, RegionTest, regions};
 use crate::model::Model;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
 use rayon::prelude::*;

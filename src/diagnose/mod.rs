@@ -50,7 +50,6 @@ pub mod place;
 mod problem;
 pub mod prove;
 pub mod push;
-pub mod receiver;
 pub mod refit;
 pub mod region;
 mod residual;
@@ -65,7 +64,6 @@ mod words;
 
 pub use decide::Verdict;
 pub use diagnosis::Diagnosis;
-pub use filter::Run;
 pub use finding::Finding;
 pub use pipeline::diagnose;
 pub use settings::Settings;

@@ -2,11 +2,12 @@
 //! The ship's parameters are held: they are estimated elsewhere, in turn with the noise.
 
 use super::covariance::{Discrete, Z, initial, predict};
-use super::filter::{Run, Tangent};
+use super::filter::{Tangent, boost};
 use super::noise::{GROUP_OF, NOISE_PARAMETERS, Noise, NoisePrior, NoiseScore, SensorNoise};
 use super::optimise::{Outcome, Proposal};
 use super::settings::{COLOURED_GUESS, COLOURED_PERIODS, EXACT_SENSOR, FORCE_GUESS, NOISE_DAMPING, NOISE_STEP_LONGEST};
 use crate::model::Model;
+use crate::recording::{Run, or_nan};
 use crate::state::STATES;
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
@@ -35,10 +36,7 @@ fn innovations<S: Scalar>(
     let mut p = initial(noise, model);
     for k in 0..run.measured.len() {
         for j in 0..STATES {
-            let y = run.measured[k][j];
-            if !run.channels[j] || !y.is_finite() {
-                continue;
-            }
+            let Some(y) = run.measured[k][j] else { continue };
             let mut error = -(z[j] + z[9 + j]) + (y - tangent.offset[k][j]);
             if j == 2 {
                 error = trimtab_ad::smooth::wrap_angle(error);
@@ -61,7 +59,7 @@ fn innovations<S: Scalar>(
             break;
         }
         z = move_mean(&z, tangent, k, noise);
-        predict(&mut p, &tangent.a[k], &tangent.gamma[k], noise, run.boost(k));
+        predict(&mut p, &tangent.a[k], &tangent.gamma[k], noise, boost(run, k));
     }
     out
 }
@@ -220,6 +218,7 @@ pub fn guess(runs: &[Run], model: &Model) -> Noise {
             .iter()
             .flat_map(|r| {
                 r.measured.windows(4).flat_map(move |w| {
+                    let w: Vec<[f64; STATES]> = w.iter().map(or_nan).collect();
                     channels
                         .iter()
                         .map(move |&j| (w[3][j] - 3.0 * w[2][j] + 3.0 * w[1][j] - w[0][j]).abs() / 20f64.sqrt())

@@ -2,8 +2,8 @@
 //! Weather is the same everywhere; a force that differs has another cause, which is not sought here.
 
 use super::evidence::{Base, Evidence};
-use super::filter::Run;
 use super::settings::{PLACE_PARTS, PLACE_TAIL};
+use crate::recording::Run;
 use serde::Serialize;
 use statrs::statistics::{Data, OrderStatistics};
 
@@ -39,7 +39,7 @@ impl Chart {
     /// Of all measured positions but the outermost two per cent each way.
     pub fn of(runs: &[Run]) -> Option<Self> {
         let limits = |axis: usize| {
-            let all = runs.iter().flat_map(|r| &r.measured).map(|m| m[axis]).filter(|v| v.is_finite());
+            let all = runs.iter().flat_map(|r| &r.measured).filter_map(|m| m[axis]);
             let mut all = Data::new(all.collect::<Vec<f64>>());
             (all.quantile(PLACE_TAIL), all.quantile(1.0 - PLACE_TAIL))
         };

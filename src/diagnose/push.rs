@@ -4,9 +4,10 @@
 use super::blocks::{Blocks, Span, block_length};
 use super::estimate::Estimate;
 use super::evidence::chi_squared_p;
-use super::filter::{Filter, Pass, Run, Wanted};
+use super::filter::{Filter, Pass, Wanted};
 use super::noise::Noise;
 use super::settings::{PUSH_PRIOR, PUSH_ROUNDS, PUSH_STARTS};
+use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
 use nalgebra::{Matrix3, Vector3};
@@ -275,6 +276,7 @@ mod tests {
     use crate::diagnose::noise_fit::guess;
     use crate::model::Model;
     use crate::physics::Form;
+    use crate::recording::Split;
     use crate::ship::Ship;
     use crate::state::{Inputs, STATES};
     use nalgebra::{DMatrix, DVector};
@@ -305,10 +307,10 @@ mod tests {
                 recording: format!("run {index}"),
                 session: "one".into(),
                 manoeuvre: String::new(),
+                split: Split::Train,
                 dt: 2.0,
                 inputs: (0..count * LENGTH).map(|k| Inputs::actuators(2.0 * k as f64, 1.0, 0.0)).collect(),
-                measured: vec![[0.0; STATES]; count * LENGTH],
-                channels: [true; STATES],
+                measured: vec![[Some(0.0); STATES]; count * LENGTH],
                 initial: [0.0; STATES],
                 disturbed: Vec::new(),
             };

@@ -6,9 +6,10 @@
 
 use super::estimate::{Estimate, base_of, evidence, log_posterior, restrictions};
 use super::evidence::Base;
-use super::filter::{Column, Filter, Gains, Pass, Run, Wanted};
+use super::filter::{Column, Filter, Gains, Pass, Wanted};
 use crate::ipopt::{IpoptError, Nlp, OptionValue, Options, Solution, solve};
 use crate::model::Model;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::DMatrix;
 use rayon::prelude::*;

@@ -5,13 +5,13 @@ use super::base::Question;
 use super::compete::Selected;
 use super::decide::{Decision, MechanismTest, PlaceTest, PushTest, ResidualTests, TestTable};
 use super::estimate::Estimate;
-use super::filter::Run;
 use super::finding::PUSH;
 use super::locate::{Location, locate};
 use super::place::Place;
 use super::push::{Push, sharpened};
 use super::screen::{Screen, screen};
 use super::select::Selection;
+use crate::recording::Run;
 
 /// The tests of what the selected mechanisms leave.
 pub struct Left {
@@ -112,8 +112,13 @@ fn turning_force(found: &Estimate, runs: &[Run]) -> f64 {
     let hull = &found.model.ship.hull;
     let (mut speed, mut count) = (0.0, 0.0);
     for r in runs {
-        for s in r.measured.iter().filter(|s| s[3].is_finite()) {
-            speed += s[3].abs();
+        let mut surge = r.measured.iter().filter_map(|s| s[3]).peekable();
+        if surge.peek().is_none() {
+            speed += r.mean_speed() * r.measured.len() as f64;
+            count += r.measured.len() as f64;
+        }
+        for u in surge {
+            speed += u.abs();
             count += 1.0;
         }
     }
@@ -135,14 +140,14 @@ mod tests {
     fn the_turning_force_is_mass_times_speed_squared_over_length() {
         let found = at(&model());
         let mut runs = runs(&found.model, 2);
-        runs.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[3] = -2.0);
-        runs[0].measured[3][3] = f64::NAN;
+        runs.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[3] = Some(-2.0));
+        runs[0].measured[3][3] = None;
         let hull = &found.model.ship.hull;
         assert!((turning_force(&found, &runs) / (4.0 * hull.mass / hull.lpp) - 1.0).abs() < 1e-12);
     }
 
     fn residual(question: &Question, truth: &Model) -> Residual {
-        let audited = AuditedRuns::new(&runs(truth, 12), &[], truth.ship.hull.lpp);
+        let audited = AuditedRuns::new(&runs(truth, 12), truth.ship.hull.lpp);
         let tests = BaseTests::new(question, BaseFit::new(question, &audited));
         Residual::new(question, Selection::new(question, Opening { tests, push: None, first: None }))
     }

@@ -2,6 +2,8 @@
 //! The smallest size worth naming of each mechanism is not here: it is a `floor` of the mechanism, in its term's file.
 
 use super::optimise::Damping;
+use crate::evaluate::{EvaluationSettings, Judging};
+use crate::fit::FitSettings;
 use crate::simulate::{Integration, Method};
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +23,16 @@ pub struct Settings {
     pub substeps: usize,
     /// Seed of the bootstrap.
     pub seed: u64,
+    /// How the proof simulates and weighs the test runs. A study has it in the tables `[fit]` and `[evaluate]`, so that a
+    /// diagnosis and an evaluation print the same numbers.
+    #[serde(skip, default = "judging")]
+    pub judging: Judging,
+}
+
+/// As a fit would judge, but by the integration of a diagnosis.
+fn judging() -> Judging {
+    let integration = Integration { method: Method::Rk4, substeps: 1 };
+    Judging { integration, ..Judging::new(&FitSettings::default(), EvaluationSettings::default()) }
 }
 
 impl Settings {
@@ -37,7 +49,15 @@ impl Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { alpha: 0.01, most: 3, withhold: Vec::new(), nuisance: true, substeps: 1, seed: 20250226 }
+        Self {
+            alpha: 0.01,
+            most: 3,
+            withhold: Vec::new(),
+            nuisance: true,
+            substeps: 1,
+            seed: 20250226,
+            judging: judging(),
+        }
     }
 }
 

@@ -5,12 +5,12 @@ use super::candidate::{Candidate, Extent};
 use super::covariance::Z;
 use super::diagnosis::{Absorbed, Adequacy, Budget, Detectable, Likeness, Move, Ranked, Trace};
 use super::estimate::Estimate;
-use super::filter::Run;
 use super::screen::{Row, Screen};
 use super::settings::Settings;
 use super::wald::Wald;
 use crate::model::Model;
 use crate::physics::Probe;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use statrs::distribution::{ContinuousCDF, Normal};
 

@@ -6,7 +6,8 @@
 //! | statistic | definition | limit | reason for the limit |
 //! |---|---|---|---|
 //! | model error | `mean e^2 / mean s^2`, `s_c^2 = mean (e_c(k+1) - 2 e_c(k) + e_c(k-1))^2 / 6` | 10 | less than a tenth of the residual variance is the sensors' |
-//! | growth | exponent b of `rms e ~ t^b` between the second and the last quarter of the windows | 1 | an error of the velocity grows linearly; what grows faster is the instability of an open loop |
+//! | growth | exponent b of `rms e ~ t^b` in the velocities between the second and the last quarter of the windows | 1 | a force that is wrong makes errors of velocity grow linearly at most; what grows faster is an open loop that runs away |
+//! | loss | `mean e^2` in sway and yaw rate in the last quarter over the variance measured there | 1/2 | more of the motion is lost than is predicted; windows are too long for it where the first quarter loses less than half as much |
 //! | likeness | integrated autocorrelation `1 + 2 sum rho(l)`, and the design effect over recordings | 2 | standard errors of independent residuals are 1.4 times too small |
 //!
 //! The second difference of white noise of variance s^2 has the variance 6 s^2, and a smooth error has next to none: it is
@@ -17,6 +18,7 @@
 use super::covariance::Covariances;
 use super::task::Task;
 use crate::model::Model;
+use crate::recording::{Measured, Run};
 use crate::simulate::{Scenario, reported};
 use crate::state::STATES;
 use rayon::prelude::*;
@@ -29,6 +31,9 @@ pub const MODEL_ERROR_LIMIT: f64 = 10.0;
 
 /// Exponent of the growth of errors along a window from which on windows are too long.
 pub const GROWTH_LIMIT: f64 = 1.0;
+
+/// Share of the measured variance of sway and yaw rate that may be lost in the last quarter of the windows.
+pub const LOSS_LIMIT: f64 = 0.5;
 
 /// How many residuals may count as one before they are called clustered.
 pub const LIKENESS_LIMIT: f64 = 2.0;
@@ -72,10 +77,12 @@ pub enum DoubtKind {
 pub struct ResidualStatistics {
     /// Variance of the residuals over that of the sensors.
     pub model_error: Option<f64>,
-    /// Exponent b of the growth of errors along the windows, `rms e ~ t^b`.
+    /// Exponent b of the growth of the errors of velocity along the windows, `rms e ~ t^b`.
     pub growth: Option<f64>,
     /// Standard error of `growth` over the recordings; absent with fewer than three.
     pub growth_error: Option<f64>,
+    /// Shares of the measured variance of sway and yaw rate that are lost in the first and in the last quarter of the windows.
+    pub loss: Option<[f64; 2]>,
     /// How many successive residuals of a run count as one.
     pub likeness: Option<f64>,
 }
@@ -84,17 +91,27 @@ pub struct ResidualStatistics {
 struct Residuals<'a> {
     recording: &'a str,
     values: Vec<[f64; STATES]>,
+    /// Weighted variance of what was measured of each channel; NaN where nothing was.
+    variance: [f64; STATES],
 }
+
+/// Channels of velocity: u, v, r.
+const VELOCITIES: std::ops::Range<usize> = 3..6;
+
+/// Channels that a rudder moves: v, r.
+const STEERED: std::ops::Range<usize> = 4..6;
 
 impl ResidualStatistics {
     /// The statistics of a model on the runs of a task.
     pub(super) fn of(task: &Task, model: &Model) -> Self {
-        let residuals: Vec<Residuals> = task.runs.par_iter().map(|run| residuals(task, model, run)).collect();
+        let residuals: Vec<Residuals> =
+            task.runs.par_iter().zip(task.cost.weights()).map(|(run, w)| residuals(task, model, run, w)).collect();
         let growth = growth(&residuals);
         Self {
             model_error: model_error(&residuals),
             growth: growth.map(|g| g.0),
             growth_error: growth.and_then(|g| g.1),
+            loss: loss(&residuals),
             likeness: likeness(&residuals),
         }
     }
@@ -106,21 +123,27 @@ impl ResidualStatistics {
             value,
             limit: MODEL_ERROR_LIMIT,
             sentence: format!(
-                "the residuals have {value:.0} times the variance of the sensors' noise: the error of the model is what is \
-                 left, and estimates make up for physics it lacks; look for it with `trimtab diagnose`"
+                "the residuals have {value:.0} times the variance of the sensors' noise, so that the estimates make up for physics \
+                 that the model lacks (see `trimtab diagnose`)"
             ),
         });
+        [model_error, self.too_long(), self.clustered(covariances, parameters)].into_iter().flatten().collect()
+    }
+
+    fn too_long(&self) -> Option<Doubt> {
         let surely = |b: f64| b - 2.0 * self.growth_error.unwrap_or(0.0);
-        let growth = self.growth.filter(|b| surely(*b) > GROWTH_LIMIT).map(|value| Doubt {
-            kind: DoubtKind::WindowsTooLong,
-            value,
-            limit: GROWTH_LIMIT,
-            sentence: format!(
-                "errors grow as t^{value:.1} along the windows, faster than linearly: the windows are too long to be predicted \
-                 in open loop; shorten `window` in the study"
-            ),
-        });
-        [model_error, growth, self.clustered(covariances, parameters)].into_iter().flatten().collect()
+        let (value, limit, what) = match (self.growth, self.loss) {
+            (_, Some([early, late])) if late > LOSS_LIMIT && early < 0.5 * late => {
+                (late, LOSS_LIMIT, format!("their last quarter loses {:.0} % of the motion", 100.0 * late))
+            }
+            (Some(b), _) if surely(b) > GROWTH_LIMIT => {
+                (b, GROWTH_LIMIT, format!("errors of velocity grow as t^{b:.1}"))
+            }
+            _ => return None,
+        };
+        let sentence =
+            format!("the windows are too long to be predicted in open loop: {what} (shorten `window` in the study)");
+        Some(Doubt { kind: DoubtKind::WindowsTooLong, value, limit, sentence })
     }
 
     fn clustered(&self, covariances: &Covariances, parameters: usize) -> Option<Doubt> {
@@ -135,8 +158,8 @@ impl ResidualStatistics {
             value,
             limit: LIKENESS_LIMIT,
             sentence: format!(
-                "residuals are alike within runs and recordings: {value:.0} of them say as much as one independent residual; \
-                 intervals allow for it as far as {} {} can tell",
+                "residuals are alike within runs and recordings, {value:.0} of them as good as one (the intervals allow for it as \
+                 far as {} {} can tell)",
                 covariances.clusters,
                 if covariances.clusters == 1 { "recording" } else { "recordings" }
             ),
@@ -153,25 +176,39 @@ pub(super) fn headline(converged: bool, words: &str, doubts: &[Doubt]) -> String
         [] => format!("Converged: {words}"),
         doubts => {
             let sentences: Vec<&str> = doubts.iter().map(|d| d.sentence.as_str()).collect();
-            format!("Converged, but IN DOUBT: {}", sentences.join(". Also, "))
+            format!("Converged, but IN DOUBT: {}", sentences.join("; "))
         }
     }
 }
 
-fn residuals<'a>(task: &Task, model: &Model, run: &'a super::cost::FitRun) -> Residuals<'a> {
+fn residuals<'a>(task: &Task, model: &Model, run: &'a Run, weights: &[f64; STATES]) -> Residuals<'a> {
     let theta = model.values_in(&run.session);
     let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
-    let predicted = reported(model, &theta, task.settings.integration, &scenario, &run.measured_channels);
-    let of_sample = |(measured, simulated): (&[f64; STATES], &[f64; STATES])| {
+    let predicted = reported(model, &theta, task.settings.integration, &scenario, &run.channels());
+    let of_sample = |(measured, simulated): (&Measured, &[f64; STATES])| {
         std::array::from_fn(|c| {
-            if !run.measured_channels[c] || run.weights[c] <= 0.0 {
-                return f64::NAN;
-            }
-            let difference = measured[c] - simulated[c];
-            run.weights[c].sqrt() * if c == 2 { wrap_angle(difference) } else { difference }
+            let Some(value) = measured[c].filter(|_| weights[c] > 0.0) else { return f64::NAN };
+            let difference = value - simulated[c];
+            weights[c].sqrt() * if c == 2 { wrap_angle(difference) } else { difference }
         })
     };
-    Residuals { recording: &run.name, values: run.measured.iter().zip(&predicted.states).map(of_sample).collect() }
+    let variance = |c: usize| {
+        let values = || run.measured.iter().filter_map(|m| m[c]);
+        let count = values().count() as f64;
+        let mean = values().sum::<f64>() / count;
+        weights[c] * values().map(|v| (v - mean).powi(2)).sum::<f64>() / count
+    };
+    Residuals {
+        recording: &run.recording,
+        values: run.measured.iter().zip(&predicted.states).map(of_sample).collect(),
+        variance: std::array::from_fn(variance),
+    }
+}
+
+/// Mean square of some channels over some samples, with the number of values.
+fn squares(values: &[[f64; STATES]], channels: std::ops::Range<usize>) -> (f64, f64) {
+    let finite = values.iter().flat_map(|e| &e[channels.clone()]).filter(|e| e.is_finite());
+    finite.fold((0.0, 0.0), |(sum, count), e| (sum + e * e, count + 1.0))
 }
 
 /// Mean square of the residuals over that of the sensors' noise.
@@ -195,8 +232,7 @@ fn model_error(residuals: &[Residuals]) -> Option<f64> {
 fn growth(residuals: &[Residuals]) -> Option<(f64, Option<f64>)> {
     // Mean squares in the second and in the last quarter, whose middles are at 3/8 and 7/8 of the window.
     let mean_square = |values: &[[f64; STATES]]| {
-        let finite = values.iter().flatten().filter(|e| e.is_finite());
-        let (sum, count) = finite.fold((0.0, 0.0), |(sum, count), e| (sum + e * e, count + 1.0));
+        let (sum, count) = squares(values, VELOCITIES);
         if count > 0.0 { sum / count } else { 0.0 }
     };
     let mut by_recording: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
@@ -217,6 +253,23 @@ fn growth(residuals: &[Residuals]) -> Option<(f64, Option<f64>)> {
     let mean = exponents.iter().sum::<f64>() / n;
     let scatter = exponents.iter().map(|b| (b - mean).powi(2)).sum::<f64>();
     mean.is_finite().then(|| (mean, (n > 2.0).then(|| (scatter / (n * (n - 1.0))).sqrt())))
+}
+
+/// Shares of the measured variance of sway and yaw rate that the first and the last quarter of the windows lose.
+fn loss(residuals: &[Residuals]) -> Option<[f64; 2]> {
+    let (mut lost, mut measured) = ([0.0; 2], 0.0);
+    for r in residuals.iter().filter(|r| r.values.len() >= 8) {
+        let quarter = r.values.len() / 4;
+        for c in STEERED.filter(|c| r.variance[*c].is_finite()) {
+            let ends =
+                [&r.values[..quarter], &r.values[r.values.len() - quarter..]].map(|part| squares(part, c..c + 1));
+            if ends.iter().all(|(_, count)| *count > 0.0) {
+                measured += r.variance[c];
+                lost = std::array::from_fn(|i| lost[i] + ends[i].0 / ends[i].1);
+            }
+        }
+    }
+    (measured > 0.0).then(|| lost.map(|l| l / measured))
 }
 
 /// How many successive residuals count as one: `1 + 2 sum rho(l)` over the lags up to where rho is lost in scatter.
@@ -259,7 +312,7 @@ mod tests {
         let window = |w: usize, rng: &mut ChaCha8Rng| {
             let sample = |k: usize, rng: &mut ChaCha8Rng| {
                 let white: f64 = StandardNormal.sample(rng);
-                [noise * white + error(w, k), f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN]
+                [f64::NAN, f64::NAN, f64::NAN, f64::NAN, noise * white + error(w, k), f64::NAN]
             };
             (0..120).map(|k| sample(k, rng)).collect()
         };
@@ -267,7 +320,9 @@ mod tests {
     }
 
     fn view(made: &[(String, Vec<[f64; STATES]>)]) -> Vec<Residuals<'_>> {
-        made.iter().map(|(name, values)| Residuals { recording: name, values: values.clone() }).collect()
+        // Sway that was measured to vary by 0.1.
+        let variance = [f64::NAN, f64::NAN, f64::NAN, f64::NAN, 0.01, f64::NAN];
+        made.iter().map(|(name, values)| Residuals { recording: name, values: values.clone(), variance }).collect()
     }
 
     #[test]
@@ -296,8 +351,32 @@ mod tests {
         for power in [0.5, 1.0, 2.0] {
             let grown = made(0.0, |w, k| (1.0 + 0.1 * w as f64) * (k as f64 / 120.0).powf(power));
             let (found, error) = growth(&view(&grown)).unwrap();
-            assert!((found - power).abs() < 0.05, "t^{power}: {found} +- {error:?}");
+            // The rms of a quarter is not at its middle.
+            assert!((found - power).abs() < 0.1, "t^{power}: {found} +- {error:?}");
         }
+    }
+
+    #[test]
+    fn windows_at_whose_end_the_motion_is_lost_are_too_long() {
+        let doubt = |made: &[(String, Vec<[f64; STATES]>)]| {
+            let residuals = view(made);
+            let growth = growth(&residuals);
+            let statistics = ResidualStatistics {
+                growth: growth.map(|g| g.0),
+                growth_error: growth.and_then(|g| g.1),
+                loss: loss(&residuals),
+                ..ResidualStatistics::default()
+            };
+            statistics.too_long().map(|d| d.kind)
+        };
+        let wave = |w: usize, k: usize| (0.2 * k as f64 + w as f64).sin();
+        // Out of step from the middle of the window on, by as much as is measured; out of step all the time; and in step.
+        let lost = made(0.001, |w, k| 0.08 * wave(w, k) * (k as f64 / 60.0).min(1.0));
+        assert_eq!(doubt(&lost), None, "a third of the variance is lost, less than the limit");
+        let lost = made(0.001, |w, k| 0.15 * wave(w, k) * (k as f64 / 60.0).min(1.0));
+        assert_eq!(doubt(&lost), Some(DoubtKind::WindowsTooLong));
+        assert_eq!(doubt(&made(0.001, |w, k| 0.15 * wave(w, k))), None);
+        assert_eq!(doubt(&made(0.001, |w, k| 0.02 * wave(w, k) * (k as f64 / 60.0).min(1.0))), None);
     }
 
     #[test]

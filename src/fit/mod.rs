@@ -32,7 +32,7 @@ mod task;
 
 pub use crate::ipopt::Counts;
 pub use constraints::{ConstraintSettings, Limits, Rule};
-pub use cost::{Cost, CostOptions, Derivatives, FitRun, Quadratic};
+pub use cost::{Cost, CostOptions, Derivatives, Quadratic};
 pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;

@@ -1,11 +1,11 @@
 //! The same fit from many starts, to see whether there is more than one place to end.
 //! It keeps every outcome, good or bad, and picks none.
 
-use super::cost::FitRun;
 use super::error::FitError;
 use super::settings::FitSettings;
 use super::summary::{Fit, fit};
 use crate::model::Model;
+use crate::recording::Run;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -40,7 +40,7 @@ pub struct StartOutcome {
 /// Fits from each start in turn, in an order and from values that depend on the seed alone.
 pub fn multi_start(
     model: &Model,
-    runs: &[FitRun],
+    runs: &[Run],
     settings: &FitSettings,
     starts: &MultiStart,
     mut progress: impl FnMut(usize),

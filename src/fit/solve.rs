@@ -3,16 +3,17 @@
 //!
 //! What keeps a solve from ending above its start:
 //!
-//! - The barrier begins small beside the objective. Ipopt's own start (a barrier parameter of 1 against a cost of 0.02 a
-//!   sample) lets the barrier of a one-sided limit, such as R >= 0, push the parameters away to where no trajectory is
-//!   followed; from there the way back is not found. The barrier parameter only falls (`monotone`), so that each step must
-//!   lower the cost.
+//! - Where hull coefficients are free, the barrier begins small beside the objective. Ipopt's own start (a barrier parameter of
+//!   1 against a cost of 0.02 a sample) lets the barrier of a one-sided limit, such as R >= 0, push the parameters away to
+//!   where no trajectory is followed; from there the way back is not found. The barrier parameter then only falls
+//!   (`monotone`), so that each step must lower the cost. Without hull coefficients Ipopt's adaptive barrier takes fewer
+//!   iterations.
 //! - A trial point that cannot be simulated, or whose mass matrix cannot be inverted, has no value: the solver steps back.
 //! - The best feasible point of all evaluations is kept; the solver starts again from it where it ended elsewhere.
 //! - Where hull coefficients are free, shorter pieces of the runs are fitted first (see `stages`).
 
 use super::constraints::Row;
-use super::cost::{Cost, FitRun};
+use super::cost::Cost;
 use super::error::FitError;
 use super::problem::{Point, Priors, Problem, Progress};
 use super::settings::Hessian;
@@ -20,12 +21,17 @@ use super::stages;
 use super::subspace::inverse;
 use super::task::{ActiveSet, Task};
 use crate::ipopt::{self, Counts, HessianMode, IpoptError, OptionValue, Options, Solution, Status};
+use crate::recording::Run;
 
 /// How often the solver starts again from a better point that it left.
 const RESTARTS: usize = 3;
 
-/// Share of the cost by which a point must be better to be preferred to where the solver ended.
-const BETTER: f64 = 1e-6;
+/// Share of the cost by which a point must be better for the solver to start again from it: less is rounding, or the kinks of
+/// a cost whose terms take absolute values.
+const BETTER: f64 = 1e-4;
+
+/// Share of the cost below which the solver's own answer is as good as the best point.
+const SAME: f64 = 1e-9;
 
 /// Share of the weight of the priors below which a change of it changes nothing.
 const SAME_WEIGHT: f64 = 1e-3;
@@ -72,9 +78,11 @@ struct Descent {
 /// What is solved: a cost over runs, and where from.
 struct Stage<'a> {
     cost: &'a Cost<'a>,
-    runs: &'a [FitRun],
+    runs: &'a [Run],
     tolerance: f64,
     max_iterations: usize,
+    /// Whether the start is near the optimum: the barrier then starts lower still, and the bounds do not push the start away.
+    near: bool,
 }
 
 impl Task<'_> {
@@ -83,11 +91,12 @@ impl Task<'_> {
         let mut work = Work::default();
         let (parts, from) = self.approach(&mut work, progress)?;
         let settings = self.settings;
-        let stage = Stage {
+        let mut stage = Stage {
             cost: self.cost,
             runs: self.runs,
             tolerance: settings.tolerance,
             max_iterations: settings.max_iterations,
+            near: false,
         };
         let mut priors = Priors::of(self.model);
         let rounds = if priors.terms.is_empty() { 1 } else { 1 + settings.prior_updates };
@@ -102,9 +111,9 @@ impl Task<'_> {
             priors.weight = weight;
             let descent = self.descend(&stage, &p, &priors, &mut work, progress)?;
             p.clone_from(&descent.p);
-            let go_on = descent.solution.is_some();
+            stage.near = descent.solution.is_some();
             end = Some(descent);
-            if !go_on {
+            if !stage.near {
                 break;
             }
         }
@@ -123,8 +132,8 @@ impl Task<'_> {
         let mut p = self.start.clone();
         let mut priors = Priors::of(self.model);
         for parts in stages::falling(parts) {
-            let pieces = stages::cut(self.runs, parts);
-            let cost = Cost::new(self.model, &pieces, self.cost_options())?;
+            let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts);
+            let cost = Cost::weighted(self.model, &pieces, weights, self.cost_options())?;
             let Some(value) = cost.value(&p) else { continue };
             priors.weight = self.weight(&cost, &pieces, value);
             let stage = Stage {
@@ -132,6 +141,7 @@ impl Task<'_> {
                 runs: &pieces,
                 tolerance: self.settings.tolerance.max(STAGE_TOLERANCE),
                 max_iterations: self.settings.max_iterations.min(STAGE_ITERATIONS),
+                near: false,
             };
             let descent = self.descend(&stage, &p, &priors, work, progress)?;
             p = descent.p;
@@ -150,20 +160,22 @@ impl Task<'_> {
     }
 
     /// Weight of the priors at a cost: see [`Priors`].
-    fn weight(&self, cost: &Cost, runs: &[FitRun], value: f64) -> f64 {
+    fn weight(&self, cost: &Cost, runs: &[Run], value: f64) -> f64 {
         self.variance_of(cost, runs.len(), value) * self.settings.correlated_samples / runs.len() as f64
     }
 
     fn options(&self, stage: &Stage, objective: f64, again: bool) -> Options {
         let number = |name: &str, value: f64| (name.to_owned(), OptionValue::Number(value));
-        let barrier = if again { 1e-3 * BARRIER_SHARE } else { BARRIER_SHARE };
-        let mut extra = vec![
-            ("mu_strategy".to_owned(), OptionValue::Text("monotone".to_owned())),
-            number("mu_init", (barrier * objective).max(0.1 * stage.tolerance)),
-        ];
-        if again {
-            let near = ["bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"];
-            extra.extend(near.map(|name| number(name, 1e-8)));
+        let near = stage.near || again;
+        let strategy = |word: &str| ("mu_strategy".to_owned(), OptionValue::Text(word.to_owned()));
+        let mut extra = vec![strategy("adaptive")];
+        if near || stages::frees_hull(self) {
+            let barrier = if near { 1e-3 * BARRIER_SHARE } else { BARRIER_SHARE };
+            extra = vec![strategy("monotone"), number("mu_init", (barrier * objective).max(0.1 * stage.tolerance))];
+        }
+        if near {
+            let pushes = ["bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"];
+            extra.extend(pushes.map(|name| number(name, 1e-8)));
         }
         Options {
             tolerance: stage.tolerance,
@@ -222,7 +234,9 @@ impl Task<'_> {
             if let (Some(p), Some(value), true) = (&at, reached, status.is_success())
                 && is_best(value)
             {
-                return Ok(Descent { p: p.clone(), status, last: solution.clone(), solution, evaluated });
+                let better = best.filter(|b| b.total < value - SAME * value.abs());
+                let p = better.map_or_else(|| p.clone(), |b| b.p);
+                return Ok(Descent { p, status, last: solution.clone(), solution, evaluated });
             }
             let given_up = matches!(status, Status::Stopped | Status::MaxIterations { .. } | Status::Panicked(_));
             match &best {

@@ -1,7 +1,7 @@
 //! The outcome of a fit: estimates with their uncertainty, what held them back, what it cost; and [`fit`], which joins the steps.
 //! It solves nothing and prints nothing; the words are in [`report`](super::report).
 
-use super::cost::{Cost, FitRun};
+use super::cost::Cost;
 use super::covariance::{Covariance, CovarianceKind, Covariances, in_words};
 use super::doubts::{Doubt, ResidualStatistics, headline};
 use super::error::FitError;
@@ -12,6 +12,7 @@ use super::subspace::inverse;
 use super::task::Task;
 use crate::ipopt::Counts;
 use crate::model::Model;
+use crate::recording::Run;
 use crate::validity::{self, Coverage};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -62,8 +63,6 @@ pub struct Fit {
     /// The model with the estimates in place.
     #[serde(skip)]
     pub model: Model,
-    /// How much of the data lies outside the ranges over which the terms are valid.
-    pub validity: Coverage,
     /// Whether the solver found an optimum.
     pub converged: bool,
     /// How it ended and what residuals say against it, in one line.
@@ -116,6 +115,8 @@ pub struct Fit {
     /// Evaluations by the solver.
     #[serde(serialize_with = "serialize_counts")]
     pub counts: Counts,
+    /// How much of the data lies outside the ranges over which the terms are valid.
+    pub validity: Coverage,
     /// Time taken \[s\].
     pub seconds: f64,
     /// The settings.
@@ -143,7 +144,7 @@ fn serialize_counts<S: serde::Serializer>(counts: &Counts, serializer: S) -> Res
 /// constraints that contradict each other.
 pub fn fit(
     model: &Model,
-    runs: &[FitRun],
+    runs: &[Run],
     settings: &FitSettings,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Fit, FitError> {
@@ -163,7 +164,7 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
     let statistics = ResidualStatistics::of(task, &model);
     let covariances = Covariances::of(task, &end, cost, statistics.likeness);
     let doubts = statistics.doubts(&covariances, task.scales.len());
-    let samples = task.runs.iter().flat_map(|r| validity::samples(&r.measured, &r.measured_channels, &r.inputs));
+    let samples = task.runs.iter().flat_map(validity::samples);
     Fit {
         validity: validity::outside(&model, samples),
         converged: end.converged,

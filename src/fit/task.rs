@@ -2,11 +2,12 @@
 //! It prepares and translates; it neither solves nor judges a solution.
 
 use super::constraints::{self, Row};
-use super::cost::{Cost, CostOptions, FitRun};
+use super::cost::{Cost, CostOptions};
 use super::error::FitError;
 use super::settings::FitSettings;
 use super::subspace::null_space;
 use crate::model::{Model, Parameter};
+use crate::recording::Run;
 use nalgebra::{DMatrix, DVector};
 
 /// Share of its largest possible value that the product of the off-diagonal entries of the sway-yaw mass matrix may reach.
@@ -19,7 +20,7 @@ const KEPT: f64 = 1e-7;
 pub(super) struct Task<'a> {
     pub model: &'a Model,
     pub cost: &'a Cost<'a>,
-    pub runs: &'a [FitRun],
+    pub runs: &'a [Run],
     pub settings: &'a FitSettings,
     pub rows: Vec<Row>,
     pub scales: Vec<f64>,
@@ -42,7 +43,7 @@ impl<'a> Task<'a> {
     pub fn new(
         model: &'a Model,
         cost: &'a Cost<'a>,
-        runs: &'a [FitRun],
+        runs: &'a [Run],
         settings: &'a FitSettings,
     ) -> Result<Self, FitError> {
         let free: Vec<&Parameter> = cost.free().iter().map(|i| &model.parameters[*i]).collect();
@@ -70,7 +71,7 @@ impl<'a> Task<'a> {
 
     /// The error of a start whose simulation diverges.
     pub fn diverged(&self) -> FitError {
-        let first = || (self.runs[0].name.clone(), self.runs[0].start_time);
+        let first = || (self.runs[0].recording.clone(), self.runs[0].start_time());
         let (run, time) = self.cost.divergence(&self.start).unwrap_or_else(first);
         FitError::Diverged { run, time }
     }
@@ -180,6 +181,50 @@ fn keep_mass_matrix_positive(model: &Model, free: &[&Parameter], bounds: &mut [(
         let (lower, upper) = (bounds[j].0.max(moment - reach), bounds[j].1.min(moment + reach));
         if lower <= upper {
             bounds[j] = (lower, upper);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::Form;
+    use crate::ship::Ship;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use std::path::Path;
+
+    #[test]
+    fn no_values_within_the_bounds_make_the_mass_matrix_singular() {
+        let path = format!("{}/experiments/ships/a.toml", env!("CARGO_MANIFEST_DIR"));
+        let mut model = Model::new(Ship::read(Path::new(&path)).unwrap(), "HD", Form::Paper, &[]).unwrap();
+        for freed in [&["Yvdot", "Yrdot", "Nvdot", "Nrdot"][..], &["Yrdot"], &["Nvdot", "Yvdot"]] {
+            for p in &mut model.parameters {
+                p.free = freed.iter().any(|name| p.name == format!("hull.{name}"));
+            }
+            let free: Vec<&Parameter> = model.parameters.iter().filter(|p| p.free).collect();
+            let mut bounds: Vec<(f64, f64)> = free.iter().map(|p| (p.lower, p.upper)).collect();
+            keep_mass_matrix_positive(&model, &free, &mut bounds);
+            let values = |p: &Parameter, (lower, upper): (f64, f64), share: f64| {
+                let (lower, upper) = (lower.max(-1e3 * p.scale), upper.min(1e3 * p.scale));
+                lower + share * (upper - lower)
+            };
+            let mut random = ChaCha8Rng::seed_from_u64(1);
+            for _ in 0..1000 {
+                let mut theta = model.values();
+                for (p, b) in free.iter().zip(&bounds) {
+                    // Corners as often as what is between them.
+                    let share = if random.random_bool(0.5) {
+                        f64::from(random.random_range(0..2))
+                    } else {
+                        random.random_range(0.0..1.0)
+                    };
+                    theta[model.index(&p.name).unwrap_or(0)] = values(p, *b, share);
+                }
+                assert!(model.inertia_at_rest(&theta).is_positive(), "{theta:?}");
+            }
+            // The estimates themselves are inside.
+            assert!(free.iter().zip(&bounds).all(|(p, (lower, upper))| p.value > *lower && p.value < *upper));
         }
     }
 }

@@ -7,6 +7,7 @@ mod error;
 mod local;
 mod map;
 mod read;
+mod run;
 mod unit;
 mod window;
 
@@ -16,8 +17,9 @@ pub(crate) use error::{line_at, toml_problem};
 pub(crate) use local::{local, slope};
 pub(crate) use map::key_line;
 pub use map::{Column, ColumnMap, Decimal, Delimiter, Derived, Header, SpeedReference, VelocityFrame};
+pub use run::{Measured, Run, Split, measured, or_nan};
 pub use unit::{Quantity, UNITS, Unit};
-pub use window::{Environment, Gaps, Initial, Labels, Order, Skipped, Split, Window, WindowSettings, Windows};
+pub use window::{Gaps, Initial, Labels, Skipped, WindowSettings, Windows};
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};

@@ -49,8 +49,8 @@ impl Fit {
 
     /// The whole report.
     pub fn report(&self) -> String {
-        let sections =
-            [self.course(), self.table(), self.active_constraints(), self.what_is_open(), self.validity.line()];
+        let validity = self.validity.line();
+        let sections = [self.course(), self.table(), self.active_constraints(), self.what_is_open(), validity];
         sections.join("\n\n") + "\n"
     }
 

@@ -1,5 +1,5 @@
 //! Writes the data that `trimtab demo` embeds into the library's `src/demo`.
-//! It changes nothing else; the tests check that what is committed is what this writes.
+//! A test compares the committed files with its output; it changes no other file.
 
 use std::path::Path;
 

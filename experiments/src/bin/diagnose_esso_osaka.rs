@@ -32,14 +32,14 @@ fn run(folder: &Path) -> Result<(), RealError> {
     let (recordings, left) = (pulls_table(&found.pulls), pulls_table(&found.left));
     let by_session = pulls_table(&found.by_session);
     let steps = steps_table(&found.steps);
-    println!("What the recordings' kinematics say, without a model:\n{kinematics}");
+    println!("Kinematics of the recordings, without a model:\n{kinematics}");
     for case in &found.cases {
         println!("{}: {}", case.name, case.diagnosis.headline);
     }
     println!("{findings}\nQuestions asked one by one:\n{steps}");
-    println!("An earth-fixed force in each session, blind, and the anemometer:\n{by_session}");
-    println!("In each recording:\n{recordings}");
-    println!("What is left of it in each session once the measured wind is in the model:\n{left}");
+    println!("Earth-fixed force in each session, wind withheld, beside the anemometer:\n{by_session}");
+    println!("Earth-fixed force in each recording:\n{recordings}");
+    println!("Earth-fixed force in each session with the measured wind in the model:\n{left}");
     println!("{}", found.agreement());
     println!("{}\n{}", found.load(), found.walk());
     write_csv(&folder.join("diagnose_esso_osaka.csv"), &findings)?;

@@ -28,7 +28,7 @@ fn run(folder: &Path) -> Result<(), RealError> {
     let found = kvlcc2_diagnosed::run()?;
     let kinematics = table(&found.kinematics);
     let (findings, steps, sides) = (findings_table(&found.cases), steps_table(&found.steps), sides_table(&found.cases));
-    println!("What the recordings' kinematics say, without a model:\n{kinematics}");
+    println!("Kinematics of the recordings, without a model:\n{kinematics}");
     for case in &found.cases {
         println!("{}: {}", case.name, case.diagnosis.headline);
     }

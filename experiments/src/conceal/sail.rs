@@ -197,7 +197,7 @@ impl Step<'_> {
         memory
     }
 
-    /// Adds the square of each effect's force at a row: what it changes in the accelerations, through the ship's own inertia.
+    /// Adds the square of each effect's force at a row: its change of the accelerations times the ship's own inertia.
     fn add_energy(&self, t: f64, state: &State, order: &Inputs, actual: &Inputs, energy: &mut [[f64; 3]]) {
         let all = self.rates(t, state, actual, None);
         for (i, e) in self.acting() {

@@ -26,7 +26,7 @@ pub enum PaperError {
         /// The undetermined quantity.
         what: &'static str,
     },
-    /// A split without test or training runs, or with nothing left to compare.
+    /// A split without test or training runs, or without a run to compare.
     #[error("{ship}: no {what}; use a data set with more runs")]
     Empty {
         /// The ship.

@@ -103,14 +103,6 @@ pub fn wrapped(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }
 
-/// The median.
-pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
-    let mut v: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
-    v.sort_by(f64::total_cmp);
-    let n = v.len();
-    if n == 0 { f64::NAN } else { 0.5 * (v[(n - 1) / 2] + v[n / 2]) }
-}
-
 /// A row a run.
 pub fn table(agreements: &[Agreement]) -> Table {
     let mut table = Table::new([

@@ -11,7 +11,7 @@ use trimtab::maneuver::{
 use trimtab::model::Model;
 use trimtab::numerals::fixed;
 use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, Panel, RECORDED, east_north};
-use trimtab::recording::{Split, Window};
+use trimtab::recording::{Run, Split};
 use trimtab::report::Table;
 
 /// Rudder angle of the turning circles \[rad\].
@@ -83,20 +83,17 @@ pub fn run() -> Result<Outcome, RealError> {
     let tests = fine.whole_runs(hull.ship.hull.draught)?.windows;
     let trial: ManeuverSettings = settings(&hull.study, "maneuver", &hull.study.maneuver)?;
 
-    let mut outcome = Outcome {
-        models: models.iter().map(|m| m.name.clone()).collect(),
-        measures: Vec::new(),
-        circles: Vec::new(),
-        zigzags: Vec::new(),
-        fits: Vec::new(),
-    };
+    let mut outcome = Outcome::new(&models);
     for side in Side::BOTH {
         for test in tests.iter().filter(|w| w.manoeuvre == "turning") {
             outcome.add_turn(test, side, &models, &trial)?;
         }
     }
     for test in tests.iter().filter(|w| w.manoeuvre == "zigzag") {
-        outcome.add_zigzag(test, &models, &trial)?;
+        // Rudder and heading of a test are alike, and nominally whole tens of degrees.
+        let largest = test.inputs.iter().fold(0.0_f64, |m, i| m.max(i.delta.abs())).to_degrees();
+        let angle = (10.0 * (largest / 10.0).round()).to_radians();
+        outcome.add_zigzag(test, [angle, angle], &models, &trial)?;
     }
     outcome.fits = fits;
     Ok(outcome)
@@ -129,10 +126,21 @@ fn from_execute(track: &Track, execute: usize) -> Track {
 }
 
 impl Outcome {
+    /// An outcome of models without trials or fits yet.
+    pub(super) fn new(models: &[&Model]) -> Self {
+        Self {
+            models: models.iter().map(|m| m.name.clone()).collect(),
+            fits: Vec::new(),
+            measures: Vec::new(),
+            circles: Vec::new(),
+            zigzags: Vec::new(),
+        }
+    }
+
     /// Adds a turning circle if it is to this side.
     fn add_turn(
         &mut self,
-        test: &Window,
+        test: &Run,
         side: Side,
         models: &[&Model],
         trial: &ManeuverSettings,
@@ -171,7 +179,7 @@ impl Outcome {
         let shown = from_execute(&track, execute);
         let held = (0..shown.len()).rev().find(|&k| (shown.delta[k] - measured.rudder).abs() < 0.05 * HARD_OVER);
         self.circles.push(Sailed {
-            name: test.run.clone(),
+            name: test.recording.clone(),
             end: held.map_or(0.0, |k| shown.t[k]),
             measured: shown,
             predicted: trials.into_iter().map(|t| t.track).collect(),
@@ -179,20 +187,24 @@ impl Outcome {
         Ok(())
     }
 
-    fn add_zigzag(&mut self, test: &Window, models: &[&Model], trial: &ManeuverSettings) -> Result<(), RealError> {
+    /// Adds a zigzag with the rudder at `angles[0]` and put over at a heading of `angles[1]` \[rad\].
+    pub(super) fn add_zigzag(
+        &mut self,
+        test: &Run,
+        angles: [f64; 2],
+        models: &[&Model],
+        trial: &ManeuverSettings,
+    ) -> Result<(), RealError> {
         let track = Track::recorded(test);
         let executes = zigzag_executes(&track);
         let Some(&first) = executes.first() else { return Ok(()) };
-        // Rudder and heading of a test are alike, and nominally whole tens of degrees.
-        let largest = track.delta.iter().fold(0.0_f64, |m, d| m.max(d.abs())).to_degrees();
-        let angle = (10.0 * (largest / 10.0).round()).to_radians();
-        let measured = zigzag(&track, &executes, angle);
+        let measured = zigzag(&track, &executes, angles[1]);
         let side = Side::of(measured.rudder);
         let sailed = approaches(models, trial)?;
         let trials: Vec<_> = models
             .iter()
             .zip(&sailed)
-            .map(|(m, (theta, approach))| zigzag_trial(m, theta, approach, side, [angle, angle]))
+            .map(|(m, (theta, approach))| zigzag_trial(m, theta, approach, side, angles))
             .collect();
         // The tests execute at headings counted from a nominal course of 0, from which the ship may be off by a degree at
         // the first execute; overshoots are counted from that course too.
@@ -200,16 +212,22 @@ impl Outcome {
         let overshoots = measured.overshoots.iter().zip([strayed, -strayed]).map(|(o, s)| o + s);
         for (i, overshoot) in overshoots.enumerate() {
             self.measures.push(Measure {
-                what: format!("{0:.0}/{0:.0}, {1} first: overshoot {2} [deg]", angle.to_degrees(), side.word(), i + 1),
+                what: format!(
+                    "{:.0}/{:.0}, {} first: overshoot {} [deg]",
+                    angles[0].to_degrees(),
+                    angles[1].to_degrees(),
+                    side.word(),
+                    i + 1
+                ),
                 angle: true,
-                seen: true,
+                seen: test.split == Split::Train,
                 measured: overshoot.to_degrees(),
                 predicted: trials.iter().map(|t| t.measures.overshoots.get(i).map(|o| o.to_degrees())).collect(),
             });
         }
         let shown = from_execute(&track, first);
         self.zigzags.push(Sailed {
-            name: test.run.clone(),
+            name: test.recording.clone(),
             end: shown.t.last().copied().unwrap_or(0.0),
             measured: shown,
             predicted: trials.into_iter().map(|t| t.track).collect(),
@@ -303,14 +321,15 @@ impl Outcome {
 
     /// Heading of the zigzags over time.
     pub fn zigzags_figure(&self) -> Figure {
+        self.zigzags_titled("KVLCC2: zigzags, measured and sailed by each model with its own executes")
+    }
+
+    /// Heading of the zigzags over time, under a title.
+    pub(super) fn zigzags_titled(&self, title: &str) -> Figure {
         let panels = self.zigzags.iter().enumerate().map(|(i, z)| {
             Panel::new(&z.name, Axis::new("time from the first execute [s]"), Axis::new("heading [deg]"))
                 .with_all(self.layers(z, i == 0, |t, k| (t.t[k], t.states[k][2].to_degrees())))
         });
-        Figure::new("KVLCC2: zigzags, measured and sailed by each model with its own executes")
-            .columns(2)
-            .panel_size(900, 520)
-            .legend(Legend::Shared)
-            .with_all(panels)
+        Figure::new(title).columns(2).panel_size(900, 520).legend(Legend::Shared).with_all(panels)
     }
 }

@@ -1,4 +1,4 @@
-//! The two real hulls: studies, fits, diagnoses, and comparisons with measured trials and instruments.
+//! The real hulls: studies, fits, diagnoses, and comparisons with measured trials and instruments.
 //! Recordings are read from the user's folder; only numbers derived from them (errors, measures, pictures) are written.
 
 pub mod agreement;
@@ -10,6 +10,7 @@ pub mod frame;
 pub mod hull;
 pub mod kvlcc2;
 pub mod kvlcc2_diagnosed;
+pub mod kvlcc2_hsva;
 pub mod mend;
 pub mod output;
 pub mod published;

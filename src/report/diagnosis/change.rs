@@ -27,14 +27,14 @@ pub(super) fn held_out(d: &Diagnosis) -> Option<Sketch> {
         .with(Layer::line("change", GREY, joined).unlisted().width(2.0))
         .with(Layer::scatter("base model, refitted", BASELINE, rows().map(|(i, p)| (p.1, i))))
         .with(Layer::scatter("improved model", FITTED, rows().map(|(i, p)| (p.2, i))).marker(Marker::Diamond))
-        .with(Layer::v_line("median, base", BASELINE, h.before).dotted().unlisted())
-        .with(Layer::v_line("median, improved", FITTED, h.after).dotted().unlisted())
-        .with_all(h.generic.map(|g| Layer::v_line("median with a generic force law", GREY, g).dashed()));
+        .with(Layer::v_line("mean, base", BASELINE, h.before.unwrap_or(f64::NAN)).dotted().unlisted())
+        .with(Layer::v_line("mean, improved", FITTED, h.after.unwrap_or(f64::NAN)).dotted().unlisted())
+        .with_all(h.generic.map(|g| Layer::v_line("mean with a generic force law", GREY, g).dashed()));
     Some(Sketch {
         stem: "held_out",
         part: "PROOF",
         caption: "Each test run, simulated freely by the base model, refitted, and by the improved model.",
-        figure: Figure::new("Test runs, before and after (dotted: medians)")
+        figure: Figure::new("Test runs, before and after (dotted: means)")
             .panel_size(1240, 150 + 40 * pairs.len() as u32)
             .with(dots),
     })

@@ -9,6 +9,7 @@ use crate::diagnose::sides::Sides;
 use crate::numerals::sig;
 use crate::report::units::Units;
 
+/// What was added to the model, and how its own parameters moved.
 pub(super) fn model(d: &Diagnosis) -> Vec<String> {
     let units = Units::of(&d.base.ship);
     let mut lines = Vec::new();

@@ -7,50 +7,51 @@ use crate::diagnose::Diagnosis;
 use crate::numerals::{fixed, sig};
 use crate::report::units::{EQUATIONS, Units};
 
+/// What the improved model leaves unexplained.
 pub(super) fn still_open(d: &Diagnosis) -> Vec<String> {
-    let units = Units::of(&d.base.ship);
-    let a = d.adequacy_after;
+    let further = |which: &str, p: f64| format!("further forces {which}: {} ({})", adequacy_words(p), p_value(p));
     let mut lines = vec![
-        format!(
-            "further forces with port-starboard symmetry (the ship's own, in another form): {} ({})",
-            adequacy_words(a.symmetric),
-            p_value(a.symmetric)
-        ),
-        format!(
-            "further forces without that symmetry, or fixed on the earth: {} ({})",
-            adequacy_words(a.asymmetric),
-            p_value(a.asymmetric)
-        ),
+        further("with port-starboard symmetry (the ship's own, in another form)", d.adequacy_after.symmetric),
+        further("without that symmetry, or fixed on the earth", d.adequacy_after.asymmetric),
+        unexplained(d),
     ];
-    let change: Vec<String> = EQUATIONS
-        .iter()
-        .enumerate()
-        .map(|(e, (name, unit, _))| {
-            let (factor, unit) = units.human(unit);
-            let (before, after) = (d.noise_before.force[e] * factor, d.noise_after.force[e] * factor);
-            format!("{name} {} before, {} {unit} after", sig(before, 3), sig(after, 3))
-        })
-        .collect();
-    lines.push(format!(
-        "unexplained force (standard deviation; correlation time {} s): {}",
-        fixed(d.noise_after.force_time, 0),
-        change.join("; ")
-    ));
-    let mut used: Vec<_> = d.hull_budget.iter().filter(|b| b.used.is_finite()).collect();
-    used.sort_by(|a, b| b.used.abs().total_cmp(&a.used.abs()));
-    let beyond = used.iter().filter(|b| b.used.abs() > 2.0).count();
-    if !used.is_empty() {
-        let furthest: Vec<String> = used.iter().take(3).map(|b| format!("{} {:+.1}", b.name, b.used)).collect();
-        lines.push(format!(
-            "the ship's own coefficients: {beyond} of {} further than 2 prior standard deviations from their priors; furthest {}",
-            used.len(),
-            furthest.join(", ")
-        ));
-    }
+    lines.extend(coefficients(d));
     lines
 }
 
-pub(super) fn blind(d: &Diagnosis) -> Vec<String> {
+/// The unknown force in the noise model, before and after.
+fn unexplained(d: &Diagnosis) -> String {
+    let units = Units::of(&d.base.ship);
+    let forces = d.noise_before.force.iter().zip(&d.noise_after.force);
+    let change: Vec<String> = forces
+        .zip(EQUATIONS)
+        .map(|((before, after), (name, unit, _))| {
+            let (factor, unit) = units.human(unit);
+            format!("{name} {} before, {} {unit} after", sig(before * factor, 3), sig(after * factor, 3))
+        })
+        .collect();
+    let time = fixed(d.noise_after.force_time, 0);
+    format!("unexplained force (standard deviation; correlation time {time} s): {}", change.join("; "))
+}
+
+/// The ship's own coefficients against their priors.
+fn coefficients(d: &Diagnosis) -> Option<String> {
+    let mut used: Vec<_> = d.hull_budget.iter().filter(|b| b.used.is_finite()).collect();
+    used.sort_by(|a, b| b.used.abs().total_cmp(&a.used.abs()));
+    let beyond = used.iter().filter(|b| b.used.abs() > 2.0).count();
+    let furthest: Vec<String> = used.iter().take(3).map(|b| format!("{} {:+.1}", b.name, b.used)).collect();
+    (!used.is_empty()).then(|| {
+        format!(
+            "the ship's own coefficients: {beyond} of {} further than 2 prior standard deviations from their priors; \
+             furthest {}",
+            used.len(),
+            furthest.join(", ")
+        )
+    })
+}
+
+/// What these data could not have shown, and from which size on they would have shown the rest.
+pub(super) fn limits(d: &Diagnosis) -> Vec<String> {
     let units = Units::of(&d.base.ship);
     let mut lines = Vec::new();
     let mut reasons: Vec<&str> = d.absorbed.iter().map(|a| a.by.as_str()).collect();
@@ -75,6 +76,7 @@ pub(super) fn blind(d: &Diagnosis) -> Vec<String> {
     lines
 }
 
+/// The trial that would help most.
 pub(super) fn next_trial(d: &Diagnosis) -> Vec<String> {
     d.next_trial
         .as_ref()

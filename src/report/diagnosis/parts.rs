@@ -2,7 +2,7 @@
 //! What each says is in its own file; how they are set is in `summary` and `page`.
 
 use super::findings::model;
-use super::limits::{blind, next_trial, still_open};
+use super::limits::{limits, next_trial, still_open};
 use super::location::location;
 use super::proof::proof;
 use super::verdict::verdict;
@@ -26,7 +26,7 @@ pub fn parts(d: &Diagnosis) -> Vec<Part> {
         Part { heading: "MODEL", lines: model(d) },
         Part { heading: "PROOF", lines: proof(d) },
         Part { heading: "STILL OPEN", lines: still_open(d) },
-        Part { heading: "LIMITS", lines: blind(d) },
+        Part { heading: "LIMITS", lines: limits(d) },
         Part { heading: "NEXT TRIAL", lines: next_trial(d) },
     ]
 }

@@ -7,10 +7,12 @@ use crate::diagnose::push::Window;
 use crate::numerals::{fixed, sig};
 use crate::report::units::{EQUATIONS, Units};
 
+/// A p-value, none below 1e-12.
 pub(super) fn p_value(p: f64) -> String {
     if p < 1e-12 { "p < 1e-12".to_owned() } else { format!("p = {}", sig(p, 2)) }
 }
 
+/// A share as a percentage without decimals.
 pub(super) fn percent(share: f64) -> String {
     format!("{} %", fixed(100.0 * share, 0))
 }
@@ -36,6 +38,7 @@ pub(super) fn amplitude(a: &Amplitude, units: Units) -> String {
     format!("{} ({low} to {high})", units.text(a.value, &a.unit))
 }
 
+/// Share and root mean square of a force in each equation.
 pub(super) fn equations(shares: [&EquationShare; 3], units: Units) -> String {
     EQUATIONS
         .iter()
@@ -45,6 +48,7 @@ pub(super) fn equations(shares: [&EquationShare; 3], units: Units) -> String {
         .join("   ")
 }
 
+/// A force in each equation with its 95 % interval, from its standard errors.
 pub(super) fn forces(force: &[f64; 3], error: &[f64; 3], units: Units) -> String {
     EQUATIONS
         .iter()
@@ -57,6 +61,7 @@ pub(super) fn forces(force: &[f64; 3], error: &[f64; 3], units: Units) -> String
         .join(", ")
 }
 
+/// A window of time with its force.
 pub(super) fn window(w: &Window, units: Units) -> String {
     format!(
         "{} from {} to {} s: {} ({})",

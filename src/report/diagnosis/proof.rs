@@ -3,8 +3,14 @@
 
 use super::phrases::percent;
 use crate::diagnose::Diagnosis;
-use crate::numerals::{fixed, sig};
+use crate::numerals::{DASH, fixed, sig};
 
+/// A cVDM in words.
+fn percentage(cvdm: Option<f64>) -> String {
+    cvdm.map_or(DASH.to_owned(), |v| sig(v, 3))
+}
+
+/// What the findings gain on the test runs.
 pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     let Some(h) = &d.held_out else {
         return vec!["there are no test runs, so nothing is proven; mark some with `split = \"test\"`".to_owned()];
@@ -13,21 +19,22 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
         return vec![format!(
             "no finding to prove; base model, refitted, on {} test runs: cVDM {} %",
             h.runs,
-            sig(h.before, 3)
+            percentage(h.before)
         )];
     }
+    let gain = h.improvement.map_or(DASH.to_owned(), percent);
+    let interval = h.ci95.map_or("no interval with fewer than three recordings".to_owned(), |[low, high]| {
+        format!("95 % {} to {}", percent(low), percent(high))
+    });
     let mut lines = vec![format!(
-        "{} test runs: cVDM {} % before, {} % after (median improvement {}, 95 % {} to {}); {} better, {} worse",
+        "{} test runs: cVDM {} % before, {} % after (improvement {gain}, {interval}); {} better, {} worse",
         h.runs,
-        sig(h.before, 3),
-        sig(h.after, 3),
-        percent(h.improvement),
-        percent(h.ci95[0]),
-        percent(h.ci95[1]),
+        percentage(h.before),
+        percentage(h.after),
         h.better,
         h.worse
     )];
-    if h.ci95[0] <= 0.0 {
+    if h.ci95.is_some_and(|[low, _]| low <= 0.0) {
         lines.push("the interval reaches zero: these test runs do not confirm the gain".to_owned());
     }
     if let (Some(run), Some(change)) = (&h.worst_run, h.worst_improvement) {

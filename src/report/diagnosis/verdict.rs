@@ -3,7 +3,7 @@
 
 use super::names::title_of;
 use super::phrases::{amplitude, p_value};
-use crate::diagnose::admit::Issue;
+use crate::audit::Issue;
 use crate::diagnose::{Diagnosis, Finding, Verdict};
 use crate::numerals::{fixed, sig};
 use crate::report::units::Units;
@@ -43,6 +43,7 @@ pub fn verdict_words(verdict: Verdict) -> &'static str {
     }
 }
 
+/// The verdict with its findings, and notes on the recordings.
 pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
     let units = Units::of(&d.base.ship);
     let mut lines = vec![verdict_words(d.verdict).to_owned()];
@@ -82,10 +83,10 @@ fn notes(issues: &[Issue]) -> Vec<String> {
     let mut lines = Vec::new();
     let mut noted: BTreeMap<&str, usize> = BTreeMap::new();
     for i in issues {
-        let count = noted.entry(i.mechanism).or_default();
-        *count += usize::from(!i.blocking);
-        if i.blocking || *count <= NOTES {
-            let word = if i.blocking { "correct first" } else { "note" };
+        let count = noted.entry(i.fault).or_default();
+        *count += usize::from(!i.blocking());
+        if i.blocking() || *count <= NOTES {
+            let word = if i.blocking() { "correct first" } else { "note" };
             lines.push(format!("{word}: {}; {}", i.text, i.next_step));
         }
     }
@@ -155,20 +156,16 @@ fn size_of(f: &Finding, session: Option<&str>, units: Units) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::audit::Severity;
+    use crate::recording::Channel;
 
     #[test]
     fn every_issue_to_correct_is_written_and_only_notes_beyond_two_of_a_kind_are_counted() {
-        let issue = |blocking, text: &str| Issue {
-            channel: "r".into(),
-            mechanism: "jump",
-            text: text.into(),
-            next_step: "look at it".into(),
-            blocking,
-        };
-        let blocking: Vec<Issue> = ["a", "b", "c"].map(|text| issue(true, text)).into();
+        let issue = |severity, text: &str| Issue::new(severity, "jump", text, "look at it").of(Channel::R);
+        let blocking: Vec<Issue> = ["a", "b", "c"].map(|text| issue(Severity::Error, text)).into();
         assert_eq!(notes(&blocking), ["a", "b", "c"].map(|t| format!("correct first: {t}; look at it")));
         let mut both = blocking;
-        both.extend(["d", "e", "f", "g"].map(|text| issue(false, text)));
+        both.extend(["d", "e", "f", "g"].map(|text| issue(Severity::Warning, text)));
         let lines = notes(&both);
         assert_eq!(lines[3..], ["note: d; look at it", "note: e; look at it", "note: 2 more runs with `jump`"]);
     }

@@ -8,7 +8,7 @@ use trimtab::plot::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, Pane
 use super::arms::{LOPSIDED, MODELS, Question, SHOWN, WAYS, arm, lopsided, named_right, reached, single};
 use super::plan::OTHER_HULLS;
 use crate::conceal::judge::score::Score;
-use crate::conceal::statistics::{Share, median};
+use trimtab::statistics::{Share, median};
 
 /// Strengths of the single effects.
 const STEPS: [f64; 4] = [3.0, 6.0, 12.0, 24.0];
@@ -119,7 +119,7 @@ fn errors(scores: &[Score]) -> Panel {
         // One set of cases for all models: those with an oracle.
         let at = |snr: f64| {
             let cases = single(scores, None, snr).filter(|s| s.oracle_held_out.is_some());
-            median(cases.map(model.score)).map(|value| (snr, value))
+            median(cases.filter_map(model.score)).map(|value| (snr, value))
         };
         panel = panel.with(Layer::line(model.name, model.color, STEPS.into_iter().filter_map(at)));
     }

@@ -8,7 +8,7 @@ use super::arms::{
 };
 use super::plan::OTHERS;
 use crate::conceal::judge::score::Score;
-use crate::conceal::statistics::{Share, mean, median};
+use trimtab::statistics::{Share, mean, median};
 
 /// The result of one line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -186,7 +186,7 @@ impl Lines<'_> {
     fn numbers(&mut self, all: &[Score]) {
         let scores = self.scores;
         for family in OTHERS {
-            let sizes = other_hull(scores, family).map(|s| s.size_error);
+            let sizes = other_hull(scores, family).filter_map(|s| s.size_error);
             let what = format!("{}: median error of the size", family.name());
             self.number(&what, "<= 0.10", Aim::Most(0.1), median(sizes));
         }
@@ -194,25 +194,25 @@ impl Lines<'_> {
             let here = || lopsided(scores, family);
             let error = |s: &Score| Some((s.asymmetry_found? - s.asymmetry?).abs());
             let what = |what: &str| format!("{}: median {what} of the flow at the rudder", family.name());
-            self.number(&what("true asymmetry"), "-", NO_AIM, median(here().map(|s| s.asymmetry.map(f64::abs))));
-            self.number(&what("error of the asymmetry"), "-", NO_AIM, median(here().map(error)));
+            self.number(&what("true asymmetry"), "-", NO_AIM, median(here().filter_map(|s| s.asymmetry.map(f64::abs))));
+            self.number(&what("error of the asymmetry"), "-", NO_AIM, median(here().filter_map(error)));
         }
         let twelve = || single(scores, None, 12.0);
-        let sets = mean(twelve().map(|s| s.set_size));
+        let sets = mean(twelve().filter_map(|s| s.set_size));
         self.number("mean size of the confidence set at SNR 12", "<= 1.6", Aim::Most(1.6), sets);
-        let windows = mean(twelve().filter(|s| s.effects == "push").map(|s| s.window_iou));
+        let windows = mean(twelve().filter(|s| s.effects == "push").filter_map(|s| s.window_iou));
         self.number("mean window overlap (IoU) at SNR 12", ">= 0.8", Aim::Least(0.8), windows);
-        let sizes = median(twelve().map(|s| s.size_error));
+        let sizes = median(twelve().filter_map(|s| s.size_error));
         self.number("median error of the size at SNR 12", "<= 0.10", Aim::Most(0.1), sizes);
-        let gap = median(twelve().map(|s| s.gap_closed));
+        let gap = median(twelve().filter_map(|s| s.gap_closed));
         self.number("median share of the held-out gap closed at SNR 12", ">= 0.90", Aim::Least(0.9), gap);
         for model in &MODELS {
             // One set of cases for all models: those with an oracle.
             let compared = twelve().filter(|s| s.oracle_held_out.is_some());
             let what = format!("median held-out cVDM at SNR 12 [%]: {}", model.name);
-            self.number(&what, model.target, NO_AIM, median(compared.map(model.score)));
+            self.number(&what, model.target, NO_AIM, median(compared.filter_map(model.score)));
         }
-        let seconds = median(scores.iter().map(|s| s.seconds));
+        let seconds = median(scores.iter().filter_map(|s| s.seconds));
         self.number("median time of a diagnosis [s]", "<= 5", Aim::Most(5.0), seconds);
         let failed = Some((all.len() - scores.len()) as f64);
         self.number("cases without a score", "0", Aim::Most(0.0), failed);

@@ -1,4 +1,4 @@
-//! What an effect is: its entry in the catalogue, what it may draw, what it sees at an instant, and what it does.
+//! The parts of an effect: its entry in the catalogue, its random numbers, its view of an instant, and its action.
 //! The effects are in the files beside this one; `sail` lets them act and `seal` keeps them secret.
 
 use rand::RngExt;

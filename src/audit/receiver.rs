@@ -1,10 +1,11 @@
 //! What a receiver did that no ship can: jumps, values held while the ship sailed on, and a wild first fix.
 //! It judges recordings by themselves, before any model is asked; what a force could have done it leaves alone.
 
-use super::admit::Issue;
-use super::filter::Run;
-use super::prove::median;
+use super::issue::{Issue, Severity};
 use crate::numerals::sig;
+use crate::recording::{Channel, Run, or_nan};
+use crate::state::STATES;
+use crate::statistics::median;
 use nalgebra::SMatrix;
 use trimtab_ad::smooth::wrap_angle;
 
@@ -36,22 +37,18 @@ pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
     for run in &mut out {
         let held = held(run);
         for sample in held.iter().flat_map(|(from, to)| *from..=*to) {
-            run.measured[sample][..3].fill(f64::NAN);
+            run.measured[sample][..3].fill(None);
         }
         if let Some((from, to)) = held.first() {
             let samples: usize = held.iter().map(|(from, to)| to - from + 1).sum();
-            issues.push(Issue {
-                channel: "x, y, psi".into(),
-                mechanism: "held",
-                text: format!(
-                    "{}: position and heading repeat, and then catch up, first from {} to {} s, {samples} samples in all",
-                    run.name,
-                    sig(run.inputs[*from].t, 5),
-                    sig(run.inputs[*to].t, 5)
-                ),
-                next_step: "these samples are taken as not measured".into(),
-                blocking: false,
-            });
+            let text = format!(
+                "{}: position and heading repeat, and then catch up, first from {} to {} s, {samples} samples in all",
+                run.name,
+                sig(run.inputs[*from].t, 5),
+                sig(run.inputs[*to].t, 5)
+            );
+            let next = "a diagnosis takes these samples as not measured";
+            issues.push(Issue::new(Severity::Note, "held", text, next).of(Channel::X));
         }
     }
     let mut parted = Vec::with_capacity(out.len());
@@ -62,31 +59,27 @@ pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
         };
         let times: Vec<String> = jumps.iter().map(|j| sig(run.inputs[j.sample].t, 5)).collect();
         let longest = jumps.iter().map(|j| j.length).fold(first.length, f64::max);
-        issues.push(Issue {
-            channel: "x, y".into(),
-            mechanism: "jump",
-            text: format!(
-                "{}: the position jumps at {} s, by up to {} m, as no force moves the ship",
-                run.name,
-                times.join(", "),
-                sig(longest, 2)
-            ),
-            next_step: "the run is parted there: no force is read off the jump".into(),
-            blocking: false,
-        });
+        let text = format!(
+            "{}: the position jumps at {} s, by up to {} m, as no force moves the ship",
+            run.name,
+            times.join(", "),
+            sig(longest, 2)
+        );
+        let next = "a diagnosis parts the run there, so that no force is read off the jump";
+        issues.push(Issue::new(Severity::Note, "jump", text, next).of(Channel::X));
         parted.extend(parts(&run, &jumps));
     }
     issues.extend(from_second(&mut parted));
     (parted, issues)
 }
 
-/// Names and units of position and heading.
-const CHANNELS: [(&str, &str); 3] = [("x", "m"), ("y", "m"), ("psi", "rad")];
+/// Position and heading, with their units.
+const CHANNELS: [(Channel, &str); 3] = [(Channel::X, "m"), (Channel::Y, "m"), (Channel::Psi, "rad")];
 
 /// How far a sample is from the line through the four after it; NaN where one is not measured.
 fn departure(run: &Run, k: usize, c: usize) -> f64 {
     let ahead = |i: usize| {
-        let d = run.measured[k + i][c] - run.measured[k][c];
+        let d = or_nan(&run.measured[k + i])[c] - or_nan(&run.measured[k])[c];
         if c == 2 { wrap_angle(d) } else { d }
     };
     0.5 * ahead(4) - 0.5 * ahead(2) - ahead(1)
@@ -101,42 +94,38 @@ fn from_second(runs: &mut [Run]) -> Vec<Issue> {
         let of = |run: &Run| {
             (0..run.measured.len().saturating_sub(4)).map(|k| departure(run, k, c).abs()).collect::<Vec<f64>>()
         };
-        let all: Vec<f64> = runs.iter().filter(|r| r.channels[c]).flat_map(of).filter(|d| d.is_finite()).collect();
+        let all: Vec<f64> = runs.iter().flat_map(of).filter(|d| d.is_finite()).collect();
         // The median of a normal variable's size is 0.6745 of its standard deviation.
-        if all.len() < ENOUGH { f64::INFINITY } else { median(&all) / 0.6745 }
+        if all.len() < ENOUGH { f64::INFINITY } else { median(all).map_or(f64::INFINITY, |m| m / 0.6745) }
     };
     let spreads: [f64; 3] = std::array::from_fn(spread);
     let mut issues = Vec::new();
     for run in runs.iter_mut().filter(|r| r.measured.len() > 2 * SIDE) {
         let wild = |c: &usize| {
             let (first, second) = (departure(run, 0, *c), departure(run, 1, *c));
-            run.channels[*c] && first.abs() > BEYOND_NOISE * spreads[*c] && second.abs() < 0.5 * first.abs()
+            first.abs() > BEYOND_NOISE * spreads[*c] && second.abs() < 0.5 * first.abs()
         };
         let Some(c) = (0..3).find(wild) else { continue };
         let (channel, unit) = CHANNELS[c];
-        issues.push(Issue {
-            channel: channel.into(),
-            mechanism: "start",
-            text: format!(
-                "{}: the first {channel} is {} {unit} from where those after it come from",
-                run.name,
-                sig(departure(run, 0, c).abs(), 2)
-            ),
-            next_step: "the run is taken from its second sample on".into(),
-            blocking: false,
-        });
+        let text = format!(
+            "{}: the first {channel} is {} {unit} from where those after it come from",
+            run.name,
+            sig(departure(run, 0, c).abs(), 2)
+        );
+        let next = "a diagnosis takes the run from its second sample on";
+        issues.push(Issue::new(Severity::Note, "start", text, next).of(channel));
         run.inputs.remove(0);
         run.measured.remove(0);
         let second = run.measured[0];
-        run.initial = std::array::from_fn(|c| if second[c].is_finite() { second[c] } else { run.initial[c] });
+        run.initial = std::array::from_fn(|c| second[c].unwrap_or(run.initial[c]));
     }
     issues
 }
 
 /// The samples `from..to` of a run as a run of its own; `None` where they are too few to say anything.
-pub(super) fn piece(run: &Run, from: usize, to: usize) -> Option<Run> {
+pub fn piece(run: &Run, from: usize, to: usize) -> Option<Run> {
     // Where a channel is not measured at the start, the last value before it stands in.
-    let last = |c: usize| run.measured[..=from].iter().rev().map(|m| m[c]).find(|v| v.is_finite());
+    let last = |c: usize| run.measured[..=from].iter().rev().find_map(|m| m[c]);
     (to >= from + 2 * SIDE).then(|| Run {
         name: format!("{} {} s", run.recording, sig(run.inputs[from].t, 5)),
         inputs: run.inputs[from..to].to_vec(),
@@ -187,22 +176,19 @@ pub fn jumps(runs: &[Run], length: f64) -> Vec<Vec<Jump>> {
     // A jump stays: without any one sample it is there still, where a single wild fix is not.
     let stays = |rows: &[[f64; 6]], least: f64| without.iter().all(|w| by(w, rows, 0).hypot(by(w, rows, 1)) > least);
     // Of each run, with the sample after the step; NaN where one of the samples is.
-    let steps_of = |run: &Run| -> Vec<[f64; 2]> {
-        let both = run.channels[0] && run.channels[1];
-        let rows = if both { run.measured.as_slice() } else { &[] };
+    let rows: Vec<Vec<[f64; STATES]>> = runs.iter().map(|r| r.measured.iter().map(or_nan).collect()).collect();
+    let steps_of = |rows: &Vec<[f64; STATES]>| -> Vec<[f64; 2]> {
         rows.windows(2 * SIDE).map(|rows| [step(rows, 0), step(rows, 1)]).collect()
     };
-    let steps: Vec<Vec<[f64; 2]>> = runs.iter().map(steps_of).collect();
-    let mut sizes: Vec<f64> = steps.iter().flatten().flatten().map(|s| s.abs()).filter(|s| s.is_finite()).collect();
-    if sizes.len() < ENOUGH {
-        return vec![Vec::new(); runs.len()];
-    }
-    sizes.sort_by(f64::total_cmp);
+    let steps: Vec<Vec<[f64; 2]>> = rows.iter().map(steps_of).collect();
+    let sizes: Vec<f64> = steps.iter().flatten().flatten().map(|s| s.abs()).filter(|s| s.is_finite()).collect();
+    let enough = sizes.len() >= ENOUGH;
+    let Some(usual) = median(sizes).filter(|_| enough) else { return vec![Vec::new(); runs.len()] };
     // The median of a normal variable's size is 0.6745 of its standard deviation.
-    let noise = BEYOND_NOISE * sizes[sizes.len() / 2] / 0.6745;
+    let noise = BEYOND_NOISE * usual / 0.6745;
     let (mut squares, mut count) = (0.0, 0.0);
-    for run in runs {
-        for rows in run.measured.windows(2 * SIDE) {
+    for (run, rows) in runs.iter().zip(&rows) {
+        for rows in rows.windows(2 * SIDE) {
             let (a, b) = (&rows[0], &rows[2 * SIDE - 1]);
             let speed = (b[0] - a[0]).hypot(b[1] - a[1]) / ((2 * SIDE - 1) as f64 * run.dt);
             if speed.is_finite() {
@@ -212,12 +198,12 @@ pub fn jumps(runs: &[Run], length: f64) -> Vec<Vec<Jump>> {
         }
     }
     let acceleration = squares / f64::max(count, 1.0) / length;
-    let of = |(run, steps): (&Run, &Vec<[f64; 2]>)| {
+    let of = |((run, rows), steps): ((&Run, &Vec<[f64; STATES]>), &Vec<[f64; 2]>)| {
         let least = noise.max(BEYOND_FORCE * acceleration * run.dt * run.dt);
         let mut out: Vec<Jump> = Vec::new();
         for (i, s) in steps.iter().enumerate() {
             let jump = Jump { sample: i + SIDE, length: s[0].hypot(s[1]) };
-            let rows = &run.measured[i..i + 2 * SIDE];
+            let rows = &rows[i..i + 2 * SIDE];
             if jump.length.is_nan() || jump.length <= least || !stays(rows, 0.5 * jump.length) {
                 continue;
             }
@@ -233,12 +219,12 @@ pub fn jumps(runs: &[Run], length: f64) -> Vec<Vec<Jump>> {
         }
         out
     };
-    runs.iter().zip(&steps).map(of).collect()
+    runs.iter().zip(&rows).zip(&steps).map(of).collect()
 }
 
 /// Stretches of samples that repeat position and heading to the last bit and end with a leap to where the ship has sailed.
 fn held(run: &Run) -> Vec<(usize, usize)> {
-    let m = &run.measured;
+    let m: Vec<[f64; STATES]> = run.measured.iter().map(or_nan).collect();
     let moved = |a: usize, b: usize| (m[b][0] - m[a][0]).hypot(m[b][1] - m[a][1]);
     let repeats = |k: usize| m[k][..3] == m[k - 1][..3];
     let mut out = Vec::new();
@@ -260,6 +246,7 @@ fn held(run: &Run) -> Vec<(usize, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recording::{Split, measured};
     use crate::state::Inputs;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -284,17 +271,17 @@ mod tests {
                 let [x, y, psi] = at(k);
                 [x + noise(), y + noise(), psi, speed, 0.0, 0.0]
             };
-            let measured: Vec<[f64; 6]> = (0..121).map(place).collect();
+            let states: Vec<[f64; 6]> = (0..121).map(place).collect();
             Run {
                 name: format!("run {i}"),
                 recording: format!("run {i}"),
                 session: "a".into(),
                 manoeuvre: String::new(),
+                split: Split::Train,
                 dt,
                 inputs: (0..121).map(|k| Inputs::actuators(dt * f64::from(k), 10.0, 0.1)).collect(),
-                initial: measured[0],
-                measured,
-                channels: [true; 6],
+                initial: states[0],
+                measured: measured(&states),
                 disturbed: Vec::new(),
             }
         };
@@ -312,7 +299,7 @@ mod tests {
     fn a_jump_is_found_between_its_samples_and_the_run_parted_there() {
         let mut runs = circles();
         for m in &mut runs[3].measured[70..] {
-            m[1] += 0.09;
+            m[1] = m[1].map(|y| y + 0.09);
         }
         let found = jumps(&runs, LENGTH);
         assert_eq!(found.iter().map(Vec::len).sum::<usize>(), 1, "{found:?}");
@@ -323,16 +310,16 @@ mod tests {
         let [before, after] = [&runs[3], &runs[4]];
         assert!(before.measured.len() == 70 && after.measured.len() == 51 && after.inputs.len() == 51);
         assert!(before.recording == "run 3" && after.recording == "run 3" && before.name != after.name);
-        assert!(after.initial == after.measured[0] && after.inputs[0].t == before.inputs[69].t + before.dt);
+        assert!(after.initial.map(Some) == after.measured[0] && after.inputs[0].t == before.inputs[69].t + before.dt);
         assert_eq!(issues.len(), 1);
-        assert!(issues[0].mechanism == "jump" && !issues[0].blocking && issues[0].text.contains("run 3"), "{issues:?}");
+        assert!(issues[0].fault == "jump" && !issues[0].blocking() && issues[0].text.contains("run 3"), "{issues:?}");
     }
 
     #[test]
     fn a_single_wild_fix_is_no_jump() {
         let mut runs = circles();
         for (run, sample, error) in [(1, 20, 0.3), (1, 90, -2.0), (4, 57, 15.0)] {
-            runs[run].measured[sample][0] += error;
+            runs[run].measured[sample][0] = runs[run].measured[sample][0].map(|x| x + error);
         }
         let found = jumps(&runs, LENGTH);
         assert!(found.iter().all(Vec::is_empty), "{found:?}");
@@ -341,24 +328,29 @@ mod tests {
     #[test]
     fn a_wild_first_sample_is_left_out_and_an_early_manoeuvre_is_not_wild() {
         let mut runs = circles();
-        runs[1].measured[0][1] += 2.0;
-        runs[6].measured[0][2] -= 0.1;
+        runs[1].measured[0][1] = runs[1].measured[0][1].map(|y| y + 2.0);
+        runs[6].measured[0][2] = runs[6].measured[0][2].map(|psi| psi - 0.1);
         // From the first sample on this ship slows down as fast as a crash stop would have her.
         for (k, m) in runs[4].measured.iter_mut().enumerate() {
             let t = 0.5 * k as f64;
-            m[0] -= 0.025 * t * t;
-            m[3] -= 0.05 * t;
+            m[0] = m[0].map(|x| x - 0.025 * t * t);
+            m[3] = m[3].map(|u| u - 0.05 * t);
         }
         let whole = runs.clone();
         let (runs, issues) = settled(&runs, LENGTH);
-        assert!(issues.iter().all(|i| i.mechanism == "start" && !i.blocking), "{issues:?}");
-        let told = |name: &str, channel: &str| issues.iter().any(|i| i.channel == channel && i.text.starts_with(name));
-        assert!(issues.len() == 2 && told("run 1", "y") && told("run 6", "psi"), "{issues:?}");
+        assert!(issues.iter().all(|i| i.fault == "start" && !i.blocking()), "{issues:?}");
+        let told = |name: &str, channel| issues.iter().any(|i| i.channel == Some(channel) && i.text.starts_with(name));
+        assert!(issues.len() == 2 && told("run 1", Channel::Y) && told("run 6", Channel::Psi), "{issues:?}");
         for (i, (run, whole)) in runs.iter().zip(&whole).enumerate() {
             let from = usize::from(i == 1 || i == 6);
             assert_eq!(run.measured, whole.measured[from..]);
             assert_eq!(run.inputs.len(), run.measured.len());
-            assert_eq!((run.initial, run.inputs[0].t), (run.measured[0], whole.inputs[from].t), "{}", run.name);
+            assert_eq!(
+                (run.initial.map(Some), run.inputs[0].t),
+                (run.measured[0], whole.inputs[from].t),
+                "{}",
+                run.name
+            );
         }
     }
 
@@ -374,9 +366,9 @@ mod tests {
             *m = rest;
         }
         let (runs, issues) = settled(&runs, LENGTH);
-        let missing = |r: &Run| (0..r.measured.len()).filter(|k| r.measured[*k][0].is_nan()).collect::<Vec<_>>();
+        let missing = |r: &Run| (0..r.measured.len()).filter(|k| r.measured[*k][0].is_none()).collect::<Vec<_>>();
         assert_eq!(missing(&runs[2]), [41, 42, 43]);
         assert!(missing(&runs[5]).is_empty());
-        assert!(issues.iter().any(|i| i.mechanism == "held" && i.text.contains("run 2")), "{issues:?}");
+        assert!(issues.iter().any(|i| i.fault == "held" && i.text.contains("run 2")), "{issues:?}");
     }
 }
