@@ -383,12 +383,12 @@ mod tests {
     }
 
     #[test]
-    fn three_units_or_a_tenth_of_the_gain_cannot_be_told_apart() {
+    fn mechanisms_within_three_units_or_a_tenth_of_the_gain_are_indistinguishable() {
         assert_eq!((form_tolerance(10.0), form_tolerance(100.0)), (3.0, 10.0));
     }
 
     #[test]
-    fn the_confidence_set_holds_what_is_within_the_tolerance_of_the_best() {
+    fn the_confidence_set_holds_the_mechanisms_within_the_tolerance_of_the_best() {
         let r = Ranking::new(vec![entry(0, 91.0, false), entry(1, 100.0, false), entry(2, 89.9, false)]).unwrap();
         assert_eq!((places(&r.entries), places(r.set())), (vec![1, 0, 2], vec![1, 0]));
         assert!(Ranking::new(Vec::new()).is_none());

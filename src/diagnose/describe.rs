@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shares_of_a_force_are_those_of_its_components_with_the_moment_as_a_pair_at_a_quarter_of_the_length() {
+    fn the_shares_of_a_force_weigh_the_moment_as_a_force_pair_at_a_quarter_of_the_length() {
         let found = at(&with(&[("earth_force.north", 3000.0), ("earth_force.east", 0.0)]));
         let runs = runs(&model(), 6);
         let location = locate(&found, RK4, &runs);

@@ -341,7 +341,7 @@ mod tests {
     use crate::diagnose::settings::REFIT;
 
     #[test]
-    fn a_value_stays_inside_its_bounds_and_an_addition_in_a_session_inside_what_the_sum_may_be() {
+    fn a_value_stays_inside_its_bounds_and_so_does_its_sum_with_the_addition_of_a_session() {
         let mut m = with(&[("rudder_offset.offset", 0.3)]);
         let c = column(&m, "rudder_offset.offset");
         let addition = FreeParameter { column: c, sessions: Some(vec!["a".into(), "b".into()]), prior: None };
@@ -404,7 +404,7 @@ mod tests {
     }
 
     #[test]
-    fn an_estimate_that_cannot_reach_what_is_asked_is_given_up() {
+    fn an_estimate_that_cannot_reach_the_least_log_posterior_ends_early() {
         let truth = model();
         let runs = runs(&truth, 3);
         let mut start = truth.clone();

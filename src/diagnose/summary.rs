@@ -177,7 +177,7 @@ mod tests {
     use crate::diagnose::screen::screen;
 
     #[test]
-    fn what_is_detectable_is_what_is_not_absorbed_and_more_runs_detect_less() {
+    fn a_mechanism_is_either_detectable_or_absorbed_and_more_runs_detect_smaller_sizes() {
         let model = model();
         let list = candidates(&model, &[]);
         let of = |count: usize| screen(&at(&model), RK4, &runs(&model, count), &list);

@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_trial_tells_rivals_apart_and_shows_a_name_best() {
+    fn the_next_trial_is_that_of_the_rival_or_of_the_named_mechanism() {
         let model = example::model();
         let list = ["current", "mean_wind"].map(|n| example::candidate(&model, n));
         let (current, wind) = (list[0].mechanism, list[1].mechanism);
