@@ -1,8 +1,9 @@
-//! Before any physics is claimed: are the recordings consistent with themselves, and is the integration step fine enough?
-//! It judges data and numerics only.
+//! The audit of recordings and integration step by the base model, before any physics is claimed.
+//! It judges data and numerics only; what recordings show by themselves is in `audit`.
 
 use super::filter::{Filter, GATE, Pass, Wanted};
 use super::noise::Noise;
+use super::settings::{FEW_LOST_SHARE, LOST_MEASUREMENTS};
 use crate::audit::{Issue, Severity, audit_runs, piece};
 use crate::model::Model;
 use crate::numerals::sig;
@@ -56,30 +57,25 @@ fn as_admitted<S: serde::Serializer>(issues: &[Issue], serializer: S) -> Result<
     }))
 }
 
-/// So many measurements of a channel in a row beyond the gate are no outliers: the ship is elsewhere than the filter believes.
-const LOST: usize = 5;
-
-/// Where the ship is lost in more than this share of the runs, the model is at fault and not the recordings.
-const FEW_LOST: f64 = 0.1;
-
-/// Measurements in a row in which the filter loses the ship.
+/// Measurements of a channel in a row beyond the gate: too many for outliers, so that the filter has lost the ship.
 struct Loss {
     channel: usize,
     first: usize,
     count: usize,
 }
 
-/// The runs without the stretches in which the filter loses the ship, and a note on each: what an input or a sensor that was not
-/// recorded does there no force of the size that the others show explains, and it would bend everything that is estimated.
+/// The runs without the stretches in which the filter loses the ship, and an issue for each: no unknown force of the size that the
+/// other runs show explains these stretches, and they would bias every estimate.
 ///
-/// `None` where she is lost nowhere, and where she is lost in many runs, with one note for all of them: they stay whole.
+/// `None` where it is lost nowhere, and where it is lost in many runs, with one issue for all of them: then the model is at fault
+/// and the runs stay whole.
 pub fn followed(runs: &[Run], passes: &[Pass]) -> (Option<Vec<Run>>, Vec<Issue>) {
     let losses: Vec<Option<Loss>> = runs.iter().zip(passes).map(|(r, p)| loss(r, p)).collect();
     let lost: Vec<(&Run, &Loss)> = runs.iter().zip(&losses).filter_map(|(r, l)| Some((r, l.as_ref()?))).collect();
     if lost.is_empty() {
         return (None, Vec::new());
     }
-    if lost.len() as f64 > FEW_LOST * runs.len() as f64 {
+    if lost.len() as f64 > FEW_LOST_SHARE * runs.len() as f64 {
         let (run, first) = lost[0];
         let text = format!("the ship is lost in {} of {} runs, first in {}", lost.len(), runs.len(), told(run, first));
         let next_step =
@@ -121,7 +117,7 @@ fn loss(run: &Run, pass: &Pass) -> Option<Loss> {
         let beyond: Vec<(usize, bool)> = measured.map(|k| (k, pass.innovations[k][channel].abs() > GATE)).collect();
         let longest = beyond.chunk_by(|a, b| a.1 == b.1).filter(|s| s[0].1).max_by_key(|s| s.len())?;
         let (first, last) = (longest[0].0, longest[longest.len() - 1].0);
-        (longest.len() >= LOST).then_some(Loss { channel, first, count: last + 1 - first })
+        (longest.len() >= LOST_MEASUREMENTS).then_some(Loss { channel, first, count: last + 1 - first })
     };
     (0..STATES).filter_map(of).max_by_key(|l| l.count)
 }
@@ -159,5 +155,62 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
         integration,
         integration_error: largest,
         euler_gain: 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::estimate::passes;
+    use crate::diagnose::example::{RK4, SAMPLES, model, noise, runs};
+
+    /// Twelve runs, in some of which the position is 300 m off for eight samples.
+    fn lost_in(some: &[usize]) -> (Vec<Run>, Vec<Pass>) {
+        let model = model();
+        let mut runs = runs(&model, 12);
+        for i in some {
+            for m in &mut runs[*i].measured[25..33] {
+                m[0] = m[0].map(|x| x + 300.0);
+            }
+        }
+        let passes = passes(&model, RK4, &[], &runs, &noise(), false);
+        (runs, passes)
+    }
+
+    #[test]
+    fn runs_that_the_filter_follows_stay_as_they_are() {
+        let (runs, passes) = lost_in(&[]);
+        let (kept, issues) = followed(&runs, &passes);
+        assert!(kept.is_none() && issues.is_empty());
+    }
+
+    #[test]
+    fn a_run_in_which_the_ship_is_lost_is_divided_around_the_loss_with_an_issue_that_does_not_block() {
+        let (runs, passes) = lost_in(&[4]);
+        let (kept, issues) = followed(&runs, &passes);
+        let kept = kept.unwrap();
+        assert_eq!((kept.len(), issues.len()), (13, 1));
+        assert_eq!((kept[4].measured.len(), kept[5].measured.len()), (25, SAMPLES - 33));
+        assert_eq!((kept[4].recording.as_str(), kept[5].recording.as_str()), ("run 4", "run 4"));
+        let issue = &issues[0];
+        assert!(issue.fault == "lost" && issue.text.contains("run 4") && !issue.blocking(), "{issue:?}");
+    }
+
+    #[test]
+    fn a_model_that_loses_the_ship_in_many_runs_is_at_fault_and_they_stay_whole() {
+        let (runs, passes) = lost_in(&[1, 4, 7]);
+        let (kept, issues) = followed(&runs, &passes);
+        assert!(kept.is_none() && issues.len() == 1 && issues[0].text.contains("3 of 12"), "{issues:?}");
+    }
+
+    #[test]
+    fn headings_all_round_have_a_spread_near_one_and_a_step_that_is_fine_enough_a_small_error() {
+        let model = model();
+        let mut runs = runs(&model, 6);
+        let all = admit(&model, RK4, &noise(), &runs);
+        assert_eq!((all.runs, all.samples, all.sessions), (6, 6 * SAMPLES, 2));
+        assert!(all.heading_spread > 0.5 && all.integration_error < 0.2, "{all:?}");
+        runs.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[2] = Some(0.3));
+        assert!(admit(&model, RK4, &noise(), &runs).heading_spread < 1e-12);
     }
 }

@@ -5,7 +5,7 @@ use super::base::base_parameters;
 use super::candidate::{Candidate, Extent, append, applies, candidates};
 use super::compete::start_with;
 use super::covariance::Z;
-use super::estimate::{Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
+use super::estimate::{Estimate, FreeParameter, base_of, estimate, evidence, moved, restrictions};
 use super::evidence::Evidence;
 use super::filter::{Column, Filter, Gains, Pass, Wanted};
 use super::noise::{Noise, NoisePrior};
@@ -103,6 +103,16 @@ const DAMPING: Damping =
 /// Least damping.
 const LEAST_DAMPING: f64 = 1e-9;
 
+/// The step of least squares with the information's diagonal raised by a factor, and the priors.
+fn damped_step(e: &Evidence, model: &Model, free: &[FreeParameter], damping: f64) -> DVector<f64> {
+    let damped = free.iter().enumerate().map(|(i, f)| {
+        let (precision, pull) = f.prior_terms(model);
+        (precision + damping * e.total.information[(i, i)], pull)
+    });
+    let (precision, pull): (Vec<f64>, Vec<f64>) = damped.unzip();
+    e.base(&(0..free.len()).collect::<Vec<_>>(), &precision, &pull).step()
+}
+
 impl Refitted {
     /// Refits the free parameters of a model by the method of Levenberg and Marquardt. `None` when the model as given runs
     /// away in a free simulation, so that there is nothing to start from.
@@ -128,20 +138,10 @@ impl Refitted {
         let (mut damping, mut attempts) = (1e-3, 30);
         while attempts > 0 {
             let e = current.evidence(runs, &free);
-            let propose = |damping: f64| {
-                let damped = free.iter().enumerate().map(|(i, f)| {
-                    let (precision, pull) = f.prior_terms(&model);
-                    (precision + damping * e.total.information[(i, i)], pull)
-                });
-                let (precision, pull): (Vec<f64>, Vec<f64>) = damped.unzip();
-                let step = e.base(&(0..free.len()).collect::<Vec<_>>(), &precision, &pull).step();
-                Some(Proposal { step, promise: f64::INFINITY })
-            };
+            let propose =
+                |damping: f64| Some(Proposal { step: damped_step(&e, &model, &free, damping), promise: f64::INFINITY });
             let evaluate = |step: &DVector<f64>| {
-                let mut trial = model.clone();
-                for (f, s) in free.iter().zip(step.iter()) {
-                    f.set(&mut trial, f.value(&model) + s * f.column.scale);
-                }
+                let trial = moved(&model, &free, step);
                 let next = at(&trial, &current.variance);
                 let value = -next.misfit();
                 ((trial, next), value)

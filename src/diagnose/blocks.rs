@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn profiling_out_a_base_parameter_leaves_what_a_joint_fit_of_both_gives() -> Result<(), String> {
+    fn profiling_out_a_base_parameter_gives_the_force_of_a_joint_fit_of_both() -> Result<(), String> {
         // One base column beside one block: the force of the joint fit by the whole inverse.
         let (score, information) = evidence();
         let four = DVector::from_fn(4, |i, _| score[i]);

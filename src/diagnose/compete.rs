@@ -10,7 +10,7 @@ use super::problem::Problem;
 use super::screen::{Row, Screen};
 use super::settings::{
     Effort, FORM_TOLERANCE, IMPLAUSIBLE, INDISTINGUISHABLE, PARAMETER_PRICE, REFIT, RIVAL_GAP, RIVAL_LIKENESS,
-    RIVAL_SHARE, RIVALS, SETTLE, SMALLEST_SIZE, UNRELATED_LIKENESS,
+    RIVAL_SHARE, RIVALS, SETTLE, SMALLEST_SIZE, STARTS, STARTS_OF_SQUARES, UNRELATED_LIKENESS,
 };
 use super::wald::Wald;
 use crate::model::Model;
@@ -142,10 +142,10 @@ pub fn start_with(
         let value = log_posterior(&model, problem.integration, problem.runs, &current.free, noise);
         (model, value)
     };
-    let mut starts: Vec<_> = [1.0, 0.3, 0.1].map(|share| at(share, &(amplitude * share))).into();
+    let mut starts: Vec<_> = STARTS.map(|share| at(share, &(amplitude * share))).into();
     if c.mechanism.probe == Probe::Odd {
         starts.push(at(1.0, &rooted(amplitude, c.columns.len().max(1))));
-        starts.extend([3.0, 10.0, 30.0].map(|share| at(0.0, &(amplitude * share))));
+        starts.extend(STARTS_OF_SQUARES.map(|share| at(0.0, &(amplitude * share))));
     }
     let best = starts.into_iter().reduce(|a, b| if b.1 > a.1 { b } else { a });
     let model = best.map_or_else(|| current.model.clone(), |(model, _)| model);
@@ -280,7 +280,9 @@ impl Competition<'_> {
             let alike: Vec<String> = others.iter().map(alike).collect();
             return format!("these fit within {width:.0} units of log-likelihood of each other: {}", alike.join(", "));
         }
-        let Some(next) = entries.get(1) else { return "no other mechanism of the catalogue comes near".into() };
+        let Some(next) = entries.get(1) else {
+            return "no other mechanism of the catalogue fits nearly as well".into();
+        };
         // A refit that was given up may have been further ahead than it got.
         let (over, by) = if next.value < least { ("over ", best - least) } else { ("", best - next.value) };
         format!("next best, {}, fits {over}{by:.0} units of log-likelihood worse", title(next))
@@ -381,12 +383,12 @@ mod tests {
     }
 
     #[test]
-    fn three_units_or_a_tenth_of_the_gain_cannot_be_told_apart() {
+    fn mechanisms_within_three_units_or_a_tenth_of_the_gain_are_indistinguishable() {
         assert_eq!((form_tolerance(10.0), form_tolerance(100.0)), (3.0, 10.0));
     }
 
     #[test]
-    fn the_confidence_set_holds_what_is_within_the_tolerance_of_the_best() {
+    fn the_confidence_set_holds_the_mechanisms_within_the_tolerance_of_the_best() {
         let r = Ranking::new(vec![entry(0, 91.0, false), entry(1, 100.0, false), entry(2, 89.9, false)]).unwrap();
         assert_eq!((places(&r.entries), places(r.set())), (vec![1, 0, 2], vec![1, 0]));
         assert!(Ranking::new(Vec::new()).is_none());

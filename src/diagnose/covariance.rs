@@ -2,6 +2,7 @@
 //! It is not the filter: means, innovations and sensitivities are carried elsewhere.
 
 use super::noise::{GROUP_OF, Noise};
+use super::settings::START_SPREAD;
 use crate::model::Model;
 use crate::state::STATES;
 use crate::units::GRAVITY;
@@ -61,7 +62,8 @@ pub fn initial<S: Scalar>(noise: &Discrete<S>, model: &Model) -> Square<S> {
     let mut p = [[S::zero(); Z]; Z];
     let l = model.ship.hull.lpp;
     let speed = (GRAVITY * l).sqrt();
-    let wide = [0.5 * l, 0.5 * l, 0.2, 0.05 * speed, 0.05 * speed, 0.1 * speed / l];
+    let [x, y, psi, u, v, r] = START_SPREAD;
+    let wide = [x * l, y * l, psi, u * speed, v * speed, r * speed / l];
     for (i, w) in wide.iter().enumerate() {
         p[i][i] = S::from_f64(w * w);
     }

@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn a_push_enters_first_where_no_mechanism_and_no_law_gains_as_much_and_is_explained_where_half_of_it_goes() {
+    fn a_push_enters_first_where_it_gains_more_than_any_mechanism_and_law_and_is_explained_below_half_its_statistic() {
         let push = push_in(5, 100.0);
         assert!(push.enters_first(true, 49.0, 99.0));
         assert!(!push.enters_first(true, 51.0, 99.0) && !push.enters_first(true, 49.0, 101.0));

@@ -132,9 +132,9 @@ fn strongest_region(regions: &[RegionTest]) -> Option<String> {
 /// How a mechanism behaves, in words.
 fn signature(c: &Candidate, s: &Screen) -> String {
     let mut words = match c.mechanism.kind {
-        Kind::Environment => "earth-fixed: it turns with the heading in body axes".to_string(),
-        Kind::Ship => "body-fixed: it goes with the ship's own motion".to_string(),
-        Kind::Actuator => "it goes with the actuator's history".to_string(),
+        Kind::Environment => "fixed on the earth: on the ship's axes it turns with the heading".to_string(),
+        Kind::Ship => "fixed to the ship: it follows from the ship's own motion".to_string(),
+        Kind::Actuator => "it follows from the history of the actuator".to_string(),
         Kind::Sensor => "no force: positions and velocities do not agree with each other".to_string(),
     };
     if s.asymmetric_test.p < 1e-3 {
@@ -183,12 +183,13 @@ fn sensor_findings(admission: &Admission) -> Vec<Finding> {
 fn push_finding(push: &Push, location: &Location) -> Finding {
     let names = [("push.x", "N"), ("push.y", "N"), ("push.n", "N m")];
     let mut confidence_set = vec![PUSH.to_owned()];
-    let mut why = "the same unknown force stands in windows of time, is absent outside them, and no smooth law of the ship's state \
-                   gives it"
+    let mut why = "the same force acts in windows of time and not outside them, and no smooth law of the ship's state explains it"
         .to_owned();
     if PushTest::from(push).in_few_recordings() {
         confidence_set.push(GENERIC.into());
-        why.push_str("; in so few recordings it may as well be the ship's own forces in a state that no other visits");
+        why.push_str(
+            "; in so few recordings it may also be the ship's own forces in a state that no other recording visits",
+        );
     }
     Finding {
         mechanism: PUSH.into(),
@@ -203,7 +204,7 @@ fn push_finding(push: &Push, location: &Location) -> Finding {
         equations: location.equations.into(),
         windows: push.windows.clone(),
         region: None,
-        signature: "time-local".into(),
+        signature: "limited in time".into(),
         parameters: (0..3)
             .map(|e| Amplitude::new(names[e].0.into(), push.force[e], names[e].1, push.error[e]))
             .collect(),
@@ -229,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shares_of_a_force_are_those_of_its_components_with_the_moment_as_a_pair_at_a_quarter_of_the_length() {
+    fn the_shares_of_a_force_weigh_the_moment_as_a_force_pair_at_a_quarter_of_the_length() {
         let found = at(&with(&[("earth_force.north", 3000.0), ("earth_force.east", 0.0)]));
         let runs = runs(&model(), 6);
         let location = locate(&found, RK4, &runs);

@@ -5,10 +5,10 @@ use super::evidence::{Base, Evidence, RunEvidence};
 use super::filter::{Column, Filter, GATE, Pass, Wanted};
 use super::noise::{Noise, NoisePrior};
 use super::noise_fit::fit_noise;
-use super::optimise::{Damping, Outcome, Proposal, Quadratic};
+use super::optimise::{Outcome, Proposal, Quadratic};
 pub use super::settings::Effort;
 use super::settings::{
-    CALM_ITERATIONS, CALM_SHARE, NOISE_REFUSED, OUTLIER_SHARE, STEP_GAIN, STEP_LONGEST, STEP_LOSS, STEP_SHORTEST,
+    CALM_ITERATIONS, CALM_SHARE, NOISE_REFUSED, OUTLIER_SHARE, STEP_DAMPING, STEP_GAIN, STEP_LONGEST, STEP_SHORTEST,
 };
 use crate::model::{Model, Prior};
 use crate::recording::Run;
@@ -182,6 +182,15 @@ fn quadratic(Evidence { total, .. }: &Evidence, model: &Model, free: &[FreeParam
     Quadratic { information, score, room }
 }
 
+/// The model after a step of the free parameters, in units of their columns; values stay inside their bounds.
+pub fn moved(model: &Model, free: &[FreeParameter], step: &DVector<f64>) -> Model {
+    let mut out = model.clone();
+    for (f, s) in free.iter().zip(step.iter()) {
+        f.set(&mut out, f.value(model) + s * f.column.scale);
+    }
+    out
+}
+
 /// Log-likelihood plus log-prior of a model.
 pub fn log_posterior(
     model: &Model,
@@ -206,19 +215,6 @@ pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prio
     let tangents: Vec<_> = order.iter().filter_map(|i| p[*i].tangent.as_ref()).collect();
     fit_noise(&some, &tangents, &found.model, &found.noise, prior, GATE, CALM_ITERATIONS)
 }
-
-/// How a parameter step is damped: parameters that the data hardly determine ask for steps on which the others would fail;
-/// damping, in units of the columns' scales, holds those back and lets the rest move. It stays while the valley bends.
-const DAMPING: Damping = Damping {
-    attempts: 6,
-    least_promise: STEP_GAIN,
-    loss: STEP_LOSS,
-    first: 0.3,
-    most: f64::INFINITY,
-    shrink: 0.3,
-    off: 0.03,
-    trusted: 0.5,
-};
 
 /// Fits the free parameters and the noise, starting from the model's values.
 ///
@@ -312,15 +308,11 @@ impl Fit<'_> {
             Some(Proposal { step: (step, length.min(STEP_LONGEST)), promise })
         };
         let evaluate = |(step, _): &(DVector<f64>, f64)| {
-            let mut model = from.model.clone();
-            for (f, s) in self.free.iter().zip(step.iter()) {
-                f.set(&mut model, f.value(&from.model) + s * f.column.scale);
-            }
-            let point = self.at(model, from.noise);
+            let point = self.at(moved(&from.model, self.free, step), from.noise);
             let value = point.value;
             (point, value)
         };
-        let Outcome { taken, last, .. } = DAMPING.search(from.value, damping, propose, evaluate);
+        let Outcome { taken, last, .. } = STEP_DAMPING.search(from.value, damping, propose, evaluate);
         (taken.map(|(point, _)| point), last.map_or(0.0, |(_, length)| length))
     }
 
@@ -361,7 +353,7 @@ mod tests {
     use crate::diagnose::settings::REFIT;
 
     #[test]
-    fn a_value_stays_inside_its_bounds_and_an_addition_in_a_session_inside_what_the_sum_may_be() {
+    fn a_value_stays_inside_its_bounds_and_so_does_its_sum_with_the_addition_of_a_session() {
         let mut m = with(&[("rudder_offset.offset", 0.3)]);
         let c = column(&m, "rudder_offset.offset");
         let addition = FreeParameter { column: c, sessions: Some(vec!["a".into(), "b".into()]), prior: None };
@@ -424,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn an_estimate_that_cannot_reach_what_is_asked_is_given_up() {
+    fn an_estimate_that_cannot_reach_the_least_log_posterior_ends_early() {
         let truth = model();
         let runs = runs(&truth, 3);
         let mut start = truth.clone();

@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_that_scatter_by_group_widen_what_is_known_and_runs_that_do_not_leave_it() {
+    fn scores_that_scatter_between_groups_of_runs_widen_the_standard_errors() {
         // Four runs whose scores have the variance that their information of 1 says, and the same with two kinds that pull apart.
         let of = |pull: f64| {
             let signs = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
@@ -336,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn intervals_reach_further_the_fewer_groups_tell_the_scatter() {
+    fn intervals_are_wider_the_fewer_groups_of_runs_there_are() {
         assert!((reach(8) - 2.3646).abs() < 1e-4 && (reach(5) - 2.7764).abs() < 1e-4);
         assert_eq!((reach(2), reach(1)), (reach(5), reach(5)));
         assert!((reach(10_000) - 1.96).abs() < 1e-3);
@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn the_score_test_of_a_linear_model_is_what_its_columns_take_off_the_sum_of_squares() {
+    fn the_score_statistic_of_a_linear_model_is_the_reduction_of_the_sum_of_squares() {
         let (x, y) = regression();
         let e = Evidence::new(vec![linear("a", &x, &y)]);
         let t = e.test(&e.base(&[0, 1], &[0.0; 2], &[0.0; 2]), &[2, 3]);

@@ -3,15 +3,12 @@
 
 use super::candidate::Candidate;
 use super::estimate::Estimate;
-use super::settings::CANCELLED_SHARE;
+use super::settings::{CANCELLED_SHARE, FORCE_STRIDE};
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::parameter::Parity;
 use crate::recording::{Run, or_nan};
 use crate::state::{Force, State};
-
-/// The force is taken at every so many samples.
-const STRIDE: usize = 4;
 
 /// The model with some parameters neutral, in every session.
 fn without(model: &Model, parameters: &[usize]) -> Model {
@@ -36,7 +33,7 @@ pub fn forces_of(model: &Model, parameters: &[usize], runs: &[Run]) -> Vec<[f64;
         let (with, bare) = (Dynamics::new(model, with), Dynamics::new(&neutral, bare));
         with.drive(r.dt, &mut a);
         bare.drive(r.dt, &mut b);
-        for ((m, i), j) in r.measured.iter().zip(&a).zip(&b).step_by(STRIDE) {
+        for ((m, i), j) in r.measured.iter().zip(&a).zip(&b).step_by(FORCE_STRIDE) {
             if m.contains(&None) {
                 continue;
             }
@@ -87,7 +84,7 @@ mod tests {
         let of = |m: &Model| forces_of(m, &[m.find("earth_force.north").unwrap()], &runs);
         assert!(of(&model()).iter().flatten().all(|f| *f == 0.0));
         let model = with(&[("earth_force.north", 1000.0)]);
-        let headings = runs.iter().flat_map(|r| r.measured.iter().step_by(STRIDE)).map(|m| m[2].unwrap());
+        let headings = runs.iter().flat_map(|r| r.measured.iter().step_by(FORCE_STRIDE)).map(|m| m[2].unwrap());
         for (f, psi) in of(&model).iter().zip(headings) {
             let expected = [1000.0 * psi.cos(), -1000.0 * psi.sin(), 0.0];
             // The moment is what is left of inertia times acceleration; its unit is the force times the length.

@@ -173,3 +173,51 @@ fn equation_shares(
         sigma: sigma[eq],
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, at, model, runs, with};
+
+    #[test]
+    fn a_yaw_moment_that_the_model_lacks_is_found_in_yaw() {
+        // A base with nothing free, and runs of a ship with a constant yaw moment.
+        let found = Estimate { free: Vec::new(), ..at(&model()) };
+        let of = |truth: &Model| locate(&found, RK4, &runs(truth, 9));
+        let share = |l: &Location| l.equations.map(|e| e.share);
+        let null = of(&model());
+        let yaw = of(&with(&[("asymmetric.N_0", 4e5)]));
+        let [x, y, n] = share(&yaw);
+        assert!(n > 0.7 && (x + y + n - 1.0).abs() < 1e-9, "{:?}", share(&yaw));
+        assert!(yaw.equations[2].rms > 3.0 * null.equations[2].rms);
+        assert!(null.windows.is_empty() && null.regions[0].p > 1e-4, "{:?}", null.regions[0]);
+        let best = &yaw.regions[0];
+        assert!(best.p < 1e-6 && best.force[2] > 5.0 * best.error[2], "{best:?}");
+    }
+
+    #[test]
+    fn a_force_that_acts_when_the_propeller_turns_astern_is_found_in_that_region() {
+        let found = Estimate { free: Vec::new(), ..at(&model()) };
+        let walk = with(&[("propeller_walk.astern", 0.15)]);
+        let location = locate(&found, RK4, &runs(&walk, 9));
+        let regions: Vec<&str> = location.regions.iter().filter(|r| r.p < 1e-3).map(|r| r.region.as_str()).collect();
+        assert!(regions.contains(&"propeller astern (n < 0)"), "{regions:?}");
+    }
+
+    #[test]
+    fn every_force_of_the_layout_has_a_column_of_its_own() {
+        let model = model();
+        let (found, runs) = (at(&model), runs(&model, 3));
+        let layout = Layout::new(&found, &runs);
+        let mut forces = Vec::new();
+        let state = State { x: 10.0, y: 20.0, psi: 0.5, u: 4.0, v: 0.0, r: 0.0 };
+        layout.forces(7, &state, &Inputs::actuators(0.0, 1.0, 0.0), &mut forces);
+        assert_eq!(forces.len(), layout.count());
+        let block = 3 * (7 / layout.length);
+        let set = |from: usize, to: usize| forces[from..to].iter().filter(|f| **f != [0.0; 3]).count();
+        assert_eq!((set(0, layout.regions()), set(block, block + 3)), (3, 3));
+        // North and east in the part of the water and in all of it.
+        assert_eq!(set(layout.parts(), layout.count()), 4);
+        assert_eq!(forces[layout.count() - 2], [layout.unit[1] * 0.5f64.cos(), -layout.unit[1] * 0.5f64.sin(), 0.0]);
+    }
+}

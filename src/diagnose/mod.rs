@@ -39,7 +39,7 @@ mod example;
 pub mod filter;
 pub mod finding;
 mod forces;
-mod generic;
+pub mod generic;
 mod improved;
 pub mod locate;
 pub mod noise;

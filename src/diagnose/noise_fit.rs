@@ -4,8 +4,8 @@
 use super::covariance::{Discrete, Z, initial, predict};
 use super::filter::{Tangent, boost};
 use super::noise::{GROUP_OF, NOISE_PARAMETERS, Noise, NoisePrior, NoiseScore, SensorNoise};
-use super::optimise::{Damping, Outcome, Proposal};
-use super::settings::{NOISE_STEP_GAIN, NOISE_STEP_LONGEST};
+use super::optimise::{Outcome, Proposal};
+use super::settings::{COLOURED_GUESS, COLOURED_PERIODS, EXACT_SENSOR, FORCE_GUESS, NOISE_DAMPING, NOISE_STEP_LONGEST};
 use crate::model::Model;
 use crate::recording::{Run, or_nan};
 use crate::state::STATES;
@@ -121,18 +121,6 @@ fn noise_score(at: &[Innovation<f64>], nudged: &[Vec<Innovation<Lanes>>; BLOCKS]
 const NUDGE: f64 = 0.01;
 const N: usize = NOISE_PARAMETERS;
 const BLOCKS: usize = N / Lanes::LANES;
-/// How a step of the logarithms is damped, in units of the information's diagonal.
-const DAMPING: Damping = Damping {
-    attempts: 6,
-    least_promise: NOISE_STEP_GAIN,
-    loss: 0.0,
-    first: 0.1,
-    most: f64::INFINITY,
-    shrink: 0.1,
-    off: 0.05,
-    trusted: 0.0,
-};
-
 /// Maximises the log-likelihood over the noise, by Fisher scoring on the logarithms, damped where a step does not hold what it
 /// promises. Innovations beyond `gate` standard deviations are outliers.
 ///
@@ -170,7 +158,7 @@ pub fn fit_noise(
             let reached = fit.posterior(&w, &trial);
             ((w, trial), reached)
         };
-        let Outcome { taken, .. } = DAMPING.search(value, &mut damping, propose, evaluate);
+        let Outcome { taken, .. } = NOISE_DAMPING.search(value, &mut damping, propose, evaluate);
         let Some(((w, trial), reached)) = taken else { break };
         (v, at, value) = (w, trial, reached);
     }
@@ -245,16 +233,16 @@ pub fn guess(runs: &[Run], model: &Model) -> Noise {
     };
     let l = model.ship.hull.lpp;
     let speed = (GRAVITY * l).sqrt();
-    // Below these floors a sensor is exact for every purpose of a manoeuvring model.
-    let floors = [1e-4 * l, 2e-4, 1e-4 * speed, 1e-4 * speed / l];
+    let [position, heading, velocity, rate] = EXACT_SENSOR;
+    let floors = [position * l, heading, velocity * speed, rate * speed / l];
     let dt = runs.iter().map(|r| r.dt).fold(f64::INFINITY, f64::min).clamp(1e-3, 60.0);
     let sensors = std::array::from_fn(|g| {
         let channels: Vec<usize> = (0..STATES).filter(|j| GROUP_OF[*j] == g).collect();
         let white = scatter(&channels).max(floors[g]);
-        SensorNoise { white, coloured: 0.7 * white, time: 4.0 * dt }
+        SensorNoise { white, coloured: COLOURED_GUESS * white, time: COLOURED_PERIODS * dt }
     });
     let mass = model.ship.hull.mass;
-    let acceleration = 0.01 * 0.04 * speed * speed / l;
+    let acceleration = FORCE_GUESS * 0.04 * speed * speed / l;
     Noise {
         sensors,
         force: [mass * acceleration, 2.0 * mass * acceleration, 0.3 * mass * acceleration * l],

@@ -186,7 +186,7 @@ mod tests {
     use proptest::test_runner::RngSeed;
 
     #[test]
-    fn what_stops_at_a_bound_leaves_the_others_their_own_best() {
+    fn an_entry_at_its_bound_leaves_the_others_at_their_best_beside_it() {
         // Alone the first would go to 10/3 and take the second to -5/3; held at 1 it leaves it where its own score is spent.
         let information = DMatrix::from_row_slice(2, 2, &[4.0, 2.0, 2.0, 4.0]);
         let score = DVector::from_column_slice(&[10.0, 0.0]);
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn damping_grows_while_steps_fail_and_goes_when_they_hold_their_promise() {
+    fn damping_grows_while_steps_fail_and_ends_when_a_step_gains_as_promised() {
         let propose = |damping: f64| Some(Proposal { step: damping, promise: 1.0 });
         let mut damping = 0.0;
         let out = DAMPING.search(0.0, &mut damping, propose, |s| ((), if *s < 3.0 { -1.0 } else { 1.0 }));

@@ -112,3 +112,36 @@ fn report(question: &Question, kept: &Kept, decision: &Decision, proof: Option<H
         base: trimmed(&base.model, question.model, &base.free),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::decide::Verdict;
+    use crate::diagnose::example::{model, runs, with};
+    use std::sync::Mutex;
+
+    #[test]
+    fn the_steps_run_in_order_and_a_current_is_named_with_its_proof() -> Result<(), ModelError> {
+        let truth = runs(&with(&[("current.north", 0.3)]), 15);
+        let settings = Settings { nuisance: false, ..Settings::default() };
+        let steps = Mutex::new(Vec::new());
+        let note = |step: &str| steps.lock().unwrap().push(step.to_owned());
+        let d = diagnose(&model(), &truth[..12], &truth[12..], &settings, &note)?;
+        assert_eq!((d.verdict, d.findings[0].mechanism.as_str()), (Verdict::Named, "current"), "{}", d.headline);
+        assert_eq!(d.held_out.as_ref().map(|h| h.runs), Some(3));
+        assert!(d.findings[0].held_out.is_some() && d.location_after.is_some() && d.surrogate.is_empty());
+        let steps = steps.into_inner().unwrap();
+        let order = ["estimating", "auditing", "locating", "testing", "refitting", "checking", "proving"];
+        let place = |word: &str| steps.iter().position(|s| s.starts_with(word));
+        assert!(order.windows(2).all(|w| place(w[0]) < place(w[1]) && place(w[0]).is_some()), "{steps:?}");
+        Ok(())
+    }
+
+    #[test]
+    fn without_held_out_runs_there_is_no_proof() -> Result<(), ModelError> {
+        let settings = Settings { nuisance: false, ..Settings::default() };
+        let d = diagnose(&model(), &runs(&model(), 6), &[], &settings, &|_| ())?;
+        assert!(d.held_out.is_none() && d.findings.is_empty());
+        Ok(())
+    }
+}

@@ -120,3 +120,31 @@ pub fn prove(
         runs_after: scores(|c| &c.fitted),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, model, noise, runs, with};
+    use crate::diagnose::settings::Settings;
+
+    #[test]
+    fn a_model_against_itself_gains_nothing_and_the_truth_gains_on_every_run() {
+        let truth = with(&[("current.north", 0.4)]);
+        let (held_out, judging) = (runs(&truth, 6), Settings::default().judging);
+        let base = model();
+        let against = |after: &Model| prove((&base, &noise()), (after, &noise()), None, RK4, &held_out, &judging);
+        let same = against(&base);
+        assert_eq!((same.improvement, same.log_likelihood_gain, same.better, same.worse), (Some(0.0), 0.0, 0, 0));
+        let better = against(&truth);
+        assert!(better.improvement > Some(0.5) && better.log_likelihood_gain > 50.0, "{better:?}");
+        assert_eq!((better.runs, better.better, better.worse), (6, 6, 0));
+        assert!(better.whiteness[1] < better.whiteness[0]);
+    }
+
+    #[test]
+    fn innovations_under_the_truth_have_the_size_that_the_noise_says() {
+        let truth = model();
+        let (_, square) = likelihood(&truth, RK4, &noise(), &runs(&truth, 12));
+        assert!((0.7..1.1).contains(&square), "{square}");
+    }
+}

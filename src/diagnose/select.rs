@@ -161,7 +161,7 @@ fn rival_of(
         return Some((entry, None));
     }
     // The present one was estimated to the end, beside what came after it: another must do better than that, and a force without
-    // a cause better than any cause that comes near.
+    // a cause better than any cause within its tolerance.
     let value = |a: &Selected, e: &Estimate| {
         let parameters = candidates[a.candidate].positions(&e.free, &a.extent).len();
         e.log_posterior - PARAMETER_PRICE * parameters as f64

@@ -1,6 +1,7 @@
 //! Every number that can turn a verdict: name, value, meaning, and how it was set; and the settings that a user may change.
 //! The smallest size worth naming of each mechanism is not here: it is a `floor` of the mechanism, in its term's file.
 
+use super::optimise::Damping;
 use crate::evaluate::{EvaluationSettings, Judging};
 use crate::fit::FitSettings;
 use crate::simulate::{Integration, Method};
@@ -86,6 +87,40 @@ pub const GIVEN_START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_itera
 /// The one fit of a model that is given its mechanisms.
 pub const GIVEN_FINISH: Effort = Effort { rounds: 8, noise_rounds: 2, noise_iterations: 6, noise_runs: 10 };
 
+/// How a step of the parameters is damped, in units of the columns' scales: parameters that the data hardly determine ask for
+/// steps on which the others would fail. It stays while the valley bends.
+pub const STEP_DAMPING: Damping = Damping {
+    attempts: 6,
+    least_promise: STEP_GAIN,
+    loss: STEP_LOSS,
+    first: 0.3,
+    most: f64::INFINITY,
+    shrink: 0.3,
+    off: 0.03,
+    trusted: 0.5,
+};
+/// How a step of the noise's logarithms is damped, in units of the information's diagonal.
+pub const NOISE_DAMPING: Damping = Damping {
+    attempts: 6,
+    least_promise: NOISE_STEP_GAIN,
+    loss: 0.0,
+    first: 0.1,
+    most: f64::INFINITY,
+    shrink: 0.1,
+    off: 0.05,
+    trusted: 0.0,
+};
+/// Shares of the amplitudes of a score test at which a refit may start, the other parameters moved along.
+pub const STARTS: [f64; 3] = [1.0, 0.3, 0.1];
+/// Multiples at which the refit of an effect that grows with the square of its amplitude may start, the others held.
+pub const STARTS_OF_SQUARES: [f64; 3] = [3.0, 10.0, 30.0];
+/// Standard deviations of a run's own start: x and y in ship lengths, heading \[rad\], u and v in units of the root of gravity
+/// times length, yaw rate in that unit over the length.
+pub const START_SPREAD: [f64; 6] = [0.5, 0.5, 0.2, 0.05, 0.05, 0.1];
+/// Sensor noise below which a sensor is exact for every purpose: position in ship lengths, heading \[rad\], speed and yaw rate in the
+/// units of [`START_SPREAD`].
+pub const EXACT_SENSOR: [f64; 4] = [1e-4, 2e-4, 1e-4, 1e-4];
+
 /// A number that can turn a verdict.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
@@ -127,6 +162,10 @@ const CUSTOM: &str = "convention; how it was chosen is not recorded";
 const COST: &str = "computing time against accuracy";
 
 numbers! {
+    /// Measurements of a channel in a row beyond the outlier gate from which on the filter has lost the ship.
+    LOST_MEASUREMENTS: usize = 5, HULLS;
+    /// Share of the runs above which lost stretches are the model's fault, and the runs stay whole.
+    FEW_LOST_SHARE: f64 = 0.1, HULLS;
     /// Rounds in which stretches that the filter does not follow are looked for and left out before the base model is kept.
     LOSS_ROUNDS: usize = 4, COST;
     /// Gain in log-posterior above which recordings are read as explicit Euler steps of one sample period.
@@ -154,6 +193,12 @@ numbers! {
     NOISE_STEP_GAIN: f64 = 0.05, COST;
     /// Longest step of the noise's logarithms.
     NOISE_STEP_LONGEST: f64 = 1.5, COST;
+    /// First guess of the coloured part of a sensor noise, as a share of the white part.
+    COLOURED_GUESS: f64 = 0.7, CUSTOM;
+    /// First guess of its correlation time, in sample periods.
+    COLOURED_PERIODS: f64 = 4.0, CUSTOM;
+    /// First guess of the unknown force: a share of the mass times the acceleration U^2 / L at a Froude number of 0.2.
+    FORCE_GUESS: f64 = 0.01, CUSTOM;
     /// Prior standard deviation of the logarithm of a sensor noise's size: a factor of about 4.
     NOISE_SIZE_SPREAD: f64 = 1.4, SEEDS;
     /// Prior standard deviation of the logarithm of a white noise below its first guess: a smoothed sensor is not exact.
@@ -207,6 +252,8 @@ numbers! {
     IMPLAUSIBLE: f64 = 2.0, CUSTOM;
     /// Share of its own force that a mechanism must leave once the force of the base's asymmetric parameters is added.
     CANCELLED_SHARE: f64 = 0.4, "recordings of Esso Osaka";
+    /// The forces of that comparison are taken at every so many samples.
+    FORCE_STRIDE: usize = 4, COST;
     /// Most rivals that are refitted beside a leader.
     RIVALS: usize = 3, COST;
     /// A rival is refitted where its statistic is less than this below the leader's.
@@ -290,5 +337,28 @@ mod tests {
         let names: BTreeSet<&str> = NUMBERS.iter().map(|n| n.name).collect();
         assert_eq!(names.len(), NUMBERS.len());
         assert!(NUMBERS.iter().all(|n| n.value > 0.0 && n.meaning.len() > 20 && !n.origin.is_empty()));
+    }
+
+    #[test]
+    fn no_other_file_of_the_diagnosis_hides_a_number_behind_a_name() {
+        // How an answer is listed, how a search ends, rival methods, and the outlier gate of the filter.
+        let own = ["optimise.rs", "filter.rs", "baseline.rs", "summary.rs", "push.rs"];
+        let mut found = Vec::new();
+        for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/src/diagnose")).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            if name == "settings.rs" || name == "example.rs" || own.contains(&name.as_str()) {
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).unwrap();
+            let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+            let is_number = |l: &&str| l.contains("const ") && (l.contains(": f64 =") || l.contains(": usize ="));
+            found.extend(code.lines().filter(is_number).map(|l| format!("{name}: {l}")));
+        }
+        // Sizes of arrays are no thresholds.
+        found.retain(|l| {
+            !["NOISE_PARAMETERS", "const N:", "const Z:", "BLOCKS:", "PARTS:", "NUDGE:"].iter().any(|n| l.contains(n))
+        });
+        assert!(found.is_empty(), "{found:#?}");
     }
 }

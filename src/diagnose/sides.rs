@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ship_whose_sides_differ_is_told_from_one_whose_sides_are_alike() {
+    fn a_ship_whose_sides_differ_is_significant_and_one_whose_sides_are_alike_is_not() {
         let zero = ["propeller.side_force", "rudder.lift0", "rudder.lift2", "rudder.drag1"].map(|n| (n, 0.0));
         let alike = of(&with(&zero));
         let other = of(&with(&[("propeller.side_force", 0.1), ("rudder.lift0", 0.2)]));

@@ -60,7 +60,7 @@ pub fn absorbed(s: &Screen, list: &[Candidate]) -> Vec<Absorbed> {
                 "the ship's own hull, propeller and rudder coefficients, which are not known well enough; \
                  a session without it would show it"
             } else {
-                "the model's own parameters, or there is nothing in these data that it acts on"
+                "the model's own parameters, or nothing in these data depends on it"
             };
             Absorbed { mechanism: c.mechanism.name.into(), retained: r.pooled.retained, by: by.into() }
         })
@@ -177,7 +177,7 @@ mod tests {
     use crate::diagnose::screen::screen;
 
     #[test]
-    fn what_is_detectable_is_what_is_not_absorbed_and_more_runs_detect_less() {
+    fn a_mechanism_is_either_detectable_or_absorbed_and_more_runs_detect_smaller_sizes() {
         let model = model();
         let list = candidates(&model, &[]);
         let of = |count: usize| screen(&at(&model), RK4, &runs(&model, count), &list);

@@ -34,9 +34,9 @@ impl Missing<'_> {
                 let [west, east] = place.east.map(|v| v.round());
                 let [to_north, to_east] = place.force.map(|v| sig(v, 3));
                 format!(
-                    "Something is missing that the catalogue does not hold, and it goes with the place: strongest from {south} to \
-                     {north} m north and {west} to {east} m east, {to_north} N to north and {to_east} N to east there beyond what \
-                     acts everywhere."
+                    "Something is missing that the catalogue does not hold: a force that differs from place to place, strongest from \
+                     {south} to {north} m north and {west} to {east} m east, where {to_north} N to north and {to_east} N to east \
+                     are added to the force that acts everywhere."
                 )
             }
         }
@@ -55,11 +55,11 @@ impl Missing<'_> {
         let (trial, why) = match self {
             Self::Law(_) => (
                 "straight runs at several speeds on opposite headings, and turning circles to both sides",
-                "they part what goes with speed, with heading and with the side",
+                "they separate forces that depend on speed, on heading and on the side of the turn",
             ),
             Self::Place(_) => (
                 "straight runs through that part of the water and past it, on opposite headings",
-                "they show how far it reaches and whether it turns with the ship",
+                "they show how far the force reaches and whether it is fixed on the earth",
             ),
         };
         NextTrial { trial: trial.into(), why: why.into() }
@@ -74,23 +74,23 @@ pub fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) ->
             let set = &findings.first()?.confidence_set;
             if set.iter().any(|m| m == GENERIC) {
                 return Some(NextTrial {
-                    trial: "the same manoeuvre again, twice, without help from outside".into(),
-                    why: "a push does not come again, the ship's own forces do".into(),
+                    trial: "the same manoeuvre twice more, without tugs, thrusters or lines".into(),
+                    why: "the ship's own forces act again in the same manoeuvre, a push does not".into(),
                 });
             }
             let rival = by_name(set.get(1)?)?;
             Some(NextTrial {
                 trial: rival.trial.into(),
-                why: format!("it parts {} from {}", by_name(set.first()?)?.title, rival.title),
+                why: format!("it tells {} from {}", by_name(set.first()?)?.title, rival.title),
             })
         }
         Verdict::Named | Verdict::Sensor => {
             let m = by_name(&findings.first()?.mechanism)?;
-            Some(NextTrial { trial: m.trial.into(), why: format!("it shows {} best", m.title) })
+            Some(NextTrial { trial: m.trial.into(), why: format!("it shows {} most clearly", m.title) })
         }
         Verdict::Insufficient => Some(NextTrial {
             trial: "turning circles both ways, a zigzag and a crash stop, each on two headings, in two sessions".into(),
-            why: "with fewer runs no mechanism can be told from another".into(),
+            why: "with so few runs no mechanism can be told from another".into(),
         }),
         _ => None,
     }
@@ -105,14 +105,13 @@ pub fn headline(verdict: Verdict, findings: &[Finding], missing: Option<&Missing
             format!("Missing physics: {}.", all.join("; and "))
         }
         Verdict::OneOf => first.map_or(String::new(), one_of),
-        Verdict::Sensor => first.map_or(String::new(), |f| format!("Your sensor, not your ship: {}.", titled(f))),
+        Verdict::Sensor => first.map_or(String::new(), |f| format!("A sensor, not the ship: {}.", titled(f))),
         Verdict::NotInCatalogue => missing.map_or(String::new(), Missing::headline),
         Verdict::Numerics => {
-            "The integration step, not the ship: these recordings are what explicit Euler makes of the \
-                              model at one step a sample."
+            "The integration step, not the ship: the recordings agree with explicit Euler steps of one sample period."
                 .into()
         }
-        Verdict::Random => "Force is there that the model lacks, but nothing about it repeats: gusts.".into(),
+        Verdict::Random => "An unknown force acts, but nothing about it repeats: gusts.".into(),
         Verdict::Insufficient => "These recordings cannot answer: too few runs.".into(),
         Verdict::NothingMissing => "Nothing is missing that these data could show.".into(),
     }
@@ -121,7 +120,7 @@ pub fn headline(verdict: Verdict, findings: &[Finding], missing: Option<&Missing
 /// A finding with its values.
 fn titled(f: &Finding) -> String {
     if f.by_session {
-        return format!("{} (another in each of {} sessions)", f.title, f.sessions.len());
+        return format!("{} (a different value in each of {} sessions)", f.title, f.sessions.len());
     }
     format!("{} ({})", f.title, values(f))
 }
@@ -139,7 +138,7 @@ fn one_of(f: &Finding) -> String {
     let one = |w: &Window| format!("{} from {:.0} to {:.0} s", w.run, w.start, w.end);
     let windows: Vec<String> = f.windows.iter().map(one).collect();
     format!(
-        "Something acts for a time: {} in {}; a push, or the ship's own forces in a state that no other recording visits.",
+        "A force acts for a limited time: {} in {}; it is a push, or the ship's own forces in a state that no other recording visits.",
         values(f),
         windows.join(" and ")
     )
@@ -190,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_trial_tells_rivals_apart_and_shows_a_name_best() {
+    fn the_next_trial_is_that_of_the_rival_or_of_the_named_mechanism() {
         let model = example::model();
         let list = ["current", "mean_wind"].map(|n| example::candidate(&model, n));
         let (current, wind) = (list[0].mechanism, list[1].mechanism);
