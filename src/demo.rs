@@ -1,6 +1,11 @@
 //! The example study that `trimtab demo` works on, embedded: ship, models, runs and forty recordings.
 //! The data are not made here: the binary `demo_data` of the experiments wrote them, and a test there compares them with its output.
 
+use crate::model::{Model, ModelError};
+use crate::recording::{ColumnMap, Labels, Recording, RecordingError, Run, Split, WindowSettings};
+use crate::ship::{Ship, ShipError};
+use std::path::Path;
+
 /// Study, ship, models and table of runs, by file name.
 const FILES: [(&str, &str); 5] = [
     ("study.toml", include_str!("demo/study.toml")),
@@ -28,9 +33,83 @@ pub fn files() -> Vec<(String, String)> {
     files
 }
 
+/// The example study in memory: what `trimtab fit`, `evaluate` and `diagnose` work on.
+#[derive(Clone, Debug)]
+pub struct Example {
+    /// The model with the parameters from which a fit starts; the paper's eleven are free.
+    pub model: Model,
+    /// The model with the published parameters, against which a fitted one is judged.
+    pub baseline: Model,
+    /// The recordings to fit to, 32 of them.
+    pub train: Vec<Run>,
+    /// The recordings kept aside, 8 of them.
+    pub test: Vec<Run>,
+}
+
+/// Why the example study could not be read.
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
+#[non_exhaustive]
+pub enum ExampleError {
+    /// The ship.
+    Ship(#[from] ShipError),
+    /// A model.
+    Model(#[from] ModelError),
+    /// A recording.
+    Recording(#[from] RecordingError),
+}
+
+/// Reads the example study from the program itself, without any file.
+///
+/// # Errors
+/// [`ExampleError`], as for a study of files.
+pub fn example() -> Result<Example, ExampleError> {
+    let files = files();
+    let text = |name: &str| files.iter().find(|(n, _)| n == name).map_or("", |(_, text)| text);
+    let ship = Ship::parse(text("ship.toml"), Path::new("ship.toml"))?;
+    let settings = WindowSettings::whole(ship.hull.draught);
+    let model = Model::parse(text("model.toml"), Path::new("model.toml"), ship.clone())?;
+    let baseline = Model::parse(text("baseline.toml"), Path::new("baseline.toml"), ship)?;
+    let (mut train, mut test) = (Vec::new(), Vec::new());
+    for row in text("runs.csv").lines().skip(1) {
+        let fields: Vec<&str> = row.split(',').collect();
+        let [file, name, manoeuvre, split] = fields[..] else { continue };
+        let split = if split == "test" { Split::Test } else { Split::Train };
+        let labels = Labels { run: name.into(), session: name.into(), manoeuvre: manoeuvre.into(), split };
+        let recording = Recording::parse(text(file), Path::new(file), &ColumnMap::default())?;
+        let side = if split == Split::Test { &mut test } else { &mut train };
+        side.extend(recording.windows(&labels, &settings)?.windows);
+    }
+    Ok(Example { model, baseline, train, test })
+}
+
 #[cfg(test)]
 mod tests {
-    use super::files;
+    use super::{example, files};
+    use crate::recording::Split;
+    use crate::study::Study;
+
+    #[test]
+    fn the_example_in_memory_is_the_one_on_disk() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("recordings")).unwrap();
+        for (name, text) in files() {
+            std::fs::write(folder.path().join(name), text).unwrap();
+        }
+        let example = example().unwrap();
+        let study = Study::read(&folder.path().join("study.toml")).unwrap();
+        let windows = study.windows(example.model.ship.hull.draught).unwrap().windows;
+        assert_eq!((example.train.len(), example.test.len()), (32, 8));
+        for (side, split) in [(&example.train, Split::Train), (&example.test, Split::Test)] {
+            for (memory, disk) in side.iter().zip(windows.iter().filter(|w| w.split == split)) {
+                assert_eq!(
+                    (&memory.recording, &memory.session, &memory.manoeuvre, memory.split),
+                    (&disk.recording, &disk.session, &disk.manoeuvre, disk.split)
+                );
+                assert_eq!((&memory.inputs, &memory.measured), (&disk.inputs, &disk.measured));
+            }
+        }
+    }
 
     #[test]
     fn every_run_listed_has_its_recording_of_121_rows() {

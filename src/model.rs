@@ -3,7 +3,7 @@
 
 use crate::error::suggestion;
 use crate::parameter::ParameterInfo;
-use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number};
+use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number, TermInfo};
 use crate::ship::{COEFFICIENTS, Ship, line_of};
 use crate::state::Inputs;
 use crate::terms;
@@ -518,6 +518,11 @@ impl Model {
         let mut view = self.clone();
         view.terms.retain(|t| keep(t.term.info().name));
         view
+    }
+
+    /// What is known of the model's terms, in order.
+    pub fn terms(&self) -> impl Iterator<Item = &'static TermInfo> + '_ {
+        self.terms.iter().map(|t| t.term.info())
     }
 
     /// Names of the model's terms, in order.

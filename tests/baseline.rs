@@ -9,11 +9,10 @@ use support::{model, runs, truth_noise};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::baseline::{Refitted, Told, oracle};
 use trimtab::diagnose::candidate::Extent;
-use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::noise::Noise;
-use trimtab::diagnose::prove::median_distance;
+use trimtab::diagnose::prove::mean_cvdm;
 use trimtab::model::Model;
-use trimtab::simulate::{Integration, Method};
+use trimtab::recording::Run;
 
 /// The base model with a current.
 fn drifting() -> Model {
@@ -51,9 +50,8 @@ fn refits_from_two_starts_end_at_one_optimum() {
     let (near, far) = (refitted(&model(), train), refitted(&off(model()), train));
     let misfit = |fit: &Refitted| fit.used as f64 / 6.0 * fit.variance.iter().map(|v| v.ln()).sum::<f64>();
     assert!((misfit(&far) - misfit(&near)).abs() < 1.0, "{} {}", misfit(&far), misfit(&near));
-    let integration = Integration { method: Method::Rk4, substeps: 1 };
-    let (truth, before) =
-        (median_distance(&model(), integration, held_out), median_distance(&off(model()), integration, held_out));
+    let of = |model: &Model| mean_cvdm(model, held_out, &Settings::default().judging).unwrap();
+    let (truth, before) = (of(&model()), of(&off(model())));
     assert!(far.held_out(held_out) < truth + 0.2 * (before - truth), "{} {truth} {before}", far.held_out(held_out));
 }
 

@@ -7,6 +7,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 use trimtab::dynamics::Dynamics;
+use trimtab::report::terms::{listing, summary};
 use trimtab::sensitivity::{Column, Columns, Plain};
 type Seeded = trimtab_ad::Dual<Lanes, FEW>;
 use trimtab::model::{BASE, Model};
@@ -15,7 +16,6 @@ use trimtab::physics::{CHUNK, Curvature, FEW, Form, Gradient, Lanes, NumDual, Nu
 use trimtab::ship::Ship;
 use trimtab::state::{Force, Inputs, STATES, State};
 use trimtab::terms::CATALOGUE;
-use trimtab::terms::listing::{listing, summary};
 use trimtab_ad::Scalar;
 
 fn ship() -> Ship {

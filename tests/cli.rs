@@ -195,6 +195,29 @@ fn a_simulated_trajectory_reads_as_a_recording() {
 }
 
 #[test]
+fn every_report_says_how_much_of_the_data_lies_outside_the_terms_ranges() {
+    let study = Study::new();
+    for command in [
+        &["fit", "study.toml"][..],
+        &["evaluate", "study.toml"],
+        &["simulate", "study.toml"],
+        &["maneuver", "turning", "study.toml"],
+    ] {
+        let text = study.does(command);
+        assert!(text.lines().any(|l| l.starts_with("Validity: ")), "{command:?}: {text}");
+        let value = study.json(command);
+        let share = value["result"]["validity"]["share_outside"].as_f64().unwrap();
+        assert!((0.0..=1.0).contains(&share), "{command:?}: {share}");
+        assert!(value["result"]["validity"]["outside"].is_array());
+    }
+    // A crash stop turns the propeller astern, where a side force proportional to thrust is not valid.
+    let value = study.json(&["maneuver", "stopping", "study.toml"]);
+    let outside = value["result"]["validity"]["outside"].as_array().unwrap();
+    assert!(outside.iter().any(|o| o["term"] == "propeller" && o["quantity"] == "rate"), "{outside:?}");
+    contains_all(&study.does(&["terms", "hull"]), &["valid for: Froude number 0 to 0.25, drift angle 0 to 20 deg"]);
+}
+
+#[test]
 fn json_output_is_one_object_with_the_documented_keys() {
     let study = Study::new();
     let value = study.json(&["fit", "study.toml", "--out", "results"]);

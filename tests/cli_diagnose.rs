@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 use support::{model, runs, truth_noise};
-use trimtab::diagnose::report::KEYS;
+use trimtab::report::diagnosis::keys;
 
 /// Runs the command in a folder.
 fn trimtab(folder: &Path, arguments: &[&str]) -> Output {
@@ -36,7 +36,7 @@ fn write_study(folder: &Path, count: usize, [north, east]: [f64; 2]) {
     for (i, run) in runs(&truth, &truth_noise(), count, 1).iter().enumerate() {
         let mut rows = "t [s],x [m],y [m],psi [rad],u [m/s],v [m/s],r [rad/s],n [rps],delta [rad]\n".to_owned();
         for (m, input) in run.measured.iter().zip(&run.inputs) {
-            let [x, y, psi, u, v, r] = m;
+            let [x, y, psi, u, v, r] = m.map(Option::unwrap);
             writeln!(rows, "{},{x},{y},{psi},{u},{v},{r},{},{}", input.t, input.n, input.delta).unwrap();
         }
         std::fs::write(folder.join(format!("{i}.csv")), rows).unwrap();
@@ -118,11 +118,11 @@ fn every_key_of_the_document_is_explained_and_none_is_null() {
         "sides.parameters[]",
     ];
     let explained = |path: &str| {
-        KEYS.iter().any(|(k, _)| *k == path || k.strip_suffix("[]") == Some(path))
+        keys().any(|(k, _)| k == path || k.strip_suffix("[]") == Some(path))
             || elsewhere.iter().chain(&lists).any(|k| path.starts_with(k))
     };
     let missing: Vec<&String> = found.iter().filter(|p| !explained(p)).collect();
-    assert!(missing.is_empty(), "not in KEYS: {missing:?}");
+    assert!(missing.is_empty(), "not in keys.txt: {missing:?}");
     assert!(!CASE.document.to_string().contains("null"));
 }
 
@@ -141,7 +141,7 @@ fn no_key_is_explained_that_the_document_cannot_have() {
         "findings[].region",
         "ranking[].sessions",
     ];
-    for (key, _) in KEYS {
+    for (key, _) in keys() {
         let bare = key.trim_end_matches("[]");
         let there =
             found.iter().any(|p| p == bare || p.starts_with(&format!("{key}.")) || p.starts_with(&format!("{bare}.")));
@@ -152,12 +152,12 @@ fn no_key_is_explained_that_the_document_cannot_have() {
 #[test]
 fn the_summary_has_seven_parts_in_order_and_no_missing_number() {
     let summary = text(&CASE.output.stdout);
-    let headings = ["VERDICT", "WHERE", "MODEL", "PROOF", "STILL OPEN", "BLIND TO", "NEXT TRIAL"];
+    let headings = ["VERDICT", "WHERE", "MODEL", "PROOF", "STILL OPEN", "LIMITS", "NEXT TRIAL"];
     let places: Vec<usize> =
         headings.iter().enumerate().map(|(i, h)| summary.find(&format!(" {} {h}", i + 1)).unwrap()).collect();
     assert!(places.is_sorted(), "{summary}");
     assert!(summary.contains("steady current") && summary.contains("setting towards"), "{summary}");
-    assert!(summary.contains("port and starboard of the ship herself"), "{summary}");
+    assert!(summary.contains("port and starboard of the ship itself"), "{summary}");
     assert!(!summary.contains("NaN") && !summary.contains("inf "), "{summary}");
     assert!(summary.lines().all(|l| l.chars().count() <= 104), "{summary}");
 }
@@ -176,9 +176,42 @@ fn other_commands_take_the_improved_model_and_it_is_better_than_the_base() {
 }
 
 #[test]
+fn a_diagnosis_and_an_evaluation_give_the_same_proof_to_the_last_digit() {
+    let pair = ["evaluate", "study.toml", "--model", "results/improved.toml", "--baseline", "results/base.toml"];
+    let output = trimtab(&CASE.folder, &[&pair[..], &["--json"]].concat());
+    let evaluation: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (evaluation, proof) = (&evaluation["result"], &CASE.document["held_out"]);
+    let main = evaluation["summaries"].as_array().unwrap().iter().find(|s| s["group"] == "test").unwrap();
+    let same = [
+        ("before", &main["cvdm_baseline"]["value"]),
+        ("after", &main["cvdm_fitted"]["value"]),
+        ("improvement", &main["cvdm_improvement"]["value"]),
+        ("ci95", &main["cvdm_improvement"]["ci95"]),
+        ("better", &main["better"]),
+        ("worse", &main["worse"]),
+        ("runs", &main["trajectories"]),
+    ];
+    for (key, value) in same {
+        assert!(!value.is_null() && &proof[key] == value, "{key}: {} {value}", proof[key]);
+    }
+    let test = evaluation["trajectories"].as_array().unwrap().iter().filter(|t| t["split"] == "test");
+    let (before, after) = (proof["runs_before"].as_array().unwrap(), proof["runs_after"].as_array().unwrap());
+    assert_eq!(before.len(), 6);
+    for ((t, before), after) in test.zip(before).zip(after) {
+        assert_eq!((&t["baseline"]["cvdm"], &t["fitted"]["cvdm"]), (&before["cvdm"], &after["cvdm"]));
+    }
+    // And as printed.
+    let (table, summary) = (trimtab(&CASE.folder, &pair), text(&CASE.output.stdout));
+    let row = text(&table.stdout).lines().find(|l| l.contains("cVDM [%]")).unwrap().to_owned();
+    let words: Vec<&str> = summary.split_whitespace().collect();
+    let at = words.windows(3).position(|w| w[0] == "cVDM" && w[2] == "%").unwrap();
+    assert!(row.contains(words[at + 1]) && row.contains(words[at + 4]), "{row}: {:?}", &words[at..at + 6]);
+}
+
+#[test]
 fn the_report_is_one_file_that_needs_nothing_else() {
     let page = std::fs::read_to_string(CASE.folder.join("results/report.html")).unwrap();
-    for heading in ["Verdict", "Where", "Model", "Proof", "Still open", "Blind to", "Next trial"] {
+    for heading in ["Verdict", "Where", "Model", "Proof", "Still open", "Limits", "Next trial"] {
         assert!(page.contains(&format!(">{heading}</h2>")), "{heading}");
     }
     let mut pieces = page.split("src=\"data:image/png;base64,");

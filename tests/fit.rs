@@ -7,10 +7,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::path::Path;
-use trimtab::fit::cost::weights;
-use trimtab::fit::{CovarianceKind, DoubtKind, Fit, FitRun, FitSettings, MultiStart, Rule, fit, multi_start};
+use trimtab::fit::{CovarianceKind, DoubtKind, Fit, FitSettings, MultiStart, Rule, fit, multi_start};
 use trimtab::model::Model;
 use trimtab::physics::Form;
+use trimtab::recording::{Run, Split};
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Scenario, simulate};
 use trimtab::state::Inputs;
@@ -50,7 +50,7 @@ fn settings() -> FitSettings {
 }
 
 /// Zigzags of 5 to 35 degrees and turns, two windows each, started from the true state; `extra` is added to what is measured.
-fn recordings(truth: &Model, count: usize, noise: f64, extra: impl Fn(usize, usize) -> [f64; 6]) -> Vec<FitRun> {
+fn recordings(truth: &Model, count: usize, noise: f64, extra: impl Fn(usize, usize) -> [f64; 6]) -> Vec<Run> {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let mut runs = Vec::new();
     for i in 0..count {
@@ -73,19 +73,20 @@ fn recordings(truth: &Model, count: usize, noise: f64, extra: impl Fn(usize, usi
                 let added = extra(2 * i + w, k - start);
                 std::array::from_fn(|c| {
                     let white: f64 = StandardNormal.sample(&mut rng);
-                    states[k][c] + noise * NOISE[c] * white + added[c]
+                    Some(states[k][c] + noise * NOISE[c] * white + added[c])
                 })
             });
-            runs.push(FitRun {
-                name: format!("run {i}"),
+            runs.push(Run {
+                name: format!("run {i} from {start}"),
+                recording: format!("run {i}"),
                 session: String::new(),
-                start_time: start as f64 * DT,
+                manoeuvre: String::new(),
+                split: Split::Train,
                 dt: DT,
                 inputs: inputs[samples.clone()].to_vec(),
                 measured: measured.collect(),
-                measured_channels: [true; 6],
                 initial: states[start],
-                weights: weights(&truth.ship, 4.0 * SAMPLES as f64, 4.0, 0.0314),
+                disturbed: Vec::new(),
             });
         }
     }
@@ -96,7 +97,7 @@ fn unspoiled(_: usize, _: usize) -> [f64; 6] {
     [0.0; 6]
 }
 
-fn quiet(model: &Model, runs: &[FitRun], settings: &FitSettings) -> Fit {
+fn quiet(model: &Model, runs: &[Run], settings: &FitSettings) -> Fit {
     fit(model, runs, settings, &mut |_| true).unwrap()
 }
 
@@ -217,7 +218,7 @@ fn windows_over_which_an_open_loop_runs_away_are_told_from_those_over_which_it_d
         let grown = 2e3 * (k as f64 / SAMPLES as f64).powi(3);
         std::array::from_fn(|c| grown * NOISE[c])
     };
-    let exponent = |runs: &[FitRun]| {
+    let exponent = |runs: &[Run]| {
         let mut fixed = truth();
         fixed.parameters.iter_mut().for_each(|p| p.free = p.name == "propeller.side_force");
         quiet(&fixed, runs, &settings())
@@ -233,6 +234,7 @@ fn windows_over_which_an_open_loop_runs_away_are_told_from_those_over_which_it_d
 fn intervals_of_few_recordings_allow_for_residuals_that_are_alike() {
     let wander = |w: usize, k: usize| std::array::from_fn(|c| 5.0 * (0.15 * k as f64 + w as f64).sin() * NOISE[c]);
     let fit = quiet(&model(), &recordings(&truth(), 4, 1.0, wander), &settings());
+    eprintln!("{}", fit.report());
     assert_eq!(fit.covariance_kind, CovarianceKind::Correlated);
     let likeness = fit.residual_statistics.likeness.unwrap();
     assert!(likeness > 3.0, "{likeness}");

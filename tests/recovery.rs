@@ -5,13 +5,12 @@
 
 use std::f64::consts::TAU;
 use std::path::Path;
-use trimtab::fit::cost::weights;
 use trimtab::fit::{
-    Cost, CostOptions, Derivatives, Fit, FitError, FitRun, FitSettings, Hessian, Limits, MultiStart, Rule, fit,
-    multi_start,
+    Cost, CostOptions, Derivatives, Fit, FitError, FitSettings, Hessian, Limits, MultiStart, Rule, fit, multi_start,
 };
 use trimtab::model::{Model, Prior};
 use trimtab::physics::Form;
+use trimtab::recording::{Measured, Run, Split, measured};
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Scenario, simulate};
 use trimtab::state::Inputs;
@@ -45,16 +44,13 @@ const MANOEUVRES: [(&str, f64, Helm); 10] = [
     ("coasting", 5.0, |t| (0.4, 0.3 * (t / 25.0).sin())),
 ];
 
-fn path(states: &[[f64; 6]]) -> f64 {
-    states.windows(2).map(|s| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1])).sum()
-}
-
-fn mean_speed(states: &[[f64; 6]]) -> f64 {
-    states.iter().map(|s| s[3].hypot(s[4])).sum::<f64>() / states.len() as f64
+/// What was measured, with something added in one channel.
+fn add(m: &mut Measured, channel: usize, amount: f64) {
+    m[channel] = m[channel].map(|v| v + amount);
 }
 
 /// Noise-free recordings of the manoeuvres; lengths differ, so that lanes have to be padded.
-fn recordings(truth: &Model, dt: f64, samples: usize) -> Vec<FitRun> {
+fn recordings(truth: &Model, dt: f64, samples: usize) -> Vec<Run> {
     let mut runs = Vec::new();
     for (i, (name, speed, helm)) in MANOEUVRES.iter().enumerate() {
         let inputs: Vec<Inputs<f64>> = (0..samples - 3 * i)
@@ -67,17 +63,17 @@ fn recordings(truth: &Model, dt: f64, samples: usize) -> Vec<FitRun> {
         let scenario = Scenario { dt, inputs: inputs.clone(), initial };
         let trajectory = simulate(truth, &truth.values(), Integration::default(), &scenario);
         assert!(trajectory.diverged_at.is_none(), "{name}");
-        let channels = [true; 6];
-        runs.push(FitRun {
+        runs.push(Run {
             name: (*name).into(),
+            recording: (*name).into(),
             session: "pond".into(),
-            start_time: 0.0,
+            manoeuvre: (*name).into(),
+            split: Split::Train,
             dt,
-            weights: weights(&truth.ship, path(&trajectory.states), mean_speed(&trajectory.states), 0.0314),
             inputs,
-            measured: trajectory.states,
-            measured_channels: channels,
+            measured: measured(&trajectory.states),
             initial,
+            disturbed: Vec::new(),
         });
     }
     runs
@@ -96,7 +92,7 @@ fn largest_relative_error(fit: &Fit, truth: &[f64; 11]) -> f64 {
     (0..11).map(|i| ((values[i] - truth[i]) / truth[i]).abs()).fold(0.0, f64::max)
 }
 
-fn quiet(model: &Model, runs: &[FitRun], settings: &FitSettings) -> Fit {
+fn quiet(model: &Model, runs: &[Run], settings: &FitSettings) -> Fit {
     fit(model, runs, settings, &mut |_| true).unwrap()
 }
 
@@ -154,8 +150,9 @@ fn one_thread_and_two_give_the_same_bits() {
     assert_eq!(one.cost.to_bits(), two.cost.to_bits());
 }
 
-fn cost<'a>(model: &'a Model, runs: &'a [FitRun], derivatives: Derivatives) -> Cost<'a> {
-    let options = CostOptions { derivatives, difference_step: 1e-5, integration: Integration::default() };
+fn cost<'a>(model: &'a Model, runs: &'a [Run], derivatives: Derivatives) -> Cost<'a> {
+    let options =
+        CostOptions { max_yaw_rate: 0.0314, derivatives, difference_step: 1e-5, integration: Integration::default() };
     Cost::new(model, runs, options).unwrap()
 }
 
@@ -261,10 +258,9 @@ fn an_unmeasured_channel_has_no_weight() {
     let runs = recordings(&model(&STAR), 2.0, 60);
     let mut blind = runs.clone();
     for run in &mut blind {
-        run.measured_channels[4] = false;
-        run.measured.iter_mut().for_each(|m| m[4] = f64::NAN);
+        run.measured.iter_mut().for_each(|m| m[4] = None);
     }
-    blind[0].measured[7][0] = f64::NAN;
+    blind[0].measured[7][0] = None;
     let model = model(&TILDE);
     let p = free_values(&model);
     let all = cost(&model, &runs, Derivatives::Lanes);
@@ -282,7 +278,7 @@ fn the_heading_difference_is_wrapped() {
     let model = model(&TILDE);
     let p = free_values(&model);
     let before = cost(&model, &runs, Derivatives::Lanes).value(&p).unwrap();
-    runs.iter_mut().for_each(|run| run.measured.iter_mut().for_each(|m| m[2] += 2.0 * TAU));
+    runs.iter_mut().for_each(|run| run.measured.iter_mut().for_each(|m| add(m, 2, 2.0 * TAU)));
     let after = cost(&model, &runs, Derivatives::Lanes).value(&p).unwrap();
     assert!((before / after - 1.0).abs() < 1e-10);
 }
@@ -373,7 +369,7 @@ fn an_undetermined_parameter_is_named_and_has_no_standard_error() {
     (straight[0], straight[4]) = (0.0, 0.0);
     let truth = model(&straight);
     let mut run = recordings(&truth, 2.0, 60).remove(7);
-    run.measured.iter_mut().enumerate().for_each(|(k, m)| m[3] += 0.02 * (0.5 * k as f64).sin());
+    run.measured.iter_mut().enumerate().for_each(|(k, m)| add(m, 3, 0.02 * (0.5 * k as f64).sin()));
     let mut blind = truth.clone();
     blind.parameters.iter_mut().for_each(|p| p.free = ["p1", "p5", "p6"].contains(&p.info.symbol));
     let mut settings = settings();
@@ -429,8 +425,8 @@ fn every_hessian_leads_to_the_same_optimum() {
     // A disturbance no parameter explains, so that the residuals do not vanish at the optimum.
     for (i, run) in runs.iter_mut().enumerate() {
         for (k, m) in run.measured.iter_mut().enumerate() {
-            m[0] += (0.3 * k as f64 + i as f64).sin();
-            m[4] += 0.02 * (0.2 * k as f64 + 2.0 * i as f64).cos();
+            add(m, 0, (0.3 * k as f64 + i as f64).sin());
+            add(m, 4, 0.02 * (0.2 * k as f64 + 2.0 * i as f64).cos());
         }
     }
     let start = model(&TILDE);

@@ -21,8 +21,8 @@ fn tracks(word: &str) -> Option<Vec<(String, Track)>> {
     let mut study = Study::read(&root.join("experiments/studies/kvlcc2/study.toml")).unwrap();
     study.windows.step = None;
     let windows = study.whole_runs(20.8).unwrap().windows;
-    let chosen = windows.iter().filter(|w| w.run.contains(word));
-    Some(chosen.map(|w| (w.run.clone(), Track::recorded(w))).collect())
+    let chosen = windows.iter().filter(|w| w.recording.contains(word));
+    Some(chosen.map(|w| (w.recording.clone(), Track::recorded(w))).collect())
 }
 
 #[test]

@@ -314,3 +314,11 @@ impl<const N: usize> Div<Lanes> for Along<Lanes, N> {
         Self { re: self.re / x, eps: each(self.eps, |e| e * inv) }
     }
 }
+
+impl<const N: usize> Dual<Lanes, N> {
+    /// The dual number in one lane. Panics, as a slice does, when `lane` is not below [`Lanes::LANES`].
+    #[inline]
+    pub fn lane(self, lane: usize) -> Dual<f64, N> {
+        Dual { re: self.re.lane(lane), eps: self.eps.map(|e| e.lane(lane)) }
+    }
+}

@@ -1,7 +1,7 @@
 //! `Lanes`: four `f64` side by side in SIMD registers, so that one pass of the physics serves four trajectories.
 //! It is not a vector type: there is no dot product or norm here, and the lanes never mix.
 
-use crate::{Dual, Scalar};
+use crate::Scalar;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use wide::f64x4;
 
@@ -57,14 +57,6 @@ impl LaneMask {
     #[inline]
     pub fn lane(self, lane: usize) -> bool {
         self.0.to_array()[lane].to_bits() != 0
-    }
-}
-
-impl<const N: usize> Dual<Lanes, N> {
-    /// The dual number in one lane. Panics, as a slice does, when `lane` is not below [`Lanes::LANES`].
-    #[inline]
-    pub fn lane(self, lane: usize) -> Dual<f64, N> {
-        Dual { re: self.re.lane(lane), eps: self.eps.map(|e| e.lane(lane)) }
     }
 }
 

@@ -103,7 +103,7 @@
 //!
 //! # Corners
 //!
-//! `|u|` has no derivative at 0 and a clamp none at its ends; a solver that lands there is told the slope of one side.
+//! `|u|` has no derivative at 0 and a clamp none at its ends; a solver that arrives there gets the slope of one side.
 //! [`smooth`] has rounded versions. `sqrt` has an infinite slope at 0: write `(x * x + eps).sqrt()`, or select around it.
 
 mod dual;

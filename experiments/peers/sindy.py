@@ -1,14 +1,14 @@
 """Sparse regression on smoothed residual accelerations, as a peer of the diagnosis on the same recordings.
 
-It is what a user would do with PySINDy today: differentiate, take out what the base model's terms can explain, and let STLSQ pick
-among columns. It is given more than a user would have: columns made for each mechanism, and kinematic equations for the sensors.
+A user of PySINDy would do this today: differentiate, remove the part that the base model's terms explain, and let STLSQ choose
+columns. It gets more than a user would have: columns for each mechanism, and kinematic equations for the sensors.
 It is not part of the product and no test needs it.
 
     python3 -m venv venv && venv/bin/pip install pysindy
     venv/bin/python experiments/peers/sindy.py CASE
 
 CASE is a folder with study/study.toml, as `conceal` and `campaign --keep` write it. Prints the name of the mechanism whose columns
-carry most of what STLSQ kept, or "nothing".
+explain most of the part that STLSQ kept, or "nothing".
 """
 
 import csv

@@ -88,7 +88,7 @@ fn forty_concealed_cases_are_judged_well_enough() {
     let (in_set, outside) = count(&single, |s| s.in_set);
     assert!(in_set >= FEWEST_IN_SET, "outside the confidence set: {outside:?}");
     let (_, named) = count(&scores, |s| s.absorbed_named.map(|n| !n));
-    assert!(named.is_empty(), "named though nothing can show it: {named:?}");
+    assert!(named.is_empty(), "absorbed effects named: {named:?}");
     let (_, wrong) = count(&scores, |s| s.wrong_confident.map(|w| !w));
     assert!(wrong.len() <= MOST_WRONG, "wrong and confident: {wrong:?}");
     let (pairs, spoilt) = count(&scores, |s| s.some_right_none_wrong);

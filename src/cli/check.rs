@@ -1,12 +1,13 @@
-//! `trimtab check`: audits the recordings of a study before anything is concluded from them.
-//! What is looked for, and how, is in the library's `check`.
+//! `trimtab check`: audits the recordings of a study before a fit or a diagnosis uses them.
+//! The library's `check` defines the audit; this file prints it.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
-use trimtab::check::{Audit, Issue, Severity, StudyAudit, audit_study};
-use trimtab::report::{Table, fixed, sig};
+use trimtab::audit::{Audit, Issue, Severity, StudyAudit, audit_study};
+use trimtab::numerals::{fixed, sig};
+use trimtab::report::Table;
 
 const LONG: &str = "\
 Audits the recordings of a study before anything is concluded from them: units and signs, gaps and missing values, frozen \
@@ -22,7 +23,7 @@ Example:
 With --out: check.json, channels.csv (range of every channel of every run), issues.csv.
 JSON: result.study, result.split, result.train_windows, result.test_windows, result.issues[], result.recordings[] with \
     run, path, rows, duration [s], step [s], stretches[], channels[] (min, mean, max in SI units, missing), kinematics, and \
-    issues[] with severity (note, warning, error), channel, lines, text, next_step.";
+    issues[] with severity (note, warning, error), fault, channel, lines, text, next_step.";
 
 /// Looks for faults in the recordings of a study
 #[derive(Debug, clap::Args)]
@@ -42,7 +43,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     loaded.evaluation_settings()?;
     loaded.maneuver_settings()?;
     let bar = progress(format!("auditing {} recordings", loaded.study.runs.len()));
-    let audit = audit_study(&loaded.study, loaded.model.ship.hull.draught);
+    let audit = audit_study(&loaded.study, &loaded.model.ship);
     bar.finish_and_clear();
 
     let issues = rows(&audit);

@@ -1,20 +1,22 @@
 //! `trimtab demo`: a complete study, from recordings to a fitted model, in seconds and without any file of the user's.
 //! It calls the other commands' functions, and writes the study so that a user can repeat each command on it.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs};
 use super::{evaluate, fit};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use trimtab::demo;
 use trimtab::evaluate::Evaluation;
 use trimtab::fit::Fit;
-use trimtab::maneuver::figure::{turning_figure, turning_table};
 use trimtab::maneuver::{Side, turning_trial};
+use trimtab::model::Model;
+use trimtab::numerals::{DASH, interval, sig};
 use trimtab::recording::Split;
-use trimtab::report::{DASH, Table, interval, sig};
+use trimtab::report::Table;
+use trimtab::report::maneuver::{turning_figure, turning_table};
 
 const LONG: &str = "\
 Runs the whole job on a built-in example: forty recordings of a coastal container ship of 85 m (made by a simulator with \
@@ -50,16 +52,7 @@ struct Report<'a> {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let study = args.out.join("study.toml");
-    let mut written = 0;
-    for (name, text) in demo::files() {
-        let path = args.out.join(name);
-        let fail = |source| CliError::Write { path: path.clone(), source };
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(fail)?;
-        }
-        std::fs::write(&path, text).map_err(fail)?;
-        written += 1;
-    }
+    let written = write_study(&args.out)?;
     let results = OutputArgs { out: Some(args.out.join("results")), json: args.json };
     let mut output = Output::new("demo", &results)?;
     let loaded = Loaded::new(&StudyArgs { study: study.clone(), model: None })?;
@@ -72,21 +65,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let integration = loaded.fit_settings()?.integration;
     evaluate::write(&mut output, &evaluation, [&baseline, &fit.model], &test, integration)?;
 
-    let settings = loaded.maneuver_settings()?;
-    let theta = fit.model.values();
-    let ship = &fit.model.ship;
-    let mut turns = String::new();
-    // With a poor fit no propeller rate may hold the speed: the demo then has no turning circles.
-    if let Ok(approach) = settings.approach(&fit.model, &theta) {
-        let trials =
-            Side::BOTH.map(|side| turning_trial(&fit.model, &theta, &approach, side, settings.turning_angle()));
-        output.figure("turning", || turning_figure(ship, &trials))?;
-        turns = format!(
-            "\n\n3. Turning circles of the fitted ship at {:.0} m/s\n\n{}\n",
-            approach.speed,
-            turning_table(ship, &trials)
-        );
-    }
+    let turns = turning_circles(&mut output, &loaded, &fit.model)?;
     let (dir, model) = (args.out.display(), args.out.join("results/fitted.toml"));
     let (study, model) = (study.display(), model.display());
     let text = format!(
@@ -99,7 +78,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
          trimtab maneuver zigzag {study} --model {model} --out {dir}/zigzag\n  \
          trimtab terms\n\
          For your own ship copy {dir} and replace ship.toml, runs.csv and the recordings.",
-        ship.name,
+        fit.model.ship.name,
         train.len(),
         fit.brief(),
         parameters(&fit),
@@ -108,6 +87,32 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     );
     output.finish(&text, &Report { folder: &args.out, fit: &fit, evaluation: &evaluation })?;
     Ok(if fit.converged { Answer::Yes } else { Answer::No })
+}
+
+/// Writes the example study; gives the number of files.
+fn write_study(folder: &Path) -> Result<usize, CliError> {
+    let files = demo::files();
+    for (name, text) in &files {
+        let path = folder.join(name);
+        let fail = |source| CliError::Write { path: path.clone(), source };
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(fail)?;
+        }
+        std::fs::write(&path, text).map_err(fail)?;
+    }
+    Ok(files.len())
+}
+
+/// The turning circles of the fitted ship as a section of the report, and their figure.
+fn turning_circles(output: &mut Output, loaded: &Loaded, model: &Model) -> Result<String, CliError> {
+    let settings = loaded.maneuver_settings()?;
+    let (theta, ship) = (model.values(), &model.ship);
+    // With a poor fit no propeller rate may hold the speed: the demo then has no turning circles.
+    let Ok(approach) = settings.approach(model, &theta) else { return Ok(String::new()) };
+    let trials = Side::BOTH.map(|side| turning_trial(model, &theta, &approach, side, settings.turning_angle()));
+    output.figure("turning", || turning_figure(ship, &trials))?;
+    let table = turning_table(ship, &trials);
+    Ok(format!("\n\n3. Turning circles of the fitted ship at {:.0} m/s\n\n{table}\n", approach.speed))
 }
 
 /// The estimates as a short table; the whole report is in `fit.txt`.

@@ -1,16 +1,18 @@
 //! `trimtab diagnose`: where the simulation differs from the recordings, which physics is missing, and the proof on unseen runs.
 //! The library makes the diagnosis, its report and its figures; this file calls it, shows progress and writes files.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::fit::model_text;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, print, progress};
 use std::path::PathBuf;
-use trimtab::diagnose::filter::Run;
-use trimtab::diagnose::{Settings, Verdict, diagnose, figures, report};
+use trimtab::audit::Issue;
+use trimtab::diagnose::{Settings, Verdict, diagnose};
 use trimtab::error::suggestion;
-use trimtab::recording::{Split, Window};
+use trimtab::evaluate::Judging;
+use trimtab::recording::{Run, Split};
+use trimtab::report::diagnosis::{document, keys_listing, mechanism_names, page, pictures, summary};
 
 const LONG: &str = "\
 Compares the recordings of a study with its model in four steps:
@@ -48,7 +50,7 @@ finite is absent:
 
 /// Names the physics a model lacks, adds it, and proves the gain on unseen runs
 #[derive(Debug, clap::Args)]
-#[command(long_about = LONG, after_long_help = format!("{EXAMPLE}{}", report::keys_listing()))]
+#[command(long_about = LONG, after_long_help = format!("{EXAMPLE}{}", keys_listing()))]
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
@@ -66,11 +68,10 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("diagnose", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
-    let settings = settings(args, loaded.diagnose_settings()?)?;
+    let mut settings = settings(args, loaded.diagnose_settings()?)?;
+    settings.judging = Judging::new(&loaded.fit_settings()?, loaded.evaluation_settings()?);
     let windows = loaded.windows()?.windows;
-    let of =
-        |split: Split| -> Vec<Run> { windows.iter().filter(|w: &&Window| w.split == split).map(Run::from).collect() };
-    let (train, held_out) = (of(Split::Train), of(Split::Test));
+    let (train, held_out): (Vec<Run>, Vec<Run>) = windows.into_iter().partition(|w| w.split == Split::Train);
     if train.is_empty() {
         loaded.windows_of(Split::Train)?;
     }
@@ -81,20 +82,20 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let diagnosis = diagnosis.map_err(|error| CliError::Model { path: None, error })?;
 
     let name = &loaded.study.name;
-    let document = serde_json::to_string_pretty(&report::document(&diagnosis, name)?)? + "\n";
-    output.file("diagnosis.json", document.as_bytes())?;
+    let json = serde_json::to_string_pretty(&document(&diagnosis, name)?)? + "\n";
+    output.file("diagnosis.json", json.as_bytes())?;
     if output.has_folder() {
         output.file("improved.toml", model_text(&diagnosis.model)?.as_bytes())?;
         output.file("base.toml", model_text(&diagnosis.base)?.as_bytes())?;
-        let pictures = figures::all(&diagnosis)?;
-        output.file("report.html", report::page(&diagnosis, name, &pictures).render().as_bytes())?;
+        let pictures = pictures(&diagnosis)?;
+        output.file("report.html", page(&diagnosis, name, &pictures).render().as_bytes())?;
         for p in &pictures {
             output.file(format!("figures/{}.png", p.stem), &p.png)?;
             output.file(format!("figures/{}.csv", p.stem), p.csv.as_bytes())?;
         }
     }
     if args.output.json {
-        print(&document)?;
+        print(&json)?;
     } else {
         let written = args.output.out.as_ref().map_or_else(
             || "\nGive --out DIR to keep the improved model, the figures and the report.\n".to_owned(),
@@ -105,10 +106,10 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
                 )
             },
         );
-        print(&(report::summary(&diagnosis, name) + &written))?;
+        print(&(summary(&diagnosis, name) + &written))?;
     }
     let unanswered =
-        diagnosis.verdict == Verdict::Insufficient || diagnosis.admission.issues.iter().any(|i| i.blocking);
+        diagnosis.verdict == Verdict::Insufficient || diagnosis.admission.issues.iter().any(Issue::blocking);
     Ok(if unanswered { Answer::No } else { Answer::Yes })
 }
 
@@ -116,7 +117,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
 fn settings(args: &Args, mut settings: Settings) -> Result<Settings, CliError> {
     settings.withhold.extend(args.withhold.iter().cloned());
     settings.seed = args.seed.unwrap_or(settings.seed);
-    let known: Vec<&str> = report::mechanism_names().collect();
+    let known: Vec<&str> = mechanism_names().collect();
     for name in &settings.withhold {
         if !known.contains(&name.as_str()) {
             return Err(CliError::Argument(format!(

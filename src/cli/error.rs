@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use trimtab::fit::FitError;
 use trimtab::maneuver::ManeuverError;
 use trimtab::model::ModelError;
-use trimtab::report::FigureError;
+use trimtab::plot::FigureError;
 use trimtab::ship::ShipError;
 use trimtab::study::StudyError;
 

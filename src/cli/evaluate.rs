@@ -1,15 +1,17 @@
 //! `trimtab evaluate`: how well a model predicts the test runs, beside a baseline.
 //! The library computes the measures; this file prints, tabulates and draws them.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
 use std::path::PathBuf;
-use trimtab::evaluate::{Comparison, Estimate, Evaluation, Outcome, Summary, evaluate, predict};
+use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Summary, predict, prove};
 use trimtab::model::Model;
-use trimtab::recording::{Split, Window};
-use trimtab::report::{Axis, BASELINE, DASH, FITTED, Figure, GREY, Layer, Panel, RECORDED, Table, east_north, sig};
+use trimtab::numerals::{DASH, sig};
+use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
+use trimtab::recording::{Run, Split, or_nan};
+use trimtab::report::Table;
 use trimtab::simulate::Integration;
 use trimtab::state::STATE_NAMES;
 
@@ -36,7 +38,8 @@ JSON: result.baseline, result.fitted (names), result.summaries[] with group (tes
     `session: ...` of test), runs, trajectories, md_baseline, md_fitted, md_improvement (x, y, psi, u, v, r), cvdm_baseline, \
     cvdm_fitted [%], cvdm_improvement, mari, consistency [-] (each value and ci95), better, worse, runs_better, runs_worse, \
     diverged_baseline, diverged_fitted, worst, most_worsened; result.trajectories[] with run, split, baseline and fitted (md, \
-    cvdm, or diverged_after [s]). A number that does not exist is absent.";
+    cvdm, or diverged_after [s]); result.validity (share_outside of the samples; outside[] with term, quantity, range, share, \
+    met). A number that does not exist is absent.";
 
 /// Judges a model on the test runs, against a baseline
 #[derive(Debug, clap::Args)]
@@ -75,11 +78,11 @@ pub fn baseline(loaded: &Loaded, given: Option<&PathBuf>) -> Result<Model, CliEr
 }
 
 /// Judges a model with the settings of the study.
-pub fn judge(loaded: &Loaded, baseline: &Model, model: &Model, windows: &[Window]) -> Result<Evaluation, CliError> {
+pub fn judge(loaded: &Loaded, baseline: &Model, model: &Model, windows: &[Run]) -> Result<Evaluation, CliError> {
     let fit = loaded.fit_settings()?;
     let settings = loaded.evaluation_settings()?;
     let bar = progress(format!("evaluating {} windows", windows.len()));
-    let evaluation = evaluate(baseline, model, windows, fit.integration, fit.max_yaw_rate, &settings);
+    let evaluation = prove(baseline, model, windows, &Judging::new(&fit, settings));
     bar.finish_and_clear();
     Ok(evaluation)
 }
@@ -103,72 +106,81 @@ fn dimension(i: usize) -> (f64, &'static str) {
 
 /// The evaluation as text.
 pub fn text(study: &str, evaluation: &Evaluation) -> String {
-    let mut text = String::new();
     let Some(main) = evaluation.summaries.first() else {
         return format!("{study}: no trajectory to judge.");
     };
     let compared = main.md_baseline != main.md_fitted || main.cvdm_baseline != main.cvdm_fitted;
-    let (baseline, fitted) = (&evaluation.baseline, &evaluation.fitted);
-    let counts = |s: &Summary| format!("{} runs, {} trajectories", s.runs, s.trajectories);
-    if compared {
-        text += &format!(
-            "{study}: `{fitted}` against the baseline `{baseline}`, {} runs: {}\n\n",
-            main.group,
-            counts(main)
-        );
-        let mut table = Table::new(["", "baseline", "fitted", "improvement [%]"]);
-        for i in 0..STATE_NAMES.len() {
-            let (scale, unit) = dimension(i);
-            table.row([
-                format!("MD {} [{unit}]", STATE_NAMES[i]),
-                number(main.md_baseline[i], scale),
-                number(main.md_fitted[i], scale),
-                with_interval(main.md_improvement[i], 100.0),
-            ]);
-        }
-        table.row([
-            "cVDM [%]".to_owned(),
-            with_interval(main.cvdm_baseline, 1.0),
-            with_interval(main.cvdm_fitted, 1.0),
-            with_interval(main.cvdm_improvement, 100.0),
-        ]);
-        table.row(["mARI".into(), String::new(), String::new(), with_interval(main.mari, 100.0)]);
-        table.row(["consistency".into(), String::new(), String::new(), with_interval(main.consistency, 100.0)]);
-        text += &format!("{table}\n\n");
-        text += &format!(
-            "Better on {} of {} trajectories, worse on {}; better on {} of {} runs, worse on {}.\n",
-            main.better, main.trajectories, main.worse, main.runs_better, main.runs, main.runs_worse
-        );
-        if let Some(w) = &main.most_worsened {
-            text += &format!("Most worsened: {} ({} against {}).\n", w.run, cvdm(&w.fitted), cvdm(&w.baseline));
-        }
-    } else {
-        text += &format!("{study}: deviations of `{fitted}`, {} runs: {}\n\n", main.group, counts(main));
-        let mut table = Table::new(["", "mean", "95 % interval"]);
-        for i in 0..STATE_NAMES.len() {
-            let (scale, unit) = dimension(i);
-            table.row([
-                format!("MD {} [{unit}]", STATE_NAMES[i]),
-                number(main.md_fitted[i], scale),
-                interval(main.md_fitted[i], scale),
-            ]);
-        }
-        table.row(["cVDM [%]".to_owned(), number(main.cvdm_fitted, 1.0), interval(main.cvdm_fitted, 1.0)]);
-        text += &format!("{table}\n\nGive --model or --baseline to compare two models.\n");
-    }
+    let mut text =
+        if compared { comparison(study, evaluation, main) } else { deviations(study, &evaluation.fitted, main) };
     if let Some(w) = &main.worst {
         text += &format!("Worst run: {} ({}).\n", w.run, cvdm(&w.fitted));
     }
-    for (name, count) in [(baseline, main.diverged_baseline), (fitted, main.diverged_fitted)] {
+    for (name, count) in [(&evaluation.baseline, main.diverged_baseline), (&evaluation.fitted, main.diverged_fitted)] {
         if count > 0 {
             let left = "the means above leave these trajectories out";
             text += &format!("`{name}` diverged on {count} of {} trajectories; {left}.\n", main.trajectories);
         }
     }
+    text += &format!("{}\n", evaluation.validity.line());
     if evaluation.summaries.len() > 1 {
         text += &format!("\n{}", groups(&evaluation.summaries, compared));
     }
     text
+}
+
+/// Which runs a summary is of, and how many.
+fn counts(s: &Summary) -> String {
+    format!("{} runs: {} runs, {} trajectories", s.group, s.runs, s.trajectories)
+}
+
+/// Two models beside each other.
+fn comparison(study: &str, evaluation: &Evaluation, main: &Summary) -> String {
+    let mut table = Table::new(["", "baseline", "fitted", "improvement [%]"]);
+    for i in 0..STATE_NAMES.len() {
+        let (scale, unit) = dimension(i);
+        table.row([
+            format!("MD {} [{unit}]", STATE_NAMES[i]),
+            number(main.md_baseline[i], scale),
+            number(main.md_fitted[i], scale),
+            with_interval(main.md_improvement[i], 100.0),
+        ]);
+    }
+    table.row([
+        "cVDM [%]".to_owned(),
+        with_interval(main.cvdm_baseline, 1.0),
+        with_interval(main.cvdm_fitted, 1.0),
+        with_interval(main.cvdm_improvement, 100.0),
+    ]);
+    table.row(["mARI".into(), String::new(), String::new(), with_interval(main.mari, 100.0)]);
+    table.row(["consistency".into(), String::new(), String::new(), with_interval(main.consistency, 100.0)]);
+    let (baseline, fitted) = (&evaluation.baseline, &evaluation.fitted);
+    let mut text = format!("{study}: `{fitted}` against the baseline `{baseline}`, {}\n\n{table}\n\n", counts(main));
+    text += &format!(
+        "Better on {} of {} trajectories, worse on {}; better on {} of {} runs, worse on {}.\n",
+        main.better, main.trajectories, main.worse, main.runs_better, main.runs, main.runs_worse
+    );
+    if let Some(w) = &main.most_worsened {
+        text += &format!("Most worsened: {} ({} against {}).\n", w.run, cvdm(&w.fitted), cvdm(&w.baseline));
+    }
+    text
+}
+
+/// One model alone.
+fn deviations(study: &str, fitted: &str, main: &Summary) -> String {
+    let mut table = Table::new(["", "mean", "95 % interval"]);
+    for i in 0..STATE_NAMES.len() {
+        let (scale, unit) = dimension(i);
+        table.row([
+            format!("MD {} [{unit}]", STATE_NAMES[i]),
+            number(main.md_fitted[i], scale),
+            interval(main.md_fitted[i], scale),
+        ]);
+    }
+    table.row(["cVDM [%]".to_owned(), number(main.cvdm_fitted, 1.0), interval(main.cvdm_fitted, 1.0)]);
+    format!(
+        "{study}: deviations of `{fitted}`, {}\n\n{table}\n\nGive --model or --baseline to compare two models.\n",
+        counts(main)
+    )
 }
 
 fn interval(e: Option<Estimate>, scale: f64) -> String {
@@ -220,7 +232,7 @@ pub fn write(
     output: &mut Output,
     evaluation: &Evaluation,
     models: [&Model; 2],
-    windows: &[Window],
+    windows: &[Run],
     integration: Integration,
 ) -> Result<(), CliError> {
     output.file("trajectories.csv", &trajectories(&evaluation.trajectories)?)?;
@@ -296,7 +308,7 @@ fn improvement(s: &Summary) -> Figure {
     });
     let axis = Axis::categories("", names);
     let title = format!("Improvement on the baseline, {} runs (95 % intervals)", s.group);
-    Figure::new(title).panel_size(1200, 620).legend(trimtab::report::Legend::Off).with(
+    Figure::new(title).panel_size(1200, 620).legend(trimtab::plot::Legend::Off).with(
         Panel::new("", axis, Axis::new("improvement [%]").including(0.0))
             .with(Layer::bars_with_intervals("improvement", FITTED, bars))
             .with(Layer::h_line("none", GREY, 0.0)),
@@ -323,7 +335,7 @@ fn cvdm_figure(test: &[&Comparison]) -> Figure {
 }
 
 /// Tracks of test trajectories, recorded and under both models: best, median and worst of the fitted model.
-fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Window], integration: Integration) -> Figure {
+fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Run], integration: Integration) -> Figure {
     let mut order: Vec<usize> = (0..windows.len()).filter(|&i| windows[i].split == Split::Test).collect();
     let size = |i: usize| evaluation.trajectories[i].fitted.deviation().map_or(f64::INFINITY, |d| d.cvdm);
     order.sort_by(|&a, &b| size(a).total_cmp(&size(b)));
@@ -337,11 +349,11 @@ fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Window], inte
     for (word, i) in chosen {
         let w = &windows[i];
         let shown = [
-            ("recorded", RECORDED, w.measured.clone()),
+            ("recorded", RECORDED, w.measured.iter().map(or_nan).collect()),
             ("baseline", BASELINE, predict(models[0], w, integration).states),
             ("fitted", FITTED, predict(models[1], w, integration).states),
         ];
-        let mut track = Panel::track(format!("{word}: {}, {}", w.run, cvdm(&evaluation.trajectories[i].fitted)));
+        let mut track = Panel::track(format!("{word}: {}, {}", w.recording, cvdm(&evaluation.trajectories[i].fitted)));
         let mut heading = Panel::new("", Axis::new("time [s]"), Axis::new("heading psi [deg]"));
         for (name, color, states) in shown {
             let stride = (states.len() / 6).max(1);

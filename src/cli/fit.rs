@@ -1,14 +1,14 @@
 //! `trimtab fit`: fits the free parameters of a study's model to its training runs, and reports estimates with intervals.
 //! The library makes the fit and its report; this file calls it, shows progress and writes files.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
-use trimtab::fit::{Fit, FitRun, FitSettings, fit};
+use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::Model;
-use trimtab::recording::{Split, Window};
-use trimtab::report::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
+use trimtab::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
+use trimtab::recording::{Run, Split};
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
 
@@ -24,7 +24,7 @@ A fit returns the best feasible point of all that it evaluated, never one above 
     invertible. Its first line says what the residuals say against it: a cost far above the noise of the sensors, windows \
     too long to be predicted in open loop, residuals that are alike.
 
-The report gives every estimate with standard error and 95 % interval, the constraints that hold the fit back, what the \
+The report gives every estimate with standard error and 95 % interval, the active constraints, what the \
     data do not determine, and how the solver ended.";
 
 const AFTER: &str = "\
@@ -40,7 +40,8 @@ JSON: result.converged, result.headline, result.status, result.doubts[] (kind: m
     result.cost, result.prior_cost, result.first_stage_parts, result.residual_variance, result.active[] (sentence, rule), \
     result.undetermined[] (words, standard_deviation), result.covariance_gauss_newton, result.covariance_sandwich, \
     result.correlations (rows of numbers in the order of the estimates, null where the data do not determine a parameter), \
-    result.runs, result.recordings, result.residuals, result.iterations, result.counts, result.seconds, result.settings.
+    result.validity (share_outside of the samples; outside[] with term, quantity, range, share, met: where the data leave the \
+    range over which a term is valid), result.runs, result.recordings, result.residuals, result.iterations, result.counts, result.seconds, result.settings.
 
 Exit code 1 if the fit did not converge; its result is written all the same.";
 
@@ -73,11 +74,10 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
 const FITTED_NAME: &str = ", fitted";
 
 /// Fits a model to windows with the settings of the study.
-pub fn fit_windows(loaded: &Loaded, start: &Model, windows: &[Window]) -> Result<Fit, CliError> {
+pub fn fit_windows(loaded: &Loaded, start: &Model, windows: &[Run]) -> Result<Fit, CliError> {
     let settings: FitSettings = loaded.fit_settings()?;
-    let runs: Vec<FitRun> = windows.iter().map(|w| FitRun::of(w, &start.ship, settings.max_yaw_rate)).collect();
-    let bar = progress(format!("fitting to {} windows", runs.len()));
-    let result = fit(start, &runs, &settings, &mut |p| {
+    let bar = progress(format!("fitting to {} windows", windows.len()));
+    let result = fit(start, windows, &settings, &mut |p| {
         bar.set_message(format!("fitting: iteration {}, cost {:.5}", p.iteration, p.cost));
         true
     });
@@ -90,7 +90,7 @@ pub fn fit_windows(loaded: &Loaded, start: &Model, windows: &[Window]) -> Result
 }
 
 /// Writes the files of a fit.
-pub fn write(output: &mut Output, start: &Model, fit: &Fit, windows: &[Window]) -> Result<(), CliError> {
+pub fn write(output: &mut Output, start: &Model, fit: &Fit, windows: &[Run]) -> Result<(), CliError> {
     output.file("fitted.toml", model_text(&fit.model)?.as_bytes())?;
     output.file("fit.txt", fit.report().as_bytes())?;
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
@@ -121,8 +121,8 @@ pub fn model_text(model: &Model) -> Result<String, CliError> {
 }
 
 /// R(u) over the recorded speeds, c_L and c_D over the angles of attack at which the curves hold.
-pub fn curves(models: &[(&str, Color, &Model)], windows: &[Window]) -> Figure {
-    let speeds = windows.iter().flat_map(|w| &w.measured).map(|s| s[3]);
+pub fn curves(models: &[(&str, Color, &Model)], windows: &[Run]) -> Figure {
+    let speeds = windows.iter().flat_map(|w| &w.measured).filter_map(|s| s[3]);
     let (low, high) = speeds.fold((0.0_f64, 1.0_f64), |(a, b), u| (a.min(u), b.max(u)));
     let over = |from: f64, to: f64| (0..=120).map(move |i| from + (to - from) * f64::from(i) / 120.0);
     let layers = |f: &dyn Fn(&Model) -> Vec<(f64, f64)>| {

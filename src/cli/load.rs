@@ -11,7 +11,7 @@ use trimtab::evaluate::EvaluationSettings;
 use trimtab::fit::FitSettings;
 use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::{Model, ModelError};
-use trimtab::recording::{Split, Window, Windows};
+use trimtab::recording::{Run, Split, Windows};
 use trimtab::ship::Ship;
 use trimtab::study::Study;
 
@@ -57,7 +57,7 @@ impl Loaded {
     }
 
     /// The windows of one split, of which there must be some.
-    pub fn windows_of(&self, split: Split) -> Result<Vec<Window>, CliError> {
+    pub fn windows_of(&self, split: Split) -> Result<Vec<Run>, CliError> {
         let mut windows = self.windows()?.windows;
         windows.retain(|w| w.split == split);
         if windows.is_empty() {

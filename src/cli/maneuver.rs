@@ -1,19 +1,23 @@
 //! `trimtab maneuver`: the standard trials with any model, their measures, and the IMO criteria beside them.
 //! The library sails and measures the trials; this file prints, tabulates and draws them.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, progress};
 use clap::Subcommand;
 use serde::Serialize;
-use trimtab::maneuver::figure::{
+use trimtab::maneuver::{Approach, Ended, ManeuverSettings, Side, Trial, stopping_trial, turning_trial, zigzag_trial};
+use trimtab::model::Model;
+use trimtab::numerals::sig;
+use trimtab::plot::Figure;
+use trimtab::report::Table;
+use trimtab::report::maneuver::{
     criteria_note, criteria_table, ended_note, stopping_figure, stopping_table, track_csv, turning_figure,
     turning_table, zigzag_figure, zigzag_table,
 };
-use trimtab::maneuver::{Approach, Ended, ManeuverSettings, Side, Trial, stopping_trial, turning_trial, zigzag_trial};
-use trimtab::model::Model;
-use trimtab::report::{Figure, Table, sig};
+use trimtab::state::Inputs;
+use trimtab::validity::{self, Coverage};
 
 const LONG: &str = "\
 Simulates a standard manoeuvring trial to both sides with the model of a study, or another given with --model, and measures \
@@ -52,7 +56,8 @@ With --out: maneuver_turning.json, turning.png and .csv, the track of each trial
 JSON: result.ship, result.length [m], result.approach (speed [m/s], n [rps], balanced, rudder_rate [rad/s], step [s]), \
     result.trials[] with name, side, ended, measures (advance, transfer, tactical_diameter [m], time_90, time_180 [s], \
     steady.diameter [m], .speed [m/s], .speed_loss [-], .drift [rad], .yaw_rate [rad/s]; absent: not reached), and criteria[] \
-    with name, measured, limit, unit, verdict (met, not_met, not_applicable), binding (L >= 100 m).";
+    with name, measured, limit, unit, verdict (met, not_met, not_applicable), binding (L >= 100 m); result.validity \
+    (share_outside of the samples sailed; outside[] with term, quantity, range, share, met).";
 
 const ZIGZAG: &str = "\
 Example:
@@ -94,6 +99,7 @@ struct Report<'a, M> {
     length: f64,
     approach: Approach,
     trials: &'a [Trial<M>],
+    validity: Coverage,
 }
 
 /// What every trial needs.
@@ -164,7 +170,18 @@ fn report<'a, M>(p: &'a Prepared, trials: &'a [Trial<M>]) -> Report<'a, M> {
         length: p.model.ship.hull.lpp,
         approach: p.approach,
         trials,
+        validity: validity_of(p, trials),
     }
+}
+
+/// How much of what was sailed lies outside the ranges of the model's terms.
+fn validity_of<M>(p: &Prepared, trials: &[Trial<M>]) -> Coverage {
+    let samples = trials.iter().flat_map(|trial| {
+        let track = &trial.track;
+        let inputs = track.t.iter().zip(&track.n).zip(&track.delta);
+        track.states.iter().zip(inputs.map(|((t, n), delta)| Inputs::actuators(*t, *n, *delta)))
+    });
+    validity::outside(&p.model, samples)
 }
 
 /// Writes the files; refuses a trial that diverged, which has no measures.
@@ -212,5 +229,6 @@ fn text<M>(p: &Prepared, trials: &[Trial<M>], table: &Table) -> String {
     for note in notes {
         text += &format!("\n{note}");
     }
+    text += &format!("\n{}", validity_of(p, trials).line());
     text
 }

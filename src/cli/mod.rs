@@ -1,6 +1,7 @@
 //! The command line: one file a command, and what the commands share (arguments, loading, output, exit codes).
 //! The library computes; a command only reads arguments, calls it, and prints.
 
+mod answer;
 mod check;
 mod demo;
 mod diagnose;
@@ -13,18 +14,10 @@ mod output;
 mod simulate;
 mod terms;
 
+use answer::Answer;
 use clap::{Parser, Subcommand};
 use error::CliError;
 use std::process::ExitCode;
-
-/// How a command that could run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
-    /// Done: exit code 0.
-    Yes,
-    /// It ran, but the answer is no (did not converge, a check failed): exit code 1.
-    No,
-}
 
 const AFTER_HELP: &str = "\
 Begin with

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use trimtab::report::Figure;
+use trimtab::plot::Figure;
 
 /// Arguments that every command with results has.
 #[derive(Clone, Debug, clap::Args)]

@@ -1,15 +1,18 @@
 //! `trimtab simulate`: simulates the recordings of a study from their recorded start with their recorded inputs.
 //! It compares no models; it prints how far each simulation is from the measured motion.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
 use serde::Serialize;
 use trimtab::evaluate::{Outcome, outcome, predict_all};
-use trimtab::recording::{Split, Window};
-use trimtab::report::{BLUE, Figure, GREY, Layer, Panel, RECORDED, Table, east_north, sig};
+use trimtab::numerals::sig;
+use trimtab::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
+use trimtab::recording::{Run, Split, or_nan};
+use trimtab::report::Table;
 use trimtab::simulate::Trajectory;
+use trimtab::validity::{self, Coverage};
 
 const LONG: &str = "\
 Simulates every recording of a study (or every window of it, where the study cuts them) with the study's model or another: \
@@ -26,7 +29,8 @@ cVDM is the mean deviation over position, heading and velocities, each relative 
 With --out: simulate.json, simulations.csv, tracks.png and .csv, and trajectories/RUN.csv, each in the layout of a \
     recording, so that a simulation can be read like a measurement.
 JSON: result.model, result.runs[] with run, split, start_time [s], duration [s], steps, md (x, y [m], psi [rad], u, v [m/s], \
-    r [rad/s]) and cvdm [%], or diverged_after [s].
+    r [rad/s]) and cvdm [%], or diverged_after [s]; result.validity (share_outside of the recorded samples; outside[] with term, \
+    quantity, range, share, met).
 
 Exit code 2 if a simulation diverges, after everything else was written.";
 
@@ -44,6 +48,7 @@ pub struct Args {
 struct Report<'a> {
     model: &'a str,
     runs: Vec<Row<'a>>,
+    validity: Coverage,
 }
 
 #[derive(Serialize)]
@@ -68,15 +73,15 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let trajectories = predict_all(model, &windows, settings.integration);
     bar.finish_and_clear();
 
-    let row = |(w, t): (&'_ Window, &Trajectory)| outcome(w, t, &model.ship, settings.max_yaw_rate);
+    let row = |(w, t): (&Run, &Trajectory)| outcome(w, t, &model.ship, settings.max_yaw_rate);
     let outcomes: Vec<Outcome> = windows.iter().zip(&trajectories).map(row).collect();
     let rows: Vec<Row<'_>> = windows
         .iter()
         .zip(&outcomes)
         .map(|(w, o)| Row {
-            run: &w.run,
+            run: &w.recording,
             split: w.split,
-            start_time: w.start_time,
+            start_time: w.start_time(),
             duration: w.duration(),
             steps: w.steps(),
             outcome: *o,
@@ -91,8 +96,10 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         }
     }
     output.figure("tracks", || figure(&model.name, &windows, &trajectories))?;
-    let text = format!("{} simulated with `{}`:\n\n{table}", loaded.study.name, model.name);
-    let report = Report { model: &model.name, runs: rows };
+    let samples = windows.iter().flat_map(|w| validity::samples(w));
+    let validity = validity::outside(model, samples);
+    let text = format!("{} simulated with `{}`:\n\n{table}\n\n{}", loaded.study.name, model.name, validity.line());
+    let report = Report { model: &model.name, runs: rows, validity };
     output.finish(&text, &report)?;
     let diverged = report.runs.iter().find_map(|r| match r.outcome {
         Outcome::Diverged { diverged_after } => Some((r.run, diverged_after)),
@@ -142,14 +149,19 @@ fn table(rows: &[Row<'_>]) -> Table {
 }
 
 /// The name of a window's file: its run, with its start where the run has several.
-pub fn file_name(windows: &[Window], i: usize) -> String {
+pub fn file_name(windows: &[Run], i: usize) -> String {
     let w = &windows[i];
-    let safe: String = w.run.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
-    if windows.iter().filter(|o| o.run == w.run).count() > 1 { format!("{safe}_{:.0}s", w.start_time) } else { safe }
+    let safe: String =
+        w.recording.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+    if windows.iter().filter(|o| o.recording == w.recording).count() > 1 {
+        format!("{safe}_{:.0}s", w.start_time())
+    } else {
+        safe
+    }
 }
 
 /// A trajectory in the layout of a recording.
-fn recording(window: &Window, trajectory: &Trajectory) -> String {
+fn recording(window: &Run, trajectory: &Trajectory) -> String {
     let mut text = String::from("t [s],x [m],y [m],psi [rad],u [m/s],v [m/s],r [rad/s],n [rps],delta [rad]\n");
     for (k, [x, y, psi, u, v, r]) in trajectory.states.iter().enumerate() {
         let i = &window.inputs[k];
@@ -159,17 +171,18 @@ fn recording(window: &Window, trajectory: &Trajectory) -> String {
 }
 
 /// Tracks of the first windows, test before train: measured and simulated.
-fn figure(model: &str, windows: &[Window], trajectories: &[Trajectory]) -> Figure {
+fn figure(model: &str, windows: &[Run], trajectories: &[Trajectory]) -> Figure {
     const PANELS: usize = 12;
     let mut order: Vec<usize> = (0..windows.len()).collect();
     order.sort_by_key(|&i| windows[i].split == Split::Train);
     let panels = order.into_iter().take(PANELS).map(|i| {
         let (w, t) = (&windows[i], &trajectories[i]);
         let track = |states: &[[f64; 6]]| states.iter().map(|s| east_north(s[0], s[1])).collect::<Vec<_>>();
-        let start = east_north(w.measured[0][0], w.measured[0][1]);
+        let start = east_north(w.initial[0], w.initial[1]);
         let mut panel = Panel::track(file_name(windows, i));
-        if w.measured_channels[0] && w.measured_channels[1] {
-            panel = panel.with(Layer::line("recorded", RECORDED, track(&w.measured)));
+        let recorded: Vec<[f64; 6]> = w.measured.iter().map(or_nan).collect();
+        if recorded.iter().any(|s| s[0].is_finite() && s[1].is_finite()) {
+            panel = panel.with(Layer::line("recorded", RECORDED, track(&recorded)));
         }
         panel.with(Layer::line("simulated", BLUE, track(&t.states)).dashed()).with(Layer::scatter(
             "start",

@@ -1,15 +1,15 @@
 //! `trimtab terms`: the catalogue of physical effects, with equation, source and parameters.
 //! The library holds the catalogue and its listing; this file prints them.
 
-use super::Answer;
+use super::answer::Answer;
 use super::error::CliError;
 use super::output::{Output, OutputArgs, csv_text};
 use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::error::suggestion;
+use trimtab::report::terms::{Entry, listing, summary};
 use trimtab::ship::Ship;
 use trimtab::terms::CATALOGUE;
-use trimtab::terms::listing::{Entry, listing, summary};
 
 const LONG: &str = "\
 Lists every physical effect (term) that a model can be made of: what it is, its equation and source, the recorded channels \
@@ -24,7 +24,8 @@ Examples:
   trimtab terms hull --ship ship.toml  with the values that a ship's particulars imply
 
 With --out: terms.json, parameters.csv.
-JSON: result.terms[] with name, title, group, base (every model has it), equation, source, needs[], and parameters[] with \
+JSON: result.terms[] with name, title, group, base (every model has it), equation, source, needs[], validity (ranges[] with \
+    quantity, range, words; widens[], source), and parameters[] with \
     name, symbol, unit, about, lower, upper (absent: no bound), one_sided (makes port and starboard differ), and with --ship \
     default, scale (size of a relevant change), spread (prior standard deviation; absent: no prior).";
 

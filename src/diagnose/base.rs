@@ -1,15 +1,16 @@
 //! The base model: what is free in it, and its fit to recordings that were audited, with parameters and noise.
-//! What it lacks is not asked here, only whether recordings and integration step are sound enough to ask.
+//! What physics it lacks is tested elsewhere; here recordings and integration step are audited.
 
-use super::admit::{Admission, Issue, admit, followed};
+use super::admit::{Admission, admit, followed};
 use super::decide::is_euler;
 use super::estimate::{Estimate, FreeParameter, estimate, log_posterior, passes};
-use super::filter::{Column, Run};
+use super::filter::Column;
 use super::noise::NoisePrior;
 use super::noise_fit::guess;
-use super::receiver::settled;
 use super::settings::{EULER_HOPELESS, Effort, FIRST, LOSS_ROUNDS, REFIT, SETTLE, Settings};
+use crate::audit::{Issue, settled};
 use crate::model::{Model, ModelError};
+use crate::recording::Run;
 use crate::simulate::{Integration, Method};
 
 /// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
@@ -63,15 +64,15 @@ pub fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParameter> {
     free
 }
 
-/// What a diagnosis is asked, the same in all its steps.
+/// The inputs that all steps of a diagnosis share.
 pub struct Question<'a> {
     /// The model as the user gave it.
     pub model: &'a Model,
-    /// The same with every term of the catalogue at its neutral value.
+    /// The user's model with every term of the catalogue at its neutral value.
     pub full: Model,
     /// The user's settings.
     pub settings: &'a Settings,
-    /// Is told each step in words.
+    /// Receives the name of each step.
     pub progress: &'a (dyn Fn(&str) + Sync),
 }
 
@@ -93,18 +94,15 @@ impl<'a> Question<'a> {
 pub struct AuditedRuns {
     /// Runs to locate, name and model with.
     pub runs: Vec<Run>,
-    /// Runs to prove on.
-    pub held_out: Vec<Run>,
-    /// What was mended in the former.
+    /// What was mended in them.
     pub issues: Vec<Issue>,
 }
 
 impl AuditedRuns {
     /// Parts runs where positions jump and leaves out what was not measured; `length` is that of the ship \[m\].
-    pub fn new(runs: &[Run], held_out: &[Run], length: f64) -> Self {
+    pub fn new(runs: &[Run], length: f64) -> Self {
         let (runs, issues) = settled(runs, length);
-        let (held_out, _) = settled(held_out, length);
-        Self { runs, held_out, issues }
+        Self { runs, issues }
     }
 }
 
@@ -133,7 +131,7 @@ impl BaseFit {
         let prior = NoisePrior::around(&first_noise);
         let fit = |runs: &[Run]| estimate(&question.full, integration, runs, &free, &first_noise, &prior, FIRST);
         let mut base = fit(&kept);
-        // Without what the filter cannot follow the rest is told better, and then more may show.
+        // Without these stretches the estimate is better, and further stretches may show.
         for _ in 0..LOSS_ROUNDS {
             let at = passes(&base.model, integration, &[], &kept, &base.noise, false);
             let (without, lost) = followed(&kept, &at);
@@ -148,7 +146,7 @@ impl BaseFit {
         Self { estimate: base, prior, runs: kept, integration, admission }.read_as_euler()
     }
 
-    /// The same, read as explicit Euler steps of one sample period where the recordings are far likelier so: simulated ones.
+    /// The base fit with explicit Euler steps of one sample period, where the recordings are far likelier so: simulated ones.
     fn read_as_euler(mut self) -> Self {
         let coarse = Integration { method: Method::Euler, substeps: 1 };
         let Estimate { model, noise, free, log_posterior: fine } = &self.estimate;
@@ -166,5 +164,53 @@ impl BaseFit {
             }
         }
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{SAMPLES, model, runs};
+
+    fn question<'a>(model: &'a Model, settings: &'a Settings) -> Question<'a> {
+        Question { model, full: model.clone(), settings, progress: &|_| () }
+    }
+
+    #[test]
+    fn every_nuisance_coefficient_has_a_prior_and_the_models_own_parameters_come_first() {
+        let model = model();
+        let (own, all) = (base_parameters(&model, false), base_parameters(&model, true));
+        assert_eq!((own.len(), all.len()), (11, 11 + NUISANCE.len()));
+        assert!(own.iter().all(|f| f.prior.is_none()) && all[11..].iter().all(|f| f.prior.is_some()));
+    }
+
+    #[test]
+    fn a_sound_recording_is_fitted_whole_and_not_read_as_euler() {
+        let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let audited = AuditedRuns::new(&runs(&model, 6), model.ship.hull.lpp);
+        let base = BaseFit::new(&question(&model, &settings), &audited);
+        assert!(!is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
+        assert_eq!((base.admission.samples, base.integration), (6 * SAMPLES, settings.integration()));
+        assert!(base.admission.issues.is_empty(), "{:?}", base.admission.issues);
+    }
+
+    #[test]
+    fn recordings_made_by_explicit_euler_are_read_as_euler() {
+        let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let coarse = Integration { method: Method::Euler, substeps: 1 };
+        let mut runs = runs(&model, 6);
+        for r in &mut runs {
+            let scenario = crate::simulate::Scenario { dt: r.dt, inputs: r.inputs.clone(), initial: r.initial };
+            let fine =
+                crate::simulate::simulate(&model, &model.values_in(&r.session), settings.integration(), &scenario);
+            let made = crate::simulate::simulate(&model, &model.values_in(&r.session), coarse, &scenario);
+            // The same sensor errors on another trajectory.
+            for ((m, a), b) in r.measured.iter_mut().zip(&fine.states).zip(&made.states) {
+                (0..6).for_each(|c| m[c] = m[c].map(|v| v + b[c] - a[c]));
+            }
+        }
+        let base = BaseFit::new(&question(&model, &settings), &AuditedRuns::new(&runs, 85.0));
+        assert!(is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
+        assert_eq!((base.integration, base.admission.integration), (coarse, coarse));
     }
 }

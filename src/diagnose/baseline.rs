@@ -1,5 +1,5 @@
-//! What a user would do otherwise, and the best that could be done: the yardsticks the diagnosis is measured against.
-//! None of it is part of a diagnosis: it names by other rules ([`Refitted`]) or is told the answer ([`oracle`]).
+//! Rival methods that the diagnosis is compared with: what a user would do otherwise, and the best that could be done.
+//! None of it is part of a diagnosis: a rival names by other rules ([`Refitted`]) or is given the answer ([`oracle`]).
 
 use super::base::base_parameters;
 use super::candidate::{Candidate, Extent, append, applies, candidates};
@@ -7,15 +7,17 @@ use super::compete::start_with;
 use super::covariance::Z;
 use super::estimate::{Estimate, FreeParameter, base_of, estimate, evidence, restrictions};
 use super::evidence::Evidence;
-use super::filter::{Column, Filter, Gains, Pass, Run, Wanted};
+use super::filter::{Column, Filter, Gains, Pass, Wanted};
 use super::noise::{Noise, NoisePrior};
 use super::noise_fit::guess;
 use super::optimise::{Damping, Proposal};
 use super::problem::Problem;
-use super::prove::median_distance;
+use super::prove::mean_cvdm;
 use super::screen::screen;
-use super::settings::{Settings, TOLD_FINISH, TOLD_START};
+use super::settings::{GIVEN_FINISH, GIVEN_START, Settings};
+use crate::evaluate::Judging;
 use crate::model::{Model, ModelError};
+use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::STATES;
 use nalgebra::DVector;
@@ -46,7 +48,7 @@ pub struct BicGain {
     pub mechanism: String,
     /// Amplitudes that the trajectories can see.
     pub degrees: usize,
-    /// How far the criterion falls: `N ln(RSS_0/RSS_1) - k ln N`; the mechanism is worth having when this is positive.
+    /// Decrease of the criterion: `N ln(RSS_0/RSS_1) - k ln N`; the mechanism is worth having when this is positive.
     pub gain: f64,
 }
 
@@ -85,7 +87,7 @@ impl Trajectories {
     /// Minus twice the log-likelihood at the variances that fit best; infinite when a simulation diverged.
     fn misfit(&self) -> f64 {
         let sum: f64 = (0..STATES).map(|j| self.used[j] * self.variance[j].ln()).sum();
-        // Residuals that are not a number were not counted: the likelihood tells.
+        // Residuals that are not a number were not counted: the likelihood shows them.
         if self.passes.iter().all(|p| p.log_likelihood.is_finite()) { sum } else { f64::INFINITY }
     }
 
@@ -98,7 +100,7 @@ impl Trajectories {
 const DAMPING: Damping =
     Damping { attempts: 30, least_promise: 0.0, loss: 0.0, first: 0.0, most: 1e6, shrink: 0.2, off: 0.0, trusted: 0.0 };
 
-/// The damping never falls below this.
+/// Least damping.
 const LEAST_DAMPING: f64 = 1e-9;
 
 impl Refitted {
@@ -187,13 +189,17 @@ impl Refitted {
         out
     }
 
-    /// Median cVDM \[%\] on held-out runs, as the diagnosis' proof measures it.
+    /// Mean cVDM \[%\] on held-out runs, as the diagnosis' proof measures it.
     pub fn held_out(&self, runs: &[Run]) -> f64 {
-        median_distance(&self.model, self.integration, runs)
+        let judging = Judging { integration: self.integration, ..Settings::default().judging };
+        mean_cvdm(&self.model, runs, &judging).unwrap_or(DIVERGED)
     }
 }
 
-/// A mechanism that the oracle is told of.
+/// A model that diverges on a test run counts as this far off \[%\], not as missing.
+const DIVERGED: f64 = 1e4;
+
+/// A mechanism that the oracle is given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Told {
     /// Its name in the catalogue.
@@ -202,7 +208,7 @@ pub struct Told {
     pub extent: Extent,
 }
 
-/// Median cVDM \[%\] on held-out runs, as the diagnosis' proof measures it, of a model that was told which mechanisms act, and in
+/// Mean cVDM \[%\] on held-out runs, as the diagnosis' proof measures it, of a model that was told which mechanisms act, and in
 /// which sessions: estimated and refitted as the diagnosis does with what it finds. How far the held-out error can fall when the name
 /// is right. `None` when the catalogue lacks one of them.
 ///
@@ -223,14 +229,15 @@ pub fn oracle(
     let first = guess(runs, &full);
     let prior = NoisePrior::around(&first);
     let free = base_parameters(&full, settings.nuisance);
-    let mut current = estimate(&full, integration, runs, &free, &first, &prior, TOLD_START);
+    let mut current = estimate(&full, integration, runs, &free, &first, &prior, GIVEN_START);
     for (told, candidate) in told.iter().zip(chosen) {
         let candidates = std::slice::from_ref(candidate);
         let problem = Problem { integration, runs, candidates, prior: &prior, settings };
         let (start, free) = started(&current, problem, &told.extent);
-        current = problem.estimate(&start, &free, &current.noise, TOLD_FINISH);
+        current = problem.estimate(&start, &free, &current.noise, GIVEN_FINISH);
     }
-    Ok(Some(median_distance(&current.model, integration, held_out)))
+    let judging = Judging { integration, ..Settings::default().judging };
+    Ok(Some(mean_cvdm(&current.model, held_out, &judging).unwrap_or(DIVERGED)))
 }
 
 /// The model with the problem's one mechanism at the amplitudes that a linear step from the estimate gives, and everything else
@@ -239,4 +246,30 @@ fn started(found: &Estimate, problem: Problem, extent: &Extent) -> (Model, Vec<F
     let s = screen(found, problem.integration, problem.runs, problem.candidates);
     let test = s.test(0, extent);
     start_with(&s, 0, extent, &test.amplitude, found, problem, &found.noise)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, model, noise, runs};
+    use crate::simulate::{Scenario, simulate};
+
+    #[test]
+    fn a_filter_without_gains_is_a_free_simulation() {
+        let (model, runs) = (model(), runs(&model(), 3));
+        let filter = Filter::new(&model, RK4, &[]);
+        let t = Trajectories::new(&filter, &runs, &noise(), &[4.0; STATES], true);
+        for (run, pass) in runs.iter().zip(&t.passes) {
+            let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
+            let states = simulate(&model, &model.values_in(&run.session), RK4, &scenario).states;
+            for ((s, m), e) in states.iter().zip(&run.measured).zip(&pass.innovations) {
+                for c in [0, 1, 3, 4, 5] {
+                    assert!((2.0 * e[c] - (m[c].unwrap() - s[c])).abs() < 1e-9, "{} channel {c}", run.name);
+                }
+            }
+        }
+        // The variances are the mean squares of the residuals, 4 e^2.
+        let squares: f64 = t.passes.iter().flat_map(|p| &p.innovations).map(|e| 4.0 * e[3] * e[3]).sum();
+        assert!((t.variance[3] / (squares / t.used[3]) - 1.0).abs() < 1e-12);
+    }
 }

@@ -3,8 +3,8 @@
 
 use super::algebra::pick;
 use super::evidence::{Base, RunEvidence};
-use super::filter::Run;
 use super::settings::{BLOCK_SAMPLES, BLOCKS, PUSH_LONGEST};
+use crate::recording::Run;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// Samples in one block of the time scan: the evidence for a force that sets in is mostly in when it does, and a run cut more

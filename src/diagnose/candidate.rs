@@ -3,10 +3,11 @@
 
 use super::estimate::{Estimate, FreeParameter};
 use super::evidence::Test;
-use super::filter::{Column, Run};
+use super::filter::Column;
 use super::settings::{BEYOND_BOUNDS, QUARTER_TIDE};
 use crate::model::Model;
 use crate::physics::{Group, Mechanism, Probe};
+use crate::recording::Run;
 use crate::terms::CATALOGUE;
 use nalgebra::DVector;
 
@@ -201,5 +202,48 @@ mod tests {
             )
         };
         assert!(possible(0.5) && possible(1.3) && !possible(4.0) && !possible(-0.5));
+    }
+
+    #[test]
+    fn a_mechanism_that_is_added_and_removed_leaves_the_estimate_as_it_was() {
+        use crate::diagnose::example;
+        let model = example::model();
+        let c = example::candidate(&model, "current");
+        for extent in [Extent::All, Extent::In(vec!["a".into()]), Extent::Each(vec!["a".into(), "b".into()])] {
+            let mut found = example::at(&model);
+            let count = found.free.len();
+            let own = c.parameters(&extent);
+            found.free.extend(own.clone());
+            let amplitude = DVector::from_fn(own.len(), |i, _| 0.1 * (i + 1) as f64);
+            c.add(&mut found.model, &extent, &amplitude);
+            for (f, a) in own.iter().zip(amplitude.iter()) {
+                assert!((f.value(&found.model) - a * f.column.scale).abs() < 1e-12, "{extent:?}");
+            }
+            let places = c.positions(&found.free, &extent);
+            assert_eq!(places, (count..count + own.len()).collect::<Vec<_>>());
+            let (bare, free) = c.removed(&found, &extent);
+            assert_eq!(free.len(), count);
+            assert!(["a", "b", "c"].iter().all(|s| bare.values_in(s) == model.values_in(s)), "{extent:?}");
+        }
+    }
+
+    #[test]
+    fn the_size_is_the_amplitude_over_the_floor_by_the_mean_square_over_sessions() {
+        let model = crate::diagnose::example::model();
+        let c = crate::diagnose::example::candidate(&model, "current");
+        let floor = c.mechanism.floor;
+        assert!((c.size(&[3.0 * floor, 4.0 * floor]) - 5.0).abs() < 1e-12);
+        let each = [3.0, 4.0, 0.0, 5.0].map(|a| a * floor);
+        assert!((c.size(&each) - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_tide_needs_recordings_over_a_quarter_of_its_period() {
+        let model = crate::diagnose::example::model();
+        let tide = crate::diagnose::example::candidate(&model, "tide").mechanism;
+        let mut runs = crate::diagnose::example::runs(&model, 2);
+        assert!(!applies(tide, &runs));
+        runs[1].inputs.iter_mut().for_each(|i| i.t += 12_000.0);
+        assert!(applies(tide, &runs));
     }
 }

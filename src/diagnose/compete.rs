@@ -320,7 +320,7 @@ struct Ranking {
 }
 
 impl Ranking {
-    /// Sorts by value; a force without a cause gives way to any cause within the tolerance. `None` for no entries.
+    /// Sorts by value and drops forces without a cause where a cause is within the tolerance. `None` for no entries.
     fn new(mut entries: Vec<Entry>) -> Option<Self> {
         entries.sort_by(|a, b| b.value.total_cmp(&a.value));
         let Entry { value: best, tolerance: width, .. } = *entries.first()?;
@@ -348,7 +348,7 @@ pub fn compare(
     Competition { screen, current, problem, tried: leaders.len() }.best(leaders).ok()
 }
 
-/// The same, and where the leader's force is another mechanism's, the next that explains something else leads.
+/// As [`compare`]; where the leader's own coefficients are implausible, the next mechanism that is unlike it leads.
 pub fn compete(
     screen: &Screen,
     mut leaders: Vec<&Row>,
@@ -393,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn a_force_without_a_cause_gives_way_to_a_cause_within_its_tolerance_and_to_no_other() {
+    fn a_force_without_a_cause_is_dropped_where_a_cause_is_within_its_tolerance() {
         let near = Ranking::new(vec![entry(0, 100.0, true), entry(1, 95.0, false), entry(2, 85.0, false)]).unwrap();
         assert_eq!((places(&near.entries), places(near.set())), (vec![1, 2], vec![1]));
         let far = Ranking::new(vec![entry(0, 100.0, true), entry(1, 85.0, false)]).unwrap();

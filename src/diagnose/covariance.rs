@@ -115,3 +115,83 @@ pub fn predict<S: Scalar>(
         p[9 + j][9 + j] += noise.coloured[j] * (S::one() - noise.rho[j] * noise.rho[j]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example;
+    use nalgebra::SMatrix;
+
+    type Dense = SMatrix<f64, Z, Z>;
+
+    fn jacobians() -> ([[f64; STATES]; STATES], [[f64; 3]; STATES]) {
+        let value = |i: usize, j: usize| f64::from(u8::from(i == j)) + 0.01 * ((3 * i + 5 * j) % 7) as f64;
+        (
+            std::array::from_fn(|i| std::array::from_fn(|j| value(i, j))),
+            std::array::from_fn(|i| std::array::from_fn(|j| if i < 3 { 0.0 } else { 1e-5 * (i + j) as f64 })),
+        )
+    }
+
+    /// A covariance of everything with everything.
+    fn full() -> Square<f64> {
+        let root = Dense::from_fn(|i, j| ((2 * i + 3 * j) % 5) as f64 - 2.0);
+        let p = root * root.transpose() + Dense::identity();
+        std::array::from_fn(|i| std::array::from_fn(|j| p[(i, j)]))
+    }
+
+    #[test]
+    fn the_block_form_of_a_step_is_f_p_f_transposed_plus_q() {
+        let (a, gamma) = jacobians();
+        let noise = Discrete::new(&example::noise(), 2.0);
+        let mut f = Dense::zeros();
+        for i in 0..STATES {
+            (0..STATES).for_each(|j| f[(i, j)] = a[i][j]);
+            (0..3).for_each(|j| f[(i, STATES + j)] = gamma[i][j]);
+            f[(9 + i, 9 + i)] = noise.rho[i];
+        }
+        (6..9).for_each(|i| f[(i, i)] = noise.fade);
+        let mut expected = f * Dense::from_fn(|i, j| full()[i][j]) * f.transpose();
+        (0..3).for_each(|i| expected[(6 + i, 6 + i)] += 5.0 * noise.force[i] * (1.0 - noise.fade.powi(2)));
+        (0..STATES).for_each(|j| expected[(9 + j, 9 + j)] += noise.coloured[j] * (1.0 - noise.rho[j].powi(2)));
+        let mut p = full();
+        predict(&mut p, &a, &gamma, &noise, 5.0);
+        for i in 0..Z {
+            for j in 0..Z {
+                let off = (p[i][j] - expected[(i, j)]).abs();
+                assert!(off < 1e-10 * expected[(i, i)].max(expected[(j, j)]).max(1.0), "{i} {j}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_unknown_force_and_the_coloured_noise_keep_their_variances_from_step_to_step() {
+        let model = example::model();
+        let noise = Discrete::new(&example::noise(), 2.0);
+        let (a, gamma) = jacobians();
+        let mut p = initial(&noise, &model);
+        (0..50).for_each(|_| predict(&mut p, &a, &gamma, &noise, 1.0));
+        assert!((0..3).all(|i| (p[6 + i][6 + i] / noise.force[i] - 1.0).abs() < 1e-12));
+        assert!((0..STATES).all(|j| (p[9 + j][9 + j] / noise.coloured[j] - 1.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn eight_noises_side_by_side_are_each_alone() {
+        let (a, gamma) = jacobians();
+        let noises: [Discrete<f64>; Lanes::LANES] =
+            std::array::from_fn(|i| Discrete::new(&example::noise(), 1.0 + i as f64));
+        let side_by_side = Discrete::side_by_side(&noises);
+        let model = example::model();
+        let mut all = initial(&side_by_side, &model);
+        predict(&mut all, &a, &gamma, &side_by_side, 1.0);
+        for (lane, noise) in noises.iter().enumerate() {
+            let mut one = initial(noise, &model);
+            predict(&mut one, &a, &gamma, noise, 1.0);
+            for i in 0..Z {
+                for j in 0..Z {
+                    let off = all[i][j].to_array()[lane] - one[i][j];
+                    assert!(off.abs() <= 1e-12 * one[i][i].max(one[j][j]), "{lane} {i} {j}");
+                }
+            }
+        }
+    }
+}

@@ -4,9 +4,9 @@
 use super::admit::Admission;
 use super::candidate::{Candidate, Extent};
 use super::compete::Selected;
+use super::decide::PushTest;
 use super::estimate::Estimate;
 use super::evidence::Scatter;
-use super::filter::Run;
 use super::finding::{Amplitude, Equations, Finding, GENERIC, PUSH, PUSH_TITLE};
 use super::forces::forces_of;
 use super::locate::{EquationShare, Location};
@@ -16,9 +16,11 @@ use super::region::RegionTest;
 use super::residual::Kept;
 use super::screen::Screen;
 use super::select::Selection;
-use super::settings::{PUSH_FEW_RECORDINGS, SCATTER_GROUPS};
+use super::settings::SCATTER_GROUPS;
 use super::wald::Wald;
+use crate::audit::Issue;
 use crate::physics::Kind;
+use crate::recording::{Channel, Run};
 use std::collections::BTreeSet;
 
 /// What was sailed in each run: the manoeuvre, or the recording where there are few manoeuvres or no names for them.
@@ -122,10 +124,12 @@ fn force_shares(c: &Candidate, found: &Estimate, runs: &[Run], location: &Locati
     Equations { x: share(0), y: share(1), n: share(2) }
 }
 
+/// The region in which the unexplained force is most significant.
 fn strongest_region(regions: &[RegionTest]) -> Option<String> {
     regions.first().filter(|r| r.p < 0.01).map(|r| r.region.clone())
 }
 
+/// How a mechanism behaves, in words.
 fn signature(c: &Candidate, s: &Screen) -> String {
     let mut words = match c.mechanism.kind {
         Kind::Environment => "earth-fixed: it turns with the heading in body axes".to_string(),
@@ -139,17 +143,27 @@ fn signature(c: &Candidate, s: &Screen) -> String {
     words
 }
 
+/// A blocking fault of a channel in words.
+fn title_of_fault(issue: &Issue) -> String {
+    let what = match issue.fault {
+        "sign_error" => "the sign",
+        "axes_error" => "the axes",
+        _ => "the unit",
+    };
+    format!("{what} of `{}`", issue.channel.map_or("the recordings", Channel::name))
+}
+
 /// What the audit of the recordings already shows to be wrong: a unit or a sign.
 fn sensor_findings(admission: &Admission) -> Vec<Finding> {
     admission
         .issues
         .iter()
-        .filter(|i| i.blocking)
+        .filter(|i| i.blocking())
         .map(|i| Finding {
-            mechanism: i.mechanism.into(),
-            title: format!("{} of `{}`", if i.mechanism == "sign_error" { "the sign" } else { "the unit" }, i.channel),
+            mechanism: i.fault.into(),
+            title: title_of_fault(i),
             kind: Kind::Sensor,
-            confidence_set: vec![i.mechanism.into()],
+            confidence_set: vec![i.fault.into()],
             why: i.text.clone(),
             sessions: Vec::new(),
             by_session: false,
@@ -165,13 +179,14 @@ fn sensor_findings(admission: &Admission) -> Vec<Finding> {
         .collect()
 }
 
+/// A push with its windows; in few recordings one of two.
 fn push_finding(push: &Push, location: &Location) -> Finding {
     let names = [("push.x", "N"), ("push.y", "N"), ("push.n", "N m")];
     let mut confidence_set = vec![PUSH.to_owned()];
     let mut why = "the same unknown force stands in windows of time, is absent outside them, and no smooth law of the ship's state \
                    gives it"
         .to_owned();
-    if push.recordings() <= PUSH_FEW_RECORDINGS {
+    if PushTest::from(push).in_few_recordings() {
         confidence_set.push(GENERIC.into());
         why.push_str("; in so few recordings it may as well be the ship's own forces in a state that no other visits");
     }
@@ -193,5 +208,66 @@ fn push_finding(push: &Push, location: &Location) -> Finding {
             .map(|e| Amplitude::new(names[e].0.into(), push.force[e], names[e].1, push.error[e]))
             .collect(),
         held_out: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, at, candidate, model, noise, runs, with};
+    use crate::diagnose::locate::locate;
+    use crate::diagnose::push::Window;
+
+    #[test]
+    fn runs_are_grouped_by_manoeuvre_where_there_are_enough_and_else_by_recording() {
+        let mut runs = runs(&model(), 6);
+        assert_eq!(kinds(&runs)[4], "run 4");
+        for (r, name) in runs.iter_mut().zip(["turn", "zigzag", "stop", "pull-out", "spiral", "turn"]) {
+            r.manoeuvre = name.into();
+        }
+        assert_eq!(kinds(&runs), ["turn", "zigzag", "stop", "pull-out", "spiral", "turn"]);
+    }
+
+    #[test]
+    fn the_shares_of_a_force_are_those_of_its_components_with_the_moment_as_a_pair_at_a_quarter_of_the_length() {
+        let found = at(&with(&[("earth_force.north", 3000.0), ("earth_force.east", 0.0)]));
+        let runs = runs(&model(), 6);
+        let location = locate(&found, RK4, &runs);
+        let shares = force_shares(&candidate(&found.model, "earth_force"), &found, &runs, &location);
+        assert!((shares.x.share + shares.y.share + shares.n.share - 1.0).abs() < 1e-12);
+        // Turned with the heading, it is as large as it is.
+        assert!((shares.x.rms.hypot(shares.y.rms) / 3000.0 - 1.0).abs() < 1e-6 && shares.n.share < 1e-9);
+        assert_eq!(shares.y.sigma, noise().force[1]);
+    }
+
+    #[test]
+    fn a_push_in_two_recordings_may_be_something_the_catalogue_does_not_hold() {
+        let location = locate(&at(&model()), RK4, &runs(&model(), 2));
+        let window = |i: usize| Window {
+            run: format!("run {i}"),
+            session: "a".into(),
+            start: 0.0,
+            end: 30.0,
+            force: [0.0; 3],
+            error: [1.0; 3],
+            statistic: 50.0,
+            p: 0.1f64.powi(i as i32),
+            index: i,
+            samples: (0, 10),
+        };
+        let push = |count: usize| Push {
+            force: [0.0, 1e4, 0.0],
+            error: [1e2; 3],
+            statistic: 300.0,
+            sideways: 0.9,
+            mirrored: 0.0,
+            windows: (0..count).map(window).collect(),
+        };
+        let (two, three) = (push_finding(&push(2), &location), push_finding(&push(3), &location));
+        assert_eq!(
+            (two.confidence_set.as_slice(), three.confidence_set.len()),
+            ([PUSH, GENERIC].map(String::from).as_slice(), 1)
+        );
+        assert!((three.p - 0.01).abs() < 1e-15 && three.parameters[1].ci95[1] > 1e4);
     }
 }

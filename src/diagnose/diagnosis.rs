@@ -11,6 +11,7 @@ use super::prove::HeldOut;
 use super::settings::Settings;
 use super::sides::Sides;
 use crate::model::Model;
+use crate::validity::Coverage;
 use serde::Serialize;
 
 /// One row of the ranking.
@@ -192,6 +193,8 @@ pub struct Diagnosis {
     pub next_trial: Option<NextTrial>,
     /// Proof on held-out runs.
     pub held_out: Option<HeldOut>,
+    /// How much of the training runs lies outside the ranges over which the terms of the improved model are valid.
+    pub validity: Coverage,
     /// Settings used.
     pub settings: Settings,
     /// The unknown force along every run, before and after, for pictures.

@@ -51,3 +51,76 @@ pub fn may_be_further(r: &Row, selected: &[Selected], candidates: &[Candidate]) 
     };
     r.p < FURTHER_P && selected.iter().all(|a| a.candidate != r.candidate && !left_by(a))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::evidence::Test;
+    use crate::diagnose::example;
+    use nalgebra::{DMatrix, DVector};
+
+    fn list() -> Vec<Candidate> {
+        let model = example::model();
+        ["current", "mean_wind", "earth_force", "heading_bias"].map(|n| example::candidate(&model, n)).into()
+    }
+
+    /// A row that may be named.
+    fn row(candidate: usize, statistic: f64) -> Row {
+        let test = Test {
+            statistic,
+            degrees: 2,
+            p: 1e-12,
+            amplitude: DVector::zeros(2),
+            covariance: DMatrix::identity(2, 2),
+            retained: 1.0,
+        };
+        Row {
+            candidate,
+            pooled: test.clone(),
+            extent: Extent::All,
+            test,
+            p: 1e-12,
+            size: 2.0,
+            admissible: true,
+            visible: true,
+            second_opinion: 1e-6,
+        }
+    }
+
+    fn selected(candidate: usize, statistic: f64) -> Selected {
+        Selected { candidate, extent: Extent::All, statistic, p: 0.0, set: vec![candidate], why: String::new() }
+    }
+
+    #[test]
+    fn a_mechanism_must_be_identifiable_significant_possible_large_and_more_than_another_form() {
+        let (list, settings) = (list(), Settings::default());
+        let may = |r: &Row| may_be_named(r, &list, &settings);
+        assert!(may(&row(0, 60.0)));
+        assert!(may(&Row { p: 0.0099, ..row(0, 60.0) }) && !may(&Row { p: 0.01, ..row(0, 60.0) }));
+        assert!(!may(&Row { size: 0.99, ..row(0, 60.0) }));
+        assert!(!may(&Row { admissible: false, ..row(0, 60.0) }));
+        assert!(!may(&Row { visible: false, ..row(0, 60.0) }));
+        assert!(!may(&Row { second_opinion: 0.01, ..row(0, 60.0) }));
+    }
+
+    #[test]
+    fn physics_of_the_ship_that_needs_a_reference_session_must_be_fifty_times_as_significant() {
+        let model = example::model();
+        let all = super::super::candidate::candidates(&model, &[]);
+        let own = |c: &Candidate| c.mechanism.needs_reference && c.mechanism.kind == Kind::Ship;
+        let (settings, index) = (Settings::default(), all.iter().position(own).unwrap());
+        let may = |p: f64| may_be_named(&Row { p, ..row(index, 60.0) }, &all, &settings);
+        assert!(may(0.00019) && !may(0.0002));
+    }
+
+    #[test]
+    fn a_further_mechanism_must_be_beyond_doubt_another_and_no_remainder_of_a_look_alike() {
+        let list = list();
+        let may = |r: &Row, taken: &[Selected]| may_be_further(r, taken, &list);
+        assert!(may(&row(0, 60.0), &[]) && !may(&Row { p: 1e-6, ..row(0, 60.0) }, &[]));
+        assert!(!may(&row(0, 60.0), &[selected(0, 10.0)]));
+        // Mean wind and a force fixed on the earth look alike, a compass looks like neither.
+        assert!(!may(&row(1, 39.0), &[selected(2, 100.0)]) && may(&row(1, 40.0), &[selected(2, 100.0)]));
+        assert!(may(&row(3, 39.0), &[selected(2, 100.0)]));
+    }
+}

@@ -2,7 +2,7 @@
 //! likelihood, in turn. Which parameters are free, and what is concluded, is decided elsewhere.
 
 use super::evidence::{Base, Evidence, RunEvidence};
-use super::filter::{Column, Filter, GATE, Pass, Run, Wanted};
+use super::filter::{Column, Filter, GATE, Pass, Wanted};
 use super::noise::{Noise, NoisePrior};
 use super::noise_fit::fit_noise;
 use super::optimise::{Damping, Outcome, Proposal, Quadratic};
@@ -11,6 +11,7 @@ use super::settings::{
     CALM_ITERATIONS, CALM_SHARE, NOISE_REFUSED, OUTLIER_SHARE, STEP_GAIN, STEP_LONGEST, STEP_LOSS, STEP_SHORTEST,
 };
 use crate::model::{Model, Prior};
+use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -223,7 +224,7 @@ pub fn estimate(
     estimate_above(f64::NEG_INFINITY, start, integration, runs, free, noise, prior, effort)
 }
 
-/// The same, given up where even twice what the quadratic model promises ends below a log-posterior of `least`.
+/// As [`estimate`], given up where even twice what the quadratic model promises ends below a log-posterior of `least`.
 pub fn estimate_above(
     least: f64,
     start: &Model,
@@ -338,5 +339,112 @@ impl Fit<'_> {
         gates.iter().fold(*noise, |noise, gate| {
             fit_noise(&some, &tangents, model, &noise, self.prior, *gate, self.effort.noise_iterations)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, at, column, model, noise, runs, with};
+    use crate::diagnose::settings::REFIT;
+
+    #[test]
+    fn a_value_stays_inside_its_bounds_and_an_addition_in_a_session_inside_what_the_sum_may_be() {
+        let mut m = with(&[("rudder_offset.offset", 0.3)]);
+        let c = column(&m, "rudder_offset.offset");
+        let addition = FreeParameter { column: c, sessions: Some(vec!["a".into(), "b".into()]), prior: None };
+        let (least, most) = addition.bounds(&m);
+        assert!((least * c.scale + 0.65).abs() < 1e-12 && (most * c.scale - 0.05).abs() < 1e-12);
+        addition.set(&mut m, 0.2);
+        assert!((addition.value(&m) - 0.05).abs() < 1e-12);
+        assert!((m.values_in("b")[c.parameter] - 0.35).abs() < 1e-12 && m.values_in("c")[c.parameter] == 0.3);
+        FreeParameter::common(c, None).set(&mut m, -1.0);
+        assert_eq!(m.parameters[c.parameter].value, -0.35);
+    }
+
+    #[test]
+    fn the_terms_of_a_prior_are_the_slope_and_curvature_of_its_logarithm() {
+        let mut m = model();
+        let f = FreeParameter::uncertain(&m, m.find("hull.Yv").unwrap());
+        assert_eq!((f.prior_terms(&m).1, f.log_prior(&m)), (0.0, 0.0));
+        let unit = f.column.scale;
+        let start = f.value(&m);
+        let mut at = |steps: f64| {
+            f.set(&mut m, start + steps * unit);
+            (f.log_prior(&m), f.prior_terms(&m))
+        };
+        let (low, high) = (at(0.9).0, at(1.1).0);
+        let (middle, (precision, pull)) = at(1.0);
+        assert!(((high - low) / 0.2 - pull).abs() < 1e-9 * pull.abs());
+        assert!(((high - 2.0 * middle + low) / 0.01 + precision).abs() < 1e-6 * precision);
+    }
+
+    #[test]
+    fn a_column_of_some_sessions_takes_no_evidence_from_the_others() {
+        let m = model();
+        let runs = runs(&m, 4);
+        let columns = [column(&m, "rudder.lift1"), column(&m, "current.north")];
+        let p = passes(&m, RK4, &columns, &runs, &noise(), false);
+        let e = evidence(&runs, &p, &[None, Some(vec!["a".into()])]);
+        let in_a: f64 = p.iter().zip(&runs).filter(|(_, r)| r.session == "a").map(|(p, _)| p.score[1]).sum();
+        assert_eq!(e.total.score[1], in_a);
+        assert_eq!((e.sessions["b"].score[1], e.sessions["b"].information[(0, 1)]), (0.0, 0.0));
+        assert!(e.sessions["b"].information[(0, 0)] > 0.0);
+    }
+
+    #[test]
+    fn parameters_off_by_a_tenth_come_back_within_their_standard_errors() {
+        let truth = model();
+        let runs = runs(&truth, 9);
+        let mut start = truth.clone();
+        for i in start.free() {
+            start.parameters[i].value *= 1.1;
+        }
+        let e = at(&truth);
+        let found = estimate(&start, RK4, &runs, &e.free, &noise(), &NoisePrior::around(&noise()), REFIT);
+        assert!(found.log_posterior >= log_posterior(&truth, RK4, &runs, &e.free, &noise()));
+        let p = passes(&found.model, RK4, &e.free.iter().map(|f| f.column).collect::<Vec<_>>(), &runs, &noise(), false);
+        let base = base_of(&evidence(&runs, &p, &restrictions(&e.free)), &found.model, &e.free);
+        for (i, f) in e.free.iter().enumerate() {
+            let off = (f.value(&found.model) - f.value(&truth)) / (f.column.scale * base.inverse[(i, i)].sqrt());
+            assert!(off.abs() < 4.0, "{}: {off}", truth.parameters[f.column.parameter].name);
+        }
+    }
+
+    #[test]
+    fn an_estimate_that_cannot_reach_what_is_asked_is_given_up() {
+        let truth = model();
+        let runs = runs(&truth, 3);
+        let mut start = truth.clone();
+        start.parameters[truth.find("rudder.lift1").unwrap()].value *= 1.5;
+        let (free, prior) = (at(&truth).free, NoisePrior::around(&noise()));
+        let of = |least: f64| estimate_above(least, &start, RK4, &runs, &free, &noise(), &prior, REFIT).log_posterior;
+        let whole = of(f64::NEG_INFINITY);
+        assert!(of(whole + 1e6) < whole && of(whole - 1.0) == whole);
+    }
+
+    #[test]
+    fn the_score_of_a_column_does_not_depend_on_the_columns_beside_it_nor_much_on_the_rule_over_a_step() {
+        use crate::diagnose::candidate::{append, candidates};
+        use crate::diagnose::generic::GenericLaw;
+        let m = with(&[("current.north", 0.1), ("mean_wind.east", 5.0)]);
+        let runs = runs(&model(), 3);
+        let mut columns: Vec<Column> =
+            crate::diagnose::base::base_parameters(&m, true).iter().map(|f| f.column).collect();
+        append(&mut columns, &candidates(&m, &[]));
+        GenericLaw::append(&mut columns, &m);
+        let pass = |columns: &[Column], exact: bool| {
+            let filter = Filter::new(&m, RK4, columns);
+            filter.pass(&runs[2], &noise(), Wanted { exact, ..Wanted::default() })
+        };
+        let (all, exact) = (pass(&columns, false), pass(&columns, true));
+        for (i, c) in columns.iter().enumerate() {
+            let alone = pass(&[*c], false);
+            let name = &m.parameters[c.parameter].name;
+            let near = |a: f64, b: f64, by: f64| (a - b).abs() <= by * a.abs().max(b.abs()) + 1e-9;
+            let (h, own) = (all.information[(i, i)], alone.information[(0, 0)]);
+            assert!(near(h, own, 1e-9) && near(all.score[i], alone.score[0], 1e-9), "{name}: {h} {own}");
+            assert!(near(h, exact.information[(i, i)], 0.1), "{name}: {h} {}", exact.information[(i, i)]);
+        }
     }
 }

@@ -7,7 +7,6 @@ use super::compete::{Selected, compete};
 use super::decide::{PushTest, form_holds, is_euler};
 use super::eligible::{eligible, may_be_named};
 use super::estimate::{Estimate, calm_noise};
-use super::filter::Run;
 use super::finding::PUSH;
 use super::locate::{Location, locate};
 use super::noise::{Noise, NoisePrior};
@@ -15,6 +14,8 @@ use super::problem::Problem;
 use super::push::Push;
 use super::screen::{Screen, screen};
 use super::settings::{SETTLE, Settings};
+use crate::audit::Issue;
+use crate::recording::Run;
 use crate::simulate::Integration;
 
 /// The base model with every test of what it lacks.
@@ -55,10 +56,10 @@ impl BaseTests {
 
     /// Whether the audit found a unit or a sign that is wrong.
     pub fn is_blocked(&self) -> bool {
-        self.fit.admission.issues.iter().any(|i| i.blocking)
+        self.fit.admission.issues.iter().any(Issue::blocking)
     }
 
-    /// The same with the windows of a push disturbed: there the unknown force may be anything.
+    /// The tests with the windows of a push disturbed: there the unknown force may be anything.
     fn disturbed(mut self, push: &Push, settings: &Settings) -> Self {
         for w in &push.windows {
             self.fit.runs[w.index].disturbed.push(w.samples);
@@ -140,5 +141,92 @@ impl Opening {
             return Self { tests, push: None, first: rival };
         }
         Self { tests: tests.disturbed(&push, settings), push: Some(push), first: None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::base::AuditedRuns;
+    use crate::diagnose::example::{model, noise, runs};
+    use crate::diagnose::push::Window;
+    use crate::model::Model;
+
+    fn window(index: usize, samples: (usize, usize)) -> Window {
+        Window {
+            run: format!("run {index}"),
+            session: "a".into(),
+            start: 0.0,
+            end: 1.0,
+            force: [0.0; 3],
+            error: [1.0; 3],
+            statistic: 100.0,
+            p: 0.0,
+            index,
+            samples,
+        }
+    }
+
+    fn push(statistic: f64, recordings: usize) -> Push {
+        Push {
+            force: [0.0, 1e4, 0.0],
+            error: [1e2; 3],
+            statistic,
+            sideways: 0.9,
+            mirrored: 0.0,
+            windows: (0..recordings).map(|i| window(i, (10, 20))).collect(),
+        }
+    }
+
+    fn tests(model: &Model, settings: &Settings) -> BaseTests {
+        let question = Question { model, full: model.clone(), settings, progress: &|_| () };
+        let audited = AuditedRuns::new(&runs(model, 6), model.ship.hull.lpp);
+        BaseTests::new(&question, BaseFit::new(&question, &audited))
+    }
+
+    #[test]
+    fn an_event_comes_before_a_stronger_push_that_cannot_be_one() {
+        let search = PushSearch {
+            form_holds: true,
+            integration: Integration::default(),
+            prior: NoisePrior::around(&noise()),
+            noise: noise(),
+        };
+        let model = model();
+        let found = Estimate { model, noise: noise(), free: Vec::new(), log_posterior: 0.0 };
+        let mut location = locate(&found, Integration::default(), &runs(&found.model, 2));
+        location.pushes = vec![push(200.0, 2), push(60.0, 5)];
+        assert_eq!(search.event(&location).map(|p| p.statistic), Some(60.0));
+        location.pushes.pop();
+        assert_eq!(search.event(&location).map(|p| p.statistic), Some(200.0));
+        location.pushes.clear();
+        assert!(search.event(&location).is_none());
+    }
+
+    #[test]
+    fn nothing_enters_the_base_model_first_where_nothing_is_missing() {
+        let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let question = Question { model: &model, full: model.clone(), settings: &settings, progress: &|_| () };
+        let opening = Opening::new(&question, tests(&model, &settings));
+        assert!(opening.push.is_none() && opening.first.is_none());
+        assert!(opening.tests.fit.runs.iter().all(|r| r.disturbed.is_empty()));
+    }
+
+    #[test]
+    fn a_strong_push_enters_the_base_model_with_its_windows_disturbed_unless_it_is_withheld() {
+        let mut settings = Settings { nuisance: false, ..Settings::default() };
+        let model = model();
+        let of = |settings: &Settings| {
+            let question = Question { model: &model, full: model.clone(), settings, progress: &|_| () };
+            let mut tests = tests(&model, settings);
+            tests.location.push = Some(push(1e4, 5));
+            Opening::new(&question, tests)
+        };
+        let opening = of(&settings);
+        assert_eq!(opening.push.map(|p| p.statistic), Some(1e4));
+        let disturbed: Vec<usize> = opening.tests.fit.runs.iter().map(|r| r.disturbed.len()).collect();
+        assert_eq!(disturbed, [1, 1, 1, 1, 1, 0]);
+        settings.withhold.push(PUSH.into());
+        assert!(of(&settings).push.is_none());
     }
 }

@@ -3,8 +3,9 @@
 
 use super::algebra::{pick, pseudo_inverse};
 use super::settings::{IDENTIFIABLE_SHARE, SCATTER_GROUPS};
+pub use crate::statistics::chi_squared_p;
+use crate::statistics::student_quantile;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
 /// Score and information of one run.
@@ -119,7 +120,7 @@ impl Evidence {
         Scatter { factors: (0..n).map(factor).map(|f| if f > 1.0 { f } else { 1.0 }).collect(), reach }
     }
 
-    /// Tests a group of columns, common to all runs, after the base has had its say.
+    /// Tests a group of columns, common to all runs, the base profiled out.
     pub fn test(&self, base: &Base, columns: &[usize]) -> Test {
         let cross = pick(&self.total.information, columns, &base.columns);
         let own = pick(&self.total.information, columns, columns);
@@ -127,7 +128,7 @@ impl Evidence {
         base.test(&score, &own, &cross)
     }
 
-    /// Tests a group of columns that acts in some sessions only, after the base has had its say. With the same columns in the
+    /// Tests a group of columns that acts in some sessions only, the base profiled out. With the same columns in the
     /// base ([`Evidence::extend`]) what is common to all sessions is projected out, so that the others are the reference.
     pub fn test_in(&self, base: &Base, columns: &[usize], sessions: &[&str]) -> Test {
         let k = columns.len();
@@ -176,7 +177,7 @@ impl Evidence {
     }
 
     /// Tests a group of columns with an amplitude of its own in each session (session-major, in the order of
-    /// [`Evidence::sessions`]), after the base has had its say.
+    /// [`Evidence::sessions`]), the base profiled out.
     pub fn test_each(&self, base: &Base, columns: &[usize]) -> Test {
         let k = columns.len();
         let sessions = self.sessions.len();
@@ -276,20 +277,11 @@ fn retained_share(reduced: &DMatrix<f64>, own: &DMatrix<f64>) -> f64 {
     SymmetricEigen::new(symmetric).eigenvalues.min().clamp(0.0, 1.0)
 }
 
-/// Upper tail of chi-squared; 1 for no degrees of freedom. Underflows to the smallest positive number, not to zero.
-pub fn chi_squared_p(statistic: f64, degrees: usize) -> f64 {
-    if degrees == 0 || !statistic.is_finite() {
-        return 1.0;
-    }
-    ChiSquared::new(degrees as f64).map_or(1.0, |d| d.sf(statistic.max(0.0)).max(f64::MIN_POSITIVE))
-}
-
-/// Standard errors that a 95 % interval reaches to either side once scatter among so many groups of runs has had its say on them
+/// Standard errors that a 95 % interval reaches to either side, where scatter among so many groups of runs has widened them
 /// ([`Evidence::scatter`]): Student's t with one degree of freedom less than groups, as an error that few tell is itself uncertain
 /// (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
 fn reach(groups: usize) -> f64 {
-    let degrees = groups.max(SCATTER_GROUPS) - 1;
-    StudentsT::new(0.0, 1.0, degrees as f64).map_or(1.96, |t| t.inverse_cdf(0.975))
+    student_quantile(0.975, (groups.max(SCATTER_GROUPS) - 1) as f64)
 }
 
 #[cfg(test)]
@@ -351,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_not_seen() {
+    fn a_column_whose_score_is_not_a_number_is_not_identifiable() {
         let e = Evidence::new(vec![one_run("a", &[5.0, f64::NAN], &[4.0, f64::NAN, f64::NAN, f64::NAN])]);
         let t = e.test(&e.base(&[0], &[0.0], &[0.0]), &[1]);
         assert_eq!((t.degrees, t.p, t.retained), (0, 1.0, 0.0));
@@ -367,5 +359,74 @@ mod tests {
         let t = e.contrast(&base, &[1]).unwrap();
         assert!(t.statistic.abs() < 1e-9, "{t:?}");
         assert_eq!(t.degrees, 1);
+    }
+
+    /// Score and information of a linear model `y = X b` with errors of variance 1, at `b = 0`.
+    fn linear(session: &str, x: &DMatrix<f64>, y: &DVector<f64>) -> RunEvidence {
+        RunEvidence { session: session.into(), score: x.transpose() * y, information: x.transpose() * x }
+    }
+
+    fn regression() -> (DMatrix<f64>, DVector<f64>) {
+        let x = DMatrix::from_fn(12, 4, |i, j| (1.3 * i as f64 + 2.1 * (j * j) as f64 + 0.7 * (i * j) as f64).sin());
+        (x, DVector::from_fn(12, |i, _| ((11 * i) % 5) as f64 - 1.0))
+    }
+
+    /// Least sum of squares, and the coefficients.
+    fn least_squares(x: &DMatrix<f64>, y: &DVector<f64>) -> (f64, DVector<f64>) {
+        let b = (x.transpose() * x).try_inverse().unwrap() * x.transpose() * y;
+        ((y - x * &b).norm_squared(), b)
+    }
+
+    #[test]
+    fn the_score_test_of_a_linear_model_is_what_its_columns_take_off_the_sum_of_squares() {
+        let (x, y) = regression();
+        let e = Evidence::new(vec![linear("a", &x, &y)]);
+        let t = e.test(&e.base(&[0, 1], &[0.0; 2], &[0.0; 2]), &[2, 3]);
+        let ((fewer, _), (all, b)) = (least_squares(&x.columns(0, 2).into_owned(), &y), least_squares(&x, &y));
+        assert!((t.statistic - (fewer - all)).abs() < 1e-9 && t.degrees == 2, "{t:?}");
+        assert!((t.amplitude[0] - b[2]).abs() < 1e-9 && (t.amplitude[1] - b[3]).abs() < 1e-9);
+        let covariance = (x.transpose() * &x).try_inverse().unwrap();
+        assert!((t.covariance[(0, 1)] - covariance[(2, 3)]).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_base_that_is_extended_is_the_base_of_all_its_columns() {
+        let (x, y) = regression();
+        let e = Evidence::new(vec![linear("a", &x, &y)]);
+        let direct = e.base(&[0, 1, 2, 3], &[0.5, 0.0, 0.0, 0.0], &[0.1, 0.0, 0.0, 0.0]);
+        let extended = e.extend(&e.base(&[0, 1], &[0.5, 0.0], &[0.1, 0.0]), &[2, 3]);
+        assert_eq!(extended.columns, direct.columns);
+        assert!((extended.inverse - &direct.inverse).amax() < 1e-9 && (extended.score - &direct.score).amax() < 1e-9);
+    }
+
+    #[test]
+    fn a_mechanism_in_one_session_has_the_amplitude_that_a_column_of_that_session_has() {
+        let (x, y) = regression();
+        let half = |from: usize| (x.rows(from, 6).into_owned(), y.rows(from, 6).into_owned());
+        let ((xa, ya), (xb, yb)) = (half(0), half(6));
+        let e = Evidence::new(vec![linear("a", &xa, &ya), linear("b", &xb, &yb)]);
+        let base = e.base(&[0, 1], &[0.0; 2], &[0.0; 2]);
+        // The third column with its values in session b and zero in session a.
+        let of = |sessions: [bool; 2]| {
+            let column = |i: usize| if sessions[usize::from(i >= 6)] { x[(i, 2)] } else { 0.0 };
+            DVector::from_fn(12, |i, _| column(i))
+        };
+        let with = |columns: &[DVector<f64>]| {
+            let all: Vec<DVector<f64>> =
+                [x.column(0).into_owned(), x.column(1).into_owned()].into_iter().chain(columns.to_vec()).collect();
+            least_squares(&DMatrix::from_columns(&all), &y).1
+        };
+        let only_b = e.test_in(&base, &[2], &["b"]);
+        assert!((only_b.amplitude[0] - with(&[of([false, true])])[2]).abs() < 1e-9);
+        let each = e.test_each(&base, &[2]);
+        let direct = with(&[of([true, false]), of([false, true])]);
+        assert!((each.amplitude[0] - direct[2]).abs() < 1e-9 && (each.amplitude[1] - direct[3]).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_upper_tail_of_chi_squared_has_its_known_quantiles_and_never_vanishes() {
+        assert!((chi_squared_p(3.841_459, 1) - 0.05).abs() < 1e-6 && (chi_squared_p(9.210_340, 2) - 0.01).abs() < 1e-6);
+        assert_eq!((chi_squared_p(5.0, 0), chi_squared_p(f64::NAN, 2)), (1.0, 1.0));
+        assert!(chi_squared_p(1e6, 1) > 0.0);
     }
 }

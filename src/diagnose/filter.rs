@@ -11,61 +11,16 @@ use super::noise::Noise;
 use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model};
 use crate::physics::{FEW, Flow, Group, Probe, Reach};
-use crate::recording::Window;
+use crate::recording::Run;
 use crate::sensitivity::{Columns, Local, Plain, columns};
 use crate::simulate::{Integration, Method, driven, step};
 use crate::state::{Force, Inputs, STATES, State};
 use nalgebra::{DMatrix, DVector};
 use trimtab_ad::Along;
 
-/// One run as the filter needs it.
-#[derive(Clone, Debug)]
-pub struct Run {
-    /// Name of the recording and of the window in it.
-    pub name: String,
-    /// Name of the recording.
-    pub recording: String,
-    /// Session it belongs to.
-    pub session: String,
-    /// What was sailed.
-    pub manoeuvre: String,
-    /// Sample period \[s\].
-    pub dt: f64,
-    /// Inputs at each sample.
-    pub inputs: Vec<Inputs<f64>>,
-    /// Measured `[x, y, psi, u, v, r]` at each sample; NaN where a channel has no value.
-    pub measured: Vec<[f64; STATES]>,
-    /// Channels that were measured at all.
-    pub channels: [bool; STATES],
-    /// Start of the state estimate.
-    pub initial: [f64; STATES],
-    /// Sample ranges in which a known event pushed the ship: there the unknown force may be anything.
-    pub disturbed: Vec<(usize, usize)>,
-}
-
-impl Run {
-    /// Factor on the variance of the unknown force at sample `k`.
-    pub fn boost(&self, k: usize) -> f64 {
-        if self.disturbed.iter().any(|(a, b)| *a <= k + 1 && k <= *b + 1) { 1e4 } else { 1.0 }
-    }
-}
-
-impl From<&Window> for Run {
-    /// A window of a study; channels that were not measured are left out.
-    fn from(w: &Window) -> Self {
-        Self {
-            name: format!("{} {:.0} s", w.run, w.start_time),
-            recording: w.run.clone(),
-            session: w.session.clone(),
-            manoeuvre: w.manoeuvre.clone(),
-            dt: w.dt,
-            inputs: w.inputs.clone(),
-            measured: w.measured.clone(),
-            channels: w.measured_channels,
-            initial: w.initial,
-            disturbed: Vec::new(),
-        }
-    }
+/// Factor on the variance of the unknown force at a sample: where a known event pushed the ship, the force may be anything.
+pub fn boost(run: &Run, sample: usize) -> f64 {
+    if run.disturbed_at(sample) { 1e4 } else { 1.0 }
 }
 
 /// A direction in parameter space along which sensitivities are carried.
@@ -280,10 +235,7 @@ impl<'a> Filter<'a> {
             let mut kept = ([f64::NAN; STATES], [[0.0; Z]; STATES]);
             let reference = z;
             for j in 0..STATES {
-                let y = run.measured[k][j];
-                if !run.channels[j] || !y.is_finite() {
-                    continue;
-                }
+                let Some(y) = run.measured[k][j] else { continue };
                 // Measurement row: the state through h, and this channel's coloured noise.
                 let mut predicted = report[j] + z[9 + j];
                 for i in 0..STATES {
@@ -482,7 +434,7 @@ impl<'a> Filter<'a> {
                 z[9 + i] *= noise.rho[i];
             }
             if wanted.frozen.is_none() {
-                predict(&mut p, &a, &gamma, &noise, run.boost(k));
+                predict(&mut p, &a, &gamma, &noise, boost(run, k));
             }
         }
         pass

@@ -54,7 +54,7 @@ impl From<[EquationShare; 3]> for Equations {
     }
 }
 
-/// One thing that was found.
+/// A mechanism, a push or a fault of a sensor that is named.
 #[derive(Clone, Debug, Serialize)]
 pub struct Finding {
     /// Name of the mechanism; `push` for a time-local force, `generic` when the catalogue does not hold it.
@@ -79,7 +79,7 @@ pub struct Finding {
     pub equations: Equations,
     /// Time windows, for a time-local force.
     pub windows: Vec<Window>,
-    /// Where in state and inputs the force stood out.
+    /// Region of state and inputs in which the unexplained force is most significant.
     pub region: Option<String>,
     /// Its signature in words.
     pub signature: String,
@@ -89,11 +89,11 @@ pub struct Finding {
     pub held_out: Option<HeldOut>,
 }
 
-/// What a force for a limited time is called.
+/// Name of a force for a limited time.
 pub const PUSH: &str = "push";
 
-/// The same in plain words.
+/// Its title.
 pub const PUSH_TITLE: &str = "a push for a limited time (tug, thruster, line)";
 
-/// What stands in a confidence set for physics that the catalogue does not hold.
+/// The name in a confidence set for physics that the catalogue does not hold.
 pub const GENERIC: &str = "generic";

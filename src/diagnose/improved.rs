@@ -41,3 +41,28 @@ pub fn trimmed(found: &Model, user: &Model, free: &[FreeParameter]) -> Model {
     }
     model
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::estimate::FreeParameter;
+    use crate::diagnose::example::{column, model, with};
+
+    #[test]
+    fn a_file_holds_the_terms_that_act_and_those_that_differ_between_sessions_and_no_neutral_one() {
+        let full = model();
+        let user = full.restricted(|t| !["current", "mean_wind", "heading_bias"].contains(&t));
+        let mut found = with(&[("current.north", 0.2)]);
+        let bias = found.find("heading_bias.bias").unwrap();
+        found.sessions.insert("a".into(), vec![(bias, 0.01)]);
+        found.sessions.insert("b".into(), vec![(bias, 0.0)]);
+        let free = [FreeParameter::common(column(&found, "current.north"), None)];
+        let out = trimmed(&found, &user, &free);
+        let names = out.term_names();
+        assert!(names.contains(&"current") && names.contains(&"heading_bias") && !names.contains(&"mean_wind"));
+        let north = out.find("current.north").unwrap();
+        assert!(out.parameters[north].value == 0.2 && out.parameters[north].free);
+        assert_eq!(out.sessions.keys().collect::<Vec<_>>(), ["a"]);
+        assert_eq!(out.sessions["a"], [(out.find("heading_bias.bias").unwrap(), 0.01)]);
+    }
+}

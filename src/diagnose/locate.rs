@@ -1,16 +1,16 @@
 //! Where an unknown force acts: in which equation, when, in which region of state and inputs, and in which part of the water.
-//! It tests constant forces against the base; what the force is, is not asked here.
+//! It tests constant forces against the base; the cause of a force is named elsewhere.
 
 use super::blocks::{Blocks, block_length, choices};
 use super::estimate::{Estimate, base_of, evidence, restrictions};
 use super::evidence::{Base, Evidence};
-use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::filter::{Column, Filter, Pass, Wanted};
 use super::generic::{GenericLaw, widen};
 use super::place::{Chart, PARTS, Place, place};
-pub use super::push::Window;
-use super::push::{Push, pushes, significant};
+use super::push::{Push, Window, pushes, significant};
 use super::region::{REGIONS, RegionTest, regions};
 use crate::model::Model;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
 use rayon::prelude::*;
@@ -34,7 +34,7 @@ pub struct Location {
     pub equations: [EquationShare; 3],
     /// Windows, most significant first, not overlapping within a run.
     pub windows: Vec<Window>,
-    /// The same force in windows of some runs, whether it is significant or not.
+    /// The best constant force in windows of some runs, whether it is significant or not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub push: Option<Push>,
     /// Every such force that the search came to, the strongest first.

@@ -1,54 +1,66 @@
 //! The diagnosis: where recordings and simulation part, which physics was left out, and the proof on unseen runs.
-//! One noise model (sensors, unknown force, initial states) stands behind every step.
+//! It draws and prints nothing: its one answer is the document in [`diagnosis`].
 //!
-//! The steps are: admit the recordings ([`admit`]), estimate parameters and noise ([`estimate`]), locate unknown forces
-//! ([`locate`]), test every mechanism of the catalogue by its sensitivities ([`screen`]), refit the leaders, and compare
-//! models on held-out runs ([`prove`]). [`diagnose`] runs them in order and concludes.
+//! The steps, each a function from one named type to the next ([`diagnose`] runs them in order):
+//!
+//! | step | what it gives |
+//! |---|---|
+//! | audit of the recordings | [`base::AuditedRuns`] |
+//! | fit of the base model, its parameters and noise | [`base::BaseFit`] |
+//! | location of unknown forces, score test of every mechanism | `event::BaseTests` |
+//! | a push that is found before any mechanism | `event::Opening` |
+//! | forward selection: comparison of refits, removal, replacement | `select::Selection` |
+//! | tests of what the selected mechanisms leave | `residual::Residual` |
+//! | table of tests | [`decide::TestTable`] |
+//! | decision, a pure function of the table | [`decide::Decision`] |
+//! | proof on held-out runs | [`prove::HeldOut`] |
+//! | document | [`diagnosis::Diagnosis`] |
+//!
+//! One noise model (sensors, unknown force, initial states) is behind every step, and every number that can turn a verdict is in
+//! [`settings`].
 
 pub mod admit;
 mod algebra;
 pub mod base;
 pub mod baseline;
+mod blocks;
 pub mod candidate;
 mod compete;
 pub mod covariance;
-mod decide;
+pub mod decide;
 mod describe;
 pub mod diagnosis;
 mod eligible;
 pub mod estimate;
 mod event;
 pub mod evidence;
-pub mod figures;
+#[cfg(test)]
+mod example;
+pub mod filter;
 pub mod finding;
+mod forces;
 mod generic;
 mod improved;
-mod pipeline;
-mod problem;
-mod residual;
-mod select;
-pub mod settings;
-mod summary;
-mod wald;
-mod words;
-
-mod blocks;
-pub mod filter;
-mod forces;
 pub mod locate;
 pub mod noise;
 pub mod noise_fit;
 mod optimise;
+mod pipeline;
 pub mod place;
+mod problem;
 pub mod prove;
 pub mod push;
-pub mod receiver;
 pub mod refit;
 pub mod region;
-pub mod report;
+mod residual;
 pub mod screen;
+mod select;
+pub mod settings;
 pub mod sides;
 pub mod signal;
+mod summary;
+mod wald;
+mod words;
 
 pub use decide::Verdict;
 pub use diagnosis::Diagnosis;
@@ -56,10 +68,3 @@ pub use finding::Finding;
 pub use pipeline::diagnose;
 pub use settings::Settings;
 pub use signal::Signal;
-
-/// The types of the document under the name that the report and the figures import them by.
-pub mod conclude {
-    pub use super::decide::Verdict;
-    pub use super::diagnosis::{Diagnosis, Ranked, Trace};
-    pub use super::finding::{Amplitude, Finding, GENERIC, PUSH, PUSH_TITLE};
-}

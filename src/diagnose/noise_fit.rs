@@ -2,11 +2,12 @@
 //! The ship's parameters are held: they are estimated elsewhere, in turn with the noise.
 
 use super::covariance::{Discrete, Z, initial, predict};
-use super::filter::{Run, Tangent};
+use super::filter::{Tangent, boost};
 use super::noise::{GROUP_OF, NOISE_PARAMETERS, Noise, NoisePrior, NoiseScore, SensorNoise};
 use super::optimise::{Damping, Outcome, Proposal};
 use super::settings::{NOISE_STEP_GAIN, NOISE_STEP_LONGEST};
 use crate::model::Model;
+use crate::recording::{Run, or_nan};
 use crate::state::STATES;
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
@@ -35,10 +36,7 @@ fn innovations<S: Scalar>(
     let mut p = initial(noise, model);
     for k in 0..run.measured.len() {
         for j in 0..STATES {
-            let y = run.measured[k][j];
-            if !run.channels[j] || !y.is_finite() {
-                continue;
-            }
+            let Some(y) = run.measured[k][j] else { continue };
             let mut error = -(z[j] + z[9 + j]) + (y - tangent.offset[k][j]);
             if j == 2 {
                 error = trimtab_ad::smooth::wrap_angle(error);
@@ -61,7 +59,7 @@ fn innovations<S: Scalar>(
             break;
         }
         z = move_mean(&z, tangent, k, noise);
-        predict(&mut p, &tangent.a[k], &tangent.gamma[k], noise, run.boost(k));
+        predict(&mut p, &tangent.a[k], &tangent.gamma[k], noise, boost(run, k));
     }
     out
 }
@@ -232,6 +230,7 @@ pub fn guess(runs: &[Run], model: &Model) -> Noise {
             .iter()
             .flat_map(|r| {
                 r.measured.windows(4).flat_map(move |w| {
+                    let w: Vec<[f64; STATES]> = w.iter().map(or_nan).collect();
                     channels
                         .iter()
                         .map(move |&j| (w[3][j] - 3.0 * w[2][j] + 3.0 * w[1][j] - w[0][j]).abs() / 20f64.sqrt())
@@ -259,5 +258,69 @@ pub fn guess(runs: &[Run], model: &Model) -> Noise {
         sensors,
         force: [mass * acceleration, 2.0 * mass * acceleration, 0.3 * mass * acceleration * l],
         force_time: 0.5 * l / (0.2 * speed) + 3.0 * dt,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::estimate::passes;
+    use crate::diagnose::example::{RK4, model, noise, runs};
+    use crate::diagnose::filter::{GATE, Pass};
+    use crate::diagnose::settings::FIRST;
+
+    #[test]
+    fn the_first_guess_of_a_sensor_is_its_white_scatter() {
+        let model = model();
+        let found = guess(&runs(&model, 12), &model);
+        for (sensor, white) in found.sensors.iter().zip([0.3, 0.002, 0.02, 0.0005]) {
+            assert!((sensor.white / white).ln().abs() < 0.15, "{sensor:?} for {white}");
+        }
+    }
+
+    fn linearised(runs: &[Run]) -> Vec<Pass> {
+        passes(&model(), RK4, &[], runs, &noise(), true)
+    }
+
+    #[test]
+    fn the_score_of_the_logarithms_is_the_slope_of_the_likelihood() {
+        let (model, runs, prior) = (model(), runs(&model(), 2), NoisePrior::around(&noise()));
+        let passes = linearised(&runs);
+        let tangents: Vec<&Tangent> = passes.iter().filter_map(|p| p.tangent.as_ref()).collect();
+        let runs: Vec<&Run> = runs.iter().collect();
+        let fit = NoiseFit { runs: &runs, tangents: &tangents, model: &model, prior: &prior, gate: f64::INFINITY };
+        let mut v = noise().to_log();
+        v[9] += 0.2;
+        let value = |v: &[f64; N]| fit.posterior(v, &fit.innovations(v));
+        let (score, information) = fit.score(&v, &fit.innovations(&v));
+        for i in 0..N {
+            let at = |d: f64| {
+                let mut w = v;
+                w[i] += d;
+                value(&w)
+            };
+            let slope = (at(1e-4) - at(-1e-4)) / 2e-4;
+            // The score's own derivatives are differences over a hundredth.
+            let unit = information[(i, i)].sqrt();
+            assert!((score[i] - slope).abs() < 0.05 * unit.max(1.0), "{i}: {} {slope}", score[i]);
+        }
+    }
+
+    #[test]
+    fn a_fit_never_ends_below_where_it_began_and_finds_a_noise_four_times_too_large() {
+        let (model, runs) = (model(), runs(&model(), 6));
+        let mut start = noise();
+        start.sensors.iter_mut().for_each(|s| s.white *= 4.0);
+        let prior = NoisePrior::around(&noise());
+        let passes = linearised(&runs);
+        let tangents: Vec<&Tangent> = passes.iter().filter_map(|p| p.tangent.as_ref()).collect();
+        let runs: Vec<&Run> = runs.iter().collect();
+        let fit = NoiseFit { runs: &runs, tangents: &tangents, model: &model, prior: &prior, gate: GATE };
+        let value = |n: &Noise| fit.posterior(&n.to_log(), &fit.innovations(&n.to_log()));
+        let found = fit_noise(&runs, &tangents, &model, &start, &prior, GATE, FIRST.noise_iterations);
+        assert!(value(&found) > value(&start) + 100.0);
+        for (sensor, white) in found.sensors.iter().zip([0.3, 0.002, 0.02, 0.0005]) {
+            assert!((sensor.white / white).ln().abs() < 0.25, "{sensor:?} for {white}");
+        }
     }
 }

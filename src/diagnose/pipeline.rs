@@ -6,7 +6,6 @@ use super::decide::{Decision, Unlisted, decide};
 use super::describe::{findings, kinds};
 use super::diagnosis::Diagnosis;
 use super::event::{BaseTests, Opening};
-use super::filter::Run;
 use super::generic::{corrected, surrogate};
 use super::improved::trimmed;
 use super::prove::{HeldOut, prove};
@@ -17,6 +16,8 @@ use super::sides::sides;
 use super::summary::{absorbed, adequacy, budget, confusable, detectable, moves, ranking, traces};
 use super::words::{Missing, headline, next_trial};
 use crate::model::{Model, ModelError};
+use crate::recording::Run;
+use crate::validity::{self, Coverage};
 
 /// Diagnoses a model against recordings.
 ///
@@ -33,7 +34,7 @@ pub fn diagnose(
     progress: &(dyn Fn(&str) + Sync),
 ) -> Result<Diagnosis, ModelError> {
     let question = Question::new(model, settings, progress)?;
-    let audited = AuditedRuns::new(runs, held_out, question.full.ship.hull.lpp);
+    let audited = AuditedRuns::new(runs, question.full.ship.hull.lpp);
     let base: BaseFit = BaseFit::new(&question, &audited);
     let tests: BaseTests = BaseTests::new(&question, base);
     let opening: Opening = Opening::new(&question, tests);
@@ -41,7 +42,7 @@ pub fn diagnose(
     let residual: Residual = Residual::new(&question, selection);
     let decision: Decision = decide(&residual.table(&question));
     let kept: Kept = residual.decided(&decision);
-    let proof: Option<HeldOut> = proof(&question, &kept, &audited.held_out);
+    let proof: Option<HeldOut> = proof(&question, &kept, held_out);
     Ok(report(&question, &kept, &decision, proof))
 }
 
@@ -55,7 +56,12 @@ fn proof(question: &Question, kept: &Kept, held_out: &[Run]) -> Option<HeldOut> 
     let (base, screen) = (&tests.fit.estimate, &tests.screen);
     let generic = corrected(&screen.law, &screen.evidence, &screen.base, &base.model);
     let (before, after) = ((&base.model, &base.noise), (&found.model, &base.noise));
-    Some(prove(before, after, Some(&generic), tests.fit.integration, held_out, question.settings.seed))
+    Some(prove(before, after, Some(&generic), tests.fit.integration, held_out, &question.settings.judging))
+}
+
+/// How much of the runs lies outside the ranges of a model's terms.
+fn coverage(model: &Model, runs: &[Run]) -> Coverage {
+    validity::outside(model, runs.iter().flat_map(validity::samples))
 }
 
 /// Everything that the diagnosis says.
@@ -73,10 +79,11 @@ fn report(question: &Question, kept: &Kept, decision: &Decision, proof: Option<H
     };
     let findings = findings(kept, proof.as_ref());
     let verdict = decision.verdict;
+    let improved = trimmed(&found.model, question.model, &found.free);
     Diagnosis {
         schema: "trimtab-diagnosis/1",
         verdict,
-        headline: headline(verdict, &findings, &fit.admission, missing.as_ref()),
+        headline: headline(verdict, &findings, missing.as_ref()),
         next_trial: missing
             .as_ref()
             .map(Missing::next_trial)
@@ -100,7 +107,8 @@ fn report(question: &Question, kept: &Kept, decision: &Decision, proof: Option<H
         findings,
         settings: question.settings.clone(),
         traces: traces(&fit.runs, first, last),
-        model: trimmed(&found.model, question.model, &found.free),
+        validity: coverage(&improved, &fit.runs),
+        model: improved,
         base: trimmed(&base.model, question.model, &base.free),
     }
 }

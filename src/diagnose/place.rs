@@ -1,16 +1,16 @@
 //! Whether an earth-fixed force differs from place to place: a force of its own in each part of the water that was sailed.
-//! Weather is the same everywhere; what differs has another cause, which is not asked here.
+//! Weather is the same everywhere; a force that differs has another cause, which is not sought here.
 
 use super::evidence::{Base, Evidence};
-use super::filter::Run;
 use super::settings::{PLACE_PARTS, PLACE_TAIL};
+use crate::recording::Run;
 use serde::Serialize;
 use statrs::statistics::{Data, OrderStatistics};
 
 /// A force fixed on the earth that differs between parts of the water.
 #[derive(Clone, Debug, Serialize)]
 pub struct Place {
-    /// Southern and northern limit of the part where it stands out most \[m\].
+    /// Southern and northern limit of the part where the force is most significant \[m\].
     pub north: [f64; 2],
     /// Western and eastern limit \[m\].
     pub east: [f64; 2],
@@ -39,7 +39,7 @@ impl Chart {
     /// Of all measured positions but the outermost two per cent each way.
     pub fn of(runs: &[Run]) -> Option<Self> {
         let limits = |axis: usize| {
-            let all = runs.iter().flat_map(|r| &r.measured).map(|m| m[axis]).filter(|v| v.is_finite());
+            let all = runs.iter().flat_map(|r| &r.measured).filter_map(|m| m[axis]);
             let mut all = Data::new(all.collect::<Vec<f64>>());
             (all.quantile(PLACE_TAIL), all.quantile(1.0 - PLACE_TAIL))
         };
@@ -71,7 +71,7 @@ pub fn place(chart: &Chart, evidence: &Evidence, base: &Base, first: usize, unit
         |part: &usize| (0..2).all(|i| evidence.total.information[(first + 2 * part + i, first + 2 * part + i)] > 1e-6);
     let parts: Vec<usize> = (0..PARTS).filter(sailed).collect();
     let own: Vec<usize> = parts.iter().flat_map(|part| [first + 2 * part, first + 2 * part + 1]).collect();
-    // What is the same everywhere is the weather.
+    // A force that is the same everywhere is weather.
     let weather = first + 2 * PARTS;
     let test = evidence.test(&evidence.extend(base, &[weather, weather + 1]), &own);
     let weight = |j: &usize| -> f64 {

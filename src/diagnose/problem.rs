@@ -3,10 +3,10 @@
 
 use super::candidate::Candidate;
 use super::estimate::{Estimate, FreeParameter, estimate};
-use super::filter::Run;
 use super::noise::{Noise, NoisePrior};
 use super::settings::{Effort, Settings};
 use crate::model::Model;
+use crate::recording::Run;
 use crate::simulate::Integration;
 
 /// What every refit shares.

@@ -4,9 +4,10 @@
 use super::blocks::{Blocks, Span, block_length};
 use super::estimate::Estimate;
 use super::evidence::chi_squared_p;
-use super::filter::{Filter, Pass, Run, Wanted};
+use super::filter::{Filter, Pass, Wanted};
 use super::noise::Noise;
 use super::settings::{PUSH_PRIOR, PUSH_ROUNDS, PUSH_STARTS};
+use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
 use nalgebra::{Matrix3, Vector3};
@@ -54,7 +55,7 @@ pub struct Push {
     /// Share of the evidence for it that sway force and yaw moment hold by themselves, 0 to 1.
     pub sideways: f64,
     /// Evidence for its mirror image (the same surge force, sway force and yaw moment to the other side) in windows of its own,
-    /// as a share of its own evidence: what the ship's motion brings comes to both sides, a push from outside does not.
+    /// as a share of its own evidence: the ship's motion brings forces to both sides, a push from outside does not.
     pub mirrored: f64,
     /// When it acts.
     pub windows: Vec<Window>,
@@ -67,10 +68,10 @@ impl Push {
     }
 }
 
-/// p-value, corrected for every window, below which a window is told.
+/// p-value, corrected for every window, below which a window is listed.
 const WINDOW_P: f64 = 0.01;
 
-/// Most windows that are told of a run.
+/// Most windows that are listed of a run.
 const WINDOWS: usize = 3;
 
 /// The significant windows of all runs, the most significant first, not overlapping within a run. `looked_at` is the number of
@@ -216,8 +217,8 @@ impl PushFit {
     }
 }
 
-/// The same push with every edge of its windows at the sample, up to a block before or after where it was, at which its force gains
-/// most. `found` is the estimate beside which it stands. A window in a run that was divided since stays as it is.
+/// A push with the edges of its windows moved, by up to a block, to the samples at which its force gains most. `found` is the
+/// estimate whose innovations it explains. A window in a run that was divided since is kept.
 pub fn sharpened(push: &Push, found: &Estimate, integration: Integration, runs: &[Run]) -> Push {
     let filter = Filter::new(&found.model, integration, &[]);
     let force = Vector3::from_fn(|e, _| push.force[e] / found.noise.force[e]);
@@ -226,7 +227,7 @@ pub fn sharpened(push: &Push, found: &Estimate, integration: Integration, runs: 
         let (from, to) = w.samples;
         let same = |r: &&Run| r.recording == w.run && to < r.inputs.len() && r.inputs[from].t == w.start;
         let Some(run) = runs.get(w.index).filter(same) else { return w.clone() };
-        // What the run's samples say, as if nobody knew of the push.
+        // The unknown force is not set free in the windows, so that the samples show the push.
         let run = Run { disturbed: Vec::new(), ..run.clone() };
         let (from, to) = edges(&filter, &found.noise, &run, w.samples, length, &force);
         Window { samples: (from, to), start: run.inputs[from].t, end: run.inputs[to].t, ..w.clone() }
@@ -275,6 +276,7 @@ mod tests {
     use crate::diagnose::noise_fit::guess;
     use crate::model::Model;
     use crate::physics::Form;
+    use crate::recording::Split;
     use crate::ship::Ship;
     use crate::state::{Inputs, STATES};
     use nalgebra::{DMatrix, DVector};
@@ -305,10 +307,10 @@ mod tests {
                 recording: format!("run {index}"),
                 session: "one".into(),
                 manoeuvre: String::new(),
+                split: Split::Train,
                 dt: 2.0,
                 inputs: (0..count * LENGTH).map(|k| Inputs::actuators(2.0 * k as f64, 1.0, 0.0)).collect(),
-                measured: vec![[0.0; STATES]; count * LENGTH],
-                channels: [true; STATES],
+                measured: vec![[Some(0.0); STATES]; count * LENGTH],
                 initial: [0.0; STATES],
                 disturbed: Vec::new(),
             };

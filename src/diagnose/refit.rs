@@ -6,9 +6,10 @@
 
 use super::estimate::{Estimate, base_of, evidence, log_posterior, restrictions};
 use super::evidence::Base;
-use super::filter::{Column, Filter, Gains, Pass, Run, Wanted};
+use super::filter::{Column, Filter, Gains, Pass, Wanted};
 use crate::ipopt::{IpoptError, Nlp, OptionValue, Options, Solution, solve};
 use crate::model::Model;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -188,4 +189,53 @@ pub fn refit(found: &Estimate, integration: Integration, runs: &[Run]) -> Result
         return Ok(found.clone());
     }
     Ok(Estimate { model, log_posterior, ..found.clone() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, at, model, runs};
+
+    /// An estimate off the truth, with the gains at it.
+    fn off() -> (Estimate, Vec<Run>) {
+        let mut found = at(&model());
+        for f in &found.free {
+            let value = f.value(&found.model) + 0.5 * f.column.scale;
+            f.set(&mut found.model, value);
+        }
+        let runs = runs(&model(), 3);
+        found.log_posterior = log_posterior(&found.model, RK4, &runs, &found.free, &found.noise);
+        (found, runs)
+    }
+
+    #[test]
+    fn the_gradient_is_the_slope_of_the_objective() {
+        let (found, runs) = off();
+        let filter = Filter::new(&found.model, RK4, &[]);
+        let wanted = Wanted { gains: true, ..Wanted::default() };
+        let gains: Vec<Gains> = runs.iter().filter_map(|r| filter.pass(r, &found.noise, wanted).gains).collect();
+        let columns = found.free.iter().map(|f| f.column).collect();
+        let mut problem = Refit { found: &found, integration: RK4, runs: &runs, gains: &gains, columns, cached: None };
+        let x: Vec<f64> = found.free.iter().map(|f| f.value(&found.model) / f.column.scale).collect();
+        let gradient = problem.at(&x).map(|p| p.gradient.clone()).unwrap_or_default();
+        for i in 0..x.len() {
+            let value = |d: f64| {
+                let mut y = x.clone();
+                y[i] += d;
+                problem.value_at(&y).unwrap_or(f64::NAN)
+            };
+            let slope = (value(1e-4) - value(-1e-4)) / 2e-4;
+            assert!((gradient[i] - slope).abs() < 1e-3 * slope.abs().max(1.0), "{i}: {} {slope}", gradient[i]);
+        }
+    }
+
+    #[test]
+    fn a_refit_raises_the_likelihood_or_changes_nothing() -> Result<(), IpoptError> {
+        let (found, runs) = off();
+        let refitted = refit(&found, RK4, &runs)?;
+        assert!(refitted.log_posterior > found.log_posterior + 1.0);
+        let again = refit(&refitted, RK4, &runs)?;
+        assert!(again.log_posterior >= refitted.log_posterior);
+        Ok(())
+    }
 }

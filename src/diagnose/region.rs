@@ -2,8 +2,9 @@
 //! A region says where a force shows, not what it is.
 
 use super::evidence::{Base, Evidence};
-use super::filter::{Pass, Run};
+use super::filter::Pass;
 use crate::model::Model;
+use crate::recording::Run;
 use crate::state::{Inputs, State};
 use serde::Serialize;
 

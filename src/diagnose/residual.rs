@@ -5,13 +5,13 @@ use super::base::Question;
 use super::compete::Selected;
 use super::decide::{Decision, MechanismTest, PlaceTest, PushTest, ResidualTests, TestTable};
 use super::estimate::Estimate;
-use super::filter::Run;
 use super::finding::PUSH;
 use super::locate::{Location, locate};
 use super::place::Place;
 use super::push::{Push, sharpened};
 use super::screen::{Screen, screen};
 use super::select::Selection;
+use crate::recording::Run;
 
 /// The tests of what the selected mechanisms leave.
 pub struct Left {
@@ -112,11 +112,62 @@ fn turning_force(found: &Estimate, runs: &[Run]) -> f64 {
     let hull = &found.model.ship.hull;
     let (mut speed, mut count) = (0.0, 0.0);
     for r in runs {
-        for s in r.measured.iter().filter(|s| s[3].is_finite()) {
-            speed += s[3].abs();
+        let mut surge = r.measured.iter().filter_map(|s| s[3]).peekable();
+        if surge.peek().is_none() {
+            speed += r.mean_speed() * r.measured.len() as f64;
+            count += r.measured.len() as f64;
+        }
+        for u in surge {
+            speed += u.abs();
             count += 1.0;
         }
     }
     let u = speed / f64::max(count, 1.0);
     hull.mass * u * u / hull.lpp
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::base::{AuditedRuns, BaseFit};
+    use crate::diagnose::decide::{Verdict, decide};
+    use crate::diagnose::event::{BaseTests, Opening};
+    use crate::diagnose::example::{SAMPLES, at, model, runs, with};
+    use crate::diagnose::settings::Settings;
+    use crate::model::Model;
+
+    #[test]
+    fn the_turning_force_is_mass_times_speed_squared_over_length() {
+        let found = at(&model());
+        let mut runs = runs(&found.model, 2);
+        runs.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[3] = Some(-2.0));
+        runs[0].measured[3][3] = None;
+        let hull = &found.model.ship.hull;
+        assert!((turning_force(&found, &runs) / (4.0 * hull.mass / hull.lpp) - 1.0).abs() < 1e-12);
+    }
+
+    fn residual(question: &Question, truth: &Model) -> Residual {
+        let audited = AuditedRuns::new(&runs(truth, 12), truth.ship.hull.lpp);
+        let tests = BaseTests::new(question, BaseFit::new(question, &audited));
+        Residual::new(question, Selection::new(question, Opening { tests, push: None, first: None }))
+    }
+
+    #[test]
+    fn the_table_holds_what_was_selected_and_a_refuted_selection_leaves_the_base_model() {
+        let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let question = Question { model: &model, full: model.clone(), settings: &settings, progress: &|_| () };
+        let residual = residual(&question, &with(&[("current.north", 0.3)]));
+        let table = residual.table(&question);
+        assert_eq!((table.runs, table.samples, table.audit_blocks), (12, 12 * SAMPLES, false));
+        assert!(table.mechanisms.len() == 1 && table.mechanisms[0].weather && table.mechanisms[0].statistic > 100.0);
+        // What the current explains is no longer left.
+        let left = table.selected.map_or(f64::NAN, |s| s.asymmetric_gain);
+        assert!(left < 0.1 * table.base.asymmetric_gain, "{left} {}", table.base.asymmetric_gain);
+        let decision = decide(&table);
+        assert_eq!((decision.verdict, decision.keeps_mechanisms), (Verdict::Named, true));
+        let base = residual.selection.tests.fit.estimate.clone();
+        let kept = residual.decided(&Decision { keeps_mechanisms: false, ..decision });
+        assert!(kept.selection.mechanisms.is_empty() && kept.left.is_none());
+        assert_eq!(kept.selection.estimate.log_posterior, base.log_posterior);
+    }
 }

@@ -1,15 +1,16 @@
-//! The test of every mechanism of the catalogue by its sensitivities, after parameters, nuisances, initial states and noise
-//! have had their say. It ranks and corrects for multiplicity; it does not refit and does not conclude.
+//! The score test of every mechanism of the catalogue, with parameters, nuisance coefficients, initial states and noise profiled
+//! out. It ranks and corrects for multiplicity; it does not refit and does not conclude.
 
 use super::algebra::pick;
 use super::candidate::{Candidate, Extent, append};
 use super::estimate::{Estimate, base_of, evidence, restrictions};
 use super::evidence::{Base, Evidence, Test};
-use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::filter::{Column, Filter, Pass, Wanted};
 use super::generic::{GenericLaw, widen};
 use super::settings::{AMPLITUDE_GAIN, DIVIDED_SESSIONS, EQUAL_STATISTICS, IDENTIFIABLE_SHARE, SESSIONS_GAIN};
 use crate::model::Model;
 use crate::physics::Kind;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rayon::prelude::*;
@@ -44,8 +45,8 @@ pub struct Screen {
     pub evidence: Evidence,
     /// The fitted block.
     pub base: Base,
-    /// The same with the mirror-symmetric basis beside it, as far as the data ask for one: what is known when the form of the
-    /// ship's own forces is not.
+    /// The base with the mirror-symmetric basis beside it, as far as the data ask for one: for where the form of the ship's own
+    /// forces is unknown.
     pub widened: Base,
     /// Columns of each candidate.
     groups: Vec<Vec<usize>>,
@@ -86,7 +87,7 @@ impl Screen {
         -(&self.base.inverse * pull)
     }
 
-    /// Tests a candidate where it is taken to act, after the base has had its say.
+    /// Tests a candidate where it is taken to act, the base profiled out.
     pub fn test(&self, index: usize, extent: &Extent) -> Test {
         let columns = self.columns(index);
         match extent {
@@ -166,7 +167,7 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
     Screen { evidence, base, widened, groups, law, rows, symmetric_test, asymmetric_test, passes }
 }
 
-/// A test of a candidate where it may act, and the p-value of the same with a generic force law as rival.
+/// The test of a candidate in some sessions, and its p-value with a generic force law as rival.
 struct Tested {
     extent: Extent,
     test: Test,

@@ -1,5 +1,5 @@
 //! Forward selection of mechanisms, one after the other, with removal of those that a later one makes needless and replacement
-//! of those that another explains better beside it. Tests and refits are in other files; the verdict is not made here.
+//! of those in whose place another explains more. Tests and refits are in other files; the verdict is not made here.
 
 use super::admit::followed;
 use super::base::Question;
@@ -165,4 +165,84 @@ fn rival_of(
         0.0
     };
     (value(&entry, &found) - value(present, current) > tolerance).then_some((entry, Some(found)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::base::{AuditedRuns, BaseFit};
+    use crate::diagnose::candidate::Extent;
+    use crate::diagnose::example::{model, runs, with};
+    use crate::model::Model;
+
+    /// The selection on twelve runs of a truth, the model's own parameters free.
+    fn selection(truth: &Model, settings: &Settings) -> Selection {
+        let model = model();
+        let question = Question { model: &model, full: model.clone(), settings, progress: &|_| () };
+        let audited = AuditedRuns::new(&runs(truth, 12), model.ship.hull.lpp);
+        let tests = BaseTests::new(&question, BaseFit::new(&question, &audited));
+        Selection::new(&question, Opening { tests, push: None, first: None })
+    }
+
+    fn names(s: &Selection) -> Vec<&str> {
+        s.mechanisms.iter().map(|m| s.tests.candidates[m.candidate].mechanism.name).collect()
+    }
+
+    fn plain() -> Settings {
+        Settings { nuisance: false, ..Settings::default() }
+    }
+
+    #[test]
+    fn nothing_is_selected_where_nothing_is_missing_and_a_current_where_one_flows() {
+        assert!(names(&selection(&model(), &plain())).is_empty());
+        let s = selection(&with(&[("current.north", 0.3)]), &plain());
+        assert_eq!(names(&s), ["current"]);
+        let north = s.estimate.model.find("current.north").unwrap();
+        assert!((s.estimate.model.parameters[north].value - 0.3).abs() < 0.03);
+        assert!(s.estimate.log_posterior > s.tests.fit.estimate.log_posterior + 50.0);
+    }
+
+    #[test]
+    fn at_most_so_many_mechanisms_are_selected_as_the_user_allows() {
+        let settings = Settings { most: 0, ..plain() };
+        assert!(selection(&with(&[("current.north", 0.3)]), &settings).mechanisms.is_empty());
+    }
+
+    /// A selection with mechanisms in it that were never refitted.
+    fn holding(s: &mut Selection, names: &[&str]) {
+        for name in names {
+            let candidate = s.tests.candidates.iter().position(|c| c.mechanism.name == *name).unwrap();
+            s.estimate.free.extend(s.tests.candidates[candidate].parameters(&Extent::All));
+            let (set, why) = (vec![candidate], String::new());
+            s.mechanisms.push(Selected { candidate, extent: Extent::All, statistic: 0.0, p: 0.0, set, why });
+        }
+        let problem = s.tests.problem(&Settings::default()).again(&s.estimate, SETTLE);
+        s.estimate = problem;
+    }
+
+    #[test]
+    fn an_earlier_mechanism_that_does_nothing_beside_a_later_one_is_removed_and_one_that_acts_is_not() {
+        let settings = Settings { most: 0, ..plain() };
+        let mut s = selection(&with(&[("current.north", 0.3)]), &settings);
+        holding(&mut s, &["earth_force", "current"]);
+        let free = s.estimate.free.len();
+        s.remove_needless(&plain());
+        assert_eq!((names(&s), s.estimate.free.len()), (vec!["current"], free - 2));
+        s.remove_needless(&plain());
+        assert_eq!(names(&s), ["current"]);
+    }
+
+    #[test]
+    fn a_look_alike_that_explains_better_beside_a_later_mechanism_takes_the_place_of_the_earlier() {
+        let settings = Settings { most: 0, ..plain() };
+        let mut s = selection(&with(&[("current.north", 0.3)]), &settings);
+        holding(&mut s, &["earth_force", "heading_bias"]);
+        let before = s.estimate.log_posterior;
+        s.replace(&plain());
+        assert_eq!(names(&s), ["current", "heading_bias"]);
+        assert!(s.estimate.log_posterior > before);
+        // Compared again, the better one stays.
+        s.replace(&plain());
+        assert_eq!(names(&s), ["current", "heading_bias"]);
+    }
 }

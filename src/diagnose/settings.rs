@@ -1,6 +1,8 @@
 //! Every number that can turn a verdict: name, value, meaning, and how it was set; and the settings that a user may change.
-//! The smallest size worth naming of each mechanism is not here: it stands with the mechanism, in its term's file.
+//! The smallest size worth naming of each mechanism is not here: it is a `floor` of the mechanism, in its term's file.
 
+use crate::evaluate::{EvaluationSettings, Judging};
+use crate::fit::FitSettings;
 use crate::simulate::{Integration, Method};
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +22,16 @@ pub struct Settings {
     pub substeps: usize,
     /// Seed of the bootstrap.
     pub seed: u64,
+    /// How the proof simulates and weighs the test runs. A study has it in the tables `[fit]` and `[evaluate]`, so that a
+    /// diagnosis and an evaluation print the same numbers.
+    #[serde(skip, default = "judging")]
+    pub judging: Judging,
+}
+
+/// As a fit would judge, but by the integration of a diagnosis.
+fn judging() -> Judging {
+    let integration = Integration { method: Method::Rk4, substeps: 1 };
+    Judging { integration, ..Judging::new(&FitSettings::default(), EvaluationSettings::default()) }
 }
 
 impl Settings {
@@ -36,7 +48,15 @@ impl Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { alpha: 0.01, most: 3, withhold: Vec::new(), nuisance: true, substeps: 1, seed: 20250226 }
+        Self {
+            alpha: 0.01,
+            most: 3,
+            withhold: Vec::new(),
+            nuisance: true,
+            substeps: 1,
+            seed: 20250226,
+            judging: judging(),
+        }
     }
 }
 
@@ -61,10 +81,10 @@ pub const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations
 pub const SETTLE: Effort = Effort { rounds: 10, noise_rounds: 1, noise_iterations: 4, noise_runs: 10 };
 /// The base model of a signal-to-noise ratio: noise within a few per cent.
 pub const SIGNAL: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
-/// The start of a model that is told its mechanisms: parameters and noise are estimated again with them.
-pub const TOLD_START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
-/// The one fit of a model that is told its mechanisms.
-pub const TOLD_FINISH: Effort = Effort { rounds: 8, noise_rounds: 2, noise_iterations: 6, noise_runs: 10 };
+/// The start of a model that is given its mechanisms: parameters and noise are estimated again with them.
+pub const GIVEN_START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
+/// The one fit of a model that is given its mechanisms.
+pub const GIVEN_FINISH: Effort = Effort { rounds: 8, noise_rounds: 2, noise_iterations: 6, noise_runs: 10 };
 
 /// A number that can turn a verdict.
 #[derive(Clone, Copy, Debug)]
@@ -99,7 +119,7 @@ macro_rules! numbers {
 
 /// Concealed cases of the campaign's development seeds (21, 22, 24); its published seed 20250226 was not looked at.
 const SEEDS: &str = "development seeds of the campaign of concealed cases";
-/// The same, and recordings of two real hulls.
+/// Those cases, and recordings of two real hulls.
 const HULLS: &str = "development seeds of the campaign, and the recordings of Esso Osaka and KVLCC2";
 /// A round value in common use; how it was chosen is not recorded.
 const CUSTOM: &str = "convention; how it was chosen is not recorded";
@@ -145,7 +165,7 @@ numbers! {
 
     /// Directions with less than this share of their information left beside the base parameters are not identifiable.
     IDENTIFIABLE_SHARE: f64 = 0.01, "prototype: a rudder offset keeps 0.000, the least identifiable effect 0.02";
-    /// Fewest groups of runs among which scatter is told; where there are fewer, their number is taken as this.
+    /// Fewest groups of runs for the scatter of a parameter; where there are fewer, their number is taken as this.
     SCATTER_GROUPS: usize = 5, SEEDS;
     /// Gain in log-likelihood by which a variance of the generic force law must beat the one chosen before it, none at first.
     GENERIC_GAIN: f64 = 2.0, SEEDS;
@@ -155,7 +175,7 @@ numbers! {
     DIVIDED_SESSIONS: usize = 6, COST;
     /// What a group of sessions, or one amplitude a session, must explain more (statistic less degrees) than what is simpler.
     SESSIONS_GAIN: f64 = 6.0, SEEDS;
-    /// The same for every further amplitude.
+    /// What every further amplitude must explain more.
     AMPLITUDE_GAIN: f64 = 2.0, SEEDS;
     /// Share of its statistic that an amplitude may lose where it is kept inside the bounds of its parameters.
     BEYOND_BOUNDS: f64 = 0.25, SEEDS;
@@ -181,7 +201,7 @@ numbers! {
     PARAMETER_PRICE: f64 = 2.0, "twice the price in the information criterion of Akaike";
     /// Mechanisms closer than this in log-likelihood cannot be told apart.
     INDISTINGUISHABLE: f64 = 3.0, "a likelihood ratio of 20";
-    /// The same as a share of the gain of a force or of the ship's own physics, whose law is known only so well.
+    /// That difference as a share of the gain of a force or of the ship's own physics, whose law is known only so well.
     FORM_TOLERANCE: f64 = 0.1, SEEDS;
     /// Prior standard deviations that a mechanism's own coefficients may be off before its force is another mechanism's.
     IMPLAUSIBLE: f64 = 2.0, CUSTOM;
@@ -191,7 +211,7 @@ numbers! {
     RIVALS: usize = 3, COST;
     /// A rival is refitted where its statistic is less than this below the leader's.
     RIVAL_GAP: f64 = 60.0, SEEDS;
-    /// The same as a share of the leader's statistic.
+    /// That gap as a share of the leader's statistic, where this is larger.
     RIVAL_SHARE: f64 = 0.3, SEEDS;
     /// Likeness above which mechanisms that act in all sessions are rivals.
     RIVAL_LIKENESS: f64 = 0.3, SEEDS;
@@ -224,7 +244,7 @@ numbers! {
     PUSH_IN_FOUR: f64 = 50.0, SEEDS;
     /// Statistic that it must exceed in five recordings or more.
     PUSH_IN_MANY: f64 = 40.0, SEEDS;
-    /// The same where the ship's own forces have the model's form.
+    /// Statistic in five recordings or more where the ship's own forces have the model's form.
     PUSH_IN_MANY_OF_FORM: f64 = 25.0, SEEDS;
     /// Recordings up to which a push cannot be told from the ship's own forces in a state that no other recording visits.
     PUSH_FEW_RECORDINGS: usize = 2, HULLS;

@@ -1,5 +1,5 @@
-//! Whether port and starboard of the ship herself differ: what a single screw does to the flow and a rudder off its zero, as the
-//! parameters say that are carried along anyway. It is told beside the verdict and is no finding: nothing is missing for it.
+//! Whether port and starboard of the ship differ: the effect of a single screw on the flow and of a rudder off its zero, by
+//! parameters that are free in every estimate. It is reported beside the verdict and is no finding: no physics is missing for it.
 
 use super::estimate::{Estimate, FreeParameter};
 use super::evidence::{Scatter, chi_squared_p};
@@ -15,7 +15,7 @@ use serde::Serialize;
 /// A test of everything in the base that breaks mirror symmetry.
 #[derive(Clone, Debug, Serialize)]
 pub struct Sides {
-    /// Squared distance of all of it together from a ship whose sides are alike, in units of its covariance, no belief counted.
+    /// Squared distance of all parameters together from a ship whose sides are alike, in units of their covariance, without priors.
     pub statistic: f64,
     /// Degrees of freedom.
     pub degrees: usize,
@@ -26,9 +26,9 @@ pub struct Sides {
 }
 
 /// Tests the parameters of the base, the first `base` free ones of the estimate, that differ between port and starboard; `None` when
-/// it has none. `s` is the screen at the estimate and `kinds` what was sailed in each run, which may pull the sides further apart
-/// than they are known ([`super::evidence::Evidence::scatter`]).
-pub(super) fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -> Option<Sides> {
+/// it has none. `s` is the screen at the estimate and `kinds` the kind of manoeuvre of each run, between which the parameters may
+/// scatter more than their information says ([`super::evidence::Evidence::scatter`]).
+pub fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -> Option<Sides> {
     // A sensor that reads to one side is not the ship.
     let of_the_ship = |name: &str| {
         let term = name.split('.').next().and_then(terms::find);
@@ -42,7 +42,7 @@ pub(super) fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -
     if odd.is_empty() {
         return None;
     }
-    // A belief that the sides are alike is no evidence that they are.
+    // A prior that the sides are alike is no evidence that they are.
     let terms =
         |(i, f): (usize, &FreeParameter)| if odd.contains(&i) { (0.0, 0.0) } else { f.prior_terms(&found.model) };
     let (precision, pull): (Vec<f64>, Vec<f64>) = found.free.iter().enumerate().map(terms).unzip();
@@ -65,4 +65,40 @@ pub(super) fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -
     parameters.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
     let statistic = tested.statistic();
     Some(Sides { statistic, degrees: odd.len(), p: chi_squared_p(statistic, odd.len()), parameters })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::base::base_parameters;
+    use crate::diagnose::example::{RK4, at, model, runs, with};
+    use crate::diagnose::screen::screen;
+    use crate::model::Model;
+
+    /// The test of the sides of a ship, at its own values, with the nuisance coefficients free.
+    fn of(model: &Model) -> Option<Sides> {
+        let free = base_parameters(model, true);
+        let runs = runs(model, 9);
+        let found = Estimate { free, ..at(model) };
+        let s = screen(&found, RK4, &runs, &[]);
+        let kinds: Vec<&str> = runs.iter().map(|r| r.recording.as_str()).collect();
+        sides(&s, &found, found.free.len(), &kinds)
+    }
+
+    #[test]
+    fn a_ship_whose_sides_differ_is_told_from_one_whose_sides_are_alike() {
+        let zero = ["propeller.side_force", "rudder.lift0", "rudder.lift2", "rudder.drag1"].map(|n| (n, 0.0));
+        let alike = of(&with(&zero));
+        let other = of(&with(&[("propeller.side_force", 0.1), ("rudder.lift0", 0.2)]));
+        let (alike, other) = (alike.map_or(0.0, |s| s.p), other.map_or(1.0, |s| s.p));
+        assert!(alike > 0.01 && other < 1e-6, "{alike} {other}");
+    }
+
+    #[test]
+    fn a_base_without_asymmetric_parameters_says_nothing() {
+        let model = model();
+        let found = Estimate { free: Vec::new(), ..at(&model) };
+        let s = screen(&found, RK4, &runs(&model, 4), &[]);
+        assert!(sides(&s, &found, 0, &["all"; 4]).is_none());
+    }
 }

@@ -1,15 +1,16 @@
-//! How strong an effect is, as the diagnosis would see it: the yardstick by which concealed effects are graded.
+//! The signal-to-noise ratio of an effect for the diagnosis, by which concealed effects are graded.
 //! It decides nothing and names nothing.
 
 use super::base::base_parameters;
 use super::candidate::{Candidate, append, candidates};
 use super::estimate::{Estimate, base_of, estimate, evidence, passes, restrictions};
 use super::evidence::{Base, Evidence};
-use super::filter::{Column, Filter, Pass, Run, Wanted};
+use super::filter::{Column, Filter, Pass, Wanted};
 use super::noise::NoisePrior;
 use super::noise_fit::guess;
 use super::settings::{SIGNAL, Settings};
 use crate::model::{Model, ModelError};
+use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
 use nalgebra::DVector;
@@ -46,8 +47,8 @@ impl Signal {
     }
 
     /// Signal-to-noise ratio of the change from the runs without to the same runs with the effect (same noise), along a
-    /// mechanism: the square root of the noncentrality of its test after parameters, nuisances, initial states and noise have
-    /// had their say. 0 for a mechanism that is not in the catalogue.
+    /// mechanism: the square root of the noncentrality of its score test, with parameters, nuisance coefficients, initial states
+    /// and noise profiled out. 0 for a mechanism that is not in the catalogue.
     ///
     /// For a mechanism that needs a reference, the test is the one between sessions.
     pub fn ratio(&self, with: &[Run], mechanism: &str) -> f64 {
@@ -83,7 +84,7 @@ impl Signal {
         test.statistic.max(0.0).sqrt()
     }
 
-    /// The same for one constant force (X, Y, N) in windows of some runs: index of the run, first and last sample.
+    /// The ratio for one constant force (X, Y, N) in windows of some runs: index of the run, first and last sample.
     pub fn ratio_in(&self, with: &[Run], windows: &[(usize, usize, usize)]) -> f64 {
         let free = self.null.free.len();
         let filter = Filter::new(&self.null.model, self.integration, &self.columns[..free]);
@@ -109,5 +110,33 @@ impl Signal {
     fn base(&self, difference: &Evidence) -> Base {
         let base = base_of(difference, &self.null.model, &self.null.free);
         Base { score: DVector::from_fn(self.null.free.len(), |i, _| difference.total.score[i]), ..base }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{model, runs, with};
+
+    #[test]
+    fn no_change_has_no_signal_and_twice_the_effect_has_twice_the_signal() -> Result<(), ModelError> {
+        let without = runs(&model(), 6);
+        let signal = Signal::new(&model(), &without, &Settings::default())?;
+        let of = |north: f64| signal.ratio(&runs(&with(&[("current.north", north)]), 6), "current");
+        assert!(signal.ratio(&without, "current") < 1e-9);
+        let (once, twice) = (of(0.01), of(0.02));
+        assert!(once > 0.3 && (twice / once - 2.0).abs() < 0.1, "{once} {twice}");
+        assert_eq!(signal.ratio(&without, "no such mechanism"), 0.0);
+        Ok(())
+    }
+
+    #[test]
+    fn a_force_in_a_window_is_seen_there_and_not_where_it_is_absent() -> Result<(), ModelError> {
+        let without = runs(&model(), 6);
+        let signal = Signal::new(&model(), &without, &Settings::default())?;
+        let with = runs(&with(&[("earth_force.north", 4000.0)]), 6);
+        assert!(signal.ratio_in(&with, &[(1, 20, 40)]) > 2.0);
+        assert!(signal.ratio_in(&without, &[(1, 20, 40)]) < 1e-9);
+        Ok(())
     }
 }

@@ -1,20 +1,20 @@
-//! The lists of a diagnosis beside its findings: ranking, what cannot be seen, what would have been, what moved.
+//! The lists of a diagnosis beside its findings: ranking, absorbed and detectable mechanisms, moved parameters.
 //! They are read off the tests of the base model and the estimates; nothing is tested or decided here.
 
 use super::candidate::{Candidate, Extent};
 use super::covariance::Z;
 use super::diagnosis::{Absorbed, Adequacy, Budget, Detectable, Likeness, Move, Ranked, Trace};
 use super::estimate::Estimate;
-use super::filter::Run;
 use super::screen::{Row, Screen};
 use super::settings::Settings;
 use super::wald::Wald;
 use crate::model::Model;
 use crate::physics::Probe;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Likeness above which a pair of mechanisms is told.
+/// Likeness above which a pair of mechanisms is listed.
 const ALIKE: f64 = 0.7;
 
 /// Power at which a mechanism counts as detectable.
@@ -167,4 +167,45 @@ pub fn traces(runs: &[Run], before: &Screen, after: Option<&Screen>) -> Vec<Trac
             sd: before.passes[index].force_sd.clone(),
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::candidate::candidates;
+    use crate::diagnose::example::{RK4, at, model, runs};
+    use crate::diagnose::screen::screen;
+
+    #[test]
+    fn what_is_detectable_is_what_is_not_absorbed_and_more_runs_detect_less() {
+        let model = model();
+        let list = candidates(&model, &[]);
+        let of = |count: usize| screen(&at(&model), RK4, &runs(&model, count), &list);
+        let (few, many) = (of(4), of(12));
+        let settings = Settings::default();
+        let size = |s: &Screen| {
+            let all = detectable(s, &list, &settings, &model);
+            all.iter().find(|d| d.mechanism == "current").map(|d| d.size)
+        };
+        assert!(size(&many) < size(&few) && size(&many) > Some(0.0), "{:?} {:?}", size(&few), size(&many));
+        let hidden = absorbed(&many, &list);
+        let seen = detectable(&many, &list, &settings, &model);
+        assert_eq!(hidden.len() + seen.len(), list.len());
+        assert!(seen.iter().all(|d| hidden.iter().all(|a| a.mechanism != d.mechanism)));
+    }
+
+    #[test]
+    fn an_unmoved_estimate_moves_nothing_and_a_prior_is_used_by_its_standard_deviations() {
+        let model = model();
+        let mut found = at(&model);
+        let runs = runs(&model, 4);
+        let all = moves(&found, &found, RK4, &runs, &model);
+        assert!(all.len() == 11 && all.iter().all(|m| m.moved == 0.0 && m.error > 0.0));
+        found.free = crate::diagnose::base::base_parameters(&model, true);
+        let f = found.free.last().unwrap().clone();
+        let (mean, sd) = f.prior.map(|p| (p.mean, p.sd)).unwrap();
+        f.set(&mut found.model, mean + 0.5 * sd);
+        let used: Vec<f64> = budget(&found).iter().map(|b| b.used).collect();
+        assert!((used[used.len() - 1] - 0.5).abs() < 1e-12 && used[..used.len() - 1].iter().all(|u| *u == 0.0));
+    }
 }

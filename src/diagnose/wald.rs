@@ -3,7 +3,8 @@
 
 use super::algebra::pick;
 use super::estimate::{Estimate, FreeParameter, base_of, evidence, passes, restrictions};
-use super::filter::{Column, Run};
+use super::filter::Column;
+use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
 

@@ -1,7 +1,6 @@
 //! The verdict in one sentence, and the trial to sail next.
 //! It says what was decided and decides nothing.
 
-use super::admit::Admission;
 use super::candidate::Candidate;
 use super::decide::Verdict;
 use super::diagnosis::NextTrial;
@@ -9,9 +8,9 @@ use super::finding::{Amplitude, Finding, GENERIC, PUSH};
 use super::generic::SurrogateTerm;
 use super::place::Place;
 use super::push::Window;
-use crate::report::sig;
+use crate::numerals::sig;
 
-/// What is missing and not in the catalogue, as far as it can be told.
+/// What is missing and not in the catalogue, as far as the tests show it.
 pub enum Missing<'a> {
     /// A law of state and inputs, with a surrogate for it.
     Law(Vec<SurrogateTerm>),
@@ -51,7 +50,7 @@ impl Missing<'_> {
         }
     }
 
-    /// The trial that tells most of it.
+    /// The trial that shows it best.
     pub fn next_trial(&self) -> NextTrial {
         let (trial, why) = match self {
             Self::Law(_) => (
@@ -98,49 +97,110 @@ pub fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) ->
 }
 
 /// The verdict in one sentence.
-pub fn headline(verdict: Verdict, findings: &[Finding], admission: &Admission, unlisted: Option<&Missing>) -> String {
-    let values = |f: &Finding| {
-        let one = |p: &Amplitude| format!("{} = {} {}", p.name, sig(p.value, 3), p.unit);
-        f.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
-    };
-    let list = |f: &Finding| {
-        if f.by_session {
-            return format!("{} (another in each of {} sessions)", f.title, f.sessions.len());
-        }
-        format!("{} ({})", f.title, values(f))
-    };
+pub fn headline(verdict: Verdict, findings: &[Finding], missing: Option<&Missing>) -> String {
+    let first = findings.first();
     match verdict {
         Verdict::Named => {
-            let all: Vec<String> = findings.iter().map(list).collect();
+            let all: Vec<String> = findings.iter().map(titled).collect();
             format!("Missing physics: {}.", all.join("; and "))
         }
-        Verdict::OneOf => findings.first().map_or(String::new(), |f| {
-            if f.mechanism == PUSH {
-                let one = |w: &Window| format!("{} from {:.0} to {:.0} s", w.run, w.start, w.end);
-                let windows: Vec<String> = f.windows.iter().map(one).collect();
-                return format!(
-                    "Something acts for a time: {} in {}; a push, or the ship's own forces in a state that no other recording visits.",
-                    values(f),
-                    windows.join(" and ")
-                );
-            }
-            format!("Something is missing, and these data cannot tell which of: {}.", f.confidence_set.join(", "))
-        }),
-        Verdict::Sensor => findings.first().map_or_else(
-            || {
-                let first = admission.issues.iter().find(|i| i.blocking);
-                format!("Your sensor, not your ship: {}.", first.map_or("", |i| i.text.as_str()))
-            },
-            |f| format!("Your sensor, not your ship: {}.", list(f)),
-        ),
+        Verdict::OneOf => first.map_or(String::new(), one_of),
+        Verdict::Sensor => first.map_or(String::new(), |f| format!("Your sensor, not your ship: {}.", titled(f))),
+        Verdict::NotInCatalogue => missing.map_or(String::new(), Missing::headline),
         Verdict::Numerics => {
             "The integration step, not the ship: these recordings are what explicit Euler makes of the \
                               model at one step a sample."
                 .into()
         }
-        Verdict::NotInCatalogue => unlisted.map_or(String::new(), Missing::headline),
         Verdict::Random => "Force is there that the model lacks, but nothing about it repeats: gusts.".into(),
         Verdict::Insufficient => "These recordings cannot answer: too few runs.".into(),
         Verdict::NothingMissing => "Nothing is missing that these data could show.".into(),
+    }
+}
+
+/// A finding with its values.
+fn titled(f: &Finding) -> String {
+    if f.by_session {
+        return format!("{} (another in each of {} sessions)", f.title, f.sessions.len());
+    }
+    format!("{} ({})", f.title, values(f))
+}
+
+fn values(f: &Finding) -> String {
+    let one = |p: &Amplitude| format!("{} = {} {}", p.name, sig(p.value, 3), p.unit);
+    f.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// A finding that has rivals.
+fn one_of(f: &Finding) -> String {
+    if f.mechanism != PUSH {
+        return format!("Something is missing, and these data cannot tell which of: {}.", f.confidence_set.join(", "));
+    }
+    let one = |w: &Window| format!("{} from {:.0} to {:.0} s", w.run, w.start, w.end);
+    let windows: Vec<String> = f.windows.iter().map(one).collect();
+    format!(
+        "Something acts for a time: {} in {}; a push, or the ship's own forces in a state that no other recording visits.",
+        values(f),
+        windows.join(" and ")
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example;
+    use crate::diagnose::finding::Equations;
+    use crate::physics::Kind;
+
+    fn finding(mechanism: &str, title: &str, set: &[&str]) -> Finding {
+        Finding {
+            mechanism: mechanism.into(),
+            title: title.into(),
+            kind: Kind::Environment,
+            confidence_set: set.iter().map(|s| (*s).to_owned()).collect(),
+            why: String::new(),
+            sessions: Vec::new(),
+            by_session: false,
+            statistic: 0.0,
+            p: 0.0,
+            equations: Equations::default(),
+            windows: Vec::new(),
+            region: None,
+            signature: String::new(),
+            parameters: vec![Amplitude::new("current.north".into(), 0.1234, "m/s", 0.01)],
+            held_out: None,
+        }
+    }
+
+    #[test]
+    fn every_verdict_has_a_sentence_with_the_values_it_names() {
+        let current = || finding("current", "steady current", &["current"]);
+        let named = headline(Verdict::Named, &[current()], None);
+        assert!(named.contains("steady current") && named.contains("0.123 m/s"), "{named}");
+        let each = Finding { by_session: true, sessions: vec!["a".into(), "b".into()], ..current() };
+        assert!(headline(Verdict::Named, &[each], None).contains("2 sessions"));
+        let set = finding("current", "steady current", &["current", "mean_wind"]);
+        assert!(headline(Verdict::OneOf, &[set], None).contains("current, mean_wind"));
+        assert!(headline(Verdict::Sensor, &[current()], None).contains("sensor"));
+        let law = Missing::Law(vec![SurrogateTerm { name: "asymmetric.N_0".into(), value: 1.0, error: 0.1 }]);
+        assert!(headline(Verdict::NotInCatalogue, &[], Some(&law)).contains("asymmetric.N_0"));
+        for verdict in [Verdict::Numerics, Verdict::Random, Verdict::Insufficient, Verdict::NothingMissing] {
+            assert!(headline(verdict, &[], None).ends_with('.'), "{verdict:?}");
+        }
+    }
+
+    #[test]
+    fn the_next_trial_tells_rivals_apart_and_shows_a_name_best() {
+        let model = example::model();
+        let list = ["current", "mean_wind"].map(|n| example::candidate(&model, n));
+        let (current, wind) = (list[0].mechanism, list[1].mechanism);
+        let rivals = finding("current", "steady current", &["current", "mean_wind"]);
+        let trial = |v, f: &[Finding]| next_trial(v, f, &list).map(|t| t.trial);
+        assert_eq!(trial(Verdict::OneOf, &[rivals]).as_deref(), Some(wind.trial));
+        let named = finding("current", "steady current", &["current"]);
+        assert_eq!(trial(Verdict::Named, &[named]).as_deref(), Some(current.trial));
+        let push = finding(PUSH, "a push", &[PUSH, GENERIC]);
+        assert!(trial(Verdict::OneOf, &[push]).is_some() && trial(Verdict::Insufficient, &[]).is_some());
+        assert!(trial(Verdict::NothingMissing, &[]).is_none());
     }
 }

@@ -21,6 +21,7 @@
 use super::error::FitError;
 use crate::model::Model;
 use crate::physics::{Form, Number};
+use crate::recording::Run;
 use crate::terms::flow::FlowTerm;
 use crate::terms::resistance::Resistance;
 use crate::terms::rudder::Rudder;
@@ -185,8 +186,8 @@ impl Row {
 }
 
 /// Smallest and largest recorded surge speed \[m/s\]; `[0, 0]` where none was recorded.
-pub fn speed_range(runs: &[super::cost::FitRun]) -> [f64; 2] {
-    let recorded = runs.iter().filter(|r| r.measured_channels[3]).flat_map(|r| r.measured.iter().map(|m| m[3]));
+pub fn speed_range(runs: &[Run]) -> [f64; 2] {
+    let recorded = runs.iter().flat_map(|r| r.measured.iter().filter_map(|m| m[3]));
     let start = runs.iter().map(|r| r.initial[3]);
     recorded.chain(start).filter(|u| u.is_finite()).fold([0.0, 0.0], |[lo, hi], u| [lo.min(u), hi.max(u)])
 }

@@ -14,7 +14,7 @@ use super::error::FitError;
 use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model};
 use crate::physics::{CHUNK, Curvature, Gradient, Group, Lanes, NumDual, Number};
-use crate::recording::Window;
+use crate::recording::{Measured, Run};
 use crate::sensitivity::{Column, Columns, Plain, Sensitivity};
 use crate::ship::Ship;
 use crate::simulate::{self, Integration, Scenario, absurd_speed};
@@ -28,55 +28,15 @@ use trimtab_ad::{Dual, Scalar};
 /// Number of derivatives in each of the two blocks of [`Curvature`].
 const BLOCK: usize = 6;
 
-/// One run as the cost sees it: what drove the ship, where it started, and where it was measured.
-#[derive(Clone, Debug)]
-pub struct FitRun {
-    /// Recording it comes from, for messages. Runs of the same name are windows of one recording: their residuals count as
-    /// one cluster where standard errors allow for what runs share.
-    pub name: String,
-    /// Session, whose additions to the parameters apply (see [`Model::values_in`]).
-    pub session: String,
-    /// Time of the first sample \[s\] on the recording's clock, for messages.
-    pub start_time: f64,
-    /// Sample period \[s\].
-    pub dt: f64,
-    /// Inputs at each sample.
-    pub inputs: Vec<Inputs<f64>>,
-    /// Measured state `[x, y, psi, u, v, r]` at each sample; an entry that is not finite is left out of the cost.
-    pub measured: Vec<[f64; STATES]>,
-    /// Channels that were measured at all.
-    pub measured_channels: [bool; STATES],
-    /// State at the first sample.
-    pub initial: [f64; STATES],
-    /// Diagonal of W, see [`weights`].
-    pub weights: [f64; STATES],
-}
-
-/// The diagonal of W for a run of a given path length \[m\] and mean speed \[m/s\]: `1/L, 1/L, 1/pi, 1/U, 1/U, 1/r_max`.
+/// The diagonal of W for a run: `1/L, 1/L, 1/pi, 1/U, 1/U, 1/r_max`, with its path length L \[m\], its mean speed U \[m/s\] and
+/// r_max \[rad/s\].
 ///
 /// A run that hardly moves would weigh without limit: L counts as at least a tenth of the ship's length and U as at least the
 /// ship's small speed, 0.002 sqrt(g Lpp).
-pub fn weights(ship: &Ship, path_length: f64, mean_speed: f64, max_yaw_rate: f64) -> [f64; STATES] {
-    let length = 1.0 / path_length.max(0.1 * ship.hull.lpp);
-    let speed = 1.0 / mean_speed.max(ship.small_speed());
+pub fn weights(ship: &Ship, run: &Run, max_yaw_rate: f64) -> [f64; STATES] {
+    let length = 1.0 / run.path_length().max(0.1 * ship.hull.lpp);
+    let speed = 1.0 / run.mean_speed().max(ship.small_speed());
     [length, length, 1.0 / PI, speed, speed, 1.0 / max_yaw_rate]
-}
-
-impl FitRun {
-    /// The run of a window, weighted for a ship and a reference yaw rate r_max \[rad/s\].
-    pub fn of(window: &Window, ship: &Ship, max_yaw_rate: f64) -> Self {
-        Self {
-            name: window.run.clone(),
-            session: window.session.clone(),
-            start_time: window.start_time,
-            dt: window.dt,
-            inputs: window.inputs.clone(),
-            measured: window.measured.clone(),
-            measured_channels: window.measured_channels,
-            initial: window.initial,
-            weights: weights(ship, window.path_length(), window.mean_speed(), max_yaw_rate),
-        }
-    }
 }
 
 /// Where the derivatives of the trajectories come from.
@@ -110,7 +70,9 @@ pub struct Quadratic {
 /// The cost of a model against runs, as a function of the model's free parameters.
 pub struct Cost<'a> {
     model: &'a Model,
-    runs: &'a [FitRun],
+    runs: &'a [Run],
+    /// The diagonal of W of each run.
+    weights: Vec<[f64; STATES]>,
     free: Vec<usize>,
     derivatives: Derivatives,
     difference_step: f64,
@@ -126,6 +88,8 @@ pub struct Cost<'a> {
 /// Settings of a [`Cost`].
 #[derive(Clone, Copy, Debug)]
 pub struct CostOptions {
+    /// Reference yaw rate r_max \[rad/s\] of the weights.
+    pub max_yaw_rate: f64,
     /// Where the derivatives come from.
     pub derivatives: Derivatives,
     /// Step of finite differences, in units of each parameter's scale.
@@ -233,7 +197,7 @@ fn dot<P: Scalar>(a: &[P; STATES], b: &[P; STATES], sum: P) -> P {
 }
 
 impl<P: Plain> Block<P> {
-    fn of(model: &Model, runs: &[FitRun], lanes: &[usize]) -> Self {
+    fn of(model: &Model, runs: &[Run], weights: &[[f64; STATES]], lanes: &[usize]) -> Self {
         let in_lane = |lane: usize| &runs[lanes[lane.min(lanes.len() - 1)]];
         let steps = lanes.iter().map(|r| runs[*r].inputs.len()).max().unwrap_or(0);
         let sample = |lane: usize, k: usize| {
@@ -256,16 +220,15 @@ impl<P: Plain> Block<P> {
             .collect();
         let weight = |lane: usize, k: usize, c: usize| {
             let Some(&run) = lanes.get(lane) else { return 0.0 };
-            let run = &runs[run];
-            let compared = run.measured_channels[c] && run.measured.get(k).is_some_and(|m| m[c].is_finite());
-            if compared { run.weights[c].max(0.0).sqrt() } else { 0.0 }
+            let compared = runs[run].measured.get(k).is_some_and(|m| m[c].is_some());
+            if compared { weights[run][c].max(0.0).sqrt() } else { 0.0 }
         };
-        let measured = |lane: usize, k: usize, c: usize| {
-            if weight(lane, k, c) > 0.0 { in_lane(lane).measured[k][c] } else { 0.0 }
-        };
+        let measured =
+            |lane: usize, k: usize, c: usize| in_lane(lane).measured.get(k).and_then(|m| m[c]).unwrap_or(0.0);
         let table = |f: &dyn Fn(usize, usize, usize) -> f64| -> Vec<[P; STATES]> {
             (0..steps).map(|k| std::array::from_fn(|c| P::gather(|lane| f(lane, k, c)))).collect()
         };
+        let channels = |lane: usize| in_lane(lane).channels();
         let whole =
             (0..steps).map(|k| (0..P::WIDTH).all(|lane| (0..STATES).all(|c| weight(lane, k, c) > 0.0))).collect();
         let mut by_lane: Vec<Vec<f64>> = Vec::new();
@@ -281,9 +244,7 @@ impl<P: Plain> Block<P> {
             dt: in_lane(0).dt,
             inputs,
             initial: std::array::from_fn(|c| P::gather(|lane| in_lane(lane).initial[c])),
-            channels: std::array::from_fn(|c| {
-                P::gather(|lane| f64::from(u8::from(in_lane(lane).measured_channels[c])))
-            }),
+            channels: std::array::from_fn(|c| P::gather(|lane| f64::from(u8::from(channels(lane)[c])))),
             target: table(&measured),
             root: table(&weight),
             whole,
@@ -293,14 +254,14 @@ impl<P: Plain> Block<P> {
     }
 
     /// Runs in blocks of equal sample period and similar length, in an order that depends on the runs alone.
-    fn group(model: &Model, runs: &[FitRun]) -> Vec<Self> {
+    fn group(model: &Model, runs: &[Run], weights: &[[f64; STATES]]) -> Vec<Self> {
         let mut order: Vec<usize> = (0..runs.len()).collect();
         order.sort_by(|a, b| {
             let (a, b) = (&runs[*a], &runs[*b]);
             a.dt.total_cmp(&b.dt).then(b.inputs.len().cmp(&a.inputs.len()))
         });
         let same_dt = order.chunk_by(|a, b| runs[*a].dt == runs[*b].dt);
-        same_dt.flat_map(|runs| runs.chunks(P::WIDTH)).map(|lanes| Self::of(model, runs, lanes)).collect()
+        same_dt.flat_map(|runs| runs.chunks(P::WIDTH)).map(|lanes| Self::of(model, runs, weights, lanes)).collect()
     }
 
     /// The weighted difference in one channel, and its factor on the derivatives of the simulated value.
@@ -338,19 +299,30 @@ impl<'a> Cost<'a> {
     ///
     /// # Errors
     /// No runs, a run without samples or of unequal lengths, or a sample period that is not positive.
-    pub fn new(model: &'a Model, runs: &'a [FitRun], options: CostOptions) -> Result<Self, FitError> {
+    pub fn new(model: &'a Model, runs: &'a [Run], options: CostOptions) -> Result<Self, FitError> {
+        let weights = runs.iter().map(|r| weights(&model.ship, r, options.max_yaw_rate)).collect();
+        Self::weighted(model, runs, weights, options)
+    }
+
+    /// As [`Cost::new`], with the diagonal of W of each run given, as for pieces that keep the weights of their whole run.
+    pub(super) fn weighted(
+        model: &'a Model,
+        runs: &'a [Run],
+        weights: Vec<[f64; STATES]>,
+        options: CostOptions,
+    ) -> Result<Self, FitError> {
         if runs.is_empty() {
             return Err(FitError::NoRuns);
         }
-        for run in runs {
-            let bad = |what: &str| Err(FitError::BadRun { run: run.name.clone(), what: what.into() });
+        for (run, weights) in runs.iter().zip(&weights) {
+            let bad = |what: &str| Err(FitError::BadRun { run: run.recording.clone(), what: what.into() });
             if run.inputs.len() != run.measured.len() || run.inputs.len() < 2 {
                 return bad("inputs and measured states must have the same number of samples, at least 2");
             }
             if !(run.dt.is_finite() && run.dt > 0.0) {
                 return bad("the sample period must be positive");
             }
-            if !run.initial.iter().chain(&run.weights).all(|v| v.is_finite()) {
+            if !run.initial.iter().chain(weights).all(|v| v.is_finite()) {
                 return bad("the initial state and the weights must be finite");
             }
         }
@@ -359,6 +331,7 @@ impl<'a> Cost<'a> {
         let mut cost = Self {
             model,
             runs,
+            weights,
             columns: Columns::new(model, &columns),
             free,
             derivatives: options.derivatives,
@@ -370,8 +343,10 @@ impl<'a> Cost<'a> {
             single: Vec::new(),
         };
         match options.derivatives {
-            Derivatives::Lanes | Derivatives::FiniteDifferences => cost.lanes = Block::group(model, runs),
-            Derivatives::Dual | Derivatives::NumDual => cost.single = Block::group(model, runs),
+            Derivatives::Lanes | Derivatives::FiniteDifferences => {
+                cost.lanes = Block::group(model, runs, &cost.weights)
+            }
+            Derivatives::Dual | Derivatives::NumDual => cost.single = Block::group(model, runs, &cost.weights),
         }
         Ok(cost)
     }
@@ -381,13 +356,18 @@ impl<'a> Cost<'a> {
         &self.free
     }
 
+    /// The diagonal of W of each run.
+    pub fn weights(&self) -> &[[f64; STATES]] {
+        &self.weights
+    }
+
     /// Number of residuals that count: measured values with a weight above 0.
     pub fn residuals(&self) -> usize {
-        let counted = |run: &FitRun| {
-            let channel = |c: usize| run.measured_channels[c] && run.weights[c] > 0.0;
-            run.measured.iter().map(|m| (0..STATES).filter(|c| channel(*c) && m[*c].is_finite()).count()).sum::<usize>()
+        let counted = |(run, weights): (&Run, &[f64; STATES])| {
+            let of = |m: &Measured| (0..STATES).filter(|c| weights[*c] > 0.0 && m[*c].is_some()).count();
+            run.measured.iter().map(of).sum::<usize>()
         };
-        self.runs.iter().map(counted).sum()
+        self.runs.iter().zip(&self.weights).map(counted).sum()
     }
 
     /// The cost at the free parameters `p`, or `None` where a simulation diverges.
@@ -562,7 +542,7 @@ impl<'a> Cost<'a> {
         let parts: Vec<DMatrix<f64>> = (0..self.runs.len())
             .into_par_iter()
             .map(|run| {
-                let block = Block::<f64>::of(self.model, self.runs, &[run]);
+                let block = Block::<f64>::of(self.model, self.runs, &self.weights, &[run]);
                 let mut sum = DMatrix::zeros(n, n);
                 for row in (0..n).step_by(BLOCK) {
                     for column in (0..=row).step_by(BLOCK) {
@@ -664,12 +644,11 @@ impl<'a> Cost<'a> {
 
     /// The first run whose simulation diverges at `p`, and when \[s\] on its recording's clock.
     pub fn divergence(&self, p: &[f64]) -> Option<(String, f64)> {
-        self.runs.iter().find_map(|run| {
-            let theta = self.theta(&Block::<f64>::of(self.model, std::slice::from_ref(run), &[0]), p);
+        self.runs.iter().enumerate().find_map(|(i, run)| {
+            let theta = self.theta(&Block::<f64>::of(self.model, self.runs, &self.weights, &[i]), p);
             let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
-            let trajectory =
-                simulate::reported(self.model, &theta, self.integration, &scenario, &run.measured_channels);
-            trajectory.diverged_at.map(|k| (run.name.clone(), run.start_time + k as f64 * run.dt))
+            let trajectory = simulate::reported(self.model, &theta, self.integration, &scenario, &run.channels());
+            trajectory.diverged_at.map(|k| (run.recording.clone(), run.time(k)))
         })
     }
 }

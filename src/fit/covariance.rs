@@ -18,6 +18,7 @@ use super::cost::Quadratic;
 use super::solve::End;
 use super::subspace::inverse;
 use super::task::Task;
+use crate::statistics::clustered_variance;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
@@ -84,7 +85,7 @@ impl Covariances {
         let prior = task.scaled(&prior);
         let unit = 2.0 * task.variance(cost) * task.settings.correlated_samples / task.runs.len() as f64;
         let bread = inverse(&(&data + &prior), &directions);
-        let meat = meat(&clusters, n);
+        let meat = clustered_variance(&clusters, n);
         let ratio = (&bread.matrix * &meat).trace() / (&bread.matrix * &data * unit).trace();
         let likeness = likeness.unwrap_or(1.0).max(1.0) / task.settings.correlated_samples.max(1.0);
         let likeness = likeness.max(1.0);
@@ -162,22 +163,12 @@ fn scores_by_recording(task: &Task, quadratic: Option<&Quadratic>) -> Vec<DVecto
     let mut clusters: Vec<(&str, DVector<f64>)> = Vec::new();
     for (run, score) in task.runs.iter().zip(quadratic.map_or(&[][..], |q| &q.by_run)) {
         let score = task.scaled_vector(score);
-        match clusters.iter_mut().find(|(name, _)| *name == run.name) {
+        match clusters.iter_mut().find(|(name, _)| *name == run.recording) {
             Some((_, sum)) => *sum += score,
-            None => clusters.push((&run.name, score)),
+            None => clusters.push((&run.recording, score)),
         }
     }
     clusters.into_iter().map(|(_, score)| score).collect()
-}
-
-/// The middle of the sandwich: `c/(c-1) sum_c g_c g_c^T` over c clusters.
-pub(super) fn meat(clusters: &[DVector<f64>], n: usize) -> DMatrix<f64> {
-    let mut sum = DMatrix::zeros(n, n);
-    for g in clusters {
-        sum += g * g.transpose();
-    }
-    let c = clusters.len() as f64;
-    if c > 1.0 { sum * (c / (c - 1.0)) } else { sum }
 }
 
 /// A direction in words: its largest entries by name, `0.71 p5 - 0.70 p7`.
@@ -212,11 +203,5 @@ mod tests {
     #[test]
     fn a_direction_is_named_by_its_largest_entries() {
         assert_eq!(in_words(&vector(&[-0.45, 0.89, 0.0]), &["x", "y", "w"]), "0.89 y - 0.45 x");
-    }
-
-    #[test]
-    fn clusters_that_repeat_a_score_add_its_square_not_its_size() {
-        let m = meat(&[vector(&[1.0, 0.0]), vector(&[-1.0, 0.0])], 2);
-        assert_eq!(m, DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0]));
     }
 }

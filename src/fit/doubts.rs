@@ -18,6 +18,7 @@
 use super::covariance::Covariances;
 use super::task::Task;
 use crate::model::Model;
+use crate::recording::{Measured, Run};
 use crate::simulate::{Scenario, reported};
 use crate::state::STATES;
 use rayon::prelude::*;
@@ -103,7 +104,8 @@ const STEERED: std::ops::Range<usize> = 4..6;
 impl ResidualStatistics {
     /// The statistics of a model on the runs of a task.
     pub(super) fn of(task: &Task, model: &Model) -> Self {
-        let residuals: Vec<Residuals> = task.runs.par_iter().map(|run| residuals(task, model, run)).collect();
+        let residuals: Vec<Residuals> =
+            task.runs.par_iter().zip(task.cost.weights()).map(|(run, w)| residuals(task, model, run, w)).collect();
         let growth = growth(&residuals);
         Self {
             model_error: model_error(&residuals),
@@ -179,27 +181,25 @@ pub(super) fn headline(converged: bool, words: &str, doubts: &[Doubt]) -> String
     }
 }
 
-fn residuals<'a>(task: &Task, model: &Model, run: &'a super::cost::FitRun) -> Residuals<'a> {
+fn residuals<'a>(task: &Task, model: &Model, run: &'a Run, weights: &[f64; STATES]) -> Residuals<'a> {
     let theta = model.values_in(&run.session);
     let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
-    let predicted = reported(model, &theta, task.settings.integration, &scenario, &run.measured_channels);
-    let of_sample = |(measured, simulated): (&[f64; STATES], &[f64; STATES])| {
+    let predicted = reported(model, &theta, task.settings.integration, &scenario, &run.channels());
+    let of_sample = |(measured, simulated): (&Measured, &[f64; STATES])| {
         std::array::from_fn(|c| {
-            if !run.measured_channels[c] || run.weights[c] <= 0.0 {
-                return f64::NAN;
-            }
-            let difference = measured[c] - simulated[c];
-            run.weights[c].sqrt() * if c == 2 { wrap_angle(difference) } else { difference }
+            let Some(value) = measured[c].filter(|_| weights[c] > 0.0) else { return f64::NAN };
+            let difference = value - simulated[c];
+            weights[c].sqrt() * if c == 2 { wrap_angle(difference) } else { difference }
         })
     };
     let variance = |c: usize| {
-        let values = || run.measured.iter().map(|m| m[c]).filter(|v| run.measured_channels[c] && v.is_finite());
+        let values = || run.measured.iter().filter_map(|m| m[c]);
         let count = values().count() as f64;
         let mean = values().sum::<f64>() / count;
-        run.weights[c] * values().map(|v| (v - mean).powi(2)).sum::<f64>() / count
+        weights[c] * values().map(|v| (v - mean).powi(2)).sum::<f64>() / count
     };
     Residuals {
-        recording: &run.name,
+        recording: &run.recording,
         values: run.measured.iter().zip(&predicted.states).map(of_sample).collect(),
         variance: std::array::from_fn(variance),
     }
@@ -351,7 +351,8 @@ mod tests {
         for power in [0.5, 1.0, 2.0] {
             let grown = made(0.0, |w, k| (1.0 + 0.1 * w as f64) * (k as f64 / 120.0).powf(power));
             let (found, error) = growth(&view(&grown)).unwrap();
-            assert!((found - power).abs() < 0.05, "t^{power}: {found} +- {error:?}");
+            // The rms of a quarter is not at its middle.
+            assert!((found - power).abs() < 0.1, "t^{power}: {found} +- {error:?}");
         }
     }
 

@@ -14,7 +14,6 @@
 //! | `covariance` | covariances, and what the data do not determine |
 //! | `doubts` | what residuals say against a fit: model error, windows too long, residuals alike |
 //! | `summary` | the outcome: estimates, intervals, active constraints; [`fit`] joins all |
-//! | [`report`] | a fit in words and tables |
 //! | [`multistart`] | the same fit from many starts |
 
 pub mod constraints;
@@ -24,7 +23,6 @@ mod doubts;
 mod error;
 pub mod multistart;
 mod problem;
-pub mod report;
 mod settings;
 mod solve;
 mod stages;
@@ -34,7 +32,7 @@ mod task;
 
 pub use crate::ipopt::Counts;
 pub use constraints::{ConstraintSettings, Limits, Rule};
-pub use cost::{Cost, CostOptions, Derivatives, FitRun, Quadratic};
+pub use cost::{Cost, CostOptions, Derivatives, Quadratic};
 pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;

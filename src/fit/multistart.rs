@@ -1,11 +1,11 @@
 //! The same fit from many starts, to see whether there is more than one place to end.
 //! It keeps every outcome, good or bad, and picks none.
 
-use super::cost::FitRun;
 use super::error::FitError;
 use super::settings::FitSettings;
 use super::summary::{Fit, fit};
 use crate::model::Model;
+use crate::recording::Run;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -37,20 +37,10 @@ pub struct StartOutcome {
     pub outcome: Result<Fit, FitError>,
 }
 
-impl StartOutcome {
-    /// One line: where it ended, or why it did not.
-    pub fn brief(&self) -> String {
-        match &self.outcome {
-            Ok(fit) => fit.brief(),
-            Err(error) => error.to_string(),
-        }
-    }
-}
-
 /// Fits from each start in turn, in an order and from values that depend on the seed alone.
 pub fn multi_start(
     model: &Model,
-    runs: &[FitRun],
+    runs: &[Run],
     settings: &FitSettings,
     starts: &MultiStart,
     mut progress: impl FnMut(usize),

@@ -2,11 +2,12 @@
 //! It decides nothing about what is fitted and reports nothing: it translates, and remembers what evaluations share.
 
 use super::constraints::Row;
-use super::cost::{Cost, FitRun, Quadratic};
+use super::cost::{Cost, Quadratic};
 use super::settings::Hessian;
 use super::task::Task;
 use crate::ipopt::{IterationReport, Nlp};
 use crate::model::Model;
+use crate::recording::Run;
 use nalgebra::{DMatrix, DVector};
 
 /// Where a running fit stands.
@@ -87,7 +88,7 @@ impl<'a, 'f> Problem<'a, 'f> {
     pub fn new(
         task: &'a Task<'a>,
         cost: &'a Cost<'a>,
-        runs: &[FitRun],
+        runs: &[Run],
         priors: &'a Priors,
         start: &'a [f64],
         progress: &'f mut dyn FnMut(&Progress) -> bool,
@@ -156,7 +157,12 @@ impl Nlp for Problem<'_, '_> {
         if !self.task.has_mass(&p) {
             return None;
         }
-        let total = self.cost.value(&p)? + self.priors.value(&p);
+        // Nearly every point that is tried is accepted: its derivatives are computed with its value.
+        let value = match self.task.settings.hessian {
+            Hessian::GaussNewton => self.quadratic(z)?.value,
+            Hessian::Exact | Hessian::LimitedMemory => self.cost.value(&p)?,
+        };
+        let total = value + self.priors.value(&p);
         self.keep_if_best(p, total);
         Some(self.factor * total)
     }

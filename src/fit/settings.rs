@@ -92,6 +92,7 @@ impl FitSettings {
 
     pub(super) fn cost_options(&self) -> CostOptions {
         CostOptions {
+            max_yaw_rate: self.max_yaw_rate,
             derivatives: self.derivatives,
             difference_step: self.difference_step,
             integration: self.integration,

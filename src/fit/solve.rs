@@ -13,7 +13,7 @@
 //! - Where hull coefficients are free, shorter pieces of the runs are fitted first (see `stages`).
 
 use super::constraints::Row;
-use super::cost::{Cost, FitRun};
+use super::cost::Cost;
 use super::error::FitError;
 use super::problem::{Point, Priors, Problem, Progress};
 use super::settings::Hessian;
@@ -21,6 +21,7 @@ use super::stages;
 use super::subspace::inverse;
 use super::task::{ActiveSet, Task};
 use crate::ipopt::{self, Counts, HessianMode, IpoptError, OptionValue, Options, Solution, Status};
+use crate::recording::Run;
 
 /// How often the solver starts again from a better point that it left.
 const RESTARTS: usize = 3;
@@ -77,7 +78,7 @@ struct Descent {
 /// What is solved: a cost over runs, and where from.
 struct Stage<'a> {
     cost: &'a Cost<'a>,
-    runs: &'a [FitRun],
+    runs: &'a [Run],
     tolerance: f64,
     max_iterations: usize,
     /// Whether the start is near the optimum: the barrier then starts lower still, and the bounds do not push the start away.
@@ -131,8 +132,8 @@ impl Task<'_> {
         let mut p = self.start.clone();
         let mut priors = Priors::of(self.model);
         for parts in stages::falling(parts) {
-            let pieces = stages::cut(self.runs, parts);
-            let cost = Cost::new(self.model, &pieces, self.cost_options())?;
+            let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts);
+            let cost = Cost::weighted(self.model, &pieces, weights, self.cost_options())?;
             let Some(value) = cost.value(&p) else { continue };
             priors.weight = self.weight(&cost, &pieces, value);
             let stage = Stage {
@@ -159,7 +160,7 @@ impl Task<'_> {
     }
 
     /// Weight of the priors at a cost: see [`Priors`].
-    fn weight(&self, cost: &Cost, runs: &[FitRun], value: f64) -> f64 {
+    fn weight(&self, cost: &Cost, runs: &[Run], value: f64) -> f64 {
         self.variance_of(cost, runs.len(), value) * self.settings.correlated_samples / runs.len() as f64
     }
 

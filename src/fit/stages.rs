@@ -7,8 +7,10 @@
 //! linearly are fitted first, then pieces twice as long, then the whole runs. Source of the idea: multiple shooting, Bock, in
 //! Modelling of Chemical Reaction Systems (1981) 102-125; here the states at the cuts are the measured ones.
 
-use super::cost::{Cost, FitRun};
+use super::cost::Cost;
 use super::task::Task;
+use crate::recording::{Run, or_nan};
+use crate::state::STATES;
 
 /// Steps that a piece has at least.
 const MIN_STEPS: usize = 10;
@@ -28,8 +30,9 @@ pub(super) fn parts(task: &Task) -> usize {
     }
     let longest = task.runs.iter().map(|r| r.measured.len().saturating_sub(1)).max().unwrap_or(0);
     let cost = |parts: usize| {
-        let pieces = cut(task.runs, parts);
-        Cost::new(task.model, &pieces, task.cost_options()).ok()?.value(&task.start).map(|c| c * pieces.len() as f64)
+        let (pieces, weights) = cut(task.runs, task.cost.weights(), parts);
+        let cost = Cost::weighted(task.model, &pieces, weights, task.cost_options()).ok()?;
+        cost.value(&task.start).map(|c| c * pieces.len() as f64)
     };
     let mut parts = 1;
     let mut here = cost(parts);
@@ -58,25 +61,25 @@ pub(super) fn falling(parts: usize) -> impl Iterator<Item = usize> {
 /// Every run cut into `parts` pieces of equal length, each started from the state measured there.
 ///
 /// A run whose state is not measured at a cut stays in one piece there. Pieces keep the weights and the name of their run.
-pub(super) fn cut(runs: &[FitRun], parts: usize) -> Vec<FitRun> {
-    runs.iter().flat_map(|run| cut_run(run, parts)).collect()
+pub(super) fn cut(runs: &[Run], weights: &[[f64; STATES]], parts: usize) -> (Vec<Run>, Vec<[f64; STATES]>) {
+    let weighted = runs.iter().zip(weights);
+    weighted.flat_map(|(run, weights)| cut_run(run, parts).into_iter().map(|piece| (piece, *weights))).unzip()
 }
 
-fn cut_run(run: &FitRun, parts: usize) -> Vec<FitRun> {
+fn cut_run(run: &Run, parts: usize) -> Vec<Run> {
     let steps = run.measured.len().saturating_sub(1);
     if parts < 2 || steps / parts < MIN_STEPS {
         return vec![run.clone()];
     }
-    let known = |k: &usize| run.measured_channels.iter().all(|c| *c) && run.measured[*k].iter().all(|v| v.is_finite());
+    let known = |k: &usize| !run.measured[*k].contains(&None);
     let inner = (1..parts).map(|i| i * steps / parts).filter(known);
     let cuts: Vec<usize> = std::iter::once(0).chain(inner).chain([steps]).collect();
     let piece = |ends: &[usize]| {
         let (from, to) = (ends[0], ends[1]);
-        FitRun {
+        Run {
             inputs: run.inputs[from..=to].to_vec(),
             measured: run.measured[from..=to].to_vec(),
-            initial: if from == 0 { run.initial } else { run.measured[from] },
-            start_time: run.start_time + from as f64 * run.dt,
+            initial: if from == 0 { run.initial } else { or_nan(&run.measured[from]) },
             ..run.clone()
         }
     };
@@ -86,41 +89,48 @@ fn cut_run(run: &FitRun, parts: usize) -> Vec<FitRun> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recording::{Split, measured};
     use crate::state::Inputs;
 
-    fn run(steps: usize) -> FitRun {
-        FitRun {
-            name: "a".into(),
+    fn run(steps: usize) -> Run {
+        Run {
+            name: "a 100 s".into(),
+            recording: "a".into(),
             session: String::new(),
-            start_time: 100.0,
+            manoeuvre: String::new(),
+            split: Split::Train,
             dt: 0.5,
-            inputs: (0..=steps).map(|k| Inputs::actuators(k as f64, 1.0, 0.0)).collect(),
-            measured: (0..=steps).map(|k| [k as f64; 6]).collect(),
-            measured_channels: [true; 6],
+            inputs: (0..=steps).map(|k| Inputs::actuators(100.0 + 0.5 * k as f64, 1.0, 0.0)).collect(),
+            measured: measured(&(0..=steps).map(|k| [k as f64; 6]).collect::<Vec<_>>()),
             initial: [-1.0; 6],
-            weights: [1.0; 6],
+            disturbed: Vec::new(),
         }
+    }
+
+    fn pieces(run: Run) -> Vec<Run> {
+        cut(&[run], &[[1.0; STATES]], 2).0
     }
 
     #[test]
     fn pieces_share_the_sample_at_a_cut_and_start_from_what_was_measured_there() {
-        let pieces = cut(&[run(40)], 2);
-        assert_eq!(pieces.iter().map(|p| p.measured.len()).collect::<Vec<_>>(), [21, 21]);
+        let (pieces, weights) = cut(&[run(40), run(8)], &[[1.0; STATES], [2.0; STATES]], 2);
+        assert_eq!(weights, [[1.0; STATES], [1.0; STATES], [2.0; STATES]]);
+        assert_eq!(pieces.iter().map(|p| p.measured.len()).collect::<Vec<_>>(), [21, 21, 9]);
         assert_eq!(pieces[0].initial, [-1.0; 6]);
         assert_eq!(pieces[1].initial, [20.0; 6]);
-        assert_eq!(pieces[1].measured[0], [20.0; 6]);
-        assert_eq!(pieces[1].start_time, 110.0);
+        assert_eq!(pieces[1].measured[0], [Some(20.0); 6]);
+        assert_eq!(pieces[1].start_time(), 110.0);
     }
 
     #[test]
     fn a_run_is_left_whole_where_it_is_short_or_its_state_is_not_known() {
-        assert_eq!(cut(&[run(19)], 2).len(), 1);
+        assert_eq!(pieces(run(19)).len(), 1);
         let mut gap = run(40);
-        gap.measured[20][4] = f64::NAN;
-        assert_eq!(cut(&[gap], 2).len(), 1);
+        gap.measured[20][4] = None;
+        assert_eq!(pieces(gap).len(), 1);
         let mut unmeasured = run(40);
-        unmeasured.measured_channels[4] = false;
-        assert_eq!(cut(&[unmeasured], 2).len(), 1);
+        unmeasured.measured.iter_mut().for_each(|m| m[4] = None);
+        assert_eq!(pieces(unmeasured).len(), 1);
     }
 
     #[test]

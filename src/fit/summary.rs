@@ -1,7 +1,7 @@
 //! The outcome of a fit: estimates with their uncertainty, what held them back, what it cost; and [`fit`], which joins the steps.
 //! It solves nothing and prints nothing; the words are in [`report`](super::report).
 
-use super::cost::{Cost, FitRun};
+use super::cost::Cost;
 use super::covariance::{Covariance, CovarianceKind, Covariances, in_words};
 use super::doubts::{Doubt, ResidualStatistics, headline};
 use super::error::FitError;
@@ -12,6 +12,8 @@ use super::subspace::inverse;
 use super::task::Task;
 use crate::ipopt::Counts;
 use crate::model::Model;
+use crate::recording::Run;
+use crate::validity::{self, Coverage};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::time::Instant;
@@ -113,6 +115,8 @@ pub struct Fit {
     /// Evaluations by the solver.
     #[serde(serialize_with = "serialize_counts")]
     pub counts: Counts,
+    /// How much of the data lies outside the ranges over which the terms are valid.
+    pub validity: Coverage,
     /// Time taken \[s\].
     pub seconds: f64,
     /// The settings.
@@ -140,7 +144,7 @@ fn serialize_counts<S: serde::Serializer>(counts: &Counts, serializer: S) -> Res
 /// constraints that contradict each other.
 pub fn fit(
     model: &Model,
-    runs: &[FitRun],
+    runs: &[Run],
     settings: &FitSettings,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Fit, FitError> {
@@ -160,7 +164,9 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
     let statistics = ResidualStatistics::of(task, &model);
     let covariances = Covariances::of(task, &end, cost, statistics.likeness);
     let doubts = statistics.doubts(&covariances, task.scales.len());
+    let samples = task.runs.iter().flat_map(validity::samples);
     Fit {
+        validity: validity::outside(&model, samples),
         converged: end.converged,
         headline: headline(end.converged, &end.words, &doubts),
         doubts,

@@ -2,11 +2,12 @@
 //! It prepares and translates; it neither solves nor judges a solution.
 
 use super::constraints::{self, Row};
-use super::cost::{Cost, CostOptions, FitRun};
+use super::cost::{Cost, CostOptions};
 use super::error::FitError;
 use super::settings::FitSettings;
 use super::subspace::null_space;
 use crate::model::{Model, Parameter};
+use crate::recording::Run;
 use nalgebra::{DMatrix, DVector};
 
 /// Share of its largest possible value that the product of the off-diagonal entries of the sway-yaw mass matrix may reach.
@@ -19,7 +20,7 @@ const KEPT: f64 = 1e-7;
 pub(super) struct Task<'a> {
     pub model: &'a Model,
     pub cost: &'a Cost<'a>,
-    pub runs: &'a [FitRun],
+    pub runs: &'a [Run],
     pub settings: &'a FitSettings,
     pub rows: Vec<Row>,
     pub scales: Vec<f64>,
@@ -42,7 +43,7 @@ impl<'a> Task<'a> {
     pub fn new(
         model: &'a Model,
         cost: &'a Cost<'a>,
-        runs: &'a [FitRun],
+        runs: &'a [Run],
         settings: &'a FitSettings,
     ) -> Result<Self, FitError> {
         let free: Vec<&Parameter> = cost.free().iter().map(|i| &model.parameters[*i]).collect();
@@ -70,7 +71,7 @@ impl<'a> Task<'a> {
 
     /// The error of a start whose simulation diverges.
     pub fn diverged(&self) -> FitError {
-        let first = || (self.runs[0].name.clone(), self.runs[0].start_time);
+        let first = || (self.runs[0].recording.clone(), self.runs[0].start_time());
         let (run, time) = self.cost.divergence(&self.start).unwrap_or_else(first);
         FitError::Diverged { run, time }
     }

@@ -1,7 +1,7 @@
 //! How a trial is approached: the settings of a study, and the balanced approach that follows from them.
 //! No trial is simulated here.
 
-use super::ManeuverError;
+use super::error::ManeuverError;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::state::{Force, Inputs, STATES, State};

@@ -1,7 +1,7 @@
 //! The IMO standards for ship manoeuvrability, resolution MSC.137(76), beside the measures of a trial.
 //! The criteria bind ships of 100 m and more, at full load and test speed; for shorter ships they are a comparison only.
 
-use super::{Stopping, Turning, Zigzag};
+use super::measures::{Stopping, Turning, Zigzag};
 use crate::ship::Ship;
 use serde::Serialize;
 

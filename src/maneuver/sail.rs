@@ -1,7 +1,9 @@
 //! Simulates a ship under orders that depend on its motion, with rudder and engine of finite rate.
 //! The orders and the measures belong to each trial, not to this file.
 
-use super::{Approach, Ended, Track};
+use super::approach::Approach;
+use super::track::Track;
+use super::trial::Ended;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::simulate::{Integration, Method, absurd_speed, driven, step};

@@ -1,33 +1,13 @@
 //! The crash stop: its simulation, and track reach, head reach, lateral deviation and time read from any track.
 //! The IMO criteria are in `imo`, not here.
 
+use super::approach::Approach;
+use super::imo;
+use super::measures::Stopping;
 use super::sail::{Orders, sail};
-use super::{Approach, Side, Track, Trial, imo};
+use super::track::Track;
+use super::trial::{Side, Trial};
 use crate::model::Model;
-use serde::Serialize;
-
-/// What a stop is measured by, from the order to the engine until the ship makes no more way ahead; a measure that was
-/// not reached is absent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Stopping {
-    /// Speed at the order \[m/s\].
-    pub approach_speed: f64,
-    /// Distance along the track \[m\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub track_reach: Option<f64>,
-    /// Distance along the course at the order \[m\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub head_reach: Option<f64>,
-    /// Distance across that course \[m\], positive to starboard.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lateral_deviation: Option<f64>,
-    /// Change of heading \[rad\], positive to starboard.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub heading_change: Option<f64>,
-    /// Time \[s\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub time: Option<f64>,
-}
 
 /// Measures a stop on a track whose engine was ordered astern at sample `order`.
 pub fn stopping(track: &Track, order: usize) -> Stopping {

@@ -1,7 +1,7 @@
 //! A track: the motion of a ship over time, simulated or recorded, from which a trial's measures are read.
 //! It does not know which trial it belongs to.
 
-use crate::recording::Window;
+use crate::recording::{Run, or_nan};
 use crate::state::STATES;
 
 /// States and actuators over time, one entry a sample. Units and signs of [`crate::state::State`]; heading not wrapped.
@@ -18,13 +18,13 @@ pub struct Track {
 }
 
 impl Track {
-    /// The measured track of a window.
-    pub fn recorded(window: &Window) -> Self {
+    /// The measured track of a run; NaN in what was not measured.
+    pub fn recorded(run: &Run) -> Self {
         Self {
-            t: (0..window.measured.len()).map(|k| window.time(k)).collect(),
-            states: window.measured.clone(),
-            delta: window.inputs.iter().map(|i| i.delta).collect(),
-            n: window.inputs.iter().map(|i| i.n).collect(),
+            t: (0..run.measured.len()).map(|k| run.time(k)).collect(),
+            states: run.measured.iter().map(or_nan).collect(),
+            delta: run.inputs.iter().map(|i| i.delta).collect(),
+            n: run.inputs.iter().map(|i| i.n).collect(),
         }
     }
 

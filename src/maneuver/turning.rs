@@ -1,54 +1,14 @@
 //! The turning circle: its simulation, and advance, transfer, tactical diameter and steady turn read from any track.
 //! The IMO criteria are in `imo`, not here.
 
+use super::approach::Approach;
+use super::imo;
+use super::measures::{Steady, Turning};
 use super::sail::{Orders, sail};
-use super::{Approach, Side, Track, Trial, imo};
+use super::track::Track;
+use super::trial::{Side, Trial};
 use crate::model::Model;
-use serde::Serialize;
 use std::f64::consts::PI;
-
-/// What a turning circle is measured by. Lengths are of the midship point, from the instant the rudder begins to move,
-/// on axes along the heading at that instant; a measure that was not reached is absent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Turning {
-    /// Rudder angle held \[rad\].
-    pub rudder: f64,
-    /// Speed when the rudder began to move \[m/s\].
-    pub approach_speed: f64,
-    /// Distance ahead when heading has changed by 90 deg \[m\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub advance: Option<f64>,
-    /// Distance abeam, towards the turn, when heading has changed by 90 deg \[m\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub transfer: Option<f64>,
-    /// Distance abeam, towards the turn, when heading has changed by 180 deg \[m\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tactical_diameter: Option<f64>,
-    /// Time to a change of heading of 90 deg \[s\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub time_90: Option<f64>,
-    /// Time to a change of heading of 180 deg \[s\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub time_180: Option<f64>,
-    /// The steady turn.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub steady: Option<Steady>,
-}
-
-/// The steady turn: means over the last 90 deg of heading before the rudder is eased, of a turn of 270 deg or more.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Steady {
-    /// Diameter of the midship point's circle, 2 U / |r| \[m\].
-    pub diameter: f64,
-    /// Speed \[m/s\].
-    pub speed: f64,
-    /// Speed lost: 1 - U/U0 \[-\].
-    pub speed_loss: f64,
-    /// Drift angle atan2(-v, u) \[rad\], positive in a turn to starboard.
-    pub drift: f64,
-    /// Yaw rate \[rad/s\].
-    pub yaw_rate: f64,
-}
 
 /// Measures a turning circle on a track whose rudder began to move at sample `execute`.
 pub fn turning(track: &Track, execute: usize) -> Turning {

@@ -1,38 +1,13 @@
 //! The zigzag: its simulation, and executes, overshoots, initial turning and period read from any track.
 //! The IMO criteria are in `imo`, not here.
 
+use super::approach::Approach;
+use super::imo;
+use super::measures::Zigzag;
 use super::sail::{Orders, sail};
-use super::{Approach, Side, Track, Trial, imo};
+use super::track::Track;
+use super::trial::{Side, Trial};
 use crate::model::Model;
-use serde::Serialize;
-
-/// What a zigzag is measured by; a measure that was not reached is absent.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Zigzag {
-    /// Rudder angle \[rad\].
-    pub rudder: f64,
-    /// Change of heading at which the rudder is put over \[rad\].
-    pub heading: f64,
-    /// Speed at the first execute \[m/s\].
-    pub approach_speed: f64,
-    /// Times of the executes, from the first \[s\].
-    pub executes: Vec<f64>,
-    /// Overshoot angles, first to last \[rad\]: how far heading runs past `heading` after each execute but the first, from
-    /// the course midway between the headings at the second and the third.
-    pub overshoots: Vec<f64>,
-    /// Distance sailed along the track until heading has changed by `heading` \[m\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub initial_turning: Option<f64>,
-    /// Time until heading has changed by `heading` \[s\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub initial_turning_time: Option<f64>,
-    /// Time from the first execute until heading is back where it began \[s\] (the reach).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reach: Option<f64>,
-    /// Time from the second to the fourth execute \[s\]: one full cycle.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub period: Option<f64>,
-}
 
 /// Measures a zigzag of `heading` \[rad\] on a track whose rudder was put over at the samples `executes`.
 pub fn zigzag(track: &Track, executes: &[usize], heading: f64) -> Zigzag {

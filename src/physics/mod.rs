@@ -7,6 +7,7 @@ pub mod inertia;
 pub mod instant;
 pub mod mechanism;
 pub mod term;
+pub mod validity;
 
 pub use catalogue::Catalogue;
 pub use flow::{Adjust, Flow};
@@ -17,3 +18,4 @@ pub use term::{
     AnyTerm, CHUNK, Curvature, FEW, Gradient, Group, Lanes, MOST_PARAMETERS, NumDual, Number, Physics, Reach, Term,
     TermInfo,
 };
+pub use validity::{Quantity, Validity, degrees, range_in_words};

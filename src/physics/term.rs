@@ -4,6 +4,7 @@
 use super::flow::{Adjust, Flow};
 use super::instant::Instant;
 use super::mechanism::Mechanism;
+use super::validity::Validity;
 use crate::parameter::ParameterInfo;
 use crate::ship::Ship;
 use crate::state::{Force, Inputs, STATES};
@@ -42,6 +43,8 @@ pub struct TermInfo {
     pub source: &'static str,
     /// Recorded channels it needs, none for most.
     pub needs: &'static [&'static str],
+    /// The range of motion over which its law is valid.
+    pub validity: Validity,
     /// What the diagnosis may name with it, none for the base terms.
     pub mechanisms: &'static [Mechanism],
     /// Its parameters, in the order of the slice the physics is given.

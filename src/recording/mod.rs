@@ -7,6 +7,7 @@ mod error;
 mod local;
 mod map;
 mod read;
+mod run;
 mod unit;
 mod window;
 
@@ -16,8 +17,9 @@ pub(crate) use error::{line_at, toml_problem};
 pub(crate) use local::{local, slope};
 pub(crate) use map::key_line;
 pub use map::{Column, ColumnMap, Decimal, Delimiter, Derived, Header, SpeedReference, VelocityFrame};
+pub use run::{Measured, Run, Split, measured, or_nan};
 pub use unit::{Quantity, UNITS, Unit};
-pub use window::{Environment, Gaps, Initial, Labels, Order, Skipped, Split, Window, WindowSettings, Windows};
+pub use window::{Gaps, Initial, Labels, Skipped, WindowSettings, Windows};
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -60,6 +62,14 @@ impl Recording {
     /// Any [`RecordingError`] about the file: unreadable, empty, columns, units, numbers, time, or nothing usable.
     pub fn read(path: &Path, map: &ColumnMap) -> Result<Self, RecordingError> {
         read::read(path, map)
+    }
+
+    /// Reads a recording from the text of a file; `path` is used in messages and, without its ending, as the name.
+    ///
+    /// # Errors
+    /// As [`Recording::read`], but for a file that cannot be opened.
+    pub fn parse(text: &str, path: &Path, map: &ColumnMap) -> Result<Self, RecordingError> {
+        read::parse(text, path, map)
     }
 
     /// A recording from arrays already in SI units and the project's frames; `t` must be among them.

@@ -37,12 +37,12 @@ struct Source {
 /// Reads a recording; see [`Recording::read`].
 pub(super) fn read(path: &Path, map: &ColumnMap) -> Result<Recording, RecordingError> {
     let bytes = std::fs::read(path).map_err(|source| RecordingError::Read { path: path.to_owned(), source })?;
-    let text = String::from_utf8_lossy(&bytes);
-    parse(text.strip_prefix('\u{feff}').unwrap_or(&text), path, map)
+    parse(&String::from_utf8_lossy(&bytes), path, map)
 }
 
-/// Parses the text of a recording.
-fn parse(text: &str, path: &Path, map: &ColumnMap) -> Result<Recording, RecordingError> {
+/// Parses the text of a recording; see [`Recording::parse`].
+pub(super) fn parse(text: &str, path: &Path, map: &ColumnMap) -> Result<Recording, RecordingError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let empty = |line, what: &str| RecordingError::Empty { path: path.to_owned(), line, what: what.to_owned() };
     let mut lines = text.lines().enumerate().map(|(i, l)| (i + 1, l)).skip(map.skip_lines).peekable();
     while lines.next_if(|(_, l)| l.trim().is_empty()).is_some() {}

@@ -1,24 +1,15 @@
-//! From a recording to windows: stretches on a uniform grid with inputs, measured states and an initial state, ready to be simulated.
-//! Windows never reach across a dropout or a gap; which windows train and which test is decided by the study.
+//! From a recording to windows: runs on a uniform grid, ready to be simulated, that never reach across a dropout or a gap.
+//! Which windows train and which test is decided by the study.
 
 use super::Recording;
 use super::channel::{Channel, STATE_CHANNELS};
 use super::convert::to_earth;
 use super::error::RecordingError;
 use super::local::local_fit;
+use super::run::{Measured, Run, Split};
 use crate::state::{Inputs, STATES};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
-
-/// On which side of the split a run is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Split {
-    /// Parameters are fitted to it.
-    Train,
-    /// It is kept aside to judge the fit.
-    Test,
-}
 
 /// What a study says about a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -105,100 +96,6 @@ impl WindowSettings {
     }
 }
 
-/// Which environmental channels were recorded.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Environment {
-    /// True or apparent wind.
-    pub wind: bool,
-    /// Current.
-    pub current: bool,
-    /// Waves.
-    pub waves: bool,
-    /// Water depth.
-    pub depth: bool,
-    /// Distance to a bank on either side.
-    pub bank: bool,
-    /// Bow thruster.
-    pub thruster: bool,
-}
-
-/// What was ordered, where it was recorded, on the window's grid.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Order {
-    /// Ordered rudder angle \[rad\].
-    pub delta: Option<Vec<f64>>,
-    /// Ordered propeller rate \[1/s\].
-    pub n: Option<Vec<f64>>,
-}
-
-/// A stretch of a run on a uniform grid: `inputs` and `measured` have one entry a sample, steps + 1 in all.
-#[derive(Clone, Debug)]
-pub struct Window {
-    /// Name of the run.
-    pub run: String,
-    /// Session of the run.
-    pub session: String,
-    /// Manoeuvre of the run.
-    pub manoeuvre: String,
-    /// Train or test.
-    pub split: Split,
-    /// Time of the first sample \[s\].
-    pub start_time: f64,
-    /// Step \[s\].
-    pub dt: f64,
-    /// Inputs at each sample.
-    pub inputs: Vec<Inputs<f64>>,
-    /// Measured `[x, y, psi, u, v, r]` at each sample; 0 in channels that were not measured.
-    pub measured: Vec<[f64; STATES]>,
-    /// Which of them were measured or derived; the others must carry no weight.
-    pub measured_channels: [bool; STATES],
-    /// Initial state.
-    pub initial: [f64; STATES],
-    /// Environmental channels recorded.
-    pub has: Environment,
-    /// Orders recorded.
-    pub order: Order,
-    /// Velocity through water (forward, starboard) \[m/s\], where a log recorded it.
-    pub water: Option<Vec<[f64; 2]>>,
-}
-
-impl Window {
-    /// Number of steps.
-    pub fn steps(&self) -> usize {
-        self.inputs.len().saturating_sub(1)
-    }
-
-    /// Length \[s\].
-    pub fn duration(&self) -> f64 {
-        self.steps() as f64 * self.dt
-    }
-
-    /// Time of a sample \[s\].
-    pub fn time(&self, sample: usize) -> f64 {
-        self.start_time + sample as f64 * self.dt
-    }
-
-    /// Length of the measured track \[m\]; from the measured speed where no position was measured.
-    pub fn path_length(&self) -> f64 {
-        if self.measured_channels[0] && self.measured_channels[1] {
-            self.measured.windows(2).map(|s| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1])).sum()
-        } else {
-            self.mean_speed() * self.duration()
-        }
-    }
-
-    /// Mean of the measured speed over ground \[m/s\]; from the track where velocity was not measured.
-    pub fn mean_speed(&self) -> f64 {
-        if self.measured_channels[3] && self.measured_channels[4] {
-            self.measured.iter().map(|s| s[3].hypot(s[4])).sum::<f64>() / self.measured.len() as f64
-        } else if self.measured_channels[0] && self.measured_channels[1] {
-            self.path_length() / self.duration()
-        } else {
-            self.measured.iter().map(|s| s[3].abs()).sum::<f64>() / self.measured.len() as f64
-        }
-    }
-}
-
 /// An unbroken stretch too short for a window.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Skipped {
@@ -216,7 +113,7 @@ pub struct Skipped {
 #[derive(Clone, Debug, Default)]
 pub struct Windows {
     /// In order of time.
-    pub windows: Vec<Window>,
+    pub windows: Vec<Run>,
     /// Stretches too short for one.
     pub skipped: Vec<Skipped>,
 }
@@ -282,14 +179,12 @@ impl Recording {
         columns: &Columns,
         sampler: &Sampler,
         samples: Range<usize>,
-    ) -> Result<Window, RecordingError> {
+    ) -> Result<Run, RecordingError> {
         let take = |values: &[f64]| samples.clone().map(|k| sampler.sample(values, k)).collect::<Vec<f64>>();
         let measured_columns = STATE_CHANNELS.map(|c| self.get(c).map(take));
-        let measured_channels = std::array::from_fn(|i| measured_columns[i].is_some());
         let rows = samples.len();
-        let measured: Vec<[f64; STATES]> = (0..rows)
-            .map(|k| std::array::from_fn(|i| measured_columns[i].as_ref().map_or(0.0, |column| column[k])))
-            .collect();
+        let value = |k: usize, i: usize| Some(measured_columns[i].as_ref()?[k]).filter(|v| v.is_finite());
+        let measured: Vec<Measured> = (0..rows).map(|k| std::array::from_fn(|i| value(k, i))).collect();
         let inputs_columns = columns.inputs.each_ref().map(|c| take(c));
         let start_time = sampler.time(samples.start);
         let inputs = (0..rows).map(|k| {
@@ -306,29 +201,24 @@ impl Recording {
                 thruster: at(10),
             }
         });
-        // Orders and logs may drop out without interrupting a run; a window in which they do goes without.
-        let whole = |channel| self.get(channel).map(take).filter(|v| v.iter().all(|x| x.is_finite()));
-        let water = whole(Channel::UWater).zip(whole(Channel::VWater));
-        let mut window = Window {
-            run: labels.run.clone(),
+        let first = measured[0];
+        let mut run = Run {
+            name: format!("{} {} s", labels.run, thousandths(start_time)),
+            recording: labels.run.clone(),
             session: labels.session.clone(),
             manoeuvre: labels.manoeuvre.clone(),
             split: labels.split,
-            start_time,
             dt: sampler.step,
             inputs: inputs.collect(),
-            initial: measured[0],
+            initial: first.map(|v| v.unwrap_or(0.0)),
             measured,
-            measured_channels,
-            has: columns.has,
-            order: Order { delta: whole(Channel::DeltaOrder), n: whole(Channel::NOrder) },
-            water: water.map(|(u, v)| u.into_iter().zip(v).map(|(u, v)| [u, v]).collect()),
+            disturbed: Vec::new(),
         };
         let (span, all) = match settings.initial {
             Initial::First => (10.0 * self.step(), false),
             Initial::Smoothed { span } => (span, true),
         };
-        if all || measured_channels.contains(&false) {
+        if all || first.contains(&None) {
             let estimate = self.local_motion(&sampler.segment, start_time, span);
             let estimate = estimate.ok_or_else(|| RecordingError::Setting {
                 path: self.path.clone(),
@@ -338,12 +228,12 @@ impl Recording {
                 ),
             })?;
             for i in 0..STATES {
-                if all || !measured_channels[i] {
-                    window.initial[i] = estimate[i];
+                if all || first[i].is_none() {
+                    run.initial[i] = estimate[i];
                 }
             }
         }
-        Ok(window)
+        Ok(run)
     }
 
     /// The grid: step, window and overlap in steps.
@@ -395,15 +285,14 @@ impl Recording {
         let mut inputs: [Vec<f64>; 11] = std::array::from_fn(|_| zero());
         inputs[0] = need(Channel::N, "add the column")?.to_vec();
         inputs[1] = need(Channel::Delta, "add the column")?.to_vec();
-        let mut has = Environment::default();
+        let mut directed = false;
         let mut put = |at: usize, vectors: Vec<[f64; 2]>| {
+            directed = true;
             (inputs[at], inputs[at + 1]) = vectors.into_iter().map(|v| (v[0], v[1])).unzip();
         };
         if let Some((speed, from)) = self.pair(Channel::WindSpeed, Channel::WindDirection) {
-            has.wind = true;
             put(2, polar(speed, from, -1.0).collect());
         } else if let Some((speed, from)) = self.pair(Channel::ApparentWindSpeed, Channel::ApparentWindDirection) {
-            has.wind = true;
             let purpose = "to turn apparent into true wind";
             let next = "record it, or record the true wind";
             let psi = self.require(Channel::Psi, purpose, next)?;
@@ -413,36 +302,31 @@ impl Recording {
             put(2, air.map(|(i, air)| to_earth(psi[i], [air[0] + u[i], air[1] + v[i]])).collect());
         }
         if let Some((speed, to)) = self.pair(Channel::CurrentSpeed, Channel::CurrentDirection) {
-            has.current = true;
             put(4, polar(speed, to, 1.0).collect());
         }
         if let Some((height, from)) = self.pair(Channel::WaveHeight, Channel::WaveDirection) {
-            has.waves = true;
             let squared: Vec<f64> = height.iter().map(|h| h * h).collect();
             put(6, polar(&squared, from, -1.0).collect());
         }
         if let Some(depth) = self.get(Channel::Depth) {
-            has.depth = true;
             inputs[8] = depth.iter().map(|h| draught / h).collect();
         }
         for (channel, sign) in [(Channel::BankStarboard, 1.0), (Channel::BankPort, -1.0)] {
             if let Some(distance) = self.get(channel) {
-                has.bank = true;
                 inputs[9].iter_mut().zip(distance).for_each(|(bank, y)| *bank += sign / y);
             }
         }
         if let Some(thruster) = self.get(Channel::Thruster) {
-            has.thruster = true;
             inputs[10] = thruster.to_vec();
         }
-        if has.wind || has.current || has.waves {
+        if directed {
             self.require(
                 Channel::Psi,
                 "to bring wind, current and waves to the ship's axes",
                 "record it, or leave them out",
             )?;
         }
-        Ok(Columns { inputs, has })
+        Ok(Columns { inputs })
     }
 
     fn pair(&self, a: Channel, b: Channel) -> Option<(&[f64], &[f64])> {
@@ -544,7 +428,6 @@ struct Grid {
 /// Inputs by column and row.
 struct Columns {
     inputs: [Vec<f64>; 11],
-    has: Environment,
 }
 
 /// Samples an unbroken stretch on a grid.
@@ -660,6 +543,12 @@ fn scatter(tau: &[f64], values: &[f64]) -> f64 {
     (sum / values.len().saturating_sub(3).max(1) as f64).sqrt().max(floor)
 }
 
+/// A time in seconds to the thousandth, without trailing zeros: `12` or `12.5`.
+fn thousandths(time: f64) -> String {
+    let text = format!("{time:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
 /// Vectors of a magnitude and a direction clockwise from north (or from the bow); `sign` -1 for directions something comes FROM.
 fn polar<'a>(magnitude: &'a [f64], direction: &'a [f64], sign: f64) -> impl Iterator<Item = [f64; 2]> + 'a {
     magnitude.iter().zip(direction).map(move |(m, d)| [sign * m * d.cos(), sign * m * d.sin()])
@@ -667,6 +556,7 @@ fn polar<'a>(magnitude: &'a [f64], direction: &'a [f64], sign: f64) -> impl Iter
 
 #[cfg(test)]
 mod tests {
+    use super::super::or_nan;
     use super::*;
     use proptest::prelude::*;
 
@@ -702,11 +592,11 @@ mod tests {
         assert_eq!((w.measured.len(), w.inputs.len(), w.dt), (50, 50, 0.1));
         for row in 0..50 {
             let recorded = STATE_CHANNELS.map(|c| r.get(c).unwrap()[row]);
-            assert_eq!(w.measured[row], recorded);
+            assert_eq!(w.measured[row], recorded.map(Some));
             assert_eq!(w.inputs[row].t, r.time()[row]);
             assert_eq!(w.inputs[row].delta, r.get(Channel::Delta).unwrap()[row]);
         }
-        assert_eq!(w.initial, w.measured[0]);
+        assert_eq!(w.initial.map(Some), w.measured[0]);
     }
 
     #[test]
@@ -733,7 +623,6 @@ mod tests {
         channels.push((Channel::ApparentWindDirection, angle));
         let r = Recording::from_channels("run", channels).unwrap();
         let w = &r.windows(&labels(), &settings()).unwrap().windows[0];
-        assert!(w.has.wind);
         for i in &w.inputs {
             assert!((i.wind[0] + 6.0 * from.cos()).abs() < 1e-12 && (i.wind[1] + 6.0 * from.sin()).abs() < 1e-12);
         }
@@ -760,7 +649,7 @@ mod tests {
         close(i.waves[0], 4.0);
         close(i.draught_to_depth, 0.25);
         close(i.bank, -0.02);
-        assert!(!w.has.thruster && w.has.bank && w.has.depth && w.has.waves && w.has.current);
+        close(i.thruster, 0.0);
     }
 
     #[test]
@@ -821,7 +710,7 @@ mod tests {
         let recording = Recording::from_channels("run", full).unwrap();
         let initial = Initial::Smoothed { span: 2.0 };
         let w = recording.windows(&labels(), &WindowSettings { initial, ..settings() }).unwrap();
-        assert_eq!(w.windows[0].measured_channels, [true, true, true, false, false, false]);
+        assert_eq!(w.windows[0].channels(), [true, true, true, false, false, false]);
         for (a, b) in w.windows[0].initial.iter().zip(truth) {
             assert!((a - b).abs() < 1e-6, "{a} {b}");
         }
@@ -852,7 +741,7 @@ mod tests {
             let w = r.windows(&labels(), &WindowSettings { step: Some(step), ..settings() }).unwrap();
             let w = &w.windows[0];
             for (k, (s, i)) in w.measured.iter().zip(&w.inputs).enumerate() {
-                let t = w.time(k);
+                let (t, s) = (w.time(k), or_nan(s));
                 prop_assert!((s[0] - (3.0 + 2.0 * t)).abs() < 1e-9);
                 prop_assert!((s[1] - (-1.0 + 0.5 * t)).abs() < 1e-9);
                 prop_assert!((i.n - (1.0 + 0.001 * t)).abs() < 1e-9 && (i.t - t).abs() < 1e-9);
@@ -885,7 +774,7 @@ mod tests {
                     prop_assert_eq!(w.windows.len(), expected);
                     for w in &w.windows {
                         prop_assert_eq!(w.steps(), length);
-                        prop_assert!(w.measured.iter().flatten().all(|v| v.is_finite()), "a window reaches across the hole");
+                        prop_assert!(w.measured.iter().flatten().all(Option::is_some), "a window reaches across the hole");
                     }
                 }
                 Err(_) => prop_assert_eq!(expected, 0),

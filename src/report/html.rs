@@ -1,8 +1,8 @@
 //! One HTML page that carries everything it shows: headings, paragraphs, tables, and figures as embedded images.
 //! No scripts and nothing from outside the file, so that it reads the same offline, printed, and years later.
 
-use super::figure::{Figure, FigureError};
 use super::table::Table;
+use crate::plot::{Figure, FigureError};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -23,13 +23,14 @@ th, td { padding: .3rem .8rem; text-align: left; vertical-align: top; border-bot
 thead th { border-bottom: 2px solid #444; }
 .number { text-align: right; white-space: nowrap; }
 figure { margin: 1.2rem 0; }
-figure img, figure svg { max-width: 100%; height: auto; }
+figure img { max-width: 100%; height: auto; }
 footer { margin-top: 3rem; font-size: .8rem; color: #555; border-top: 1px solid #ccc; padding-top: .6rem; }
 @media print { body { max-width: none; padding: 0; font-size: 10pt; } nav { display: none; } figure, tr { break-inside: avoid; } h2 { break-after: avoid; } }
 ";
 
 /// A part of a page under one heading.
 #[derive(Clone, Debug)]
+#[must_use]
 pub struct Section {
     heading: String,
     blocks: Vec<Markup>,
@@ -37,25 +38,21 @@ pub struct Section {
 
 impl Section {
     /// An empty section.
-    #[must_use]
     pub fn new(heading: impl Into<String>) -> Self {
         Self { heading: heading.into(), blocks: vec![] }
     }
 
     /// The same section with one more paragraph.
-    #[must_use]
     pub fn text(self, paragraph: &str) -> Self {
         self.markup(html! { p { (paragraph) } })
     }
 
     /// The same section with a list.
-    #[must_use]
     pub fn list<S: AsRef<str>>(self, items: impl IntoIterator<Item = S>) -> Self {
         self.markup(html! { ul { @for item in items { li { (item.as_ref()) } } } })
     }
 
     /// The same section with a table. An empty caption is left out.
-    #[must_use]
     pub fn table(self, table: &Table, caption: &str) -> Self {
         let class = |i: usize| table.is_numeric(i).then_some("number");
         self.markup(html! {
@@ -80,7 +77,6 @@ impl Section {
     }
 
     /// The same section with a figure that is drawn already, as [`Self::figure`].
-    #[must_use]
     pub fn png(self, png: &[u8], title: &str, caption: &str) -> Self {
         // The width is in the PNG header, big-endian at byte 16.
         let width = png.get(16..20).and_then(|b| b.try_into().ok()).map(|b| u32::from_be_bytes(b) / 2);
@@ -94,22 +90,7 @@ impl Section {
         })
     }
 
-    /// The same section with a figure as inline SVG: sharp at any size, but large when it has many points.
-    ///
-    /// # Errors
-    /// As [`Figure::svg`].
-    pub fn vector_figure(self, figure: &Figure, caption: &str) -> Result<Self, FigureError> {
-        let svg = figure.svg()?;
-        Ok(self.markup(html! {
-            figure {
-                (PreEscaped(svg))
-                @if !caption.is_empty() { figcaption { (caption) } }
-            }
-        }))
-    }
-
     /// The same section with markup of the caller's own.
-    #[must_use]
     pub fn markup(mut self, block: Markup) -> Self {
         self.blocks.push(block);
         self
@@ -118,6 +99,7 @@ impl Section {
 
 /// A page.
 #[derive(Clone, Debug)]
+#[must_use]
 pub struct Page {
     title: String,
     lede: Vec<String>,
@@ -127,27 +109,23 @@ pub struct Page {
 
 impl Page {
     /// An empty page.
-    #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
         Self { title: title.into(), lede: vec![], sections: vec![], footer: String::new() }
     }
 
     /// The same page with one more opening paragraph: what was found, before any heading.
-    #[must_use]
     pub fn lede(mut self, paragraph: impl Into<String>) -> Self {
         self.lede.push(paragraph.into());
         self
     }
 
     /// The same page with one more section.
-    #[must_use]
     pub fn section(mut self, section: Section) -> Self {
         self.sections.push(section);
         self
     }
 
     /// The same page with a last line: what made it, from what, with which seed.
-    #[must_use]
     pub fn footer(self, text: impl Into<String>) -> Self {
         Self { footer: text.into(), ..self }
     }
@@ -187,7 +165,7 @@ impl Page {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Axis, FITTED, Layer, Panel};
+    use crate::plot::{Axis, FITTED, Layer, Panel};
 
     fn page() -> String {
         let figure = Figure::new("R(u) < 80 kN").with(
@@ -202,7 +180,7 @@ mod tests {
         Page::new("Diagnosis of \"Esso <Osaka>\"")
             .lede("A steady force was found.")
             .section(Section::new("Where").text("a < b").table(&table, "Findings").list(["one", "two"]))
-            .section(Section::new("Proof").figure(&figure, "caption").unwrap().vector_figure(&figure, "").unwrap())
+            .section(Section::new("Proof").figure(&figure, "caption").unwrap())
             .section(Section::new("Open"))
             .footer("seed 1")
             .render()
@@ -212,12 +190,10 @@ mod tests {
     fn a_page_needs_nothing_from_outside_itself() {
         let page = page();
         assert!(page.starts_with("<!DOCTYPE html>"));
-        let without_namespace = page.replace("http://www.w3.org/2000/svg", "");
         for outside in ["http:", "https:", "<script", "<link", "url(", "src=\"/"] {
-            assert!(!without_namespace.contains(outside), "{outside}");
+            assert!(!page.contains(outside), "{outside}");
         }
         assert!(page.contains("data:image/png;base64,iVBORw0KGgo"));
-        assert!(page.contains("<svg"));
     }
 
     #[test]

@@ -203,9 +203,10 @@ fn nonlinear<P: Plain>(
         *p = value.few();
     }
     for (lane, (j, _, scale)) in owned.columns.iter().enumerate() {
-        let mut slopes = [P::zero(); FEW];
+        // A parameter may have more than one column: each has a lane of its own.
+        let (value, mut slopes) = P::parts(&p[*j]);
         slopes[lane] = P::from_f64(*scale);
-        p[*j] = P::parts(&p[*j]).0.few_with(slopes);
+        p[*j] = value.few_with(slopes);
     }
     let state = State::from_array(at.state.to_array().map(P::few));
     let inputs = at.inputs.map(P::few);

@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::STATES;
@@ -19,6 +20,7 @@ static INFO: TermInfo = TermInfo {
     equation: "(x, y)_m = (x, y) + R(psi) (l_x, l_y), u_m = u - r l_y, v_m = v + r l_x",
     source: "rigid-body kinematics",
     needs: &[],
+    validity: Validity::any("exact kinematics of a horizontal lever; roll is not in it"),
     mechanisms: &[Mechanism {
         name: "antenna",
         title: "an antenna away from its stated position",

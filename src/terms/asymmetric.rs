@@ -5,6 +5,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -20,6 +21,9 @@ static INFO: TermInfo = TermInfo {
                in N times L; |.| rounded at small speeds",
     source: "generic basis, no source",
     needs: &[],
+    validity: Validity::any(
+        "an unnamed force law: it holds where the data that set its coefficients are, and nowhere else",
+    ),
     mechanisms: &[],
     parameters: &[
         ParameterInfo::new("X_0", "X_0", "N", "constant").scale(size::force).spread(size::force),

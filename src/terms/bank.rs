@@ -5,6 +5,7 @@ use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
@@ -20,6 +21,7 @@ static INFO: TermInfo = TermInfo {
     equation: "eta = B (1/y_s - 1/y_p); Y = suction 1/2 rho L d u^2 eta (towards the bank), N = -moment 1/2 rho L^2 d u^2 eta (bow away)",
     source: "Norrbin's form, linear in 1/distance; coefficients of low certainty",
     needs: &["bank"],
+    validity: Validity::any("the form is linear in 1/distance, and the source that was read gives no range"),
     mechanisms: &[Mechanism {
         name: "bank",
         title: "bank suction",

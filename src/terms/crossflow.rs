@@ -7,6 +7,7 @@ use crate::physics::Flow;
 use crate::physics::Probe;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::physics::{Validity, degrees};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -37,6 +38,14 @@ static INFO: TermInfo = TermInfo {
     equation: "Y = -1/2 rho d C_D int |v + C_rY x r| (v + C_rY x r) dx, N = -1/2 rho d C_D int |v + C_rN x r| (v + C_rN x r) x dx over the length",
     source: "strip theory with Hoerner's drag coefficients as in Fossen's Marine Systems Simulator (weights of 1), and Yoshimura's low-speed model (2.2 and 0.8 for Esso Osaka); integrals in closed form",
     needs: &[],
+    validity: Validity {
+        drift: Some([0.0, degrees(90.0)]),
+        turn: Some([0.0, f64::INFINITY]),
+        depth: Some([1.5, f64::INFINITY]),
+        widens: &["hull"],
+        source: "strip theory for drift up to 90 deg and turning on the spot; drag coefficients of deep water, with a strong growth below h/d = 1.5 that is not modelled (engineering limit)",
+        ..Validity::ANY
+    },
     mechanisms: &[Mechanism {
         name: "crossflow",
         title: "cross-flow drag at large drift",

@@ -5,6 +5,7 @@ use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -21,6 +22,7 @@ static INFO: TermInfo = TermInfo {
     equation: "V_c = (north, east) over ground, setting to; u_r = u - V_c,x, v_r = v - V_c,y in body axes; u' = u_r' + V_c,y r, v' = v_r' - V_c,x r",
     source: "kinematics of a uniform irrotational current",
     needs: &[],
+    validity: Validity::any("exact for a current that is uniform over the ship's length and steady over a run"),
     mechanisms: &[Mechanism {
         name: "current",
         title: "steady current",

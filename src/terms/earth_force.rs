@@ -4,6 +4,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Flow, Reach};
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
@@ -20,6 +21,7 @@ static INFO: TermInfo = TermInfo {
     equation: "X = F_N cos psi + F_E sin psi, Y = F_E cos psi - F_N sin psi, N = 0",
     source: "generic, no source",
     needs: &[],
+    validity: Validity::any("no cause and no law: a constant"),
     mechanisms: &[Mechanism {
         name: "earth_force",
         title: "a force fixed on the earth",

@@ -5,6 +5,7 @@ use super::rudder_lag::first_order;
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -21,6 +22,7 @@ static INFO: TermInfo = TermInfo {
     equation: "tau n' = n_c - n",
     source: "first-order shaft response, exact for an order that is linear between samples",
     needs: &[],
+    validity: Validity::any("a linear lag of the order; reversing delays are not in it, and no range is published"),
     mechanisms: &[Mechanism {
         name: "engine_lag",
         title: "engine lag",

@@ -2,6 +2,7 @@
 //! It gives no force; [`Flow::new`](crate::physics::Flow::new) uses the parameters.
 
 use crate::parameter::ParameterInfo;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use trimtab_ad::Scalar;
 
@@ -16,6 +17,12 @@ static INFO: TermInfo = TermInfo {
                u_R = eps sqrt(eta (u_P + kappa (sqrt(u_P^2 + 8T/(pi rho D^2)) - u_P))^2 + (1-eta) u_P^2); v_R = -gamma (v + l_R r)",
     source: "Yasukawa & Yoshimura 2015, J. Mar. Sci. Technol. 20, eq. 11-14 and 22-26; reversal by Yasukawa's factor",
     needs: &[],
+    validity: Validity {
+        advance: Some([-0.5, 0.8]),
+        reversing: Some([-1.0, 0.8]),
+        source: "four-quadrant chart of the Wageningen B4-70 (Roddy, Hess & Faller 2006), with which the quadratic was compared from J = 0 to 0.8 ahead and to -1 reversing; below J = -0.5 ahead low-speed MMG codes leave the polynomial (Yasukawa's extension); a shaft at rest in a moving ship is outside",
+        ..Validity::ANY
+    },
     mechanisms: &[],
     parameters: &[
         ParameterInfo::new("wake", "w", "-", "effective wake fraction")

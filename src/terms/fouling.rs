@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -20,6 +21,7 @@ static INFO: TermInfo = TermInfo {
     equation: "R -> (1 + f) R",
     source: "proportional increase, no source",
     needs: &[],
+    validity: Validity::any("a proportion of the resistance, no law of its own"),
     mechanisms: &[Mechanism {
         name: "fouling",
         title: "hull fouling",

@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::{Form, Group, Instant, Physics, Reach, Term, TermInfo};
+use crate::physics::{Validity, degrees};
 use crate::ship::Ship;
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -47,6 +48,14 @@ static INFO: TermInfo = TermInfo {
                (m xG-Nvdot) v' + (Iz-Nrdot) r' - Nv U v + (m xG u-Nr U) r - Nrr r|r| - Nrrv r^2 v/U - Nvvr v^2 r/U = N",
     source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (1) after Spyrou 1996; coefficients by Clarke et al. 1982 and Inoue et al. 1981",
     needs: &[],
+    validity: Validity {
+        froude: Some([0.0, 0.25]),
+        drift: Some([0.0, degrees(20.0)]),
+        turn: Some([0.0, 1.4]),
+        depth: Some([3.0, f64::INFINITY]),
+        source: "Yasukawa & Yoshimura 2015, section 2: lateral velocity small beside the forward one, no wave making; printed for headway; deep water is h/d > 3 by the classes of PIANC 1992. The numbers 0.25, 20 deg and 1.4 are engineering limits: from 20 deg and 0.5 r L/u = tan 35 deg on, low-speed codes go over to another model",
+        ..Validity::ANY
+    },
     mechanisms: &[],
     parameters: &[
         ParameterInfo::new("mass", "m", "kg", "mass")

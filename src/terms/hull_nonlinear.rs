@@ -7,6 +7,7 @@ use crate::physics::Flow;
 use crate::physics::Probe;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::physics::{Validity, degrees};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -20,6 +21,13 @@ static INFO: TermInfo = TermInfo {
     equation: "V^2 = u^2 + v^2 + (r L/2)^2; X = 1/2 rho L d (X_vv v^2 + X_rr r^2 L^2 + X_vvvv v^4/V^2), Y = 1/2 rho L d (Y_vvv v^3 + Y_vvr v^2 r L + Y_vrr v r^2 L^2 + Y_rrr r^3 L^3)/V, N = 1/2 rho L^2 d (N_vvv v^3 + N_rrr r^3 L^3)/V",
     source: "cubic hull force of Yasukawa & Yoshimura 2015, with V for U so that turning on the spot stays finite",
     needs: &[],
+    validity: Validity {
+        froude: Some([0.0, 0.25]),
+        drift: Some([0.0, degrees(20.0)]),
+        turn: Some([0.0, 1.4]),
+        source: "Yasukawa & Yoshimura 2015, as `hull`: a series in drift and turn, for headway without wave making; the numbers are engineering limits",
+        ..Validity::ANY
+    },
     mechanisms: &[Mechanism {
         name: "hull_nonlinear",
         title: "further hull nonlinearity",

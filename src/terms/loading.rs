@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -20,6 +21,7 @@ static INFO: TermInfo = TermInfo {
     equation: "m -> (1 + mass) m, Iz -> (1 + mass) Iz, xG -> xG + x_g L",
     source: "rigid body",
     needs: &[],
+    validity: Validity::any("rigid-body mechanics; hull coefficients stay those of the design draught"),
     mechanisms: &[Mechanism {
         name: "loading",
         title: "another loading condition (mass, trim)",

@@ -21,7 +21,6 @@ pub mod fouling;
 pub mod heading_bias;
 pub mod hull;
 pub mod hull_nonlinear;
-pub mod listing;
 pub mod loading;
 pub mod log_scale;
 pub mod mean_wind;

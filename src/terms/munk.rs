@@ -7,6 +7,7 @@ use crate::physics::Flow;
 use crate::physics::Probe;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::physics::{Validity, degrees};
 use crate::state::Force;
 use trimtab_ad::Scalar;
 
@@ -20,6 +21,11 @@ static INFO: TermInfo = TermInfo {
     equation: "N = -k 1/2 rho L^2 d u v",
     source: "potential flow about a slender body (Munk)",
     needs: &[],
+    validity: Validity {
+        drift: Some([0.0, degrees(20.0)]),
+        source: "potential flow about a slender body, before the flow separates; the number 20 deg is an engineering limit as in `hull`",
+        ..Validity::ANY
+    },
     mechanisms: &[Mechanism {
         name: "munk",
         title: "unstable yaw moment of drift",

@@ -3,6 +3,7 @@
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -17,6 +18,11 @@ static INFO: TermInfo = TermInfo {
     equation: "X_n = (1-t) T; Y_n = p0 X_n; N_n = x_P Y_n",
     source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (2)",
     needs: &[],
+    validity: Validity {
+        rate: Some([0.0, f64::INFINITY]),
+        source: "a side force proportional to thrust holds for a propeller that turns ahead: astern Hachii's measurements have the other sign and a share of the thrust that changes with speed",
+        ..Validity::ANY
+    },
     mechanisms: &[],
     parameters: &[ParameterInfo::new("side_force", "p0", "-", "side force over net thrust, to starboard")
         .scale(|_| 0.01)

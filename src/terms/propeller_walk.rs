@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
@@ -20,6 +21,13 @@ static INFO: TermInfo = TermInfo {
                for a left-handed screw Y and N to the other side",
     source: "shape after Hachii's measurements as used in low-speed MMG models; the fade exp(-J^2) written 1/(1 + J^2), regular at n = 0",
     needs: &[],
+    validity: Validity {
+        rate: Some([f64::NEG_INFINITY, f64::INFINITY]),
+        reversing: Some([-0.8, 0.2]),
+        widens: &["propeller"],
+        source: "Hachii's measurements turning astern, for u/(n D) from -0.8 to 0.2; turning ahead no range is published",
+        ..Validity::ANY
+    },
     mechanisms: &[
         Mechanism {
             name: "propeller_walk_astern",

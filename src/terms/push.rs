@@ -4,6 +4,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -18,6 +19,7 @@ static INFO: TermInfo = TermInfo {
     equation: "(X, Y, N) = (x, y, n) (tanh((t - start)/1 s) - tanh((t - end)/1 s))/2",
     source: "generic, no source",
     needs: &[],
+    validity: Validity::any("no cause and no law: a constant force in a window of time"),
     mechanisms: &[],
     parameters: &[
         ParameterInfo::new("x", "F_x", "N", "force forward").scale(size::force),

@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -20,6 +21,11 @@ static INFO: TermInfo = TermInfo {
     equation: "kappa -> (1 + c) kappa",
     source: "propeller race factor of Yasukawa & Yoshimura 2015, proportional change",
     needs: &[],
+    validity: Validity {
+        rate: Some([0.0, f64::INFINITY]),
+        source: "Yasukawa & Yoshimura 2015: the race factor is that of a propeller turning ahead",
+        ..Validity::ANY
+    },
     mechanisms: &[Mechanism {
         name: "race",
         title: "propeller race on the rudder",

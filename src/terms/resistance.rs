@@ -3,6 +3,7 @@
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
+use crate::physics::Validity;
 use crate::physics::{Form, Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::state::Force;
 use trimtab_ad::Scalar;
@@ -17,6 +18,12 @@ static INFO: TermInfo = TermInfo {
     equation: "X = -R(u), R = p1 u + p2 u^2 + p3 u^3 (form `regular`: p2 u|u|)",
     source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (1); sign corrected",
     needs: &[],
+    validity: Validity {
+        froude: Some([0.0, 0.25]),
+        depth: Some([3.0, f64::INFINITY]),
+        source: "the even power of the printed cubic keeps its sign astern, so that it holds for headway; deep water is h/d > 3 by the classes of PIANC 1992; 0.25, from where wave making outgrows a cubic, is an engineering limit",
+        ..Validity::ANY
+    },
     mechanisms: &[],
     parameters: &[
         ParameterInfo::new("linear", "p1", "N s/m", "linear resistance").scale(rate::<1>),

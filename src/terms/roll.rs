@@ -4,6 +4,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Adjust, Flow};
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
@@ -27,6 +28,7 @@ static INFO: TermInfo = TermInfo {
     equation: "h = U (r - tau r')/g; Y = sway 1/2 rho L d U^2 h, N = yaw 1/2 rho L^2 d U^2 h; the part in r' joins the mass matrix",
     source: "quasi-static reduction of the four-degree-of-freedom container-ship model of Son & Nomoto",
     needs: &[],
+    validity: Validity::any("quasi-static: the turn must change slowly against the roll period, which is not recorded"),
     mechanisms: &[Mechanism {
         name: "roll",
         title: "roll coupled into yaw",

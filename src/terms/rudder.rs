@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
+use crate::physics::{Validity, degrees};
 use crate::state::Force;
 use std::f64::consts::PI;
 use trimtab_ad::{Scalar, smooth};
@@ -29,6 +30,11 @@ static INFO: TermInfo = TermInfo {
                |a| from 45 to 60 deg blends into a flat plate, c_L = 1.2 sin a cos a, c_D = 1.2 sin^2 a",
     source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (3)-(4); resolution of lift and drag derived, area and inflow not printed there",
     needs: &[],
+    validity: Validity {
+        attack: Some([0.0, degrees(45.0)]),
+        source: "the published cubics change sign between 45 and 57 deg; beyond 45 deg the flat plate that takes over is an engineering estimate",
+        ..Validity::ANY
+    },
     mechanisms: &[],
     parameters: &[
         ParameterInfo::new("lift0", "p4", "-", "lift coefficient at zero angle").scale(|_| 0.05).odd(),

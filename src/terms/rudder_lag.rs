@@ -4,6 +4,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -43,6 +44,7 @@ static INFO: TermInfo = TermInfo {
     equation: "tau delta' = delta_c - delta",
     source: "first-order steering gear, exact for an order that is linear between samples",
     needs: &[],
+    validity: Validity::any("a linear lag of the order; no range is published"),
     mechanisms: &[Mechanism {
         name: "rudder_lag",
         title: "rudder lag",

@@ -3,6 +3,7 @@
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -19,6 +20,7 @@ static INFO: TermInfo = TermInfo {
     equation: "delta -> delta + offset",
     source: "constant offset, no source",
     needs: &[],
+    validity: Validity::any("a constant angle"),
     mechanisms: &[Mechanism {
         name: "rudder_offset",
         title: "rudder zero offset",

@@ -4,6 +4,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -20,6 +21,7 @@ static INFO: TermInfo = TermInfo {
     equation: "per sample: delta moves by e/(1 + (|e| a/dt)^4)^(1/4), e = order - delta; |delta'| < 1/a",
     source: "rate limit with rounded corner; SOLAS asks 35 to -30 deg in 28 s, a = 25 s/rad",
     needs: &[],
+    validity: Validity::any("a limit of the steering gear at any state of the ship"),
     mechanisms: &[Mechanism {
         name: "rudder_rate",
         title: "rudder rate limit",

@@ -6,6 +6,7 @@ use crate::physics::Adjust;
 use crate::physics::Probe;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
+use crate::physics::{Validity, degrees};
 use crate::ship::Ship;
 use crate::state::Inputs;
 use trimtab_ad::Scalar;
@@ -20,6 +21,11 @@ static INFO: TermInfo = TermInfo {
     equation: "c_L -> c_L (1 - loss s), s from 0 to 1 as |a| goes from onset to onset + 6 deg",
     source: "linear lift up to stall and a drop of 20 to 40 % after it, at 27 to 40 deg in the slipstream; the smooth step is trimtab's",
     needs: &[],
+    validity: Validity {
+        attack: Some([0.0, degrees(45.0)]),
+        source: "stall angles of 27 to 40 deg; beyond 45 deg the rudder of the base model is a flat plate",
+        ..Validity::ANY
+    },
     mechanisms: &[Mechanism {
         name: "rudder_stall",
         title: "rudder stall",

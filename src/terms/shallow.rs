@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -30,6 +31,12 @@ static INFO: TermInfo = TermInfo {
     equation: "z = ratio + strength (d/h)/(1 - d/h); factors 1 + a z: sway a = 0.5, yaw of drift 0.5, rotary 0.15, added mass 0.55, resistance 0.15",
     source: "Hirano/Kijima effective aspect ratio and Li & Wu added mass, fitted over h/d = 1.5 to 3 for five ships; resistance after Schlichting",
     needs: &[],
+    validity: Validity {
+        depth: Some([1.5, f64::INFINITY]),
+        widens: &["hull", "resistance"],
+        source: "fitted to Hirano/Kijima and Li & Wu for h/d from 1.5 to 3, with no effect in deep water",
+        ..Validity::ANY
+    },
     mechanisms: &[Mechanism {
         name: "shallow",
         title: "shallow water",

@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -20,6 +21,12 @@ static INFO: TermInfo = TermInfo {
     equation: "Yv U v -> Yv |u| v, Nr U r -> Nr |u| r, Yr U r -> Yr u r, Nv U v -> Nv u v, p2 u^2 -> p2 u|u|, in a share from 0 to 1",
     source: "Yoshimura's low-speed form, no factor 1/U",
     needs: &[],
+    validity: Validity {
+        froude: Some([-0.25, 0.25]),
+        widens: &["hull", "resistance"],
+        source: "Yoshimura's low-speed form is written for both directions of motion; the number 0.25 is an engineering limit as in `hull`",
+        ..Validity::ANY
+    },
     mechanisms: &[Mechanism {
         name: "sternway",
         title: "hull forces that change sign astern",

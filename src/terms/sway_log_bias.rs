@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::STATES;
@@ -19,6 +20,7 @@ static INFO: TermInfo = TermInfo {
     equation: "v_m = v + b",
     source: "constant bias, no source",
     needs: &[],
+    validity: Validity::any("exact kinematics of a sensor"),
     mechanisms: &[Mechanism {
         name: "sway_log_bias",
         title: "a bias of the sway log",

@@ -5,6 +5,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::ship::Ship;
 use crate::state::Force;
@@ -30,6 +31,9 @@ static INFO: TermInfo = TermInfo {
                X even and Y, N odd in (v, r, delta); |.| rounded at small speeds",
     source: "generic basis, no source",
     needs: &[],
+    validity: Validity::any(
+        "an unnamed force law: it holds where the data that set its coefficients are, and nowhere else",
+    ),
     mechanisms: &[],
     parameters: &[
         coefficient("X_u_absu", "u|u|", |_| 0.02),

@@ -6,6 +6,7 @@ use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
@@ -21,6 +22,11 @@ static INFO: TermInfo = TermInfo {
     equation: "Y = gain T_0 command/(1 + (u/u_Y)^2), N = x_T gain T_0 command/(1 + (u/u_N)^2)",
     source: "half the force at 2.5 kn for a coaster, as in harbour-manoeuvring practice; that the moment holds longer: Chislett & Bjoerheden 1966",
     needs: &["thruster"],
+    validity: Validity {
+        froude: Some([0.0, 0.1]),
+        source: "model tests ahead (Chislett & Bjoerheden 1966; Int. Shipbuild. Prog. 14, 1967: a 60,000 t tanker has the least moment at 4 kn and more at higher speed, which a fade does not give); the number 0.1 is an engineering limit",
+        ..Validity::ANY
+    },
     mechanisms: &[Mechanism {
         name: "thruster",
         title: "bow thruster",

@@ -5,6 +5,7 @@ use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -25,6 +26,7 @@ static INFO: TermInfo = TermInfo {
     equation: "V_c += (north_cos, east_cos) cos w t + (north_sin, east_sin) sin w t, w = 2 pi/44714 s",
     source: "principal lunar constituent M2, 12.42 h; kinematics as `current`",
     needs: &[],
+    validity: Validity::any("as `current`; one constituent, so hours and not days"),
     mechanisms: &[Mechanism {
         name: "tide",
         title: "tidal current",

@@ -5,6 +5,7 @@ use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::STATES;
@@ -20,6 +21,7 @@ static INFO: TermInfo = TermInfo {
     equation: "y_m(t) = y(t) - tau y'(t)",
     source: "first-order expansion of a delay",
     needs: &[],
+    validity: Validity::any("first order in the delay: good while rates change little over it"),
     mechanisms: &[Mechanism {
         name: "time_skew",
         title: "channels recorded at different times",

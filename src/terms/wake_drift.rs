@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::ship::Ship;
@@ -20,6 +21,11 @@ static INFO: TermInfo = TermInfo {
     equation: "w = w_0 - relief s^2 + asymmetry s, s = (v + x_P r)/sqrt(u^2 + (v + x_P r)^2), the sine of the drift angle at the propeller",
     source: "quadratic wake law of low-speed MMG models; an exponential one is in Yasukawa & Yoshimura 2015",
     needs: &[],
+    validity: Validity {
+        froude: Some([0.0, f64::INFINITY]),
+        source: "low-speed MMG models use the quadratic law ahead only and set the wake to zero astern",
+        ..Validity::ANY
+    },
     mechanisms: &[Mechanism {
         name: "wake_drift",
         title: "wake that changes with drift",

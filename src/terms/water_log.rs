@@ -4,6 +4,7 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::STATES;
@@ -19,6 +20,7 @@ static INFO: TermInfo = TermInfo {
     equation: "(u, v)_m = (u, v) - share V_c in body axes",
     source: "kinematics",
     needs: &[],
+    validity: Validity::any("exact kinematics of a sensor"),
     mechanisms: &[Mechanism {
         name: "water_log",
         title: "a speed log that reads through the water",

@@ -5,6 +5,7 @@ use super::waves::drift_load;
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
 use crate::state::Force;
@@ -23,6 +24,11 @@ static INFO: TermInfo = TermInfo {
     equation: "X = 1/16 rho g L H_s^2 c_x cos chi, Y = 1/16 rho g L H_s^2 c_y sin chi, N = 1/16 rho g L^2 H_s^2 c_n sin chi; chi from the bow to where the waves travel; c_x, c_y, c_n typical unless fitted",
     source: "Daidola's mean drift with its coefficients for waves half as long as the ship",
     needs: &[],
+    validity: Validity {
+        froude: Some([-0.1, 0.1]),
+        source: "Daidola, Graham & Chandrash 1986 is for slow speeds, as the coefficients do not depend on speed; the number 0.1 is an engineering limit",
+        ..Validity::ANY
+    },
     mechanisms: &[Mechanism {
         name: "wave_drift",
         title: "wave drift of unrecorded waves",

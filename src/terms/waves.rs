@@ -4,6 +4,7 @@
 use super::size;
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Flow, Reach};
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
@@ -29,6 +30,11 @@ static INFO: TermInfo = TermInfo {
     equation: "X = 1/16 rho g L H_s^2 c_x cos chi, Y = 1/16 rho g L H_s^2 c_y sin chi, N = 1/16 rho g L^2 H_s^2 c_n sin chi; chi from the bow to where the waves travel",
     source: "Daidola's mean drift with constant coefficients",
     needs: &["waves"],
+    validity: Validity {
+        froude: Some([-0.1, 0.1]),
+        source: "Daidola, Graham & Chandrash 1986 is for slow speeds, as the coefficients do not depend on speed; the number 0.1 is an engineering limit",
+        ..Validity::ANY
+    },
     mechanisms: &[Mechanism {
         name: "waves",
         title: "wave drift of recorded waves",

@@ -3,6 +3,7 @@
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
+use crate::physics::Validity;
 use crate::physics::{Flow, Reach};
 use crate::physics::{Group, Instant, Physics, Term, TermInfo};
 use crate::physics::{Kind, Mechanism};
@@ -57,6 +58,9 @@ static INFO: TermInfo = TermInfo {
     equation: "u_w = u - W_x, v_w = v - W_y, V^2 = u_w^2 + v_w^2; X = -1/2 rho_a A_F c_x u_w V, Y = -1/2 rho_a A_L c_y v_w V, N = -rho_a A_L L_oa c_n u_w v_w; less the load in still air",
     source: "cosine and sine form, C_X = -c_x cos g, C_Y = c_y sin g, C_N = c_n sin 2g, as in public MMG codes",
     needs: &["wind"],
+    validity: Validity::any(
+        "the cosine and sine form is used for any direction of the wind; its source gives no range",
+    ),
     mechanisms: &[Mechanism {
         name: "wind",
         title: "wind recorded by the anemometer",

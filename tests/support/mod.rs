@@ -7,11 +7,11 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::path::Path;
-use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::noise::{GROUP_OF, Noise, SensorNoise};
 use trimtab::dynamics::Dynamics;
 use trimtab::model::Model;
 use trimtab::physics::Form;
+use trimtab::recording::{Measured, Run, Split, measured};
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Method, driven, step};
 use trimtab::state::{Force, Inputs, State};
@@ -32,6 +32,11 @@ pub fn truth_noise() -> Noise {
         force: [2e3, 2e3, 6e4],
         force_time: 20.0,
     }
+}
+
+/// Adds to what was measured in one channel.
+pub fn add(m: &mut Measured, channel: usize, amount: f64) {
+    m[channel] = m[channel].map(|v| v + amount);
 }
 
 pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
@@ -59,17 +64,17 @@ pub fn commanded(
             let heading = std::f64::consts::TAU * (i as f64 * 0.618_034).fract();
             let session = format!("s{}", (i / 4) % 4);
             let theta = model.values_in(&session);
-            let measured = measured(model, &theta, noise, &inputs, [0.0, 0.0, heading, 1.8 * n0, 0.0, 0.0], &mut rng);
+            let states = reported(model, &theta, noise, &inputs, [0.0, 0.0, heading, 1.8 * n0, 0.0, 0.0], &mut rng);
             Run {
                 name: format!("run {i}"),
                 recording: format!("run {i}"),
                 session,
                 manoeuvre: String::new(),
+                split: Split::Train,
                 dt: DT,
                 inputs,
-                initial: measured[0],
-                measured,
-                channels: [true; 6],
+                initial: states[0],
+                measured: measured(&states),
                 disturbed: Vec::new(),
             }
         })
@@ -101,7 +106,7 @@ fn orders(i: usize, n0: f64, thruster: &dyn Fn(usize, f64) -> f64) -> Vec<Inputs
 }
 
 /// The states that noisy sensors report of a ship under these orders and an Ornstein-Uhlenbeck force.
-fn measured(
+fn reported(
     model: &Model,
     theta: &[f64],
     noise: &Noise,
@@ -121,7 +126,7 @@ fn measured(
     let dynamics = Dynamics::new(model, theta.to_vec());
     let series = driven(&dynamics, fine, DT, orders);
     let h = DT / fine.substeps as f64;
-    let mut measured = Vec::new();
+    let mut states = Vec::new();
     for k in 0..orders.len() {
         let now = State::from_array(state);
         let at = k * fine.instants();
@@ -133,7 +138,7 @@ fn measured(
             let rho = (-DT / s.time).exp();
             colour[c] = rho * colour[c] + s.coloured * (1.0 - rho * rho).sqrt() * normal(rng);
         }
-        measured.push(y);
+        states.push(y);
         if k + 1 == orders.len() {
             break;
         }
@@ -146,5 +151,5 @@ fn measured(
             }
         }
     }
-    measured
+    states
 }

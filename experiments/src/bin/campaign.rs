@@ -16,6 +16,7 @@ use trimtab_experiments::conceal::campaign::summary::{summary, table};
 use trimtab_experiments::conceal::error::ConcealError;
 use trimtab_experiments::conceal::judge::score::Score;
 use trimtab_experiments::conceal::runner::Runner;
+use trimtab_experiments::folders::exit;
 
 /// Makes, diagnoses and judges concealed cases, and compares the scores with the aims.
 #[derive(Parser)]
@@ -70,13 +71,7 @@ enum Slice {
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(e) => {
-            eprintln!("campaign: {e}");
-            ExitCode::from(2)
-        }
-    }
+    exit("campaign", run(&Arguments::parse()))
 }
 
 fn run(a: &Arguments) -> Result<(), ConcealError> {

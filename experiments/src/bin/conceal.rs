@@ -12,6 +12,7 @@ use trimtab_experiments::conceal::error::ConcealError;
 use trimtab_experiments::conceal::family::Family;
 use trimtab_experiments::conceal::meter::DiagnosisMeter;
 use trimtab_experiments::conceal::spec::{Background, Spec, Strength};
+use trimtab_experiments::folders::exit;
 
 /// Writes recordings with a concealed effect into OUT/study, and its sealed manifest into OUT/sealed.
 #[derive(Parser)]
@@ -56,16 +57,7 @@ fn main() -> ExitCode {
         }
         return ExitCode::SUCCESS;
     }
-    match run(&arguments) {
-        Ok(study) => {
-            println!("{}", study.display());
-            ExitCode::SUCCESS
-        }
-        Err(e) => {
-            eprintln!("conceal: {e}");
-            ExitCode::from(2)
-        }
-    }
+    exit("conceal", run(&arguments).map(|study| println!("{}", study.display())))
 }
 
 fn run(a: &Arguments) -> Result<PathBuf, ConcealError> {

@@ -1,9 +1,16 @@
 //! Writes the data that `trimtab demo` embeds into the library's `src/demo`.
-//! It changes nothing else; the tests check that what is committed is what this writes.
+//! A test compares the committed files with its output; it changes no other file.
 
 use std::path::Path;
 
+use clap::Parser;
+
+/// Writes the data that `trimtab demo` embeds into src/demo.
+#[derive(Parser)]
+struct Arguments {}
+
 fn main() -> std::io::Result<()> {
+    Arguments::parse();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/demo");
     std::fs::create_dir_all(&folder)?;
     for (name, text) in trimtab_experiments::demo::files() {

@@ -9,6 +9,7 @@ use trimtab_experiments::conceal::error::ConcealError;
 use trimtab_experiments::conceal::judge::rules::judge;
 use trimtab_experiments::conceal::judge::said::Diagnosis;
 use trimtab_experiments::conceal::seal;
+use trimtab_experiments::folders::exit;
 
 /// Prints the scores of a diagnosis as one CSV row with its header.
 #[derive(Parser)]
@@ -20,16 +21,7 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
-        Ok(row) => {
-            print!("{row}");
-            ExitCode::SUCCESS
-        }
-        Err(e) => {
-            eprintln!("judge: {e}");
-            ExitCode::from(2)
-        }
-    }
+    exit("judge", run(&Arguments::parse()).map(|row| print!("{row}")))
 }
 
 fn run(arguments: &Arguments) -> Result<String, ConcealError> {

@@ -1,6 +1,7 @@
 //! Prints the trials of KVLCC2 under the standard MMG simulator beside a reference simulation and beside the model tests.
 //! It checks nothing: the tests of the simulator do.
 
+use clap::Parser;
 use comfy_table::{Table, presets};
 use trimtab_experiments::truth::reference::{Reference, ZIGZAGS, references};
 use trimtab_experiments::truth::trial::{Approach, turning, zigzag};
@@ -28,7 +29,12 @@ struct Line {
     tested: Option<f64>,
 }
 
+/// Prints the trials of KVLCC2 beside a reference simulation and beside the model tests.
+#[derive(Parser)]
+struct Arguments {}
+
 fn main() {
+    Arguments::parse();
     for reference in references() {
         println!("{}\n", table(&reference));
     }

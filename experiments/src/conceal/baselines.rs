@@ -6,9 +6,8 @@ use std::path::Path;
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::baseline::{Refitted, Told, oracle};
 use trimtab::diagnose::candidate::Extent;
-use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
-use trimtab::recording::Split;
+use trimtab::recording::{Run, Split};
 use trimtab::ship::Ship;
 use trimtab::study::Study;
 
@@ -63,8 +62,7 @@ pub fn ask(study: &Path, manifest: &Manifest, wanted: Wanted) -> Result<Baseline
     let ship = Ship::read(&content.ship).map_err(|e| fail(&e))?;
     let model = Model::read(&content.model, ship).map_err(|e| fail(&e))?;
     let windows = content.windows(model.ship.hull.draught).map_err(|e| fail(&e))?.windows;
-    let of = |split: Split| -> Vec<Run> { windows.iter().filter(|w| w.split == split).map(Run::from).collect() };
-    let (train, held_out) = (of(Split::Train), of(Split::Test));
+    let (train, held_out): (Vec<Run>, Vec<Run>) = windows.into_iter().partition(|w| w.split == Split::Train);
     let settings = Settings::default();
     if wanted.rivals
         && let Some(refitted) = Refitted::new(&model, &train, &settings).map_err(|e| fail(&e))?
@@ -121,7 +119,7 @@ mod tests {
     use crate::conceal::family::Family;
     use crate::conceal::spec::Spec;
     use crate::conceal::strength::ForceMeter;
-    use trimtab::diagnose::report::mechanism_names;
+    use trimtab::report::diagnosis::mechanism_names;
 
     #[test]
     fn rivals_run_on_nulls_and_the_oracle_on_visible_effects() {

@@ -61,7 +61,7 @@ pub enum ConcealError {
         /// The system's error.
         source: std::io::Error,
     },
-    /// A file is not what it should be.
+    /// A file with the wrong content.
     #[error("{path}: {message}", path = path.display())]
     Content {
         /// The file.

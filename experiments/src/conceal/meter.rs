@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Mutex;
 
-use trimtab::diagnose::filter::Run;
 use trimtab::diagnose::{Settings, Signal};
 use trimtab::model::Model;
+use trimtab::recording::{Run, Split};
 use trimtab::ship::Ship;
 use trimtab::state::Inputs;
 
@@ -76,8 +76,7 @@ fn windows(recorded: &Recorded) -> Vec<(usize, usize, usize)> {
 
 /// Whether two sets of runs hold equal numbers, missing ones included.
 fn same(a: &[Run], b: &[Run]) -> bool {
-    let bits = |r: &Run| r.measured.iter().flatten().map(|v| v.to_bits()).collect::<Vec<u64>>();
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.inputs == b.inputs && bits(a) == bits(b))
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.inputs == b.inputs && a.measured == b.measured)
 }
 
 /// The runs to train on as runs of the filter, with the environment channels of `sea`.
@@ -109,17 +108,17 @@ fn runs(recorded: &Recorded, sea: &Recorded) -> Vec<Run> {
                 at.thruster = channel("thruster", row).unwrap_or_default();
                 at
             });
-            let measured: Vec<[f64; 6]> = recorded.rows[i].iter().map(|r| r.unwrap_or([f64::NAN; 6])).collect();
+            let rows = &recorded.rows[i];
             Run {
                 name: plan.name.clone(),
                 recording: plan.name.clone(),
                 session: format!("day {}", plan.session + 1),
                 manoeuvre: plan.manoeuvre.to_owned(),
+                split: Split::Train,
                 dt: PERIOD,
                 inputs: inputs.collect(),
-                initial: measured.first().copied().unwrap_or_default(),
-                measured,
-                channels: [true; 6],
+                initial: rows.iter().flatten().next().copied().unwrap_or_default(),
+                measured: rows.iter().map(|r| r.map_or([None; 6], |r| r.map(Some))).collect(),
                 disturbed: Vec::new(),
             }
         })

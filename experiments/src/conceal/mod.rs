@@ -23,7 +23,6 @@ pub mod runner;
 pub mod sail;
 pub mod seal;
 pub mod spec;
-pub mod statistics;
 pub mod strength;
 pub mod track;
 pub mod tweak;

@@ -197,11 +197,11 @@ impl Step<'_> {
         memory
     }
 
-    /// Adds the square of each effect's force at a row: what it changes in the accelerations, through the ship's own inertia.
+    /// Adds the square of each effect's force at a row: its change of the accelerations times the ship's own inertia.
     fn add_energy(&self, t: f64, state: &State, order: &Inputs, actual: &Inputs, energy: &mut [[f64; 3]]) {
         let all = self.rates(t, state, actual, None);
         for (i, e) in self.acting() {
-            let inputs = if e.physics.moves_actuators() { order } else { actual };
+            let inputs = if e.entry.moves_actuators { order } else { actual };
             let less = self.rates(t, state, inputs, Some(i));
             let force = self.world.craft.inertial_force(std::array::from_fn(|j| all[3 + j] - less[3 + j]));
             if let Some(sum) = energy.get_mut(i) {

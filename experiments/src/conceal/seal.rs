@@ -145,6 +145,8 @@ impl Case {
             );
             files.push((format!("{}.csv", plan.name), self.csv(i)));
         }
+        // The proof is judged as the recordings were made: by steps as fine as they are.
+        study += "\n[fit]\nintegration = { method = \"rk4\", substeps = 1 }\n";
         files.push(("study.toml".to_owned(), study));
         files
     }
@@ -225,7 +227,8 @@ impl Case {
             sessions: (0..e.sessions.len()).filter(|s| e.sessions[*s]).map(session).collect(),
             parameters: match e.entry.compare {
                 Compare::No => Vec::new(),
-                Compare::Parameters => e.physics.truth().into_iter().map(reported).collect(),
+                Compare::Size(name) => vec![reported((name, e.size, e.entry.unit))],
+                Compare::Truth => e.physics.truth().into_iter().map(reported).collect(),
             },
             force: (!sensor).then(|| square.map(f64::sqrt)),
             equations: (!sensor && total > 0.0).then(|| weighed.map(|w| w / total)),

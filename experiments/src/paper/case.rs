@@ -7,11 +7,11 @@ use super::published::{Published, published};
 use crate::truth::dataset::{self, Run, dataset};
 use crate::truth::ships::ShipId;
 use std::path::Path;
-use trimtab::evaluate::{Evaluation, EvaluationSettings, evaluate};
-use trimtab::fit::{Fit, FitRun, FitSettings, Limits, fit};
+use trimtab::evaluate::{Evaluation, EvaluationSettings, Judging, prove};
+use trimtab::fit::{Fit, FitSettings, Limits, fit};
 use trimtab::model::Model;
 use trimtab::physics::Form;
-use trimtab::recording::{Environment, Order, Split, Window};
+use trimtab::recording::{self, Split, measured};
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Method};
 use trimtab::state::Inputs;
@@ -53,7 +53,7 @@ pub struct Case {
     /// The data set of the truth simulator.
     pub runs: Vec<Run>,
     /// The data set as windows of the model, in this order.
-    pub windows: Vec<Window>,
+    pub windows: Vec<recording::Run>,
     /// Model with the published p~.
     pub published_baseline: Model,
     /// Model with parameters from captive tests on the truth simulator.
@@ -68,7 +68,7 @@ impl Case {
     /// Simulates the data set, fits the model and makes the baselines.
     ///
     /// # Errors
-    /// An unreadable ship file, captive tests that determine nothing, a fit that cannot be made.
+    /// An unreadable ship file, captive tests that do not determine a parameter, an impossible fit.
     pub fn prepare(ship: ShipId, setup: Setup) -> Result<Self, PaperError> {
         let runs = dataset(ship, setup.seed);
         Self::from_runs(ship, runs, setup)
@@ -85,8 +85,8 @@ impl Case {
         published_baseline.name = "published".into();
         published_baseline.set_eleven(&published.baseline);
         let captive_baseline = captive_baseline(ship, &model)?;
-        let windows: Vec<Window> = runs.iter().map(|run| window(ship, run)).collect();
-        let training = fit_runs(&model, &windows, &setup.fit);
+        let windows: Vec<recording::Run> = runs.iter().map(|run| window(ship, run)).collect();
+        let training = training(&windows);
         let fit = fit(&model, &training, &setup.fit, &mut |_| true)?;
         Ok(Self { ship, published, runs, windows, published_baseline, captive_baseline, fit, setup })
     }
@@ -102,15 +102,14 @@ impl Case {
     }
 
     /// The training runs as runs of the cost.
-    pub fn training(&self) -> Vec<FitRun> {
-        fit_runs(&self.fit.model, &self.windows, &self.setup.fit)
+    pub fn training(&self) -> Vec<recording::Run> {
+        training(&self.windows)
     }
 
     /// The fit judged against a baseline, on all runs; the summary `test` is of those held out.
     pub fn evaluate(&self, baseline: &Model) -> Evaluation {
-        let settings = &self.setup.fit;
-        let evaluation = EvaluationSettings { seed: self.setup.seed, ..EvaluationSettings::default() };
-        evaluate(baseline, &self.fit.model, &self.windows, settings.integration, settings.max_yaw_rate, &evaluation)
+        let bootstrap = EvaluationSettings { seed: self.setup.seed, ..EvaluationSettings::default() };
+        prove(baseline, &self.fit.model, &self.windows, &Judging::new(&self.setup.fit, bootstrap))
     }
 }
 
@@ -138,28 +137,24 @@ pub fn initial_model(ship: ShipId, form: Form) -> Result<Model, PaperError> {
 }
 
 /// A run as a window of the model: every channel measured without error, started from its first row.
-fn window(ship: ShipId, run: &Run) -> Window {
-    Window {
-        run: run.name.clone(),
+fn window(ship: ShipId, run: &Run) -> recording::Run {
+    recording::Run {
+        name: run.name.clone(),
+        recording: run.name.clone(),
         session: String::new(),
         manoeuvre: run.manoeuvre.into(),
         split: match run.split {
             dataset::Split::Train => Split::Train,
             dataset::Split::Test => Split::Test,
         },
-        start_time: run.t[0],
         dt: dataset::period(ship),
         inputs: (0..run.t.len()).map(|i| Inputs::actuators(run.t[i], run.n[i], run.delta[i])).collect(),
-        measured: run.state.clone(),
-        measured_channels: [true; 6],
+        measured: measured(&run.state),
         initial: run.state[0],
-        has: Environment::default(),
-        order: Order::default(),
-        water: None,
+        disturbed: Vec::new(),
     }
 }
 
-fn fit_runs(model: &Model, windows: &[Window], settings: &FitSettings) -> Vec<FitRun> {
-    let training = windows.iter().filter(|w| w.split == Split::Train);
-    training.map(|w| FitRun::of(w, &model.ship, settings.max_yaw_rate)).collect()
+fn training(windows: &[recording::Run]) -> Vec<recording::Run> {
+    windows.iter().filter(|w| w.split == Split::Train).cloned().collect()
 }

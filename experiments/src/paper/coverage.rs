@@ -1,4 +1,4 @@
-//! What a data set covers: smallest, largest and mean value of each channel, ours and as the paper prints them in Table 1.
+//! The coverage of a data set: smallest, largest and mean value of each channel, ours and as the paper prints them in Table 1.
 //! It makes no data and no table.
 
 use crate::truth::dataset::{Run, Split};

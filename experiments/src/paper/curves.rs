@@ -1,5 +1,5 @@
 //! Figure 2 of the paper: resistance, lift and drag curves, fitted beside both baselines, with the bands the constraints leave.
-//! What the truth simulators measure in captive tests is shown as points; no fit has seen them.
+//! Captive tests on the truth simulators are shown as points; no fit has used them.
 
 use super::artefact::Artefact;
 use super::captive_baseline::{rudder_points, rudder_rows};
@@ -9,9 +9,9 @@ use crate::truth::captive::{Range, towing};
 use std::path::Path;
 use trimtab::fit::{CovarianceKind, Fit};
 use trimtab::model::Model;
-use trimtab::report::{
-    Axis, BASELINE, DASH, FITTED, Figure, LIMIT, Layer, Marker, ORANGE, PURPLE, Panel, TRUTH, Table, fixed, sig,
-};
+use trimtab::numerals::{DASH, fixed, sig};
+use trimtab::plot::{Axis, BASELINE, FITTED, Figure, LIMIT, Layer, Marker, ORANGE, PURPLE, Panel, TRUTH};
+use trimtab::report::Table;
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
 
@@ -45,7 +45,7 @@ const CURVES_SHOWN: [Curve; 3] = [
         x: "surge speed u [m/s]",
         y: "R [kN]",
         units: [1.0, 1e-3],
-        range: |case| [0.0, case.windows.iter().flat_map(|w| &w.measured).fold(0.0, |top, s| s[3].max(top))],
+        range: |case| [0.0, case.windows.iter().flat_map(|w| &w.measured).filter_map(|s| s[3]).fold(0.0, f64::max)],
         parameters: 1..4,
         value: |p, u| Resistance::curve(&p[1..4], u),
         limits: &[[0.0, 5.4, 0.0, 80.0]],

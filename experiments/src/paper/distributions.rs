@@ -8,9 +8,12 @@ use super::scenarios::SHOWN;
 use super::sheet::{Sheet, cell};
 use std::path::Path;
 use trimtab::evaluate::{Comparison, Outcome};
+use trimtab::numerals::sig;
+use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel};
 use trimtab::recording::Split;
-use trimtab::report::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel, Table, sig};
+use trimtab::report::Table;
 use trimtab::state::STATES;
+use trimtab::statistics::quantile;
 
 /// Error distributions.
 pub static DISTRIBUTIONS: Artefact = Artefact {
@@ -32,14 +35,6 @@ fn quantities() -> Vec<(String, Quantity)> {
     });
     let cvdm: Quantity = Box::new(|o| Some(o.deviation()?.cvdm));
     md.chain([("cVDM [%]".to_owned(), cvdm)]).collect()
-}
-
-/// Value below which a share of the sorted samples lies, by linear interpolation.
-fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
-    let last = sorted.len().checked_sub(1)?;
-    let position = share * last as f64;
-    let (below, above) = (sorted[position.floor() as usize], sorted[position.ceil() as usize]);
-    Some(below + (above - below) * position.fract())
 }
 
 fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
@@ -89,17 +84,4 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
     }
     sheet.save(out)?;
     Ok(format!("{table}\n"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quantile;
-
-    #[test]
-    fn quantiles_interpolate_between_samples() {
-        let sorted = [1.0, 2.0, 4.0, 8.0, 16.0];
-        assert_eq!([0.0, 0.25, 0.5, 1.0].map(|q| quantile(&sorted, q)), [Some(1.0), Some(2.0), Some(4.0), Some(16.0)]);
-        assert_eq!(quantile(&sorted, 0.125), Some(1.5));
-        assert_eq!(quantile(&[], 0.5), None);
-    }
 }

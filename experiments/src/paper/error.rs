@@ -17,7 +17,7 @@ pub enum PaperError {
     Fit(#[from] trimtab::fit::FitError),
     /// A figure could not be made.
     #[error(transparent)]
-    Figure(#[from] trimtab::report::FigureError),
+    Figure(#[from] trimtab::plot::FigureError),
     /// Captive tests that do not determine a parameter.
     #[error("{ship}: the captive tests do not determine the {what}; widen their programme")]
     Captive {
@@ -26,7 +26,7 @@ pub enum PaperError {
         /// The undetermined quantity.
         what: &'static str,
     },
-    /// A split without test or training runs, or with nothing left to compare.
+    /// A split without test or training runs, or without a run to compare.
     #[error("{ship}: no {what}; use a data set with more runs")]
     Empty {
         /// The ship.

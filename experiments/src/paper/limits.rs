@@ -7,11 +7,12 @@ use super::case::{Case, initial_model};
 use super::error::PaperError;
 use super::sheet::{Sheet, cell};
 use std::path::Path;
-use trimtab::evaluate::{EvaluationSettings, evaluate};
+use trimtab::evaluate::{EvaluationSettings, Judging, prove};
 use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::{Model, Prior};
+use trimtab::numerals::{DASH, fixed, sig};
 use trimtab::physics::Form;
-use trimtab::report::{DASH, Table, fixed, sig};
+use trimtab::report::Table;
 
 /// What limits the fit.
 pub static LIMITS: Artefact = Artefact {
@@ -120,14 +121,8 @@ fn test_scores(
     fit: &Fit,
     settings: &FitSettings,
 ) -> Result<[Option<f64>; 4], PaperError> {
-    let evaluation = evaluate(
-        baseline,
-        &fit.model,
-        &case.windows,
-        settings.integration,
-        settings.max_yaw_rate,
-        &EvaluationSettings { seed: case.setup.seed, ..EvaluationSettings::default() },
-    );
+    let bootstrap = EvaluationSettings { seed: case.setup.seed, ..EvaluationSettings::default() };
+    let evaluation = prove(baseline, &fit.model, &case.windows, &Judging::new(settings, bootstrap));
     let empty = PaperError::Empty { ship: case.ship.name(), what: "test runs" };
     let s = evaluation.summary("test").ok_or(empty)?;
     Ok([s.cvdm_fitted, s.mari, s.cvdm_improvement, s.consistency].map(|e| e.map(|e| e.value)))

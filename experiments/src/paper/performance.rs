@@ -7,10 +7,12 @@ use super::error::PaperError;
 use super::sheet::{Sheet, cell};
 use std::fmt::Write;
 use std::path::Path;
-use trimtab::evaluate::{Estimate, EvaluationSettings, Summary, evaluate, predict};
+use trimtab::evaluate::{Estimate, EvaluationSettings, Judging, Summary, predict, prove};
 use trimtab::model::Model;
-use trimtab::recording::{Split, Window};
-use trimtab::report::{Axis, DASH, FITTED, Figure, GREY, Layer, Panel, Table, fixed};
+use trimtab::numerals::{DASH, fixed};
+use trimtab::plot::{Axis, FITTED, Figure, GREY, Layer, Panel};
+use trimtab::recording::{Run, Split, measured};
+use trimtab::report::Table;
 use trimtab::simulate::{Integration, Method};
 use trimtab::state::{STATE_NAMES, STATE_UNITS};
 
@@ -167,15 +169,16 @@ fn integration(case: &Case) -> String {
 }
 
 /// Mean cVDM \[%\] between a model's test trajectories under an integration and under a fine RK4.
-fn integration_error(model: &Model, windows: &[Window], integration: Integration, max_yaw_rate: f64) -> Option<f64> {
-    let exact: Vec<Window> = windows
+fn integration_error(model: &Model, windows: &[Run], integration: Integration, max_yaw_rate: f64) -> Option<f64> {
+    let exact: Vec<Run> = windows
         .iter()
         .filter(|w| w.split == Split::Test)
         .filter_map(|w| {
             let trajectory = predict(model, w, AUDIT);
-            trajectory.diverged_at.is_none().then(|| Window { measured: trajectory.states, ..w.clone() })
+            trajectory.diverged_at.is_none().then(|| Run { measured: measured(&trajectory.states), ..w.clone() })
         })
         .collect();
     let settings = EvaluationSettings { resamples: 0, ..EvaluationSettings::default() };
-    evaluate(model, model, &exact, integration, max_yaw_rate, &settings).summary("test")?.cvdm_fitted.map(|e| e.value)
+    let judging = Judging { integration, max_yaw_rate, settings };
+    prove(model, model, &exact, &judging).summary("test")?.cvdm_fitted.map(|e| e.value)
 }

@@ -1,7 +1,6 @@
 //! The command line of the binary `paper`: preparation of both ships, the tables and figures asked for, and exit codes.
 //! It makes no table and no figure itself.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -11,7 +10,7 @@ use super::artefact::Artefact;
 use super::case::{Case, Setup};
 use super::error::PaperError;
 use super::list::ARTEFACTS;
-use crate::folders::figures;
+use crate::folders::Folder;
 use crate::truth::dataset::SEED;
 use crate::truth::ships::ShipId;
 
@@ -23,9 +22,8 @@ struct Options {
     /// Tables and figures to make; all if none is given.
     #[arg(value_parser = PossibleValuesParser::new(ARTEFACTS.map(|a| a.name)))]
     names: Vec<String>,
-    /// Folder for pictures and the CSV behind them; the committed figures if not given.
-    #[arg(long)]
-    out: Option<PathBuf>,
+    #[command(flatten)]
+    folder: Folder,
     /// Seed of the data sets and of the bootstrap.
     #[arg(long, default_value_t = SEED)]
     seed: u64,
@@ -44,7 +42,7 @@ pub fn run() -> ExitCode {
 }
 
 fn make(options: &Options) -> Result<bool, PaperError> {
-    let out = options.out.clone().unwrap_or_else(figures);
+    let out = options.folder.path();
     let asked = |a: &&&Artefact| options.names.is_empty() || options.names.iter().any(|name| name == a.name);
     let setup = Setup { seed: options.seed, ..Setup::default() };
     let mut cases = Vec::new();

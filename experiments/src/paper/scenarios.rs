@@ -11,10 +11,10 @@ use super::sheet::{Sheet, cell};
 use std::fmt::Write;
 use std::path::Path;
 use trimtab::evaluate::{Comparison, predict};
-use trimtab::recording::{Split, Window};
-use trimtab::report::{
-    Axis, BASELINE, Color, DASH, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, Table, east_north, fixed, sig,
-};
+use trimtab::numerals::{DASH, fixed, sig};
+use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, east_north};
+use trimtab::recording::{Run, Split, or_nan};
+use trimtab::report::Table;
 use trimtab::state::{STATE_NAMES, STATES};
 
 /// Figures 3 to 6.
@@ -163,13 +163,14 @@ fn track(case: &Case, series: &[Series<'_>]) -> Panel {
     panel
 }
 
-fn figure(case: &Case, window: &Window, title: &str, before: &Comparison, other: &Comparison) -> Figure {
+fn figure(case: &Case, window: &Run, title: &str, before: &Comparison, other: &Comparison) -> Figure {
     let sail = |model| predict(model, window, case.setup.fit.integration).states;
     let (published, captive, fitted) =
         (sail(&case.published_baseline), sail(&case.captive_baseline), sail(&case.fit.model));
+    let measured: Vec<[f64; STATES]> = window.measured.iter().map(or_nan).collect();
     // In the order of drawing: the truth lies below the models.
     let series: [Series<'_>; 4] = [
-        ("truth", TRUTH, &window.measured, false),
+        ("truth", TRUTH, &measured, false),
         ("baseline, published p~", BASELINE, &published, true),
         ("baseline, captive tests", ORANGE, &captive, false),
         ("fitted", FITTED, &fitted, false),

@@ -8,7 +8,9 @@ use super::error::PaperError;
 use super::sheet::{Sheet, cell};
 use crate::truth::dataset::{Split, period};
 use std::path::Path;
-use trimtab::report::{Axis, DASH, FITTED, Figure, GREY, Layer, Marker, Panel, Table, fixed};
+use trimtab::numerals::{DASH, fixed};
+use trimtab::plot::{Axis, FITTED, Figure, GREY, Layer, Marker, Panel};
+use trimtab::report::Table;
 
 /// Table 1.
 pub static TABLE1: Artefact = Artefact {

@@ -4,8 +4,9 @@
 use super::error::RealError;
 use super::hull::Hull;
 use nalgebra::{DMatrix, DVector};
+use trimtab::numerals::{fixed, sig};
 use trimtab::recording::{Channel, Recording};
-use trimtab::report::{Table, fixed, sig};
+use trimtab::report::Table;
 
 /// Whether the channels of one recording agree.
 #[derive(Clone, Debug)]
@@ -100,14 +101,6 @@ impl Agreement {
 /// An angle in (-pi, pi].
 pub fn wrapped(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
-}
-
-/// The median.
-pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
-    let mut v: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
-    v.sort_by(f64::total_cmp);
-    let n = v.len();
-    if n == 0 { f64::NAN } else { 0.5 * (v[(n - 1) / 2] + v[n / 2]) }
 }
 
 /// A row a run.

@@ -1,12 +1,13 @@
 //! The diagnoses of the experiments on real hulls, and their tables of findings and of the ship's two sides.
 //! The diagnosis itself is the library's.
 
-use trimtab::diagnose::conclude::Amplitude;
-use trimtab::diagnose::filter::Run;
+use trimtab::diagnose::finding::Amplitude;
 use trimtab::diagnose::prove::HeldOut;
 use trimtab::diagnose::{Diagnosis, Settings, diagnose};
 use trimtab::model::Model;
-use trimtab::report::{Table, fixed, sig};
+use trimtab::numerals::{fixed, sig};
+use trimtab::recording::Run;
+use trimtab::report::Table;
 
 use super::error::RealError;
 
@@ -35,13 +36,15 @@ impl Case {
     }
 }
 
-/// Median errors of held-out runs before and after, with the gain: the last columns of a table.
+/// Mean errors of held-out runs before and after, with the gain: the last columns of a table. Blank where there is no number.
 pub fn held_out_columns(h: &HeldOut) -> [String; 6] {
+    let number = |value: Option<f64>, factor: f64| value.map_or_else(String::new, |v| fixed(factor * v, 1));
+    let interval = |[low, high]: [f64; 2]| format!("[{}, {}]", fixed(100.0 * low, 1), fixed(100.0 * high, 1));
     [
-        fixed(h.before, 1),
-        fixed(h.after, 1),
-        fixed(100.0 * h.improvement, 1),
-        format!("[{}, {}]", fixed(100.0 * h.ci95[0], 1), fixed(100.0 * h.ci95[1], 1)),
+        number(h.before, 1.0),
+        number(h.after, 1.0),
+        number(h.improvement, 100.0),
+        h.ci95.map_or_else(String::new, interval),
         format!("{} / {}", h.better, h.worse),
         fixed(h.log_likelihood_gain, 0),
     ]

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use trimtab::model::ModelError;
-use trimtab::report::FigureError;
+use trimtab::plot::FigureError;
 use trimtab::ship::ShipError;
 use trimtab::study::StudyError;
 

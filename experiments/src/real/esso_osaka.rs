@@ -7,11 +7,12 @@ use super::published::PublishedMmg;
 use trimtab::evaluate::{Comparison, EvaluationSettings, Outcome, Summary, compare, predict, summarise};
 use trimtab::fit::Fit;
 use trimtab::model::Model;
-use trimtab::recording::{Split, Window};
-use trimtab::report::{
-    Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, ORANGE, PURPLE, Panel, RECORDED, Table, east_north,
-    fixed,
+use trimtab::numerals::fixed;
+use trimtab::plot::{
+    Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, ORANGE, PURPLE, Panel, RECORDED, east_north,
 };
+use trimtab::recording::{Run, Split, or_nan};
+use trimtab::report::Table;
 use trimtab::simulate::Trajectory;
 
 /// Model files that are fitted, in the order of the tables.
@@ -33,7 +34,7 @@ pub struct Candidate {
 /// The results of the experiment.
 pub struct Judged {
     /// Test windows.
-    pub windows: Vec<Window>,
+    pub windows: Vec<Run>,
     /// Number of training windows.
     pub train: usize,
     /// The baselines (empirical, published), then the fitted models.
@@ -54,7 +55,7 @@ pub const BASELINES: usize = 2;
 /// [`RealError`].
 pub fn run(files: &[&str], thin: usize) -> Result<Judged, RealError> {
     let hull = Hull::open("esso_osaka")?;
-    let train: Vec<Window> = hull.windows(Split::Train)?.into_iter().step_by(thin.max(1)).collect();
+    let train: Vec<Run> = hull.windows(Split::Train)?.into_iter().step_by(thin.max(1)).collect();
     let windows = hull.windows(Split::Test)?;
     let empirical = hull.model("model.toml")?;
     // The data folder is where the runs are, in folders by manoeuvre.
@@ -72,7 +73,7 @@ pub fn run(files: &[&str], thin: usize) -> Result<Judged, RealError> {
     let candidates = predictions
         .into_iter()
         .map(|(name, predicted)| {
-            let outcome = |(w, t): (&Window, &Trajectory)| compare(w, &empirical, r_max, (t, t)).fitted;
+            let outcome = |(w, t): (&Run, &Trajectory)| compare(w, &empirical, r_max, (t, t)).fitted;
             Candidate { name, outcomes: windows.iter().zip(&predicted).map(outcome).collect(), predicted }
         })
         .collect();
@@ -121,8 +122,8 @@ impl Judged {
         let mut table = Table::new(header.into_iter().chain(self.candidates.iter().map(|c| c.name.clone())));
         for group in self.groups() {
             let group = group.as_deref();
-            let of: Vec<&Window> = self.windows.iter().filter(|w| group.is_none_or(|g| w.manoeuvre == g)).collect();
-            let mut runs: Vec<&str> = of.iter().map(|w| w.run.as_str()).collect();
+            let of: Vec<&Run> = self.windows.iter().filter(|w| group.is_none_or(|g| w.manoeuvre == g)).collect();
+            let mut runs: Vec<&str> = of.iter().map(|w| w.recording.as_str()).collect();
             runs.dedup();
             let mut row = vec![group.unwrap_or("all").to_owned(), runs.len().to_string(), of.len().to_string()];
             let cell = |i: usize| self.cvdm(i, group).map_or("diverged".into(), |c| fixed(c, 1));
@@ -167,7 +168,7 @@ impl Judged {
     }
 
     fn color(candidate: usize) -> Color {
-        [BASELINE, ORANGE, PURPLE, trimtab::report::SKY, GREEN, FITTED][candidate.min(5)]
+        [BASELINE, ORANGE, PURPLE, trimtab::plot::SKY, GREEN, FITTED][candidate.min(5)]
     }
 
     /// Mean cVDM by manoeuvre, a bar a candidate.
@@ -203,7 +204,10 @@ impl Judged {
                 let points = |states: &[[f64; 6]]| {
                     states.iter().enumerate().map(|(k, s)| point(k as f64 * window.dt, s)).collect::<Vec<_>>()
                 };
-                let mut layers = vec![Layer::line("measured", RECORDED, points(&window.measured)).width(5.0)];
+                let mut layers = vec![
+                    Layer::line("measured", RECORDED, points(&window.measured.iter().map(or_nan).collect::<Vec<_>>()))
+                        .width(5.0),
+                ];
                 for c in shown {
                     let candidate = &self.candidates[c];
                     let layer = Layer::line(&candidate.name, Self::color(c), points(&candidate.predicted[i].states));

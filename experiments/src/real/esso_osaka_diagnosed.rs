@@ -1,7 +1,7 @@
 //! Esso Osaka, diagnosed with a calm-water model and without its wind; the findings are compared with the withheld anemometer.
 //! Sensors are mended by the recordings' own kinematics before any model is used; no setting was chosen by its outcome.
 
-use super::agreement::{Agreement, median};
+use super::agreement::Agreement;
 use super::case::Case;
 use super::error::RealError;
 use super::frame::{Frame, Step};
@@ -10,10 +10,11 @@ use super::mend::{Mend, held, jumps};
 use super::pull::{Pull, pulls};
 use super::runs::{by_recording, runs, sessions, without_term, without_wind};
 use trimtab::diagnose::Settings;
-use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
-use trimtab::recording::Split;
-use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, RECORDED, fixed, sig};
+use trimtab::numerals::{fixed, sig};
+use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, RECORDED};
+use trimtab::recording::{Run, Split};
+use trimtab::statistics::median;
 
 /// Span over which changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 const SPAN: f64 = 20.0;
@@ -44,7 +45,7 @@ pub struct Diagnosed {
     pub walks: [(f64, f64); 2],
 }
 
-/// Runs everything.
+/// Makes every diagnosis and asks every question.
 ///
 /// # Errors
 /// [`RealError`].
@@ -133,7 +134,7 @@ fn mends(hull: &Hull, kinematics: &[Agreement]) -> Result<Vec<(String, Mend)>, R
         let mend = Mend {
             no_velocity: true,
             held: held(&recording, 2),
-            rate_delay: median(kinematics.iter().filter(same).map(|a| a.rate_delay)),
+            rate_delay: median(kinematics.iter().filter(same).map(|a| a.rate_delay)).unwrap_or(f64::NAN),
             rate_bias: own.map_or(0.0, |a| a.rate_bias),
             jumps: jumps(&recording, FASTEST[0], FASTEST[1]),
         };
@@ -157,7 +158,7 @@ impl Diagnosed {
         let of = |list: Vec<&Pull>| {
             let near = list.iter().filter(|p| p.turned().abs() <= NEAR).count();
             let covered = list.iter().filter(|p| p.turned().abs() <= p.direction().1).count();
-            let off = median(list.iter().map(|p| p.turned().abs().to_degrees()));
+            let off = median(list.iter().map(|p| p.turned().abs().to_degrees())).unwrap_or(f64::NAN);
             format!(
                 "{near} of {} within 20 deg of the anemometer, median {} deg off, {covered} inside their own 95 % interval",
                 list.len(),
@@ -232,10 +233,9 @@ impl Diagnosed {
         let shown = &self.steps[..3];
         let names = ["force a session, blind", "measured wind", "wind, then force"];
         let bar = |f: &dyn Fn(&Step) -> f64| shown.iter().map(f).collect::<Vec<_>>();
-        let proof =
-            Panel::new("held-out runs", Axis::categories("", names), Axis::new("median cVDM [%]").including(0.0))
-                .with(Layer::bars("before", BASELINE, bar(&|s| s.held_out.before)))
-                .with(Layer::bars("after", GREEN, bar(&|s| s.held_out.after)));
+        let proof = Panel::new("held-out runs", Axis::categories("", names), Axis::new("mean cVDM [%]").including(0.0))
+            .with(Layer::bars("before", BASELINE, bar(&|s| s.held_out.before.unwrap_or(f64::NAN))))
+            .with(Layer::bars("after", GREEN, bar(&|s| s.held_out.after.unwrap_or(f64::NAN))));
         Figure::new("Esso Osaka, 3 m: the force found without the anemometer, and the wind it recorded")
             .columns(3)
             .panel_size(800, 720)

@@ -2,16 +2,19 @@
 //! runs. It is no diagnosis: nothing is screened or named.
 
 use nalgebra::{DMatrix, DVector};
+use trimtab::audit::settled;
 use trimtab::diagnose::admit::followed;
 use trimtab::diagnose::estimate::{Effort, FreeParameter, base_of, estimate, evidence, passes, restrictions};
 use trimtab::diagnose::evidence::Test;
-use trimtab::diagnose::filter::{Column, Run};
+use trimtab::diagnose::filter::Column;
 use trimtab::diagnose::noise::{Noise, NoisePrior};
 use trimtab::diagnose::prove::{HeldOut, prove};
-use trimtab::diagnose::receiver::settled;
 use trimtab::diagnose::{Diagnosis, Settings};
+use trimtab::evaluate::Judging;
 use trimtab::model::{Model, Prior};
-use trimtab::report::{Table, fixed, sig};
+use trimtab::numerals::{fixed, sig};
+use trimtab::recording::Run;
+use trimtab::report::Table;
 use trimtab::simulate::Integration;
 
 use super::case::held_out_columns;
@@ -121,11 +124,10 @@ impl Frame {
         Answer { test, model: found.model }
     }
 
-    /// One model against another on held-out runs, which are split where positions jump.
+    /// One model against another on held-out runs.
     pub fn prove(&self, before: &Model, after: &Model, held_out: &[Run]) -> HeldOut {
-        let seed = Settings::default().seed;
-        let (held_out, _) = settled(held_out, self.model.ship.hull.lpp);
-        prove((before, &self.noise), (after, &self.noise), None, self.integration, &held_out, seed)
+        let judging = Judging { integration: self.integration, ..Settings::default().judging };
+        prove((before, &self.noise), (after, &self.noise), None, self.integration, held_out, &judging)
     }
 
     /// A question with its proof.
@@ -164,7 +166,7 @@ pub fn steps_table(steps: &[Step]) -> Table {
         "degrees of freedom",
         "p",
         "held-out runs",
-        "median cVDM before [%]",
+        "mean cVDM before [%]",
         "after [%]",
         "improvement [%]",
         "95 % interval",

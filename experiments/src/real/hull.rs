@@ -3,9 +3,9 @@
 
 use std::path::Path;
 
-use trimtab::fit::{Fit, FitRun, FitSettings, fit};
+use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::Model;
-use trimtab::recording::{Split, Window};
+use trimtab::recording::{Run, Split};
 use trimtab::ship::Ship;
 use trimtab::study::Study;
 
@@ -25,7 +25,7 @@ impl Hull {
     /// Opens the study `studies/NAME/study.toml`; the recordings are found as the study says.
     ///
     /// # Errors
-    /// [`RealError`]; [`super::error::is_absent`] tells whether the recordings are absent.
+    /// [`RealError`]; [`super::error::is_absent`] is true if the recordings are absent.
     pub fn open(name: &str) -> Result<Self, RealError> {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies").join(name).join("study.toml");
         let study = Study::read(&path)?;
@@ -46,7 +46,7 @@ impl Hull {
     ///
     /// # Errors
     /// [`RealError::Study`].
-    pub fn windows(&self, split: Split) -> Result<Vec<Window>, RealError> {
+    pub fn windows(&self, split: Split) -> Result<Vec<Run>, RealError> {
         let windows = self.study.windows(self.ship.hull.draught)?.windows;
         Ok(windows.into_iter().filter(|w| w.split == split).collect())
     }
@@ -55,9 +55,8 @@ impl Hull {
     ///
     /// # Errors
     /// [`RealError::Fit`].
-    pub fn fitted(&self, model: &Model, windows: &[Window]) -> Result<Fit, RealError> {
-        let runs: Vec<FitRun> = windows.iter().map(|w| FitRun::of(w, &self.ship, self.fit.max_yaw_rate)).collect();
-        let mut fit = fit(model, &runs, &self.fit, &mut |_| true)?;
+    pub fn fitted(&self, model: &Model, windows: &[Run]) -> Result<Fit, RealError> {
+        let mut fit = fit(model, windows, &self.fit, &mut |_| true)?;
         if !fit.converged {
             fit.model.name += " (not converged)";
         }

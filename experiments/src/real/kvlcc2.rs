@@ -9,10 +9,10 @@ use trimtab::maneuver::{
     zigzag_trial,
 };
 use trimtab::model::Model;
-use trimtab::recording::{Split, Window};
-use trimtab::report::{
-    Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, Panel, RECORDED, Table, east_north, fixed,
-};
+use trimtab::numerals::fixed;
+use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, Panel, RECORDED, east_north};
+use trimtab::recording::{Run, Split};
+use trimtab::report::Table;
 
 /// Rudder angle of the turning circles \[rad\].
 const HARD_OVER: f64 = 35.0 * std::f64::consts::PI / 180.0;
@@ -140,7 +140,7 @@ impl Outcome {
     /// Adds a turning circle if it is to this side.
     fn add_turn(
         &mut self,
-        test: &Window,
+        test: &Run,
         side: Side,
         models: &[&Model],
         trial: &ManeuverSettings,
@@ -179,7 +179,7 @@ impl Outcome {
         let shown = from_execute(&track, execute);
         let held = (0..shown.len()).rev().find(|&k| (shown.delta[k] - measured.rudder).abs() < 0.05 * HARD_OVER);
         self.circles.push(Sailed {
-            name: test.run.clone(),
+            name: test.recording.clone(),
             end: held.map_or(0.0, |k| shown.t[k]),
             measured: shown,
             predicted: trials.into_iter().map(|t| t.track).collect(),
@@ -190,7 +190,7 @@ impl Outcome {
     /// Adds a zigzag with the rudder at `angles[0]` and put over at a heading of `angles[1]` \[rad\].
     pub(super) fn add_zigzag(
         &mut self,
-        test: &Window,
+        test: &Run,
         angles: [f64; 2],
         models: &[&Model],
         trial: &ManeuverSettings,
@@ -227,7 +227,7 @@ impl Outcome {
         }
         let shown = from_execute(&track, first);
         self.zigzags.push(Sailed {
-            name: test.run.clone(),
+            name: test.recording.clone(),
             end: shown.t.last().copied().unwrap_or(0.0),
             measured: shown,
             predicted: trials.into_iter().map(|t| t.track).collect(),

@@ -1,7 +1,7 @@
 //! KVLCC2, diagnosed: tests in a calm basin without wind, current or waves, of a ship with one screw and so of unlike sides.
 //! The zigzags are diagnosed; the turning circles are for the proof only.
 
-use super::agreement::{Agreement, median};
+use super::agreement::Agreement;
 use super::case::Case;
 use super::error::RealError;
 use super::frame::{Answer, Frame, Step};
@@ -9,10 +9,11 @@ use super::hull::Hull;
 use super::mend::Mend;
 use super::runs::{runs, without_term};
 use trimtab::diagnose::Settings;
-use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
-use trimtab::recording::Split;
-use trimtab::report::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED, fixed, sig};
+use trimtab::numerals::{fixed, sig};
+use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED};
+use trimtab::recording::{Run, Split};
+use trimtab::statistics::median;
 
 /// Span over which changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 pub const SPAN: f64 = 40.0;
@@ -56,8 +57,8 @@ fn gyro_mended(hull: &Hull, kinematics: &[Agreement]) -> Result<(Vec<Run>, Vec<R
     let (train, test) = (runs(hull, Split::Train)?, runs(hull, Split::Test)?);
     let seen = || kinematics.iter().filter(|a| train.iter().any(|r| r.name.starts_with(&a.run)));
     let mend = Mend {
-        rate_delay: median(seen().map(|a| a.rate_delay)),
-        rate_bias: median(seen().map(|a| a.rate_bias)),
+        rate_delay: median(seen().map(|a| a.rate_delay)).unwrap_or(f64::NAN),
+        rate_bias: median(seen().map(|a| a.rate_bias)).unwrap_or(f64::NAN),
         ..Mend::default()
     };
     let mended = |runs: &[Run]| runs.iter().filter_map(|r| mend.applied(r)).collect::<Vec<_>>();
@@ -105,7 +106,7 @@ pub fn sides_made_alike(hull: &Hull, best: &Model, kinematics: &[Agreement]) -> 
     Case::new("best model, its sides made alike", &alike(best)?, &train, &test, &Settings::default())
 }
 
-/// Runs everything.
+/// Makes every diagnosis and asks every question.
 ///
 /// # Errors
 /// [`RealError`].
@@ -229,10 +230,10 @@ impl Diagnosed {
         let proof = Panel::new(
             "turning circles, held out",
             Axis::categories("", names),
-            Axis::new("median cVDM [%]").including(0.0),
+            Axis::new("mean cVDM [%]").including(0.0),
         )
-        .with(Layer::bars("mirror-symmetric", BASELINE, held(&|s| s.held_out.before)))
-        .with(Layer::bars("with what the label names", GREEN, held(&|s| s.held_out.after)));
+        .with(Layer::bars("mirror-symmetric", BASELINE, held(&|s| s.held_out.before.unwrap_or(f64::NAN))))
+        .with(Layer::bars("with what the label names", GREEN, held(&|s| s.held_out.after.unwrap_or(f64::NAN))));
         Figure::new("KVLCC2: what the diagnosis finds in a calm basin")
             .columns(2)
             .panel_size(900, 600)

@@ -5,11 +5,13 @@ use super::error::RealError;
 use super::hull::{Hull, settings};
 use super::kvlcc2;
 use trimtab::evaluate::{outcome, predict_all};
-use trimtab::fit::{Fit, FitError, FitRun, MultiStart, Rule, fit, multi_start};
+use trimtab::fit::{Fit, FitError, MultiStart, Rule, fit, multi_start};
 use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::Model;
-use trimtab::recording::{Split, Window};
-use trimtab::report::{Figure, Table, fixed, sig};
+use trimtab::numerals::{fixed, sig};
+use trimtab::plot::Figure;
+use trimtab::recording::{Run, Split};
+use trimtab::report::Table;
 
 /// Upper limits of the resistance under which the freed fit is repeated \[N\]; about 35 N is right.
 pub const LIMITS: [Option<f64>; 5] = [Some(60.0), Some(100.0), Some(200.0), Some(400.0), None];
@@ -63,7 +65,7 @@ pub fn run() -> Result<Predicted, RealError> {
     let trial: ManeuverSettings = settings(&hull.study, "maneuver", &hull.study.maneuver)?;
     let mut trials = kvlcc2::Outcome::new(&models);
     for whole in hull.study.whole_runs(hull.ship.hull.draught)?.windows.iter().filter(|w| w.split == Split::Test) {
-        if let Some(angles) = angles(&whole.run) {
+        if let Some(angles) = angles(&whole.recording) {
             trials.add_zigzag(whole, angles, &models, &trial)?;
         }
     }
@@ -71,8 +73,8 @@ pub fn run() -> Result<Predicted, RealError> {
     let mut errors: Vec<RunError> = Vec::new();
     let mut counts: Vec<f64> = Vec::new();
     for (i, window) in test.iter().chain(&train).enumerate() {
-        let at = errors.iter().position(|e| e.run == window.run).unwrap_or_else(|| {
-            errors.push(RunError { run: window.run.clone(), split: window.split, cvdm: vec![0.0; models.len()] });
+        let at = errors.iter().position(|e| e.run == window.recording).unwrap_or_else(|| {
+            errors.push(RunError { run: window.recording.clone(), split: window.split, cvdm: vec![0.0; models.len()] });
             counts.push(0.0);
             errors.len() - 1
         });
@@ -95,7 +97,7 @@ fn angles(name: &str) -> Option<[f64; 2]> {
 }
 
 /// cVDM of a model on each window \[%\]; infinite where its simulation diverges.
-fn cvdm(hull: &Hull, model: &Model, windows: &[Window]) -> Vec<f64> {
+fn cvdm(hull: &Hull, model: &Model, windows: &[Run]) -> Vec<f64> {
     let predicted = predict_all(model, windows, hull.fit.integration);
     let of = |(w, p)| outcome(w, p, &hull.ship, hull.fit.max_yaw_rate).deviation().map_or(f64::INFINITY, |d| d.cvdm);
     windows.iter().zip(&predicted).map(of).collect()
@@ -116,14 +118,13 @@ pub fn repeat(
     let model = hull.model("freed.toml")?;
     let train = hull.windows(Split::Train)?;
     let test = hull.windows(Split::Test)?;
-    let runs: Vec<FitRun> = train.iter().map(|w| FitRun::of(w, &hull.ship, hull.fit.max_yaw_rate)).collect();
     let mut repeats = Vec::new();
     for limit in limits {
         progress(*limit);
         let mut settings = hull.fit;
         settings.constraints.resistance = Rule { upper: *limit, ..settings.constraints.resistance };
-        let empirical = (None, fit(&model, &runs, &settings, &mut |_| true));
-        let random = multi_start(&model, &runs, &settings, &starts, |_| {});
+        let empirical = (None, fit(&model, &train, &settings, &mut |_| true));
+        let random = multi_start(&model, &train, &settings, &starts, |_| {});
         let random = random.into_iter().enumerate().map(|(i, s)| (Some(i + 1), s.outcome));
         for (start, outcome) in std::iter::once(empirical).chain(random) {
             let unseen = outcome.as_ref().map(|fit| cvdm(&hull, &fit.model, &test));

@@ -1,8 +1,7 @@
 //! Corrections of sensors before a diagnosis: held positions, jumps of the receiver, delay and bias of the gyro.
 //! Their sizes are read from the recordings' own kinematics; no model is used.
 
-use trimtab::diagnose::filter::Run;
-use trimtab::recording::{Channel, Recording};
+use trimtab::recording::{Channel, Recording, Run};
 
 use super::agreement::wrapped;
 
@@ -29,27 +28,27 @@ impl Mend {
             return None;
         }
         let mut out = run.clone();
-        if self.no_velocity {
-            out.channels[3] = false;
-            out.channels[4] = false;
-        }
         for k in 0..run.measured.len() {
             let t = run.inputs[k].t;
             // A sample is the mean of the rows within half a sample period.
             if self.held.iter().any(|(a, b)| a - 0.5 * run.dt <= t && t <= b + 0.5 * run.dt) {
-                out.measured[k][..3].fill(f64::NAN);
+                out.measured[k][..3].fill(None);
             }
-            out.measured[k][5] = interpolated(run, 5, k as f64 + self.rate_delay / run.dt) - self.rate_bias;
+            if self.no_velocity {
+                out.measured[k][3..5].fill(None);
+            }
+            let rate = interpolated(run, 5, k as f64 + self.rate_delay / run.dt);
+            out.measured[k][5] = rate.map(|r| r - self.rate_bias);
         }
         Some(out)
     }
 }
 
-/// A channel between two samples; NaN outside the run.
-fn interpolated(run: &Run, channel: usize, place: f64) -> f64 {
+/// A channel between two samples; `None` outside the run, and beside a missing value.
+fn interpolated(run: &Run, channel: usize, place: f64) -> Option<f64> {
     let (i, share) = (place.floor(), place - place.floor());
-    let value = |i: f64| if i < 0.0 { f64::NAN } else { run.measured.get(i as usize).map_or(f64::NAN, |m| m[channel]) };
-    if share == 0.0 { value(i) } else { (1.0 - share) * value(i) + share * value(i + 1.0) }
+    let value = |i: f64| if i < 0.0 { None } else { run.measured.get(i as usize)?[channel] };
+    if share == 0.0 { value(i) } else { Some((1.0 - share) * value(i)? + share * value(i + 1.0)?) }
 }
 
 /// Stretches in which position and heading repeat to the last bit for `rows` rows or more: a receiver that holds its last value.

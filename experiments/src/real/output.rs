@@ -3,7 +3,8 @@
 
 use std::path::Path;
 
-use trimtab::report::{Figure, Table};
+use trimtab::plot::Figure;
+use trimtab::report::Table;
 
 use super::error::RealError;
 

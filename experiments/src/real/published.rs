@@ -10,7 +10,7 @@ use crate::truth::crossflow::integrals;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
-use trimtab::recording::Window;
+use trimtab::recording::Run;
 use trimtab::simulate::Trajectory;
 use trimtab::state::STATES;
 
@@ -303,7 +303,7 @@ impl PublishedMmg {
     }
 
     /// Simulates a window from its initial state: RK4 at 0.1 s or finer, inputs linear between samples.
-    pub fn simulate(&self, window: &Window) -> Trajectory {
+    pub fn simulate(&self, window: &Run) -> Trajectory {
         let substeps = (window.dt / 0.1).ceil().max(1.0) as usize;
         let h = window.dt / substeps as f64;
         let mut state = window.initial;

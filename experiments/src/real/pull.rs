@@ -2,8 +2,9 @@
 //! The forces come from a question asked of a frame; here they are only compared and tabulated.
 
 use nalgebra::{Matrix2, Vector2};
-use trimtab::diagnose::filter::Run;
-use trimtab::report::{Table, fixed};
+use trimtab::numerals::fixed;
+use trimtab::recording::Run;
+use trimtab::report::Table;
 
 use super::frame::Answer;
 use super::runs::sessions;

@@ -1,9 +1,8 @@
 //! Runs and models of the diagnosis experiments on real hulls: selections, and copies with a channel or a term withheld.
 //! It diagnoses nothing.
 
-use trimtab::diagnose::filter::Run;
 use trimtab::model::Model;
-use trimtab::recording::Split;
+use trimtab::recording::{Run, Split};
 
 use super::error::RealError;
 use super::hull::Hull;
@@ -13,7 +12,7 @@ use super::hull::Hull;
 /// # Errors
 /// [`RealError::Study`].
 pub fn runs(hull: &Hull, split: Split) -> Result<Vec<Run>, RealError> {
-    Ok(hull.windows(split)?.iter().map(Run::from).collect())
+    hull.windows(split)
 }
 
 /// The runs as if no wind had been recorded.

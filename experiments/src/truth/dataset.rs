@@ -17,7 +17,7 @@ use super::simulator::Truth;
 
 /// Steps of a recorded manoeuvre: 120 intervals, 121 rows.
 pub const STEPS: usize = 120;
-/// The seed of the data sets that the figures are made from, fixed before anything was looked at.
+/// The seed of the data sets behind the figures, fixed before any result was known.
 pub const SEED: u64 = 20_250_226;
 /// Which part of the data a run belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -35,7 +35,7 @@ pub struct Run {
     pub name: String,
     /// Train or test.
     pub split: Split,
-    /// What was done.
+    /// The kind of manoeuvre.
     pub manoeuvre: &'static str,
     /// Time from the first row \[s\].
     pub t: Vec<f64>,
@@ -54,7 +54,7 @@ pub struct Plan {
     pub name: String,
     /// Train or test.
     pub split: Split,
-    /// What is done.
+    /// The kind of manoeuvre.
     pub manoeuvre: &'static str,
     /// Speed ahead at which the lead-in begins \[m/s\].
     pub speed: f64,

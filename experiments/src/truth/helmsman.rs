@@ -32,7 +32,7 @@ impl Actuators {
     }
 }
 
-/// What the helmsman steers by during a phase.
+/// How the helmsman steers during a phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Steer {
     /// Along the route, looking ahead; rudder amidships in sternway.
@@ -89,7 +89,7 @@ pub struct Style {
     pub stop: f64,
 }
 
-/// Smallest change of rudder worth an order \[rad\].
+/// Smallest change of rudder that is ordered \[rad\].
 const DEAD_BAND: f64 = 2.0 * PI / 180.0;
 
 /// A helmsman under way on a plan.

@@ -80,7 +80,7 @@ impl LargeDrift {
         all
     }
 
-    /// The similar ship of this length \[m\], in the same water: coefficients are without dimension and stay.
+    /// The similar ship of this length \[m\], in the same water: coefficients are dimensionless and do not change.
     #[must_use]
     pub fn scaled(&self, length: f64) -> Self {
         let k = length / self.particulars.length;

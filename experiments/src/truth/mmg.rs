@@ -160,7 +160,7 @@ impl Mmg {
 
     /// Lateral flow before the rudder \[m/s\]: U beta_R, beta_R = beta - l_R' r'.
     fn lateral_flow(&self, u: f64, v: f64, r: f64) -> f64 {
-        // U beta of the standard method is an angle times a speed and means nothing beyond 90 deg; there -v takes its place.
+        // U beta of the standard method is an angle times a speed and has no meaning beyond 90 deg, where -v replaces it.
         let weight = self.large_drift_weight(u, v, r);
         let drift = -(1.0 - weight) * u.hypot(v) * v.atan2(u) - weight * v;
         drift - self.rudder.inflow_position * self.particulars.length * r

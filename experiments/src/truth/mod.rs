@@ -1,4 +1,4 @@
-//! The truth: ship simulators, ships, data sets, trials and captive tests that stand in for the sea in the experiments.
+//! The truth: ship simulators, ships, data sets, trials and captive tests that replace the real ship in the experiments.
 //! It is not part of the library: nothing here may enter the model, the fit or the diagnosis, and nothing here uses their code.
 //!
 //! Three simulators with different physics implement one trait, [`simulator::Truth`]: [`mmg`] after Yasukawa & Yoshimura (2015),

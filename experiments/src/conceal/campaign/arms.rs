@@ -1,7 +1,7 @@
 //! Which scores of a campaign are compared with each other: selections of cases, rival methods and models, families and colours.
 //! It counts nothing.
 
-use trimtab::report::{BASELINE, BLUE, Color, FITTED, GREY, ORACLE, ORANGE, PURPLE, SKY};
+use trimtab::plot::{BASELINE, BLUE, Color, FITTED, GREY, ORACLE, ORANGE, PURPLE, SKY};
 
 use super::plan::OTHER_HULLS;
 use crate::conceal::family::Family;
@@ -97,13 +97,13 @@ pub struct Predictor {
 /// From the paper's method to the oracle, which bounds what can be reached.
 pub const MODELS: [Predictor; 4] = [
     Predictor {
-        name: "refit only, the paper's way",
+        name: "refit only, the paper's method",
         target: "(baseline)",
         color: BASELINE,
         score: |s| s.refit_held_out,
     },
     Predictor { name: "base model of the diagnosis", target: "-", color: SKY, score: |s| s.base_held_out },
-    Predictor { name: "with what it named", target: "-", color: FITTED, score: |s| s.named_held_out },
+    Predictor { name: "with the mechanisms named", target: "-", color: FITTED, score: |s| s.named_held_out },
     Predictor { name: "oracle", target: "(bound)", color: ORACLE, score: |s| s.oracle_held_out },
 ];
 

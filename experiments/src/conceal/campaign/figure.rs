@@ -3,12 +3,12 @@
 
 use std::collections::BTreeSet;
 
-use trimtab::report::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, Panel};
+use trimtab::plot::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, Panel};
 
 use super::arms::{LOPSIDED, MODELS, Question, SHOWN, WAYS, arm, lopsided, named_right, reached, single};
 use super::plan::OTHER_HULLS;
 use crate::conceal::judge::score::Score;
-use crate::conceal::statistics::{Share, median};
+use trimtab::statistics::{Share, median};
 
 /// Strengths of the single effects.
 const STEPS: [f64; 4] = [3.0, 6.0, 12.0, 24.0];
@@ -75,7 +75,7 @@ fn hulls(scores: &[Score]) -> Panel {
     let here: Vec<&Score> = scores.iter().filter(|s| strong(s) && reached(s) && s.background != "euler").collect();
     let counted: [(&str, Question); 4] = [
         ("false alarm", |s| s.false_alarm),
-        ("seen", |s| s.detected),
+        ("detected", |s| s.detected),
         ("first right", |s| s.first_right),
         ("in the set", |s| s.in_set),
     ];
@@ -98,13 +98,13 @@ fn wrong_names(scores: &[Score]) -> Panel {
     ];
     let wrong = silent.map(|(_, name, of)| bar(arm(scores, name).map(of)));
     let axis = Axis::categories("", silent.iter().map(|c| c.0));
-    Panel::new("what cannot be told: wrong name all the same", axis, share_axis())
+    Panel::new("not identifiable: wrong name given", axis, share_axis())
         .with(Layer::bars_with_intervals("both families", GREEN, wrong.to_vec()))
         .with(Layer::h_line("target", LIMIT, 0.1))
 }
 
 fn methods(scores: &[Score]) -> Panel {
-    let mut panel = Panel::new("right name, seen or not, both families", strength(), share_axis());
+    let mut panel = Panel::new("right name, detected or not, both families", strength(), share_axis());
     for way in &WAYS {
         if STEPS.into_iter().any(|snr| Share::of(single(scores, None, snr).map(way.right)).is_some()) {
             panel = panel.with_all(curve(way.name, way.color, scores, None, way.right));
@@ -119,7 +119,7 @@ fn errors(scores: &[Score]) -> Panel {
         // One set of cases for all models: those with an oracle.
         let at = |snr: f64| {
             let cases = single(scores, None, snr).filter(|s| s.oracle_held_out.is_some());
-            median(cases.map(model.score)).map(|value| (snr, value))
+            median(cases.filter_map(model.score)).map(|value| (snr, value))
         };
         panel = panel.with(Layer::line(model.name, model.color, STEPS.into_iter().filter_map(at)));
     }
@@ -151,10 +151,10 @@ pub fn figure(scores: &[Score]) -> Figure {
         None,
         |s| s.in_set,
     ));
-    let figure = Figure::new("Concealed effects: what was found")
+    let figure = Figure::new("Concealed effects: results of the campaign")
         .columns(3)
-        .with(by_strength(scores, "something is missing: seen", |s| s.detected))
-        .with(by_strength(scores, "first name right, given seen", |s| s.first_right))
+        .with(by_strength(scores, "missing physics: detected", |s| s.detected))
+        .with(by_strength(scores, "first name right, given detection", |s| s.first_right))
         .with(set)
         .with(alarms(scores))
         .with(hulls(scores))

@@ -1,5 +1,5 @@
 //! The campaign of concealed cases: which cases there are, the summary of their scores against the aims, and its figure.
-//! Cases are made, diagnosed and judged elsewhere; nothing here runs anything.
+//! Cases are made, diagnosed and judged elsewhere.
 
 pub mod arms;
 pub mod figure;

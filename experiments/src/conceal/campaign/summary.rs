@@ -8,7 +8,7 @@ use super::arms::{
 };
 use super::plan::OTHERS;
 use crate::conceal::judge::score::Score;
-use crate::conceal::statistics::{Share, mean, median};
+use trimtab::statistics::{Share, mean, median};
 
 /// The result of one line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,15 +124,19 @@ impl Lines<'_> {
     /// One line or two for each other arm.
     fn arms(&mut self) {
         let s = self.scores;
-        self.share("absorbed effects named all the same", Aim::Most(0.0), arm(s, "absorbed").map(|s| s.absorbed_named));
+        self.share("absorbed effects named", Aim::Most(0.0), arm(s, "absorbed").map(|s| s.absorbed_named));
         let wrong = |name| arm(s, name).map(|s| s.wrong_confident);
         self.share("wrong confident name, effects outside the catalogue", Aim::Most(0.1), wrong("withheld"));
         let pairs = arm(s, "compound").map(|s| s.some_right_none_wrong);
         self.share("pairs and triples: some right, none wrong", Aim::Least(0.95), pairs);
-        self.share("pairs and triples: exactly those", NO_AIM, arm(s, "compound").map(|s| s.exact));
-        self.share("no reference session for what needs one: wrong confident name", Aim::Most(0.1), wrong("pooled"));
+        self.share("pairs and triples: all named and no other", NO_AIM, arm(s, "compound").map(|s| s.exact));
+        self.share(
+            "effects that need a reference session, without one: wrong confident name",
+            Aim::Most(0.1),
+            wrong("pooled"),
+        );
         self.share("effect in some sessions only: first name right", NO_AIM, arm(s, "contrast").map(named_right));
-        self.share("designs that cannot tell: wrong confident name", Aim::Most(0.1), wrong("design"));
+        self.share("designs with poor excitation: wrong confident name", Aim::Most(0.1), wrong("design"));
     }
 
     /// The other hulls, and the two sides of every ship with a known asymmetry.
@@ -153,8 +157,8 @@ impl Lines<'_> {
             let mut line = |what: &str, aim: Aim, of: fn(&Score) -> Option<bool>| {
                 self.share(&format!("{}: {what}", family.name()), aim, here.clone().map(of));
             };
-            line("her two sides said to differ", NO_AIM, |s| s.sides_differ);
-            line("of those, with the right sign of the flow's", NO_AIM, right_side);
+            line("port and starboard reported to differ", NO_AIM, |s| s.sides_differ);
+            line("of these, sign of the flow's asymmetry right", NO_AIM, right_side);
             line("true asymmetry of the flow in the 90 % interval", Aim::Calibrated, |s| s.asymmetry_covered);
         }
     }
@@ -172,7 +176,7 @@ impl Lines<'_> {
         for snr in [6.0, 12.0] {
             for way in &WAYS {
                 let aim = if way.name == DIAGNOSIS { NO_AIM } else { baseline };
-                let what = format!("right name, seen or not, at SNR {snr}: {}", way.name);
+                let what = format!("right name, detected or not, at SNR {snr}: {}", way.name);
                 self.share(&what, aim, single(self.scores, None, snr).map(way.right));
             }
         }
@@ -182,7 +186,7 @@ impl Lines<'_> {
     fn numbers(&mut self, all: &[Score]) {
         let scores = self.scores;
         for family in OTHERS {
-            let sizes = other_hull(scores, family).map(|s| s.size_error);
+            let sizes = other_hull(scores, family).filter_map(|s| s.size_error);
             let what = format!("{}: median error of the size", family.name());
             self.number(&what, "<= 0.10", Aim::Most(0.1), median(sizes));
         }
@@ -190,25 +194,25 @@ impl Lines<'_> {
             let here = || lopsided(scores, family);
             let error = |s: &Score| Some((s.asymmetry_found? - s.asymmetry?).abs());
             let what = |what: &str| format!("{}: median {what} of the flow at the rudder", family.name());
-            self.number(&what("true asymmetry"), "-", NO_AIM, median(here().map(|s| s.asymmetry.map(f64::abs))));
-            self.number(&what("error of the asymmetry"), "-", NO_AIM, median(here().map(error)));
+            self.number(&what("true asymmetry"), "-", NO_AIM, median(here().filter_map(|s| s.asymmetry.map(f64::abs))));
+            self.number(&what("error of the asymmetry"), "-", NO_AIM, median(here().filter_map(error)));
         }
         let twelve = || single(scores, None, 12.0);
-        let sets = mean(twelve().map(|s| s.set_size));
+        let sets = mean(twelve().filter_map(|s| s.set_size));
         self.number("mean size of the confidence set at SNR 12", "<= 1.6", Aim::Most(1.6), sets);
-        let windows = mean(twelve().filter(|s| s.effects == "push").map(|s| s.window_iou));
+        let windows = mean(twelve().filter(|s| s.effects == "push").filter_map(|s| s.window_iou));
         self.number("mean window overlap (IoU) at SNR 12", ">= 0.8", Aim::Least(0.8), windows);
-        let sizes = median(twelve().map(|s| s.size_error));
+        let sizes = median(twelve().filter_map(|s| s.size_error));
         self.number("median error of the size at SNR 12", "<= 0.10", Aim::Most(0.1), sizes);
-        let gap = median(twelve().map(|s| s.gap_closed));
+        let gap = median(twelve().filter_map(|s| s.gap_closed));
         self.number("median share of the held-out gap closed at SNR 12", ">= 0.90", Aim::Least(0.9), gap);
         for model in &MODELS {
             // One set of cases for all models: those with an oracle.
             let compared = twelve().filter(|s| s.oracle_held_out.is_some());
             let what = format!("median held-out cVDM at SNR 12 [%]: {}", model.name);
-            self.number(&what, model.target, NO_AIM, median(compared.map(model.score)));
+            self.number(&what, model.target, NO_AIM, median(compared.filter_map(model.score)));
         }
-        let seconds = median(scores.iter().map(|s| s.seconds));
+        let seconds = median(scores.iter().filter_map(|s| s.seconds));
         self.number("median time of a diagnosis [s]", "<= 5", Aim::Most(5.0), seconds);
         let failed = Some((all.len() - scores.len()) as f64);
         self.number("cases without a score", "0", Aim::Most(0.0), failed);
@@ -290,12 +294,15 @@ mod tests {
             Some(Found::Share(s)) => (s.hits, s.of),
             _ => (0, 0),
         };
-        assert_eq!(counts("right name, seen or not, at SNR 12: diagnosis"), (1, 2));
-        assert_eq!(counts("right name, seen or not, at SNR 12: iid BIC"), (0, 1));
-        assert_eq!(counts("right name, seen or not, at SNR 12: sparse regression"), (0, 0));
+        assert_eq!(counts("right name, detected or not, at SNR 12: diagnosis"), (1, 2));
+        assert_eq!(counts("right name, detected or not, at SNR 12: iid BIC"), (0, 1));
+        assert_eq!(counts("right name, detected or not, at SNR 12: sparse regression"), (0, 0));
         let of = |name: &str| find(&format!("median held-out cVDM at SNR 12 [%]: {name}"));
-        assert_eq!(of("refit only, the paper's way"), Some(Found::Number(3.0)));
-        assert_eq!((of("with what it named"), of("oracle")), (Some(Found::Number(2.0)), Some(Found::Number(1.0))));
+        assert_eq!(of("refit only, the paper's method"), Some(Found::Number(3.0)));
+        assert_eq!(
+            (of("with the mechanisms named"), of("oracle")),
+            (Some(Found::Number(2.0)), Some(Found::Number(1.0)))
+        );
         assert_eq!(find("cases without a score"), Some(Found::Number(1.0)));
     }
 }

@@ -1,4 +1,4 @@
-//! What an effect is: its entry in the catalogue, what it may draw, what it sees at an instant, and what it does.
+//! The parts of an effect: its entry in the catalogue, its random numbers, its view of an instant, and its action.
 //! The effects are in the files beside this one; `sail` lets them act and `seal` keeps them secret.
 
 use rand::RngExt;
@@ -24,13 +24,15 @@ pub enum Class {
     Withheld,
 }
 
-/// How the size of an effect can be compared with what a diagnosis reports.
+/// How the size of an effect is compared with the parameters that a diagnosis reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Compare {
-    /// Its law differs too much from the fitter's for one number to be the same in both.
+    /// Its law differs too much from the fitter's for a comparison.
     No,
-    /// With parameters of these names (the part after the dot), for which [`Physics::truth`] gives the true values.
-    Parameters,
+    /// The size is the parameter of this name (the part after the dot).
+    Size(&'static str),
+    /// [`Physics::truth`] gives the true values of several or converted parameters.
+    Truth,
 }
 
 /// An effect of the catalogue.
@@ -50,8 +52,10 @@ pub struct Entry {
     pub size: f64,
     /// Largest realistic size.
     pub most: f64,
-    /// Whether a reported parameter can be compared.
+    /// Comparison with reported parameters.
     pub compare: Compare,
+    /// Whether it moves the actuators away from their orders.
+    pub moves_actuators: bool,
     /// Whether it can act in a ship of the MMG family, whose structure already contains some effects.
     pub in_mmg: bool,
     /// Whether hull, propeller and rudder coefficients, which are known from charts only, can mimic it in part, so that it is
@@ -73,14 +77,15 @@ pub const FORCE: Entry = Entry {
     size: 0.0,
     most: 0.0,
     compare: Compare::No,
+    moves_actuators: false,
     in_mmg: true,
     reference: false,
     law: "",
     build: |_, _| Box::new(Nothing),
 };
 
-/// A sensor defect whose reported parameter is compared.
-pub const SENSOR: Entry = Entry { class: Class::Sensor, compare: Compare::Parameters, ..FORCE };
+/// A sensor defect.
+pub const SENSOR: Entry = Entry { class: Class::Sensor, ..FORCE };
 
 /// An effect that no catalogue of the diagnosis holds.
 pub const WITHHELD: Entry = Entry { class: Class::Withheld, ..FORCE };
@@ -185,11 +190,6 @@ pub trait Physics: Send + Sync {
     /// Moves the actuators: orders run linearly `from` -> `to` over `h` seconds, the actuators start `at`; `actual` holds
     /// the positions that they would reach without this effect, and then with it.
     fn actuate(&self, _h: f64, _orders: [Inputs; 2], _at: &Inputs, _state: &State, _actual: &mut Inputs) {}
-
-    /// Whether it moves the actuators away from their orders.
-    fn moves_actuators(&self) -> bool {
-        false
-    }
 
     /// Advances the effect's memory by `h` seconds.
     fn remember(&self, _h: f64, _at: &Instant<'_>, _memory: &mut [f64; 2]) {}

@@ -31,10 +31,7 @@ impl Physics for Current {
     }
 
     fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        match self.tide {
-            None => vec![("north", self.mean[0], "m/s"), ("east", self.mean[1], "m/s")],
-            Some(_) => Vec::new(),
-        }
+        vec![("north", self.mean[0], "m/s"), ("east", self.mean[1], "m/s")]
     }
 }
 
@@ -100,9 +97,6 @@ impl Physics for Wind {
     }
 
     fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        if self.measured {
-            return Vec::new();
-        }
         vec![("north", self.mean[0], "m/s"), ("east", self.mean[1], "m/s")]
     }
 }
@@ -311,7 +305,7 @@ pub const ENTRIES: &[Entry] = &[
         unit: "m/s",
         size: 0.15,
         most: 2.0,
-        compare: Compare::Parameters,
+        compare: Compare::Truth,
         law: "uniform steady current, irrotational (Fossen 2011)",
         build: steady,
         ..FORCE
@@ -343,7 +337,7 @@ pub const ENTRIES: &[Entry] = &[
         unit: "m/s",
         size: 8.0,
         most: 30.0,
-        compare: Compare::Parameters,
+        compare: Compare::Truth,
         law: "Fujiwara 1998 with gusts, not recorded",
         build: mean_wind,
         ..FORCE

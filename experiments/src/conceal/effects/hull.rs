@@ -56,10 +56,6 @@ impl Physics for Loading {
         tweak.mass *= 1.0 + self.share;
         tweak.xg += self.xg;
     }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("mass", self.share, "-")]
-    }
 }
 
 /// Fouling: X = -1/2 rho S u|u| dC_F over the wetted surface S = L (2 d + B) sqrt(Cb) (about); the fitter scales all of R.
@@ -238,7 +234,7 @@ pub const ENTRIES: &[Entry] = &[
         near: &["symmetric"],
         size: 0.15,
         most: 0.8,
-        compare: Compare::Parameters,
+        compare: Compare::Size("mass"),
         reference: true,
         law: "mass and yaw inertia up by a share, centre of gravity moved by up to 2 % of the length",
         build: |size, d| {
@@ -277,7 +273,7 @@ pub const ENTRIES: &[Entry] = &[
         unit: "N",
         size: 20_000.0,
         most: 200_000.0,
-        compare: Compare::Parameters,
+        compare: Compare::Truth,
         law: "quadratic in the Froude number with a cut-off, command recorded",
         build: thruster,
         ..FORCE

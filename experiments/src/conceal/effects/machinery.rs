@@ -62,10 +62,6 @@ impl Physics for ThrustLoss {
     fn alter(&self, _at: &Instant<'_>, tweak: &mut Tweak) {
         tweak.thrust *= 1.0 - self.0;
     }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("fraction", self.0, "-")]
-    }
 }
 
 /// A race that is stronger or weaker than by kappa.
@@ -83,10 +79,6 @@ struct Offset(f64);
 impl Physics for Offset {
     fn alter(&self, _at: &Instant<'_>, tweak: &mut Tweak) {
         tweak.rudder_angle += self.0;
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("offset", self.0, "rad")]
     }
 }
 
@@ -116,16 +108,8 @@ fn lagged(tau: f64, h: f64, from: f64, to: f64, at: f64) -> f64 {
 struct RudderLag(f64);
 
 impl Physics for RudderLag {
-    fn moves_actuators(&self) -> bool {
-        true
-    }
-
     fn actuate(&self, h: f64, orders: [Inputs; 2], at: &Inputs, _state: &State, actual: &mut Inputs) {
         actual.delta = lagged(self.0, h, orders[0].delta, orders[1].delta, at.delta);
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("time", self.0, "s")]
     }
 }
 
@@ -133,10 +117,6 @@ impl Physics for RudderLag {
 struct RateLimit(f64);
 
 impl Physics for RateLimit {
-    fn moves_actuators(&self) -> bool {
-        true
-    }
-
     fn actuate(&self, h: f64, orders: [Inputs; 2], at: &Inputs, _state: &State, actual: &mut Inputs) {
         if self.0 > 0.0 {
             let reach = h / self.0;
@@ -152,16 +132,8 @@ impl Physics for RateLimit {
 struct EngineLag(f64);
 
 impl Physics for EngineLag {
-    fn moves_actuators(&self) -> bool {
-        true
-    }
-
     fn actuate(&self, h: f64, orders: [Inputs; 2], at: &Inputs, _state: &State, actual: &mut Inputs) {
         actual.n = lagged(self.0, h, orders[0].n, orders[1].n, at.n);
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("time", self.0, "s")]
     }
 }
 
@@ -207,7 +179,7 @@ pub const ENTRIES: &[Entry] = &[
         near: &["fouling", "race", "wake_drift"],
         size: 0.12,
         most: 0.8,
-        compare: Compare::Parameters,
+        compare: Compare::Size("fraction"),
         reference: true,
         law: "a share of the thrust; thrust coefficients known within 15 % can mimic it",
         build: |size, _| Box::new(ThrustLoss(size)),
@@ -219,7 +191,8 @@ pub const ENTRIES: &[Entry] = &[
         unit: "s",
         size: 4.0,
         most: 60.0,
-        compare: Compare::Parameters,
+        compare: Compare::Size("time"),
+        moves_actuators: true,
         law: "first-order shaft behind the recorded telegraph, continuous in time",
         build: |size, _| Box::new(EngineLag(size)),
         ..FORCE
@@ -244,7 +217,7 @@ pub const ENTRIES: &[Entry] = &[
         unit: "rad",
         size: 0.03,
         most: 0.3,
-        compare: Compare::Parameters,
+        compare: Compare::Size("offset"),
         reference: true,
         law: "constant: the parameter p4 can mimic it",
         build: |size, _| Box::new(Offset(size)),
@@ -267,6 +240,7 @@ pub const ENTRIES: &[Entry] = &[
         unit: "s/rad",
         size: 35.0,
         most: 300.0,
+        moves_actuators: true,
         law: "constant-rate steering gear behind the recorded order",
         build: |size, _| Box::new(RateLimit(size)),
         ..FORCE
@@ -277,7 +251,8 @@ pub const ENTRIES: &[Entry] = &[
         unit: "s",
         size: 2.0,
         most: 30.0,
-        compare: Compare::Parameters,
+        compare: Compare::Size("time"),
+        moves_actuators: true,
         law: "first-order steering gear behind the recorded order, continuous in time",
         build: |size, _| Box::new(RudderLag(size)),
         ..FORCE

@@ -8,16 +8,11 @@ use crate::conceal::track::Fine;
 struct Bias {
     entry: usize,
     size: f64,
-    unit: &'static str,
 }
 
 impl Physics for Bias {
     fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
         y[self.entry] += self.size;
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("bias", self.size, self.unit)]
     }
 }
 
@@ -28,10 +23,6 @@ impl Physics for LogScale {
     fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
         y[3] *= 1.0 + self.0;
         y[4] *= 1.0 + self.0;
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("error", self.0, "-")]
     }
 }
 
@@ -61,10 +52,6 @@ impl Physics for Late {
         let (then, now) = (fine.at(row, -self.0), fine.at(row, 0.0));
         y[0] += then.x - now.x;
         y[1] += then.y - now.y;
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("position", self.0, "s")]
     }
 }
 
@@ -111,8 +98,9 @@ pub const ENTRIES: &[Entry] = &[
         unit: "rad",
         size: 0.017,
         most: 0.2,
+        compare: Compare::Size("bias"),
         law: "constant",
-        build: |size, _| Box::new(Bias { entry: 2, size, unit: "rad" }),
+        build: |size, _| Box::new(Bias { entry: 2, size }),
         ..SENSOR
     },
     Entry {
@@ -121,8 +109,9 @@ pub const ENTRIES: &[Entry] = &[
         unit: "rad/s",
         size: 5e-4,
         most: 0.01,
+        compare: Compare::Size("bias"),
         law: "constant",
-        build: |size, _| Box::new(Bias { entry: 5, size, unit: "rad/s" }),
+        build: |size, _| Box::new(Bias { entry: 5, size }),
         ..SENSOR
     },
     Entry {
@@ -131,8 +120,9 @@ pub const ENTRIES: &[Entry] = &[
         unit: "m/s",
         size: 0.05,
         most: 1.0,
+        compare: Compare::Size("bias"),
         law: "constant",
-        build: |size, _| Box::new(Bias { entry: 4, size, unit: "m/s" }),
+        build: |size, _| Box::new(Bias { entry: 4, size }),
         ..SENSOR
     },
     Entry {
@@ -140,6 +130,7 @@ pub const ENTRIES: &[Entry] = &[
         accepted: &["log_scale"],
         size: 0.03,
         most: 0.5,
+        compare: Compare::Size("error"),
         law: "constant share",
         build: |size, _| Box::new(LogScale(size)),
         ..SENSOR
@@ -150,6 +141,7 @@ pub const ENTRIES: &[Entry] = &[
         unit: "m",
         size: 8.0,
         most: 100.0,
+        compare: Compare::Truth,
         // A fitted hull of unknown Y_r, N_v has a pivot point of its own, some metres from the antenna's.
         reference: true,
         law: "rigid-body kinematics",
@@ -162,6 +154,7 @@ pub const ENTRIES: &[Entry] = &[
         unit: "s",
         size: 1.0,
         most: 20.0,
+        compare: Compare::Size("position"),
         law: "the true position of an earlier time",
         build: |size, _| Box::new(Late(size)),
         ..SENSOR
@@ -172,7 +165,6 @@ pub const ENTRIES: &[Entry] = &[
         unit: "m/s",
         size: 0.3,
         most: 2.0,
-        compare: Compare::No,
         law: "a current, and speeds through the water reported as over ground",
         build: |size, d| Box::new(WaterLog(vector(size, d.direction()))),
         ..SENSOR
@@ -182,7 +174,6 @@ pub const ENTRIES: &[Entry] = &[
         accepted: &["sign_error", "unit_error", "sign_or_unit_error", "sign", "audit"],
         size: 1.0,
         most: 1.0,
-        compare: Compare::No,
         law: "yaw rate positive to port",
         build: |size, _| Box::new(WrongSign(size)),
         ..SENSOR
@@ -192,7 +183,6 @@ pub const ENTRIES: &[Entry] = &[
         accepted: &["unit_error", "sign_error", "sign_or_unit_error", "unit", "log_scale", "audit"],
         size: 1.0,
         most: 1.0,
-        compare: Compare::No,
         law: "knots under a header of m/s",
         build: |size, _| Box::new(WrongUnit(size)),
         ..SENSOR

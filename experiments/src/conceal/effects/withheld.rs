@@ -8,10 +8,6 @@ use crate::truth::motion::{Inputs, State};
 struct DeadBand(f64);
 
 impl Physics for DeadBand {
-    fn moves_actuators(&self) -> bool {
-        true
-    }
-
     fn actuate(&self, _h: f64, orders: [Inputs; 2], at: &Inputs, _state: &State, actual: &mut Inputs) {
         let order = orders[1].delta;
         if (order - at.delta).abs() <= self.0 {
@@ -29,10 +25,6 @@ struct Sag {
 }
 
 impl Physics for Sag {
-    fn moves_actuators(&self) -> bool {
-        true
-    }
-
     fn actuate(&self, _h: f64, orders: [Inputs; 2], _at: &Inputs, state: &State, actual: &mut Inputs) {
         let turn = state.r.abs() * self.length / state.speed().max(0.5);
         actual.n = orders[1].n * (1.0 - self.share * (turn * 3.0).tanh());
@@ -136,6 +128,7 @@ pub const ENTRIES: &[Entry] = &[
         unit: "rad",
         size: 0.04,
         most: 0.3,
+        moves_actuators: true,
         law: "play between order and rudder",
         build: |size, _| Box::new(DeadBand(size)),
         ..WITHHELD
@@ -145,6 +138,7 @@ pub const ENTRIES: &[Entry] = &[
         near: &["engine_lag", "thrust_loss", "wake_drift"],
         size: 0.15,
         most: 0.9,
+        moves_actuators: true,
         law: "revolutions lost in turns",
         build: |size, d| Box::new(Sag { share: size, length: d.length }),
         ..WITHHELD

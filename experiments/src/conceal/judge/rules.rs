@@ -7,7 +7,7 @@ use super::score::Score;
 use crate::conceal::family::Family;
 use crate::conceal::seal::{Answer, Manifest};
 
-/// Stands in a diagnosis for a mechanism that its catalogue does not hold.
+/// The name in a diagnosis for a mechanism outside its catalogue.
 const SURROGATE: &str = "generic";
 
 /// The name scored for a diagnosis that refuses to conclude because its audit found a fault in the recordings.

@@ -3,9 +3,10 @@
 
 use std::time::Instant;
 
-use trimtab::fit::{Cost, CostOptions, Derivatives, FitRun, FitSettings, Hessian, Progress, fit};
+use trimtab::fit::{Cost, CostOptions, Derivatives, FitSettings, Hessian, Progress, fit};
 use trimtab::model::Model;
-use trimtab::report::{BLUE, Color, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
+use trimtab::plot::{BLUE, Color, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
+use trimtab::recording::Run;
 use trimtab::simulate::{Integration, Method};
 
 use crate::paper::case::Case;
@@ -92,12 +93,7 @@ pub struct Accuracies {
 }
 
 /// The gradient at the model's values by scaled parameters, as the solver sees it; absent where a simulation diverges.
-fn gradient(
-    model: &Model,
-    runs: &[FitRun],
-    derivatives: Derivatives,
-    step: f64,
-) -> Result<Option<Vec<f64>>, PaperError> {
+fn gradient(model: &Model, runs: &[Run], derivatives: Derivatives, step: f64) -> Result<Option<Vec<f64>>, PaperError> {
     let cost = cost(model, runs, derivatives, step)?;
     let p: Vec<f64> = model.free().iter().map(|i| model.parameters[*i].value).collect();
     let scaled = |gradient: &[f64]| -> Vec<f64> {
@@ -108,11 +104,12 @@ fn gradient(
 
 fn cost<'a>(
     model: &'a Model,
-    runs: &'a [FitRun],
+    runs: &'a [Run],
     derivatives: Derivatives,
     difference_step: f64,
 ) -> Result<Cost<'a>, PaperError> {
-    let options = CostOptions { derivatives, difference_step, integration: INTEGRATION };
+    let max_yaw_rate = FitSettings::default().max_yaw_rate;
+    let options = CostOptions { max_yaw_rate, derivatives, difference_step, integration: INTEGRATION };
     Ok(Cost::new(model, runs, options)?)
 }
 
@@ -120,7 +117,7 @@ fn cost<'a>(
 ///
 /// # Errors
 /// [`PaperError::Diverged`] where a simulation diverges there.
-pub fn accuracies(case: &Case, model: &Model, runs: &[FitRun]) -> Result<Accuracies, PaperError> {
+pub fn accuracies(case: &Case, model: &Model, runs: &[Run]) -> Result<Accuracies, PaperError> {
     let diverged = || PaperError::Diverged { ship: case.ship.name() };
     let exact = gradient(model, runs, Derivatives::Lanes, 1e-5)?.ok_or_else(diverged)?;
     let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|x| x * x).sum::<f64>().sqrt();
@@ -142,7 +139,7 @@ pub fn accuracies(case: &Case, model: &Model, runs: &[FitRun]) -> Result<Accurac
 ///
 /// # Errors
 /// [`PaperError::Fit`].
-pub fn course(case: &Case, model: &Model, runs: &[FitRun], way: &Way) -> Result<Course, PaperError> {
+pub fn course(case: &Case, model: &Model, runs: &[Run], way: &Way) -> Result<Course, PaperError> {
     let settings = FitSettings {
         derivatives: way.derivatives,
         difference_step: way.step,
@@ -173,7 +170,7 @@ pub fn course(case: &Case, model: &Model, runs: &[FitRun], way: &Way) -> Result<
 ///
 /// # Errors
 /// [`PaperError::Fit`].
-pub fn gradient_times(model: &Model, runs: &[FitRun]) -> Result<[(&'static str, f64); 4], PaperError> {
+pub fn gradient_times(model: &Model, runs: &[Run]) -> Result<[(&'static str, f64); 4], PaperError> {
     let p: Vec<f64> = model.free().iter().map(|i| model.parameters[*i].value).collect();
     let shortest = |work: &dyn Fn() -> bool| {
         let time = || {

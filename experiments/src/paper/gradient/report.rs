@@ -3,9 +3,11 @@
 
 use std::path::Path;
 
-use trimtab::fit::FitRun;
 use trimtab::model::Model;
-use trimtab::report::{Axis, BLUE, DASH, Figure, Layer, Legend, ORANGE, Panel, SKY, Table, VERMILLION, fixed, sig};
+use trimtab::numerals::{DASH, fixed, sig};
+use trimtab::plot::{Axis, BLUE, Figure, Layer, Legend, ORANGE, Panel, SKY, VERMILLION};
+use trimtab::recording::Run;
+use trimtab::report::Table;
 
 use super::measure::{Course, WAYS, Way, accuracies, course, gradient_times};
 use crate::paper::artefact::Artefact;
@@ -71,7 +73,7 @@ impl Report {
         }
     }
 
-    fn add_accuracy(&mut self, i: usize, case: &Case, model: &Model, runs: &[FitRun]) -> Result<(), PaperError> {
+    fn add_accuracy(&mut self, i: usize, case: &Case, model: &Model, runs: &[Run]) -> Result<(), PaperError> {
         let ship = case.ship.name();
         let errors = accuracies(case, model, runs)?;
         for (step, error) in &errors.steps {
@@ -89,7 +91,7 @@ impl Report {
         Ok(())
     }
 
-    fn add_courses(&mut self, case: &Case, model: &Model, runs: &[FitRun]) -> Result<(), PaperError> {
+    fn add_courses(&mut self, case: &Case, model: &Model, runs: &[Run]) -> Result<(), PaperError> {
         let courses: Vec<(&Way, Course)> =
             WAYS.iter().map(|way| Ok((way, course(case, model, runs, way)?))).collect::<Result<_, PaperError>>()?;
         let best = courses.iter().map(|(_, c)| c.cost).fold(f64::INFINITY, f64::min);
@@ -161,7 +163,7 @@ impl Report {
         ]);
     }
 
-    fn add_gradient_times(&mut self, case: &Case, model: &Model, runs: &[FitRun]) -> Result<(), PaperError> {
+    fn add_gradient_times(&mut self, case: &Case, model: &Model, runs: &[Run]) -> Result<(), PaperError> {
         for (name, ratio) in gradient_times(model, runs)? {
             self.speed.row([case.label().to_owned(), format!("gradient / cost, {name}"), fixed(ratio, 1)]);
             let what = "time of a gradient over that of a cost";

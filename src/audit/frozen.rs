@@ -1,0 +1,116 @@
+//! Frozen channels: those that hold one value while what the other channels tell says that they should not.
+//! A receiver that holds its value and then catches up is in `receiver`, since its samples can be left out.
+
+use super::issue::{Issue, Severity};
+use super::series::Series;
+use crate::recording::{Channel, STATE_CHANNELS};
+use std::ops::Range;
+
+/// Fewest rows of one value that are called frozen: of position and heading, which integrate, and of velocities.
+const FROZEN_ROWS: [usize; 2] = [10, 50];
+
+/// Channels that hold one value while their partners say they should not: position and heading against the integral of the rates,
+/// velocities against the derivative of position and heading.
+pub fn frozen(series: &Series<'_>, issues: &mut Vec<Issue>) {
+    let t = &series.t;
+    let duration = |rows: &Range<usize>| t[rows.end - 1] - t[rows.start];
+    for channel in STATE_CHANNELS {
+        let Some(values) = series.recorded(channel) else { continue };
+        let still = still(series, channel, values);
+        let Some(longest) = still.iter().max_by(|a, b| duration(a).total_cmp(&duration(b))) else { continue };
+        let text = format!(
+            "stands still while the ship's other channels move: {} of {:.1} s in all, the longest at {:.4}",
+            if still.len() == 1 { "one stretch".to_owned() } else { format!("{} stretches", still.len()) },
+            still.iter().map(duration).sum::<f64>(),
+            values[longest.start],
+        );
+        let issue =
+            Issue::new(Severity::Warning, "frozen", text, "blank it, so that it counts as a dropout").of(channel);
+        issues.push(match series.lines(longest) {
+            Some(lines) => issue.at(lines),
+            None => issue,
+        });
+    }
+}
+
+/// The stretches over which a channel holds one value and should not.
+fn still(series: &Series<'_>, channel: Channel, values: &[f64]) -> Vec<Range<usize>> {
+    let t = &series.t;
+    let integrates = matches!(channel, Channel::X | Channel::Y | Channel::Psi);
+    let least = FROZEN_ROWS[usize::from(!integrates)];
+    let stretches: Vec<Range<usize>> = series.stretches.iter().flat_map(|s| constant(values, s.clone())).collect();
+    if stretches.iter().all(|rows| rows.len() < least) {
+        return Vec::new();
+    }
+    let partner = if integrates { rate(series, channel) } else { derivative(series, channel) };
+    let Some(partner) = partner else { return Vec::new() };
+    let whole_range = range(&partner);
+    let stands = |(i, rows): &(usize, &Range<usize>)| {
+        if integrates {
+            // A channel that is only coarse also stands, but never longer than its neighbouring steps explain.
+            let moved: f64 = Range::clone(rows).skip(1).map(|i| partner[i] * (t[i] - t[i - 1])).sum();
+            moved.abs() > 5.0 * usual_change(values, &stretches, *i)
+        } else {
+            let longer = t[rows.end - 1] - t[rows.start] > 3.0 * series.span;
+            longer && range(&partner[Range::clone(rows)]) > 0.3 * whole_range
+        }
+    };
+    let long = stretches.iter().enumerate().filter(|(_, rows)| rows.len() >= least);
+    long.filter(stands).map(|(_, rows)| rows.clone()).collect()
+}
+
+/// Rate at which position or heading should change, from the recorded rates.
+fn rate(series: &Series<'_>, channel: Channel) -> Option<Vec<f64>> {
+    if channel == Channel::Psi {
+        return series.get(Channel::R).map(<[f64]>::to_vec);
+    }
+    let [psi, u, v] = [Channel::Psi, Channel::U, Channel::V].map(|c| series.get(c));
+    let (psi, u, v) = (psi?, u?, v?);
+    let at = |i: usize| {
+        let (s, c) = psi[i].sin_cos();
+        if channel == Channel::X { u[i] * c - v[i] * s } else { u[i] * s + v[i] * c }
+    };
+    Some((0..psi.len()).map(at).collect())
+}
+
+/// Velocity or yaw rate as position and heading tell it.
+fn derivative(series: &Series<'_>, channel: Channel) -> Option<Vec<f64>> {
+    let all = 0..series.t.len();
+    let psi = series.get(Channel::Psi)?;
+    if channel == Channel::R {
+        return Some(series.slope(psi, &all));
+    }
+    let (dx, dy) = (series.slope(series.get(Channel::X)?, &all), series.slope(series.get(Channel::Y)?, &all));
+    let at = |i: usize| {
+        let (s, c) = psi[i].sin_cos();
+        if channel == Channel::U { dx[i] * c + dy[i] * s } else { dy[i] * c - dx[i] * s }
+    };
+    Some(all.map(at).collect())
+}
+
+/// Largest less smallest finite value.
+fn range(values: &[f64]) -> f64 {
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    finite().fold(f64::MIN, f64::max) - finite().fold(f64::MAX, f64::min)
+}
+
+/// Median change of value from stretch to stretch around stretch `at`: motion in a row, or the resolution where that is coarser.
+fn usual_change(values: &[f64], stretches: &[Range<usize>], at: usize) -> f64 {
+    let near = &stretches[at.saturating_sub(6)..(at + 7).min(stretches.len())];
+    let mut changes: Vec<f64> =
+        near.windows(2).map(|s| (values[s[1].start] - values[s[0].start]).abs()).filter(|d| *d > 0.0).collect();
+    changes.sort_by(f64::total_cmp);
+    changes.get(changes.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Stretches of one value within `rows`.
+fn constant(values: &[f64], rows: Range<usize>) -> Vec<Range<usize>> {
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    for row in rows {
+        match stretches.last_mut() {
+            Some(last) if values[last.start] == values[row] => last.end = row + 1,
+            _ => stretches.push(row..row + 1),
+        }
+    }
+    stretches
+}

@@ -1,0 +1,60 @@
+//! A doubt about recordings: what it is, how much it weighs, what was seen and what to do next.
+//! It finds no fault itself; the questions asked of recordings are in the files beside it.
+
+use crate::recording::Channel;
+use serde::Serialize;
+
+/// How much an issue weighs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// Worth knowing.
+    Note,
+    /// Results may suffer: look before fitting.
+    Warning,
+    /// The recording contradicts itself, or cannot be used.
+    Error,
+}
+
+/// A doubt about a recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Issue {
+    /// How much it weighs.
+    pub severity: Severity,
+    /// What kind of fault it is, in a word or two: `sign_error`, `gap`.
+    pub fault: &'static str,
+    /// The channel it is about, if one.
+    pub channel: Option<Channel>,
+    /// First and last line it is about, if some.
+    pub lines: Option<(usize, usize)>,
+    /// What was found.
+    pub text: String,
+    /// What to do next.
+    pub next_step: String,
+}
+
+impl Issue {
+    /// An issue about recordings as a whole.
+    pub fn new(severity: Severity, fault: &'static str, text: impl Into<String>, next_step: impl Into<String>) -> Self {
+        Self { severity, fault, channel: None, lines: None, text: text.into(), next_step: next_step.into() }
+    }
+
+    /// The same about one channel.
+    #[must_use]
+    pub fn of(mut self, channel: Channel) -> Self {
+        self.channel = Some(channel);
+        self
+    }
+
+    /// The same about some lines of the file, first and last.
+    #[must_use]
+    pub fn at(mut self, lines: (usize, usize)) -> Self {
+        self.lines = Some(lines);
+        self
+    }
+
+    /// True when it must be mended before anything is concluded.
+    pub fn blocking(&self) -> bool {
+        self.severity == Severity::Error
+    }
+}

@@ -1,0 +1,236 @@
+//! Signs and axes: the track against the recorded velocity, sway against the slide of the track, the turn against the rudder.
+//! Wrong units of velocity show here too, by their gain; heading against yaw rate is in `units`.
+
+use super::clocks::Pair;
+use super::issue::{Issue, Severity};
+use super::kinematics::{Kinematics, Proportion};
+use super::series::Series;
+use super::units::{CALIBRATED, COHERENT, SPEED_GAINS, known_gain};
+use crate::recording::{Channel, local};
+use nalgebra::{Matrix3, Vector3};
+use std::ops::Range;
+
+/// Track against velocity: sums over rows of the track's velocity, the recorded one turned by the heading (along the earth's axes),
+/// and the recorded one as it is (along the ship's).
+#[derive(Default)]
+pub struct Track {
+    count: f64,
+    track: f64,
+    earth: f64,
+    /// Scalar and vector product of track and velocity.
+    along: f64,
+    across: f64,
+    /// Square of their difference.
+    difference: f64,
+    /// Of the track with the velocity not turned.
+    unturned: f64,
+    /// Scalar and vector product of the mirrored track and velocity.
+    mirror_along: f64,
+    mirror_across: f64,
+    /// Slide of the track to starboard against v, and their difference against r.
+    sway: Proportion,
+    lever: Proportion,
+    longest: Pair,
+}
+
+impl Track {
+    /// Adds what some rows say. Where v was not recorded it counts as 0, and nothing is said of sway.
+    pub fn add(&mut self, series: &Series<'_>) {
+        let [Some(x), Some(y), Some(psi)] = [Channel::X, Channel::Y, Channel::Psi].map(|c| series.get(c)) else {
+            return;
+        };
+        let Some(u) = series.recorded(Channel::U) else { return };
+        let none = vec![0.0; u.len()];
+        let v = match (series.recorded(Channel::V), series.get(Channel::V)) {
+            (Some(v), _) => v,
+            (None, Some(_)) => return,
+            (None, None) => none.as_slice(),
+        };
+        let with_sway = series.get(Channel::V).is_some();
+        let rows = x.len();
+        let north: Vec<f64> = (0..rows).map(|i| u[i] * psi[i].cos() - v[i] * psi[i].sin()).collect();
+        let east: Vec<f64> = (0..rows).map(|i| u[i] * psi[i].sin() + v[i] * psi[i].cos()).collect();
+        for s in &series.stretches {
+            let smooth = |values: &[f64]| series.smooth(values, s);
+            let (dx, dy) = (series.slope(x, s), series.slope(y, s));
+            let (n, e, ub, vb) = (smooth(&north), smooth(&east), smooth(u), smooth(v));
+            let r = series.get(Channel::R).map_or_else(|| series.slope(psi, s), smooth);
+            for i in 0..s.len() {
+                let (track, earth, body) = ([dx[i], dy[i]], [n[i], e[i]], [ub[i], vb[i]]);
+                self.add_row(track, earth, body, psi[s.start + i], r[i], with_sway);
+            }
+            let speed = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a.hypot(*b)).collect::<Vec<f64>>();
+            self.longest.offer(speed(&dx, &dy), speed(&n, &e), series.step);
+        }
+    }
+
+    fn add_row(&mut self, track: [f64; 2], earth: [f64; 2], body: [f64; 2], psi: f64, r: f64, with_sway: bool) {
+        if !track.iter().chain(&earth).chain(&body).chain([&psi, &r]).all(|v| v.is_finite()) {
+            return;
+        }
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        let apart = [track[0] - earth[0], track[1] - earth[1]];
+        self.count += 1.0;
+        self.track += dot(track, track);
+        self.earth += dot(earth, earth);
+        self.along += dot(track, earth);
+        self.across += track[1] * earth[0] - track[0] * earth[1];
+        self.difference += dot(apart, apart);
+        self.unturned += dot(track, body);
+        self.mirror_along += track[0] * earth[0] - track[1] * earth[1];
+        self.mirror_across += track[0] * earth[1] + track[1] * earth[0];
+        if with_sway {
+            let (sin, cos) = psi.sin_cos();
+            let slide = track[1] * cos - track[0] * sin;
+            self.sway.add(&[slide], &[body[1]]);
+            self.lever.add(&[slide - body[1]], &[r]);
+        }
+    }
+
+    /// What all rows say.
+    pub fn tell(&self, kinematics: &mut Kinematics, issues: &mut Vec<Issue>) {
+        if self.track <= 0.0 || self.earth <= 0.0 {
+            return;
+        }
+        let size = (self.track * self.earth).sqrt();
+        let coherence = self.along.hypot(self.across) / size;
+        let angle = self.across.atan2(self.along);
+        kinematics.velocity_rms = Some((self.difference / self.count).sqrt());
+        kinematics.velocity_gain = Some(self.along.hypot(self.across) / self.earth);
+        kinematics.track_angle = Some(angle);
+        kinematics.velocity_coherence = Some(coherence);
+        if let Some(axes) = self.wrong_axes(coherence, size) {
+            issues.push(axes);
+            return;
+        }
+        if coherence > COHERENT {
+            if self.wrong_velocity(angle.to_degrees(), self.along.hypot(self.across) / self.earth, issues) {
+                return;
+            }
+        } else {
+            let rms = (self.difference / self.count).sqrt();
+            let text =
+                format!("track and velocity agree poorly (coherence {coherence:.2}, rms difference {rms:.3} m/s)");
+            let next = "check axes, units and reference point of x, y, u and v";
+            issues.push(Issue::new(Severity::Warning, "disagreement", text, next).of(Channel::U));
+        }
+        self.tell_sway(kinematics, issues);
+        kinematics.velocity_lag = self.longest.lag();
+        self.longest.tell(kinematics.velocity_lag, Channel::U, "the position", issues);
+    }
+
+    /// Velocities along other axes than the ship's, or a mirror image.
+    fn wrong_axes(&self, coherence: f64, size: f64) -> Option<Issue> {
+        if self.unturned / size > 0.97 && self.along / size < 0.9 {
+            let text = "u and v follow the track along the earth's axes, not the ship's";
+            let next = "set `velocity_frame = \"earth\"` in a column map";
+            return Some(Issue::new(Severity::Error, "axes_error", text, next).of(Channel::U));
+        }
+        let mirrored = self.mirror_along.hypot(self.mirror_across) / size;
+        // On a straight course a mirror image and a turned one are the same; heading must vary for the two to differ.
+        if mirrored > 0.95 && coherence < 0.98 && 1.0 - mirrored < 0.25 * (1.0 - coherence) {
+            let text = "the track is the mirror image of what heading and velocity say";
+            let next = "are x and y exchanged, y positive to port, or heading counted anticlockwise? correct it in a column map";
+            return Some(Issue::new(Severity::Error, "axes_error", text, next).of(Channel::Psi));
+        }
+        None
+    }
+
+    /// Direction and speed of the track against the velocity's; true when a unit or a sign is plainly wrong.
+    fn wrong_velocity(&self, degrees: f64, gain: f64, issues: &mut Vec<Issue>) -> bool {
+        let mut push = |severity, fault, channel, text: String, next: &str| {
+            issues.push(Issue::new(severity, fault, text, next).of(channel));
+        };
+        if degrees.abs() > 170.0 {
+            let text = "the ship moves against its recorded velocity".to_owned();
+            let next = "turn the sign of u and v, or the heading by 180 deg";
+            push(Severity::Error, "sign_error", Channel::U, text, next);
+            return true;
+        }
+        // Without v, a ship that drifts in turns seems to run beside its heading.
+        if degrees.abs() > 3.0 && self.sway.known() {
+            let severity = if degrees.abs() > 60.0 { Severity::Error } else { Severity::Warning };
+            let text = format!("the track runs {degrees:.1} deg clockwise of heading and velocity");
+            let next = "is the heading offset, or a current left out? `offset` in a column map corrects a heading";
+            push(severity, "axes_error", Channel::Psi, text, next);
+        }
+        if let Some((fault, meaning)) = known_gain(gain, &SPEED_GAINS) {
+            let text = format!("the track is {gain:.3} times as fast as the velocity: {meaning}");
+            push(Severity::Error, fault, Channel::U, text, "correct the unit of u and v, or of x and y");
+            return true;
+        }
+        if (gain - 1.0).abs() > CALIBRATED {
+            let text = format!("the track is {gain:.3} times as fast as the velocity");
+            let next = "check the log's scale, through-water against over-ground speed, and the units of x and y";
+            push(Severity::Warning, "calibration", Channel::U, text, next);
+        }
+        false
+    }
+
+    /// Sway of the track against recorded sway: a lever arm between the two points, or a turned sign.
+    fn tell_sway(&self, kinematics: &mut Kinematics, issues: &mut Vec<Issue>) {
+        if !self.lever.known() {
+            return;
+        }
+        kinematics.lever = Some(self.lever.gain());
+        if !self.sway.known() {
+            return;
+        }
+        if self.sway.rms_sum() < 0.3 * self.sway.rms() && self.sway.coherence() < -0.8 {
+            let text = format!("sway of the track is {:.2} times the recorded v", self.sway.gain());
+            let next = "is v positive to port? set `sign = -1` in a column map";
+            issues.push(Issue::new(Severity::Error, "sign_error", text, next).of(Channel::V));
+        } else if self.lever.coherence().abs() > COHERENT && self.lever.rms_a() > 0.2 * self.sway.rms_b() {
+            let lever = self.lever.gain();
+            let text = format!(
+                "in turns the track slides as if positions were taken {:.2} m {} of the point whose velocity is recorded",
+                lever.abs(),
+                if lever > 0.0 { "forward" } else { "aft" }
+            );
+            let next = "give `reference_point` and `velocity_point` in a column map";
+            issues.push(Issue::new(Severity::Warning, "lever", text, next).of(Channel::V));
+        }
+    }
+}
+
+/// A rudder positive to port: fits Nomoto's `delta = (T/K) dr/dt + (1/K) r + delta_0` (1957) where the ship and its propeller go
+/// ahead; a stable ship has both coefficients positive, an unstable one the first.
+#[derive(Default)]
+pub struct Rudder {
+    normal: Matrix3<f64>,
+    right: Vector3<f64>,
+    squares: f64,
+}
+
+impl Rudder {
+    /// Adds what some rows say.
+    pub fn add(&mut self, series: &Series<'_>) {
+        let (Some(delta), Some(r)) = (series.delta.as_deref(), series.get(Channel::R)) else { return };
+        let (u, n) = (series.get(Channel::U), series.n.as_deref());
+        let ahead = |values: Option<&[f64]>, row: usize| values.is_none_or(|v| v[row] > 0.0);
+        for s in &series.stretches {
+            for (i, c) in local(&series.t, r, Range::clone(s), series.span).into_iter().enumerate() {
+                let row = s.start + i;
+                if ahead(u, row) && ahead(n, row) && c.iter().all(|c| c.is_finite()) && delta[row].is_finite() {
+                    let basis = Vector3::new(c[1], c[0], 1.0);
+                    self.normal += basis * basis.transpose();
+                    self.right += basis * delta[row];
+                    self.squares += delta[row] * delta[row];
+                }
+            }
+        }
+    }
+
+    /// What all rows say.
+    pub fn tell(&self, issues: &mut Vec<Issue>) {
+        let Some(c) = self.normal.try_inverse().map(|inverse| inverse * self.right) else { return };
+        let mean = self.right[2] / self.normal[(2, 2)];
+        let total = self.squares - mean * self.right[2];
+        let left = self.squares - self.right.dot(&c);
+        if c[0] < 0.0 && c[1] < 0.0 && left < 0.5 * total {
+            let next = "is the rudder positive to port? set `sign = -1` in a column map";
+            let issue = Issue::new(Severity::Error, "sign_error", "the ship turns against its rudder", next);
+            issues.push(issue.of(Channel::Delta));
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Units: actuators too small for theirs, and the gains by which a wrong unit or sign shows where two channels tell the same motion.
+//! Here heading is held against yaw rate; the track against velocity is in `signs`.
+
+use super::clocks::Pair;
+use super::issue::{Issue, Severity};
+use super::kinematics::{Kinematics, Proportion};
+use super::series::Series;
+use crate::recording::{Channel, Recording};
+
+/// Actuators too small for their unit.
+pub fn magnitudes(recording: &Recording, issues: &mut Vec<Issue>) {
+    // A rudder that never leaves +-1.6 deg, or a shaft under 3 rpm, is more likely radians read as degrees or rps as rpm.
+    let least = [(Channel::Delta, 1.6_f64.to_radians(), "rad"), (Channel::N, 0.05, "rps")];
+    for (channel, limit, unit) in least {
+        let Some(values) = recording.get(channel) else { continue };
+        let largest = values.iter().copied().filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
+        if largest > 0.0 && largest < limit && recording.unit(channel) != unit {
+            let factor = channel.info().quantity.factor(recording.unit(channel)).unwrap_or(1.0);
+            let text =
+                format!("{} never exceeds {:.3} {}", channel.info().words, largest / factor, recording.unit(channel));
+            issues.push(
+                Issue::new(Severity::Warning, "unit_error", text, format!("is the column in {unit}?")).of(channel),
+            );
+        }
+    }
+}
+
+/// Known wrong units and signs by the gain they cause on a speed, and what each means.
+pub const SPEED_GAINS: [(f64, &str); 6] = [
+    (-1.0, "the sign is turned"),
+    (1852.0 / 3600.0, "the column is in knots and was declared m/s"),
+    (3600.0 / 1852.0, "the column is in m/s and was declared kn"),
+    (1.0 / 3.6, "the column is in km/h and was declared m/s"),
+    (3.6, "the column is in m/s and was declared km/h"),
+    (-1852.0 / 3600.0, "the column is in knots, was declared m/s, and its sign is turned"),
+];
+
+/// The same on a yaw rate.
+pub const TURN_GAINS: [(f64, &str); 7] = [
+    (-1.0, "the sign is turned"),
+    (1.0 / 57.295_779_5, "the yaw rate is in deg/s and was declared rad/s, or the heading in rad and declared deg"),
+    (57.295_779_5, "the yaw rate is in rad/s and was declared deg/s, or the heading in deg and declared rad"),
+    (1.0 / 60.0, "the yaw rate is in deg/min and was declared deg/s"),
+    (60.0, "the yaw rate is in deg/s and was declared deg/min"),
+    (-1.0 / 57.295_779_5, "the yaw rate is in deg/s, was declared rad/s, and its sign is turned"),
+    (-57.295_779_5, "the yaw rate is in rad/s, was declared deg/s, and its sign is turned"),
+];
+
+/// How far a gain may be from a known one to be taken for it: noise in what is compared pulls gains towards zero.
+const SAME_GAIN: f64 = 0.12;
+
+/// The fault that a gain tells, and what it means; `None` for a gain that is none of the known ones.
+pub fn known_gain(gain: f64, known: &[(f64, &'static str)]) -> Option<(&'static str, &'static str)> {
+    let off = |g: &f64| (gain / g - 1.0).abs();
+    let nearest = known.iter().min_by(|a, b| off(&a.0).total_cmp(&off(&b.0)))?;
+    let fault = if nearest.0 < 0.0 { "sign_error" } else { "unit_error" };
+    (off(&nearest.0) < SAME_GAIN).then_some((fault, nearest.1))
+}
+
+/// Coherence above which two channels tell the same motion, so that their gain means something.
+pub const COHERENT: f64 = 0.9;
+/// Gains further than this from 1 are worth a look.
+pub const CALIBRATED: f64 = 0.1;
+
+/// Heading against yaw rate.
+#[derive(Default)]
+pub struct Turning {
+    sums: Proportion,
+    longest: Pair,
+}
+
+impl Turning {
+    /// Adds what some rows say.
+    pub fn add(&mut self, series: &Series<'_>) {
+        let both = series.get(Channel::Psi).zip(series.recorded(Channel::R));
+        let Some((psi, r)) = both else { return };
+        for stretch in &series.stretches {
+            let (turning, smooth) = (series.slope(psi, stretch), series.smooth(r, stretch));
+            self.sums.add(&turning, &smooth);
+            self.longest.offer(turning, smooth, series.step);
+        }
+    }
+
+    /// What all rows say.
+    pub fn tell(&self, kinematics: &mut Kinematics, issues: &mut Vec<Issue>) {
+        if !self.sums.known() {
+            return;
+        }
+        let (gain, coherence) = (self.sums.gain(), self.sums.coherence());
+        kinematics.yaw_rate_rms = Some(self.sums.rms());
+        kinematics.yaw_rate_gain = Some(gain);
+        let mut push = |severity, fault, text: String, next: &str| {
+            issues.push(Issue::new(severity, fault, text, next).of(Channel::R));
+        };
+        if coherence.abs() > COHERENT {
+            if let Some((fault, meaning)) = known_gain(gain, &TURN_GAINS) {
+                let text = format!("heading turns {gain:.4} times as fast as r says: {meaning}");
+                push(Severity::Error, fault, text, "correct the unit, or `sign` and `unit` in a column map");
+                return;
+            }
+            if (gain - 1.0).abs() > CALIBRATED {
+                let text = format!("heading turns {gain:.3} times as fast as r says");
+                let next = "check unit and calibration of yaw rate and heading";
+                push(Severity::Warning, "calibration", text, next);
+            }
+        } else if self.sums.rms() > self.sums.rms_a() && self.sums.rms_a() > 0.0 {
+            let text = format!("heading and r do not move together (coherence {coherence:.2})");
+            push(Severity::Warning, "disagreement", text, "check that both columns are what the map says");
+        }
+        kinematics.yaw_rate_lag = self.longest.lag();
+        self.longest.tell(kinematics.yaw_rate_lag, Channel::R, "the heading", issues);
+    }
+}

@@ -1,0 +1,107 @@
+//! Small models and runs for the tests of the steps: a ship, and manoeuvres that a model sails with white sensor noise.
+//! It is no recording and no truth simulator; concealed cases are made in the experiments.
+
+#![allow(clippy::unwrap_used)]
+
+use super::candidate::{Candidate, candidates};
+use super::estimate::Estimate;
+use super::filter::Column;
+use super::noise::{Noise, SensorNoise};
+use crate::model::Model;
+use crate::physics::Form;
+use crate::recording::{Run, Split, measured};
+use crate::ship::Ship;
+use crate::simulate::{Integration, Method, Scenario, simulate};
+use crate::state::Inputs;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use std::path::Path;
+
+pub const RK4: Integration = Integration { method: Method::Rk4, substeps: 1 };
+
+/// Samples in a run.
+pub const SAMPLES: usize = 60;
+
+/// A ship of 85 m with every term of the catalogue at its neutral value.
+pub fn model() -> Model {
+    let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
+    let mut model = Model::new(ship, "HD", Form::Regular, &[]).unwrap();
+    model.set_eleven(&[-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370]);
+    model.complete().unwrap()
+}
+
+/// A model with some parameters set.
+pub fn with(values: &[(&str, f64)]) -> Model {
+    let mut model = model();
+    model.set(values).unwrap();
+    model
+}
+
+/// Sensors of a good survey ship, and little unknown force.
+pub fn noise() -> Noise {
+    let sensor = |white: f64| SensorNoise { white, coloured: 0.3 * white, time: 8.0 };
+    Noise { sensors: [0.3, 0.002, 0.02, 0.0005].map(sensor), force: [5e2, 5e2, 2e4], force_time: 20.0 }
+}
+
+/// Turns to both sides, zigzags and stops on headings all round, in the sessions `a` and `b` by turns.
+pub fn runs(model: &Model, count: usize) -> Vec<Run> {
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    (0..count).map(|i| run(model, i, &mut rng)).collect()
+}
+
+fn run(model: &Model, i: usize, rng: &mut ChaCha8Rng) -> Run {
+    let dt = 3.0;
+    let input = |k: usize| {
+        let t = dt * k as f64;
+        let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+        let delta = match i % 3 {
+            0 => side * 0.4,
+            1 => side * 0.3 * (t / 25.0).sin(),
+            _ => 0.05 * side,
+        };
+        let n = if i % 3 == 2 && t > 60.0 { -1.5 } else { 2.0 + 0.3 * (i % 4) as f64 };
+        Inputs::actuators(t, n, delta)
+    };
+    let inputs: Vec<Inputs<f64>> = (0..SAMPLES).map(input).collect();
+    let initial = [0.0, 0.0, 2.4 * i as f64, 4.0, 0.0, 0.0];
+    let session = if i / 2 % 2 == 0 { "a" } else { "b" };
+    let scenario = Scenario { dt, inputs: inputs.clone(), initial };
+    let states = simulate(model, &model.values_in(session), RK4, &scenario).states;
+    let sizes = [0.3, 0.3, 0.002, 0.02, 0.02, 0.0005];
+    let mut measure = |s: &[f64; 6]| -> [f64; 6] {
+        std::array::from_fn(|c| {
+            let e: f64 = StandardNormal.sample(rng);
+            s[c] + sizes[c] * e
+        })
+    };
+    let samples: Vec<[f64; 6]> = states.iter().map(&mut measure).collect();
+    Run {
+        name: format!("run {i}"),
+        recording: format!("run {i}"),
+        session: session.into(),
+        manoeuvre: ["turn", "zigzag", "stop"][i % 3].into(),
+        split: Split::Train,
+        dt,
+        inputs,
+        initial: samples[0],
+        measured: measured(&samples),
+        disturbed: Vec::new(),
+    }
+}
+
+/// An estimate at a model's values with the noise above and its own free parameters.
+pub fn at(model: &Model) -> Estimate {
+    let free = super::base::base_parameters(model, false);
+    Estimate { model: model.clone(), noise: noise(), free, log_posterior: 0.0 }
+}
+
+/// A mechanism of the catalogue as a candidate.
+pub fn candidate(model: &Model, name: &str) -> Candidate {
+    candidates(model, &[]).into_iter().find(|c| c.mechanism.name == name).unwrap()
+}
+
+/// A parameter of a model by its dotted name, as a column.
+pub fn column(model: &Model, name: &str) -> Column {
+    Column::tangent(model, model.find(name).unwrap())
+}

@@ -1,0 +1,269 @@
+//! How well models predict recordings: mean deviations, cVDM, and what a fitted model gains on a baseline, with intervals.
+//! It compares trajectories and fits nothing; which windows are held out is the study's.
+//!
+//! # Definitions
+//! Source: Papandreou et al. 2025 (arXiv 2502.18696). For a window of K steps, with differences d between simulated and
+//! measured state at the samples k = 1..K after the initial one (heading differences wrapped into (-pi, pi]):
+//!
+//! - Mean deviation of each dimension: `MD = (1/K) sum_k |d|` \[unit of the dimension\].
+//! - `cVDM = (100/K) sum_k ( |dx|/L + |dy|/L + |dpsi|/pi + |du|/U + |dv|/U + |dr|/r_max )` \[%\] with the length L of the
+//!   measured path, the mean measured speed U and a reference yaw rate r_max, as in the cost of a fit. Values that were not
+//!   measured are left out, K of each channel being the samples that were; a channel never measured is left out of the means below.
+//! - Relative improvement of a dimension over the baseline (marked ~): `(MD~ - MD*)/MD~`; its mean over the dimensions is
+//!   the trajectory's average relative improvement, and `mARI` is the median of that over the trajectories. The paper's
+//!   wording ("median of the average relative improvement") would also allow the mean over the dimensions of each
+//!   dimension's median; we take it as said here.
+//! - cVDM improvement: `(mean cVDM~ - mean cVDM*)/mean cVDM~` over the trajectories.
+//! - Consistency: `1 - Var(cVDM*)/Var(cVDM~)` over the trajectories.
+//!
+//! Intervals are 95 % percentile intervals of a bootstrap that draws whole runs: windows of one run share what is unknown.
+//!
+//! A simulation that diverges has no deviation. It is counted, counts as worse than any that does not, and the other numbers
+//! are of the trajectories that neither model diverges on.
+
+mod compare;
+mod cvdm;
+mod prove;
+mod settings;
+mod summary;
+
+pub use compare::{Comparison, compare, predict, predict_all};
+pub use cvdm::{Deviation, Outcome, outcome};
+pub use prove::{Evaluation, Judging, prove};
+pub use settings::EvaluationSettings;
+pub use summary::{Estimate, Named, Summary, summarise};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::Dynamics;
+    use crate::fit::{Cost, CostOptions, Derivatives};
+    use crate::model::Model;
+    use crate::physics::Form;
+    use crate::recording::{Run, Split, measured, or_nan};
+    use crate::ship::Ship;
+    use crate::simulate::Integration;
+    use crate::state::Inputs;
+    use std::f64::consts::PI;
+    use std::path::Path;
+
+    const R_MAX: f64 = 0.0314;
+
+    fn model() -> Model {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/ships/a.toml");
+        let mut model = Model::new(Ship::read(&path).unwrap(), "A", Form::Regular, &[]).unwrap();
+        model.set_eleven(&[-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370]);
+        model
+    }
+
+    /// Windows sailed by the model itself under rudder angles that differ from window to window.
+    fn windows(model: &Model, count: usize) -> Vec<Run> {
+        (0..count)
+            .map(|i| {
+                let angle = 0.04 * (i as f64 - 2.0);
+                let inputs: Vec<_> = (0..=40).map(|k| Inputs::actuators(5.0 * k as f64, 2.0, angle)).collect();
+                let initial = [0.0, 0.0, 0.3 * i as f64, 4.0, 0.0, 0.0];
+                let mut window = Run {
+                    name: format!("run_{i} 0 s"),
+                    recording: format!("run_{i}"),
+                    session: format!("day {}", i % 2),
+                    manoeuvre: "turn".into(),
+                    split: Split::Test,
+                    dt: 5.0,
+                    measured: vec![initial.map(Some); inputs.len()],
+                    inputs,
+                    initial,
+                    disturbed: Vec::new(),
+                };
+                window.measured = measured(&predict(model, &window, Integration::default()).states);
+                window
+            })
+            .collect()
+    }
+
+    #[test]
+    fn what_sensors_report_is_predicted_from_what_they_reported_first() {
+        let ship = model();
+        let mut off = ship.clone();
+        for (term, values) in [
+            ("heading_bias", [("heading_bias.bias", 0.05)].as_slice()),
+            ("log_scale", &[("log_scale.error", 0.08)]),
+            ("antenna", &[("antenna.x", 30.0), ("antenna.y", -8.0)]),
+            ("time_skew", &[("time_skew.position", 1.5)]),
+        ] {
+            off.add_term(term).unwrap();
+            off.set(values).unwrap();
+        }
+        let theta = off.values();
+        let mut windows = windows(&ship, 3);
+        for w in &mut windows {
+            for (m, inputs) in w.measured.iter_mut().zip(&w.inputs) {
+                *m = Dynamics::new(&off, theta.clone()).report(&or_nan(m), inputs).map(Some);
+            }
+            w.initial = or_nan(&w.measured[0]);
+        }
+        let cvdm = |model: &Model, w: &Run| {
+            let Outcome::Simulated(d) = outcome(w, &predict(model, w, Integration::default()), &ship.ship, R_MAX)
+            else {
+                panic!("diverged")
+            };
+            d.cvdm
+        };
+        for w in &windows {
+            assert!(cvdm(&off, w) < 1e-4 && cvdm(&ship, w) > 3.0, "{} {}", cvdm(&off, w), cvdm(&ship, w));
+        }
+        // A fit sees the same: its cost has its least value, nothing, at the sensors' own errors, and is level there.
+        let at = off.find("log_scale.error").unwrap();
+        off.parameters.iter_mut().enumerate().for_each(|(i, p)| p.free = i == at);
+        for derivatives in [Derivatives::Lanes, Derivatives::NumDual] {
+            let options = CostOptions {
+                max_yaw_rate: R_MAX,
+                derivatives,
+                difference_step: 1e-6,
+                integration: Integration::default(),
+            };
+            let cost = Cost::new(&off, &windows, options).unwrap();
+            let (here, there) = (cost.with_gradient(&[0.08]).unwrap(), cost.with_gradient(&[0.06]).unwrap());
+            assert!(here.value < 1e-9 && there.value > 1e-4, "{} {}", here.value, there.value);
+            let h = 1e-5;
+            let slope = (cost.value(&[0.06 + h]).unwrap() - cost.value(&[0.06 - h]).unwrap()) / (2.0 * h);
+            assert!((there.gradient[0] - slope).abs() < 1e-6 * slope.abs(), "{} {slope}", there.gradient[0]);
+        }
+    }
+
+    fn changed(by: f64) -> Model {
+        let mut model = model();
+        model.set(&[("rudder.lift1", 3.193 * (1.0 + by)), ("resistance.linear", 34187.0 * (1.0 + by))]).unwrap();
+        model
+    }
+
+    fn judging(seed: u64) -> Judging {
+        let settings = EvaluationSettings { seed, ..EvaluationSettings::default() };
+        Judging { integration: Integration::default(), max_yaw_rate: R_MAX, settings }
+    }
+
+    fn evaluated(baseline: &Model, fitted: &Model, windows: &[Run]) -> Evaluation {
+        prove(baseline, fitted, windows, &judging(1))
+    }
+
+    #[test]
+    fn cvdm_of_a_constant_offset_is_what_the_formula_says() {
+        let model = model();
+        let window = windows(&model, 1).remove(0);
+        let mut predicted = predict(&model, &window, Integration::default());
+        let offset = [3.0, -4.0, 0.1, 0.2, -0.05, 0.002];
+        for s in predicted.states.iter_mut().skip(1) {
+            *s = std::array::from_fn(|i| s[i] + offset[i]);
+            // A whole turn is no difference of heading.
+            s[2] += 2.0 * PI;
+        }
+        let (l, u) = (window.path_length(), window.mean_speed());
+        let expected = 100.0 * (7.0 / l + 0.1 / PI + 0.25 / u + 0.002 / R_MAX);
+        let comparison = compare(&window, &model, R_MAX, (&predicted, &predicted));
+        let deviation = comparison.fitted.deviation().unwrap();
+        assert!((deviation.cvdm - expected).abs() < 1e-9 * expected, "{} {expected}", deviation.cvdm);
+        for (md, offset) in deviation.md.iter().zip(offset) {
+            assert!((md.unwrap() - offset.abs()).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn halving_every_deviation_improves_every_number_by_half() {
+        let model = model();
+        let windows = windows(&model, 6);
+        let settings = EvaluationSettings::default();
+        let comparisons: Vec<Comparison> = windows
+            .iter()
+            .enumerate()
+            .map(|(i, w)| {
+                let moved = |by: f64| {
+                    let mut p = predict(&model, w, Integration::default());
+                    p.states.iter_mut().for_each(|s| *s = s.map(|x| x + by * 0.01 * (i + 1) as f64));
+                    p
+                };
+                compare(w, &model, R_MAX, (&moved(1.0), &moved(0.5)))
+            })
+            .collect();
+        let summary = summarise("all".into(), &comparisons.iter().collect::<Vec<_>>(), &settings);
+        let near = |e: Option<Estimate>, v: f64| assert!((e.unwrap().value - v).abs() < 1e-9, "{e:?} {v}");
+        near(summary.cvdm_improvement, 0.5);
+        near(summary.mari, 0.5);
+        near(summary.consistency, 0.75);
+        summary.md_improvement.iter().for_each(|e| near(*e, 0.5));
+        assert_eq!((summary.better, summary.worse, summary.runs_better), (6, 0, 6));
+        let [lo, hi] = summary.cvdm_improvement.unwrap().ci95.unwrap();
+        assert!(lo <= 0.5 + 1e-9 && hi >= 0.5 - 1e-9);
+        assert_eq!(summary.most_worsened, None);
+    }
+
+    #[test]
+    fn the_true_model_is_exact_and_beats_a_wrong_one_everywhere() {
+        let truth = model();
+        let windows = windows(&truth, 6);
+        let evaluation = evaluated(&changed(0.2), &truth, &windows);
+        let test = evaluation.summary("test").unwrap();
+        assert!(test.cvdm_fitted.unwrap().value < 1e-9);
+        assert!((test.mari.unwrap().value - 1.0).abs() < 1e-9);
+        assert_eq!((test.better, test.worse), (6, 0));
+        // And the other way round an exact baseline leaves no relative improvement to speak of, and no NaN.
+        let reversed = evaluated(&truth, &changed(0.2), &windows);
+        let test = reversed.summary("test").unwrap();
+        assert_eq!((test.mari, test.cvdm_improvement, test.better), (None, None, 0));
+        assert!(!serde_json::to_string(&reversed).unwrap().contains("null"));
+    }
+
+    #[test]
+    fn a_diverged_simulation_is_counted_and_named_and_spoils_no_number() {
+        let truth = model();
+        let windows = windows(&truth, 5);
+        let mut wild = changed(0.1);
+        wild.set(&[("resistance.linear", -1e9)]).unwrap();
+        let evaluation = evaluated(&changed(0.2), &wild, &windows);
+        let test = evaluation.summary("test").unwrap();
+        assert_eq!((test.diverged_fitted, test.diverged_baseline), (5, 0));
+        assert_eq!((test.better, test.worse, test.runs_worse), (0, 5, 5));
+        assert_eq!(test.cvdm_fitted, None);
+        assert!(matches!(test.worst.as_ref().unwrap().fitted, Outcome::Diverged { .. }));
+        let text = serde_json::to_string(&evaluation).unwrap();
+        assert!(!text.contains("null") && !text.contains("NaN"), "{text}");
+    }
+
+    #[test]
+    fn channels_that_were_not_measured_take_no_part() {
+        let truth = model();
+        let mut windows = windows(&truth, 4);
+        for w in &mut windows {
+            w.measured.iter_mut().for_each(|m| m[4] = None);
+        }
+        let evaluation = evaluated(&changed(0.2), &truth, &windows);
+        assert_eq!(evaluation.trajectories[1].fitted.deviation().unwrap().md[4], None);
+        assert!((evaluation.summary("test").unwrap().mari.unwrap().value - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn intervals_repeat_with_the_seed_and_cover_the_number() {
+        let truth = model();
+        let windows = windows(&truth, 8);
+        let (a, b) = (changed(0.3), changed(-0.1));
+        let first = evaluated(&a, &b, &windows);
+        assert_eq!(first, evaluated(&a, &b, &windows));
+        let estimate = first.summary("test").unwrap().cvdm_improvement.unwrap();
+        let [lo, hi] = estimate.ci95.unwrap();
+        assert!(lo < estimate.value && estimate.value < hi);
+        let other = prove(&a, &b, &windows, &judging(2));
+        assert_ne!(other.summary("test").unwrap().cvdm_improvement.unwrap().ci95, estimate.ci95);
+    }
+
+    #[test]
+    fn groups_follow_split_manoeuvre_and_session() {
+        let truth = model();
+        let mut windows = windows(&truth, 6);
+        windows[0].split = Split::Train;
+        windows[1].manoeuvre = "stop".into();
+        let evaluation = evaluated(&changed(0.2), &truth, &windows);
+        let groups: Vec<&str> = evaluation.summaries.iter().map(|s| s.group.as_str()).collect();
+        let expected = ["test", "train", "manoeuvre: stop", "manoeuvre: turn", "session: day 0", "session: day 1"];
+        assert_eq!(groups, expected);
+        assert_eq!(evaluation.summary("manoeuvre: stop").unwrap().cvdm_improvement.unwrap().ci95, None);
+    }
+}

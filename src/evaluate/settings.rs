@@ -1,0 +1,23 @@
+//! Settings of an evaluation, the section `[evaluate]` of a study.
+//! How a trajectory is simulated and weighed is in the section `[fit]`.
+
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// Settings of an evaluation, the section `[evaluate]` of a study.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct EvaluationSettings {
+    /// Model file of the baseline, relative to the study.
+    pub baseline: Option<PathBuf>,
+    /// Bootstrap resamples behind the intervals.
+    pub resamples: usize,
+    /// Seed of the bootstrap.
+    pub seed: u64,
+}
+
+impl Default for EvaluationSettings {
+    fn default() -> Self {
+        Self { baseline: None, resamples: 2000, seed: 1 }
+    }
+}

@@ -1,0 +1,36 @@
+//! Why a trial could not be simulated.
+//! A trial that ends early is no error; see `trial`.
+
+/// Why a trial could not be simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ManeuverError {
+    /// A setting with an impossible value.
+    #[error("`{key}` = {found} in [maneuver]: {expected}")]
+    Setting {
+        /// Key.
+        key: &'static str,
+        /// Value found.
+        found: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// No propeller rate holds the approach speed.
+    #[error(
+        "no propeller rate up to {limit:.2} rps holds the approach speed of {speed:.3} m/s on a straight course; set a lower `speed`, or `speed` and `n` together to approach without balance"
+    )]
+    NoRate {
+        /// Approach speed \[m/s\].
+        speed: f64,
+        /// Largest rate tried \[rps\].
+        limit: f64,
+    },
+    /// No speed is held by the approach propeller rate.
+    #[error(
+        "the propeller rate {n:.3} rps holds no speed ahead on a straight course; give a rate ahead (positive), or `speed` and `n` together to approach without balance"
+    )]
+    NoSpeed {
+        /// Propeller rate \[rps\].
+        n: f64,
+    },
+}

@@ -1,0 +1,98 @@
+//! The measures of the standard trials: turning circle, zigzag and crash stop.
+//! They are data; each trial's own file reads them from a track.
+
+use serde::Serialize;
+
+/// What a turning circle is measured by. Lengths are of the midship point, from the instant the rudder begins to move,
+/// on axes along the heading at that instant; a measure that was not reached is absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Turning {
+    /// Rudder angle held \[rad\].
+    pub rudder: f64,
+    /// Speed when the rudder began to move \[m/s\].
+    pub approach_speed: f64,
+    /// Distance ahead when heading has changed by 90 deg \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub advance: Option<f64>,
+    /// Distance abeam, towards the turn, when heading has changed by 90 deg \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transfer: Option<f64>,
+    /// Distance abeam, towards the turn, when heading has changed by 180 deg \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tactical_diameter: Option<f64>,
+    /// Time to a change of heading of 90 deg \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_90: Option<f64>,
+    /// Time to a change of heading of 180 deg \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_180: Option<f64>,
+    /// The steady turn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steady: Option<Steady>,
+}
+
+/// The steady turn: means over the last 90 deg of heading before the rudder is eased, of a turn of 270 deg or more.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Steady {
+    /// Diameter of the midship point's circle, 2 U / |r| \[m\].
+    pub diameter: f64,
+    /// Speed \[m/s\].
+    pub speed: f64,
+    /// Speed lost: 1 - U/U0 \[-\].
+    pub speed_loss: f64,
+    /// Drift angle atan2(-v, u) \[rad\], positive in a turn to starboard.
+    pub drift: f64,
+    /// Yaw rate \[rad/s\].
+    pub yaw_rate: f64,
+}
+
+/// What a zigzag is measured by; a measure that was not reached is absent.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Zigzag {
+    /// Rudder angle \[rad\].
+    pub rudder: f64,
+    /// Change of heading at which the rudder is put over \[rad\].
+    pub heading: f64,
+    /// Speed at the first execute \[m/s\].
+    pub approach_speed: f64,
+    /// Times of the executes, from the first \[s\].
+    pub executes: Vec<f64>,
+    /// Overshoot angles, first to last \[rad\]: how far heading runs past `heading` after each execute but the first, from
+    /// the course midway between the headings at the second and the third.
+    pub overshoots: Vec<f64>,
+    /// Distance sailed along the track until heading has changed by `heading` \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial_turning: Option<f64>,
+    /// Time until heading has changed by `heading` \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial_turning_time: Option<f64>,
+    /// Time from the first execute until heading is back where it began \[s\] (the reach).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reach: Option<f64>,
+    /// Time from the second to the fourth execute \[s\]: one full cycle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub period: Option<f64>,
+}
+
+/// What a stop is measured by, from the order to the engine until the ship makes no more way ahead; a measure that was
+/// not reached is absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Stopping {
+    /// Speed at the order \[m/s\].
+    pub approach_speed: f64,
+    /// Distance along the track \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub track_reach: Option<f64>,
+    /// Distance along the course at the order \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub head_reach: Option<f64>,
+    /// Distance across that course \[m\], positive to starboard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lateral_deviation: Option<f64>,
+    /// Change of heading \[rad\], positive to starboard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heading_change: Option<f64>,
+    /// Time \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
+}

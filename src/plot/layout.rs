@@ -1,0 +1,172 @@
+//! Lays a figure out: margins that align its panels, titles, legends, and the order in which a panel is drawn.
+//! It decides nothing about the data: ranges and ticks come from `frame`, layers from `marks`, pixels from `canvas`.
+
+use super::axes::{Margins, grid, margins, title_lines, x_axis, y_axis};
+use super::canvas::{Anchor, Canvas, Run, Type};
+use super::extent::{has_data, is_grouped, is_span};
+use super::figure::{Figure, Legend, Panel};
+use super::frame::Frame;
+use super::geometry::{Px, Rect};
+use super::heatmap::{color_bar, heatmap};
+use super::legend::Strip;
+use super::marks::{draw_layer, draw_remarks};
+use super::style::{FRAME, HEADING, LEADING, TITLE, bold, fit_lines, ink};
+
+/// Around the figure, px.
+const EDGE: f32 = 24.0;
+
+/// The sheet of a figure.
+pub(super) fn draw(figure: &Figure) -> Canvas {
+    let columns = figure.columns.clamp(1, figure.panels.len().max(1));
+    let cell = (figure.panel_width.max(300) as f32, figure.panel_height.max(200) as f32);
+    let width = cell.0 * columns as f32 + 2.0 * EDGE;
+
+    let title = fit_lines(&figure.title, TITLE, true, width - 2.0 * EDGE, 3).0;
+    let shared = match figure.legend {
+        Legend::Shared => Strip::new(figure.panels.iter().flat_map(|p| &p.layers), width - 2.0 * EDGE),
+        Legend::EachPanel | Legend::Off => Strip::default(),
+    };
+    let title_height = title.len() as f32 * TITLE * LEADING;
+    let mut top = EDGE + title_height + if title.is_empty() { 0.0 } else { 12.0 };
+    let strip_top = top;
+    top += shared.height();
+
+    let rows = lay_out(figure, columns, cell);
+    let height = top + rows.iter().map(|row| row.height).sum::<f32>() + EDGE;
+    let mut canvas = Canvas::new(width.ceil() as u32, height.ceil() as u32);
+
+    let line = |k: f32| (EDGE, EDGE + (k + 0.5) * TITLE * LEADING);
+    canvas.lines(&title, Anchor::Start, Run::Across, bold(TITLE), line);
+    shared.draw(&mut canvas, (EDGE, strip_top));
+    for row in rows {
+        for (j, cell_of_row) in row.cells.iter().enumerate() {
+            cell_of_row.draw(&mut canvas, (EDGE + j as f32 * cell.0, top));
+        }
+        top += row.height;
+    }
+    canvas
+}
+
+/// A row of panels.
+struct Row<'a> {
+    height: f32,
+    cells: Vec<Cell<'a>>,
+}
+
+/// A panel with its place: `plot` is measured from the corner of the cell.
+struct Cell<'a> {
+    panel: &'a Panel,
+    strip: Strip<'a>,
+    strip_height: f32,
+    plot: Rect,
+}
+
+/// Finds margins that align the plots of each column and each row. Labels depend on the size of the plot and the plot
+/// on its labels, so the margins are refined a few times.
+fn lay_out(figure: &Figure, columns: usize, (cell_w, cell_h): (f32, f32)) -> Vec<Row<'_>> {
+    let mut rows: Vec<Row<'_>> =
+        figure.panels.chunks(columns).map(|panels| Row::new(panels, figure.legend, cell_w, cell_h)).collect();
+    let first = Margins { left: 110.0, right: 30.0, top: 40.0, bottom: 80.0 };
+    let mut all = vec![vec![first; columns]; rows.len()];
+    let place = |rows: &mut [Row<'_>], all: &[Vec<Margins>]| {
+        for (row, margins) in rows.iter_mut().zip(all) {
+            row.cells.iter_mut().zip(margins).for_each(|(cell, m)| cell.plot = plot(*m, cell_w, row.height));
+        }
+    };
+    for _ in 0..3 {
+        place(&mut rows, &all);
+        for (row, own) in rows.iter().zip(&mut all) {
+            for (cell, own) in row.cells.iter().zip(own) {
+                *own = margins(&Frame::new(cell.panel, cell.plot), cell.panel, cell_w, cell.strip_height);
+            }
+        }
+        align(&mut all, columns);
+    }
+    place(&mut rows, &all);
+    rows
+}
+
+/// The plot in a cell of this size.
+fn plot(m: Margins, width: f32, height: f32) -> Rect {
+    Rect {
+        left: m.left,
+        top: m.top,
+        right: (width - m.right).max(m.left + 40.0),
+        bottom: (height - m.bottom).max(m.top + 40.0),
+    }
+}
+
+/// Gives every row one top and bottom, and every column one left and right.
+fn align(all: &mut [Vec<Margins>], columns: usize) {
+    let largest = |margins: &mut dyn Iterator<Item = &Margins>| margins.fold(Margins::default(), |m, &n| m.max(n));
+    let of_columns: Vec<Margins> = (0..columns).map(|j| largest(&mut all.iter().map(|row| &row[j]))).collect();
+    for row in all {
+        let Margins { top, bottom, .. } = largest(&mut row.iter());
+        for (own, of_column) in row.iter_mut().zip(&of_columns) {
+            *own = Margins { top, bottom, ..*of_column };
+        }
+    }
+}
+
+impl<'a> Row<'a> {
+    fn new(panels: &'a [Panel], legend: Legend, cell_w: f32, cell_h: f32) -> Self {
+        let strips: Vec<Strip<'_>> = panels
+            .iter()
+            .map(|panel| match legend {
+                Legend::EachPanel => Strip::new(&panel.layers, cell_w - 160.0),
+                Legend::Shared | Legend::Off => Strip::default(),
+            })
+            .collect();
+        let strip_height = strips.iter().map(Strip::height).fold(0.0, f32::max);
+        let plot = Rect { left: 0.0, top: 0.0, right: 0.0, bottom: 0.0 };
+        let cell = |(panel, strip)| Cell { panel, strip, strip_height, plot };
+        Self { height: cell_h + strip_height, cells: panels.iter().zip(strips).map(cell).collect() }
+    }
+}
+
+impl Cell<'_> {
+    fn draw(&self, canvas: &mut Canvas, (left, top): Px) {
+        let plot = Rect {
+            left: left + self.plot.left,
+            top: top + self.plot.top,
+            right: left + self.plot.right,
+            bottom: top + self.plot.bottom,
+        };
+        let title = title_lines(self.panel, plot.width());
+        let title_height = title.len() as f32 * HEADING * LEADING;
+        let strip_top = plot.top - 12.0 - self.strip_height;
+        let line = |k: f32| (plot.left, strip_top - title_height + (k + 0.5) * HEADING * LEADING);
+        canvas.lines(&title, Anchor::Start, Run::Across, bold(HEADING), line);
+        self.strip.draw(canvas, (plot.left, strip_top));
+        draw_panel(&Frame::new(self.panel, plot), canvas, self.panel);
+    }
+}
+
+/// Draws a panel: spans, grid, layers, axes, remarks, in this order.
+fn draw_panel(frame: &Frame, canvas: &mut Canvas, panel: &Panel) {
+    let plot = frame.plot;
+    canvas.clip_to(plot);
+    for layer in panel.layers.iter().filter(|l| is_span(l)) {
+        draw_layer(frame, canvas, panel, layer, 0);
+    }
+    let heatmap = heatmap(panel);
+    if heatmap.is_none() {
+        grid(frame, canvas, panel);
+    }
+    let mut group = 0;
+    for layer in panel.layers.iter().filter(|l| !is_span(l)) {
+        draw_layer(frame, canvas, panel, layer, group);
+        group += usize::from(is_grouped(layer));
+    }
+    canvas.clip_to(canvas.bounds());
+    canvas.stroke_rect(plot, 1.5, FRAME);
+    x_axis(frame, canvas, &panel.x);
+    y_axis(frame, canvas, &panel.y);
+    if !panel.layers.iter().any(has_data) {
+        canvas.text("no data", plot.center(), Anchor::Middle, Run::Across, Type { color: FRAME, ..ink(HEADING) });
+    }
+    draw_remarks(frame, canvas, panel);
+    if let Some((name, range)) = heatmap {
+        color_bar(plot, canvas, name, range);
+    }
+}

@@ -1,0 +1,57 @@
+//! The third part of a diagnosis: what was added to the model, and what that did to the parameters it had.
+//! How sure the findings are is in the verdict, and what they gain in the proof.
+
+use super::names::about;
+use super::phrases::{UNDECIDED, adequacy_words, amplitude, p_value};
+use crate::diagnose::Diagnosis;
+use crate::diagnose::finding::Amplitude;
+use crate::diagnose::sides::Sides;
+use crate::numerals::sig;
+use crate::report::units::Units;
+
+/// What was added to the model, and how its own parameters moved.
+pub(super) fn model(d: &Diagnosis) -> Vec<String> {
+    let units = Units::of(&d.base.ship);
+    let mut lines = Vec::new();
+    for f in &d.findings {
+        lines.extend(f.parameters.iter().map(|a| {
+            let about = about(&a.name).map_or(String::new(), |words| format!(", {words}"));
+            format!("{} = {}{about}", a.name, amplitude(a, units))
+        }));
+    }
+    for t in &d.surrogate {
+        lines.push(format!(
+            "sparse force law (a description, not physics): {} = {} +- {}",
+            t.name,
+            sig(t.value, 3),
+            sig(1.96 * t.error, 2)
+        ));
+    }
+    let mut moved: Vec<_> = d.moves.iter().filter(|m| m.moved.abs() >= 1.0).collect();
+    moved.sort_by(|a, b| b.moved.abs().total_cmp(&a.moved.abs()));
+    lines.push(if lines.is_empty() {
+        "nothing was added; the improved model is the base model, refitted".to_owned()
+    } else if moved.is_empty() {
+        "none of the model's own parameters moved by more than its standard error".to_owned()
+    } else {
+        let list: Vec<String> = moved
+            .iter()
+            .map(|m| format!("{} {:+.1} s.e. ({} to {})", m.name, m.moved, sig(m.before, 3), sig(m.after, 3)))
+            .collect();
+        format!("parameters that had absorbed the effect: {}", list.join(", "))
+    });
+    lines.extend(d.sides.as_ref().map(|s| own_sides(s, units)));
+    lines.push(d.validity.line());
+    lines
+}
+
+/// Whether the ship's own two sides differ, and by what.
+fn own_sides(s: &Sides, units: Units) -> String {
+    let differ = adequacy_words(s.p);
+    let clear = |a: &&Amplitude| s.p < UNDECIDED && a.value.abs() > 1.96 * a.error;
+    let one = |a: &Amplitude| format!("{} = {}", a.name, amplitude(a, units));
+    let by: Vec<String> = s.parameters.iter().filter(clear).take(3).map(one).collect();
+    let by = if by.is_empty() { String::new() } else { format!(": {}", by.join(", ")) };
+    let p = p_value(s.p);
+    format!("port and starboard of the ship itself differ, as with a single screw: {differ} ({p}){by}")
+}

@@ -1,0 +1,172 @@
+//! The first part of a diagnosis: the verdict, the findings with their size, and what is wrong with the recordings.
+//! Where the findings act and what proves them is in other parts.
+
+use super::names::title_of;
+use super::phrases::{amplitude, p_value};
+use crate::audit::Issue;
+use crate::diagnose::{Diagnosis, Finding, Verdict};
+use crate::numerals::{fixed, sig};
+use crate::report::units::Units;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Notes of one kind that are written in full.
+const NOTES: usize = 2;
+
+/// Study, recordings, base model and integration in one line.
+#[must_use]
+pub fn subject(d: &Diagnosis, study: &str) -> String {
+    let a = &d.admission;
+    let held_out = d.held_out.as_ref().map_or("none".to_owned(), |h| h.runs.to_string());
+    format!(
+        "{study} · {} runs in {} sessions ({} samples), {held_out} test runs · base model {} · {}, {} a sample",
+        a.runs,
+        a.sessions,
+        a.samples,
+        d.base.name,
+        format!("{:?}", a.integration.method).to_uppercase(),
+        if a.integration.substeps == 1 { "one step".to_owned() } else { format!("{} steps", a.integration.substeps) },
+    )
+}
+
+/// The name of a verdict in reports.
+#[must_use]
+pub fn verdict_words(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::NothingMissing => "NOTHING MISSING",
+        Verdict::Named => "MISSING PHYSICS, NAMED",
+        Verdict::OneOf => "MISSING PHYSICS, ONE OF SEVERAL",
+        Verdict::NotInCatalogue => "MISSING PHYSICS, NOT IN THE CATALOGUE",
+        Verdict::Sensor => "A SENSOR ERROR, NOT MISSING PHYSICS",
+        Verdict::Numerics => "THE INTEGRATION STEP, NOT MISSING PHYSICS",
+        Verdict::Random => "RANDOM FORCES (GUSTS), NO REPEATED EFFECT",
+        Verdict::Insufficient => "THESE RECORDINGS GIVE NO ANSWER",
+    }
+}
+
+/// The verdict with its findings, and notes on the recordings.
+pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
+    let units = Units::of(&d.base.ship);
+    let mut lines = vec![verdict_words(d.verdict).to_owned()];
+    if d.findings.is_empty() {
+        lines.push(d.headline.clone());
+    }
+    for f in &d.findings {
+        let size = match &f.sessions {
+            each if f.by_session => {
+                let of = |s: &String| Some(format!("{s} {}", size_of(f, Some(s.as_str()), units)?));
+                format!(": {}", each.iter().filter_map(of).collect::<Vec<_>>().join("; "))
+            }
+            _ => size_of(f, None, units).map_or(String::new(), |s| format!(", {s}")),
+        };
+        let sessions = sessions(d, f);
+        lines.push(format!(
+            "{}{size}{sessions}: {} after correction for the number of mechanisms tested",
+            f.title,
+            p_value(f.p)
+        ));
+        if f.confidence_set.len() > 1 {
+            let all: Vec<&str> = f.confidence_set.iter().map(|m| title_of(m)).collect();
+            lines.push(format!("not distinguishable on these data: {}; {}", all.join(", "), f.why));
+        } else {
+            lines.push(f.why.clone());
+        }
+    }
+    if let (true, Some(r)) = (d.findings.is_empty(), d.ranking.first()) {
+        lines.push(format!("strongest candidate, not named: {}, {} after correction", r.title, p_value(r.p)));
+    }
+    lines.extend(notes(&d.admission.issues));
+    lines
+}
+
+/// What is wrong with the recordings: whatever must be corrected first, and a few notes of each kind.
+fn notes(issues: &[Issue]) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut noted: BTreeMap<&str, usize> = BTreeMap::new();
+    for i in issues {
+        let count = noted.entry(i.fault).or_default();
+        *count += usize::from(!i.blocking());
+        if i.blocking() || *count <= NOTES {
+            let word = if i.blocking() { "correct first" } else { "note" };
+            lines.push(format!("{word}: {}; {}", i.text, i.next_step));
+        }
+    }
+    let more = noted.into_iter().filter(|(_, count)| *count > NOTES);
+    lines.extend(more.map(|(what, count)| format!("note: {} more runs with `{what}`", count - NOTES)));
+    lines
+}
+
+/// In which sessions a finding acts, named by the shorter list.
+fn sessions(d: &Diagnosis, f: &Finding) -> String {
+    let all: BTreeSet<&str> = d.traces.iter().map(|t| t.session.as_str()).collect();
+    let with: BTreeSet<&str> = f.sessions.iter().map(String::as_str).collect();
+    let without: Vec<&str> = all.difference(&with).copied().collect();
+    if f.by_session || with.is_empty() || without.is_empty() {
+        return String::new();
+    }
+    let few = |list: &[&str]| match list {
+        [first, second, third, _, rest @ ..] => format!("{first}, {second}, {third} and {} more", rest.len() + 1),
+        _ => list.join(", "),
+    };
+    if without.len() < with.len() {
+        format!(", in all sessions but {}", few(&without))
+    } else {
+        format!(", only in {}", few(&with.into_iter().collect::<Vec<_>>()))
+    }
+}
+
+/// Size and direction of a mechanism given by its components towards north and east (in one session, where each has its own),
+/// in the words of its kind.
+fn size_of(f: &Finding, session: Option<&str>, units: Units) -> Option<String> {
+    let tail = session.map_or(String::new(), |s| format!(" [{s}]"));
+    let part = |suffix: &str| f.parameters.iter().find(|p| p.name.ends_with(&format!("{suffix}{tail}")));
+    let (Some(north), Some(east)) = (part(".north"), part(".east")) else {
+        let [only] = f.parameters.as_slice() else { return None };
+        return Some(amplitude(only, units));
+    };
+    let size = north.value.hypot(east.value);
+    if size <= 0.0 || !size.is_finite() {
+        return None;
+    }
+    // To first order, and as if the components were uncorrelated.
+    let error = (north.value * north.error).hypot(east.value * east.error) / size;
+    let swing = ((east.value * north.error).hypot(north.value * east.error) / (size * size)).to_degrees();
+    let towards = east.value.atan2(north.value).to_degrees();
+    let from = (towards + 180.0).rem_euclid(360.0);
+    let towards = towards.rem_euclid(360.0);
+    let (magnitude, error, unit, direction) = match f.mechanism.as_str() {
+        "current" => (size, error, "m/s", format!("setting towards {towards:03.0} deg")),
+        "mean_wind" => (size, error, "m/s", format!("from {from:03.0} deg")),
+        "wave_drift" => {
+            (size.sqrt(), 0.5 * error / size.sqrt(), "m significant height", format!("from {from:03.0} deg"))
+        }
+        _ => {
+            let (factor, unit) = units.human(&north.unit);
+            (size * factor, error * factor, unit, format!("towards {towards:03.0} deg"))
+        }
+    };
+    let direction = if swing < 60.0 {
+        format!("{direction} (+-{} deg)", fixed((1.96 * swing).max(1.0), 0))
+    } else {
+        "direction not determined".to_owned()
+    };
+    let low = (magnitude - 1.96 * error).max(0.0);
+    Some(format!("{} {unit} ({} to {}) {direction}", sig(magnitude, 3), sig(low, 3), sig(magnitude + 1.96 * error, 3)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::audit::Severity;
+    use crate::recording::Channel;
+
+    #[test]
+    fn every_issue_to_correct_is_written_and_only_notes_beyond_two_of_a_kind_are_counted() {
+        let issue = |severity, text: &str| Issue::new(severity, "jump", text, "look at it").of(Channel::R);
+        let blocking: Vec<Issue> = ["a", "b", "c"].map(|text| issue(Severity::Error, text)).into();
+        assert_eq!(notes(&blocking), ["a", "b", "c"].map(|t| format!("correct first: {t}; look at it")));
+        let mut both = blocking;
+        both.extend(["d", "e", "f", "g"].map(|text| issue(Severity::Warning, text)));
+        let lines = notes(&both);
+        assert_eq!(lines[3..], ["note: d; look at it", "note: e; look at it", "note: 2 more runs with `jump`"]);
+    }
+}

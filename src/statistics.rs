@@ -1,0 +1,205 @@
+//! The statistics that every judgement uses: quantiles, tails, shares, the bootstrap over clusters, cluster-robust variance.
+//! It knows nothing of ships: what is counted, compared or resampled is told where it is asked.
+
+use nalgebra::{DMatrix, DVector};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use serde::Serialize;
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
+
+/// Mean of the finite values; `None` of nothing.
+pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0_usize);
+    for value in values.into_iter().filter(|v| v.is_finite()) {
+        sum += value;
+        count += 1;
+    }
+    (count > 0).then(|| sum / count as f64)
+}
+
+/// Sample variance, of two values or more.
+pub fn variance(values: &[f64]) -> Option<f64> {
+    let m = mean(values.iter().copied()).filter(|_| values.len() > 1)?;
+    Some(values.iter().map(|v| (v - m).powi(2)).sum::<f64>() / (values.len() - 1) as f64)
+}
+
+/// Median of the finite values, the mean of the two in the middle for an even number; `None` of nothing.
+pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let (n, half) = (sorted.len(), sorted.len() / 2);
+    (n > 0).then(|| if n % 2 == 1 { sorted[half] } else { 0.5 * (sorted[half - 1] + sorted[half]) })
+}
+
+/// Value below which a share (0 to 1) of the sorted values lies, by linear interpolation; `None` of nothing.
+pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let last = sorted.len().checked_sub(1)?;
+    let position = share * last as f64;
+    let (below, above) = (sorted[position.floor() as usize], sorted[position.ceil() as usize]);
+    Some(below + (above - below) * position.fract())
+}
+
+/// Upper tail of chi-squared; 1 for no degrees of freedom. Underflows to the smallest positive number, not to zero.
+pub fn chi_squared_p(statistic: f64, degrees: usize) -> f64 {
+    if degrees == 0 || !statistic.is_finite() {
+        return 1.0;
+    }
+    ChiSquared::new(degrees as f64).map_or(1.0, |d| d.sf(statistic.max(0.0)).max(f64::MIN_POSITIVE))
+}
+
+/// Value that a standard normal variable stays below with a probability.
+pub fn normal_quantile(probability: f64) -> f64 {
+    Normal::standard().inverse_cdf(probability)
+}
+
+/// Value that Student's t stays below with a probability.
+pub fn student_quantile(probability: f64, degrees: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, degrees).map_or_else(|_| normal_quantile(probability), |t| t.inverse_cdf(probability))
+}
+
+/// A p-value once it is the least of so many that were looked at (Bonferroni).
+pub fn corrected(p: f64, tried: f64) -> f64 {
+    (p * tried).min(1.0)
+}
+
+/// The variance of a sum of scores over c clusters, `c/(c-1) sum_c g_c g_c^T` with `g_c` the sum of the scores of cluster c (Liang &
+/// Zeger 1986, Biometrika 73, p. 13); `n` is the length of a score.
+pub fn clustered_variance(clusters: &[DVector<f64>], n: usize) -> DMatrix<f64> {
+    let mut sum = DMatrix::zeros(n, n);
+    for g in clusters {
+        sum += g * g.transpose();
+    }
+    let c = clusters.len() as f64;
+    if c > 1.0 { sum * (c / (c - 1.0)) } else { sum }
+}
+
+/// A share of so many cases, with its Wilson score interval at 95 %.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Share {
+    /// Cases that did.
+    pub hits: usize,
+    /// All cases.
+    pub of: usize,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+impl Share {
+    /// Counts the true among those that are known; `None` when there are none.
+    pub fn of(cases: impl IntoIterator<Item = Option<bool>>) -> Option<Self> {
+        let known: Vec<bool> = cases.into_iter().flatten().collect();
+        let hits = known.iter().filter(|b| **b).count();
+        (!known.is_empty()).then(|| Self::new(hits, known.len()))
+    }
+
+    /// `hits` of `of` > 0 cases.
+    pub fn new(hits: usize, of: usize) -> Self {
+        let (n, p, z) = (of as f64, hits as f64 / of as f64, 1.959_964);
+        let centre = p + z * z / (2.0 * n);
+        let half = z * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
+        let whole = 1.0 + z * z / n;
+        Self { hits, of, low: ((centre - half) / whole).max(0.0), high: ((centre + half) / whole).min(1.0) }
+    }
+
+    /// The share itself.
+    pub fn value(&self) -> f64 {
+        self.hits as f64 / self.of as f64
+    }
+}
+
+impl std::fmt::Display for Share {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [p, a, b] = [self.value(), self.low, self.high].map(|v| 100.0 * v);
+        write!(f, "{p:.0} % ({a:.0} to {b:.0}) of {}", self.of)
+    }
+}
+
+/// A bootstrap over clusters: whole clusters are drawn, since what is in one shares what is unknown, and every statistic is
+/// asked of the same draws.
+pub struct Bootstrap {
+    draws: Vec<Vec<usize>>,
+}
+
+/// Fewest draws from which the ends of an interval are told: of fewer they are single draws.
+const FEWEST_DRAWS: usize = 100;
+/// Fewest clusters that are resampled: of fewer an interval would only seem to say something.
+const FEWEST_CLUSTERS: usize = 3;
+
+impl Bootstrap {
+    /// So many draws of as many clusters as there are.
+    pub fn new(clusters: usize, resamples: usize, seed: u64) -> Self {
+        let resamples = if clusters < FEWEST_CLUSTERS { 0 } else { resamples };
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let draws = (0..resamples).map(|_| (0..clusters).map(|_| random.random_range(0..clusters)).collect());
+        Self { draws: draws.collect() }
+    }
+
+    /// The 95 % percentile interval of a statistic of drawn clusters; `None` where too few draws have one.
+    pub fn interval(&self, statistic: impl Fn(&[usize]) -> Option<f64> + Sync) -> Option<[f64; 2]> {
+        let mut drawn: Vec<f64> =
+            self.draws.par_iter().filter_map(|d| statistic(d)).filter(|v| v.is_finite()).collect();
+        drawn.sort_by(f64::total_cmp);
+        let at = |share: f64| drawn[((drawn.len() - 1) as f64 * share).round() as usize];
+        (drawn.len() >= FEWEST_DRAWS).then(|| [at(0.025), at(0.975)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wilson_interval_is_the_published_one() {
+        // Newcombe 1998, table I: 81 of 263, and 0 of 20.
+        let s = Share::new(81, 263);
+        assert!((s.low - 0.2553).abs() < 1e-4 && (s.high - 0.3662).abs() < 1e-4, "{s:?}");
+        let s = Share::new(0, 20);
+        assert!(s.low == 0.0 && (s.high - 0.1611).abs() < 1e-4, "{s:?}");
+    }
+
+    #[test]
+    fn unknown_cases_are_not_counted() {
+        let s = Share::of([Some(true), None, Some(false), None]).unwrap();
+        assert_eq!((s.hits, s.of), (1, 2));
+        assert!(Share::of([None]).is_none());
+    }
+
+    #[test]
+    fn quantiles_interpolate_between_samples() {
+        let sorted = [1.0, 2.0, 4.0, 8.0, 16.0];
+        assert_eq!([0.0, 0.25, 0.5, 1.0].map(|q| quantile(&sorted, q)), [Some(1.0), Some(2.0), Some(4.0), Some(16.0)]);
+        assert_eq!(quantile(&sorted, 0.125), Some(1.5));
+        assert_eq!(quantile(&[], 0.5), None);
+        assert_eq!(median([4.0, f64::NAN, 1.0, 2.0]), Some(2.0));
+        assert_eq!((median([3.0, 1.0]), median([]), mean([])), (Some(2.0), None, None));
+        assert_eq!((variance(&[1.0, 3.0]), variance(&[1.0])), (Some(2.0), None));
+    }
+
+    #[test]
+    fn tails_are_those_of_the_tables() {
+        assert!((chi_squared_p(3.841_459, 1) - 0.05).abs() < 1e-6 && chi_squared_p(5.0, 0) == 1.0);
+        assert!((normal_quantile(0.975) - 1.959_964).abs() < 1e-6);
+        assert!((student_quantile(0.975, 4.0) - 2.776_445).abs() < 1e-5);
+        assert_eq!((corrected(0.01, 5.0), corrected(0.4, 5.0)), (0.05, 1.0));
+    }
+
+    #[test]
+    fn clusters_that_repeat_a_score_add_its_square_not_its_size() {
+        let vector = |values: &[f64]| DVector::from_row_slice(values);
+        let m = clustered_variance(&[vector(&[1.0, 0.0]), vector(&[-1.0, 0.0])], 2);
+        assert_eq!(m, DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn an_interval_of_the_mean_is_as_wide_as_its_standard_error_says() {
+        let values: Vec<f64> = (0..200).map(|i| f64::from(i % 20)).collect();
+        let of = |drawn: &[usize]| mean(drawn.iter().map(|i| values[*i]));
+        let [low, high] = Bootstrap::new(values.len(), 2000, 1).interval(of).unwrap();
+        let error = (variance(&values).unwrap() / 200.0).sqrt();
+        assert!((0.5 * (low + high) - 9.5).abs() < 0.1 && ((high - low) / (3.92 * error) - 1.0).abs() < 0.1);
+        assert_eq!(Bootstrap::new(2, 2000, 1).interval(of), None);
+    }
+}
