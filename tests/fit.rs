@@ -234,7 +234,6 @@ fn windows_over_which_an_open_loop_runs_away_are_told_from_those_over_which_it_d
 fn intervals_of_few_recordings_allow_for_residuals_that_are_alike() {
     let wander = |w: usize, k: usize| std::array::from_fn(|c| 5.0 * (0.15 * k as f64 + w as f64).sin() * NOISE[c]);
     let fit = quiet(&model(), &recordings(&truth(), 4, 1.0, wander), &settings());
-    eprintln!("{}", fit.report());
     assert_eq!(fit.covariance_kind, CovarianceKind::Correlated);
     let likeness = fit.residual_statistics.likeness.unwrap();
     assert!(likeness > 3.0, "{likeness}");

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::path::Path;
+use trimtab::fit::MultiStart;
 use trimtab::recording::Split;
 use trimtab_experiments::real::agreement::Agreement;
 use trimtab_experiments::real::error::{RealError, is_absent};
@@ -12,6 +13,7 @@ use trimtab_experiments::real::esso_osaka::{self, BASELINES};
 use trimtab_experiments::real::hull::Hull;
 use trimtab_experiments::real::kvlcc2;
 use trimtab_experiments::real::kvlcc2_diagnosed::{self, ONE_SIDED, PUT_BACK};
+use trimtab_experiments::real::kvlcc2_hsva::{self, STARTS};
 use trimtab_experiments::real::published::PublishedMmg;
 
 /// The value, or none after saying that the recordings are absent.
