@@ -3,8 +3,9 @@
 
 use criterion::Criterion;
 use std::hint::black_box;
-use trimtab::fit::{Cost, Derivatives, FitRun, FitSettings, Hessian, fit};
+use trimtab::fit::{Cost, Derivatives, FitSettings, Hessian, fit};
 use trimtab::model::Model;
+use trimtab::recording::Run;
 
 #[path = "support/by_hand.rs"]
 mod by_hand;
@@ -47,7 +48,7 @@ fn assert_same_cost(model: &Model, by_hand: &ByHand, cost: &Cost) {
     println!("cost {library}, by hand within {difference:.1e} of it");
 }
 
-fn evaluations(c: &mut Criterion, model: &Model, runs: &[FitRun]) {
+fn evaluations(c: &mut Criterion, model: &Model, runs: &[Run]) {
     let p = start(model);
     let lanes = cost(model, runs, Derivatives::Lanes);
     let by_hand = ByHand::new(model, runs);
@@ -81,7 +82,7 @@ fn evaluate(cost: &Cost, p: &[f64], with_matrix: bool) -> Option<f64> {
     quadratic.map(|q| q.value)
 }
 
-fn full_fits(c: &mut Criterion, model: &Model, runs: &[FitRun]) {
+fn full_fits(c: &mut Criterion, model: &Model, runs: &[Run]) {
     let mut group = c.benchmark_group("full fit");
     group.sample_size(10);
     // A fit with the exact Hessian takes seconds: `shares` times it, a few times only.
@@ -98,7 +99,7 @@ fn row(question: &str, target: &str, measured: f64) {
 }
 
 /// Rollout, gradient and Gauss-Newton matrix over the eleven parameters, as ratios.
-fn ratios(model: &Model, runs: &[FitRun], rounds: usize) {
+fn ratios(model: &Model, runs: &[Run], rounds: usize) {
     let p = start(model);
     let by_hand = ByHand::new(model, runs);
     let costs = SOURCES.map(|(name, derivatives)| (name, cost(model, runs, derivatives)));
@@ -122,7 +123,7 @@ fn ratios(model: &Model, runs: &[FitRun], rounds: usize) {
 }
 
 /// Growth with the number of free parameters, and central differences where many are free.
-fn growth(runs: &[FitRun], rounds: usize) {
+fn growth(runs: &[Run], rounds: usize) {
     let models: Vec<Model> = [(11, false), (30, false), (40, false), (11, true), (30, true), (40, true), (60, true)]
         .map(|(count, symmetric)| freed(count, symmetric))
         .into();
@@ -152,7 +153,7 @@ fn growth(runs: &[FitRun], rounds: usize) {
 }
 
 /// The time of each fit, and the share of it that is not the solver's evaluations of the cost.
-fn shares(model: &Model, runs: &[FitRun], rounds: usize) {
+fn shares(model: &Model, runs: &[Run], rounds: usize) {
     println!("\n| full fit | iterations | evaluations | least processor time, s |\n|---|---|---|---|");
     for (name, derivatives, hessian) in FITS {
         let settings = FitSettings { derivatives, hessian, ..settings() };

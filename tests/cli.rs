@@ -352,7 +352,7 @@ fn faults_of_the_model_file_are_named() {
     );
     let study = Study::new();
     study.append("model.toml", "\"hull.Yvdot\" = { value = 3.359e6 }\n");
-    contains_all(&study.refuses(&["fit", "study.toml"]), &["model.toml", "mass matrix is singular", "hull.Yvdot"]);
+    contains_all(&study.refuses(&["fit", "study.toml"]), &["model.toml", "must be at most 0 kg", "hull.Yvdot"]);
     let study = Study::new();
     study.edit("model.toml", "form = \"paper\"", "form = \"paper\"\nterms = [\"curent\"]");
     contains_all(&study.refuses(&["fit", "study.toml"]), &["model.toml:", "unknown term `curent`", "`current`?"]);

@@ -128,7 +128,7 @@ fn a_fit_stopped_anywhere_is_no_worse_than_its_start() {
 fn a_freed_hull_ends_at_one_optimum_whatever_limits_the_resistance_and_wherever_it_starts() {
     let runs = recordings(&truth(), 6, 1.0, unspoiled);
     let mut ends = Vec::new();
-    for upper in [Some(40e3), Some(200e3), None] {
+    for upper in [Some(200e3), Some(400e3), None] {
         let mut settings = settings();
         settings.constraints.resistance = Rule { upper, ..Rule::default() };
         let fit = quiet(&freed(), &runs, &settings);
@@ -141,7 +141,12 @@ fn a_freed_hull_ends_at_one_optimum_whatever_limits_the_resistance_and_wherever_
     }
     let total = |fit: &Fit| fit.cost + fit.prior_cost;
     for fit in &ends {
-        assert!((total(fit) / total(&ends[0]) - 1.0).abs() < 1e-3, "{}", fit.brief());
+        assert!(
+            (total(fit) / total(&ends[0]) - 1.0).abs() < 1e-3,
+            "{} {:?}",
+            fit.brief(),
+            ends.iter().map(total).collect::<Vec<_>>()
+        );
     }
 }
 
@@ -237,7 +242,7 @@ fn intervals_of_few_recordings_allow_for_residuals_that_are_alike() {
     assert_eq!(fit.covariance_kind, CovarianceKind::Correlated);
     let likeness = fit.residual_statistics.likeness.unwrap();
     assert!(likeness > 3.0, "{likeness}");
-    let j = fit.estimates.iter().position(|e| e.symbol == "p5").unwrap();
+    let j = fit.estimates.iter().position(|e| e.symbol == "p0").unwrap();
     let independent = fit.covariance_gauss_newton[j][j].unwrap().sqrt();
     let error = fit.estimates[j].standard_error.unwrap();
     assert!((error / independent / likeness.sqrt() - 1.0).abs() < 1e-6, "{error} {independent} {likeness}");

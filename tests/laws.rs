@@ -169,7 +169,7 @@ fn both_forms_agree_ahead_at_small_drift_and_the_sternway_term_leads_from_one_to
             std::array::from_fn(|i| if i > 2 { Gradient::variable(variables[i].re, i) } else { variables[i] });
         let of = |m: &Model| {
             let theta: Vec<Gradient> = m.values().iter().map(|x| Gradient::constant(*x)).collect();
-            Dynamics::new(&m, theta).rates(&State::from_array(variables), &Inputs::constant(&inputs), &Force::zero()).0
+            Dynamics::new(m, theta).rates(&State::from_array(variables), &Inputs::constant(&inputs), &Force::zero()).0
         };
         let (a, b) = (of(&paper), of(&regular));
         for i in 3..STATES {

@@ -5,8 +5,9 @@
 //! beforehand. What this model does not have is left out: current, loss of wake with drift, stall of the rudder.
 
 use std::f64::consts::{PI, TAU};
-use trimtab::fit::FitRun;
+use trimtab::fit::cost::weights;
 use trimtab::model::Model;
+use trimtab::recording::Run;
 use trimtab::terms::rudder::{CURVE_LIMIT, PLATE_LIMIT, PLATE_NORMAL};
 use trimtab_ad::{Lanes, Scalar};
 
@@ -79,7 +80,7 @@ struct Block {
 
 impl ByHand {
     /// For a model of ship A in the paper's form without further terms, and runs of equal length measured throughout.
-    pub fn new(model: &Model, runs: &[FitRun]) -> Self {
+    pub fn new(model: &Model, runs: &[Run]) -> Self {
         let get = |name: &str| {
             let found = model.parameters.iter().find(|p| p.name == name);
             found.unwrap_or_else(|| unreachable!("no parameter {name}")).value
@@ -89,7 +90,7 @@ impl ByHand {
             hull: Hull::new(model, &get),
             stern: Stern::new(model, &get),
             mobility: mobility(&get),
-            blocks: runs.chunks(Lanes::LANES).map(Block::new).collect(),
+            blocks: runs.chunks(Lanes::LANES).map(|runs| Block::new(model, runs)).collect(),
             runs: runs.len() as f64,
         }
     }
@@ -137,17 +138,20 @@ impl ByHand {
 }
 
 impl Block {
-    fn new(runs: &[FitRun]) -> Self {
+    fn new(model: &Model, runs: &[Run]) -> Self {
         let steps = runs[0].inputs.len();
         let run = |lane: usize| &runs[lane.min(runs.len() - 1)];
-        let root = |lane: usize, c: usize| runs.get(lane).map_or(0.0, |run| run.weights[c].sqrt());
+        let all: Vec<_> = runs.iter().map(|run| weights(&model.ship, run, 0.0314)).collect();
+        let root = |lane: usize, c: usize| all.get(lane).map_or(0.0, |w| w[c].sqrt());
         Self {
             dt: runs[0].dt,
             inputs: (0..steps)
                 .map(|k| [Lanes::from_fn(|l| run(l).inputs[k].n), Lanes::from_fn(|l| run(l).inputs[k].delta)])
                 .collect(),
             initial: std::array::from_fn(|c| Lanes::from_fn(|l| run(l).initial[c])),
-            measured: (0..steps).map(|k| std::array::from_fn(|c| Lanes::from_fn(|l| run(l).measured[k][c]))).collect(),
+            measured: (0..steps)
+                .map(|k| std::array::from_fn(|c| Lanes::from_fn(|l| run(l).measured[k][c].unwrap_or_default())))
+                .collect(),
             root: std::array::from_fn(|c| Lanes::from_fn(|l| root(l, c))),
         }
     }

@@ -142,7 +142,8 @@ fn the_sides_of_a_ship_with_one_screw_differ_and_a_sensor_error_left_out_is_name
         kvlcc2_diagnosed::sides_made_alike(&hull, &best, &Agreement::of_study(&hull, kvlcc2_diagnosed::SPAN).unwrap())
             .unwrap();
     let again = alike.diagnosis.sides.unwrap();
-    assert!(alike.diagnosis.findings.is_empty() && again.p < 1e-6, "{again:?}");
+    // 1e-4 is what the diagnosis itself asks for before it says that the sides differ.
+    assert!(alike.diagnosis.findings.is_empty() && again.p < 1e-4, "{again:?}");
     for p in &again.parameters {
         let before = sides.parameters.iter().find(|q| q.name == p.name).unwrap();
         assert!((p.value - before.value).abs() < before.ci95[1] - before.value, "{p:?} {before:?}");

@@ -59,7 +59,7 @@ impl From<&Run> for Series<'static> {
             t: run.inputs.iter().map(|i| i.t).collect(),
             step: run.dt,
             span: span(run.duration(), run.dt),
-            stretches: vec![0..run.measured.len()],
+            stretches: std::iter::once(0..run.measured.len()).collect(),
             state: std::array::from_fn(|c| channels[c].then(|| column(c))),
             derived: [false; STATES],
             recording: None,

@@ -96,7 +96,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         }
     }
     output.figure("tracks", || figure(&model.name, &windows, &trajectories))?;
-    let samples = windows.iter().flat_map(|w| validity::samples(w));
+    let samples = windows.iter().flat_map(validity::samples);
     let validity = validity::outside(model, samples);
     let text = format!("{} simulated with `{}`:\n\n{table}\n\n{}", loaded.study.name, model.name, validity.line());
     let report = Report { model: &model.name, runs: rows, validity };

@@ -54,7 +54,7 @@ fn run(model: &Model, i: usize, rng: &mut ChaCha8Rng) -> Run {
     let dt = 3.0;
     let input = |k: usize| {
         let t = dt * k as f64;
-        let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let delta = match i % 3 {
             0 => side * 0.4,
             1 => side * 0.3 * (t / 25.0).sin(),
@@ -65,7 +65,7 @@ fn run(model: &Model, i: usize, rng: &mut ChaCha8Rng) -> Run {
     };
     let inputs: Vec<Inputs<f64>> = (0..SAMPLES).map(input).collect();
     let initial = [0.0, 0.0, 2.4 * i as f64, 4.0, 0.0, 0.0];
-    let session = if i / 2 % 2 == 0 { "a" } else { "b" };
+    let session = if (i / 2).is_multiple_of(2) { "a" } else { "b" };
     let scenario = Scenario { dt, inputs: inputs.clone(), initial };
     let states = simulate(model, &model.values_in(session), RK4, &scenario).states;
     let sizes = [0.3, 0.3, 0.002, 0.02, 0.02, 0.0005];

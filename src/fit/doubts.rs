@@ -391,7 +391,9 @@ mod tests {
     fn the_first_line_says_what_is_in_doubt() {
         let doubt = Doubt { kind: DoubtKind::ModelError, value: 50.0, limit: 10.0, sentence: "model error".into() };
         assert_eq!(headline(true, "solved", &[]), "Converged: solved");
-        assert!(headline(true, "solved", &[doubt.clone()]).starts_with("Converged, but IN DOUBT: model error"));
+        assert!(
+            headline(true, "solved", std::slice::from_ref(&doubt)).starts_with("Converged, but IN DOUBT: model error")
+        );
         assert!(headline(false, "stopped", &[doubt]).starts_with("NOT CONVERGED: stopped"));
     }
 }

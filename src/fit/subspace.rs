@@ -31,6 +31,9 @@ pub(super) struct Inverse {
 /// Inverts `h` within the span of `z`.
 pub(super) fn inverse(h: &DMatrix<f64>, z: &DMatrix<f64>) -> Inverse {
     let n = h.nrows();
+    if z.ncols() == 0 {
+        return Inverse { matrix: DMatrix::zeros(n, n), directions: Vec::new(), rank: 0 };
+    }
     let reduced = z.transpose() * h * z;
     let eigen = SymmetricEigen::new((&reduced + reduced.transpose()) * 0.5);
     let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
@@ -71,6 +74,12 @@ mod tests {
             assert!((row.transpose() * &z).norm() < 1e-12);
         }
         assert_eq!(null_space(&[], 3).ncols(), 3);
+    }
+
+    #[test]
+    fn constraints_that_hold_every_variable_leave_no_variance() {
+        let held = inverse(&DMatrix::identity(2, 2), &null_space(&[vector(&[1.0, 0.0]), vector(&[0.0, 1.0])], 2));
+        assert_eq!((held.matrix, held.rank), (DMatrix::zeros(2, 2), 0));
     }
 
     #[test]

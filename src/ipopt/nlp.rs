@@ -6,7 +6,7 @@
 /// Evaluations take `&mut self` so that an implementation can keep what the objective and the gradient share. They return
 /// `None` or `false` where the point cannot be evaluated; a value that is not finite counts as such a refusal. Ipopt answers a
 /// refusal of the objective or of the constraint values with a shorter step. It has no such answer for the derivatives: there
-/// a refusal ends the solve with [`Status::InvalidNumber`], so refuse a point in [`Nlp::objective`] already.
+/// a refusal ends the solve with [`Status::InvalidNumber`](super::Status::InvalidNumber), so refuse a point in [`Nlp::objective`] already.
 pub trait Nlp {
     /// Number of variables n, at least 1.
     fn variables(&self) -> usize;
@@ -40,14 +40,14 @@ pub trait Nlp {
     fn jacobian_values(&mut self, x: &[f64], values: &mut [f64]) -> bool;
 
     /// The (row, column) pairs, row >= column, of the Hessian of the Lagrangian. Empty means that there is none to give: the
-    /// solve then uses [`HessianMode::LimitedMemory`] whatever the options say.
+    /// solve then uses [`HessianMode::LimitedMemory`](super::HessianMode::LimitedMemory) whatever the options say.
     fn hessian_structure(&self) -> Vec<(usize, usize)>;
 
     /// Writes `objective_factor` d2f/dx2 + sum of `multipliers[i]` d2g_i/dx2, in the order of [`Nlp::hessian_structure`];
     /// false where it cannot be evaluated. A positive semidefinite approximation (Gauss-Newton) serves as well.
     fn hessian_values(&mut self, x: &[f64], objective_factor: f64, multipliers: &[f64], values: &mut [f64]) -> bool;
 
-    /// Called once per iteration; false stops the solve with [`Status::Stopped`].
+    /// Called once per iteration; false stops the solve with [`Status::Stopped`](super::Status::Stopped).
     fn iteration(&mut self, _report: &IterationReport) -> bool {
         true
     }

@@ -10,7 +10,7 @@ pub const DEFAULT_HISTORY: usize = 50;
 /// Where the Hessian of the Lagrangian comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HessianMode {
-    /// From [`Nlp::hessian_values`].
+    /// From [`Nlp::hessian_values`](super::Nlp::hessian_values).
     Given,
     /// From the gradients of the last `history` steps (BFGS).
     LimitedMemory {

@@ -17,7 +17,7 @@ pub enum Status {
     TinyStep,
     /// The variables run to infinity.
     Diverging,
-    /// [`Nlp::iteration`] returned false.
+    /// [`Nlp::iteration`](super::Nlp::iteration) returned false.
     Stopped,
     /// A feasible point of a problem with as many equalities as variables, where there is nothing to optimise.
     FeasiblePointFound,
@@ -48,7 +48,7 @@ pub enum Status {
     InsufficientMemory,
     /// Ipopt reports an error of its own making.
     InternalError,
-    /// A method of the [`Nlp`] panicked; the text names the method and carries the panic's message.
+    /// A method of the [`Nlp`](super::Nlp) panicked; the text names the method and carries the panic's message.
     Panicked(String),
 }
 
@@ -136,7 +136,7 @@ impl fmt::Display for Status {
     }
 }
 
-/// Why there is no [`Solution`]: the problem or the options make no sense, or the solve ended before its first point.
+/// Why there is no [`Solution`](super::Solution): the problem or the options make no sense, or the solve ended before its first point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum IpoptError {
     /// The problem has no variables.

@@ -31,7 +31,7 @@ pub enum Marker {
     Cross,
 }
 
-/// What a layer shows. Positions are (horizontal, vertical) in the units of the axes; for tracks see [`east_north`].
+/// What a layer shows. Positions are (horizontal, vertical) in the units of the axes; for tracks see [`east_north`](super::east_north).
 /// Values that are not finite are gaps: they break lines and are left out elsewhere.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
@@ -74,7 +74,7 @@ pub enum Mark {
     },
     /// Arrows from the first to the second point.
     Arrows(Vec<[(f64, f64); 2]>),
-    /// A matrix, row by row; columns along x and rows along y, which are best [`Axis::categories`].
+    /// A matrix, row by row; columns along x and rows along y, which are best [`Axis::categories`](super::Axis::categories).
     Heatmap {
         /// The rows.
         values: Vec<Vec<f64>>,

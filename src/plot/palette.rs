@@ -78,7 +78,6 @@ pub const LIMIT: Color = GREY;
 const CYCLE: [Color; 7] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY];
 
 /// The `i`-th colour for series without a fixed meaning; repeats after the seventh.
-#[must_use]
 pub fn cycle(i: usize) -> Color {
     CYCLE[i % CYCLE.len()]
 }

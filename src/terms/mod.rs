@@ -2,7 +2,7 @@
 //! A term computes; its description (equation, source, parameters) is data in its `TermInfo`.
 //!
 //! # Adding a term
-//! Write `src/terms/my_effect.rs` with a unit struct that implements [`Term`] and [`Physics`], add `mod my_effect;` and
+//! Write `src/terms/my_effect.rs` with a unit struct that implements [`Term`](crate::physics::Term) and [`Physics`](crate::physics::Physics), add `mod my_effect;` and
 //! `&my_effect::MyEffect` below. The registry, `trimtab terms`, bounds, priors, the diagnosis and the catalogue tests
 //! read it from there.
 

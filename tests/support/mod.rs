@@ -86,7 +86,7 @@ const DT: f64 = 2.0;
 
 /// The recorded orders of run `i` with a first propeller rate \[rps\].
 fn orders(i: usize, n0: f64, thruster: &dyn Fn(usize, f64) -> f64) -> Vec<Inputs<f64>> {
-    let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+    let side = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
     let mut delta: f64 = 0.0;
     let mut n = n0;
     let at = |k: i32| {
