@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::path::Path;
+use trimtab::fit::MultiStart;
 use trimtab::recording::Split;
 use trimtab_experiments::real::agreement::Agreement;
 use trimtab_experiments::real::error::{RealError, is_absent};
@@ -12,6 +13,7 @@ use trimtab_experiments::real::esso_osaka::{self, BASELINES};
 use trimtab_experiments::real::hull::Hull;
 use trimtab_experiments::real::kvlcc2;
 use trimtab_experiments::real::kvlcc2_diagnosed::{self, ONE_SIDED, PUT_BACK};
+use trimtab_experiments::real::kvlcc2_hsva::{self, STARTS};
 use trimtab_experiments::real::published::PublishedMmg;
 
 /// The value, or none after saying that the recordings are absent.
@@ -44,6 +46,37 @@ fn zigzags_of_kvlcc2_predict_its_turning_circles() {
     let (starboard, port) = (diameter("starboard"), diameter("port"));
     assert!(starboard.measured > port.measured);
     assert!(starboard.predicted[freed].unwrap() > port.predicted[freed].unwrap());
+}
+
+#[test]
+fn a_freed_hull_predicts_zigzags_of_kvlcc2_that_it_has_not_seen() {
+    let Some(predicted) = present(kvlcc2_hsva::run()) else { return };
+    let [empirical, freed] = [0, 2];
+    assert!(predicted.trials.fits.iter().all(|f| f.converged && f.cost < f.start_cost));
+    assert!(predicted.test_cvdm(freed) <= 5.0, "{:.2} %", predicted.test_cvdm(freed));
+    // Two overshoots of each of the four zigzags, as close to the measured ones as those of repeated tests are to each other.
+    assert_eq!(predicted.trials.measures.len(), 8);
+    for m in &predicted.trials.measures {
+        assert!(!m.seen);
+        let error = |model: usize| (m.predicted[model].unwrap() - m.measured).abs();
+        assert!(error(freed) < 2.0, "{}: {:.1} deg", m.what, error(freed));
+        assert!(error(freed) < 0.5 * error(empirical), "{}: {:.1} deg", m.what, error(freed));
+    }
+    // The first line says that the cost is not noise.
+    assert!(predicted.trials.fits[1].headline.contains("IN DOUBT"));
+}
+
+#[test]
+fn the_freed_hull_of_kvlcc2_has_one_optimum() {
+    let starts = MultiStart { count: 2, ..STARTS };
+    let Some(repeats) = present(kvlcc2_hsva::repeat(&[Some(60.0), None], starts, |_| {})) else { return };
+    assert_eq!(repeats.len(), 6);
+    for r in &repeats {
+        let name = format!("limit {:?}, start {:?}", r.limit, r.start);
+        assert!(r.outcome.as_ref().is_ok_and(|fit| fit.converged), "{name}");
+        assert!((r.total() / repeats[0].total() - 1.0).abs() < 1e-3, "{name}: {}", r.total());
+        assert!(r.cvdm <= 5.0, "{name}: {:.2} %", r.cvdm);
+    }
 }
 
 #[test]
