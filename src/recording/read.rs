@@ -6,6 +6,8 @@ use super::error::RecordingError;
 use super::map::{Column, ColumnMap, Decimal, Delimiter, SpeedReference};
 use super::{Recording, UNITS};
 use crate::error::suggestion;
+use std::borrow::Cow;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 /// Channels without which nothing can be simulated.
@@ -36,90 +38,95 @@ struct Source {
 
 /// Reads a recording; see [`Recording::read`].
 pub(super) fn read(path: &Path, map: &ColumnMap) -> Result<Recording, RecordingError> {
-    let bytes = std::fs::read(path).map_err(|source| RecordingError::Read { path: path.to_owned(), source })?;
-    parse(&String::from_utf8_lossy(&bytes), path, map)
+    let fail = |source| RecordingError::Read { path: path.to_owned(), source };
+    let file = std::fs::File::open(path).map_err(fail)?;
+    recording(Lines::new(BufReader::with_capacity(1 << 16, file)), path, map)
 }
 
-/// Parses the text of a recording; see [`Recording::parse`].
+/// Reads the text of a recording that stands, or would stand, at `path`.
 pub(super) fn parse(text: &str, path: &Path, map: &ColumnMap) -> Result<Recording, RecordingError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    recording(Lines::new(text.as_bytes()), path, map)
+}
+
+/// The lines of a file one at a time, numbered from 1; what is not UTF-8 is replaced, a byte order mark left out.
+struct Lines<R> {
+    reader: R,
+    number: usize,
+    bytes: Vec<u8>,
+}
+
+impl<R: BufRead> Lines<R> {
+    fn new(reader: R) -> Self {
+        Self { reader, number: 0, bytes: Vec::new() }
+    }
+
+    /// The next line without its end, and its number; `None` at the end of the file.
+    fn next(&mut self) -> std::io::Result<Option<(usize, Cow<'_, str>)>> {
+        self.bytes.clear();
+        if self.reader.read_until(b'\n', &mut self.bytes)? == 0 {
+            return Ok(None);
+        }
+        self.number += 1;
+        let mut line = self.bytes.strip_suffix(b"\n").unwrap_or(&self.bytes);
+        line = line.strip_suffix(b"\r").unwrap_or(line);
+        if self.number == 1 {
+            line = line.strip_prefix("\u{feff}".as_bytes()).unwrap_or(line);
+        }
+        Ok(Some((self.number, String::from_utf8_lossy(line))))
+    }
+}
+
+/// The rows of a file as columns of numbers, one a source, with the line of each row.
+struct Rows {
+    lines: Vec<usize>,
+    columns: Vec<Vec<f64>>,
+    /// Rows up to the last one with a value.
+    data: usize,
+}
+
+/// A recording from its lines: they are read one by one, and of each only the numbers are kept.
+fn recording<R: BufRead>(mut lines: Lines<R>, path: &Path, map: &ColumnMap) -> Result<Recording, RecordingError> {
+    let fail = |source| RecordingError::Read { path: path.to_owned(), source };
     let empty = |line, what: &str| RecordingError::Empty { path: path.to_owned(), line, what: what.to_owned() };
-    let mut lines = text.lines().enumerate().map(|(i, l)| (i + 1, l)).skip(map.skip_lines).peekable();
-    while lines.next_if(|(_, l)| l.trim().is_empty()).is_some() {}
-    let header_line = lines.peek().map_or(1, |(line, _)| *line);
+    for _ in 0..map.skip_lines {
+        lines.next().map_err(fail)?;
+    }
+    let mut first = None;
+    while first.is_none() {
+        let Some((line, content)) = lines.next().map_err(fail)? else { break };
+        first = (!content.trim().is_empty()).then(|| (line, content.into_owned()));
+    }
+    let header_line = first.as_ref().map_or(1, |(line, _)| *line);
     let header: Option<Vec<HeaderColumn>> = if map.header.0 {
-        let (_, line) = lines.next().ok_or_else(|| empty(1, "there is no header line"))?;
-        Some(split(line, map.delimiter).into_iter().map(|f| header_column(&f)).collect())
+        let (_, line) = first.take().ok_or_else(|| empty(1, "there is no header line"))?;
+        Some(split(&line, map.delimiter).iter().map(|f| header_column(f)).collect())
     } else {
         None
     };
     let sources = sources(header.as_deref(), header_line, path, map)?;
-
-    // Rows as raw fields. A row of blanks only counts as a dropout when data follow it.
-    let expected = header.as_ref().map(Vec::len);
     let needed = sources.iter().filter_map(|s| s.field).max().map_or(0, |f| f + 1);
-    let mut rows: Vec<(usize, Vec<f64>)> = Vec::new();
-    let mut data_rows = 0;
-    for (line, content) in lines {
-        if content.is_empty() {
-            continue;
-        }
-        let fields = split(content, map.delimiter);
-        if fields.iter().all(|f| f.is_empty()) {
-            rows.push((line, vec![f64::NAN; sources.len()]));
-            continue;
-        }
-        let surplus = expected.filter(|&e| fields.len() > e && fields[e..].iter().any(|f| !f.is_empty()));
-        if fields.len() < expected.unwrap_or(needed) || surplus.is_some() {
-            return Err(RecordingError::Ragged {
-                path: path.to_owned(),
-                line,
-                expected: expected.unwrap_or(needed),
-                found: fields.len(),
-            });
-        }
-        let values = sources.iter().map(|s| s.value(&fields, map.decimal).ok_or(s));
-        let values = values.collect::<Result<Vec<f64>, &Source>>().map_err(|s| RecordingError::NotANumber {
-            path: path.to_owned(),
-            line,
-            column: s.label.clone(),
-            found: s.field.map(|f| fields[f].clone()).unwrap_or_default(),
-        })?;
-        rows.push((line, values));
-        data_rows = rows.len();
+    let shape = Shape { expected: header.as_ref().map(Vec::len), needed };
+    let mut rows = Rows { lines: Vec::new(), columns: vec![Vec::new(); sources.len()], data: 0 };
+    if let Some((line, content)) = first {
+        rows.add(line, &content, &sources, &shape, path, map)?;
     }
-    if data_rows == 0 {
+    while let Some((line, content)) = lines.next().map_err(fail)? {
+        rows.add(line, &content, &sources, &shape, path, map)?;
+    }
+    if rows.data == 0 {
         return Err(empty(header_line, "no row of data follows"));
     }
-    let mut without_time: Vec<usize> = rows.split_off(data_rows).into_iter().map(|(line, _)| line).collect();
-
-    if let Some(dt) = map.dt {
-        let time = sources.iter().position(|s| s.channel == Channel::T);
-        for (i, (_, values)) in rows.iter_mut().enumerate() {
-            if let Some(time) = time {
-                values[time] = i as f64 * dt;
-            }
-        }
-    }
-    if let Some(time) = sources.iter().position(|s| s.channel == Channel::T) {
-        without_time.extend(rows.iter().filter(|(_, v)| !v[time].is_finite()).map(|(line, _)| *line));
-        rows.retain(|(_, v)| v[time].is_finite());
-        for (_, values) in &mut rows {
-            values[time] -= map.time_zero;
-        }
-    }
-    if rows.is_empty() {
+    let without_time = rows.keep_timed(&sources, map);
+    if rows.lines.is_empty() {
         return Err(empty(header_line, "no row has a time"));
     }
-    without_time.sort_unstable();
-
     let used: Vec<usize> = sources.iter().filter_map(|s| s.field).collect();
     let unused = header.iter().flatten().enumerate().filter(|(i, _)| !used.contains(i)).map(|(_, h)| h.full.clone());
     let mut recording = Recording {
         name: path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default(),
         path: path.to_owned(),
         header_line,
-        lines: rows.iter().map(|(line, _)| *line).collect(),
+        lines: rows.lines,
         data: vec![None; CHANNELS.len()],
         units: vec![None; CHANNELS.len()],
         derived: Vec::new(),
@@ -127,22 +134,94 @@ pub(super) fn parse(text: &str, path: &Path, map: &ColumnMap) -> Result<Recordin
         unused: unused.collect(),
         bridged: Vec::new(),
     };
-    for (i, source) in sources.into_iter().enumerate() {
+    for (source, column) in sources.into_iter().zip(rows.columns) {
         let slot = match (source.channel, map.speed) {
             (Channel::U, SpeedReference::ThroughWater) => Channel::UWater,
             (Channel::V, SpeedReference::ThroughWater) => Channel::VWater,
             (channel, _) => channel,
         };
-        recording.data[slot as usize] = Some(rows.iter().map(|(_, v)| v[i]).collect());
+        recording.data[slot as usize] = Some(column);
         recording.units[slot as usize] = Some(source.unit);
     }
     recording.finish(map)?;
     Ok(recording)
 }
 
+/// How many fields a row has.
+struct Shape {
+    /// As the header has it.
+    expected: Option<usize>,
+    /// As the sources need it.
+    needed: usize,
+}
+
+impl Rows {
+    /// Adds a line as a row. A row of blanks only counts as a dropout when data follow it.
+    fn add(
+        &mut self,
+        line: usize,
+        content: &str,
+        sources: &[Source],
+        shape: &Shape,
+        path: &Path,
+        map: &ColumnMap,
+    ) -> Result<(), RecordingError> {
+        if content.is_empty() {
+            return Ok(());
+        }
+        let fields = split(content, map.delimiter);
+        if fields.iter().all(|f| f.is_empty()) {
+            self.lines.push(line);
+            self.columns.iter_mut().for_each(|c| c.push(f64::NAN));
+            return Ok(());
+        }
+        let least = shape.expected.unwrap_or(shape.needed);
+        let surplus = shape.expected.filter(|&e| fields.len() > e && fields[e..].iter().any(|f| !f.is_empty()));
+        if fields.len() < least || surplus.is_some() {
+            let path = path.to_owned();
+            return Err(RecordingError::Ragged { path, line, expected: least, found: fields.len() });
+        }
+        for (source, column) in sources.iter().zip(&mut self.columns) {
+            let value = source.value(&fields, map.decimal).ok_or_else(|| RecordingError::NotANumber {
+                path: path.to_owned(),
+                line,
+                column: source.label.clone(),
+                found: source.field.map(|f| fields[f].to_string()).unwrap_or_default(),
+            })?;
+            column.push(value);
+        }
+        self.lines.push(line);
+        self.data = self.lines.len();
+        Ok(())
+    }
+
+    /// Gives rows their time and drops those without one and the blank ones at the end; returns the lines of both.
+    fn keep_timed(&mut self, sources: &[Source], map: &ColumnMap) -> Vec<usize> {
+        let mut without = self.lines.split_off(self.data);
+        self.columns.iter_mut().for_each(|c| c.truncate(self.data));
+        let Some(time) = sources.iter().position(|s| s.channel == Channel::T) else { return without };
+        if let Some(dt) = map.dt {
+            self.columns[time].iter_mut().enumerate().for_each(|(i, t)| *t = i as f64 * dt);
+        }
+        if self.columns[time].iter().any(|t| !t.is_finite()) {
+            let timed: Vec<bool> = self.columns[time].iter().map(|t| t.is_finite()).collect();
+            without.extend(self.lines.iter().zip(&timed).filter(|(_, timed)| !**timed).map(|(line, _)| *line));
+            let mut keep = timed.iter();
+            self.lines.retain(|_| keep.next().is_some_and(|k| *k));
+            for column in &mut self.columns {
+                let mut keep = timed.iter();
+                column.retain(|_| keep.next().is_some_and(|k| *k));
+            }
+        }
+        self.columns[time].iter_mut().for_each(|t| *t -= map.time_zero);
+        without.sort_unstable();
+        without
+    }
+}
+
 impl Source {
     /// The value in SI, NaN when missing, `None` when it is no number.
-    fn value(&self, fields: &[String], decimal: Decimal) -> Option<f64> {
+    fn value(&self, fields: &[Cow<'_, str>], decimal: Decimal) -> Option<f64> {
         let Some(field) = self.field else { return Some(self.constant) };
         let text = fields[field].trim();
         if text.is_empty() || ["nan", "na", "n/a", "null", "none", "-nan"].iter().any(|m| text.eq_ignore_ascii_case(m))
@@ -323,13 +402,16 @@ fn header_column(text: &str) -> HeaderColumn {
 }
 
 /// The fields of a line, trimmed and without quotes.
-fn split(line: &str, delimiter: Delimiter) -> Vec<String> {
+fn split(line: &str, delimiter: Delimiter) -> Vec<Cow<'_, str>> {
     let separator = match delimiter {
-        Delimiter::Whitespace => return line.split_whitespace().map(|f| f.trim_matches('"').to_owned()).collect(),
+        Delimiter::Whitespace => return line.split_whitespace().map(|f| f.trim_matches('"').into()).collect(),
         Delimiter::Comma => ',',
         Delimiter::Semicolon => ';',
         Delimiter::Tab => '\t',
     };
+    if !line.contains('"') {
+        return line.split(separator).map(|f| f.trim().into()).collect();
+    }
     let mut fields = vec![String::new()];
     let mut quoted = false;
     for c in line.chars() {
@@ -343,7 +425,7 @@ fn split(line: &str, delimiter: Delimiter) -> Vec<String> {
             }
         }
     }
-    fields.into_iter().map(|f| f.trim().to_owned()).collect()
+    fields.into_iter().map(|f| f.trim().to_owned().into()).collect()
 }
 
 /// Consecutive numbers as (first, last).
