@@ -58,6 +58,12 @@ pub fn outside<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
     samples: impl IntoIterator<Item = (Y, I)>,
 ) -> Coverage {
     let mut limits = limits(model);
+    let mut quantities: Vec<Quantity> = limits.iter().map(|l| l.quantity).collect();
+    quantities.sort_unstable();
+    quantities.dedup();
+    let mut values = vec![None; quantities.len()];
+    let places: Vec<usize> = limits.iter().map(|l| quantities.partition_point(|q| *q < l.quantity)).collect();
+    let scales = Scales::of(model);
     let dynamics = Dynamics::new(model, model.values());
     let (mut count, mut anywhere) = (0, 0);
     for (state, inputs) in samples {
@@ -70,8 +76,11 @@ pub fn outside<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
         let flow = dynamics.flow(&dynamics.instant(&state, inputs));
         count += 1;
         let mut out = false;
-        for limit in &mut limits {
-            out |= limit.meet(value(limit.quantity, model, inputs, &flow));
+        for (value, quantity) in values.iter_mut().zip(&quantities) {
+            *value = scales.value(*quantity, inputs, &flow);
+        }
+        for (limit, place) in limits.iter_mut().zip(&places) {
+            out |= limit.meet(values[*place]);
         }
         anywhere += usize::from(out);
     }
@@ -117,27 +126,49 @@ fn limits(model: &Model) -> Vec<Limit> {
         .collect()
 }
 
-/// A quantity at a sample; `None` where it means nothing there.
-fn value(quantity: Quantity, model: &Model, inputs: &Inputs<f64>, flow: &Flow<f64>) -> Option<f64> {
-    let hull = &model.ship.hull;
-    let tip = inputs.n * model.ship.propeller.diameter;
-    Some(match quantity {
-        Quantity::Froude => flow.u / (GRAVITY * hull.lpp).sqrt(),
-        // Below the small speed of the ship the direction of motion is noise.
-        Quantity::Drift if flow.u.hypot(flow.v) < model.ship.small_speed() => 0.0,
-        Quantity::Drift => flow.v.abs().atan2(flow.u.abs()),
-        Quantity::Turn => flow.r.abs() * hull.lpp / flow.speed,
-        Quantity::Depth => 1.0 / inputs.draught_to_depth.max(0.0),
-        Quantity::Rate => inputs.n,
-        Quantity::Advance if inputs.n >= 0.0 && tip < flow.advance.abs() * 1e-6 => {
-            // A shaft at rest, or nearly.
-            if flow.u.abs() < model.ship.small_speed() { 0.0 } else { f64::INFINITY.copysign(flow.advance) }
+/// What the ship's size makes of motions.
+struct Scales {
+    /// Lpp \[m\].
+    length: f64,
+    /// sqrt(g Lpp) \[m/s\].
+    wave_speed: f64,
+    /// Speed below which the direction of motion is noise \[m/s\].
+    small_speed: f64,
+    /// Propeller diameter \[m\].
+    diameter: f64,
+}
+
+impl Scales {
+    fn of(model: &Model) -> Self {
+        let length = model.ship.hull.lpp;
+        Self {
+            length,
+            wave_speed: (GRAVITY * length).sqrt(),
+            small_speed: model.ship.small_speed(),
+            diameter: model.ship.propeller.diameter,
         }
-        Quantity::Advance if inputs.n >= 0.0 => flow.advance / tip,
-        Quantity::Reversing if inputs.n < 0.0 => flow.u / tip,
-        Quantity::Advance | Quantity::Reversing => return None,
-        Quantity::Attack => trimtab_ad::smooth::wrap_angle(inputs.delta - flow.rudder_v.atan2(flow.rudder_u)).abs(),
-    })
+    }
+
+    /// A quantity at a sample; `None` where it means nothing there.
+    fn value(&self, quantity: Quantity, inputs: &Inputs<f64>, flow: &Flow<f64>) -> Option<f64> {
+        let tip = inputs.n * self.diameter;
+        Some(match quantity {
+            Quantity::Froude => flow.u / self.wave_speed,
+            Quantity::Drift if (flow.u * flow.u + flow.v * flow.v).sqrt() < self.small_speed => 0.0,
+            Quantity::Drift => flow.v.abs().atan2(flow.u.abs()),
+            Quantity::Turn => flow.r.abs() * self.length / flow.speed,
+            Quantity::Depth => 1.0 / inputs.draught_to_depth.max(0.0),
+            Quantity::Rate => inputs.n,
+            Quantity::Advance if inputs.n >= 0.0 && tip < flow.advance.abs() * 1e-6 => {
+                // A shaft at rest, or nearly.
+                if flow.u.abs() < self.small_speed { 0.0 } else { f64::INFINITY.copysign(flow.advance) }
+            }
+            Quantity::Advance if inputs.n >= 0.0 => flow.advance / tip,
+            Quantity::Reversing if inputs.n < 0.0 => flow.u / tip,
+            Quantity::Advance | Quantity::Reversing => return None,
+            Quantity::Attack => trimtab_ad::smooth::wrap_angle(inputs.delta - flow.rudder_v.atan2(flow.rudder_u)).abs(),
+        })
+    }
 }
 
 impl Limit {

@@ -396,6 +396,31 @@ impl<'a> Cost<'a> {
         Some(squares)
     }
 
+    /// The weighted residuals of each run by sample and channel at `p`, NaN where nothing is compared.
+    pub(super) fn residuals_by_run(&self, p: &[f64]) -> Vec<Vec<[f64; STATES]>> {
+        if self.lanes.is_empty() { self.residuals_over(&self.single, p) } else { self.residuals_over(&self.lanes, p) }
+    }
+
+    fn residuals_over<P: Plain>(&self, blocks: &[Block<P>], p: &[f64]) -> Vec<Vec<[f64; STATES]>> {
+        let of_block = |block: &Block<P>| {
+            let mut residuals = vec![[P::zero(); STATES]; block.inputs.len()];
+            self.rollout(block, p, |k, y| residuals[k] = block.residuals(k, y));
+            residuals
+        };
+        let parts: Vec<Vec<[P; STATES]>> = blocks.par_iter().map(of_block).collect();
+        let mut by_run = vec![Vec::new(); self.runs.len()];
+        for (block, part) in blocks.iter().zip(&parts) {
+            for (lane, run) in block.runs.iter().enumerate() {
+                let entry = |k: usize, c: usize| {
+                    if block.root[k][c].in_lane(lane) > 0.0 { part[k][c].in_lane(lane) } else { f64::NAN }
+                };
+                let samples = 0..self.runs[*run].inputs.len();
+                by_run[*run] = samples.map(|k| std::array::from_fn(|c| entry(k, c))).collect();
+            }
+        }
+        by_run
+    }
+
     /// The cost with its gradient and Gauss-Newton matrix, or `None` where a simulation or a derivative diverges.
     pub fn quadratic(&self, p: &[f64]) -> Option<Quadratic> {
         self.evaluate(p, true)

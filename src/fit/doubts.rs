@@ -17,14 +17,11 @@
 
 use super::covariance::Covariances;
 use super::task::Task;
-use crate::model::Model;
-use crate::recording::{Measured, Run};
-use crate::simulate::{Scenario, reported};
+use crate::recording::Run;
 use crate::state::STATES;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use trimtab_ad::smooth::wrap_angle;
 
 /// Residual variance over the sensors' from which on a cost is far above its noise.
 pub const MODEL_ERROR_LIMIT: f64 = 10.0;
@@ -46,6 +43,9 @@ const UNCORRELATED: f64 = 0.05;
 
 /// Windows over which autocorrelations are taken, evenly drawn where there are more.
 const WINDOWS: usize = 1000;
+
+/// Lags of which products are computed at once.
+const LAGS: usize = 16;
 
 /// A reason not to take a fit at its word.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -91,7 +91,7 @@ pub struct ResidualStatistics {
 struct Residuals<'a> {
     recording: &'a str,
     values: Vec<[f64; STATES]>,
-    /// Weighted variance of what was measured of each channel; NaN where nothing was.
+    /// Weighted variance of what was measured of each channel that a rudder moves; NaN in the others and where nothing was.
     variance: [f64; STATES],
 }
 
@@ -102,10 +102,17 @@ const VELOCITIES: std::ops::Range<usize> = 3..6;
 const STEERED: std::ops::Range<usize> = 4..6;
 
 impl ResidualStatistics {
-    /// The statistics of a model on the runs of a task.
-    pub(super) fn of(task: &Task, model: &Model) -> Self {
-        let residuals: Vec<Residuals> =
-            task.runs.par_iter().zip(task.cost.weights()).map(|(run, w)| residuals(task, model, run, w)).collect();
+    /// The statistics of a task's residuals at `p`.
+    pub(super) fn of(task: &Task, p: &[f64]) -> Self {
+        let values = task.cost.residuals_by_run(p);
+        let weighted = task.runs.iter().zip(task.cost.weights()).zip(values);
+        let residuals: Vec<Residuals> = weighted
+            .map(|((run, weights), values)| Residuals {
+                recording: &run.recording,
+                values,
+                variance: measured_variance(run, weights),
+            })
+            .collect();
         let growth = growth(&residuals);
         Self {
             model_error: model_error(&residuals),
@@ -181,28 +188,16 @@ pub(super) fn headline(converged: bool, words: &str, doubts: &[Doubt]) -> String
     }
 }
 
-fn residuals<'a>(task: &Task, model: &Model, run: &'a Run, weights: &[f64; STATES]) -> Residuals<'a> {
-    let theta = model.values_in(&run.session);
-    let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
-    let predicted = reported(model, &theta, task.settings.integration, &scenario, &run.channels());
-    let of_sample = |(measured, simulated): (&Measured, &[f64; STATES])| {
-        std::array::from_fn(|c| {
-            let Some(value) = measured[c].filter(|_| weights[c] > 0.0) else { return f64::NAN };
-            let difference = value - simulated[c];
-            weights[c].sqrt() * if c == 2 { wrap_angle(difference) } else { difference }
-        })
-    };
-    let variance = |c: usize| {
+/// Weighted variance of what was measured of the channels that a rudder moves; NaN in the others.
+fn measured_variance(run: &Run, weights: &[f64; STATES]) -> [f64; STATES] {
+    let mut variance = [f64::NAN; STATES];
+    for c in STEERED {
         let values = || run.measured.iter().filter_map(|m| m[c]);
         let count = values().count() as f64;
         let mean = values().sum::<f64>() / count;
-        weights[c] * values().map(|v| (v - mean).powi(2)).sum::<f64>() / count
-    };
-    Residuals {
-        recording: &run.recording,
-        values: run.measured.iter().zip(&predicted.states).map(of_sample).collect(),
-        variance: std::array::from_fn(variance),
+        variance[c] = weights[c] * values().map(|v| (v - mean).powi(2)).sum::<f64>() / count;
     }
+    variance
 }
 
 /// Mean square of some channels over some samples, with the number of values.
@@ -272,31 +267,69 @@ fn loss(residuals: &[Residuals]) -> Option<[f64; 2]> {
     (measured > 0.0).then(|| lost.map(|l| l / measured))
 }
 
+/// Residuals of one run in one row, sample after sample.
+struct Flat {
+    /// 0 where there is none.
+    values: Vec<f64>,
+    /// 1 where there is a residual and 0 where there is none; empty where there are all.
+    present: Vec<f64>,
+}
+
+impl Flat {
+    fn of(residuals: &Residuals) -> Self {
+        let entries = || residuals.values.iter().flatten();
+        let present: Vec<f64> = if entries().all(|e| e.is_finite()) {
+            Vec::new()
+        } else {
+            entries().map(|e| f64::from(u8::from(e.is_finite()))).collect()
+        };
+        Self { values: entries().map(|e| if e.is_finite() { *e } else { 0.0 }).collect(), present }
+    }
+
+    /// Sum of the products of residuals that are `lag` samples apart, with their number.
+    fn product(&self, lag: usize) -> (f64, f64) {
+        let shift = (lag * STATES).min(self.values.len());
+        let apart = |x: &[f64]| dot(&x[..x.len() - shift], &x[shift..]);
+        let count = if self.present.is_empty() { (self.values.len() - shift) as f64 } else { apart(&self.present) };
+        (apart(&self.values), count)
+    }
+}
+
+/// The scalar product, in eight partial sums that a machine can add side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
+    let mut sums = [0.0; 8];
+    for (a, b) in a.zip(b) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
 /// How many successive residuals count as one: `1 + 2 sum rho(l)` over the lags up to where rho is lost in scatter.
 fn likeness(residuals: &[Residuals]) -> Option<f64> {
     let every = residuals.len().div_ceil(WINDOWS).max(1);
-    let drawn: Vec<&Residuals> = residuals.iter().step_by(every).collect();
-    let longest = drawn.iter().map(|r| r.values.len()).max()?;
-    let product = |lag: usize| {
-        let of_run = |r: &&Residuals| {
-            let mut sum = (0.0, 0.0);
-            for (a, b) in r.values.iter().zip(r.values.iter().skip(lag)) {
-                for (a, b) in a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite()) {
-                    sum = (sum.0 + a * b, sum.1 + 1.0);
-                }
-            }
-            sum
+    let drawn: Vec<Flat> = residuals.iter().step_by(every).map(Flat::of).collect();
+    let longest = drawn.iter().map(|r| r.values.len() / STATES).max()?;
+    // Mean products at some lags in one go: threads meet once for all of them.
+    let products = |lags: std::ops::Range<usize>| -> Vec<f64> {
+        let of_run = |r: &Flat| lags.clone().map(|lag| r.product(lag)).collect::<Vec<_>>();
+        let of_runs: Vec<Vec<(f64, f64)>> = drawn.par_iter().map(of_run).collect();
+        let mean = |i: usize| {
+            let (sum, count) = of_runs.iter().fold((0.0, 0.0), |s, p| (s.0 + p[i].0, s.1 + p[i].1));
+            if count > 0.0 { sum / count } else { 0.0 }
         };
-        let (sum, count) =
-            drawn.par_iter().map(of_run).collect::<Vec<_>>().iter().fold((0.0, 0.0), |s, p| (s.0 + p.0, s.1 + p.1));
-        if count > 0.0 { sum / count } else { 0.0 }
+        (0..lags.len()).map(mean).collect()
     };
-    let variance = product(0);
+    let variance = products(0..1)[0];
     if variance <= FINEST * FINEST {
         return None;
     }
-    let correlations = (1..longest / 2).map(|lag| product(lag) / variance).take_while(|rho| *rho > UNCORRELATED);
-    Some(1.0 + 2.0 * correlations.sum::<f64>())
+    let batches = (1..longest / 2).step_by(LAGS).map(|lag| lag..(lag + LAGS).min(longest / 2));
+    let correlations = batches.flat_map(products).map(|product| product / variance);
+    Some(1.0 + 2.0 * correlations.take_while(|rho| *rho > UNCORRELATED).sum::<f64>())
 }
 
 #[cfg(test)]

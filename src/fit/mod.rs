@@ -6,6 +6,7 @@
 //! | [`cost`] | the weighted trajectory cost and its derivatives |
 //! | [`constraints`] | the constraints as data: curves bounded on grids |
 //! | `settings` | section `[fit]` of a study |
+//! | `evaluations` | the last evaluations of a cost, each made once |
 //! | `task` | what stays fixed during a fit: model, cost, constraints, scales, start |
 //! | `problem` | the task with the priors, scaled, as Ipopt wants it |
 //! | `stages` | runs in shorter pieces, to be fitted first |
@@ -23,6 +24,8 @@ mod covariance;
 #[cfg(feature = "ipopt")]
 mod doubts;
 mod error;
+#[cfg(feature = "ipopt")]
+mod evaluations;
 #[cfg(feature = "ipopt")]
 pub mod multistart;
 #[cfg(feature = "ipopt")]
