@@ -1,14 +1,15 @@
 //! From a recording to windows: runs on a uniform grid, ready to be simulated, that never reach across a dropout or a gap.
 //! Which windows train and which test is decided by the study.
 
-use super::Recording;
 use super::channel::{Channel, STATE_CHANNELS};
 use super::convert::to_earth;
 use super::error::RecordingError;
 use super::local::local_fit;
+use super::record::Recording;
 use super::run::{Measured, Run, Split};
 use crate::state::{Inputs, STATES};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// What a study says about a run.
@@ -159,7 +160,8 @@ impl Recording {
             let stride = length - grid.overlap;
             let mut start = 0;
             while start + length <= sampler.steps {
-                result.windows.push(self.window(labels, settings, &columns, &sampler, start..start + length + 1)?);
+                let samples = start..start + length + 1;
+                result.windows.push(self.window(labels, settings, &grid, &columns, &sampler, samples)?);
                 start += stride;
             }
         }
@@ -176,6 +178,7 @@ impl Recording {
         &self,
         labels: &Labels,
         settings: &WindowSettings,
+        grid: &Grid,
         columns: &Columns,
         sampler: &Sampler,
         samples: Range<usize>,
@@ -185,10 +188,10 @@ impl Recording {
         let rows = samples.len();
         let value = |k: usize, i: usize| Some(measured_columns[i].as_ref()?[k]).filter(|v| v.is_finite());
         let measured: Vec<Measured> = (0..rows).map(|k| std::array::from_fn(|i| value(k, i))).collect();
-        let inputs_columns = columns.inputs.each_ref().map(|c| take(c));
+        let inputs_columns = columns.inputs.each_ref().map(|c| c.as_deref().map(take));
         let start_time = sampler.time(samples.start);
         let inputs = (0..rows).map(|k| {
-            let at = |i: usize| inputs_columns[i][k];
+            let at = |i: usize| inputs_columns[i].as_ref().map_or(0.0, |c| c[k]);
             Inputs {
                 t: sampler.time(samples.start + k),
                 n: at(0),
@@ -215,7 +218,7 @@ impl Recording {
             disturbed: Vec::new(),
         };
         let (span, all) = match settings.initial {
-            Initial::First => (10.0 * self.step(), false),
+            Initial::First => (10.0 * grid.usual, false),
             Initial::Smoothed { span } => (span, true),
         };
         if all || first.contains(&None) {
@@ -224,7 +227,7 @@ impl Recording {
                 path: self.path.clone(),
                 message: format!(
                     "`initial_span` = {span} s covers fewer than three rows at {start_time:.2} s; set it to several steps of {:.3} s",
-                    self.step()
+                    grid.usual
                 ),
             })?;
             for i in 0..STATES {
@@ -265,11 +268,11 @@ impl Recording {
         }
         let as_recorded = (step / own - 1.0).abs() < SAME_STEP;
         let width = if step > own * (1.0 + SAME_STEP) { step } else { 0.0 };
-        Ok(Grid { step, window, overlap, as_recorded, width })
+        Ok(Grid { usual: median, step, window, overlap, as_recorded, width })
     }
 
     /// Inputs at every row, by column, in the order of [`Inputs`].
-    fn columns(&self, draught: f64) -> Result<Columns, RecordingError> {
+    fn columns(&self, draught: f64) -> Result<Columns<'_>, RecordingError> {
         let need = |c, next: &str| self.require(c, "to simulate the run", next);
         let from_position = "record it, or derive it from position and heading with `derive` in a column map";
         let positions = self.has(Channel::X) && self.has(Channel::Y) && self.has(Channel::Psi);
@@ -280,15 +283,14 @@ impl Recording {
         if !self.has(Channel::Psi) {
             need(Channel::R, "record it or the heading")?;
         }
-        let rows = self.len();
-        let zero = || vec![0.0; rows];
-        let mut inputs: [Vec<f64>; 11] = std::array::from_fn(|_| zero());
-        inputs[0] = need(Channel::N, "add the column")?.to_vec();
-        inputs[1] = need(Channel::Delta, "add the column")?.to_vec();
+        let mut inputs: [Option<Cow<[f64]>>; 11] = Default::default();
+        inputs[0] = Some(need(Channel::N, "add the column")?.into());
+        inputs[1] = Some(need(Channel::Delta, "add the column")?.into());
         let mut directed = false;
         let mut put = |at: usize, vectors: Vec<[f64; 2]>| {
             directed = true;
-            (inputs[at], inputs[at + 1]) = vectors.into_iter().map(|v| (v[0], v[1])).unzip();
+            let (forward, starboard): (Vec<f64>, Vec<f64>) = vectors.into_iter().map(|v| (v[0], v[1])).unzip();
+            (inputs[at], inputs[at + 1]) = (Some(forward.into()), Some(starboard.into()));
         };
         if let Some((speed, from)) = self.pair(Channel::WindSpeed, Channel::WindDirection) {
             put(2, polar(speed, from, -1.0).collect());
@@ -309,15 +311,16 @@ impl Recording {
             put(6, polar(&squared, from, -1.0).collect());
         }
         if let Some(depth) = self.get(Channel::Depth) {
-            inputs[8] = depth.iter().map(|h| draught / h).collect();
+            inputs[8] = Some(depth.iter().map(|h| draught / h).collect());
         }
         for (channel, sign) in [(Channel::BankStarboard, 1.0), (Channel::BankPort, -1.0)] {
             if let Some(distance) = self.get(channel) {
-                inputs[9].iter_mut().zip(distance).for_each(|(bank, y)| *bank += sign / y);
+                let banks = inputs[9].get_or_insert_with(|| vec![0.0; self.len()].into());
+                banks.to_mut().iter_mut().zip(distance).for_each(|(bank, y)| *bank += sign / y);
             }
         }
         if let Some(thruster) = self.get(Channel::Thruster) {
-            inputs[10] = thruster.to_vec();
+            inputs[10] = Some(thruster.into());
         }
         if directed {
             self.require(
@@ -342,20 +345,21 @@ impl Recording {
         let (first, last) = (t[segment.start], t[segment.end - 1]);
         let from = (t0 - 0.5 * span).min(last - span).max(first);
         let slack = 1e-9 * span;
-        let rows: Vec<usize> =
-            segment.clone().filter(|&i| t[i] >= from - slack && t[i] <= from + span + slack).collect();
+        let inside = &t[segment.clone()];
+        let rows = segment.start + inside.partition_point(|ti| *ti < from - slack)
+            ..segment.start + inside.partition_point(|ti| *ti <= from + span + slack);
         if rows.len() < 3 {
             return None;
         }
-        let tau: Vec<f64> = rows.iter().map(|&i| t[i] - t0).collect();
-        let channel = |c: Channel| self.get(c).map(|v| rows.iter().map(|&i| v[i]).collect::<Vec<f64>>());
+        let tau: Vec<f64> = t[rows.clone()].iter().map(|ti| ti - t0).collect();
+        let channel = |c: Channel| self.get(c).map(|v| &v[rows.clone()]);
         let [x, y, psi, u, v, r] = STATE_CHANNELS.map(channel);
 
         let mut turn = Rows::default();
-        if let Some(psi) = &psi {
+        if let Some(psi) = psi {
             turn.push(&tau, psi, |_, s| vec![1.0, s, 0.5 * s * s]);
         }
-        if let Some(r) = &r {
+        if let Some(r) = r {
             turn.push(&tau, r, |_, s| vec![0.0, 1.0, s]);
         }
         let heading = turn.solve(3)?;
@@ -384,30 +388,30 @@ impl Recording {
         // Unknowns: x0, y0, u0, u', v0, v'. Without a heading the track cannot be told from drift, so it is left out.
         if psi.is_some() {
             let table: Vec<[f64; 4]> = tau.iter().map(|&s| integrals(s)).collect();
-            if let Some(x) = &x {
+            if let Some(x) = x {
                 motion.push(&tau, x, |i, _| {
                     let [c, s, ct, st] = table[i];
                     vec![1.0, 0.0, c, ct, -s, -st]
                 });
             }
-            if let Some(y) = &y {
+            if let Some(y) = y {
                 motion.push(&tau, y, |i, _| {
                     let [c, s, ct, st] = table[i];
                     vec![0.0, 1.0, s, st, c, ct]
                 });
             }
         }
-        if let Some(u) = &u {
+        if let Some(u) = u {
             motion.push(&tau, u, |_, s| vec![0.0, 0.0, 1.0, s, 0.0, 0.0]);
         }
-        if let Some(v) = &v {
+        if let Some(v) = v {
             motion.push(&tau, v, |_, s| vec![0.0, 0.0, 0.0, 0.0, 1.0, s]);
         }
         let m = motion.solve(6)?;
         let mut state = [m[0], m[1], heading[0], m[2], m[4], heading[1]];
         if psi.is_none() {
             for (i, values) in [x, y].into_iter().enumerate() {
-                state[i] = values.and_then(|v| local_fit(&tau, &v, 0.0)).map_or(0.0, |c| c[0]);
+                state[i] = values.and_then(|v| local_fit(&tau, v, 0.0)).map_or(0.0, |c| c[0]);
             }
         }
         state.iter().all(|s| s.is_finite()).then_some(state)
@@ -416,6 +420,8 @@ impl Recording {
 
 /// Grid step and lengths in steps.
 struct Grid {
+    /// The recording's usual step.
+    usual: f64,
     step: f64,
     window: Option<usize>,
     overlap: usize,
@@ -425,9 +431,9 @@ struct Grid {
     width: f64,
 }
 
-/// Inputs by column and row.
-struct Columns {
-    inputs: [Vec<f64>; 11],
+/// Inputs by column and row; a column that is not there is 0 throughout.
+struct Columns<'a> {
+    inputs: [Option<Cow<'a, [f64]>>; 11],
 }
 
 /// Samples an unbroken stretch on a grid.
