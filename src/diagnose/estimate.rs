@@ -9,6 +9,7 @@ use super::optimise::{Outcome, Proposal, Quadratic};
 pub use super::settings::Effort;
 use super::settings::{
     CALM_ITERATIONS, CALM_SHARE, NOISE_REFUSED, OUTLIER_SHARE, STEP_DAMPING, STEP_GAIN, STEP_LONGEST, STEP_SHORTEST,
+    TOGETHER,
 };
 use crate::model::{Model, Prior};
 use crate::recording::Run;
@@ -119,9 +120,6 @@ pub struct Estimate {
     /// Log-likelihood plus log-prior at the estimate.
     pub log_posterior: f64,
 }
-
-/// Runs that are passed over before what they gave is added up.
-const TOGETHER: usize = 64;
 
 /// Works on the runs side by side; what each gives goes to `take` in the order of the runs, so that sums have the same bits on any
 /// number of threads. No more of it is held at once than a few runs give.

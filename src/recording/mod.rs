@@ -10,6 +10,7 @@ mod map;
 mod read;
 mod record;
 mod run;
+mod store;
 mod unit;
 mod window;
 
@@ -21,6 +22,7 @@ pub(crate) use map::key_line;
 pub use map::{Column, ColumnMap, Decimal, Delimiter, Derived, Header, SpeedReference, VelocityFrame};
 pub use record::Recording;
 pub use run::{Measured, Run, Split, measured, or_nan};
+pub use store::{HELD_SAMPLES, RunStore, Runs};
 pub use unit::{Quantity, UNITS, Unit};
 pub use window::{Gaps, Initial, Labels, Skipped, WindowSettings, Windows};
 

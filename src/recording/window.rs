@@ -9,7 +9,6 @@ use super::record::Recording;
 use super::run::{Measured, Run, Split};
 use crate::state::{Inputs, STATES};
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 use std::ops::Range;
 
 /// What a study says about a run.
@@ -179,7 +178,7 @@ impl Recording {
         labels: &Labels,
         settings: &WindowSettings,
         grid: &Grid,
-        columns: &Columns,
+        columns: &Inputs<Vec<f64>>,
         sampler: &Sampler,
         samples: Range<usize>,
     ) -> Result<Run, RecordingError> {
@@ -188,21 +187,15 @@ impl Recording {
         let rows = samples.len();
         let value = |k: usize, i: usize| Some(measured_columns[i].as_ref()?[k]).filter(|v| v.is_finite());
         let measured: Vec<Measured> = (0..rows).map(|k| std::array::from_fn(|i| value(k, i))).collect();
-        let inputs_columns = columns.inputs.each_ref().map(|c| c.as_deref().map(take));
         let start_time = sampler.time(samples.start);
-        let inputs = (0..rows).map(|k| {
-            let at = |i: usize| inputs_columns[i].as_ref().map_or(0.0, |c| c[k]);
-            Inputs {
-                t: sampler.time(samples.start + k),
-                n: at(0),
-                delta: at(1),
-                wind: [at(2), at(3)],
-                current: [at(4), at(5)],
-                waves: [at(6), at(7)],
-                draught_to_depth: at(8),
-                bank: at(9),
-                thruster: at(10),
-            }
+        let taken: Inputs<Vec<f64>> =
+            Inputs::from_entries(|entry: fn(&Inputs<Vec<f64>>) -> &Vec<f64>| match &entry(columns)[..] {
+                [] => vec![0.0; rows],
+                values => take(values),
+            });
+        let inputs = (0..rows).map(|k| Inputs {
+            t: sampler.time(samples.start + k),
+            ..Inputs::from_entries(|entry: fn(&Inputs<Vec<f64>>) -> &Vec<f64>| entry(&taken)[k])
         });
         let first = measured[0];
         let mut run = Run {
@@ -271,8 +264,8 @@ impl Recording {
         Ok(Grid { usual: median, step, window, overlap, as_recorded, width })
     }
 
-    /// Inputs at every row, by column, in the order of [`Inputs`].
-    fn columns(&self, draught: f64) -> Result<Columns<'_>, RecordingError> {
+    /// Inputs at every row, by column; a column that is 0 throughout is empty, and so is time, for it is that of a window's own grid.
+    fn columns(&self, draught: f64) -> Result<Inputs<Vec<f64>>, RecordingError> {
         let need = |c, next: &str| self.require(c, "to simulate the run", next);
         let from_position = "record it, or derive it from position and heading with `derive` in a column map";
         let positions = self.has(Channel::X) && self.has(Channel::Y) && self.has(Channel::Psi);
@@ -283,17 +276,21 @@ impl Recording {
         if !self.has(Channel::Psi) {
             need(Channel::R, "record it or the heading")?;
         }
-        let mut inputs: [Option<Cow<[f64]>>; 11] = Default::default();
-        inputs[0] = Some(need(Channel::N, "add the column")?.into());
-        inputs[1] = Some(need(Channel::Delta, "add the column")?.into());
+        need(Channel::N, "add the column")?;
+        need(Channel::Delta, "add the column")?;
+        let mut inputs = Inputs::from_entries(|_: fn(&Inputs<f64>) -> &f64| Vec::new());
+        for (name, values) in inputs.recorded() {
+            if let Some(recorded) = Channel::from_name(name).and_then(|c| self.get(c)) {
+                *values = recorded.to_vec();
+            }
+        }
         let mut directed = false;
-        let mut put = |at: usize, vectors: Vec<[f64; 2]>| {
+        let mut put = |vectors: &mut [Vec<f64>; 2], values: Vec<[f64; 2]>| {
             directed = true;
-            let (forward, starboard): (Vec<f64>, Vec<f64>) = vectors.into_iter().map(|v| (v[0], v[1])).unzip();
-            (inputs[at], inputs[at + 1]) = (Some(forward.into()), Some(starboard.into()));
+            *vectors = <[Vec<f64>; 2]>::from(values.into_iter().map(|v| (v[0], v[1])).unzip());
         };
         if let Some((speed, from)) = self.pair(Channel::WindSpeed, Channel::WindDirection) {
-            put(2, polar(speed, from, -1.0).collect());
+            put(&mut inputs.wind, polar(speed, from, -1.0).collect());
         } else if let Some((speed, from)) = self.pair(Channel::ApparentWindSpeed, Channel::ApparentWindDirection) {
             let purpose = "to turn apparent into true wind";
             let next = "record it, or record the true wind";
@@ -301,26 +298,23 @@ impl Recording {
             let u = self.require(Channel::U, purpose, next)?;
             let v = self.require(Channel::V, purpose, next)?;
             let air = polar(speed, from, -1.0).enumerate();
-            put(2, air.map(|(i, air)| to_earth(psi[i], [air[0] + u[i], air[1] + v[i]])).collect());
+            put(&mut inputs.wind, air.map(|(i, air)| to_earth(psi[i], [air[0] + u[i], air[1] + v[i]])).collect());
         }
         if let Some((speed, to)) = self.pair(Channel::CurrentSpeed, Channel::CurrentDirection) {
-            put(4, polar(speed, to, 1.0).collect());
+            put(&mut inputs.current, polar(speed, to, 1.0).collect());
         }
         if let Some((height, from)) = self.pair(Channel::WaveHeight, Channel::WaveDirection) {
             let squared: Vec<f64> = height.iter().map(|h| h * h).collect();
-            put(6, polar(&squared, from, -1.0).collect());
+            put(&mut inputs.waves, polar(&squared, from, -1.0).collect());
         }
         if let Some(depth) = self.get(Channel::Depth) {
-            inputs[8] = Some(depth.iter().map(|h| draught / h).collect());
+            inputs.draught_to_depth = depth.iter().map(|h| draught / h).collect();
         }
         for (channel, sign) in [(Channel::BankStarboard, 1.0), (Channel::BankPort, -1.0)] {
             if let Some(distance) = self.get(channel) {
-                let banks = inputs[9].get_or_insert_with(|| vec![0.0; self.len()].into());
-                banks.to_mut().iter_mut().zip(distance).for_each(|(bank, y)| *bank += sign / y);
+                inputs.bank.resize(distance.len(), 0.0);
+                inputs.bank.iter_mut().zip(distance).for_each(|(bank, y)| *bank += sign / y);
             }
-        }
-        if let Some(thruster) = self.get(Channel::Thruster) {
-            inputs[10] = Some(thruster.into());
         }
         if directed {
             self.require(
@@ -329,7 +323,7 @@ impl Recording {
                 "record it, or leave them out",
             )?;
         }
-        Ok(Columns { inputs })
+        Ok(inputs)
     }
 
     fn pair(&self, a: Channel, b: Channel) -> Option<(&[f64], &[f64])> {
@@ -429,11 +423,6 @@ struct Grid {
     as_recorded: bool,
     /// Width of the mean around each sample \[s\], 0 for none.
     width: f64,
-}
-
-/// Inputs by column and row; a column that is not there is 0 throughout.
-struct Columns<'a> {
-    inputs: [Option<Cow<'a, [f64]>>; 11],
 }
 
 /// Samples an unbroken stretch on a grid.
@@ -632,6 +621,22 @@ mod tests {
         for i in &w.inputs {
             assert!((i.wind[0] + 6.0 * from.cos()).abs() < 1e-12 && (i.wind[1] + 6.0 * from.sin()).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn every_input_recorded_as_it_is_reaches_the_run() {
+        let mut channels = straight(10, 1.0);
+        let mut wanted = Inputs::<f64>::actuators(0.0, 0.0, 0.0);
+        for (i, (name, value)) in wanted.recorded().enumerate() {
+            *value = 0.1 + 0.2 * i as f64;
+            let channel = Channel::from_name(name).unwrap();
+            channels.retain(|(c, _)| *c != channel);
+            channels.push((channel, vec![*value; 10]));
+        }
+        let r = Recording::from_channels("run", channels).unwrap();
+        let mut got = r.windows(&labels(), &settings()).unwrap().windows[0].inputs[4];
+        let values = |i: &mut Inputs<f64>| i.recorded().map(|(_, v)| *v).collect::<Vec<f64>>();
+        assert_eq!(values(&mut got), values(&mut wanted));
     }
 
     #[test]
