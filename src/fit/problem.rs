@@ -7,7 +7,7 @@ use super::settings::Hessian;
 use super::task::Task;
 use crate::ipopt::{IterationReport, Nlp};
 use crate::model::Model;
-use crate::recording::Run;
+use crate::recording::Runs;
 use nalgebra::{DMatrix, DVector};
 
 /// Where a running fit stands.
@@ -88,12 +88,12 @@ impl<'a, 'f> Problem<'a, 'f> {
     pub fn new(
         task: &'a Task<'a>,
         cost: &'a Cost<'a>,
-        runs: &[Run],
+        runs: Runs,
         priors: &'a Priors,
         start: &'a [f64],
         progress: &'f mut dyn FnMut(&Progress) -> bool,
     ) -> Self {
-        let samples: usize = runs.iter().map(|r| r.measured.len()).sum();
+        let samples = cost.samples();
         let factor = runs.len() as f64 / samples.max(1) as f64;
         Self { task, cost, priors, start, factor, progress, best: None, evaluated: 0, cached: None }
     }

@@ -21,7 +21,7 @@ use super::stages;
 use super::subspace::inverse;
 use super::task::{ActiveSet, Task};
 use crate::ipopt::{self, Counts, HessianMode, IpoptError, OptionValue, Options, Solution, Status};
-use crate::recording::Run;
+use crate::recording::Runs;
 
 /// How often the solver starts again from a better point that it left.
 const RESTARTS: usize = 3;
@@ -78,7 +78,7 @@ struct Descent {
 /// What is solved: a cost over runs, and where from.
 struct Stage<'a> {
     cost: &'a Cost<'a>,
-    runs: &'a [Run],
+    runs: Runs<'a>,
     tolerance: f64,
     max_iterations: usize,
     /// Whether the start is near the optimum: the barrier then starts lower still, and the bounds do not push the start away.
@@ -132,13 +132,14 @@ impl Task<'_> {
         let mut p = self.start.clone();
         let mut priors = Priors::of(self.model);
         for parts in stages::falling(parts) {
-            let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts);
-            let cost = Cost::weighted(self.model, &pieces, weights, self.cost_options())?;
+            let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts)?;
+            let pieces = Runs::from(&pieces);
+            let cost = Cost::weighted(self.model, pieces, weights, self.cost_options())?;
             let Some(value) = cost.value(&p) else { continue };
-            priors.weight = self.weight(&cost, &pieces, value);
+            priors.weight = self.weight(&cost, pieces, value);
             let stage = Stage {
                 cost: &cost,
-                runs: &pieces,
+                runs: pieces,
                 tolerance: self.settings.tolerance.max(STAGE_TOLERANCE),
                 max_iterations: self.settings.max_iterations.min(STAGE_ITERATIONS),
                 near: false,
@@ -160,7 +161,7 @@ impl Task<'_> {
     }
 
     /// Weight of the priors at a cost: see [`Priors`].
-    fn weight(&self, cost: &Cost, runs: &[Run], value: f64) -> f64 {
+    fn weight(&self, cost: &Cost, runs: Runs, value: f64) -> f64 {
         self.variance_of(cost, runs.len(), value) * self.settings.correlated_samples / runs.len() as f64
     }
 

@@ -7,8 +7,9 @@ use super::error::FitError;
 use super::settings::FitSettings;
 use super::subspace::null_space;
 use crate::model::{Model, Parameter};
-use crate::recording::Run;
+use crate::recording::Runs;
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeSet;
 
 /// Share of its largest possible value that the product of the off-diagonal entries of the sway-yaw mass matrix may reach.
 const MASS_MARGIN: f64 = 0.9;
@@ -20,7 +21,7 @@ const KEPT: f64 = 1e-7;
 pub(super) struct Task<'a> {
     pub model: &'a Model,
     pub cost: &'a Cost<'a>,
-    pub runs: &'a [Run],
+    pub runs: Runs<'a>,
     pub settings: &'a FitSettings,
     pub rows: Vec<Row>,
     pub scales: Vec<f64>,
@@ -43,7 +44,7 @@ impl<'a> Task<'a> {
     pub fn new(
         model: &'a Model,
         cost: &'a Cost<'a>,
-        runs: &'a [Run],
+        runs: Runs<'a>,
         settings: &'a FitSettings,
     ) -> Result<Self, FitError> {
         let free: Vec<&Parameter> = cost.free().iter().map(|i| &model.parameters[*i]).collect();
@@ -56,10 +57,12 @@ impl<'a> Task<'a> {
         let start: Vec<f64> = free.iter().zip(&bounds).map(|(p, (lo, hi))| p.value.max(*lo).min(*hi)).collect();
         let start_cost = cost.value(&start).unwrap_or(f64::INFINITY);
         let scales = free.iter().map(|p| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 }).collect();
-        let mut sessions: Vec<String> = runs.iter().map(|r| r.session.clone()).collect();
-        sessions.sort();
-        sessions.dedup();
-        sessions.retain(|s| model.sessions.contains_key(s));
+        let mut sessions: Vec<String> = if model.sessions.is_empty() {
+            Vec::new()
+        } else {
+            let met: BTreeSet<String> = runs.iter().map(|r| r.session.clone()).collect();
+            met.into_iter().filter(|s| model.sessions.contains_key(s)).collect()
+        };
         sessions.push(String::new());
         Ok(Self { model, cost, runs, settings, rows, scales, bounds, start, start_cost, sessions })
     }
@@ -71,7 +74,7 @@ impl<'a> Task<'a> {
 
     /// The error of a start whose simulation diverges.
     pub fn diverged(&self) -> FitError {
-        let first = || (self.runs[0].recording.clone(), self.runs[0].start_time());
+        let first = || self.runs.get(0).map_or((String::new(), 0.0), |run| (run.recording.clone(), run.start_time()));
         let (run, time) = self.cost.divergence(&self.start).unwrap_or_else(first);
         FitError::Diverged { run, time }
     }
