@@ -14,7 +14,7 @@ use trimtab::model::{Model, ModelError};
 use trimtab::ranges::Limited;
 use trimtab::recording::{Run, Split, Windows};
 use trimtab::ship::Ship;
-use trimtab::study::Study;
+use trimtab::study::{Listed, Study};
 
 /// Arguments of every command on a study.
 #[derive(Clone, Debug, clap::Args)]
@@ -57,23 +57,52 @@ impl Loaded {
         Ok(windows?)
     }
 
+    /// Reads the runs for which `wanted` says so and hands the windows of each to `work`, without keeping them; what `work`
+    /// makes of them goes to `take` in the order listed.
+    pub fn each<T: Send>(
+        &self,
+        doing: &str,
+        wanted: impl Fn(&Listed) -> bool,
+        work: impl Fn(Vec<Run>) -> T + Sync,
+        mut take: impl FnMut(T) -> Result<(), CliError>,
+    ) -> Result<(), CliError> {
+        let (mut done, of) = (0, self.study.runs.iter().filter(|run| wanted(run)).count());
+        let bar = progress(format!("{doing} {of} recordings"));
+        let draught = self.model.ship.hull.draught;
+        let result = self.study.each(
+            draught,
+            wanted,
+            |windows| work(windows.windows),
+            |one| {
+                done += 1;
+                bar.set_message(format!("{doing}: {done} of {of} recordings"));
+                take(one)
+            },
+        );
+        bar.finish_and_clear();
+        result
+    }
+
     /// The windows of one split, of which there must be some.
     pub fn windows_of(&self, split: Split) -> Result<Vec<Run>, CliError> {
         let mut windows = self.windows()?.windows;
         windows.retain(|w| w.split == split);
         if windows.is_empty() {
-            let (word, verb) = match split {
-                Split::Train => ("train", "fit to"),
-                Split::Test => ("test", "judge by"),
-            };
-            return Err(CliError::Nothing {
-                path: self.study.path.clone(),
-                message: format!(
-                    "there is no run to {verb}; mark one with `split = \"{word}\"`, or set a [split] rule"
-                ),
-            });
+            return Err(self.nothing(split));
         }
         Ok(windows)
+    }
+
+    /// The error of a study without a run on one side of its split.
+    pub fn nothing(&self, split: Split) -> CliError {
+        let (word, verb) = match split {
+            Split::Train => ("train", "fit to"),
+            Split::Test => ("test", "judge by"),
+        };
+        CliError::Nothing {
+            path: self.study.path.clone(),
+            message: format!("there is no run to {verb}; mark one with `split = \"{word}\"`, or set a [split] rule"),
+        }
     }
 
     /// Table `[fit]`.
