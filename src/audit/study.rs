@@ -2,6 +2,7 @@
 //! It asks nothing of its own of a recording; the questions are in the files beside it.
 
 use super::issue::{Issue, Severity};
+use super::propeller::advance;
 use super::receiver::settled;
 use super::record::{Audit, audit};
 use crate::recording::Split;
@@ -68,6 +69,7 @@ fn audited(study: &Study, ship: &Ship, run: &Listed) -> Audited {
         Err(error) => return Audited { audit: unreadable(run, &error), train: 0, test: 0 },
     };
     let mut audit = audit(&recording);
+    advance(&recording, ship, &mut audit.issues);
     let (mut train, mut test) = (0, 0);
     match recording.windows(&run.labels, &study.settings(run, ship.hull.draught)) {
         Ok(windows) => {

@@ -2,9 +2,11 @@
 //! The library makes the fit and its report; this file calls it, shows progress and writes files.
 
 use super::answer::Answer;
+use super::audited::{AcceptArgs, audited};
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text, progress};
+use super::output::{Output, OutputArgs, csv_text};
+use super::progress::progress;
 use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::Model;
 use trimtab::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
@@ -34,7 +36,8 @@ Example:
 
 With --out: fitted.toml (a model file with the estimates, which every command takes as --model), fit.json, fit.txt (the \
     report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end).
-JSON: result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
+JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs): what the audit of the recordings found; \
+    result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
     value, limit, sentence), result.residual_statistics (model_error, growth, growth_error, likeness), result.estimates[] \
     (name, symbol, unit, start, value, standard_error, interval, at_bound), result.start_cost, result.start_prior_cost, \
     result.cost, result.prior_cost, result.first_stage_parts, result.residual_variance, result.active[] (sentence, rule), \
@@ -52,6 +55,8 @@ pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
     #[command(flatten)]
+    accept: AcceptArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
@@ -59,6 +64,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("fit", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
+    output.recordings(audited(&loaded, &args.accept)?);
     let store = stored(&loaded)?;
     let windows = Runs::from(&store);
     let fit = fit_windows(&loaded, &loaded.model, windows);

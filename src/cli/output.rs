@@ -1,13 +1,13 @@
 //! Where results go: text or JSON to standard output, files to the folder given with `--out`.
 //! No other file writes to standard output; progress and errors go to standard error.
 
+use super::audited::Audited;
 use super::error::CliError;
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use serde_json::Value;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use trimtab::files::{fill_whole, write_whole};
 use trimtab::plot::Figure;
 
 /// Arguments that every command with results has.
@@ -27,6 +27,7 @@ pub struct Output {
     json: bool,
     folder: Option<PathBuf>,
     files: Vec<PathBuf>,
+    audited: Option<Audited>,
 }
 
 impl Output {
@@ -35,7 +36,12 @@ impl Output {
         if let Some(folder) = &args.out {
             std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
         }
-        Ok(Self { command, json: args.json, folder: args.out.clone(), files: Vec::new() })
+        Ok(Self { command, json: args.json, folder: args.out.clone(), files: Vec::new(), audited: None })
+    }
+
+    /// Takes what is to be said of the recordings: before the answer, and as `recordings` in JSON.
+    pub fn recordings(&mut self, audited: Audited) {
+        self.audited = Some(audited);
     }
 
     /// Whether files are wanted.
@@ -51,7 +57,7 @@ impl Output {
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent).map_err(fail)?;
         }
-        std::fs::write(&path, bytes).map_err(fail)?;
+        write_whole(&path, bytes).map_err(fail)?;
         self.files.push(path);
         Ok(())
     }
@@ -77,14 +83,16 @@ impl Output {
         let name = format!("{}.json", self.command.replace(' ', "_"));
         if let Some(folder) = &self.folder {
             let path = folder.join(name);
-            let fail = |source| CliError::Write { path: path.clone(), source };
-            let mut file = BufWriter::new(std::fs::File::create(&path).map_err(fail)?);
-            serde_json::to_writer_pretty(&mut file, &Document::new(self.command, None, result))?;
-            file.write_all(b"\n").and_then(|()| file.flush()).map_err(fail)?;
+            let document = Document::new(self.command, None, self.audited.as_ref(), result);
+            let fill = |file: &mut dyn Write| {
+                serde_json::to_writer_pretty(&mut *file, &document)?;
+                file.write_all(b"\n")
+            };
+            fill_whole(&path, fill).map_err(|source| CliError::Write { path: path.clone(), source })?;
             self.files.push(path);
         }
         if self.json {
-            let document = Document::new(self.command, Some(&self.files), result);
+            let document = Document::new(self.command, Some(&self.files), self.audited.as_ref(), result);
             let mut stdout = BufWriter::new(std::io::stdout().lock());
             return serde_json::to_writer_pretty(&mut stdout, &document)
                 .map_err(std::io::Error::from)
@@ -92,7 +100,8 @@ impl Output {
                 .and_then(|()| stdout.flush())
                 .map_err(unprinted);
         }
-        let mut text = text.trim_end().to_owned() + "\n";
+        let doubts = self.audited.as_ref().map_or_else(String::new, Audited::lines);
+        let mut text = doubts + text.trim_end() + "\n";
         if let Some(folder) = &self.folder {
             let names = self.files.iter().map(|f| f.strip_prefix(folder).unwrap_or(f).display().to_string());
             text += &format!("\nWritten to {}: {}\n", folder.display(), abridged(names.collect()));
@@ -107,13 +116,15 @@ struct Document<'a, T: Serialize> {
     command: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     files: Option<&'a [PathBuf]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    recordings: Option<&'a Audited>,
     result: &'a T,
     version: &'static str,
 }
 
 impl<'a, T: Serialize> Document<'a, T> {
-    fn new(command: &'a str, files: Option<&'a [PathBuf]>, result: &'a T) -> Self {
-        Self { command, files, result, version: env!("CARGO_PKG_VERSION") }
+    fn new(command: &'a str, files: Option<&'a [PathBuf]>, recordings: Option<&'a Audited>, result: &'a T) -> Self {
+        Self { command, files, recordings, result, version: env!("CARGO_PKG_VERSION") }
     }
 }
 
@@ -172,17 +183,6 @@ fn unprinted(error: std::io::Error) -> CliError {
         ErrorKind::BrokenPipe => CliError::Closed,
         _ => CliError::Stdout(error),
     }
-}
-
-/// A progress line on standard error while a computation runs; nothing if standard error is not a terminal.
-pub fn progress(doing: impl Into<String>) -> ProgressBar {
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
-        bar.set_style(style);
-    }
-    bar.set_message(doing.into());
-    bar.enable_steady_tick(Duration::from_millis(120));
-    bar
 }
 
 /// CSV text of a header and rows of fields.

@@ -220,10 +220,11 @@ impl<P: Plain> Block<P> {
         };
         let inputs =
             (0..steps).map(|k| Inputs::from_entries(|entry| P::gather(|lane| *entry(sample(lane, k))))).collect();
+        let roots: Vec<[f64; STATES]> = lanes.iter().map(|run| weights[*run].map(|w| w.max(0.0).sqrt())).collect();
         let weight = |lane: usize, k: usize, c: usize| {
             let Some(run) = runs.get(lane) else { return 0.0 };
             let compared = run.measured.get(k).is_some_and(|m| m[c].is_some());
-            if compared { weights[lanes[lane]][c].max(0.0).sqrt() } else { 0.0 }
+            if compared { roots[lane][c] } else { 0.0 }
         };
         let measured =
             |lane: usize, k: usize, c: usize| in_lane(lane).measured.get(k).and_then(|m| m[c]).unwrap_or(0.0);

@@ -12,6 +12,7 @@ use super::subspace::inverse;
 use super::task::Task;
 use crate::ipopt::Counts;
 use crate::model::Model;
+use crate::ranges::Limited;
 use crate::recording::Runs;
 use crate::validity::{self, Count, Coverage};
 use serde::Serialize;
@@ -149,7 +150,7 @@ pub fn fit<'a>(
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Fit, FitError> {
     let clock = Instant::now();
-    settings.check()?;
+    settings.limits()?;
     let runs = runs.into();
     let cost = Cost::new(model, runs, settings.cost_options())?;
     let task = Task::new(model, &cost, runs, settings)?;

@@ -72,7 +72,7 @@ impl Recording {
             text.push_str(&fields.collect::<Vec<_>>().join(","));
             text.push('\n');
         }
-        std::fs::write(path, text).map_err(fail)
+        crate::files::write_whole(path, text.as_bytes()).map_err(fail)
     }
 
     /// Number of rows with a time.
