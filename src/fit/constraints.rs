@@ -21,7 +21,8 @@
 use super::error::FitError;
 use crate::model::Model;
 use crate::physics::Form;
-use crate::recording::Run;
+use crate::ranges::{Limited, OutOfRange, within};
+use crate::recording::Runs;
 use crate::terms::flow::FlowTerm;
 use crate::terms::resistance::Resistance;
 use crate::terms::rudder::Rudder;
@@ -89,6 +90,50 @@ pub struct ConstraintSettings {
     pub drag_zero: Rule,
     /// K_T over advance ratios \[-\].
     pub thrust: Rule,
+}
+
+impl ConstraintSettings {
+    /// The rules by their keys.
+    fn rules(&self) -> [(&'static str, Rule); 8] {
+        [
+            ("resistance", self.resistance),
+            ("resistance_slope", self.resistance_slope),
+            ("side_force", self.side_force),
+            ("lift_port", self.lift_port),
+            ("lift_starboard", self.lift_starboard),
+            ("drag", self.drag),
+            ("drag_zero", self.drag_zero),
+            ("thrust", self.thrust),
+        ]
+    }
+}
+
+/// Samples that a rule may have: more cost time and bind nothing that these do not.
+const MOST_SAMPLES: f64 = 10_000.0;
+
+impl Limited for ConstraintSettings {
+    fn limits(&self) -> Result<(), OutOfRange> {
+        within(
+            "tolerance",
+            self.tolerance,
+            &(0.0..=10.0),
+            "the share of its size by which each limit is moved outwards",
+        )?;
+        for (key, rule) in self.rules() {
+            let numbers = [rule.from, rule.to, rule.step, rule.lower, rule.upper];
+            if let Some(value) = numbers.into_iter().flatten().find(|v| !v.is_finite()) {
+                let expected = "a finite number; leave out what is not to be limited".into();
+                return Err(OutOfRange { key, value, expected });
+            }
+            if let (Some(from), Some(to), Some(step)) = (rule.from, rule.to, rule.step)
+                && !(step > 0.0 && (to - from) / step <= MOST_SAMPLES)
+            {
+                let expected = format!("a step above 0 that divides the range into {MOST_SAMPLES} samples at most");
+                return Err(OutOfRange { key, value: step, expected });
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A curve of the model, linear in the parameters.
@@ -189,10 +234,11 @@ impl Row {
 }
 
 /// Smallest and largest recorded surge speed \[m/s\]; `[0, 0]` where none was recorded.
-pub fn speed_range(runs: &[Run]) -> [f64; 2] {
-    let recorded = runs.iter().flat_map(|r| r.measured.iter().filter_map(|m| m[3]));
-    let start = runs.iter().map(|r| r.initial[3]);
-    recorded.chain(start).filter(|u| u.is_finite()).fold([0.0, 0.0], |[lo, hi], u| [lo.min(u), hi.max(u)])
+pub fn speed_range<'a>(runs: impl Into<Runs<'a>>) -> [f64; 2] {
+    runs.into().iter().fold([0.0, 0.0], |range, run| {
+        let recorded = run.measured.iter().filter_map(|m| m[3]).chain([run.initial[3]]);
+        recorded.filter(|u| u.is_finite()).fold(range, |[lo, hi], u| [lo.min(u), hi.max(u)])
+    })
 }
 
 /// The rows of all rules for a model, given the recorded range of surge speed \[m/s\].

@@ -162,13 +162,14 @@ fn square(n: usize, entry: impl Fn(usize, usize) -> Option<f64>) -> Covariance {
 /// The gradient of each recording's part of the cost.
 fn scores_by_recording(task: &Task, quadratic: Option<&Quadratic>) -> Vec<DVector<f64>> {
     let mut clusters: Vec<DVector<f64>> = Vec::new();
-    let mut known: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut known: BTreeMap<String, usize> = BTreeMap::new();
     for (run, score) in task.runs.iter().zip(quadratic.map_or(&[][..], |q| &q.by_run)) {
         let score = task.scaled_vector(score);
-        let cluster = *known.entry(&run.recording).or_insert(clusters.len());
-        match clusters.get_mut(cluster) {
-            Some(sum) => *sum += score,
-            None => clusters.push(score),
+        if let Some(cluster) = known.get(&run.recording) {
+            clusters[*cluster] += score;
+        } else {
+            known.insert(run.recording.clone(), clusters.len());
+            clusters.push(score);
         }
     }
     clusters

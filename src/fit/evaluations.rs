@@ -70,3 +70,49 @@ impl<'a> Evaluations<'a> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::FitSettings;
+    use crate::model::Model;
+    use crate::physics::Form;
+    use crate::recording::{Run, Split, measured};
+    use crate::ship::Ship;
+    use crate::state::Inputs;
+    use std::path::Path;
+
+    #[test]
+    fn a_point_is_evaluated_once_and_forgotten_after_a_few_others() {
+        let path = format!("{}/experiments/ships/a.toml", env!("CARGO_MANIFEST_DIR"));
+        let model = Model::new(Ship::read(Path::new(&path)).unwrap(), "HD", Form::Paper, &[]).unwrap();
+        let run = Run {
+            name: "straight".into(),
+            recording: "straight".into(),
+            session: String::new(),
+            manoeuvre: String::new(),
+            split: Split::Train,
+            dt: 1.0,
+            inputs: (0..20).map(|k| Inputs::actuators(f64::from(k), 2.0, 0.1)).collect(),
+            measured: measured(&[[0.0; 6]; 20]),
+            initial: [0.0, 0.0, 0.0, 4.0, 0.0, 0.0],
+            disturbed: Vec::new(),
+        };
+        let runs = [run];
+        let cost = Cost::new(&model, &runs, FitSettings::default().cost_options()).unwrap();
+        let evaluations = Evaluations::of(&cost);
+        let p: Vec<f64> = cost.free().iter().map(|i| model.parameters[*i].value).collect();
+        let first = evaluations.quadratic(&p).unwrap();
+        assert!(Rc::ptr_eq(&first, &evaluations.quadratic(&p).unwrap()));
+        assert!(Rc::ptr_eq(&first, &evaluations.with_gradient(&p).unwrap()));
+        assert_eq!(evaluations.value(&p), Some(first.value));
+        for i in 1..=REMEMBERED {
+            let moved: Vec<f64> = p.iter().map(|p| p * (1.0 + 1e-3 * i as f64)).collect();
+            let gradient = evaluations.with_gradient(&moved).unwrap();
+            // A gradient alone does not serve for the matrix.
+            assert!(!Rc::ptr_eq(&gradient, &evaluations.quadratic(&moved).unwrap()));
+        }
+        let again = evaluations.quadratic(&p).unwrap();
+        assert!(!Rc::ptr_eq(&first, &again) && first.value == again.value);
+    }
+}

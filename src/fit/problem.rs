@@ -8,7 +8,7 @@ use super::settings::Hessian;
 use super::task::Task;
 use crate::ipopt::{IterationReport, Nlp};
 use crate::model::Model;
-use crate::recording::Run;
+use crate::recording::Runs;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
 
@@ -85,21 +85,36 @@ pub(super) struct Problem<'a, 'f> {
     pub best: Option<Point>,
     /// Number of points evaluated.
     pub evaluated: usize,
+    /// Points after which the solve is given up, and whether it was.
+    pub most: usize,
+    pub exhausted: bool,
 }
 
 impl<'a, 'f> Problem<'a, 'f> {
     pub fn new(
         task: &'a Task<'a>,
         evaluations: &'a Evaluations<'a>,
-        runs: &[Run],
+        runs: Runs,
         priors: &'a Priors,
         start: &'a [f64],
         rows: &'a [Row],
         progress: &'f mut dyn FnMut(&Progress) -> bool,
     ) -> Self {
-        let samples: usize = runs.iter().map(|r| r.measured.len()).sum();
+        let samples = evaluations.cost.samples();
         let factor = runs.len() as f64 / samples.max(1) as f64;
-        Self { task, evaluations, priors, start, rows, factor, progress, best: None, evaluated: 0 }
+        Self {
+            task,
+            evaluations,
+            priors,
+            start,
+            rows,
+            factor,
+            progress,
+            best: None,
+            evaluated: 0,
+            most: usize::MAX,
+            exhausted: false,
+        }
     }
 
     /// A point in the parameters' own units; the start without the rounding of scaling there and back.
@@ -228,11 +243,13 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn iteration(&mut self, report: &IterationReport) -> bool {
-        (self.progress)(&Progress {
-            iteration: report.iteration,
-            cost: report.objective / self.factor,
-            violation: report.inf_pr,
-            optimality: report.inf_du,
-        })
+        self.exhausted = self.evaluated > self.most;
+        !self.exhausted
+            && (self.progress)(&Progress {
+                iteration: report.iteration,
+                cost: report.objective / self.factor,
+                violation: report.inf_pr,
+                optimality: report.inf_du,
+            })
     }
 }

@@ -24,7 +24,7 @@ use super::stages;
 use super::subspace::inverse;
 use super::task::{ActiveSet, Task};
 use crate::ipopt::{self, Counts, HessianMode, IpoptError, OptionValue, Options, Solution, Status};
-use crate::recording::Run;
+use crate::recording::Runs;
 use nalgebra::{DMatrix, DVector};
 
 /// How often the solver starts again from a better point that it left.
@@ -46,9 +46,11 @@ const BARRIER_SHARE: f64 = 1e-3;
 /// Share of the cost that its rounding may hide.
 const ROUNDING: f64 = 1e-12;
 
-/// Barrier parameter, iterations and distance from every bound (in scales) of a solve that leaves the constraint rows out.
+/// Barrier parameter, iterations, evaluations and distance from every bound (in scales) of a solve that leaves the constraint
+/// rows out.
 const INSIDE_BARRIER: f64 = 1e-5;
 const INSIDE_ITERATIONS: usize = 15;
+const INSIDE_EVALUATIONS: usize = 20;
 const INSIDE_DISTANCE: f64 = 1e-3;
 
 /// Step, relative to the scaled parameters, that is taken without asking whether the cost fell: its rounding hides that.
@@ -116,12 +118,14 @@ struct Attempt {
     /// The best feasible point it met.
     best: Option<Point>,
     evaluated: usize,
+    /// Whether it was given up for the number of its evaluations.
+    exhausted: bool,
 }
 
 /// What is solved: a cost over runs, and where from.
 struct Stage<'a> {
     evaluations: &'a Evaluations<'a>,
-    runs: &'a [Run],
+    runs: Runs<'a>,
     tolerance: f64,
     max_iterations: usize,
     /// Whether the start is near the optimum: the barrier then starts lower still, and the bounds do not push the start away.
@@ -178,14 +182,15 @@ impl Task<'_> {
         }
         let mut priors = Priors::of(self.model);
         for parts in stages::falling(parts) {
-            let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts);
-            let cost = Cost::weighted(self.model, &pieces, weights, self.cost_options())?;
+            let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts)?;
+            let pieces = Runs::from(&pieces);
+            let cost = Cost::weighted(self.model, pieces, weights, self.cost_options())?;
             let evaluations = Evaluations::of(&cost);
             let Some(value) = evaluations.value(&p) else { continue };
-            priors.weight = self.weight(&cost, &pieces, value);
+            priors.weight = self.weight(&cost, pieces, value);
             let stage = Stage {
                 evaluations: &evaluations,
-                runs: &pieces,
+                runs: pieces,
                 tolerance: self.settings.tolerance.max(STAGE_TOLERANCE),
                 max_iterations: self.settings.max_iterations.min(STAGE_ITERATIONS),
                 near: false,
@@ -207,7 +212,7 @@ impl Task<'_> {
     }
 
     /// Weight of the priors at a cost: see [`Priors`].
-    fn weight(&self, cost: &Cost, runs: &[Run], value: f64) -> f64 {
+    fn weight(&self, cost: &Cost, runs: Runs, value: f64) -> f64 {
         self.variance_of(cost, runs.len(), value) * self.settings.correlated_samples / runs.len() as f64
     }
 
@@ -264,7 +269,7 @@ impl Task<'_> {
         loop {
             let attempt = self.attempt(stage, &start, way, priors, work, progress)?;
             evaluated += attempt.evaluated;
-            let Attempt { status, solution, at, best: found, .. } = attempt;
+            let Attempt { status, solution, at, best: found, exhausted, .. } = attempt;
             let better = found.filter(|f| best.as_ref().is_none_or(|b| f.total < b.total));
             let improved = better
                 .as_ref()
@@ -281,7 +286,7 @@ impl Task<'_> {
                 let p = better.map_or_else(|| p.clone(), |b| b.p);
                 return Ok(Descent { p, status, last: solution.clone(), solution, evaluated });
             }
-            let stopped = matches!(status, Status::Stopped | Status::Panicked(_));
+            let stopped = !exhausted && matches!(status, Status::Stopped | Status::Panicked(_));
             if way == Way::Inside && !stopped {
                 way = Way::Whole;
                 continue;
@@ -311,6 +316,9 @@ impl Task<'_> {
     ) -> Result<Attempt, FitError> {
         let rows = if way == Way::Inside { &[] } else { &self.rows[..] };
         let mut problem = Problem::new(self, stage.evaluations, stage.runs, priors, start, rows, progress);
+        if way == Way::Inside {
+            problem.most = INSIDE_EVALUATIONS;
+        }
         let total = stage.evaluations.value(start).map(|value| value + priors.value(start));
         let objective = problem.factor * total.unwrap_or(1.0);
         let (status, solution) = match ipopt::solve(&mut problem, &self.options(stage, objective, way)) {
@@ -323,7 +331,14 @@ impl Task<'_> {
             work.add(solution);
         }
         let at = solution.as_ref().map(|s| self.within_bounds(&problem.unscaled(&s.x)));
-        Ok(Attempt { status, solution, at, best: problem.best.take(), evaluated: problem.evaluated })
+        Ok(Attempt {
+            status,
+            solution,
+            at,
+            best: problem.best.take(),
+            evaluated: problem.evaluated,
+            exhausted: problem.exhausted,
+        })
     }
 
     /// Whether a solve may leave the constraint rows out at first. Free hull coefficients need all rows to keep the solver's

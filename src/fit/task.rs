@@ -8,8 +8,9 @@ use super::evaluations::Evaluations;
 use super::settings::FitSettings;
 use super::subspace::null_space;
 use crate::model::{Model, Parameter};
-use crate::recording::Run;
+use crate::recording::Runs;
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeSet;
 
 /// Share of its largest possible value that the product of the off-diagonal entries of the sway-yaw mass matrix may reach.
 const MASS_MARGIN: f64 = 0.9;
@@ -23,7 +24,7 @@ pub(super) struct Task<'a> {
     pub cost: &'a Cost<'a>,
     /// Its evaluations.
     pub evaluations: Evaluations<'a>,
-    pub runs: &'a [Run],
+    pub runs: Runs<'a>,
     pub settings: &'a FitSettings,
     pub rows: Vec<Row>,
     /// Size of each row over a change of one scale in every free parameter.
@@ -48,7 +49,7 @@ impl<'a> Task<'a> {
     pub fn new(
         model: &'a Model,
         cost: &'a Cost<'a>,
-        runs: &'a [Run],
+        runs: Runs<'a>,
         settings: &'a FitSettings,
     ) -> Result<Self, FitError> {
         let free: Vec<&Parameter> = cost.free().iter().map(|i| &model.parameters[*i]).collect();
@@ -64,10 +65,12 @@ impl<'a> Task<'a> {
         let scale = |p: &&Parameter| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 };
         let scales: Vec<f64> = free.iter().map(scale).collect();
         let sizes = rows.iter().map(|row| row.size(&scales)).collect();
-        let mut sessions: Vec<String> = runs.iter().map(|r| r.session.clone()).collect();
-        sessions.sort();
-        sessions.dedup();
-        sessions.retain(|s| model.sessions.contains_key(s));
+        let mut sessions: Vec<String> = if model.sessions.is_empty() {
+            Vec::new()
+        } else {
+            let met: BTreeSet<String> = runs.iter().map(|r| r.session.clone()).collect();
+            met.into_iter().filter(|s| model.sessions.contains_key(s)).collect()
+        };
         sessions.push(String::new());
         Ok(Self { model, cost, evaluations, runs, settings, rows, sizes, scales, bounds, start, start_cost, sessions })
     }
@@ -79,7 +82,7 @@ impl<'a> Task<'a> {
 
     /// The error of a start whose simulation diverges.
     pub fn diverged(&self) -> FitError {
-        let first = || (self.runs[0].recording.clone(), self.runs[0].start_time());
+        let first = || self.runs.get(0).map_or((String::new(), 0.0), |run| (run.recording.clone(), run.start_time()));
         let (run, time) = self.cost.divergence(&self.start).unwrap_or_else(first);
         FitError::Diverged { run, time }
     }
