@@ -428,6 +428,45 @@ impl<'a> Cost<'a> {
         Some(squares)
     }
 
+    /// Hands the weighted residuals of each run at `p` to `take`, by sample and channel, NaN where nothing is compared and after
+    /// the run's end. The order depends on the runs alone. `None` where a run cannot be read or `take` says no more.
+    pub(super) fn residuals_by_run(
+        &self,
+        p: &[f64],
+        take: impl FnMut(usize, Vec<[f64; STATES]>) -> Option<()>,
+    ) -> Option<()> {
+        if self.lanes.is_empty() {
+            self.residuals_over(&self.single, p, take)
+        } else {
+            self.residuals_over(&self.lanes, p, take)
+        }
+    }
+
+    fn residuals_over<P: Plain>(
+        &self,
+        blocks: &Blocks<P>,
+        p: &[f64],
+        mut take: impl FnMut(usize, Vec<[f64; STATES]>) -> Option<()>,
+    ) -> Option<()> {
+        let by_lane = |block: &Block<P>| {
+            let mut residuals = vec![[P::zero(); STATES]; block.inputs.len()];
+            self.rollout(block, p, |k, y| residuals[k] = block.residuals(k, y));
+            let of_lane = |lane: usize| {
+                let entry = |(residual, root): (&P, &P)| {
+                    if root.in_lane(lane) > 0.0 { residual.in_lane(lane) } else { f64::NAN }
+                };
+                let sample = |(residuals, roots): (&[P; STATES], &[P; STATES])| {
+                    std::array::from_fn(|c| entry((&residuals[c], &roots[c])))
+                };
+                residuals.iter().zip(&block.root).map(sample).collect()
+            };
+            (0..block.runs.len()).map(of_lane).collect::<Vec<Vec<[f64; STATES]>>>()
+        };
+        self.each(blocks, by_lane, |runs, values| {
+            runs.iter().zip(values).try_for_each(|(run, values)| take(*run, values))
+        })
+    }
+
     /// The cost with its gradient and Gauss-Newton matrix, or `None` where a simulation or a derivative diverges.
     pub fn quadratic(&self, p: &[f64]) -> Option<Quadratic> {
         self.evaluate(p, true)
