@@ -28,8 +28,10 @@ pub struct Doubt {
     /// What was found in the first of the runs.
     text: String,
     next_step: String,
-    /// The runs; none where the fault is the study's.
+    /// The runs in which it was found.
     runs: Vec<String>,
+    /// Whether the user accepts it.
+    accepted: bool,
 }
 
 /// What a command has to say of the recordings that it used.
@@ -44,12 +46,26 @@ pub struct Audited {
 /// Faults that can be accepted: the recordings can be read and say what they say.
 const CONTRADICTIONS: [&str; 3] = ["unit_error", "sign_error", "axes_error"];
 
-/// Audits the recordings of a study.
+/// Audits the recordings of a study for a command that computes with what they say.
 ///
 /// # Errors
 /// [`CliError::Faulty`] where the recordings contradict themselves and this was not accepted. A recording that cannot be read, or a
 /// study without runs on one side, is left to the command, whose message says more.
 pub fn audited(loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> {
+    let audited = examined(loaded, args)?;
+    match audited.doubts.iter().find(|d| d.refused()) {
+        Some(doubt) => {
+            Err(CliError::Faulty { path: loaded.study.path.clone(), what: audited.sentence(doubt), fault: doubt.fault })
+        }
+        None => Ok(audited),
+    }
+}
+
+/// Audits the recordings of a study for a command whose own answer may be that they contradict themselves.
+///
+/// # Errors
+/// A fault to accept that there is not.
+pub fn examined(loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> {
     for name in &args.accept {
         if !CONTRADICTIONS.contains(&name.as_str()) {
             let known = CONTRADICTIONS.join(", ");
@@ -61,14 +77,11 @@ pub fn audited(loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> 
     let audit = audit_study(&loaded.study, &loaded.model.ship);
     bar.finish_and_clear();
     let found = audit.recordings.iter().flat_map(|a| a.issues.iter().map(|i| (a.run.as_str(), i)));
-    let audited = Audited { runs: audit.recordings.len(), doubts: grouped(found) };
-    let refused = |d: &&Doubt| d.severity == Severity::Error && !args.accept.iter().any(|a| a == d.fault);
-    match audited.doubts.iter().find(refused) {
-        Some(doubt) => {
-            Err(CliError::Faulty { path: loaded.study.path.clone(), what: audited.sentence(doubt), fault: doubt.fault })
-        }
-        None => Ok(audited),
+    let mut doubts = grouped(found);
+    for doubt in &mut doubts {
+        doubt.accepted = args.accept.iter().any(|a| a == doubt.fault);
     }
+    Ok(Audited { runs: audit.recordings.len(), doubts })
 }
 
 /// Warnings and contradictions by fault and channel, the gravest first, then in the order found.
@@ -94,11 +107,18 @@ fn grouped<'a>(issues: impl Iterator<Item = (&'a str, &'a Issue)>) -> Vec<Doubt>
                 text: issue.text.clone(),
                 next_step: issue.next_step.clone(),
                 runs: vec![run.to_owned()],
+                accepted: false,
             }),
         }
     }
     doubts.sort_by_key(|d| std::cmp::Reverse(d.severity));
     doubts
+}
+
+impl Doubt {
+    fn refused(&self) -> bool {
+        self.severity == Severity::Error && !self.accepted
+    }
 }
 
 impl Audited {
@@ -111,10 +131,19 @@ impl Audited {
         format!("{channel}{}{told}: {runs}; {}", doubt.text, doubt.next_step)
     }
 
+    /// Whether there is an error that the user does not accept.
+    pub fn refused(&self) -> bool {
+        self.doubts.iter().any(Doubt::refused)
+    }
+
     /// The lines that come before the answer; empty where there is nothing to say.
     pub fn lines(&self) -> String {
         let line = |d: &Doubt| {
-            let word = if d.severity == Severity::Error { "accepted error" } else { "warning" };
+            let word = match (d.severity, d.accepted) {
+                (Severity::Error, true) => "accepted error",
+                (Severity::Error, false) => "error",
+                _ => "warning",
+            };
             format!("{word}: {}\n", self.sentence(d))
         };
         let mut text: String = self.doubts.iter().map(line).collect();
@@ -144,7 +173,8 @@ mod tests {
         let audited = Audited { runs: 3, doubts: grouped(all.iter().map(|(r, i)| (*r, i))) };
         let lines = audited.lines();
         let lines: Vec<&str> = lines.lines().collect();
-        assert_eq!(lines[0], "accepted error: r: the sign is turned: run b; look at it");
+        assert!(audited.refused());
+        assert_eq!(lines[0], "error: r: the sign is turned: run b; look at it");
         assert_eq!(lines[1], "warning: psi: stands still for 3 s (as in a): 2 of 3 runs; look at it");
         assert!(lines[2].starts_with("`trimtab check`") && lines.len() == 4, "{lines:?}");
         assert_eq!(Audited::default().lines(), "");

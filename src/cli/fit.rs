@@ -36,7 +36,7 @@ Example:
 
 With --out: fitted.toml (a model file with the estimates, which every command takes as --model), fit.json, fit.txt (the \
     report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end).
-JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs): what the audit of the recordings found; \
+JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
     result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
     value, limit, sentence), result.residual_statistics (model_error, growth, growth_error, likeness), result.estimates[] \
     (name, symbol, unit, start, value, standard_error, interval, at_bound), result.start_cost, result.start_prior_cost, \
