@@ -171,7 +171,8 @@ impl<P: Plain> Block<P> {
     /// The block of some runs; `None` where one cannot be read.
     fn of(model: &Model, runs: Runs, weights: &[[f64; STATES]], lanes: &[usize]) -> Option<Self> {
         let runs = lanes.iter().map(|run| runs.get(*run)).collect::<Option<Vec<Cow<Run>>>>()?;
-        let in_lane = |lane: usize| &*runs[lane.min(runs.len() - 1)];
+        let runs: Vec<&Run> = runs.iter().map(|run| &**run).collect();
+        let in_lane = |lane: usize| runs[lane.min(runs.len() - 1)];
         let steps = runs.iter().map(|r| r.inputs.len()).max().unwrap_or(0);
         let sample = |lane: usize, k: usize| {
             let inputs = &in_lane(lane).inputs;
@@ -187,12 +188,9 @@ impl<P: Plain> Block<P> {
         };
         let measured =
             |lane: usize, k: usize, c: usize| in_lane(lane).measured.get(k).and_then(|m| m[c]).unwrap_or(0.0);
-        let table = |f: &dyn Fn(usize, usize, usize) -> f64| -> Vec<[P; STATES]> {
-            (0..steps).map(|k| std::array::from_fn(|c| P::gather(|lane| f(lane, k, c)))).collect()
-        };
-        let channels = |lane: usize| in_lane(lane).channels();
-        let whole =
-            (0..steps).map(|k| (0..P::WIDTH).all(|lane| (0..STATES).all(|c| weight(lane, k, c) > 0.0))).collect();
+        let root: Vec<[P; STATES]> = table(steps, weight);
+        let weighted = |root: &[P; STATES]| (0..P::WIDTH).all(|lane| root.iter().all(|w| w.in_lane(lane) > 0.0));
+        let measured_at_all: Vec<[bool; STATES]> = (0..P::WIDTH).map(|lane| in_lane(lane).channels()).collect();
         let mut by_lane: Vec<Vec<f64>> = Vec::new();
         for lane in 0..P::WIDTH {
             let mut values: Vec<f64> = model.parameters.iter().map(|p| if p.free { 0.0 } else { p.value }).collect();
@@ -206,10 +204,10 @@ impl<P: Plain> Block<P> {
             dt: in_lane(0).dt,
             inputs,
             initial: std::array::from_fn(|c| P::gather(|lane| in_lane(lane).initial[c])),
-            channels: std::array::from_fn(|c| P::gather(|lane| f64::from(u8::from(channels(lane)[c])))),
-            target: table(&measured),
-            root: table(&weight),
-            whole,
+            channels: std::array::from_fn(|c| P::gather(|lane| f64::from(u8::from(measured_at_all[lane][c])))),
+            target: table(steps, measured),
+            whole: root.iter().map(weighted).collect(),
+            root,
             base: (0..model.parameters.len()).map(|i| P::gather(|lane| by_lane[lane][i])).collect(),
             still: runs.iter().all(|run| run.inputs.iter().all(|i| i.current == [0.0; 2])),
         })
@@ -269,6 +267,11 @@ impl<P> Blocks<P> {
             Self::Planned(plans) => plans.is_empty(),
         }
     }
+}
+
+/// What `f` says of lane, sample and channel, side by side.
+fn table<P: Plain>(samples: usize, f: impl Fn(usize, usize, usize) -> f64) -> Vec<[P; STATES]> {
+    (0..samples).map(|k| std::array::from_fn(|c| P::gather(|lane| f(lane, k, c)))).collect()
 }
 
 /// Whether a run can be fitted to.
