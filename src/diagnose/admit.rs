@@ -10,7 +10,6 @@ use crate::numerals::sig;
 use crate::recording::{Channel, Run, STATE_CHANNELS};
 use crate::simulate::{Integration, Method};
 use crate::state::{STATE_NAMES, STATES};
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// The admission of the recordings.
@@ -133,7 +132,7 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
     }
     let passes = |integration: Integration| -> Vec<Vec<[f64; 6]>> {
         let filter = Filter::new(model, integration, &[]);
-        runs.par_iter().map(|r| filter.pass(r, noise, Wanted::default()).innovations).collect()
+        filter.passes(runs, noise, Wanted::default()).into_iter().map(|pass| pass.innovations).collect()
     };
     let innovations = passes(integration);
     let refined = passes(Integration { method: Method::Rk4, substeps: integration.substeps.max(1) * 8 });

@@ -14,7 +14,6 @@ use crate::model::{Model, Prior};
 use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::DVector;
-use rayon::prelude::*;
 
 /// A free parameter of the estimate.
 #[derive(Clone, Debug)]
@@ -136,7 +135,7 @@ pub fn passes(
     tangent: bool,
 ) -> Vec<Pass> {
     let filter = Filter::new(model, integration, columns);
-    runs.par_iter().map(|r| filter.pass(r, noise, Wanted { tangent, ..Wanted::default() })).collect()
+    filter.passes(runs, noise, Wanted { tangent, ..Wanted::default() })
 }
 
 /// Scores and information of passes over runs.

@@ -115,9 +115,11 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
     let (first, filter) = (columns.len(), Filter::new(model, integration, &columns));
     let layout = Layout::new(found, runs);
     let unit = &layout.unit;
-    let basis = |k: usize, s: &State<f64>, i: &Inputs<f64>, out: &mut Vec<[f64; 3]>| layout.forces(k, s, i, out);
+    let basis = |(_, k): (usize, usize), s: &State<f64>, i: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
+        layout.forces(k, s, i, out);
+    };
     let wanted = Wanted { basis: Some((layout.count(), &basis)), ..Wanted::default() };
-    let passes: Vec<Pass> = runs.par_iter().map(|r| filter.pass(r, &found.noise, wanted)).collect();
+    let passes: Vec<Pass> = filter.passes(runs, &found.noise, wanted);
     let evidence = evidence(runs, &passes, &restrictions(&found.free));
     let base = base_of(&evidence, model, &found.free);
     // A force that comes back with the ship's state is no event: what a smooth force law can mimic is taken out of the windows.

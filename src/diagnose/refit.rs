@@ -12,7 +12,6 @@ use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::DMatrix;
-use rayon::prelude::*;
 
 struct Refit<'a> {
     found: &'a Estimate,
@@ -43,15 +42,8 @@ impl Refit<'_> {
     /// Passes with the gains held fixed, and the objective's part that they make: half the sum of squared innovations.
     fn passes(&self, model: &Model, columns: &[Column]) -> (Vec<Pass>, f64) {
         let filter = Filter::new(model, self.integration, columns);
-        let passes: Vec<Pass> = self
-            .runs
-            .par_iter()
-            .zip(self.gains)
-            .map(|(r, g)| {
-                let wanted = Wanted { frozen: Some(g), exact: true, ..Wanted::default() };
-                filter.pass(r, &self.found.noise, wanted)
-            })
-            .collect();
+        let wanted = Wanted { frozen: Some(self.gains), exact: true, ..Wanted::default() };
+        let passes = filter.passes(self.runs, &self.found.noise, wanted);
         let mut value = 0.0;
         for e in passes.iter().flat_map(|p| p.innovations.iter().flatten()).filter(|e| !e.is_nan()) {
             value += 0.5 * e * e;
@@ -178,8 +170,8 @@ fn options() -> Options {
 pub fn refit(found: &Estimate, integration: Integration, runs: &[Run]) -> Result<Estimate, IpoptError> {
     let filter = Filter::new(&found.model, integration, &[]);
     let wanted = Wanted { gains: true, ..Wanted::default() };
-    let gains: Vec<Gains> =
-        runs.par_iter().map(|r| filter.pass(r, &found.noise, wanted).gains.unwrap_or_default()).collect();
+    let passes = filter.passes(runs, &found.noise, wanted);
+    let gains: Vec<Gains> = passes.into_iter().map(|pass| pass.gains.unwrap_or_default()).collect();
     let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
     let mut problem = Refit { found, integration, runs, gains: &gains, columns, cached: None };
     let Solution { x, .. } = solve(&mut problem, &options())?;

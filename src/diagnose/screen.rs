@@ -131,7 +131,7 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
     let groups = append(&mut columns, candidates);
     let law = GenericLaw::append(&mut columns, model);
     let filter = Filter::new(model, integration, &columns);
-    let passes: Vec<Pass> = runs.par_iter().map(|r| filter.pass(r, &found.noise, Wanted::default())).collect();
+    let passes = filter.passes(runs, &found.noise, Wanted::default());
     let evidence = evidence(runs, &passes, &restrictions(&found.free));
     let base = base_of(&evidence, model, &found.free);
     let widened = widen(&evidence, &base, &law.symmetric);

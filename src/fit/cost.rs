@@ -16,6 +16,7 @@ use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model};
 use crate::physics::{CHUNK, Curvature, Gradient, Group, Lanes, NumDual, Number};
 use crate::recording::{Measured, Run};
+use crate::sensitivity::local::side_by_side;
 use crate::sensitivity::{Column, Columns, Plain, Sensitivity};
 use crate::ship::Ship;
 use crate::simulate::{self, Integration, Scenario, absurd_speed};
@@ -163,20 +164,7 @@ impl<P: Plain> Block<P> {
             let inputs = &in_lane(lane).inputs;
             &inputs[k.min(inputs.len() - 1)]
         };
-        let field = |k: usize, f: &dyn Fn(&Inputs<f64>) -> f64| P::gather(|lane| f(sample(lane, k)));
-        let inputs = (0..steps)
-            .map(|k| Inputs {
-                t: field(k, &|i| i.t),
-                n: field(k, &|i| i.n),
-                delta: field(k, &|i| i.delta),
-                wind: [field(k, &|i| i.wind[0]), field(k, &|i| i.wind[1])],
-                current: [field(k, &|i| i.current[0]), field(k, &|i| i.current[1])],
-                waves: [field(k, &|i| i.waves[0]), field(k, &|i| i.waves[1])],
-                draught_to_depth: field(k, &|i| i.draught_to_depth),
-                bank: field(k, &|i| i.bank),
-                thruster: field(k, &|i| i.thruster),
-            })
-            .collect();
+        let inputs = (0..steps).map(|k| side_by_side(|lane| sample(lane, k))).collect();
         let weight = |lane: usize, k: usize, c: usize| {
             let Some(&run) = lanes.get(lane) else { return 0.0 };
             let compared = runs[run].measured.get(k).is_some_and(|m| m[c].is_some());
