@@ -16,6 +16,7 @@ use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model};
 use crate::physics::{CHUNK, Curvature, Gradient, Group, Lanes, NumDual, Number};
 use crate::recording::{Measured, Run, Runs};
+use crate::sensitivity::local::side_by_side;
 use crate::sensitivity::{Column, Columns, Plain, Sensitivity};
 use crate::ship::Ship;
 use crate::simulate::{self, Integration, Scenario, absurd_speed};
@@ -178,8 +179,7 @@ impl<P: Plain> Block<P> {
             let inputs = &in_lane(lane).inputs;
             &inputs[k.min(inputs.len() - 1)]
         };
-        let inputs =
-            (0..steps).map(|k| Inputs::from_entries(|entry| P::gather(|lane| *entry(sample(lane, k))))).collect();
+        let inputs = (0..steps).map(|k| side_by_side(|lane| sample(lane, k))).collect();
         let roots: Vec<[f64; STATES]> = lanes.iter().map(|run| weights[*run].map(|w| w.max(0.0).sqrt())).collect();
         let weight = |lane: usize, k: usize, c: usize| {
             let Some(run) = runs.get(lane) else { return 0.0 };
