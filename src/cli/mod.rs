@@ -11,12 +11,14 @@ mod fit;
 mod load;
 mod maneuver;
 mod output;
+mod processor;
 mod simulate;
 mod terms;
 
 use answer::Answer;
 use clap::{Parser, Subcommand};
 use error::CliError;
+use processor::Build;
 use std::process::ExitCode;
 
 const AFTER_HELP: &str = "\
@@ -35,6 +37,11 @@ Exit codes
   0  done
   1  it ran, but the answer is no: did not converge, a check failed
   2  it could not run: one message on standard error says why and what to do";
+
+const TOO_NEW: &str = "this program was built for processors with AVX2 and FMA, which this one lacks. Build it for this one: \
+                       RUSTFLAGS=\"-C target-cpu=native\" cargo build --release";
+const TOO_OLD: &str = "this program was built without AVX2, which this processor has: results are the same, but a fit takes several \
+                       times as long. Build it in its own folder, where `.cargo/config.toml` asks for AVX2.";
 
 /// Fits an interpretable manoeuvring model to recordings of a ship, and finds the physics it lacks.
 #[derive(Debug, Parser)]
@@ -61,6 +68,14 @@ enum Command {
 
 /// Runs the command that the process was given.
 pub fn run() -> ExitCode {
+    match processor::build() {
+        Build::Suits => {}
+        Build::TooNew => {
+            eprintln!("trimtab: {TOO_NEW}");
+            return ExitCode::from(2);
+        }
+        Build::TooOld => eprintln!("warning: {TOO_OLD}"),
+    }
     let cli = Cli::parse();
     match execute(&cli) {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
