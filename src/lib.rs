@@ -87,6 +87,7 @@ pub mod parameter;
 pub mod physics;
 #[cfg(feature = "plot")]
 pub mod plot;
+pub mod ranks;
 pub mod recording;
 pub mod report;
 pub mod sensitivity;

@@ -4,6 +4,7 @@
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::physics::{Flow, Form, Quantity, Validity, range_in_words};
+use crate::ranks::Ranks;
 use crate::recording::{Run, or_nan};
 use crate::state::{Inputs, STATES, State};
 use crate::units::GRAVITY;
@@ -57,6 +58,15 @@ pub fn outside<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
     model: &Model,
     samples: impl IntoIterator<Item = (Y, I)>,
 ) -> Coverage {
+    outside_over(Ranks::one(), model, samples)
+}
+
+/// As [`outside`], of the samples of all ranks, of which this one has `samples`.
+pub fn outside_over<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
+    ranks: &Ranks,
+    model: &Model,
+    samples: impl IntoIterator<Item = (Y, I)>,
+) -> Coverage {
     let mut limits = limits(model);
     let dynamics = Dynamics::new(model, model.values());
     let (mut count, mut anywhere) = (0, 0);
@@ -74,6 +84,10 @@ pub fn outside<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
             out |= limit.meet(value(limit.quantity, model, inputs, &flow));
         }
         anywhere += usize::from(out);
+    }
+    let [count, anywhere] = ranks.counts([count, anywhere]);
+    for limit in &mut limits {
+        limit.gather(ranks);
     }
     let mut outside: Vec<Outside> = limits.iter().filter(|l| l.beyond > 0).map(Limit::report).collect();
     outside.sort_by(|a, b| b.share.total_cmp(&a.share));
@@ -151,6 +165,13 @@ impl Limit {
             self.met = [self.met[0].min(value), self.met[1].max(value)];
         }
         out
+    }
+
+    /// Counts what the other ranks met too.
+    fn gather(&mut self, ranks: &Ranks) {
+        [self.known, self.beyond] = ranks.counts([self.known, self.beyond]);
+        let ends = ranks.largest(&[-self.met[0], self.met[1]]);
+        self.met = [-ends[0], ends[1]];
     }
 
     fn report(&self) -> Outside {

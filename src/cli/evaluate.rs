@@ -6,10 +6,11 @@ use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text, progress};
 use std::path::PathBuf;
-use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Summary, predict, prove};
+use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Summary, predict, prove_over};
 use trimtab::model::Model;
 use trimtab::numerals::{DASH, sig};
 use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
+use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
 use trimtab::simulate::Integration;
@@ -55,15 +56,15 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<Answer, CliError> {
-    let mut output = Output::new("evaluate", &args.output)?;
+pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
+    let mut output = Output::of_rank(ranks, "evaluate", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
     let baseline = baseline(&loaded, args.baseline.as_ref())?;
     let windows = loaded.windows()?.windows;
     if !windows.iter().any(|w| w.split == Split::Test) {
         loaded.windows_of(Split::Test)?;
     }
-    let evaluation = judge(&loaded, &baseline, &loaded.model, &windows)?;
+    let evaluation = judge(ranks, &loaded, &baseline, &loaded.model, &windows)?;
     let integration = loaded.fit_settings()?.integration;
     write(&mut output, &evaluation, [&baseline, &loaded.model], &windows, integration)?;
     output.finish(&text(&loaded.study.name, &evaluation), &evaluation)?;
@@ -78,11 +79,17 @@ pub fn baseline(loaded: &Loaded, given: Option<&PathBuf>) -> Result<Model, CliEr
 }
 
 /// Judges a model with the settings of the study.
-pub fn judge(loaded: &Loaded, baseline: &Model, model: &Model, windows: &[Run]) -> Result<Evaluation, CliError> {
+pub fn judge(
+    ranks: &Ranks,
+    loaded: &Loaded,
+    baseline: &Model,
+    model: &Model,
+    windows: &[Run],
+) -> Result<Evaluation, CliError> {
     let fit = loaded.fit_settings()?;
     let settings = loaded.evaluation_settings()?;
     let bar = progress(format!("evaluating {} windows", windows.len()));
-    let evaluation = prove(baseline, model, windows, &Judging::new(&fit, settings));
+    let evaluation = prove_over(ranks, baseline, model, windows, &Judging::new(&fit, settings));
     bar.finish_and_clear();
     Ok(evaluation)
 }

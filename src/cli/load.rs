@@ -11,6 +11,7 @@ use trimtab::evaluate::EvaluationSettings;
 use trimtab::fit::FitSettings;
 use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::{Model, ModelError};
+use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Split, Windows};
 use trimtab::ship::Ship;
 use trimtab::study::Study;
@@ -60,19 +61,28 @@ impl Loaded {
     pub fn windows_of(&self, split: Split) -> Result<Vec<Run>, CliError> {
         let mut windows = self.windows()?.windows;
         windows.retain(|w| w.split == split);
-        if windows.is_empty() {
-            let (word, verb) = match split {
-                Split::Train => ("train", "fit to"),
-                Split::Test => ("test", "judge by"),
-            };
-            return Err(CliError::Nothing {
-                path: self.study.path.clone(),
-                message: format!(
-                    "there is no run to {verb}; mark one with `split = \"{word}\"`, or set a [split] rule"
-                ),
-            });
+        if windows.is_empty() { Err(self.nothing(split)) } else { Ok(windows) }
+    }
+
+    /// The windows of one split that are this rank's, of which all ranks together must have some: it opens no other recording.
+    pub fn share_of(&self, ranks: &Ranks, split: Split) -> Result<Vec<Run>, CliError> {
+        if ranks.size() == 1 {
+            return self.windows_of(split);
         }
-        Ok(windows)
+        let mut study = self.study.clone();
+        study.runs.retain(|run| run.labels.split == split);
+        study.runs = study.runs[ranks.share(study.runs.len())].to_vec();
+        let windows = study.windows(self.model.ship.hull.draught)?.windows;
+        if ranks.counts([windows.len()]) == [0] { Err(self.nothing(split)) } else { Ok(windows) }
+    }
+
+    fn nothing(&self, split: Split) -> CliError {
+        let (word, verb) = match split {
+            Split::Train => ("train", "fit to"),
+            Split::Test => ("test", "judge by"),
+        };
+        let message = format!("there is no run to {verb}; mark one with `split = \"{word}\"`, or set a [split] rule");
+        CliError::Nothing { path: self.study.path.clone(), message }
     }
 
     /// Table `[fit]`.

@@ -9,6 +9,7 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use trimtab::plot::Figure;
+use trimtab::ranks::Ranks;
 
 /// Arguments that every command with results has.
 #[derive(Clone, Debug, clap::Args)]
@@ -25,6 +26,7 @@ pub struct OutputArgs {
 pub struct Output {
     command: &'static str,
     json: bool,
+    silent: bool,
     folder: Option<PathBuf>,
     files: Vec<PathBuf>,
 }
@@ -35,7 +37,20 @@ impl Output {
         if let Some(folder) = &args.out {
             std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
         }
-        Ok(Self { command, json: args.json, folder: args.out.clone(), files: Vec::new() })
+        Ok(Self { command, json: args.json, silent: false, folder: args.out.clone(), files: Vec::new() })
+    }
+
+    /// The output of one of several ranks: the first one's as [`Self::new`] has it, no output of the others.
+    pub fn of_rank(ranks: &Ranks, command: &'static str, args: &OutputArgs) -> Result<Self, CliError> {
+        if ranks.is_first() {
+            return Self::new(command, args);
+        }
+        Ok(Self { command, json: false, silent: true, folder: None, files: Vec::new() })
+    }
+
+    /// The path of a file in the folder, if there is one.
+    pub fn path(&self, name: &str) -> Option<PathBuf> {
+        self.folder.as_ref().map(|folder| folder.join(name))
     }
 
     /// Whether files are wanted.
@@ -68,6 +83,9 @@ impl Output {
     ///
     /// Object members without a value are left out, so that `null` occurs only in arrays, for entries that do not exist.
     pub fn finish(mut self, text: &str, result: &impl Serialize) -> Result<(), CliError> {
+        if self.silent {
+            return Ok(());
+        }
         let mut members = Map::new();
         members.insert("command".into(), json!(self.command));
         members.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));

@@ -29,7 +29,7 @@ mod summary;
 
 pub use compare::{Comparison, compare, predict, predict_all};
 pub use cvdm::{Deviation, Outcome, outcome};
-pub use prove::{Evaluation, Judging, prove};
+pub use prove::{Evaluation, Judging, prove, prove_over};
 pub use settings::EvaluationSettings;
 pub use summary::{Estimate, Named, Summary, summarise};
 

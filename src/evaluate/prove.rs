@@ -6,6 +6,7 @@ use super::settings::EvaluationSettings;
 use super::summary::{Summary, summaries};
 use crate::fit::FitSettings;
 use crate::model::Model;
+use crate::ranks::Ranks;
 use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::validity::{self, Coverage};
@@ -59,16 +60,22 @@ impl Evaluation {
 
 /// Judges `fitted` against `baseline` on runs, each simulated from the run's initial state.
 pub fn prove(baseline: &Model, fitted: &Model, runs: &[Run], judging: &Judging) -> Evaluation {
+    prove_over(Ranks::one(), baseline, fitted, runs, judging)
+}
+
+/// As [`prove`], with the simulations and the draws of the bootstrap divided among the ranks, each of which has all `runs`.
+pub fn prove_over(ranks: &Ranks, baseline: &Model, fitted: &Model, runs: &[Run], judging: &Judging) -> Evaluation {
     let Judging { integration, max_yaw_rate, settings } = judging;
-    let before = predict_all(baseline, runs, *integration);
-    let after = predict_all(fitted, runs, *integration);
-    let trajectories: Vec<Comparison> =
-        runs.iter().zip(before.iter().zip(&after)).map(|(r, p)| compare(r, fitted, *max_yaw_rate, p)).collect();
+    let own = &runs[ranks.share(runs.len())];
+    let before = predict_all(baseline, own, *integration);
+    let after = predict_all(fitted, own, *integration);
+    let compared = own.iter().zip(before.iter().zip(&after)).map(|(r, p)| compare(r, fitted, *max_yaw_rate, p));
+    let trajectories: Vec<Comparison> = ranks.gather(&compared.collect::<Vec<_>>()).into_iter().flatten().collect();
     Evaluation {
         validity: validity::outside(fitted, runs.iter().flat_map(validity::samples)),
         baseline: baseline.name.clone(),
         fitted: fitted.name.clone(),
-        summaries: summaries(&trajectories, settings),
+        summaries: summaries(ranks, &trajectories, settings),
         trajectories,
         max_yaw_rate: *max_yaw_rate,
         resamples: settings.resamples,

@@ -14,6 +14,7 @@ use super::error::FitError;
 use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model};
 use crate::physics::{CHUNK, Curvature, Gradient, Group, Lanes, NumDual, Number};
+use crate::ranks::{ExactSums, Ranks};
 use crate::recording::{Measured, Run};
 use crate::sensitivity::{Column, Columns, Plain, Sensitivity};
 use crate::ship::Ship;
@@ -63,14 +64,18 @@ pub struct Quadratic {
     pub gradient: DVector<f64>,
     /// `2/M sum_ik J^T W J`: the Hessian without the residuals' own curvature.
     pub gauss_newton: DMatrix<f64>,
-    /// Gradient of each run's part, in the order of the runs; they add up to `gradient`.
+    /// Gradient of the part of each of this rank's runs, in their order; those of all ranks add up to `gradient`.
     pub by_run: Vec<DVector<f64>>,
 }
 
 /// The cost of a model against runs, as a function of the model's free parameters.
 pub struct Cost<'a> {
     model: &'a Model,
+    ranks: &'a Ranks,
+    /// The runs of this rank.
     runs: &'a [Run],
+    /// Runs, samples and residuals of all ranks.
+    counts: [usize; 3],
     /// The diagonal of W of each run.
     weights: Vec<[f64; STATES]>,
     free: Vec<usize>,
@@ -237,19 +242,21 @@ impl<P: Plain> Block<P> {
             root: table(&weight),
             whole,
             base: (0..model.parameters.len()).map(|i| P::gather(|lane| by_lane[lane][i])).collect(),
-            still: lanes.iter().all(|run| runs[*run].inputs.iter().all(|i| i.current == [0.0; 2])),
+            still: lanes.iter().all(|run| is_still(&runs[*run])),
         }
     }
 
     /// Runs in blocks of equal sample period and similar length, in an order that depends on the runs alone.
     fn group(model: &Model, runs: &[Run], weights: &[[f64; STATES]]) -> Vec<Self> {
+        let still: Vec<bool> = runs.iter().map(is_still).collect();
         let mut order: Vec<usize> = (0..runs.len()).collect();
         order.sort_by(|a, b| {
-            let (a, b) = (&runs[*a], &runs[*b]);
-            a.dt.total_cmp(&b.dt).then(b.inputs.len().cmp(&a.inputs.len()))
+            let by_length = || runs[*b].inputs.len().cmp(&runs[*a].inputs.len());
+            runs[*a].dt.total_cmp(&runs[*b].dt).then(still[*a].cmp(&still[*b])).then_with(by_length)
         });
-        let same_dt = order.chunk_by(|a, b| runs[*a].dt == runs[*b].dt);
-        same_dt.flat_map(|runs| runs.chunks(P::WIDTH)).map(|lanes| Self::of(model, runs, weights, lanes)).collect()
+        // A run is computed the same way whatever runs are beside it.
+        let alike = order.chunk_by(|a, b| runs[*a].dt == runs[*b].dt && still[*a] == still[*b]);
+        alike.flat_map(|runs| runs.chunks(P::WIDTH)).map(|lanes| Self::of(model, runs, weights, lanes)).collect()
     }
 
     /// The weighted difference in one channel, and its factor on the derivatives of the simulated value.
@@ -288,20 +295,27 @@ impl<'a> Cost<'a> {
     /// # Errors
     /// No runs, a run without samples or of unequal lengths, or a sample period that is not positive.
     pub fn new(model: &'a Model, runs: &'a [Run], options: CostOptions) -> Result<Self, FitError> {
-        let weights = runs.iter().map(|r| weights(&model.ship, r, options.max_yaw_rate)).collect();
-        Self::weighted(model, runs, weights, options)
+        Self::over(Ranks::one(), model, runs, options)
     }
 
-    /// As [`Cost::new`], with the diagonal of W of each run given, as for pieces that keep the weights of their whole run.
+    /// The cost of `model` against the runs of all ranks, of which this one has `runs`. Every rank calls the same methods at the
+    /// same points, and gets the same values, which do not depend on which rank has which run.
+    ///
+    /// # Errors
+    /// As [`Cost::new`], for the runs of this rank; no runs on any rank.
+    pub fn over(ranks: &'a Ranks, model: &'a Model, runs: &'a [Run], options: CostOptions) -> Result<Self, FitError> {
+        let weights = runs.iter().map(|r| weights(&model.ship, r, options.max_yaw_rate)).collect();
+        Self::weighted(ranks, model, runs, weights, options)
+    }
+
+    /// As [`Cost::over`], with the diagonal of W of each run given, as for pieces that keep the weights of their whole run.
     pub(super) fn weighted(
+        ranks: &'a Ranks,
         model: &'a Model,
         runs: &'a [Run],
         weights: Vec<[f64; STATES]>,
         options: CostOptions,
     ) -> Result<Self, FitError> {
-        if runs.is_empty() {
-            return Err(FitError::NoRuns);
-        }
         for (run, weights) in runs.iter().zip(&weights) {
             let bad = |what: &str| Err(FitError::BadRun { run: run.recording.clone(), what: what.into() });
             if run.inputs.len() != run.measured.len() || run.inputs.len() < 2 {
@@ -316,9 +330,16 @@ impl<'a> Cost<'a> {
         }
         let free = model.free();
         let columns: Vec<Column> = free.iter().map(|p| Column { parameter: *p, scale: 1.0 }).collect();
+        let samples = runs.iter().map(|r| r.measured.len()).sum();
+        let counts = ranks.counts([runs.len(), samples, residuals(runs, &weights)]);
+        if counts[0] == 0 {
+            return Err(FitError::NoRuns);
+        }
         let mut cost = Self {
             model,
+            ranks,
             runs,
+            counts,
             weights,
             columns: Columns::new(model, &columns),
             free,
@@ -344,27 +365,42 @@ impl<'a> Cost<'a> {
         &self.free
     }
 
-    /// The diagonal of W of each run.
+    /// The ranks whose runs the cost is of.
+    pub fn ranks(&self) -> &'a Ranks {
+        self.ranks
+    }
+
+    /// Number of runs on all ranks.
+    pub fn runs(&self) -> usize {
+        self.counts[0]
+    }
+
+    /// Number of their samples.
+    pub fn samples(&self) -> usize {
+        self.counts[1]
+    }
+
+    /// The diagonal of W of each run of this rank.
     pub fn weights(&self) -> &[[f64; STATES]] {
         &self.weights
     }
 
-    /// Number of residuals that count: measured values with a weight above 0.
+    /// Number of residuals that count, on all ranks: measured values with a weight above 0.
     pub fn residuals(&self) -> usize {
-        let counted = |(run, weights): (&Run, &[f64; STATES])| {
-            let of = |m: &Measured| (0..STATES).filter(|c| weights[*c] > 0.0 && m[*c].is_some()).count();
-            run.measured.iter().map(of).sum::<usize>()
-        };
-        self.runs.iter().zip(&self.weights).map(counted).sum()
+        self.counts[2]
     }
 
     /// The cost at the free parameters `p`, or `None` where a simulation diverges.
     pub fn value(&self, p: &[f64]) -> Option<f64> {
-        let squares = self.squares(p)?;
-        Some(squares.iter().sum::<f64>() / self.runs.len() as f64)
+        let mut sums = ExactSums::new(1).at(p);
+        match self.squares(p) {
+            Some(squares) => squares.into_iter().for_each(|square| sums.add(0, square)),
+            None => sums.spoil(),
+        }
+        Some(self.ranks.total(sums)?[0] / self.runs() as f64)
     }
 
-    /// The sum of squared weighted residuals of each run, or `None` where a simulation diverges.
+    /// The sum of squared weighted residuals of each run of this rank, or `None` where a simulation diverges.
     pub fn squares(&self, p: &[f64]) -> Option<Vec<f64>> {
         if self.lanes.is_empty() { self.squares_over(&self.single, p) } else { self.squares_over(&self.lanes, p) }
     }
@@ -408,43 +444,52 @@ impl<'a> Cost<'a> {
 
     fn evaluate(&self, p: &[f64], with_matrix: bool) -> Option<Quadratic> {
         match self.derivatives {
-            Derivatives::Lanes => self.assemble(&self.lanes, |b| self.sweep(b, p, with_matrix)),
-            Derivatives::Dual => self.assemble(&self.single, |b| self.by_duals::<Gradient>(b, p, with_matrix)),
-            Derivatives::NumDual => self.assemble(&self.single, |b| self.by_duals::<NumDual>(b, p, with_matrix)),
-            Derivatives::FiniteDifferences => self.assemble(&self.lanes, |b| self.differences(b, p, with_matrix)),
+            Derivatives::Lanes => self.assemble(&self.lanes, p, with_matrix, |b| self.sweep(b, p, with_matrix)),
+            Derivatives::Dual => {
+                self.assemble(&self.single, p, with_matrix, |b| self.by_duals::<Gradient>(b, p, with_matrix))
+            }
+            Derivatives::NumDual => {
+                self.assemble(&self.single, p, with_matrix, |b| self.by_duals::<NumDual>(b, p, with_matrix))
+            }
+            Derivatives::FiniteDifferences => {
+                self.assemble(&self.lanes, p, with_matrix, |b| self.differences(b, p, with_matrix))
+            }
         }
     }
 
-    /// Adds up the blocks, in their order whatever thread computed them.
+    /// Adds up the runs of all ranks: exactly, so that neither ranks, threads nor blocks change a bit.
     fn assemble<P: Plain>(
         &self,
         blocks: &[Block<P>],
+        p: &[f64],
+        with_matrix: bool,
         sums: impl Fn(&Block<P>) -> Sums<P> + Sync + Send,
     ) -> Option<Quadratic> {
         let n = self.free.len();
         let parts: Vec<Sums<P>> = blocks.par_iter().map(sums).collect();
-        let mut squares = vec![0.0; self.runs.len()];
+        let factor = 2.0 / self.runs() as f64;
         let mut by_run = vec![DVector::zeros(n); self.runs.len()];
-        let mut matrix = DMatrix::zeros(n, n);
-        let factor = 2.0 / self.runs.len() as f64;
+        let entries = if with_matrix { n * (n + 1) / 2 } else { 0 };
+        let mut total = ExactSums::new(1 + n + entries).at(p);
         for (block, part) in blocks.iter().zip(&parts) {
             for (lane, run) in block.runs.iter().enumerate() {
-                squares[*run] = part.square.in_lane(lane);
+                let own = std::iter::once(&part.square).chain(&part.gradient).chain(&part.matrix);
+                own.enumerate().for_each(|(i, sum)| total.add(i, sum.in_lane(lane)));
                 by_run[*run] = DVector::from_iterator(n, part.gradient.iter().map(|g| factor * g.in_lane(lane)));
             }
-            let mut entries = part.matrix.iter();
-            for i in 0..n {
-                for (j, entry) in (0..=i).zip(&mut entries) {
-                    matrix[(i, j)] += factor * (0..block.runs.len()).map(|lane| entry.in_lane(lane)).sum::<f64>();
-                }
+        }
+        let total = self.ranks.total(total)?;
+        let (gradient, packed) = total[1..].split_at(n);
+        let mut matrix = DMatrix::zeros(n, n);
+        let mut packed = packed.iter();
+        for i in 0..n {
+            for (j, entry) in (0..=i).zip(&mut packed) {
+                matrix[(i, j)] = factor * entry;
             }
         }
         matrix.fill_upper_triangle_with_lower_triangle();
-        let mut gradient = DVector::zeros(n);
-        for part in &by_run {
-            gradient += part;
-        }
-        let value = squares.iter().sum::<f64>() / self.runs.len() as f64;
+        let gradient = DVector::from_iterator(n, gradient.iter().map(|g| factor * g));
+        let value = total[0] / self.runs() as f64;
         let finite = value.is_finite() && gradient.iter().chain(matrix.iter()).all(|v| v.is_finite());
         finite.then_some(Quadratic { value, gradient, gauss_newton: matrix, by_run })
     }
@@ -540,10 +585,11 @@ impl<'a> Cost<'a> {
                 sum
             })
             .collect();
-        let mut hessian = DMatrix::zeros(n, n);
+        let mut total = ExactSums::new(n * n).at(p);
         for part in parts {
-            hessian += part * (2.0 / self.runs.len() as f64);
+            part.iter().enumerate().for_each(|(i, sum)| total.add(i, *sum));
         }
+        let mut hessian = DMatrix::from_vec(n, n, self.ranks.total(total)?) * (2.0 / self.runs() as f64);
         hessian.fill_upper_triangle_with_lower_triangle();
         hessian.iter().all(|v: &f64| v.is_finite()).then_some(hessian)
     }
@@ -630,13 +676,28 @@ impl<'a> Cost<'a> {
         });
     }
 
-    /// The first run whose simulation diverges at `p`, and when \[s\] on its recording's clock.
+    /// The first run, on any rank, whose simulation diverges at `p`, and when \[s\] on its recording's clock.
     pub fn divergence(&self, p: &[f64]) -> Option<(String, f64)> {
-        self.runs.iter().enumerate().find_map(|(i, run)| {
+        let own = self.runs.iter().enumerate().find_map(|(i, run)| {
             let theta = self.theta(&Block::<f64>::of(self.model, self.runs, &self.weights, &[i]), p);
             let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
             let trajectory = simulate::reported(self.model, &theta, self.integration, &scenario, &run.channels());
             trajectory.diverged_at.map(|k| (run.recording.clone(), run.time(k)))
-        })
+        });
+        self.ranks.gather(&own).into_iter().flatten().next()
     }
+}
+
+/// Whether no current was recorded in a run.
+fn is_still(run: &Run) -> bool {
+    run.inputs.iter().all(|i| i.current == [0.0; 2])
+}
+
+/// Number of measured values of runs with a weight above 0.
+fn residuals(runs: &[Run], weights: &[[f64; STATES]]) -> usize {
+    let counted = |(run, weights): (&Run, &[f64; STATES])| {
+        let of = |m: &Measured| (0..STATES).filter(|c| weights[*c] > 0.0 && m[*c].is_some()).count();
+        run.measured.iter().map(of).sum::<usize>()
+    };
+    runs.iter().zip(weights).map(counted).sum()
 }

@@ -18,6 +18,7 @@
 use super::covariance::Covariances;
 use super::task::Task;
 use crate::model::Model;
+use crate::ranks::{ExactSums, Ranks};
 use crate::recording::{Measured, Run};
 use crate::simulate::{Scenario, reported};
 use crate::state::STATES;
@@ -106,13 +107,14 @@ impl ResidualStatistics {
     pub(super) fn of(task: &Task, model: &Model) -> Self {
         let residuals: Vec<Residuals> =
             task.runs.par_iter().zip(task.cost.weights()).map(|(run, w)| residuals(task, model, run, w)).collect();
-        let growth = growth(&residuals);
+        let ranks = task.cost.ranks();
+        let growth = growth(ranks, &residuals);
         Self {
-            model_error: model_error(&residuals),
+            model_error: model_error(ranks, &residuals),
             growth: growth.map(|g| g.0),
             growth_error: growth.and_then(|g| g.1),
-            loss: loss(&residuals),
-            likeness: likeness(&residuals),
+            loss: loss(ranks, &residuals),
+            likeness: likeness(ranks, &residuals),
         }
     }
 
@@ -212,14 +214,18 @@ fn squares(values: &[[f64; STATES]], channels: std::ops::Range<usize>) -> (f64, 
 }
 
 /// Mean square of the residuals over that of the sensors' noise.
-fn model_error(residuals: &[Residuals]) -> Option<f64> {
-    let (mut square, mut noise) = (0.0, 0.0);
-    for c in 0..STATES {
-        let values = residuals.iter().flat_map(|r| &r.values).map(|e| e[c]).filter(|e| e.is_finite());
-        let (sum, count) = values.fold((0.0, 0.0), |(sum, count), e| (sum + e * e, count + 1.0));
-        let second = |w: &[[f64; STATES]]| w[2][c] - 2.0 * w[1][c] + w[0][c];
-        let seconds = residuals.iter().flat_map(|r| r.values.windows(3)).map(second).filter(|d| d.is_finite());
+fn model_error(ranks: &Ranks, residuals: &[Residuals]) -> Option<f64> {
+    // For each channel: squares and their number, squares of second differences and their number.
+    let mut sums = ExactSums::new(4 * STATES);
+    for (r, c) in residuals.iter().flat_map(|r| (0..STATES).map(move |c| (r, c))) {
+        let (square, count) = squares(&r.values, c..c + 1);
+        let seconds = r.values.windows(3).map(|w| w[2][c] - 2.0 * w[1][c] + w[0][c]).filter(|d| d.is_finite());
         let (differences, triples) = seconds.fold((0.0, 0.0), |(sum, n), d| (sum + d * d / 6.0, n + 1.0));
+        [square, count, differences, triples].into_iter().enumerate().for_each(|(i, x)| sums.add(4 * c + i, x));
+    }
+    let (mut square, mut noise) = (0.0, 0.0);
+    for of_channel in ranks.total(sums)?.chunks(4) {
+        let [sum, count, differences, triples] = [0, 1, 2, 3].map(|i| of_channel[i]);
         if triples > 0.0 {
             square += sum;
             noise += count * f64::max(differences / triples, FINEST * FINEST);
@@ -229,7 +235,7 @@ fn model_error(residuals: &[Residuals]) -> Option<f64> {
 }
 
 /// Exponent of the growth of the residuals along the windows, with its standard error over the recordings.
-fn growth(residuals: &[Residuals]) -> Option<(f64, Option<f64>)> {
+fn growth(ranks: &Ranks, residuals: &[Residuals]) -> Option<(f64, Option<f64>)> {
     // Mean squares in the second and in the last quarter, whose middles are at 3/8 and 7/8 of the window.
     let mean_square = |values: &[[f64; STATES]]| {
         let (sum, count) = squares(values, VELOCITIES);
@@ -249,34 +255,44 @@ fn growth(residuals: &[Residuals]) -> Option<(f64, Option<f64>)> {
         (*early > FINEST * FINEST && *late > 0.0).then(|| 0.5 * (late / early).ln() / (7.0_f64 / 3.0).ln())
     };
     let exponents: Vec<f64> = by_recording.values().filter_map(exponent).collect();
-    let n = exponents.len() as f64;
-    let mean = exponents.iter().sum::<f64>() / n;
-    let scatter = exponents.iter().map(|b| (b - mean).powi(2)).sum::<f64>();
+    let total = |of: &dyn Fn(f64) -> f64| {
+        let mut sums = ExactSums::new(1);
+        exponents.iter().for_each(|b| sums.add(0, of(*b)));
+        ranks.total(sums).map_or(f64::NAN, |sum| sum[0])
+    };
+    let n = total(&|_| 1.0);
+    let mean = total(&|b| b) / n;
+    let scatter = total(&|b| (b - mean).powi(2));
     mean.is_finite().then(|| (mean, (n > 2.0).then(|| (scatter / (n * (n - 1.0))).sqrt())))
 }
 
 /// Shares of the measured variance of sway and yaw rate that the first and the last quarter of the windows lose.
-fn loss(residuals: &[Residuals]) -> Option<[f64; 2]> {
-    let (mut lost, mut measured) = ([0.0; 2], 0.0);
+fn loss(ranks: &Ranks, residuals: &[Residuals]) -> Option<[f64; 2]> {
+    let mut sums = ExactSums::new(3);
     for r in residuals.iter().filter(|r| r.values.len() >= 8) {
         let quarter = r.values.len() / 4;
         for c in STEERED.filter(|c| r.variance[*c].is_finite()) {
             let ends =
                 [&r.values[..quarter], &r.values[r.values.len() - quarter..]].map(|part| squares(part, c..c + 1));
             if ends.iter().all(|(_, count)| *count > 0.0) {
-                measured += r.variance[c];
-                lost = std::array::from_fn(|i| lost[i] + ends[i].0 / ends[i].1);
+                sums.add(0, r.variance[c]);
+                ends.iter().enumerate().for_each(|(i, (square, count))| sums.add(1 + i, square / count));
             }
         }
     }
-    (measured > 0.0).then(|| lost.map(|l| l / measured))
+    let total = ranks.total(sums)?;
+    (total[0] > 0.0).then(|| [total[1] / total[0], total[2] / total[0]])
 }
 
 /// How many successive residuals count as one: `1 + 2 sum rho(l)` over the lags up to where rho is lost in scatter.
-fn likeness(residuals: &[Residuals]) -> Option<f64> {
-    let every = residuals.len().div_ceil(WINDOWS).max(1);
-    let drawn: Vec<&Residuals> = residuals.iter().step_by(every).collect();
-    let longest = drawn.iter().map(|r| r.values.len()).max()?;
+fn likeness(ranks: &Ranks, residuals: &[Residuals]) -> Option<f64> {
+    let [windows] = ranks.counts([residuals.len()]);
+    let every = windows.div_ceil(WINDOWS).max(1);
+    // The first window of this rank among those that are drawn of all.
+    let first = ranks.before(residuals.len()).next_multiple_of(every) - ranks.before(residuals.len());
+    let drawn: Vec<&Residuals> = residuals.iter().skip(first).step_by(every).collect();
+    let longest = drawn.iter().map(|r| r.values.len()).max().unwrap_or(0);
+    let longest = ranks.largest(&[longest as f64])[0] as usize;
     let product = |lag: usize| {
         let of_run = |r: &&Residuals| {
             let mut sum = (0.0, 0.0);
@@ -287,9 +303,12 @@ fn likeness(residuals: &[Residuals]) -> Option<f64> {
             }
             sum
         };
-        let (sum, count) =
-            drawn.par_iter().map(of_run).collect::<Vec<_>>().iter().fold((0.0, 0.0), |s, p| (s.0 + p.0, s.1 + p.1));
-        if count > 0.0 { sum / count } else { 0.0 }
+        let mut sums = ExactSums::new(2);
+        for (sum, count) in drawn.par_iter().map(of_run).collect::<Vec<_>>() {
+            sums.add(0, sum);
+            sums.add(1, count);
+        }
+        ranks.total(sums).filter(|total| total[1] > 0.0).map_or(0.0, |total| total[0] / total[1])
     };
     let variance = product(0);
     if variance <= FINEST * FINEST {
@@ -329,10 +348,10 @@ mod tests {
     fn white_noise_alone_gives_no_reason_to_doubt() {
         let white = made(0.01, |_, _| 0.0);
         let residuals = view(&white);
-        assert!((model_error(&residuals).unwrap() - 1.0).abs() < 0.1);
-        let (growth, error) = growth(&residuals).unwrap();
+        assert!((model_error(Ranks::one(), &residuals).unwrap() - 1.0).abs() < 0.1);
+        let (growth, error) = growth(Ranks::one(), &residuals).unwrap();
         assert!(growth.abs() < 0.1 && error.unwrap() < 0.1, "{growth} {error:?}");
-        assert!((likeness(&residuals).unwrap() - 1.0).abs() < 0.2);
+        assert!((likeness(Ranks::one(), &residuals).unwrap() - 1.0).abs() < 0.2);
     }
 
     #[test]
@@ -340,17 +359,17 @@ mod tests {
         let wave = made(0.01, |w, k| 0.1 * (0.1 * k as f64 + w as f64).sin());
         let residuals = view(&wave);
         // Variance 0.005 of the wave over 0.0001 of the noise.
-        let ratio = model_error(&residuals).unwrap();
+        let ratio = model_error(Ranks::one(), &residuals).unwrap();
         assert!((40.0..60.0).contains(&ratio), "{ratio}");
-        assert!(likeness(&residuals).unwrap() > 10.0);
-        assert!(growth(&residuals).unwrap().0 < 0.5);
+        assert!(likeness(Ranks::one(), &residuals).unwrap() > 10.0);
+        assert!(growth(Ranks::one(), &residuals).unwrap().0 < 0.5);
     }
 
     #[test]
     fn the_exponent_of_growth_is_found() {
         for power in [0.5, 1.0, 2.0] {
             let grown = made(0.0, |w, k| (1.0 + 0.1 * w as f64) * (k as f64 / 120.0).powf(power));
-            let (found, error) = growth(&view(&grown)).unwrap();
+            let (found, error) = growth(Ranks::one(), &view(&grown)).unwrap();
             // The rms of a quarter is not at its middle.
             assert!((found - power).abs() < 0.1, "t^{power}: {found} +- {error:?}");
         }
@@ -360,11 +379,11 @@ mod tests {
     fn windows_at_whose_end_the_motion_is_lost_are_too_long() {
         let doubt = |made: &[(String, Vec<[f64; STATES]>)]| {
             let residuals = view(made);
-            let growth = growth(&residuals);
+            let growth = growth(Ranks::one(), &residuals);
             let statistics = ResidualStatistics {
                 growth: growth.map(|g| g.0),
                 growth_error: growth.and_then(|g| g.1),
-                loss: loss(&residuals),
+                loss: loss(Ranks::one(), &residuals),
                 ..ResidualStatistics::default()
             };
             statistics.too_long().map(|d| d.kind)
@@ -383,8 +402,8 @@ mod tests {
     fn an_exact_fit_is_not_doubted_for_the_shape_of_its_rounding() {
         let exact = made(0.0, |w, k| 1e-9 * (0.1 * k as f64 + w as f64).sin());
         let residuals = view(&exact);
-        assert!(model_error(&residuals).unwrap() < 1.0);
-        assert_eq!((growth(&residuals), likeness(&residuals)), (None, None));
+        assert!(model_error(Ranks::one(), &residuals).unwrap() < 1.0);
+        assert_eq!((growth(Ranks::one(), &residuals), likeness(Ranks::one(), &residuals)), (None, None));
     }
 
     #[test]

@@ -7,12 +7,11 @@ use super::settings::Hessian;
 use super::task::Task;
 use crate::ipopt::{IterationReport, Nlp};
 use crate::model::Model;
-use crate::recording::Run;
 use nalgebra::{DMatrix, DVector};
 
 /// Where a running fit stands.
 #[derive(Clone, Copy, Debug)]
-pub struct Progress {
+pub struct Progress<'a> {
     /// Iteration of the solver.
     pub iteration: usize,
     /// Cost, priors included.
@@ -21,6 +20,8 @@ pub struct Progress {
     pub violation: f64,
     /// Largest entry of the gradient of the Lagrangian, scaled.
     pub optimality: f64,
+    /// The free parameters at the best feasible point of this solve, in their own units; absent before there is one.
+    pub best: Option<&'a [f64]>,
 }
 
 /// Priors on the free parameters, as residuals beside those of the data.
@@ -88,13 +89,11 @@ impl<'a, 'f> Problem<'a, 'f> {
     pub fn new(
         task: &'a Task<'a>,
         cost: &'a Cost<'a>,
-        runs: &[Run],
         priors: &'a Priors,
         start: &'a [f64],
         progress: &'f mut dyn FnMut(&Progress) -> bool,
     ) -> Self {
-        let samples: usize = runs.iter().map(|r| r.measured.len()).sum();
-        let factor = runs.len() as f64 / samples.max(1) as f64;
+        let factor = cost.runs() as f64 / cost.samples().max(1) as f64;
         Self { task, cost, priors, start, factor, progress, best: None, evaluated: 0, cached: None }
     }
 
@@ -229,6 +228,7 @@ impl Nlp for Problem<'_, '_> {
             cost: report.objective / self.factor,
             violation: report.inf_pr,
             optimality: report.inf_du,
+            best: self.best.as_ref().map(|best| best.p.as_slice()),
         })
     }
 }

@@ -21,7 +21,6 @@ use super::stages;
 use super::subspace::inverse;
 use super::task::{ActiveSet, Task};
 use crate::ipopt::{self, Counts, HessianMode, IpoptError, OptionValue, Options, Solution, Status};
-use crate::recording::Run;
 
 /// How often the solver starts again from a better point that it left.
 const RESTARTS: usize = 3;
@@ -78,7 +77,6 @@ struct Descent {
 /// What is solved: a cost over runs, and where from.
 struct Stage<'a> {
     cost: &'a Cost<'a>,
-    runs: &'a [Run],
     tolerance: f64,
     max_iterations: usize,
     /// Whether the start is near the optimum: the barrier then starts lower still, and the bounds do not push the start away.
@@ -93,7 +91,6 @@ impl Task<'_> {
         let settings = self.settings;
         let mut stage = Stage {
             cost: self.cost,
-            runs: self.runs,
             tolerance: settings.tolerance,
             max_iterations: settings.max_iterations,
             near: false,
@@ -104,7 +101,7 @@ impl Task<'_> {
         let mut p = from;
         for _ in 0..rounds {
             let value = self.cost.value(&p).ok_or_else(|| self.diverged())?;
-            let weight = self.weight(self.cost, self.runs, value);
+            let weight = self.weight(self.cost, value);
             if end.is_some() && (weight - priors.weight).abs() <= SAME_WEIGHT * weight {
                 break;
             }
@@ -133,12 +130,11 @@ impl Task<'_> {
         let mut priors = Priors::of(self.model);
         for parts in stages::falling(parts) {
             let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts);
-            let cost = Cost::weighted(self.model, &pieces, weights, self.cost_options())?;
+            let cost = Cost::weighted(self.cost.ranks(), self.model, &pieces, weights, self.cost_options())?;
             let Some(value) = cost.value(&p) else { continue };
-            priors.weight = self.weight(&cost, &pieces, value);
+            priors.weight = self.weight(&cost, value);
             let stage = Stage {
                 cost: &cost,
-                runs: &pieces,
                 tolerance: self.settings.tolerance.max(STAGE_TOLERANCE),
                 max_iterations: self.settings.max_iterations.min(STAGE_ITERATIONS),
                 near: false,
@@ -149,7 +145,7 @@ impl Task<'_> {
                 break;
             }
         }
-        priors.weight = self.weight(self.cost, self.runs, self.start_cost);
+        priors.weight = self.weight(self.cost, self.start_cost);
         let total = |p: &[f64]| Some(self.cost.value(p)? + priors.value(p));
         match (total(&p), total(&self.start)) {
             (Some(staged), Some(start)) if staged <= start || !self.is_feasible(&self.start) => Ok((parts, p)),
@@ -160,8 +156,8 @@ impl Task<'_> {
     }
 
     /// Weight of the priors at a cost: see [`Priors`].
-    fn weight(&self, cost: &Cost, runs: &[Run], value: f64) -> f64 {
-        self.variance_of(cost, runs.len(), value) * self.settings.correlated_samples / runs.len() as f64
+    fn weight(&self, cost: &Cost, value: f64) -> f64 {
+        self.variance_of(cost, value) * self.settings.correlated_samples / cost.runs() as f64
     }
 
     fn options(&self, stage: &Stage, objective: f64, again: bool) -> Options {
@@ -209,7 +205,7 @@ impl Task<'_> {
         let mut evaluated = 0;
         let mut start = from.to_vec();
         for attempt in 0..=RESTARTS {
-            let mut problem = Problem::new(self, stage.cost, stage.runs, priors, &start, progress);
+            let mut problem = Problem::new(self, stage.cost, priors, &start, progress);
             let objective = problem.factor * total(&start).unwrap_or(1.0);
             let outcome = ipopt::solve(&mut problem, &self.options(stage, objective, attempt > 0));
             let found = problem.best.take();

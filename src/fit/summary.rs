@@ -12,6 +12,7 @@ use super::subspace::inverse;
 use super::task::Task;
 use crate::ipopt::Counts;
 use crate::model::Model;
+use crate::ranks::Ranks;
 use crate::recording::Run;
 use crate::validity::{self, Coverage};
 use serde::Serialize;
@@ -148,9 +149,27 @@ pub fn fit(
     settings: &FitSettings,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Fit, FitError> {
+    fit_over(Ranks::one(), model, runs, settings, progress)
+}
+
+/// As [`fit`], to the runs of all ranks, of which this one has `runs`; those of a recording are all on one rank.
+///
+/// Every rank calls this with the same model and settings and gets the same fit, whose numbers do not depend on how many ranks
+/// there are: each evaluates its own runs and adds to the sums of all, and each solves the same program.
+///
+/// # Errors
+/// As [`fit`]. An error that only this rank meets, such as an unusable run, must end the job ([`Ranks::fail`]): the other ranks
+/// wait for its sums.
+pub fn fit_over(
+    ranks: &Ranks,
+    model: &Model,
+    runs: &[Run],
+    settings: &FitSettings,
+    progress: &mut dyn FnMut(&Progress) -> bool,
+) -> Result<Fit, FitError> {
     let clock = Instant::now();
     settings.check()?;
-    let cost = Cost::new(model, runs, settings.cost_options())?;
+    let cost = Cost::over(ranks, model, runs, settings.cost_options())?;
     let task = Task::new(model, &cost, runs, settings)?;
     let mut end = task.solve(progress)?;
     task.polish(&mut end);
@@ -166,7 +185,7 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
     let doubts = statistics.doubts(&covariances, task.scales.len());
     let samples = task.runs.iter().flat_map(validity::samples);
     Fit {
-        validity: validity::outside(&model, samples),
+        validity: validity::outside_over(task.cost.ranks(), &model, samples),
         converged: end.converged,
         headline: headline(end.converged, &end.words, &doubts),
         doubts,
@@ -186,7 +205,7 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
         start_prior_cost: end.priors.value(&task.start),
         first_stage_parts: end.parts,
         residual_variance: task.variance(cost),
-        runs: task.runs.len(),
+        runs: task.cost.runs(),
         recordings: covariances.clusters,
         residuals: task.cost.residuals(),
         constraints: task.rows.len(),

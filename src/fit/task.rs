@@ -9,6 +9,7 @@ use super::subspace::null_space;
 use crate::model::{Model, Parameter};
 use crate::recording::Run;
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeSet;
 
 /// Share of its largest possible value that the product of the off-diagonal entries of the sway-yaw mass matrix may reach.
 const MASS_MARGIN: f64 = 0.9;
@@ -20,6 +21,7 @@ const KEPT: f64 = 1e-7;
 pub(super) struct Task<'a> {
     pub model: &'a Model,
     pub cost: &'a Cost<'a>,
+    /// The runs of this rank.
     pub runs: &'a [Run],
     pub settings: &'a FitSettings,
     pub rows: Vec<Row>,
@@ -50,16 +52,20 @@ impl<'a> Task<'a> {
         if free.is_empty() {
             return Err(FitError::NothingFree);
         }
-        let rows = constraints::rows(model, &settings.constraints, constraints::speed_range(runs))?;
+        let ranks = cost.ranks();
+        let [slowest, fastest] = constraints::speed_range(runs);
+        let ends = ranks.largest(&[-slowest, fastest]);
+        let rows = constraints::rows(model, &settings.constraints, [-ends[0], ends[1]])?;
         let mut bounds: Vec<(f64, f64)> = free.iter().map(|p| (p.lower, p.upper)).collect();
         keep_mass_matrix_positive(model, &free, &mut bounds);
         let start: Vec<f64> = free.iter().zip(&bounds).map(|(p, (lo, hi))| p.value.max(*lo).min(*hi)).collect();
         let start_cost = cost.value(&start).unwrap_or(f64::INFINITY);
         let scales = free.iter().map(|p| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 }).collect();
-        let mut sessions: Vec<String> = runs.iter().map(|r| r.session.clone()).collect();
-        sessions.sort();
-        sessions.dedup();
-        sessions.retain(|s| model.sessions.contains_key(s));
+        let own: BTreeSet<&str> = runs.iter().map(|r| r.session.as_str()).collect();
+        let met = model.sessions.keys().map(|s| f64::from(u8::from(own.contains(s.as_str()))));
+        let met = ranks.largest(&met.collect::<Vec<f64>>());
+        let mut sessions: Vec<String> =
+            model.sessions.keys().zip(met).filter(|(_, met)| *met > 0.0).map(|(s, _)| s.clone()).collect();
         sessions.push(String::new());
         Ok(Self { model, cost, runs, settings, rows, scales, bounds, start, start_cost, sessions })
     }
@@ -71,7 +77,7 @@ impl<'a> Task<'a> {
 
     /// The error of a start whose simulation diverges.
     pub fn diverged(&self) -> FitError {
-        let first = || (self.runs[0].recording.clone(), self.runs[0].start_time());
+        let first = || self.runs.first().map_or_else(Default::default, |r| (r.recording.clone(), r.start_time()));
         let (run, time) = self.cost.divergence(&self.start).unwrap_or_else(first);
         FitError::Diverged { run, time }
     }
@@ -113,15 +119,15 @@ impl<'a> Task<'a> {
         p.iter().zip(&self.bounds).map(|(p, (lower, upper))| p.max(*lower).min(*upper)).collect()
     }
 
-    /// Variance of the weighted residuals of a cost over `runs` runs, at a given value.
-    pub fn variance_of(&self, cost: &Cost, runs: usize, value: f64) -> f64 {
+    /// Variance of the weighted residuals of a cost, at a given value.
+    pub fn variance_of(&self, cost: &Cost, value: f64) -> f64 {
         let freedom = cost.residuals().saturating_sub(self.scales.len()).max(1);
-        value * runs as f64 / freedom as f64
+        value * cost.runs() as f64 / freedom as f64
     }
 
     /// Variance of the weighted residuals at a given value of the fit's cost.
     pub fn variance(&self, value: f64) -> f64 {
-        self.variance_of(self.cost, self.runs.len(), value)
+        self.variance_of(self.cost, value)
     }
 
     /// Directions in scaled parameters along which no active constraint changes.
