@@ -2,6 +2,7 @@
 //! It asks nothing of its own of a recording; the questions are in the files beside it.
 
 use super::issue::{Issue, Severity};
+use super::propeller::advance;
 use super::receiver::settled;
 use super::record::{Audit, audit};
 use crate::recording::Split;
@@ -53,6 +54,7 @@ pub fn audit_study(study: &Study, ship: &Ship) -> StudyAudit {
             }
         };
         let mut audit = audit(&recording);
+        advance(&recording, ship, &mut audit.issues);
         match recording.windows(&run.labels, &study.settings(run, ship.hull.draught)) {
             Ok(windows) => {
                 let test = windows.windows.iter().filter(|w| w.split == Split::Test).count();

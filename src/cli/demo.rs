@@ -10,6 +10,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use trimtab::demo;
 use trimtab::evaluate::Evaluation;
+use trimtab::files::write_whole;
 use trimtab::fit::Fit;
 use trimtab::maneuver::{Side, turning_trial};
 use trimtab::model::Model;
@@ -99,7 +100,7 @@ fn write_study(folder: &Path) -> Result<usize, CliError> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(fail)?;
         }
-        std::fs::write(&path, text).map_err(fail)?;
+        write_whole(&path, text.as_bytes()).map_err(fail)?;
     }
     Ok(files.len())
 }

@@ -5,7 +5,8 @@ use super::answer::Answer;
 use super::error::CliError;
 use super::fit::model_text;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, print, progress};
+use super::output::{Output, OutputArgs, print};
+use super::progress::progress;
 use std::path::PathBuf;
 use trimtab::audit::Issue;
 use trimtab::diagnose::{Settings, Verdict, diagnose};
@@ -79,7 +80,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let diagnosis =
         diagnose(&loaded.model, &train, &held_out, &settings, &|step| bar.set_message(format!("diagnosing: {step}")));
     bar.finish_and_clear();
-    let diagnosis = diagnosis.map_err(|error| CliError::Model { path: None, error })?;
+    let diagnosis = diagnosis.map_err(|error| CliError::Diagnose { path: loaded.study.path.clone(), error })?;
 
     let name = &loaded.study.name;
     let json = serde_json::to_string_pretty(&document(&diagnosis, name)?)? + "\n";

@@ -2,9 +2,11 @@
 //! The library computes the measures; this file prints, tabulates and draws them.
 
 use super::answer::Answer;
+use super::audited::{AcceptArgs, audited_over};
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text, progress};
+use super::output::{Output, OutputArgs, csv_text};
+use super::progress::progress;
 use std::path::PathBuf;
 use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Summary, predict, prove_over};
 use trimtab::model::Model;
@@ -35,7 +37,8 @@ Measures: MD = mean |simulated - measured|; cVDM = 100 x mean of |dx|/L + |dy|/L
     any that does not, and left out of the means.
 
 With --out: evaluate.json, trajectories.csv, summary.csv, improvement.png, cvdm.png, tracks.png, each with its CSV.
-JSON: result.baseline, result.fitted (names), result.summaries[] with group (test, train, then `manoeuvre: ...` and \
+JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs): what the audit of the recordings found; \
+    result.baseline, result.fitted (names), result.summaries[] with group (test, train, then `manoeuvre: ...` and \
     `session: ...` of test), runs, trajectories, md_baseline, md_fitted, md_improvement (x, y, psi, u, v, r), cvdm_baseline, \
     cvdm_fitted [%], cvdm_improvement, mari, consistency [-] (each value and ci95), better, worse, runs_better, runs_worse, \
     diverged_baseline, diverged_fitted, worst, most_worsened; result.trajectories[] with run, split, baseline and fitted (md, \
@@ -52,6 +55,8 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
     #[command(flatten)]
+    accept: AcceptArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
@@ -59,6 +64,7 @@ pub struct Args {
 pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
     let mut output = Output::of_rank(ranks, "evaluate", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
+    output.recordings(audited_over(ranks, &loaded, &args.accept)?);
     let baseline = baseline(&loaded, args.baseline.as_ref())?;
     let windows = loaded.windows()?.windows;
     if !windows.iter().any(|w| w.split == Split::Test) {

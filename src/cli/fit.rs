@@ -2,10 +2,13 @@
 //! The library makes the fit and its report; this file calls it, shows progress and writes files.
 
 use super::answer::Answer;
+use super::audited::{AcceptArgs, audited_over};
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text, progress};
+use super::output::{Output, OutputArgs, csv_text};
+use super::progress::progress;
 use std::path::{Path, PathBuf};
+use trimtab::files::write_whole;
 use trimtab::fit::{Fit, FitSettings, MultiStart, StartRow, fit_over, multi_start_over};
 use trimtab::model::Model;
 use trimtab::numerals::sig;
@@ -38,7 +41,8 @@ Example:
 With --out: fitted.toml (a model file with the estimates, which every command takes as --model), fit.json, fit.txt (the \
     report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end); with --starts also starts.csv (how each start \
     ended). While the fit runs, best.toml is the model at the best point so far; it is removed at the end.
-JSON: result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
+JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs): what the audit of the recordings found; \
+    result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
     value, limit, sentence), result.residual_statistics (model_error, growth, growth_error, likeness), result.estimates[] \
     (name, symbol, unit, start, value, standard_error, interval, at_bound), result.start_cost, result.start_prior_cost, \
     result.cost, result.prior_cost, result.first_stage_parts, result.residual_variance, result.active[] (sentence, rule), \
@@ -59,6 +63,8 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     starts: Option<u16>,
     #[command(flatten)]
+    accept: AcceptArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
@@ -66,6 +72,7 @@ pub struct Args {
 pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
     let mut output = Output::of_rank(ranks, "fit", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
+    output.recordings(audited_over(ranks, &loaded, &args.accept)?);
     let (start, starts) = match args.starts {
         Some(count) => from_many(ranks, &loaded, count.into(), &mut output)?,
         None => (loaded.model.clone(), String::new()),
@@ -130,9 +137,7 @@ fn keep(path: &Path, start: &Model, best: &[f64]) -> Result<(), CliError> {
     for (i, value) in start.free().into_iter().zip(best) {
         model.parameters[i].value = *value;
     }
-    let written = path.with_extension("part");
-    std::fs::write(&written, model_text(&model)?).map_err(fail)?;
-    std::fs::rename(&written, path).map_err(fail)
+    write_whole(path, model_text(&model)?.as_bytes()).map_err(fail)
 }
 
 /// Fits from many starts, dealt out to the ranks, and writes how each ended: the model at the best end, and what to say of it.

@@ -2,7 +2,7 @@
 //! It checks and computes nothing beyond that.
 
 use super::error::CliError;
-use super::output::progress;
+use super::progress::progress;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use trimtab::diagnose::Settings;
@@ -11,6 +11,7 @@ use trimtab::evaluate::EvaluationSettings;
 use trimtab::fit::FitSettings;
 use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::{Model, ModelError};
+use trimtab::ranges::Limited;
 use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Split, Windows};
 use trimtab::ship::Ship;
@@ -106,8 +107,8 @@ impl Loaded {
     }
 
     /// A table of the study as settings.
-    fn table<T: DeserializeOwned>(&self, name: &'static str, table: &toml::Table) -> Result<T, CliError> {
-        table.clone().try_into().map_err(|e: toml::de::Error| {
+    fn table<T: DeserializeOwned + Limited>(&self, name: &'static str, table: &toml::Table) -> Result<T, CliError> {
+        let settings: T = table.clone().try_into().map_err(|e: toml::de::Error| {
             let message = e.message().trim().replace('\n', " ");
             // serde writes: unknown field `found`, expected one of `a`, `b`
             let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
@@ -122,7 +123,14 @@ impl Loaded {
                 table: name,
                 message: format!("{message}{near}"),
             }
-        })
+        })?;
+        settings.limits().map_err(|outside| CliError::Table {
+            path: self.study.path.clone(),
+            line: self.study.line_of(name, outside.key),
+            table: name,
+            message: outside.to_string(),
+        })?;
+        Ok(settings)
     }
 }
 

@@ -2,6 +2,7 @@
 //! The library computes; a command only reads arguments, calls it, and prints.
 
 mod answer;
+mod audited;
 mod check;
 mod demo;
 mod diagnose;
@@ -12,6 +13,7 @@ mod load;
 mod maneuver;
 mod output;
 mod processor;
+mod progress;
 mod simulate;
 mod terms;
 
@@ -49,7 +51,7 @@ const TOO_OLD: &str = "this program was built without AVX2, which this processor
 #[command(name = "trimtab", version, after_help = AFTER_HELP, max_term_width = 100)]
 struct Cli {
     /// Number of threads; the number of processors if not given. Results do not depend on it.
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     #[command(subcommand)]
     command: Command,

@@ -1,13 +1,13 @@
 //! Where results go: text or JSON to standard output, files to the folder given with `--out`.
 //! No other file writes to standard output; progress and errors go to standard error.
 
+use super::audited::Audited;
 use super::error::CliError;
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use trimtab::files::write_whole;
 use trimtab::plot::Figure;
 use trimtab::ranks::Ranks;
 
@@ -29,6 +29,7 @@ pub struct Output {
     silent: bool,
     folder: Option<PathBuf>,
     files: Vec<PathBuf>,
+    audited: Option<Audited>,
 }
 
 impl Output {
@@ -37,7 +38,7 @@ impl Output {
         if let Some(folder) = &args.out {
             std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
         }
-        Ok(Self { command, json: args.json, silent: false, folder: args.out.clone(), files: Vec::new() })
+        Ok(Self { command, json: args.json, silent: false, folder: args.out.clone(), files: Vec::new(), audited: None })
     }
 
     /// The output of one of several ranks: the first one's as [`Self::new`] has it, no output of the others.
@@ -45,12 +46,17 @@ impl Output {
         if ranks.is_first() {
             return Self::new(command, args);
         }
-        Ok(Self { command, json: false, silent: true, folder: None, files: Vec::new() })
+        Ok(Self { command, json: false, silent: true, folder: None, files: Vec::new(), audited: None })
     }
 
     /// The path of a file in the folder, if there is one.
     pub fn path(&self, name: &str) -> Option<PathBuf> {
         self.folder.as_ref().map(|folder| folder.join(name))
+    }
+
+    /// Takes what is to be said of the recordings: before the answer, and as `recordings` in JSON.
+    pub fn recordings(&mut self, audited: Audited) {
+        self.audited = Some(audited);
     }
 
     /// Whether files are wanted.
@@ -66,7 +72,7 @@ impl Output {
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent).map_err(fail)?;
         }
-        std::fs::write(&path, bytes).map_err(fail)?;
+        write_whole(&path, bytes).map_err(fail)?;
         self.files.push(path);
         Ok(())
     }
@@ -89,6 +95,9 @@ impl Output {
         let mut members = Map::new();
         members.insert("command".into(), json!(self.command));
         members.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
+        if let Some(audited) = &self.audited {
+            members.insert("recordings".into(), serde_json::to_value(audited)?);
+        }
         members.insert("result".into(), without_nulls(serde_json::to_value(result)?));
         let name = format!("{}.json", self.command.replace(' ', "_"));
         let saved = serde_json::to_string_pretty(&members)? + "\n";
@@ -97,7 +106,8 @@ impl Output {
             members.insert("files".into(), json!(self.files));
             return print(&(serde_json::to_string_pretty(&members)? + "\n"));
         }
-        let mut text = text.trim_end().to_owned() + "\n";
+        let doubts = self.audited.as_ref().map_or_else(String::new, Audited::lines);
+        let mut text = doubts + text.trim_end() + "\n";
         if let Some(folder) = &self.folder {
             let names = self.files.iter().map(|f| f.strip_prefix(folder).unwrap_or(f).display().to_string());
             text += &format!("\nWritten to {}: {}\n", folder.display(), abridged(names.collect()));
@@ -137,17 +147,6 @@ pub fn print(text: &str) -> Result<(), CliError> {
         ErrorKind::BrokenPipe => CliError::Closed,
         _ => CliError::Stdout(e),
     })
-}
-
-/// A progress line on standard error while a computation runs; nothing if standard error is not a terminal.
-pub fn progress(doing: impl Into<String>) -> ProgressBar {
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
-        bar.set_style(style);
-    }
-    bar.set_message(doing.into());
-    bar.enable_steady_tick(Duration::from_millis(120));
-    bar
 }
 
 /// CSV text of a header and rows of fields.

@@ -2,9 +2,11 @@
 //! It compares no models; it prints how far each simulation is from the measured motion.
 
 use super::answer::Answer;
+use super::audited::{AcceptArgs, audited};
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text, progress};
+use super::output::{Output, OutputArgs, csv_text};
+use super::progress::progress;
 use serde::Serialize;
 use trimtab::evaluate::{Outcome, outcome, predict_all};
 use trimtab::numerals::sig;
@@ -28,7 +30,8 @@ cVDM is the mean deviation over position, heading and velocities, each relative 
 
 With --out: simulate.json, simulations.csv, tracks.png and .csv, and trajectories/RUN.csv, each in the layout of a \
     recording, so that a simulation can be read like a measurement.
-JSON: result.model, result.runs[] with run, split, start_time [s], duration [s], steps, md (x, y [m], psi [rad], u, v [m/s], \
+JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs): what the audit of the recordings found; \
+    result.model, result.runs[] with run, split, start_time [s], duration [s], steps, md (x, y [m], psi [rad], u, v [m/s], \
     r [rad/s]) and cvdm [%], or diverged_after [s]; result.validity (share_outside of the recorded samples; outside[] with term, \
     quantity, range, share, met).
 
@@ -40,6 +43,8 @@ Exit code 2 if a simulation diverges, after everything else was written.";
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
+    #[command(flatten)]
+    accept: AcceptArgs,
     #[command(flatten)]
     output: OutputArgs,
 }
@@ -66,6 +71,7 @@ struct Row<'a> {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("simulate", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
+    output.recordings(audited(&loaded, &args.accept)?);
     let settings = loaded.fit_settings()?;
     let model = &loaded.model;
     let windows = loaded.windows()?.windows;

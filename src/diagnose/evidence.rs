@@ -226,7 +226,7 @@ impl Base {
         let reduced = own - cross * &self.inverse * cross.transpose();
         let effective = score - cross * self.step();
         let k = score.len();
-        if !effective.iter().chain(reduced.iter()).all(|v| v.is_finite()) {
+        if k == 0 || !effective.iter().chain(reduced.iter()).all(|v| v.is_finite()) {
             return Test::blind(k);
         }
         // In units in which each column alone carries information 1.
@@ -304,6 +304,16 @@ mod tests {
         let t = e.test(&base, &[1]);
         assert_eq!(t.degrees, 0);
         assert!(t.retained < 1e-12 && t.p == 1.0);
+    }
+
+    #[test]
+    fn without_a_column_and_without_a_number_the_test_sees_nothing() {
+        let e = Evidence::new(vec![one_run("a", &[3.0, f64::NAN], &[4.0, 0.0, 0.0, f64::NAN])]);
+        let base = e.base(&[0], &[0.0], &[0.0]);
+        for columns in [&[][..], &[1]] {
+            let t = e.test(&base, columns);
+            assert_eq!((t.degrees, t.p, t.amplitude.len()), (0, 1.0, columns.len()));
+        }
     }
 
     #[test]

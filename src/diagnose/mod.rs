@@ -31,6 +31,7 @@ pub mod decide;
 mod describe;
 pub mod diagnosis;
 mod eligible;
+mod error;
 pub mod estimate;
 mod event;
 pub mod evidence;
@@ -65,6 +66,7 @@ mod words;
 
 pub use decide::Verdict;
 pub use diagnosis::Diagnosis;
+pub use error::DiagnoseError;
 pub use finding::Finding;
 pub use pipeline::diagnose;
 pub use settings::Settings;

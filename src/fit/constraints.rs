@@ -21,6 +21,7 @@
 use super::error::FitError;
 use crate::model::Model;
 use crate::physics::{Form, Number};
+use crate::ranges::{Limited, OutOfRange, within};
 use crate::recording::Run;
 use crate::terms::flow::FlowTerm;
 use crate::terms::resistance::Resistance;
@@ -88,6 +89,50 @@ pub struct ConstraintSettings {
     pub drag_zero: Rule,
     /// K_T over advance ratios \[-\].
     pub thrust: Rule,
+}
+
+impl ConstraintSettings {
+    /// The rules by their keys.
+    fn rules(&self) -> [(&'static str, Rule); 8] {
+        [
+            ("resistance", self.resistance),
+            ("resistance_slope", self.resistance_slope),
+            ("side_force", self.side_force),
+            ("lift_port", self.lift_port),
+            ("lift_starboard", self.lift_starboard),
+            ("drag", self.drag),
+            ("drag_zero", self.drag_zero),
+            ("thrust", self.thrust),
+        ]
+    }
+}
+
+/// Samples that a rule may have: more cost time and bind nothing that these do not.
+const MOST_SAMPLES: f64 = 10_000.0;
+
+impl Limited for ConstraintSettings {
+    fn limits(&self) -> Result<(), OutOfRange> {
+        within(
+            "tolerance",
+            self.tolerance,
+            &(0.0..=10.0),
+            "the share of its size by which each limit is moved outwards",
+        )?;
+        for (key, rule) in self.rules() {
+            let numbers = [rule.from, rule.to, rule.step, rule.lower, rule.upper];
+            if let Some(value) = numbers.into_iter().flatten().find(|v| !v.is_finite()) {
+                let expected = "a finite number; leave out what is not to be limited".into();
+                return Err(OutOfRange { key, value, expected });
+            }
+            if let (Some(from), Some(to), Some(step)) = (rule.from, rule.to, rule.step)
+                && !(step > 0.0 && (to - from) / step <= MOST_SAMPLES)
+            {
+                let expected = format!("a step above 0 that divides the range into {MOST_SAMPLES} samples at most");
+                return Err(OutOfRange { key, value: step, expected });
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A curve of the model, linear in the parameters.

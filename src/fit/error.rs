@@ -3,6 +3,7 @@
 
 #[cfg(feature = "ipopt")]
 use crate::ipopt::IpoptError;
+use crate::ranges::OutOfRange;
 
 /// Why there is no fit.
 #[derive(Debug, thiserror::Error)]
@@ -22,16 +23,9 @@ pub enum FitError {
         /// What is wrong.
         what: String,
     },
-    /// A setting that makes no sense.
-    #[error("[fit] {name} = {value}: {expected}")]
-    BadSetting {
-        /// Its key.
-        name: &'static str,
-        /// The value found.
-        value: f64,
-        /// What it should be.
-        expected: &'static str,
-    },
+    /// A setting with a value that cannot be used.
+    #[error("[fit] {0}")]
+    Setting(#[from] OutOfRange),
     /// A constraint rule that cannot be imposed.
     #[error("[fit.constraints] {rule}: {what}")]
     BadRule {

@@ -12,6 +12,7 @@ use super::subspace::inverse;
 use super::task::Task;
 use crate::ipopt::Counts;
 use crate::model::Model;
+use crate::ranges::Limited;
 use crate::ranks::Ranks;
 use crate::recording::Run;
 use crate::validity::{self, Coverage};
@@ -168,7 +169,7 @@ pub fn fit_over(
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Fit, FitError> {
     let clock = Instant::now();
-    settings.check()?;
+    settings.limits()?;
     let cost = Cost::over(ranks, model, runs, settings.cost_options())?;
     let task = Task::new(model, &cost, runs, settings)?;
     let mut end = task.solve(progress)?;

@@ -120,6 +120,8 @@ pub struct Windows {
 
 /// Steps a window must have to say anything of a motion.
 const MIN_STEPS: usize = 2;
+/// A grid may divide the recording's own step into so many parts: a finer one repeats what is known and asks for memory.
+const FINEST: f64 = 1000.0;
 /// Relative difference below which two steps are the same.
 const SAME_STEP: f64 = 1e-6;
 
@@ -240,6 +242,12 @@ impl Recording {
         let times = [("step", step), ("window", settings.window.unwrap_or(1.0))];
         if let Some((key, value)) = times.into_iter().find(|(_, v)| !v.is_finite() || *v <= 0.0) {
             return Err(fail(format!("`{key}` = {value} s is not a positive time; correct it in the study")));
+        }
+        if step * FINEST < own {
+            let text = format!(
+                "`step` = {step} s is less than a {FINEST}th of the recording's own step of {own} s; leave it out, or set it to that step or more"
+            );
+            return Err(fail(text));
         }
         let window = settings.window.map(|w| (w / step).round() as usize);
         if let Some(short) = window.filter(|&w| w < MIN_STEPS) {
