@@ -1,7 +1,7 @@
 //! Files that are there whole or not at all: written aside, then renamed.
 //! What is in a file, and how its failure is told, is with those who write it.
 
-use std::io::{Error, Write};
+use std::io::{BufWriter, Error, Write};
 use std::path::Path;
 
 /// Writes a file whole: into a file of another name in the same folder, which takes the place of `path` once everything is in it.
@@ -10,14 +10,22 @@ use std::path::Path;
 /// # Errors
 /// Those of the file system; what was at `path` before is then still there.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    fill_whole(path, |file| file.write_all(bytes))
+}
+
+/// As [`write_whole`], with what `fill` writes piece by piece.
+///
+/// # Errors
+/// Those of the file system and of `fill`; what was at `path` before is then still there.
+pub fn fill_whole(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<(), Error>) -> Result<(), Error> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".unfinished-");
     #[cfg(unix)]
     builder.permissions(usual());
-    let mut aside = builder.tempfile_in(folder)?;
-    aside.write_all(bytes)?;
-    aside.persist(path)?;
+    let mut aside = BufWriter::new(builder.tempfile_in(folder)?);
+    fill(&mut aside)?;
+    aside.into_inner()?.persist(path)?;
     Ok(())
 }
 

@@ -49,6 +49,68 @@ struct Limit {
     met: [f64; 2],
 }
 
+/// Samples counted against the ranges of a model's terms, some at a time.
+pub struct Count<'a> {
+    model: &'a Model,
+    dynamics: Dynamics<'a, f64>,
+    limits: Vec<Limit>,
+    samples: usize,
+    anywhere: usize,
+}
+
+impl<'a> Count<'a> {
+    /// Nothing counted yet, with the parameters as the model has them.
+    pub fn new(model: &'a Model) -> Self {
+        let dynamics = Dynamics::new(model, model.values());
+        Self { model, dynamics, limits: limits(model), samples: 0, anywhere: 0 }
+    }
+
+    /// Counts samples; see [`outside`].
+    pub fn add<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(&mut self, samples: impl IntoIterator<Item = (Y, I)>) {
+        for (state, inputs) in samples {
+            let (state, inputs) = (State::from_array(*state.borrow()), inputs.borrow());
+            if ![state.u, state.v, state.r, inputs.n, inputs.delta].iter().all(|x| x.is_finite()) {
+                continue;
+            }
+            // The terms look at the heading only for what turns with the earth.
+            let state = State { psi: if state.psi.is_finite() { state.psi } else { 0.0 }, ..state };
+            let flow = self.dynamics.flow(&self.dynamics.instant(&state, inputs));
+            self.samples += 1;
+            let mut out = false;
+            for limit in &mut self.limits {
+                out |= limit.meet(value(limit.quantity, self.model, inputs, &flow));
+            }
+            self.anywhere += usize::from(out);
+        }
+    }
+
+    /// Adds what was counted elsewhere for the same model.
+    pub fn join(&mut self, other: &Count) {
+        self.samples += other.samples;
+        self.anywhere += other.anywhere;
+        for (limit, more) in self.limits.iter_mut().zip(&other.limits) {
+            limit.known += more.known;
+            limit.beyond += more.beyond;
+            limit.met = [limit.met[0].min(more.met[0]), limit.met[1].max(more.met[1])];
+        }
+    }
+
+    /// Adds what the other ranks counted for the same model.
+    pub fn gather(&mut self, ranks: &Ranks) {
+        [self.samples, self.anywhere] = ranks.counts([self.samples, self.anywhere]);
+        for limit in &mut self.limits {
+            limit.gather(ranks);
+        }
+    }
+
+    /// What was counted, as shares.
+    pub fn coverage(&self) -> Coverage {
+        let mut outside: Vec<Outside> = self.limits.iter().filter(|l| l.beyond > 0).map(Limit::report).collect();
+        outside.sort_by(|a, b| b.share.total_cmp(&a.share));
+        Coverage { samples: self.samples, share_outside: share(self.anywhere, self.samples), outside }
+    }
+}
+
 /// How many samples lie outside the ranges of the model's terms, with the parameters as the model has them.
 ///
 /// A sample is the state `[x, y, psi, u, v, r]` \[m, rad, m/s, rad/s\], velocities over ground, and the inputs then. A sample
@@ -67,31 +129,10 @@ pub fn outside_over<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
     model: &Model,
     samples: impl IntoIterator<Item = (Y, I)>,
 ) -> Coverage {
-    let mut limits = limits(model);
-    let dynamics = Dynamics::new(model, model.values());
-    let (mut count, mut anywhere) = (0, 0);
-    for (state, inputs) in samples {
-        let (state, inputs) = (State::from_array(*state.borrow()), inputs.borrow());
-        if ![state.u, state.v, state.r, inputs.n, inputs.delta].iter().all(|x| x.is_finite()) {
-            continue;
-        }
-        // The terms look at the heading only for what turns with the earth.
-        let state = State { psi: if state.psi.is_finite() { state.psi } else { 0.0 }, ..state };
-        let flow = dynamics.flow(&dynamics.instant(&state, inputs));
-        count += 1;
-        let mut out = false;
-        for limit in &mut limits {
-            out |= limit.meet(value(limit.quantity, model, inputs, &flow));
-        }
-        anywhere += usize::from(out);
-    }
-    let [count, anywhere] = ranks.counts([count, anywhere]);
-    for limit in &mut limits {
-        limit.gather(ranks);
-    }
-    let mut outside: Vec<Outside> = limits.iter().filter(|l| l.beyond > 0).map(Limit::report).collect();
-    outside.sort_by(|a, b| b.share.total_cmp(&a.share));
-    Coverage { samples: count, share_outside: share(anywhere, count), outside }
+    let mut count = Count::new(model);
+    count.add(samples);
+    count.gather(ranks);
+    count.coverage()
 }
 
 /// The samples of a run for [`outside`]: states with NaN where a channel has no value, and the inputs.
@@ -303,6 +344,20 @@ mod tests {
         inputs.draught_to_depth = 0.8;
         let aground = outside(&model(Form::Paper, &["shallow"]), [(state, inputs)]);
         assert_eq!(share_of(&aground, "shallow", Quantity::Depth), 1.0);
+    }
+
+    #[test]
+    fn samples_counted_in_parts_give_the_coverage_of_all_of_them() {
+        let model = model(Form::Paper, &[]);
+        let samples =
+            [at(5.0, 0.0, 2.0, 0.0), at(3.0, 3.0, 2.0, 0.0), at(-3.0, 1.0, -2.0, 0.0), at(4.0, 0.2, 0.0, 0.0)];
+        let mut joined = Count::new(&model);
+        for part in samples.chunks(2) {
+            let mut count = Count::new(&model);
+            count.add(part.iter().map(|(state, inputs)| (state, inputs)));
+            joined.join(&count);
+        }
+        assert_eq!(joined.coverage(), outside(&model, samples));
     }
 
     #[test]

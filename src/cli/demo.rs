@@ -63,7 +63,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let fit = fit::fit_windows(Ranks::one(), &loaded, &loaded.model, &train, None)?;
     fit::write(&mut output, &loaded.model, &fit, fit::speeds(Ranks::one(), &train))?;
     let baseline = evaluate::baseline(&loaded, None)?;
-    let evaluation = evaluate::judge(Ranks::one(), &loaded, &baseline, &fit.model, &test)?;
+    let evaluation = evaluate::judge(&loaded, &baseline, &fit.model, &test)?;
     let integration = loaded.fit_settings()?.integration;
     evaluate::write(&mut output, &evaluation, [&baseline, &fit.model], &test, integration)?;
 

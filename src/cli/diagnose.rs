@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     }
     let bar = progress("diagnosing");
     let diagnosis =
-        diagnose(&loaded.model, &train, &held_out, &settings, &|step| bar.set_message(format!("diagnosing: {step}")));
+        diagnose(&loaded.model, train, &held_out, &settings, &|step| bar.set_message(format!("diagnosing: {step}")));
     bar.finish_and_clear();
     let diagnosis = diagnosis.map_err(|error| CliError::Diagnose { path: loaded.study.path.clone(), error })?;
 

@@ -15,7 +15,7 @@ use trimtab::ranges::Limited;
 use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Split, Windows};
 use trimtab::ship::Ship;
-use trimtab::study::Study;
+use trimtab::study::{Listed, Study};
 
 /// Arguments of every command on a study.
 #[derive(Clone, Debug, clap::Args)]
@@ -58,11 +58,40 @@ impl Loaded {
         Ok(windows?)
     }
 
+    /// Reads the runs for which `wanted` says so and hands the windows of each to `work`, without keeping them; what `work`
+    /// makes of them goes to `take` in the order listed.
+    pub fn each<T: Send>(
+        &self,
+        doing: &str,
+        wanted: impl Fn(&Listed) -> bool,
+        work: impl Fn(Vec<Run>) -> T + Sync,
+        mut take: impl FnMut(T) -> Result<(), CliError>,
+    ) -> Result<(), CliError> {
+        let (mut done, of) = (0, self.study.runs.iter().filter(|run| wanted(run)).count());
+        let bar = progress(format!("{doing} {of} recordings"));
+        let draught = self.model.ship.hull.draught;
+        let result = self.study.each(
+            draught,
+            wanted,
+            |windows| work(windows.windows),
+            |one| {
+                done += 1;
+                bar.set_message(format!("{doing}: {done} of {of} recordings"));
+                take(one)
+            },
+        );
+        bar.finish_and_clear();
+        result
+    }
+
     /// The windows of one split, of which there must be some.
     pub fn windows_of(&self, split: Split) -> Result<Vec<Run>, CliError> {
         let mut windows = self.windows()?.windows;
         windows.retain(|w| w.split == split);
-        if windows.is_empty() { Err(self.nothing(split)) } else { Ok(windows) }
+        if windows.is_empty() {
+            return Err(self.nothing(split));
+        }
+        Ok(windows)
     }
 
     /// The windows of one split that are this rank's, of which all ranks together must have some: it opens no other recording.
@@ -70,20 +99,28 @@ impl Loaded {
         if ranks.size() == 1 {
             return self.windows_of(split);
         }
-        let mut study = self.study.clone();
-        study.runs.retain(|run| run.labels.split == split);
-        study.runs = study.runs[ranks.share(study.runs.len())].to_vec();
-        let windows = study.windows(self.model.ship.hull.draught)?.windows;
+        let windows = self.part(ranks, |run| run.labels.split == split).windows()?.windows;
         if ranks.counts([windows.len()]) == [0] { Err(self.nothing(split)) } else { Ok(windows) }
     }
 
-    fn nothing(&self, split: Split) -> CliError {
+    /// The same study with this rank's part of the runs for which `wanted` says so.
+    pub fn part(&self, ranks: &Ranks, wanted: impl Fn(&Listed) -> bool) -> Self {
+        let mut study = self.study.clone();
+        study.runs.retain(wanted);
+        study.runs = study.runs[ranks.share(study.runs.len())].to_vec();
+        Self { study, model: self.model.clone() }
+    }
+
+    /// The error of a study without a run on one side of its split.
+    pub fn nothing(&self, split: Split) -> CliError {
         let (word, verb) = match split {
             Split::Train => ("train", "fit to"),
             Split::Test => ("test", "judge by"),
         };
-        let message = format!("there is no run to {verb}; mark one with `split = \"{word}\"`, or set a [split] rule");
-        CliError::Nothing { path: self.study.path.clone(), message }
+        CliError::Nothing {
+            path: self.study.path.clone(),
+            message: format!("there is no run to {verb}; mark one with `split = \"{word}\"`, or set a [split] rule"),
+        }
     }
 
     /// Table `[fit]`.

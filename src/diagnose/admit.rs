@@ -131,20 +131,14 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
         sin += heading.sin();
         count += 1.0;
     }
-    let passes = |integration: Integration| -> Vec<Vec<[f64; 6]>> {
-        let filter = Filter::new(model, integration, &[]);
-        runs.par_iter().map(|r| filter.pass(r, noise, Wanted::default()).innovations).collect()
+    let refined = Integration { method: Method::Rk4, substeps: integration.substeps.max(1) * 8 };
+    let filters = [integration, refined].map(|integration| Filter::new(model, integration, &[]));
+    let error = |run: &Run| {
+        let [as_used, refined] = filters.each_ref().map(|f| f.pass(run, noise, Wanted::default()).innovations);
+        let pairs = as_used.iter().flatten().zip(refined.iter().flatten());
+        pairs.map(|(a, b)| (a - b).abs()).filter(|e| e.is_finite()).fold(0.0, f64::max)
     };
-    let innovations = passes(integration);
-    let refined = passes(Integration { method: Method::Rk4, substeps: integration.substeps.max(1) * 8 });
-    let error = innovations
-        .iter()
-        .flatten()
-        .zip(refined.iter().flatten())
-        .flat_map(|(a, b)| (0..6).map(move |j| (a[j] - b[j]).abs()))
-        .filter(|e| e.is_finite())
-        .collect::<Vec<f64>>();
-    let largest = error.iter().copied().fold(0.0, f64::max);
+    let largest = runs.par_iter().map(error).reduce(|| 0.0, f64::max);
     let sessions: std::collections::BTreeSet<&str> = runs.iter().map(|r| r.session.as_str()).collect();
     Admission {
         runs: runs.len(),

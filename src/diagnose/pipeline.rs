@@ -20,18 +20,19 @@ use crate::model::Model;
 use crate::ranges::Limited;
 use crate::recording::Run;
 use crate::validity::{self, Coverage};
+use std::borrow::Cow;
 
 /// Diagnoses a model against recordings.
 ///
-/// `runs` are used to locate, name and model; `held_out` only to prove. `progress` is told each step in words. The result is
+/// `runs` are used to locate, name and model, and are not copied where they are given away; `held_out` only to prove. `progress` is told each step in words. The result is
 /// the same bits on any number of threads.
 ///
 /// # Errors
 /// A setting outside its range, or a term of the catalogue that cannot be added to the model (a singular mass matrix, for
 /// instance).
-pub fn diagnose(
+pub fn diagnose<'r>(
     model: &Model,
-    runs: &[Run],
+    runs: impl Into<Cow<'r, [Run]>>,
     held_out: &[Run],
     settings: &Settings,
     progress: &(dyn Fn(&str) + Sync),
@@ -39,7 +40,7 @@ pub fn diagnose(
     settings.limits()?;
     let question = Question::new(model, settings, progress)?;
     let audited = AuditedRuns::new(runs, question.full.ship.hull.lpp);
-    let base: BaseFit = BaseFit::new(&question, &audited);
+    let base: BaseFit = BaseFit::new(&question, audited);
     let tests: BaseTests = BaseTests::new(&question, base);
     let opening: Opening = Opening::new(&question, tests);
     let selection: Selection = Selection::new(&question, opening).refitted(&question);
@@ -110,7 +111,7 @@ fn report(question: &Question, kept: &Kept, decision: &Decision, proof: Option<H
         held_out: proof,
         findings,
         settings: question.settings.clone(),
-        traces: traces(&fit.runs, first, last),
+        traces: traces(&fit.runs, fit.integration, base, last.map(|_| found)),
         validity: coverage(&improved, &fit.runs),
         model: improved,
         base: trimmed(&base.model, question.model, &base.free),

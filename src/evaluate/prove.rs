@@ -1,7 +1,7 @@
 //! The proof: two models against each other on the same runs, as `trimtab evaluate` prints it and a diagnosis concludes with it.
 //! It fits nothing, and asks each model for nothing but its predictions.
 
-use super::compare::{Comparison, compare, predict_all};
+use super::compare::{Comparison, compare, predict};
 use super::settings::EvaluationSettings;
 use super::summary::{Summary, summaries};
 use crate::fit::FitSettings;
@@ -9,7 +9,8 @@ use crate::model::Model;
 use crate::ranks::Ranks;
 use crate::recording::Run;
 use crate::simulate::Integration;
-use crate::validity::{self, Coverage};
+use crate::validity::{Count, Coverage, samples};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// How models are simulated and weighed where they are judged.
@@ -60,25 +61,72 @@ impl Evaluation {
 
 /// Judges `fitted` against `baseline` on runs, each simulated from the run's initial state.
 pub fn prove(baseline: &Model, fitted: &Model, runs: &[Run], judging: &Judging) -> Evaluation {
-    prove_over(Ranks::one(), baseline, fitted, runs, judging)
+    let mut proof = Proof::new(baseline, fitted, judging);
+    let part = proof.part(runs);
+    proof.add(part);
+    proof.evaluation()
 }
 
-/// As [`prove`], with the simulations and the draws of the bootstrap divided among the ranks, each of which has all `runs`.
-pub fn prove_over(ranks: &Ranks, baseline: &Model, fitted: &Model, runs: &[Run], judging: &Judging) -> Evaluation {
-    let Judging { integration, max_yaw_rate, settings } = judging;
-    let own = &runs[ranks.share(runs.len())];
-    let before = predict_all(baseline, own, *integration);
-    let after = predict_all(fitted, own, *integration);
-    let compared = own.iter().zip(before.iter().zip(&after)).map(|(r, p)| compare(r, fitted, *max_yaw_rate, p));
-    let trajectories: Vec<Comparison> = ranks.gather(&compared.collect::<Vec<_>>()).into_iter().flatten().collect();
-    Evaluation {
-        validity: validity::outside(fitted, runs.iter().flat_map(validity::samples)),
-        baseline: baseline.name.clone(),
-        fitted: fitted.name.clone(),
-        summaries: summaries(ranks, &trajectories, settings),
-        trajectories,
-        max_yaw_rate: *max_yaw_rate,
-        resamples: settings.resamples,
-        seed: settings.seed,
+/// A proof on more runs than are held at once: parts of them are judged, on any thread, and added in their order.
+pub struct Proof<'a> {
+    baseline: &'a Model,
+    fitted: &'a Model,
+    judging: &'a Judging,
+    sum: Part<'a>,
+}
+
+/// What some runs say of two models.
+pub struct Part<'a> {
+    trajectories: Vec<Comparison>,
+    validity: Count<'a>,
+}
+
+impl<'a> Proof<'a> {
+    /// Of no run yet.
+    pub fn new(baseline: &'a Model, fitted: &'a Model, judging: &'a Judging) -> Self {
+        let sum = Part { trajectories: Vec::new(), validity: Count::new(fitted) };
+        Self { baseline, fitted, judging, sum }
+    }
+
+    /// Judges both models on some runs.
+    pub fn part(&self, runs: &[Run]) -> Part<'a> {
+        let Judging { integration, max_yaw_rate, .. } = self.judging;
+        let of = |run: &Run| {
+            let (before, after) = (predict(self.baseline, run, *integration), predict(self.fitted, run, *integration));
+            compare(run, self.fitted, *max_yaw_rate, (&before, &after))
+        };
+        let mut validity = Count::new(self.fitted);
+        validity.add(runs.iter().flat_map(samples));
+        Part { trajectories: runs.par_iter().map(of).collect(), validity }
+    }
+
+    /// Adds what further runs say.
+    pub fn add(&mut self, part: Part) {
+        self.sum.trajectories.extend(part.trajectories);
+        self.sum.validity.join(&part.validity);
+    }
+
+    /// The evaluation on all runs that were added.
+    pub fn evaluation(self) -> Evaluation {
+        self.evaluation_over(Ranks::one())
+    }
+
+    /// The evaluation on all runs that were added on any rank, in the order of the ranks; each rank gets it. The draws of the
+    /// bootstrap are divided among them.
+    pub fn evaluation_over(self, ranks: &Ranks) -> Evaluation {
+        let Judging { max_yaw_rate, settings, .. } = self.judging;
+        let Part { trajectories, mut validity } = self.sum;
+        let trajectories = ranks.gather(&trajectories).concat();
+        validity.gather(ranks);
+        Evaluation {
+            validity: validity.coverage(),
+            baseline: self.baseline.name.clone(),
+            fitted: self.fitted.name.clone(),
+            summaries: summaries(ranks, &trajectories, settings),
+            trajectories,
+            max_yaw_rate: *max_yaw_rate,
+            resamples: settings.resamples,
+            seed: settings.seed,
+        }
     }
 }

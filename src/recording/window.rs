@@ -1,11 +1,11 @@
 //! From a recording to windows: runs on a uniform grid, ready to be simulated, that never reach across a dropout or a gap.
 //! Which windows train and which test is decided by the study.
 
-use super::Recording;
 use super::channel::{Channel, STATE_CHANNELS};
 use super::convert::to_earth;
 use super::error::RecordingError;
 use super::local::local_fit;
+use super::record::Recording;
 use super::run::{Measured, Run, Split};
 use crate::state::{Inputs, STATES};
 use serde::{Deserialize, Serialize};
@@ -161,7 +161,8 @@ impl Recording {
             let stride = length - grid.overlap;
             let mut start = 0;
             while start + length <= sampler.steps {
-                result.windows.push(self.window(labels, settings, &columns, &sampler, start..start + length + 1)?);
+                let samples = start..start + length + 1;
+                result.windows.push(self.window(labels, settings, &grid, &columns, &sampler, samples)?);
                 start += stride;
             }
         }
@@ -178,6 +179,7 @@ impl Recording {
         &self,
         labels: &Labels,
         settings: &WindowSettings,
+        grid: &Grid,
         columns: &Inputs<Vec<f64>>,
         sampler: &Sampler,
         samples: Range<usize>,
@@ -189,7 +191,10 @@ impl Recording {
         let measured: Vec<Measured> = (0..rows).map(|k| std::array::from_fn(|i| value(k, i))).collect();
         let start_time = sampler.time(samples.start);
         let taken: Inputs<Vec<f64>> =
-            Inputs::from_entries(|entry: fn(&Inputs<Vec<f64>>) -> &Vec<f64>| take(entry(columns)));
+            Inputs::from_entries(|entry: fn(&Inputs<Vec<f64>>) -> &Vec<f64>| match &entry(columns)[..] {
+                [] => vec![0.0; rows],
+                values => take(values),
+            });
         let inputs = (0..rows).map(|k| Inputs {
             t: sampler.time(samples.start + k),
             ..Inputs::from_entries(|entry: fn(&Inputs<Vec<f64>>) -> &Vec<f64>| entry(&taken)[k])
@@ -208,7 +213,7 @@ impl Recording {
             disturbed: Vec::new(),
         };
         let (span, all) = match settings.initial {
-            Initial::First => (10.0 * self.step(), false),
+            Initial::First => (10.0 * grid.usual, false),
             Initial::Smoothed { span } => (span, true),
         };
         if all || first.contains(&None) {
@@ -217,7 +222,7 @@ impl Recording {
                 path: self.path.clone(),
                 message: format!(
                     "`initial_span` = {span} s covers fewer than three rows at {start_time:.2} s; set it to several steps of {:.3} s",
-                    self.step()
+                    grid.usual
                 ),
             })?;
             for i in 0..STATES {
@@ -264,10 +269,10 @@ impl Recording {
         }
         let as_recorded = (step / own - 1.0).abs() < SAME_STEP;
         let width = if step > own * (1.0 + SAME_STEP) { step } else { 0.0 };
-        Ok(Grid { step, window, overlap, as_recorded, width })
+        Ok(Grid { usual: median, step, window, overlap, as_recorded, width })
     }
 
-    /// Inputs at every row, by column; time is left at 0, for it is that of a window's own grid.
+    /// Inputs at every row, by column; a column that is 0 throughout is empty, and so is time, for it is that of a window's own grid.
     fn columns(&self, draught: f64) -> Result<Inputs<Vec<f64>>, RecordingError> {
         let need = |c, next: &str| self.require(c, "to simulate the run", next);
         let from_position = "record it, or derive it from position and heading with `derive` in a column map";
@@ -281,10 +286,10 @@ impl Recording {
         }
         need(Channel::N, "add the column")?;
         need(Channel::Delta, "add the column")?;
-        let mut inputs = Inputs::from_entries(|_: fn(&Inputs<f64>) -> &f64| vec![0.0; self.len()]);
+        let mut inputs = Inputs::from_entries(|_: fn(&Inputs<f64>) -> &f64| Vec::new());
         for (name, values) in inputs.recorded() {
             if let Some(recorded) = Channel::from_name(name).and_then(|c| self.get(c)) {
-                values.copy_from_slice(recorded);
+                *values = recorded.to_vec();
             }
         }
         let mut directed = false;
@@ -315,6 +320,7 @@ impl Recording {
         }
         for (channel, sign) in [(Channel::BankStarboard, 1.0), (Channel::BankPort, -1.0)] {
             if let Some(distance) = self.get(channel) {
+                inputs.bank.resize(distance.len(), 0.0);
                 inputs.bank.iter_mut().zip(distance).for_each(|(bank, y)| *bank += sign / y);
             }
         }
@@ -341,20 +347,21 @@ impl Recording {
         let (first, last) = (t[segment.start], t[segment.end - 1]);
         let from = (t0 - 0.5 * span).min(last - span).max(first);
         let slack = 1e-9 * span;
-        let rows: Vec<usize> =
-            segment.clone().filter(|&i| t[i] >= from - slack && t[i] <= from + span + slack).collect();
+        let inside = &t[segment.clone()];
+        let rows = segment.start + inside.partition_point(|ti| *ti < from - slack)
+            ..segment.start + inside.partition_point(|ti| *ti <= from + span + slack);
         if rows.len() < 3 {
             return None;
         }
-        let tau: Vec<f64> = rows.iter().map(|&i| t[i] - t0).collect();
-        let channel = |c: Channel| self.get(c).map(|v| rows.iter().map(|&i| v[i]).collect::<Vec<f64>>());
+        let tau: Vec<f64> = t[rows.clone()].iter().map(|ti| ti - t0).collect();
+        let channel = |c: Channel| self.get(c).map(|v| &v[rows.clone()]);
         let [x, y, psi, u, v, r] = STATE_CHANNELS.map(channel);
 
         let mut turn = Rows::default();
-        if let Some(psi) = &psi {
+        if let Some(psi) = psi {
             turn.push(&tau, psi, |_, s| vec![1.0, s, 0.5 * s * s]);
         }
-        if let Some(r) = &r {
+        if let Some(r) = r {
             turn.push(&tau, r, |_, s| vec![0.0, 1.0, s]);
         }
         let heading = turn.solve(3)?;
@@ -383,30 +390,30 @@ impl Recording {
         // Unknowns: x0, y0, u0, u', v0, v'. Without a heading the track cannot be told from drift, so it is left out.
         if psi.is_some() {
             let table: Vec<[f64; 4]> = tau.iter().map(|&s| integrals(s)).collect();
-            if let Some(x) = &x {
+            if let Some(x) = x {
                 motion.push(&tau, x, |i, _| {
                     let [c, s, ct, st] = table[i];
                     vec![1.0, 0.0, c, ct, -s, -st]
                 });
             }
-            if let Some(y) = &y {
+            if let Some(y) = y {
                 motion.push(&tau, y, |i, _| {
                     let [c, s, ct, st] = table[i];
                     vec![0.0, 1.0, s, st, c, ct]
                 });
             }
         }
-        if let Some(u) = &u {
+        if let Some(u) = u {
             motion.push(&tau, u, |_, s| vec![0.0, 0.0, 1.0, s, 0.0, 0.0]);
         }
-        if let Some(v) = &v {
+        if let Some(v) = v {
             motion.push(&tau, v, |_, s| vec![0.0, 0.0, 0.0, 0.0, 1.0, s]);
         }
         let m = motion.solve(6)?;
         let mut state = [m[0], m[1], heading[0], m[2], m[4], heading[1]];
         if psi.is_none() {
             for (i, values) in [x, y].into_iter().enumerate() {
-                state[i] = values.and_then(|v| local_fit(&tau, &v, 0.0)).map_or(0.0, |c| c[0]);
+                state[i] = values.and_then(|v| local_fit(&tau, v, 0.0)).map_or(0.0, |c| c[0]);
             }
         }
         state.iter().all(|s| s.is_finite()).then_some(state)
@@ -415,6 +422,8 @@ impl Recording {
 
 /// Grid step and lengths in steps.
 struct Grid {
+    /// The recording's usual step.
+    usual: f64,
     step: f64,
     window: Option<usize>,
     overlap: usize,
