@@ -7,10 +7,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::path::Path;
-use trimtab::fit::{CovarianceKind, DoubtKind, Fit, FitSettings, MultiStart, Rule, fit, multi_start};
+use trimtab::fit::{Cost, CovarianceKind, DoubtKind, Fit, FitSettings, MultiStart, Rule, fit, multi_start};
 use trimtab::model::Model;
 use trimtab::physics::Form;
-use trimtab::recording::{Run, Split};
+use trimtab::recording::{Run, RunStore, Runs, Split};
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Scenario, simulate};
 use trimtab::state::Inputs;
@@ -105,6 +105,36 @@ fn freed() -> Model {
     let mut model = model();
     model.free_hull();
     model
+}
+
+#[test]
+fn runs_in_a_file_are_fitted_to_the_same_bits_as_runs_in_memory() {
+    let mut runs = recordings(&truth(), 6, 1.0, unspoiled);
+    // Lengths, a session and a channel that differ from run to run.
+    runs[3].inputs.truncate(80);
+    runs[3].measured.truncate(80);
+    runs[5].measured.iter_mut().step_by(3).for_each(|m| m[4] = None);
+    let mut store = RunStore::new(0);
+    runs.iter().for_each(|run| store.push(run.clone()).unwrap());
+    let model = freed();
+    let options = settings().cost_options();
+    let costs = [Cost::new(&model, &runs, options).unwrap(), Cost::new(&model, &store, options).unwrap()];
+    let p: Vec<f64> = model.free().iter().map(|i| 1.01 * model.parameters[*i].value).collect();
+    let [held, stored] = costs.each_ref().map(|cost| cost.quadratic(&p).unwrap());
+    assert_eq!(
+        (held.value, &held.gradient, &held.gauss_newton),
+        (stored.value, &stored.gradient, &stored.gauss_newton)
+    );
+    assert_eq!(costs[0].squares(&p), costs[1].squares(&p));
+    assert_eq!(costs[0].residuals(), costs[1].residuals());
+    // The stages of a freed hull cut the runs and fit the pieces first.
+    let settings = FitSettings { max_iterations: 4, ..settings() };
+    let [held, stored] =
+        [Runs::from(&runs), Runs::from(&store)].map(|r| fit(&model, r, &settings, &mut |_| true).unwrap());
+    assert!(held.first_stage_parts > 1 && held.iterations > 4, "{} {}", held.first_stage_parts, held.iterations);
+    let said = |f: &Fit| serde_json::to_value(Fit { seconds: 0.0, ..f.clone() }).unwrap();
+    assert_eq!(said(&held), said(&stored));
+    assert!(store.failure().is_none());
 }
 
 #[test]

@@ -29,8 +29,10 @@ pub struct Doubt {
     /// What was found in the first of the runs.
     text: String,
     next_step: String,
-    /// The runs; none where the fault is the study's.
+    /// The runs in which it was found.
     runs: Vec<String>,
+    /// Whether the user accepts it.
+    accepted: bool,
 }
 
 /// What a command has to say of the recordings that it used.
@@ -45,7 +47,7 @@ pub struct Audited {
 /// Faults that can be accepted: the recordings can be read and say what they say.
 const CONTRADICTIONS: [&str; 3] = ["unit_error", "sign_error", "axes_error"];
 
-/// Audits the recordings of a study.
+/// Audits the recordings of a study for a command that computes with what they say.
 ///
 /// # Errors
 /// [`CliError::Faulty`] where the recordings contradict themselves and this was not accepted. A recording that cannot be read, or a
@@ -59,24 +61,8 @@ pub fn audited(loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> 
 /// # Errors
 /// As [`audited`], on every rank.
 pub fn audited_over(ranks: &Ranks, loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> {
-    for name in &args.accept {
-        if !CONTRADICTIONS.contains(&name.as_str()) {
-            let known = CONTRADICTIONS.join(", ");
-            let near = suggestion(name, CONTRADICTIONS.into_iter());
-            return Err(CliError::Argument(format!("there is no fault `{name}` to accept; they are {known}{near}")));
-        }
-    }
-    let runs = loaded.study.runs.len();
-    let mut study = loaded.study.clone();
-    study.runs = study.runs[ranks.share(runs)].to_vec();
-    let bar = progress(format!("auditing {} recordings", study.runs.len()));
-    let audit = audit_study(&study, &loaded.model.ship);
-    bar.finish_and_clear();
-    let found = audit.recordings.iter().flat_map(|a| a.issues.iter().map(|i| (a.run.as_str(), i)));
-    let own: Vec<Doubt> = found.filter_map(|(run, issue)| told(run, issue)).collect();
-    let audited = Audited { runs, doubts: grouped(ranks.gather(&own).into_iter().flatten()) };
-    let refused = |d: &&Doubt| d.severity == Severity::Error && !args.accept.contains(&d.fault);
-    match audited.doubts.iter().find(refused) {
+    let audited = examined_over(ranks, loaded, args)?;
+    match audited.doubts.iter().find(|d| d.refused()) {
         Some(doubt) => Err(CliError::Faulty {
             path: loaded.study.path.clone(),
             what: audited.sentence(doubt),
@@ -84,6 +70,35 @@ pub fn audited_over(ranks: &Ranks, loaded: &Loaded, args: &AcceptArgs) -> Result
         }),
         None => Ok(audited),
     }
+}
+
+/// Audits the recordings of a study for a command whose own answer may be that they contradict themselves.
+///
+/// # Errors
+/// A fault to accept that there is not.
+pub fn examined(loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> {
+    examined_over(Ranks::one(), loaded, args)
+}
+
+fn examined_over(ranks: &Ranks, loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> {
+    for name in &args.accept {
+        if !CONTRADICTIONS.contains(&name.as_str()) {
+            let known = CONTRADICTIONS.join(", ");
+            let near = suggestion(name, CONTRADICTIONS.into_iter());
+            return Err(CliError::Argument(format!("there is no fault `{name}` to accept; they are {known}{near}")));
+        }
+    }
+    let own = loaded.part(ranks, |_| true).study;
+    let bar = progress(format!("auditing {} recordings", own.runs.len()));
+    let audit = audit_study(&own, &loaded.model.ship);
+    bar.finish_and_clear();
+    let found = audit.recordings.iter().flat_map(|a| a.issues.iter().map(|i| (a.run.as_str(), i)));
+    let own: Vec<Doubt> = found.filter_map(|(run, issue)| told(run, issue)).collect();
+    let mut doubts = grouped(ranks.gather(&own).into_iter().flatten());
+    for doubt in &mut doubts {
+        doubt.accepted = args.accept.contains(&doubt.fault);
+    }
+    Ok(Audited { runs: loaded.study.runs.len(), doubts })
 }
 
 /// The doubt that an issue of a run is; none that is only worth knowing, or that the command tells itself.
@@ -100,6 +115,7 @@ fn told(run: &str, issue: &Issue) -> Option<Doubt> {
         text: issue.text.clone(),
         next_step: issue.next_step.clone(),
         runs: vec![run.to_owned()],
+        accepted: false,
     })
 }
 
@@ -118,6 +134,12 @@ fn grouped(found: impl Iterator<Item = Doubt>) -> Vec<Doubt> {
     doubts
 }
 
+impl Doubt {
+    fn refused(&self) -> bool {
+        self.severity == Severity::Error && !self.accepted
+    }
+}
+
 impl Audited {
     /// One doubt in a sentence, with the number of runs.
     fn sentence(&self, doubt: &Doubt) -> String {
@@ -128,10 +150,19 @@ impl Audited {
         format!("{channel}{}{told}: {runs}; {}", doubt.text, doubt.next_step)
     }
 
+    /// Whether there is an error that the user does not accept.
+    pub fn refused(&self) -> bool {
+        self.doubts.iter().any(Doubt::refused)
+    }
+
     /// The lines that come before the answer; empty where there is nothing to say.
     pub fn lines(&self) -> String {
         let line = |d: &Doubt| {
-            let word = if d.severity == Severity::Error { "accepted error" } else { "warning" };
+            let word = match (d.severity, d.accepted) {
+                (Severity::Error, true) => "accepted error",
+                (Severity::Error, false) => "error",
+                _ => "warning",
+            };
             format!("{word}: {}\n", self.sentence(d))
         };
         let mut text: String = self.doubts.iter().map(line).collect();
@@ -161,7 +192,8 @@ mod tests {
         let audited = Audited { runs: 3, doubts: grouped(all.iter().filter_map(|(r, i)| told(r, i))) };
         let lines = audited.lines();
         let lines: Vec<&str> = lines.lines().collect();
-        assert_eq!(lines[0], "accepted error: r: the sign is turned: run b; look at it");
+        assert!(audited.refused());
+        assert_eq!(lines[0], "error: r: the sign is turned: run b; look at it");
         assert_eq!(lines[1], "warning: psi: stands still for 3 s (as in a): 2 of 3 runs; look at it");
         assert!(lines[2].starts_with("`trimtab check`") && lines.len() == 4, "{lines:?}");
         assert_eq!(Audited::default().lines(), "");

@@ -39,7 +39,7 @@ Measures: MD = mean |simulated - measured|; cVDM = 100 x mean of |dx|/L + |dy|/L
     any that does not, and left out of the means.
 
 With --out: evaluate.json, trajectories.csv, summary.csv, improvement.png, cvdm.png, tracks.png, each with its CSV.
-JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs): what the audit of the recordings found; \
+JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
     result.baseline, result.fitted (names), result.summaries[] with group (test, train, then `manoeuvre: ...` and \
     `session: ...` of test), runs, trajectories, md_baseline, md_fitted, md_improvement (x, y, psi, u, v, r), cvdm_baseline, \
     cvdm_fitted [%], cvdm_improvement, mari, consistency [-] (each value and ci95), better, worse, runs_better, runs_worse, \

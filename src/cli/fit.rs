@@ -14,7 +14,7 @@ use trimtab::model::Model;
 use trimtab::numerals::sig;
 use trimtab::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
 use trimtab::ranks::Ranks;
-use trimtab::recording::{Run, Split};
+use trimtab::recording::{Run, RunStore, Runs, Split};
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
 
@@ -41,7 +41,7 @@ Example:
 With --out: fitted.toml (a model file with the estimates, which every command takes as --model), fit.json, fit.txt (the \
     report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end); with --starts also starts.csv (how each start \
     ended). While the fit runs, best.toml is the model at the best point so far; it is removed at the end.
-JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs): what the audit of the recordings found; \
+JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
     result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
     value, limit, sentence), result.residual_statistics (model_error, growth, growth_error, likeness), result.estimates[] \
     (name, symbol, unit, start, value, standard_error, interval, at_bound), result.start_cost, result.start_prior_cost, \
@@ -77,15 +77,34 @@ pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
         Some(count) => from_many(ranks, &loaded, count.into(), &mut output)?,
         None => (loaded.model.clone(), String::new()),
     };
-    let windows = loaded.share_of(ranks, Split::Train)?;
-    let fit = fit_windows(ranks, &loaded, &start, &windows, output.path(BEST))?;
-    write(&mut output, &start, &fit, speeds(ranks, &windows))?;
+    let store = stored(ranks, &loaded)?;
+    let windows = Runs::from(&store);
+    let fit = fit_windows(ranks, &loaded, &start, windows, output.path(BEST));
+    if let Some(source) = store.failure() {
+        return Err(CliError::Write { path: std::env::temp_dir(), source });
+    }
+    let fit = fit?;
+    write(&mut output, &start, &fit, speeds(ranks, windows))?;
     let mut text = fit.report() + &starts;
     if !output.has_folder() {
         text += "\nGive --out DIR to keep the fitted model as a file.";
     }
     output.finish(&text, &fit)?;
     Ok(if fit.converged { Answer::Yes } else { Answer::No })
+}
+
+/// The windows to train on that are this rank's, in memory or in a temporary file. One of several ranks opens no other recording.
+fn stored(ranks: &Ranks, loaded: &Loaded) -> Result<RunStore, CliError> {
+    let mut store = RunStore::default();
+    let fail = |source| CliError::Write { path: std::env::temp_dir(), source };
+    let train = |windows: Vec<Run>| windows.into_iter().filter(|w| w.split == Split::Train).collect::<Vec<Run>>();
+    loaded.part(ranks, |run| ranks.size() == 1 || run.labels.split == Split::Train).each(
+        "reading",
+        |_| true,
+        train,
+        |windows| windows.into_iter().try_for_each(|window| store.push(window)).map_err(fail),
+    )?;
+    if ranks.counts([store.len()]) == [0] { Err(loaded.nothing(Split::Train)) } else { Ok(store) }
 }
 
 /// Share of the lowest cost within which starts ended at the same place.
@@ -103,7 +122,7 @@ pub fn fit_windows(
     ranks: &Ranks,
     loaded: &Loaded,
     start: &Model,
-    windows: &[Run],
+    windows: Runs,
     kept: Option<PathBuf>,
 ) -> Result<Fit, CliError> {
     let settings: FitSettings = loaded.fit_settings()?;
@@ -182,9 +201,10 @@ fn from_many(ranks: &Ranks, loaded: &Loaded, count: usize, output: &mut Output) 
 }
 
 /// The recorded range of surge speed \[m/s\] over all ranks, at least 0 to 1.
-pub fn speeds(ranks: &Ranks, windows: &[Run]) -> [f64; 2] {
-    let recorded = windows.iter().flat_map(|w| &w.measured).filter_map(|s| s[3]);
-    let [slowest, fastest] = recorded.fold([0.0_f64, 1.0_f64], |[a, b], u| [a.min(u), b.max(u)]);
+pub fn speeds(ranks: &Ranks, windows: Runs) -> [f64; 2] {
+    let [slowest, fastest] = windows.iter().fold([0.0_f64, 1.0_f64], |range, w| {
+        w.measured.iter().filter_map(|s| s[3]).fold(range, |[a, b], u| [a.min(u), b.max(u)])
+    });
     let ends = ranks.largest(&[-slowest, fastest]);
     [-ends[0], ends[1]]
 }

@@ -94,15 +94,6 @@ impl Loaded {
         Ok(windows)
     }
 
-    /// The windows of one split that are this rank's, of which all ranks together must have some: it opens no other recording.
-    pub fn share_of(&self, ranks: &Ranks, split: Split) -> Result<Vec<Run>, CliError> {
-        if ranks.size() == 1 {
-            return self.windows_of(split);
-        }
-        let windows = self.part(ranks, |run| run.labels.split == split).windows()?.windows;
-        if ranks.counts([windows.len()]) == [0] { Err(self.nothing(split)) } else { Ok(windows) }
-    }
-
     /// The same study with this rank's part of the runs for which `wanted` says so.
     pub fn part(&self, ranks: &Ranks, wanted: impl Fn(&Listed) -> bool) -> Self {
         let mut study = self.study.clone();

@@ -32,7 +32,7 @@ cVDM is the mean deviation over position, heading and velocities, each relative 
 
 With --out: simulate.json, simulations.csv, tracks.png and .csv, and trajectories/RUN.csv, each in the layout of a \
     recording, so that a simulation can be read like a measurement.
-JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs): what the audit of the recordings found; \
+JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
     result.model, result.runs[] with run, split, start_time [s], duration [s], steps, md (x, y [m], psi [rad], u, v [m/s], \
     r [rad/s]) and cvdm [%], or diverged_after [s]; result.validity (share_outside of the recorded samples; outside[] with term, \
     quantity, range, share, met).

@@ -124,8 +124,9 @@ pub struct Estimate {
 /// Works on the runs side by side; what each gives goes to `take` in the order of the runs, so that sums have the same bits on any
 /// number of threads. No more of it is held at once than a few runs give.
 pub fn each_run<T: Send>(runs: &[Run], work: impl Fn(usize, &Run) -> T + Sync, mut take: impl FnMut(usize, T)) {
-    for (group, some) in runs.chunks(TOGETHER).enumerate() {
-        let first = group * TOGETHER;
+    let together = TOGETHER * rayon::current_num_threads();
+    for (group, some) in runs.chunks(together).enumerate() {
+        let first = group * together;
         let done: Vec<T> = some.par_iter().enumerate().map(|(i, run)| work(first + i, run)).collect();
         done.into_iter().enumerate().for_each(|(i, one)| take(first + i, one));
     }

@@ -22,7 +22,7 @@ use super::error::FitError;
 use crate::model::Model;
 use crate::physics::{Form, Number};
 use crate::ranges::{Limited, OutOfRange, within};
-use crate::recording::Run;
+use crate::recording::Runs;
 use crate::terms::flow::FlowTerm;
 use crate::terms::resistance::Resistance;
 use crate::terms::rudder::Rudder;
@@ -231,10 +231,11 @@ impl Row {
 }
 
 /// Smallest and largest recorded surge speed \[m/s\]; `[0, 0]` where none was recorded.
-pub fn speed_range(runs: &[Run]) -> [f64; 2] {
-    let recorded = runs.iter().flat_map(|r| r.measured.iter().filter_map(|m| m[3]));
-    let start = runs.iter().map(|r| r.initial[3]);
-    recorded.chain(start).filter(|u| u.is_finite()).fold([0.0, 0.0], |[lo, hi], u| [lo.min(u), hi.max(u)])
+pub fn speed_range<'a>(runs: impl Into<Runs<'a>>) -> [f64; 2] {
+    runs.into().iter().fold([0.0, 0.0], |range, run| {
+        let recorded = run.measured.iter().filter_map(|m| m[3]).chain([run.initial[3]]);
+        recorded.filter(|u| u.is_finite()).fold(range, |[lo, hi], u| [lo.min(u), hi.max(u)])
+    })
 }
 
 /// The rows of all rules for a model, given the recorded range of surge speed \[m/s\].

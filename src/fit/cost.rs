@@ -15,7 +15,7 @@ use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model};
 use crate::physics::{CHUNK, Curvature, Gradient, Group, Lanes, NumDual, Number};
 use crate::ranks::{ExactSums, Ranks};
-use crate::recording::{Measured, Run};
+use crate::recording::{Measured, Run, Runs};
 use crate::sensitivity::{Column, Columns, Plain, Sensitivity};
 use crate::ship::Ship;
 use crate::simulate::{self, Integration, Scenario, absurd_speed};
@@ -23,6 +23,7 @@ use crate::state::{Inputs, STATES};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use trimtab_ad::{Dual, Scalar};
 
@@ -73,10 +74,10 @@ pub struct Cost<'a> {
     model: &'a Model,
     ranks: &'a Ranks,
     /// The runs of this rank.
-    runs: &'a [Run],
+    runs: Runs<'a>,
     /// Runs, samples and residuals of all ranks.
     counts: [usize; 3],
-    /// The diagonal of W of each run.
+    /// The diagonal of W of each run of this rank.
     weights: Vec<[f64; STATES]>,
     free: Vec<usize>,
     derivatives: Derivatives,
@@ -86,8 +87,8 @@ pub struct Cost<'a> {
     /// Whether a term may change what is reported of the state.
     sensed: bool,
     columns: Columns,
-    lanes: Vec<Block<Lanes>>,
-    single: Vec<Block<f64>>,
+    lanes: Blocks<Lanes>,
+    single: Blocks<f64>,
 }
 
 /// Settings of a [`Cost`].
@@ -102,6 +103,15 @@ pub struct CostOptions {
     /// Integration of the simulation.
     pub integration: Integration,
 }
+
+/// Blocks of runs: built, or planned as the indices of their runs where these are too many to be held.
+enum Blocks<P> {
+    Built(Vec<Block<P>>),
+    Planned(Vec<Vec<usize>>),
+}
+
+/// Blocks that are evaluated before what they gave is added up.
+const TOGETHER: usize = 256;
 
 /// Runs that are evaluated side by side.
 struct Block<P> {
@@ -202,19 +212,22 @@ fn dot<P: Scalar>(a: &[P; STATES], b: &[P; STATES], sum: P) -> P {
 }
 
 impl<P: Plain> Block<P> {
-    fn of(model: &Model, runs: &[Run], weights: &[[f64; STATES]], lanes: &[usize]) -> Self {
-        let in_lane = |lane: usize| &runs[lanes[lane.min(lanes.len() - 1)]];
-        let steps = lanes.iter().map(|r| runs[*r].inputs.len()).max().unwrap_or(0);
+    /// The block of some runs; `None` where one cannot be read.
+    fn of(model: &Model, runs: Runs, weights: &[[f64; STATES]], lanes: &[usize]) -> Option<Self> {
+        let runs = lanes.iter().map(|run| runs.get(*run)).collect::<Option<Vec<Cow<Run>>>>()?;
+        let in_lane = |lane: usize| &*runs[lane.min(runs.len() - 1)];
+        let steps = runs.iter().map(|r| r.inputs.len()).max().unwrap_or(0);
         let sample = |lane: usize, k: usize| {
             let inputs = &in_lane(lane).inputs;
             &inputs[k.min(inputs.len() - 1)]
         };
         let inputs =
             (0..steps).map(|k| Inputs::from_entries(|entry| P::gather(|lane| *entry(sample(lane, k))))).collect();
+        let roots: Vec<[f64; STATES]> = lanes.iter().map(|run| weights[*run].map(|w| w.max(0.0).sqrt())).collect();
         let weight = |lane: usize, k: usize, c: usize| {
-            let Some(&run) = lanes.get(lane) else { return 0.0 };
-            let compared = runs[run].measured.get(k).is_some_and(|m| m[c].is_some());
-            if compared { weights[run][c].max(0.0).sqrt() } else { 0.0 }
+            let Some(run) = runs.get(lane) else { return 0.0 };
+            let compared = run.measured.get(k).is_some_and(|m| m[c].is_some());
+            if compared { roots[lane][c] } else { 0.0 }
         };
         let measured =
             |lane: usize, k: usize, c: usize| in_lane(lane).measured.get(k).and_then(|m| m[c]).unwrap_or(0.0);
@@ -232,7 +245,7 @@ impl<P: Plain> Block<P> {
             }
             by_lane.push(values);
         }
-        Self {
+        Some(Self {
             runs: lanes.to_vec(),
             dt: in_lane(0).dt,
             inputs,
@@ -242,21 +255,25 @@ impl<P: Plain> Block<P> {
             root: table(&weight),
             whole,
             base: (0..model.parameters.len()).map(|i| P::gather(|lane| by_lane[lane][i])).collect(),
-            still: lanes.iter().all(|run| is_still(&runs[*run])),
-        }
+            still: runs.iter().all(|run| is_still(run)),
+        })
     }
 
-    /// Runs in blocks of equal sample period and similar length, in an order that depends on the runs alone.
-    fn group(model: &Model, runs: &[Run], weights: &[[f64; STATES]]) -> Vec<Self> {
-        let still: Vec<bool> = runs.iter().map(is_still).collect();
+    /// Runs in blocks of one sample period and similar length, in an order that depends on the runs alone, in still water or not:
+    /// a run is computed the same way whatever runs are beside it. `None` where a run cannot be read.
+    fn group(model: &Model, runs: Runs, weights: &[[f64; STATES]], shapes: &[Shape]) -> Option<Blocks<P>> {
         let mut order: Vec<usize> = (0..runs.len()).collect();
         order.sort_by(|a, b| {
-            let by_length = || runs[*b].inputs.len().cmp(&runs[*a].inputs.len());
-            runs[*a].dt.total_cmp(&runs[*b].dt).then(still[*a].cmp(&still[*b])).then_with(by_length)
+            let (a, b) = (&shapes[*a], &shapes[*b]);
+            a.dt.total_cmp(&b.dt).then(a.still.cmp(&b.still)).then(b.samples.cmp(&a.samples))
         });
-        // A run is computed the same way whatever runs are beside it.
-        let alike = order.chunk_by(|a, b| runs[*a].dt == runs[*b].dt && still[*a] == still[*b]);
-        alike.flat_map(|runs| runs.chunks(P::WIDTH)).map(|lanes| Self::of(model, runs, weights, lanes)).collect()
+        let alike = order.chunk_by(|a, b| (shapes[*a].dt, shapes[*a].still) == (shapes[*b].dt, shapes[*b].still));
+        let mut lanes = alike.flat_map(|runs| runs.chunks(P::WIDTH));
+        if runs.held() {
+            lanes.map(|lanes| Self::of(model, runs, weights, lanes)).collect::<Option<_>>().map(Blocks::Built)
+        } else {
+            Some(Blocks::Planned(lanes.by_ref().map(<[usize]>::to_vec).collect()))
+        }
     }
 
     /// The weighted difference in one channel, and its factor on the derivatives of the simulated value.
@@ -289,12 +306,49 @@ impl<P: Plain> Block<P> {
     }
 }
 
+impl<P> Blocks<P> {
+    fn is_empty(&self) -> bool {
+        match self {
+            Self::Built(blocks) => blocks.is_empty(),
+            Self::Planned(plans) => plans.is_empty(),
+        }
+    }
+}
+
+/// What decides which runs are evaluated side by side.
+struct Shape {
+    /// Sample period \[s\].
+    dt: f64,
+    still: bool,
+    samples: usize,
+}
+
+/// Whether no current was recorded in a run.
+fn is_still(run: &Run) -> bool {
+    run.inputs.iter().all(|i| i.current == [0.0; 2])
+}
+
+/// Whether a run can be fitted to.
+fn check(run: &Run, weights: &[f64; STATES]) -> Result<(), FitError> {
+    let bad = |what: &str| Err(FitError::BadRun { run: run.recording.clone(), what: what.into() });
+    if run.inputs.len() != run.measured.len() || run.inputs.len() < 2 {
+        return bad("inputs and measured states must have the same number of samples, at least 2");
+    }
+    if !(run.dt.is_finite() && run.dt > 0.0) {
+        return bad("the sample period must be positive");
+    }
+    if !run.initial.iter().chain(weights).all(|v| v.is_finite()) {
+        return bad("the initial state and the weights must be finite");
+    }
+    Ok(())
+}
+
 impl<'a> Cost<'a> {
     /// The cost of `model` against `runs`.
     ///
     /// # Errors
     /// No runs, a run without samples or of unequal lengths, or a sample period that is not positive.
-    pub fn new(model: &'a Model, runs: &'a [Run], options: CostOptions) -> Result<Self, FitError> {
+    pub fn new(model: &'a Model, runs: impl Into<Runs<'a>>, options: CostOptions) -> Result<Self, FitError> {
         Self::over(Ranks::one(), model, runs, options)
     }
 
@@ -303,8 +357,14 @@ impl<'a> Cost<'a> {
     ///
     /// # Errors
     /// As [`Cost::new`], for the runs of this rank; no runs on any rank.
-    pub fn over(ranks: &'a Ranks, model: &'a Model, runs: &'a [Run], options: CostOptions) -> Result<Self, FitError> {
-        let weights = runs.iter().map(|r| weights(&model.ship, r, options.max_yaw_rate)).collect();
+    pub fn over(
+        ranks: &'a Ranks,
+        model: &'a Model,
+        runs: impl Into<Runs<'a>>,
+        options: CostOptions,
+    ) -> Result<Self, FitError> {
+        let runs = runs.into();
+        let weights = runs.iter().map(|r| weights(&model.ship, &r, options.max_yaw_rate)).collect();
         Self::weighted(ranks, model, runs, weights, options)
     }
 
@@ -312,30 +372,36 @@ impl<'a> Cost<'a> {
     pub(super) fn weighted(
         ranks: &'a Ranks,
         model: &'a Model,
-        runs: &'a [Run],
+        runs: Runs<'a>,
         weights: Vec<[f64; STATES]>,
         options: CostOptions,
     ) -> Result<Self, FitError> {
+        let (mut shapes, mut residuals) = (Vec::with_capacity(runs.len()), 0);
         for (run, weights) in runs.iter().zip(&weights) {
-            let bad = |what: &str| Err(FitError::BadRun { run: run.recording.clone(), what: what.into() });
-            if run.inputs.len() != run.measured.len() || run.inputs.len() < 2 {
-                return bad("inputs and measured states must have the same number of samples, at least 2");
-            }
-            if !(run.dt.is_finite() && run.dt > 0.0) {
-                return bad("the sample period must be positive");
-            }
-            if !run.initial.iter().chain(weights).all(|v| v.is_finite()) {
-                return bad("the initial state and the weights must be finite");
-            }
+            check(&run, weights)?;
+            shapes.push(Shape { dt: run.dt, still: is_still(&run), samples: run.inputs.len() });
+            let of = |m: &Measured| (0..STATES).filter(|c| weights[*c] > 0.0 && m[*c].is_some()).count();
+            residuals += run.measured.iter().map(of).sum::<usize>();
         }
-        let free = model.free();
-        let columns: Vec<Column> = free.iter().map(|p| Column { parameter: *p, scale: 1.0 }).collect();
-        let samples = runs.iter().map(|r| r.measured.len()).sum();
-        let counts = ranks.counts([runs.len(), samples, residuals(runs, &weights)]);
+        if shapes.len() < runs.len() {
+            return Err(FitError::Unreadable);
+        }
+        let counts = ranks.counts([runs.len(), shapes.iter().map(|s| s.samples).sum(), residuals]);
         if counts[0] == 0 {
             return Err(FitError::NoRuns);
         }
-        let mut cost = Self {
+        let free = model.free();
+        let columns: Vec<Column> = free.iter().map(|p| Column { parameter: *p, scale: 1.0 }).collect();
+        let (mut lanes, mut single) = (Blocks::Built(Vec::new()), Blocks::Built(Vec::new()));
+        match options.derivatives {
+            Derivatives::Lanes | Derivatives::FiniteDifferences => {
+                lanes = Block::group(model, runs, &weights, &shapes).ok_or(FitError::Unreadable)?;
+            }
+            Derivatives::Dual | Derivatives::NumDual => {
+                single = Block::group(model, runs, &weights, &shapes).ok_or(FitError::Unreadable)?;
+            }
+        }
+        Ok(Self {
             model,
             ranks,
             runs,
@@ -348,16 +414,9 @@ impl<'a> Cost<'a> {
             integration: options.integration,
             limit: absurd_speed(model),
             sensed: model.placed()[BASE.len()..].iter().any(|t| t.term.info().group == Group::Sensor),
-            lanes: Vec::new(),
-            single: Vec::new(),
-        };
-        match options.derivatives {
-            Derivatives::Lanes | Derivatives::FiniteDifferences => {
-                cost.lanes = Block::group(model, runs, &cost.weights)
-            }
-            Derivatives::Dual | Derivatives::NumDual => cost.single = Block::group(model, runs, &cost.weights),
-        }
-        Ok(cost)
+            lanes,
+            single,
+        })
     }
 
     /// Indices of the free parameters in the model.
@@ -375,11 +434,6 @@ impl<'a> Cost<'a> {
         self.counts[0]
     }
 
-    /// Number of their samples.
-    pub fn samples(&self) -> usize {
-        self.counts[1]
-    }
-
     /// The diagonal of W of each run of this rank.
     pub fn weights(&self) -> &[[f64; STATES]] {
         &self.weights
@@ -388,6 +442,37 @@ impl<'a> Cost<'a> {
     /// Number of residuals that count, on all ranks: measured values with a weight above 0.
     pub fn residuals(&self) -> usize {
         self.counts[2]
+    }
+
+    /// Number of samples of the runs of all ranks.
+    pub(super) fn samples(&self) -> usize {
+        self.counts[1]
+    }
+
+    /// Hands every block to `work`, side by side, and what that makes of it to `take` in the order of the blocks, until `take` says
+    /// no more or a run cannot be read: `None` then.
+    fn each<P: Plain, T: Send>(
+        &self,
+        blocks: &Blocks<P>,
+        work: impl Fn(&Block<P>) -> T + Sync,
+        mut take: impl FnMut(&[usize], T) -> Option<()>,
+    ) -> Option<()> {
+        match blocks {
+            Blocks::Built(blocks) => {
+                for some in blocks.chunks(TOGETHER) {
+                    let done: Vec<T> = some.par_iter().map(&work).collect();
+                    some.iter().zip(done).try_for_each(|(block, one)| take(&block.runs, one))?;
+                }
+            }
+            Blocks::Planned(plans) => {
+                for some in plans.chunks(TOGETHER) {
+                    let one = |lanes: &Vec<usize>| Some(work(&Block::of(self.model, self.runs, &self.weights, lanes)?));
+                    let done: Vec<Option<T>> = some.par_iter().map(one).collect();
+                    some.iter().zip(done).try_for_each(|(lanes, one)| take(lanes, one?))?;
+                }
+            }
+        }
+        Some(())
     }
 
     /// The cost at the free parameters `p`, or `None` where a simulation diverges.
@@ -405,30 +490,28 @@ impl<'a> Cost<'a> {
         if self.lanes.is_empty() { self.squares_over(&self.single, p) } else { self.squares_over(&self.lanes, p) }
     }
 
-    fn squares_over<P: Plain>(&self, blocks: &[Block<P>], p: &[f64]) -> Option<Vec<f64>> {
-        let parts: Vec<Option<P>> = blocks
-            .par_iter()
-            .map(|block| {
-                let (mut square, mut fastest) = (P::zero(), P::zero());
-                self.rollout(block, p, |k, y| {
-                    for residual in block.residuals(k, y) {
-                        square = residual.mul_add(residual, square);
-                    }
-                    fastest =
-                        fastest.max(P::select(P::zero().less(block.root[k][3]), y[3] * y[3] + y[4] * y[4], P::zero()));
-                });
-                let sane = (0..P::WIDTH)
-                    .all(|lane| square.in_lane(lane).is_finite() && fastest.in_lane(lane) < self.limit * self.limit);
-                sane.then_some(square)
-            })
-            .collect();
+    fn squares_over<P: Plain>(&self, blocks: &Blocks<P>, p: &[f64]) -> Option<Vec<f64>> {
+        let of_block = |block: &Block<P>| {
+            let (mut square, mut fastest) = (P::zero(), P::zero());
+            self.rollout(block, p, |k, y| {
+                for residual in block.residuals(k, y) {
+                    square = residual.mul_add(residual, square);
+                }
+                fastest =
+                    fastest.max(P::select(P::zero().less(block.root[k][3]), y[3] * y[3] + y[4] * y[4], P::zero()));
+            });
+            let sane = (0..P::WIDTH)
+                .all(|lane| square.in_lane(lane).is_finite() && fastest.in_lane(lane) < self.limit * self.limit);
+            sane.then_some(square)
+        };
         let mut squares = vec![0.0; self.runs.len()];
-        for (block, part) in blocks.iter().zip(parts) {
+        self.each(blocks, of_block, |runs, part| {
             let part = part?;
-            for (lane, run) in block.runs.iter().enumerate() {
+            for (lane, run) in runs.iter().enumerate() {
                 squares[*run] = part.in_lane(lane);
             }
-        }
+            Some(())
+        })?;
         Some(squares)
     }
 
@@ -460,23 +543,26 @@ impl<'a> Cost<'a> {
     /// Adds up the runs of all ranks: exactly, so that neither ranks, threads nor blocks change a bit.
     fn assemble<P: Plain>(
         &self,
-        blocks: &[Block<P>],
+        blocks: &Blocks<P>,
         p: &[f64],
         with_matrix: bool,
         sums: impl Fn(&Block<P>) -> Sums<P> + Sync + Send,
     ) -> Option<Quadratic> {
         let n = self.free.len();
-        let parts: Vec<Sums<P>> = blocks.par_iter().map(sums).collect();
-        let factor = 2.0 / self.runs() as f64;
         let mut by_run = vec![DVector::zeros(n); self.runs.len()];
         let entries = if with_matrix { n * (n + 1) / 2 } else { 0 };
         let mut total = ExactSums::new(1 + n + entries).at(p);
-        for (block, part) in blocks.iter().zip(&parts) {
-            for (lane, run) in block.runs.iter().enumerate() {
+        let factor = 2.0 / self.runs() as f64;
+        let read = self.each(blocks, sums, |runs, part| {
+            for (lane, run) in runs.iter().enumerate() {
                 let own = std::iter::once(&part.square).chain(&part.gradient).chain(&part.matrix);
                 own.enumerate().for_each(|(i, sum)| total.add(i, sum.in_lane(lane)));
                 by_run[*run] = DVector::from_iterator(n, part.gradient.iter().map(|g| factor * g.in_lane(lane)));
             }
+            Some(())
+        });
+        if read.is_none() {
+            total.spoil();
         }
         let total = self.ranks.total(total)?;
         let (gradient, packed) = total[1..].split_at(n);
@@ -572,22 +658,25 @@ impl<'a> Cost<'a> {
     /// The exact Hessian of the cost, by second-order dual numbers in blocks of 6 by 6, or `None` where it diverges.
     pub fn hessian(&self, p: &[f64]) -> Option<DMatrix<f64>> {
         let n = self.free.len();
-        let parts: Vec<DMatrix<f64>> = (0..self.runs.len())
-            .into_par_iter()
-            .map(|run| {
-                let block = Block::<f64>::of(self.model, self.runs, &self.weights, &[run]);
-                let mut sum = DMatrix::zeros(n, n);
-                for row in (0..n).step_by(BLOCK) {
-                    for column in (0..=row).step_by(BLOCK) {
-                        self.add_curvature(&block, p, row, column, &mut sum);
-                    }
+        let of_run = |run: usize| {
+            let block = Block::<f64>::of(self.model, self.runs, &self.weights, &[run])?;
+            let mut sum = DMatrix::zeros(n, n);
+            for row in (0..n).step_by(BLOCK) {
+                for column in (0..=row).step_by(BLOCK) {
+                    self.add_curvature(&block, p, row, column, &mut sum);
                 }
-                sum
-            })
-            .collect();
+            }
+            Some(sum)
+        };
         let mut total = ExactSums::new(n * n).at(p);
-        for part in parts {
-            part.iter().enumerate().for_each(|(i, sum)| total.add(i, *sum));
+        for first in (0..self.runs.len()).step_by(TOGETHER) {
+            let some = first..(first + TOGETHER).min(self.runs.len());
+            for part in some.into_par_iter().map(of_run).collect::<Vec<Option<DMatrix<f64>>>>() {
+                match part {
+                    Some(part) => part.iter().enumerate().for_each(|(i, sum)| total.add(i, *sum)),
+                    None => total.spoil(),
+                }
+            }
         }
         let mut hessian = DMatrix::from_vec(n, n, self.ranks.total(total)?) * (2.0 / self.runs() as f64);
         hessian.fill_upper_triangle_with_lower_triangle();
@@ -679,25 +768,11 @@ impl<'a> Cost<'a> {
     /// The first run, on any rank, whose simulation diverges at `p`, and when \[s\] on its recording's clock.
     pub fn divergence(&self, p: &[f64]) -> Option<(String, f64)> {
         let own = self.runs.iter().enumerate().find_map(|(i, run)| {
-            let theta = self.theta(&Block::<f64>::of(self.model, self.runs, &self.weights, &[i]), p);
+            let theta = self.theta(&Block::<f64>::of(self.model, self.runs, &self.weights, &[i])?, p);
             let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
             let trajectory = simulate::reported(self.model, &theta, self.integration, &scenario, &run.channels());
             trajectory.diverged_at.map(|k| (run.recording.clone(), run.time(k)))
         });
         self.ranks.gather(&own).into_iter().flatten().next()
     }
-}
-
-/// Whether no current was recorded in a run.
-fn is_still(run: &Run) -> bool {
-    run.inputs.iter().all(|i| i.current == [0.0; 2])
-}
-
-/// Number of measured values of runs with a weight above 0.
-fn residuals(runs: &[Run], weights: &[[f64; STATES]]) -> usize {
-    let counted = |(run, weights): (&Run, &[f64; STATES])| {
-        let of = |m: &Measured| (0..STATES).filter(|c| weights[*c] > 0.0 && m[*c].is_some()).count();
-        run.measured.iter().map(of).sum::<usize>()
-    };
-    runs.iter().zip(weights).map(counted).sum()
 }

@@ -89,8 +89,8 @@ pub struct ResidualStatistics {
 }
 
 /// Weighted residuals of one run: an entry is NaN where nothing was measured.
-struct Residuals<'a> {
-    recording: &'a str,
+struct Residuals {
+    recording: String,
     values: Vec<[f64; STATES]>,
     /// Weighted variance of what was measured of each channel; NaN where nothing was.
     variance: [f64; STATES],
@@ -105,17 +105,16 @@ const STEERED: std::ops::Range<usize> = 4..6;
 impl ResidualStatistics {
     /// The statistics of a model on the runs of a task.
     pub(super) fn of(task: &Task, model: &Model) -> Self {
-        let residuals: Vec<Residuals> =
-            task.runs.par_iter().zip(task.cost.weights()).map(|(run, w)| residuals(task, model, run, w)).collect();
         let ranks = task.cost.ranks();
-        let growth = growth(ranks, &residuals);
-        Self {
-            model_error: model_error(ranks, &residuals),
-            growth: growth.map(|g| g.0),
-            growth_error: growth.and_then(|g| g.1),
-            loss: loss(ranks, &residuals),
-            likeness: likeness(ranks, &residuals),
+        let every = task.cost.runs().div_ceil(WINDOWS).max(1);
+        let mut tally = Tally::after(ranks.before(task.runs.len()));
+        for first in (0..task.runs.len()).step_by(TOGETHER) {
+            let some = first..(first + TOGETHER).min(task.runs.len());
+            let of = |i: usize| Some(residuals(task, model, &*task.runs.get(i)?, &task.cost.weights()[i]));
+            let some: Vec<Option<Residuals>> = some.into_par_iter().map(of).collect();
+            some.into_iter().flatten().for_each(|one| tally.add(one, every));
         }
+        tally.statistics(ranks)
     }
 
     /// What the statistics say against the fit.
@@ -183,7 +182,7 @@ pub(super) fn headline(converged: bool, words: &str, doubts: &[Doubt]) -> String
     }
 }
 
-fn residuals<'a>(task: &Task, model: &Model, run: &'a Run, weights: &[f64; STATES]) -> Residuals<'a> {
+fn residuals(task: &Task, model: &Model, run: &Run, weights: &[f64; STATES]) -> Residuals {
     let theta = model.values_in(&run.session);
     let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
     let predicted = reported(model, &theta, task.settings.integration, &scenario, &run.channels());
@@ -201,7 +200,7 @@ fn residuals<'a>(task: &Task, model: &Model, run: &'a Run, weights: &[f64; STATE
         weights[c] * values().map(|v| (v - mean).powi(2)).sum::<f64>() / count
     };
     Residuals {
-        recording: &run.recording,
+        recording: run.recording.clone(),
         values: run.measured.iter().zip(&predicted.states).map(of_sample).collect(),
         variance: std::array::from_fn(variance),
     }
@@ -213,16 +212,82 @@ fn squares(values: &[[f64; STATES]], channels: std::ops::Range<usize>) -> (f64, 
     finite.fold((0.0, 0.0), |(sum, count), e| (sum + e * e, count + 1.0))
 }
 
-/// Mean square of the residuals over that of the sensors' noise.
-fn model_error(ranks: &Ranks, residuals: &[Residuals]) -> Option<f64> {
-    // For each channel: squares and their number, squares of second differences and their number.
-    let mut sums = ExactSums::new(4 * STATES);
-    for (r, c) in residuals.iter().flat_map(|r| (0..STATES).map(move |c| (r, c))) {
-        let (square, count) = squares(&r.values, c..c + 1);
-        let seconds = r.values.windows(3).map(|w| w[2][c] - 2.0 * w[1][c] + w[0][c]).filter(|d| d.is_finite());
-        let (differences, triples) = seconds.fold((0.0, 0.0), |(sum, n), d| (sum + d * d / 6.0, n + 1.0));
-        [square, count, differences, triples].into_iter().enumerate().for_each(|(i, x)| sums.add(4 * c + i, x));
+/// Runs whose residuals are computed before they are added up.
+const TOGETHER: usize = 256;
+
+/// Sums over the residuals of runs, from which the statistics come.
+struct Tally {
+    /// Index of the next run among those of all ranks.
+    next: usize,
+    /// For each channel: the sum of squares and the number of values, and the same of the second differences, a sixth each.
+    squares: ExactSums,
+    /// Mean squares of velocities in the second and in the last quarter, summed by recording.
+    quarters: BTreeMap<String, [f64; 2]>,
+    /// Mean squares in sway and yaw rate in the first and the last quarter, and the variance measured.
+    lost: ExactSums,
+    /// Residuals of some runs, evenly drawn.
+    drawn: Vec<Residuals>,
+}
+
+impl Tally {
+    /// Of no run yet, after those of the ranks before.
+    fn after(runs: usize) -> Self {
+        let (squares, lost) = (ExactSums::new(4 * STATES), ExactSums::new(3));
+        Self { next: runs, squares, quarters: BTreeMap::new(), lost, drawn: Vec::new() }
     }
+
+    /// Adds a run; every so many are kept for autocorrelations.
+    fn add(&mut self, run: Residuals, every: usize) {
+        for c in 0..STATES {
+            let (square, count) = squares(&run.values, c..c + 1);
+            let second = |w: &[[f64; STATES]]| w[2][c] - 2.0 * w[1][c] + w[0][c];
+            let seconds = run.values.windows(3).map(second).filter(|d| d.is_finite());
+            let (differences, triples) = seconds.fold((0.0, 0.0), |(sum, n), d| (sum + d * d / 6.0, n + 1.0));
+            let of_channel = [square, count, differences, triples].into_iter().enumerate();
+            of_channel.for_each(|(i, x)| self.squares.add(4 * c + i, x));
+        }
+        let quarter = run.values.len() / 4;
+        if quarter >= 2 {
+            self.add_quarters(&run, quarter);
+        }
+        if self.next.is_multiple_of(every) {
+            self.drawn.push(run);
+        }
+        self.next += 1;
+    }
+
+    fn add_quarters(&mut self, run: &Residuals, quarter: usize) {
+        // The middles of the second and of the last quarter are at 3/8 and 7/8 of the window.
+        let [first, second] = [&run.values[..quarter], &run.values[quarter..2 * quarter]];
+        let last = &run.values[run.values.len() - quarter..];
+        let mean_square = |(sum, count): (f64, f64)| if count > 0.0 { sum / count } else { 0.0 };
+        let sums = self.quarters.entry(run.recording.clone()).or_default();
+        sums[0] += mean_square(squares(second, VELOCITIES));
+        sums[1] += mean_square(squares(last, VELOCITIES));
+        for c in STEERED.filter(|c| run.variance[*c].is_finite()) {
+            let ends = [first, last].map(|part| squares(part, c..c + 1));
+            if ends.iter().all(|(_, count)| *count > 0.0) {
+                ends.iter().enumerate().for_each(|(i, (square, count))| self.lost.add(i, square / count));
+                self.lost.add(2, run.variance[c]);
+            }
+        }
+    }
+
+    /// The statistics of the runs of all ranks.
+    fn statistics(self, ranks: &Ranks) -> ResidualStatistics {
+        let growth = growth(ranks, &self.quarters);
+        ResidualStatistics {
+            model_error: model_error(ranks, self.squares),
+            growth: growth.map(|g| g.0),
+            growth_error: growth.and_then(|g| g.1),
+            loss: loss(ranks, self.lost),
+            likeness: likeness(ranks, &self.drawn),
+        }
+    }
+}
+
+/// Mean square of the residuals over that of the sensors' noise.
+fn model_error(ranks: &Ranks, sums: ExactSums) -> Option<f64> {
     let (mut square, mut noise) = (0.0, 0.0);
     for of_channel in ranks.total(sums)?.chunks(4) {
         let [sum, count, differences, triples] = [0, 1, 2, 3].map(|i| of_channel[i]);
@@ -235,26 +300,11 @@ fn model_error(ranks: &Ranks, residuals: &[Residuals]) -> Option<f64> {
 }
 
 /// Exponent of the growth of the residuals along the windows, with its standard error over the recordings.
-fn growth(ranks: &Ranks, residuals: &[Residuals]) -> Option<(f64, Option<f64>)> {
-    // Mean squares in the second and in the last quarter, whose middles are at 3/8 and 7/8 of the window.
-    let mean_square = |values: &[[f64; STATES]]| {
-        let (sum, count) = squares(values, VELOCITIES);
-        if count > 0.0 { sum / count } else { 0.0 }
-    };
-    let mut by_recording: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
-    for r in residuals {
-        let quarter = r.values.len() / 4;
-        if quarter < 2 {
-            continue;
-        }
-        let sums = by_recording.entry(r.recording).or_default();
-        sums[0] += mean_square(&r.values[quarter..2 * quarter]);
-        sums[1] += mean_square(&r.values[r.values.len() - quarter..]);
-    }
+fn growth(ranks: &Ranks, quarters: &BTreeMap<String, [f64; 2]>) -> Option<(f64, Option<f64>)> {
     let exponent = |[early, late]: &[f64; 2]| {
         (*early > FINEST * FINEST && *late > 0.0).then(|| 0.5 * (late / early).ln() / (7.0_f64 / 3.0).ln())
     };
-    let exponents: Vec<f64> = by_recording.values().filter_map(exponent).collect();
+    let exponents: Vec<f64> = quarters.values().filter_map(exponent).collect();
     let total = |of: &dyn Fn(f64) -> f64| {
         let mut sums = ExactSums::new(1);
         exponents.iter().for_each(|b| sums.add(0, of(*b)));
@@ -267,34 +317,17 @@ fn growth(ranks: &Ranks, residuals: &[Residuals]) -> Option<(f64, Option<f64>)> 
 }
 
 /// Shares of the measured variance of sway and yaw rate that the first and the last quarter of the windows lose.
-fn loss(ranks: &Ranks, residuals: &[Residuals]) -> Option<[f64; 2]> {
-    let mut sums = ExactSums::new(3);
-    for r in residuals.iter().filter(|r| r.values.len() >= 8) {
-        let quarter = r.values.len() / 4;
-        for c in STEERED.filter(|c| r.variance[*c].is_finite()) {
-            let ends =
-                [&r.values[..quarter], &r.values[r.values.len() - quarter..]].map(|part| squares(part, c..c + 1));
-            if ends.iter().all(|(_, count)| *count > 0.0) {
-                sums.add(0, r.variance[c]);
-                ends.iter().enumerate().for_each(|(i, (square, count))| sums.add(1 + i, square / count));
-            }
-        }
-    }
+fn loss(ranks: &Ranks, sums: ExactSums) -> Option<[f64; 2]> {
     let total = ranks.total(sums)?;
-    (total[0] > 0.0).then(|| [total[1] / total[0], total[2] / total[0]])
+    (total[2] > 0.0).then(|| [total[0] / total[2], total[1] / total[2]])
 }
 
 /// How many successive residuals count as one: `1 + 2 sum rho(l)` over the lags up to where rho is lost in scatter.
-fn likeness(ranks: &Ranks, residuals: &[Residuals]) -> Option<f64> {
-    let [windows] = ranks.counts([residuals.len()]);
-    let every = windows.div_ceil(WINDOWS).max(1);
-    // The first window of this rank among those that are drawn of all.
-    let first = ranks.before(residuals.len()).next_multiple_of(every) - ranks.before(residuals.len());
-    let drawn: Vec<&Residuals> = residuals.iter().skip(first).step_by(every).collect();
+fn likeness(ranks: &Ranks, drawn: &[Residuals]) -> Option<f64> {
     let longest = drawn.iter().map(|r| r.values.len()).max().unwrap_or(0);
     let longest = ranks.largest(&[longest as f64])[0] as usize;
     let product = |lag: usize| {
-        let of_run = |r: &&Residuals| {
+        let of_run = |r: &Residuals| {
             let mut sum = (0.0, 0.0);
             for (a, b) in r.values.iter().zip(r.values.iter().skip(lag)) {
                 for (a, b) in a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite()) {
@@ -338,56 +371,49 @@ mod tests {
         (0..24).map(|w| (format!("recording {}", w / 2), window(w, &mut rng))).collect()
     }
 
-    fn view(made: &[(String, Vec<[f64; STATES]>)]) -> Vec<Residuals<'_>> {
+    fn view(made: &[(String, Vec<[f64; STATES]>)]) -> ResidualStatistics {
         // Sway that was measured to vary by 0.1.
         let variance = [f64::NAN, f64::NAN, f64::NAN, f64::NAN, 0.01, f64::NAN];
-        made.iter().map(|(name, values)| Residuals { recording: name, values: values.clone(), variance }).collect()
+        let mut tally = Tally::after(0);
+        for (recording, values) in made.iter().cloned() {
+            tally.add(Residuals { recording, values, variance }, 1);
+        }
+        tally.statistics(Ranks::one())
     }
 
     #[test]
     fn white_noise_alone_gives_no_reason_to_doubt() {
         let white = made(0.01, |_, _| 0.0);
-        let residuals = view(&white);
-        assert!((model_error(Ranks::one(), &residuals).unwrap() - 1.0).abs() < 0.1);
-        let (growth, error) = growth(Ranks::one(), &residuals).unwrap();
-        assert!(growth.abs() < 0.1 && error.unwrap() < 0.1, "{growth} {error:?}");
-        assert!((likeness(Ranks::one(), &residuals).unwrap() - 1.0).abs() < 0.2);
+        let found = view(&white);
+        assert!((found.model_error.unwrap() - 1.0).abs() < 0.1);
+        assert!(found.growth.unwrap().abs() < 0.1 && found.growth_error.unwrap() < 0.1, "{found:?}");
+        assert!((found.likeness.unwrap() - 1.0).abs() < 0.2);
     }
 
     #[test]
     fn a_smooth_error_above_the_noise_is_a_model_error_and_makes_residuals_alike() {
         let wave = made(0.01, |w, k| 0.1 * (0.1 * k as f64 + w as f64).sin());
-        let residuals = view(&wave);
+        let found = view(&wave);
         // Variance 0.005 of the wave over 0.0001 of the noise.
-        let ratio = model_error(Ranks::one(), &residuals).unwrap();
+        let ratio = found.model_error.unwrap();
         assert!((40.0..60.0).contains(&ratio), "{ratio}");
-        assert!(likeness(Ranks::one(), &residuals).unwrap() > 10.0);
-        assert!(growth(Ranks::one(), &residuals).unwrap().0 < 0.5);
+        assert!(found.likeness.unwrap() > 10.0);
+        assert!(found.growth.unwrap() < 0.5);
     }
 
     #[test]
     fn the_exponent_of_growth_is_found() {
         for power in [0.5, 1.0, 2.0] {
             let grown = made(0.0, |w, k| (1.0 + 0.1 * w as f64) * (k as f64 / 120.0).powf(power));
-            let (found, error) = growth(Ranks::one(), &view(&grown)).unwrap();
+            let found = view(&grown);
             // The rms of a quarter is not at its middle.
-            assert!((found - power).abs() < 0.1, "t^{power}: {found} +- {error:?}");
+            assert!((found.growth.unwrap() - power).abs() < 0.1, "t^{power}: {found:?}");
         }
     }
 
     #[test]
     fn windows_at_whose_end_the_motion_is_lost_are_too_long() {
-        let doubt = |made: &[(String, Vec<[f64; STATES]>)]| {
-            let residuals = view(made);
-            let growth = growth(Ranks::one(), &residuals);
-            let statistics = ResidualStatistics {
-                growth: growth.map(|g| g.0),
-                growth_error: growth.and_then(|g| g.1),
-                loss: loss(Ranks::one(), &residuals),
-                ..ResidualStatistics::default()
-            };
-            statistics.too_long().map(|d| d.kind)
-        };
+        let doubt = |made: &[(String, Vec<[f64; STATES]>)]| view(made).too_long().map(|d| d.kind);
         let wave = |w: usize, k: usize| (0.2 * k as f64 + w as f64).sin();
         // Out of step from the middle of the window on, by as much as is measured; out of step all the time; and in step.
         let lost = made(0.001, |w, k| 0.08 * wave(w, k) * (k as f64 / 60.0).min(1.0));
@@ -401,9 +427,9 @@ mod tests {
     #[test]
     fn an_exact_fit_is_not_doubted_for_the_shape_of_its_rounding() {
         let exact = made(0.0, |w, k| 1e-9 * (0.1 * k as f64 + w as f64).sin());
-        let residuals = view(&exact);
-        assert!(model_error(Ranks::one(), &residuals).unwrap() < 1.0);
-        assert_eq!((growth(Ranks::one(), &residuals), likeness(Ranks::one(), &residuals)), (None, None));
+        let found = view(&exact);
+        assert!(found.model_error.unwrap() < 1.0);
+        assert_eq!((found.growth, found.likeness), (None, None));
     }
 
     #[test]

@@ -12,6 +12,11 @@ pub enum FitError {
     /// There is nothing to fit to.
     #[error("there are no recordings to fit to; mark at least one run of the study for training")]
     NoRuns,
+    /// The file that keeps the runs cannot be read.
+    #[error(
+        "the temporary file with the recordings cannot be read; check the disk that holds the folder for temporary files"
+    )]
+    Unreadable,
     /// There is nothing to fit.
     #[error("no parameter is free; set `free = true` for at least one parameter in the model file")]
     NothingFree,

@@ -21,6 +21,7 @@ use super::stages;
 use super::subspace::inverse;
 use super::task::{ActiveSet, Task};
 use crate::ipopt::{self, Counts, HessianMode, IpoptError, OptionValue, Options, Solution, Status};
+use crate::recording::Runs;
 
 /// How often the solver starts again from a better point that it left.
 const RESTARTS: usize = 3;
@@ -129,8 +130,9 @@ impl Task<'_> {
         let mut p = self.start.clone();
         let mut priors = Priors::of(self.model);
         for parts in stages::falling(parts) {
-            let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts);
-            let cost = Cost::weighted(self.cost.ranks(), self.model, &pieces, weights, self.cost_options())?;
+            let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts)?;
+            let pieces = Runs::from(&pieces);
+            let cost = Cost::weighted(self.cost.ranks(), self.model, pieces, weights, self.cost_options())?;
             let Some(value) = cost.value(&p) else { continue };
             priors.weight = self.weight(&cost, value);
             let stage = Stage {

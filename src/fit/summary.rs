@@ -14,8 +14,8 @@ use crate::ipopt::Counts;
 use crate::model::Model;
 use crate::ranges::Limited;
 use crate::ranks::Ranks;
-use crate::recording::Run;
-use crate::validity::{self, Coverage};
+use crate::recording::Runs;
+use crate::validity::{self, Count, Coverage};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::time::Instant;
@@ -144,9 +144,9 @@ fn serialize_counts<S: serde::Serializer>(counts: &Counts, serializer: S) -> Res
 /// # Errors
 /// See [`FitError`]: nothing to fit or to fit to, unusable runs or settings, a simulation that diverges at the start,
 /// constraints that contradict each other.
-pub fn fit(
-    model: &Model,
-    runs: &[Run],
+pub fn fit<'a>(
+    model: &'a Model,
+    runs: impl Into<Runs<'a>>,
     settings: &FitSettings,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Fit, FitError> {
@@ -161,15 +161,16 @@ pub fn fit(
 /// # Errors
 /// As [`fit`]. An error that only this rank meets, such as an unusable run, must end the job ([`Ranks::fail`]): the other ranks
 /// wait for its sums.
-pub fn fit_over(
-    ranks: &Ranks,
-    model: &Model,
-    runs: &[Run],
+pub fn fit_over<'a>(
+    ranks: &'a Ranks,
+    model: &'a Model,
+    runs: impl Into<Runs<'a>>,
     settings: &FitSettings,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Fit, FitError> {
     let clock = Instant::now();
     settings.limits()?;
+    let runs = runs.into();
     let cost = Cost::over(ranks, model, runs, settings.cost_options())?;
     let task = Task::new(model, &cost, runs, settings)?;
     let mut end = task.solve(progress)?;
@@ -184,9 +185,11 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
     let statistics = ResidualStatistics::of(task, &model);
     let covariances = Covariances::of(task, &end, cost, statistics.likeness);
     let doubts = statistics.doubts(&covariances, task.scales.len());
-    let samples = task.runs.iter().flat_map(validity::samples);
+    let mut validity = Count::new(&model);
+    task.runs.iter().for_each(|run| validity.add(validity::samples(&run)));
+    validity.gather(task.cost.ranks());
     Fit {
-        validity: validity::outside_over(task.cost.ranks(), &model, samples),
+        validity: validity.coverage(),
         converged: end.converged,
         headline: headline(end.converged, &end.words, &doubts),
         doubts,

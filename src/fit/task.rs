@@ -7,7 +7,7 @@ use super::error::FitError;
 use super::settings::FitSettings;
 use super::subspace::null_space;
 use crate::model::{Model, Parameter};
-use crate::recording::Run;
+use crate::recording::Runs;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeSet;
 
@@ -22,7 +22,7 @@ pub(super) struct Task<'a> {
     pub model: &'a Model,
     pub cost: &'a Cost<'a>,
     /// The runs of this rank.
-    pub runs: &'a [Run],
+    pub runs: Runs<'a>,
     pub settings: &'a FitSettings,
     pub rows: Vec<Row>,
     pub scales: Vec<f64>,
@@ -45,27 +45,28 @@ impl<'a> Task<'a> {
     pub fn new(
         model: &'a Model,
         cost: &'a Cost<'a>,
-        runs: &'a [Run],
+        runs: Runs<'a>,
         settings: &'a FitSettings,
     ) -> Result<Self, FitError> {
         let free: Vec<&Parameter> = cost.free().iter().map(|i| &model.parameters[*i]).collect();
         if free.is_empty() {
             return Err(FitError::NothingFree);
         }
-        let ranks = cost.ranks();
         let [slowest, fastest] = constraints::speed_range(runs);
-        let ends = ranks.largest(&[-slowest, fastest]);
+        let ends = cost.ranks().largest(&[-slowest, fastest]);
         let rows = constraints::rows(model, &settings.constraints, [-ends[0], ends[1]])?;
         let mut bounds: Vec<(f64, f64)> = free.iter().map(|p| (p.lower, p.upper)).collect();
         keep_mass_matrix_positive(model, &free, &mut bounds);
         let start: Vec<f64> = free.iter().zip(&bounds).map(|(p, (lo, hi))| p.value.max(*lo).min(*hi)).collect();
         let start_cost = cost.value(&start).unwrap_or(f64::INFINITY);
         let scales = free.iter().map(|p| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 }).collect();
-        let own: BTreeSet<&str> = runs.iter().map(|r| r.session.as_str()).collect();
-        let met = model.sessions.keys().map(|s| f64::from(u8::from(own.contains(s.as_str()))));
-        let met = ranks.largest(&met.collect::<Vec<f64>>());
-        let mut sessions: Vec<String> =
-            model.sessions.keys().zip(met).filter(|(_, met)| *met > 0.0).map(|(s, _)| s.clone()).collect();
+        let mut sessions: Vec<String> = if model.sessions.is_empty() {
+            Vec::new()
+        } else {
+            let own: BTreeSet<String> = runs.iter().map(|r| r.session.clone()).collect();
+            let met: BTreeSet<String> = cost.ranks().gather(&own).into_iter().flatten().collect();
+            met.into_iter().filter(|s| model.sessions.contains_key(s)).collect()
+        };
         sessions.push(String::new());
         Ok(Self { model, cost, runs, settings, rows, scales, bounds, start, start_cost, sessions })
     }
@@ -77,7 +78,7 @@ impl<'a> Task<'a> {
 
     /// The error of a start whose simulation diverges.
     pub fn diverged(&self) -> FitError {
-        let first = || self.runs.first().map_or_else(Default::default, |r| (r.recording.clone(), r.start_time()));
+        let first = || self.runs.get(0).map_or((String::new(), 0.0), |run| (run.recording.clone(), run.start_time()));
         let (run, time) = self.cost.divergence(&self.start).unwrap_or_else(first);
         FitError::Diverged { run, time }
     }

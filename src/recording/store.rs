@@ -9,36 +9,68 @@ use std::io::{Error, ErrorKind, Read, Result, Seek, SeekFrom, Write};
 use std::sync::{Mutex, PoisonError};
 
 /// Runs, wherever they are kept.
-pub trait Runs: Sync {
+#[derive(Clone, Copy, Debug)]
+pub enum Runs<'a> {
+    /// In memory.
+    Held(&'a [Run]),
+    /// In a store.
+    Stored(&'a RunStore),
+}
+
+impl<'a> From<&'a [Run]> for Runs<'a> {
+    fn from(runs: &'a [Run]) -> Self {
+        Self::Held(runs)
+    }
+}
+
+impl<'a, const N: usize> From<&'a [Run; N]> for Runs<'a> {
+    fn from(runs: &'a [Run; N]) -> Self {
+        Self::Held(runs)
+    }
+}
+
+impl<'a> From<&'a Vec<Run>> for Runs<'a> {
+    fn from(runs: &'a Vec<Run>) -> Self {
+        Self::Held(runs)
+    }
+}
+
+impl<'a> From<&'a RunStore> for Runs<'a> {
+    fn from(store: &'a RunStore) -> Self {
+        if store.file.is_none() { Self::Held(&store.held) } else { Self::Stored(store) }
+    }
+}
+
+impl<'a> Runs<'a> {
     /// How many there are.
-    fn len(&self) -> usize;
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Held(runs) => runs.len(),
+            Self::Stored(store) => store.len(),
+        }
+    }
 
     /// Whether there is none.
-    fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// A run by its index.
-    ///
-    /// # Errors
-    /// When the file that keeps it cannot be read.
-    fn get(&self, index: usize) -> Result<Cow<'_, Run>>;
-
-    /// All of them, where they are in memory.
-    fn held(&self) -> Option<&[Run]>;
-}
-
-impl Runs for [Run] {
-    fn len(&self) -> usize {
-        <[Run]>::len(self)
+    /// Whether they are in memory, so that what is made of them may be as well.
+    pub fn held(&self) -> bool {
+        matches!(self, Self::Held(_))
     }
 
-    fn get(&self, index: usize) -> Result<Cow<'_, Run>> {
-        <[Run]>::get(self, index).map(Cow::Borrowed).ok_or_else(|| Error::from(ErrorKind::NotFound))
+    /// A run by its index; `None` beyond the last, and where the file that keeps it cannot be read: see [`RunStore::failure`].
+    pub fn get(&self, index: usize) -> Option<Cow<'a, Run>> {
+        match self {
+            Self::Held(runs) => runs.get(index).map(Cow::Borrowed),
+            Self::Stored(store) => store.get(index),
+        }
     }
 
-    fn held(&self) -> Option<&[Run]> {
-        Some(self)
+    /// One run after the other, up to the first that cannot be read.
+    pub fn iter(self) -> impl Iterator<Item = Cow<'a, Run>> {
+        (0..self.len()).map_while(move |index| self.get(index))
     }
 }
 
@@ -52,6 +84,7 @@ pub struct RunStore {
     samples: usize,
     most: usize,
     file: Option<RunFile>,
+    failure: Mutex<Option<Error>>,
 }
 
 impl Default for RunStore {
@@ -63,7 +96,7 @@ impl Default for RunStore {
 impl RunStore {
     /// Without a run; more than `most` samples are kept in a file without a name in the folder for temporary files.
     pub fn new(most: usize) -> Self {
-        Self { held: Vec::new(), samples: 0, most, file: None }
+        Self { held: Vec::new(), samples: 0, most, file: None, failure: Mutex::new(None) }
     }
 
     /// Adds a run.
@@ -91,20 +124,32 @@ impl RunStore {
     }
 }
 
-impl Runs for RunStore {
-    fn len(&self) -> usize {
+impl RunStore {
+    /// How many runs there are.
+    pub fn len(&self) -> usize {
         self.file.as_ref().map_or(self.held.len(), |file| file.places.len())
     }
 
-    fn get(&self, index: usize) -> Result<Cow<'_, Run>> {
-        match &self.file {
-            Some(file) => file.get(index).map(Cow::Owned),
-            None => Runs::get(&self.held[..], index),
-        }
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
-    fn held(&self) -> Option<&[Run]> {
-        self.file.is_none().then_some(&self.held)
+    /// A run by its index; `None` beyond the last, and where the file cannot be read.
+    pub fn get(&self, index: usize) -> Option<Cow<'_, Run>> {
+        let Some(file) = &self.file else { return self.held.get(index).map(Cow::Borrowed) };
+        let place = *file.places.get(index)?;
+        let run = file.read(place);
+        if let Err(error) = &run {
+            let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+            failure.get_or_insert_with(|| Error::new(error.kind(), error.to_string()));
+        }
+        run.ok().map(Cow::Owned)
+    }
+
+    /// The error of the first run that could not be read, if one could not.
+    pub fn failure(&self) -> Option<Error> {
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 }
 
@@ -146,8 +191,7 @@ impl RunFile {
         Ok(())
     }
 
-    fn get(&self, index: usize) -> Result<Run> {
-        let (from, length, source) = *self.places.get(index).ok_or_else(|| Error::from(ErrorKind::NotFound))?;
+    fn read(&self, (from, length, source): (u64, u32, u32)) -> Result<Run> {
         let mut bytes = vec![0; length as usize];
         {
             let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
@@ -322,13 +366,23 @@ mod tests {
             let mut store = RunStore::new(most);
             runs.iter().for_each(|run| store.push(run.clone()).unwrap());
             assert_eq!((store.len(), store.samples()), (12, runs.iter().map(|r| r.inputs.len()).sum()));
-            assert_eq!(store.held().is_some(), most == usize::MAX);
+            assert_eq!(Runs::from(&store).held(), most == usize::MAX);
+            assert!(Runs::from(&store).iter().eq(Runs::from(&runs).iter()));
             for (i, run) in runs.iter().enumerate().rev() {
                 assert_eq!(&*store.get(i).unwrap(), run, "{most}");
                 assert_eq!(encoded(&store.get(i).unwrap()), encoded(run));
             }
-            assert!(store.get(12).is_err());
+            assert!(store.get(12).is_none() && store.failure().is_none());
         }
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_read_is_told_once() {
+        let mut store = RunStore::new(0);
+        runs().into_iter().for_each(|run| store.push(run).unwrap());
+        store.file.as_ref().unwrap().file.lock().unwrap().set_len(100).unwrap();
+        assert!(store.get(5).is_none() && Runs::from(&store).iter().count() < 12);
+        assert!(store.failure().is_some() && store.failure().is_none());
     }
 
     #[test]
