@@ -230,7 +230,7 @@ fn every_term_is_finite_with_finite_derivatives_everywhere() {
 }
 
 #[test]
-fn a_force_parameter_changes_rates_through_its_force_only() {
+fn a_parameter_changes_rates_by_what_it_reaches_and_nothing_else() {
     let mut seen = BTreeSet::new();
     for term in names() {
         let model = probed(term);
@@ -244,14 +244,14 @@ fn a_force_parameter_changes_rates_through_its_force_only() {
             for at in generic() {
                 let x = with_parameters(&model, &at);
                 let y = outputs(&model, &gradient_variables(&x, POINT + i));
-                // The same derivative by the term's own force alone.
+                // The same derivative by the term's own force, the masses or the inflow alone.
                 let state: [f64; STATES] = std::array::from_fn(|j| at[j]);
                 let inputs = inputs_of(&at);
                 let dynamics = Dynamics::new(&model, x[POINT..].to_vec());
                 let (local, flow) = f64::linearise(&dynamics, &state, &inputs, &Force::zero());
                 let columns = Columns::new(&model, &[Column { parameter: i, scale: 1.0 }]);
                 let mut rates = [[0.0; 3]];
-                columns.by_force(&dynamics, &local, &flow, &state, &inputs, &mut rates);
+                columns.by_force(&dynamics, &columns.constants(&dynamics), &local, &flow, &state, &inputs, &mut rates);
                 let [rates] = rates;
                 let expected = |o: usize| if (3..6).contains(&o) { rates[o - 3] } else { 0.0 };
                 for (o, y) in y.iter().enumerate().filter(|(o, _)| !(STATES..12).contains(o)) {
@@ -261,7 +261,7 @@ fn a_force_parameter_changes_rates_through_its_force_only() {
             }
         }
     }
-    assert!(seen.len() > 15 && seen.contains("hull") && !seen.contains("current"), "{seen:?}");
+    assert!(seen.len() > 15 && seen.contains("hull") && seen.contains("flow") && !seen.contains("current"), "{seen:?}");
 }
 
 #[test]

@@ -507,7 +507,7 @@ impl<'a> Filter<'a> {
         let mut set = |c: usize, rates: [f64; 3]| (0..3).for_each(|i| out[i * width + c] = rates[i]);
         let (columns, own) = &self.by_force;
         let mut rates = vec![[0.0; 3]; own.len()];
-        columns.by_force(dynamics, &local.0, &local.1, state, &series[when], &mut rates);
+        columns.by_force(dynamics, &columns.constants(dynamics), &local.0, &local.1, state, &series[when], &mut rates);
         own.iter().zip(rates).for_each(|(c, rates)| set(*c, rates));
         let [fx, fy, fn_] = *push;
         for (group, seed) in self.groups.iter().zip(seeded).filter(|(group, _)| !group.sensors) {

@@ -11,6 +11,7 @@
 //! (-pi, pi]. Channels that were not measured have weight 0. Source: Papandreou et al. 2025 (arXiv 2502.18696), eq. (5).
 
 use super::error::FitError;
+use super::sums::Sums;
 use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model};
 use crate::physics::{CHUNK, Curvature, Gradient, Group, Lanes, NumDual, Number};
@@ -167,48 +168,6 @@ impl Seeded for NumDual {
         let eps = self.eps.unwrap_generic(nalgebra::Const::<CHUNK>, nalgebra::Const::<1>);
         std::array::from_fn(|j| eps[j])
     }
-}
-
-/// What one block adds to the cost, lane by lane: sums of `e^2`, `e de/dp_j` and `de/dp_i de/dp_j` (lower triangle, packed).
-struct Sums<P> {
-    square: P,
-    gradient: Vec<P>,
-    matrix: Vec<P>,
-}
-
-impl<P: Plain> Sums<P> {
-    fn new(n: usize, with_matrix: bool) -> Self {
-        let entries = if with_matrix { n * (n + 1) / 2 } else { 0 };
-        Self { square: P::zero(), gradient: vec![P::zero(); n], matrix: vec![P::zero(); entries] }
-    }
-
-    /// Adds the residuals of one sample and the derivatives of the weighted values, by column and channel.
-    #[inline(always)]
-    fn add(&mut self, residuals: &[P; STATES], rows: &[[P; STATES]]) {
-        for r in residuals {
-            self.square = r.mul_add(*r, self.square);
-        }
-        for (g, row) in self.gradient.iter_mut().zip(rows) {
-            *g = dot(residuals, row, *g);
-        }
-        if self.matrix.is_empty() {
-            return;
-        }
-        let mut rest = &mut self.matrix[..];
-        for (i, row) in rows.iter().enumerate() {
-            let (line, next) = rest.split_at_mut(i + 1);
-            for (h, other) in line.iter_mut().zip(rows) {
-                *h = dot(row, other, *h);
-            }
-            rest = next;
-        }
-    }
-}
-
-/// `sum + a . b`.
-#[inline(always)]
-fn dot<P: Scalar>(a: &[P; STATES], b: &[P; STATES], sum: P) -> P {
-    a.iter().zip(b).fold(sum, |sum, (a, b)| a.mul_add(*b, sum))
 }
 
 impl<P: Plain> Block<P> {
@@ -555,7 +514,9 @@ impl<'a> Cost<'a> {
         let factor = 2.0 / self.runs() as f64;
         let read = self.each(blocks, sums, |runs, part| {
             for (lane, run) in runs.iter().enumerate() {
-                let own = std::iter::once(&part.square).chain(&part.gradient).chain(&part.matrix);
+                let pairs = (0..if with_matrix { n } else { 0 }).flat_map(|i| (0..=i).map(move |j| (i, j)));
+                let products = pairs.map(|(i, j)| part.product(i, j));
+                let own = std::iter::once(part.square).chain(part.gradient.iter().copied()).chain(products);
                 own.enumerate().for_each(|(i, sum)| total.add(i, sum.in_lane(lane)));
                 by_run[*run] = DVector::from_iterator(n, part.gradient.iter().map(|g| factor * g.in_lane(lane)));
             }
@@ -585,21 +546,15 @@ impl<'a> Cost<'a> {
         let n = self.free.len();
         let mut sums = Sums::new(n, with_matrix);
         let sensitivity = Sensitivity::new(self.dynamics(block, p), &self.columns, self.sensed);
-        let mut rows = vec![[P::zero(); STATES]; n];
         sensitivity.rollout(
             self.integration,
             block.dt,
             &block.inputs,
             &block.initial,
             &block.channels,
-            |k, y, slopes| {
-                for (row, slopes) in rows.iter_mut().zip(slopes) {
-                    *row = block.row(k, slopes);
-                }
-                sums.add(&block.residuals(k, y), &rows);
-            },
+            |k, y, slopes| sums.add(&block.residuals(k, y), slopes.iter().map(|s| block.row(k, s))),
         );
-        sums
+        sums.finished()
     }
 
     /// Sums of a run by dual numbers through the whole simulation, in as many passes as the parameters take chunks.
@@ -623,9 +578,9 @@ impl<'a> Cost<'a> {
         }
         let mut sums = Sums::new(n, with_matrix);
         for (k, residuals) in residuals.iter().enumerate() {
-            sums.add(residuals, &rows[k * n..(k + 1) * n]);
+            sums.add(residuals, rows[k * n..(k + 1) * n].iter().copied());
         }
-        sums
+        sums.finished()
     }
 
     /// Sums of a block by central differences of its residuals.
@@ -650,9 +605,9 @@ impl<'a> Cost<'a> {
         }
         let mut sums = Sums::new(n, with_matrix);
         for (k, residuals) in residuals(p).iter().enumerate() {
-            sums.add(residuals, &rows[k * n..(k + 1) * n]);
+            sums.add(residuals, rows[k * n..(k + 1) * n].iter().copied());
         }
-        sums
+        sums.finished()
     }
 
     /// The exact Hessian of the cost, by second-order dual numbers in blocks of 6 by 6, or `None` where it diverges.

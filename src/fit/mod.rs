@@ -4,6 +4,7 @@
 //! | file | what |
 //! |---|---|
 //! | [`cost`] | the weighted trajectory cost and its derivatives |
+//! | `sums` | sums over samples behind the cost, its gradient and the Gauss-Newton matrix |
 //! | [`constraints`] | the constraints as data: curves bounded on grids |
 //! | `settings` | section `[fit]` of a study |
 //! | `task` | what stays fixed during a fit: model, cost, constraints, scales, start |
@@ -36,6 +37,7 @@ mod stages;
 mod subspace;
 #[cfg(feature = "ipopt")]
 mod summary;
+mod sums;
 #[cfg(feature = "ipopt")]
 mod task;
 

@@ -2,8 +2,9 @@
 //! It gives no force itself; its parameters (wake, thrust, race, straightening) are those of the pseudo-term `flow`.
 
 use super::instant::Instant;
+use crate::ship::Ship;
 use std::f64::consts::PI;
-use trimtab_ad::Scalar;
+use trimtab_ad::{Dual, Scalar};
 
 /// Declares the modifiers: one line for each, with its neutral value.
 macro_rules! modifiers {
@@ -120,6 +121,23 @@ mod index {
     pub const STRAIGHTENING: usize = 9;
     pub const ASYMMETRY: usize = 10;
     pub const LEVER: usize = 11;
+    /// How many there are.
+    pub const COUNT: usize = 12;
+}
+
+/// What the parameters of the flow act through: its quantities at propeller and rudder, in the units of [`Flow`].
+#[derive(Clone, Copy, Debug)]
+pub struct Inflow<S> {
+    /// Propeller advance velocity.
+    pub advance: S,
+    /// Propeller thrust.
+    pub thrust: S,
+    /// Net propeller force.
+    pub propulsion: S,
+    /// Axial rudder inflow.
+    pub rudder_u: S,
+    /// Lateral rudder inflow.
+    pub rudder_v: S,
 }
 
 impl<S: Scalar> Flow<S> {
@@ -152,37 +170,22 @@ impl<S: Scalar> Flow<S> {
         let abs_v = (v * v + tiny).sqrt();
         let abs_r = (r * r + tiny / (ship.hull.lpp * ship.hull.lpp)).sqrt();
 
-        let rho = ship.hull.water_density;
-        let d = ship.propeller.diameter;
-        let n = at.inputs.n;
-        let abs_n = n.abs();
-        // 0 astern to 1 ahead, over a few small speeds.
-        let ahead = (u / abs_u + 1.0) * 0.5;
+        let ahead = ahead(u, abs_u);
         // Sine of the drift angle at the propeller.
         let side = v + r * ship.propeller_x();
         let drift = side / (u * u + side * side + tiny).sqrt();
         let relief = drift * adjust.wake_relief - adjust.wake_asymmetry;
         let wake = (p[index::WAKE] + adjust.wake - drift * relief) * ahead;
         let advance = (S::one() - wake) * u;
-        let thrust = thrust(p, at, advance, n, abs_n) * (adjust.thrust * rho);
+        let screw = [p[index::KT0], p[index::KT1], p[index::KT2], p[index::ASTERN]];
+        let thrust = thrust(ship, small, screw, advance, at.inputs.n) * (adjust.thrust * ship.hull.water_density);
         let positive = S::zero().less(thrust);
         let deducted = S::select(positive, thrust * p[index::THRUST_DEDUCTION], S::zero());
         let propulsion = thrust - deducted;
-
-        let c = thrust * (8.0 / (PI * rho * d * d));
-        let c_ahead = S::select(positive, c, S::zero());
-        let c_astern = S::select(positive, S::zero(), -c);
-        let eta = (d / ship.rudder.span).min(1.0);
-        let square = advance * advance + 1e-2 * tiny;
-        let race = ((square + c_ahead).sqrt() - advance.abs()) * (p[index::RACE] * adjust.race)
-            - ((c_astern + 1e-2 * tiny).sqrt() - 0.1 * small) * p[index::RACE_ASTERN];
-        let a = advance + race;
-        let square = a * a.abs() * eta + advance * advance.abs() * (1.0 - eta);
-        // Signed square root, smooth through zero: s / (s^2 + small^4)^(1/4).
-        let rudder_u = square * p[index::WAKE_RATIO] / (square * square + 1e-2 * tiny * tiny).sqrt().sqrt();
-        let lateral = v + r * (p[index::LEVER] * ship.hull.lpp);
-        let rudder_v =
-            -lateral * (p[index::STRAIGHTENING] + lateral * p[index::ASYMMETRY] / (lateral * lateral + tiny).sqrt());
+        let race = [p[index::RACE] * adjust.race, p[index::RACE_ASTERN], p[index::WAKE_RATIO]];
+        let rudder_u = axial(ship, small, race, advance, thrust);
+        let bend = [p[index::STRAIGHTENING], p[index::ASYMMETRY], p[index::LEVER]];
+        let rudder_v = lateral(ship, small, bend, v, r);
         Self { u, v, r, speed, abs_u, abs_v, abs_r, current, advance, thrust, propulsion, rudder_u, rudder_v, adjust }
     }
 }
@@ -210,14 +213,115 @@ impl<S: Scalar> Flow<S> {
     }
 }
 
-/// Thrust over the density of water, before what terms change \[m4/s2\].
+impl<S: Scalar<Coefficient = S>> Flow<S> {
+    /// Derivatives of the flow by each of its parameters `p`, in their order. Each law of [`Flow::new`] is differentiated by its own
+    /// few arguments with dual numbers, and the chain rule joins them.
+    #[inline(always)]
+    pub fn slopes(&self, p: &[S], at: &Instant<S>) -> [Inflow<S>; index::COUNT] {
+        let (ship, small) = (at.ship, at.small);
+        let zero = S::zero();
+        let still = Inflow { advance: zero, thrust: zero, propulsion: zero, rudder_u: zero, rudder_v: zero };
+        let mut out = [still; index::COUNT];
+
+        let [k0, k1, k2, astern, advance] =
+            seeded([p[index::KT0], p[index::KT1], p[index::KT2], p[index::ASTERN], self.advance]);
+        let unit = self.adjust.thrust * ship.hull.water_density;
+        let by_screw = thrust(ship, small, [k0, k1, k2, astern], advance, Dual::constant(at.inputs.n))
+            .eps
+            .map(|slope| slope * unit);
+        let race = p[index::RACE] * self.adjust.race;
+        let [race, race_astern, ratio, advance, thrust] =
+            seeded([race, p[index::RACE_ASTERN], p[index::WAKE_RATIO], self.advance, self.thrust]);
+        let by_race = axial(ship, small, [race, race_astern, ratio], advance, thrust).eps;
+        let bend = seeded([p[index::STRAIGHTENING], p[index::ASYMMETRY], p[index::LEVER]]);
+        let by_bend = lateral(ship, small, bend, Dual::constant(self.v), Dual::constant(self.r)).eps;
+
+        let positive = zero.less(self.thrust);
+        let kept = S::select(positive, S::one() - p[index::THRUST_DEDUCTION], S::one());
+        let by_thrust =
+            |slope: S| Inflow { thrust: slope, propulsion: slope * kept, rudder_u: slope * by_race[4], ..still };
+        let advance = -(ahead(self.u, self.abs_u) * self.u);
+        let wake = by_thrust(by_screw[4] * advance);
+        out[index::WAKE] = Inflow { advance, rudder_u: wake.rudder_u + by_race[3] * advance, ..wake };
+        out[index::THRUST_DEDUCTION].propulsion = S::select(positive, -self.thrust, zero);
+        for (j, slope) in [index::KT0, index::KT1, index::KT2, index::ASTERN].into_iter().zip(by_screw) {
+            out[j] = by_thrust(slope);
+        }
+        out[index::RACE].rudder_u = by_race[0] * self.adjust.race;
+        out[index::RACE_ASTERN].rudder_u = by_race[1];
+        out[index::WAKE_RATIO].rudder_u = by_race[2];
+        for (j, slope) in [index::STRAIGHTENING, index::ASYMMETRY, index::LEVER].into_iter().zip(by_bend) {
+            out[j].rudder_v = slope;
+        }
+        out
+    }
+}
+
+/// Numbers as the variables that a law is differentiated by.
 #[inline(always)]
-fn thrust<S: Scalar>(p: &[S::Coefficient], at: &Instant<S>, advance: S, n: S::Coefficient, abs_n: S::Coefficient) -> S {
-    let d = at.ship.propeller.diameter;
+fn seeded<S: Scalar, const N: usize>(values: [S; N]) -> [Dual<S, N>; N] {
+    std::array::from_fn(|j| Dual::variable(values[j], j))
+}
+
+/// 0 astern to 1 ahead, over a few small speeds.
+#[inline(always)]
+fn ahead<S: Scalar>(u: S, abs_u: S) -> S {
+    (u / abs_u + 1.0) * 0.5
+}
+
+/// Thrust over the density of water, before what terms change \[m4/s2\], from k0, k1, k2 and `astern`.
+#[inline(always)]
+fn thrust<S: Scalar>(
+    ship: &Ship,
+    small: f64,
+    [k0, k1, k2, astern]: [S::Coefficient; 4],
+    advance: S,
+    n: S::Coefficient,
+) -> S {
+    let d = ship.propeller.diameter;
     let (zero, one) = (S::Coefficient::zero(), S::Coefficient::one());
     let reverse = n.less(zero);
-    let k0 = p[index::KT0] * S::Coefficient::select(reverse, p[index::ASTERN], one);
-    let k1 = p[index::KT1] * S::Coefficient::select(reverse, S::Coefficient::from_f64(0.3), one);
-    let pace = (advance * advance + 1e-2 * at.small * at.small).sqrt();
-    advance * (k1 * abs_n * d.powi(3)) + advance * pace * (p[index::KT2] * d.powi(2)) + k0 * n * abs_n * d.powi(4)
+    let k0 = k0 * S::Coefficient::select(reverse, astern, one);
+    let k1 = k1 * S::Coefficient::select(reverse, S::Coefficient::from_f64(0.3), one);
+    let abs_n = n.abs();
+    let pace = (advance * advance + 1e-2 * small * small).sqrt();
+    advance * (k1 * abs_n * d.powi(3)) + advance * pace * (k2 * d.powi(2)) + k0 * n * abs_n * d.powi(4)
+}
+
+/// Axial rudder inflow u_R \[m/s\] from kappa, kappa_a and eps, the advance velocity \[m/s\] and the thrust \[N\].
+#[inline(always)]
+fn axial<S: Scalar>(
+    ship: &Ship,
+    small: f64,
+    [race, race_astern, ratio]: [S::Coefficient; 3],
+    advance: S,
+    thrust: S,
+) -> S {
+    let (rho, d) = (ship.hull.water_density, ship.propeller.diameter);
+    let tiny = small * small;
+    let positive = S::zero().less(thrust);
+    let c = thrust * (8.0 / (PI * rho * d * d));
+    let c_ahead = S::select(positive, c, S::zero());
+    let c_astern = S::select(positive, S::zero(), -c);
+    let eta = (d / ship.rudder.span).min(1.0);
+    let square = advance * advance + 1e-2 * tiny;
+    let race = ((square + c_ahead).sqrt() - advance.abs()) * race
+        - ((c_astern + 1e-2 * tiny).sqrt() - 0.1 * small) * race_astern;
+    let a = advance + race;
+    let square = a * a.abs() * eta + advance * advance.abs() * (1.0 - eta);
+    // Signed square root, smooth through zero: s / (s^2 + small^4)^(1/4).
+    square * ratio / (square * square + 1e-2 * tiny * tiny).sqrt().sqrt()
+}
+
+/// Lateral rudder inflow v_R \[m/s\] from gamma, dgamma and l_R/L, at a sway velocity \[m/s\] and a yaw rate \[rad/s\].
+#[inline(always)]
+fn lateral<S: Scalar>(
+    ship: &Ship,
+    small: f64,
+    [straightening, asymmetry, lever]: [S::Coefficient; 3],
+    v: S,
+    r: S,
+) -> S {
+    let lateral = v + r * (lever * ship.hull.lpp);
+    -lateral * (straightening + lateral * asymmetry / (lateral * lateral + small * small).sqrt())
 }

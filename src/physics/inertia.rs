@@ -36,6 +36,28 @@ impl<S: Scalar> Inertia<S> {
         }
     }
 
+    /// The matrix in another number.
+    #[inline(always)]
+    pub fn map<T>(&self, f: impl Fn(S) -> T) -> Inertia<T> {
+        Inertia {
+            surge: f(self.surge),
+            sway: f(self.sway),
+            sway_yaw: f(self.sway_yaw),
+            yaw_sway: f(self.yaw_sway),
+            yaw: f(self.yaw),
+        }
+    }
+
+    /// The force that gives the accelerations (u', v', r').
+    #[inline(always)]
+    pub fn force(&self, [surge, sway, yaw]: &[S; 3]) -> Force<S> {
+        Force {
+            x: self.surge * *surge,
+            y: self.sway * *sway + self.sway_yaw * *yaw,
+            n: self.yaw_sway * *sway + self.yaw * *yaw,
+        }
+    }
+
     /// Determinant of the coupled sway-yaw part \[kg2 m2\], which must be positive.
     #[inline(always)]
     pub fn determinant(&self) -> S {

@@ -10,7 +10,7 @@ pub mod term;
 pub mod validity;
 
 pub use catalogue::Catalogue;
-pub use flow::{Adjust, Flow};
+pub use flow::{Adjust, Flow, Inflow};
 pub use inertia::{Inertia, Mobility};
 pub use instant::{Form, Instant};
 pub use mechanism::{Kind, Mechanism, Probe};

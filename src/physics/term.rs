@@ -68,6 +68,12 @@ pub trait Term: Sync {
 pub enum Reach {
     /// Inertia, inputs, or what other terms work with.
     Anything,
+    /// The propeller's and the rudder's inflow and nothing else: the parameters of the term `flow`. In another term it is taken as
+    /// [`Reach::Anything`].
+    Flow,
+    /// The mass matrix and the force of its own term and nothing else: the masses of the term `hull`. In another term it is taken as
+    /// [`Reach::Anything`].
+    Inertia,
     /// The force of its own term and nothing else.
     Force,
     /// The force of its own term and nothing else, by `p_j f_j`: the factor `f_j` depends on the state and the inputs, and on no

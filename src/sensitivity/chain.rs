@@ -1,7 +1,7 @@
 //! Carries a simulation and its derivatives by parameters through every step: `S' = A S + B` at each stage of the method, so
 //! that the result is the exact derivative of the discrete simulation. What is done with it is the caller's affair.
 
-use super::columns::Columns;
+use super::columns::{Columns, Constants};
 use super::local::{Local, Plain};
 use crate::dynamics::Dynamics;
 use crate::physics::FEW;
@@ -22,6 +22,7 @@ struct Group<'m, P: Plain> {
 pub struct Sensitivity<'m, P: Plain> {
     dynamics: Dynamics<'m, P>,
     columns: &'m Columns,
+    constants: Constants<P>,
     anything: Vec<Group<'m, P>>,
     /// All columns in groups, where a term changes what sensors report.
     reported: Vec<Group<'m, P>>,
@@ -58,7 +59,8 @@ impl<'m, P: Plain> Sensitivity<'m, P> {
         let anything = columns.anything().iter().map(|g| group(g)).collect();
         let all: Vec<usize> = if sensed { (0..columns.len()).collect() } else { Vec::new() };
         let reported = all.chunks(FEW).map(group).collect();
-        Self { dynamics, columns, anything, reported }
+        let constants = columns.constants(&dynamics);
+        Self { dynamics, columns, constants, anything, reported }
     }
 
     /// The equations of motion behind it.
@@ -95,7 +97,7 @@ impl<'m, P: Plain> Sensitivity<'m, P> {
     ) -> Local<P> {
         let inputs = &drive.series[when];
         let (local, flow) = P::linearise(&self.dynamics, state, inputs, push);
-        self.columns.by_force(&self.dynamics, &local, &flow, state, inputs, out);
+        self.columns.by_force(&self.dynamics, &self.constants, &local, &flow, state, inputs, out);
         if !self.anything.is_empty() {
             let lifted = State::from_array(state.map(P::few));
             let push = Force { x: push.x.few(), y: push.y.few(), n: push.n.few() };
@@ -282,4 +284,100 @@ pub fn runge_kutta<P: Plain>(
     let k3 = rate::<P, true>(&locals[2], &moved(slope, 0.5 * h, &k2), &own[2]);
     let k4 = rate::<P, true>(&locals[3], &moved(slope, h, &k3), &own[3]);
     std::array::from_fn(|j| slope[j] + (k1[j] + (k2[j] + k3[j]) * 2.0 + k4[j]) * (h / 6.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::columns::Column;
+    use super::*;
+    use crate::model::Model;
+    use crate::physics::{Form, Lanes};
+    use crate::ship::Ship;
+    use std::path::Path;
+
+    /// Ship A with terms, every parameter off its default inside its bounds.
+    fn model(form: Form, terms: &[&str]) -> Model {
+        let path = format!("{}/experiments/ships/a.toml", env!("CARGO_MANIFEST_DIR"));
+        let mut model = Model::new(Ship::read(Path::new(&path)).unwrap(), "A", form, terms).unwrap();
+        for (i, p) in model.parameters.iter_mut().enumerate() {
+            let step = p.scale * [0.2, -0.15, 0.1, -0.25, 0.3][i % 5];
+            let inside = (p.lower..=p.upper).contains(&(p.value + step));
+            p.value += if inside { step } else { -step };
+        }
+        model
+    }
+
+    /// A weaving course with propeller reversals, in wind, current, waves and changing depth; another in each lane.
+    fn inputs<P: Plain>(samples: usize) -> Vec<Inputs<P>> {
+        let number = |f: &dyn Fn(f64) -> f64| P::gather(|lane| f(lane as f64));
+        (0..samples)
+            .map(|k| {
+                let t = 3.0 * k as f64;
+                Inputs {
+                    t: number(&|_| t),
+                    n: number(&|lane| 2.0 * (0.05 * t + lane).cos()),
+                    delta: number(&|lane| 0.4 * (0.07 * t + 2.0 * lane).sin()),
+                    wind: [number(&|lane| 6.0 - lane), number(&|_| -3.5)],
+                    current: [number(&|_| 0.3), number(&|lane| 0.1 * lane)],
+                    waves: [number(&|_| 0.7), number(&|_| 0.4)],
+                    draught_to_depth: number(&|_| 0.4 + 1e-3 * t),
+                    bank: number(&|_| 4e-3),
+                    thruster: number(&|_| 0.6),
+                }
+            })
+            .collect()
+    }
+
+    /// States and slopes at every sample of a simulation.
+    fn rolled<P: Plain>(
+        model: &Model,
+        columns: &Columns,
+        integration: Integration,
+        still: bool,
+    ) -> Vec<([P; STATES], Vec<StateSlope<P>>)> {
+        let mut samples = inputs::<P>(40);
+        if still {
+            samples.iter_mut().for_each(|i| i.current = [P::zero(); 2]);
+        }
+        let theta = model.values().into_iter().map(P::from_f64).collect();
+        let dynamics = Dynamics::new(model, theta).in_still_water(still);
+        let initial = [0.0, 0.0, 0.4, 4.0, -0.3, 0.004].map(P::from_f64);
+        let mut out = Vec::new();
+        let sensitivity = Sensitivity::new(dynamics, columns, false);
+        sensitivity.rollout(integration, 3.0, &samples, &initial, &[P::one(); STATES], |_, x, slopes| {
+            out.push((*x, slopes.to_vec()));
+        });
+        out
+    }
+
+    fn assert_same<P: Plain>(model: &Model, integration: Integration, still: bool) {
+        let column = |parameter: usize| Column { parameter, scale: model.parameters[parameter].scale };
+        let all: Vec<Column> = (0..model.parameters.len()).map(column).collect();
+        let (by_reach, general) = (Columns::new(model, &all), Columns::through_everything(&all));
+        assert!(by_reach.anything().len() < general.anything().len());
+        let ours = rolled::<P>(model, &by_reach, integration, still);
+        let theirs = rolled::<P>(model, &general, integration, still);
+        for lane in 0..P::WIDTH {
+            for (c, p) in model.parameters.iter().enumerate() {
+                for j in 0..STATES {
+                    let size = theirs.iter().map(|(_, s)| s[c][j].in_lane(lane).abs()).fold(1e-9, f64::max);
+                    for (k, ((x, ours), (y, theirs))) in ours.iter().zip(&theirs).enumerate() {
+                        let off = (ours[c][j].in_lane(lane) - theirs[c][j].in_lane(lane)).abs();
+                        assert!(off < 1e-12 * size, "{} channel {j} sample {k}: {off:e} of {size:e}", p.name);
+                        assert_eq!(x[j].in_lane(lane), y[j].in_lane(lane));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_by_what_a_parameter_reaches_are_those_through_the_whole_dynamics() {
+        let (euler, rk4) = (Integration::default(), Integration { method: Method::Rk4, substeps: 2 });
+        assert_same::<Lanes>(&model(Form::Paper, &[]), euler, true);
+        assert_same::<Lanes>(&model(Form::Regular, &[]), euler, false);
+        assert_same::<Lanes>(&model(Form::Paper, &["symmetric", "asymmetric", "hull_nonlinear"]), euler, false);
+        assert_same::<f64>(&model(Form::Regular, &["wind", "current", "roll", "loading", "shallow"]), rk4, false);
+        assert_same::<Lanes>(&model(Form::Paper, &["thrust_loss", "race", "wake_drift", "rudder_lag"]), rk4, false);
+    }
 }

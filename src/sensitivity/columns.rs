@@ -4,9 +4,11 @@
 use super::local::{Local, Plain};
 use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model, Placed};
-use crate::physics::{FEW, Flow, Group, Instant, MOST_PARAMETERS, Mobility, Number, Physics, Reach, Term};
+use crate::physics::{
+    Adjust, FEW, Flow, Group, Inflow, Instant, MOST_PARAMETERS, Mobility, Number, Physics, Reach, Term,
+};
 use crate::state::{Force, Inputs, STATES, State};
-use crate::terms::hull::Hull;
+use crate::terms::hull::{DAMPING, Hull, MassSlope};
 use crate::terms::propeller::Propeller;
 use crate::terms::resistance::Resistance;
 use crate::terms::rudder::Rudder;
@@ -30,6 +32,23 @@ struct Owned {
     columns: Vec<Own>,
 }
 
+/// Places of the terms `flow` and `hull` in a model.
+const FLOW: usize = 0;
+const HULL: usize = 1;
+
+/// What the columns of a model at given parameter values have in common over a whole simulation.
+#[derive(Clone, Debug)]
+pub struct Constants<P> {
+    /// What the masses change, where no term changes the mass matrix.
+    masses: Option<[MassSlope<P>; DAMPING]>,
+}
+
+/// What the masses change in a flow.
+#[inline(always)]
+fn masses<P: Plain>(dynamics: &Dynamics<P>, flow: &Flow<P>) -> [MassSlope<P>; DAMPING] {
+    MassSlope::all(dynamics.model().placed()[HULL].part(dynamics.theta()), &flow.adjust)
+}
+
 /// Columns grouped by what their parameters can change.
 #[derive(Clone)]
 pub struct Columns {
@@ -37,6 +56,10 @@ pub struct Columns {
     all: Vec<Column>,
     /// Linear in the force of hull, resistance, propeller and rudder.
     base: [Vec<Own>; 4],
+    /// In the inflow of propeller and rudder.
+    flow: Vec<Own>,
+    /// In the mass matrix and the force of the hull.
+    inertia: Vec<Own>,
     /// Linear in the force of another term.
     linear: Vec<Owned>,
     /// In the force of their own term, at most [`FEW`] each.
@@ -53,6 +76,8 @@ impl Columns {
         let mut out = Self {
             all: columns.to_vec(),
             base: Default::default(),
+            flow: Vec::new(),
+            inertia: Vec::new(),
             linear: Vec::new(),
             force: Vec::new(),
             anything: Vec::new(),
@@ -68,7 +93,9 @@ impl Columns {
                     _ if term.term.info().group == Group::Sensor => out.sensors.push(c),
                     Reach::LinearForce => linear.push(own),
                     Reach::Force => force.push(own),
-                    Reach::Anything => anything.push(c),
+                    Reach::Flow if place == FLOW => out.flow.push(own),
+                    Reach::Inertia if place == HULL => out.inertia.push(own),
+                    Reach::Flow | Reach::Inertia | Reach::Anything => anything.push(c),
                 }
             }
             if (1..BASE.len()).contains(&place) {
@@ -80,6 +107,29 @@ impl Columns {
         }
         out.anything = anything.chunks(FEW).map(<[usize]>::to_vec).collect();
         out
+    }
+
+    /// All columns differentiated through the whole dynamics, whatever they reach: the path that the others are tested against.
+    #[cfg(test)]
+    pub(super) fn through_everything(columns: &[Column]) -> Self {
+        let all: Vec<usize> = (0..columns.len()).collect();
+        Self {
+            all: columns.to_vec(),
+            base: Default::default(),
+            flow: Vec::new(),
+            inertia: Vec::new(),
+            linear: Vec::new(),
+            force: Vec::new(),
+            anything: all.chunks(FEW).map(<[usize]>::to_vec).collect(),
+            sensors: Vec::new(),
+        }
+    }
+
+    /// What stays as it is over a simulation.
+    pub fn constants<P: Plain>(&self, dynamics: &Dynamics<P>) -> Constants<P> {
+        let hull = dynamics.model().placed()[HULL].part(dynamics.theta());
+        let constant = !self.inertia.is_empty() && dynamics.extras().is_empty();
+        Constants { masses: constant.then(|| MassSlope::all(hull, &Adjust::neutral())) }
     }
 
     /// How many columns there are.
@@ -119,11 +169,13 @@ impl Columns {
         seeded
     }
 
-    /// Derivatives of the accelerations (u', v', r') by the columns that act by the force of their own term, into `out`.
+    /// Derivatives of the accelerations (u', v', r') into `out` by all columns but those that may change anything and those that
+    /// change the reports of sensors.
     #[inline(always)]
     pub fn by_force<P: Plain>(
         &self,
         dynamics: &Dynamics<P>,
+        constants: &Constants<P>,
         local: &Local<P>,
         flow: &Flow<P>,
         state: &[P; STATES],
@@ -144,19 +196,58 @@ impl Columns {
         own::<P, Hull, 19>(&Hull, &self.base[0], at, flow, &mobility, out);
         own::<P, Resistance, 3>(&Resistance, &self.base[1], at, flow, &mobility, out);
         own::<P, Propeller, 1>(&Propeller, &self.base[2], at, flow, &mobility, out);
-        own::<P, Rudder, 7>(&Rudder, &self.base[3], at, flow, &mobility, out);
+        if self.flow.is_empty() {
+            own::<P, Rudder, 7>(&Rudder, &self.base[3], at, flow, &mobility, out);
+        } else {
+            self.by_inflow(dynamics, at, flow, &mobility, out);
+        }
+        if !self.inertia.is_empty() {
+            let [du, dv, dr] = [local.rates[3], local.rates[4], local.rates[5]];
+            let [ahead, aside] = flow.current;
+            let through_water = [du - aside * state.r, dv + ahead * state.r, dr];
+            let changing = constants.masses.is_none().then(|| masses(dynamics, flow));
+            for slopes in constants.masses.iter().chain(&changing) {
+                let forces = slopes.map(|slope| slope.force(flow, &through_water));
+                write(&self.inertia, &forces, &mobility, out);
+            }
+        }
         if self.linear.is_empty() && self.force.is_empty() {
             return;
         }
         for owned in &self.linear {
-            let mut forces = [Force::zero(); MOST_PARAMETERS];
-            let forces = &mut forces[..owned.term.len];
-            let mut room = [P::zero(); MOST_PARAMETERS];
-            P::physics(owned.term.term).slopes(&mut room[..owned.term.len], at, flow, forces);
-            write(&owned.columns, forces, &mobility, out);
+            if owned.term.len <= FEW_PARAMETERS {
+                linear::<P, FEW_PARAMETERS>(owned, at, flow, &mobility, out);
+            } else {
+                linear::<P, MOST_PARAMETERS>(owned, at, flow, &mobility, out);
+            }
         }
         for owned in &self.force {
             nonlinear(dynamics, owned, at, flow, &mobility, out);
+        }
+    }
+
+    /// The columns that act by the inflow of propeller and rudder: the force's derivatives by the inflow, times the inflow's by them.
+    /// With them come those of the rudder, whose law is evaluated for both.
+    #[inline(always)]
+    fn by_inflow<P: Plain>(
+        &self,
+        dynamics: &Dynamics<P>,
+        at: &Instant<P>,
+        flow: &Flow<P>,
+        mobility: &Mobility<P>,
+        out: &mut [[P; 3]],
+    ) {
+        let mut rudder = [Force::zero(); 7];
+        let forces = P::by_inflow(dynamics, at, flow, &mut rudder);
+        write(&self.base[3], &rudder, mobility, out);
+        let slopes = flow.slopes(dynamics.model().placed()[FLOW].part(dynamics.theta()), at);
+        for (j, c, scale) in &self.flow {
+            let Inflow { advance, thrust, propulsion, rudder_u, rudder_v } = slopes[*j];
+            let mut force = forces.propulsion * propulsion + forces.rudder_u * rudder_u + forces.rudder_v * rudder_v;
+            if !dynamics.extras().is_empty() {
+                force += forces.advance * advance + forces.thrust * thrust;
+            }
+            out[*c] = mobility.accelerations(&force).map(|rate| rate * *scale);
         }
     }
 }
@@ -186,6 +277,24 @@ fn own<P: Plain, T: Physics<P> + Term, const L: usize>(
     let mut forces = [Force::zero(); L];
     term.slopes(&mut [P::zero(); L], at, flow, &mut forces);
     write(columns, &forces, mobility, out);
+}
+
+/// Number of parameters that most terms do not exceed: room for more takes longer to clear than their forces to compute.
+const FEW_PARAMETERS: usize = 16;
+
+/// Columns that are linear in the force of a term beyond the base, with at most `L` parameters.
+fn linear<P: Plain, const L: usize>(
+    owned: &Owned,
+    at: &Instant<P>,
+    flow: &Flow<P>,
+    mobility: &Mobility<P>,
+    out: &mut [[P; 3]],
+) {
+    let len = owned.term.len;
+    let mut forces = [Force::zero(); L];
+    let mut room = [P::zero(); L];
+    P::physics(owned.term.term).slopes(&mut room[..len], at, flow, &mut forces[..len]);
+    write(&owned.columns, &forces[..len], mobility, out);
 }
 
 /// Columns that are not linear in their own term's force: by dual numbers through that term alone.

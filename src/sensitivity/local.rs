@@ -2,9 +2,15 @@
 //! Positions have no part in it: no force depends on where the ship is.
 
 use crate::dynamics::Dynamics;
-use crate::physics::{FEW, Flow, Number};
+use crate::physics::{FEW, Flow, Inflow, Instant, Number, Physics};
 use crate::state::{Force, Inputs, STATES, State};
+use crate::terms::propeller::Propeller;
+use crate::terms::rudder::Rudder;
 use trimtab_ad::{Along, Dual, Lanes, Scalar};
+
+/// Places of the terms `propeller` and `rudder` in a model.
+const PROPELLER: usize = 3;
+const RUDDER: usize = 4;
 
 /// Rates of the state, and how the accelerations change with it.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +46,14 @@ pub trait Plain: Number<Coefficient = Self> {
         inputs: &Inputs<Self>,
         push: &Force<Self>,
     ) -> (Local<Self>, Flow<Self>);
+    /// Derivatives of the terms' force by the inflow of propeller and rudder, and into `rudder` the rudder's force per unit of each of
+    /// its parameters, which comes with them.
+    fn by_inflow(
+        dynamics: &Dynamics<Self>,
+        at: &Instant<Self>,
+        flow: &Flow<Self>,
+        rudder: &mut [Force<Self>; 7],
+    ) -> Inflow<Force<Self>>;
 }
 
 macro_rules! plain {
@@ -86,6 +100,15 @@ macro_rules! plain {
                     along::<$number, 4>(dynamics, state, x, inputs, push, |slopes| slopes)
                 }
             }
+            #[inline(always)]
+            fn by_inflow(
+                dynamics: &Dynamics<Self>,
+                at: &Instant<Self>,
+                flow: &Flow<Self>,
+                rudder: &mut [Force<Self>; 7],
+            ) -> Inflow<Force<Self>> {
+                by_inflow(dynamics, at, flow, rudder)
+            }
         }
     };
 }
@@ -116,4 +139,81 @@ where
         heading: [sin.re, cos.re],
     };
     (local, flow.map(|x| x.re, |c| c))
+}
+
+/// The force's derivatives by propulsion come from the propeller, those by the rudder's inflow from the rudder; further terms may
+/// have all five.
+#[inline(always)]
+fn by_inflow<P: Plain>(
+    dynamics: &Dynamics<P>,
+    at: &Instant<P>,
+    flow: &Flow<P>,
+    rudder: &mut [Force<P>; 7],
+) -> Inflow<Force<P>>
+where
+    Along<P, 1>: Scalar<Coefficient = P>,
+    Along<P, 2>: Scalar<Coefficient = P>,
+    Along<P, 3>: Number<Coefficient = P>,
+{
+    let part = |place: usize| dynamics.model().placed()[place].part(dynamics.theta());
+    let constant = Force::<P>::zero();
+    let mut out =
+        Inflow { advance: constant, thrust: constant, propulsion: constant, rudder_u: constant, rudder_v: constant };
+    [out.propulsion] = directions::<P, 1>(
+        at,
+        flow,
+        |f| f.propulsion.eps[0] = P::one(),
+        |at, flow| Propeller.force(part(PROPELLER), at, flow),
+    );
+    let seed = |f: &mut Flow<Along<P, 2>>| (f.rudder_u.eps[0], f.rudder_v.eps[1]) = (P::one(), P::one());
+    [out.rudder_u, out.rudder_v] = directions::<P, 2>(at, flow, seed, |at, flow| {
+        let (force, slopes) = Rudder::force_and_slopes(part(RUDDER), at, flow);
+        for (out, slope) in rudder.iter_mut().zip(slopes) {
+            *out = Force { x: slope.x.re, y: slope.y.re, n: slope.n.re };
+        }
+        force
+    });
+    for t in dynamics.extras() {
+        let by = |seed: fn(&mut Flow<Along<P, 3>>)| {
+            directions::<P, 3>(at, flow, seed, |at, flow| {
+                <Along<P, 3> as Number>::physics(t.term).force(t.part(dynamics.theta()), at, flow)
+            })
+        };
+        let [advance, thrust, propulsion] = by(|f| {
+            (f.advance.eps[0], f.thrust.eps[1], f.propulsion.eps[2]) = (P::one(), P::one(), P::one());
+        });
+        let [rudder_u, rudder_v, _] = by(|f| (f.rudder_u.eps[0], f.rudder_v.eps[1]) = (P::one(), P::one()));
+        out.advance += advance;
+        out.thrust += thrust;
+        out.propulsion += propulsion;
+        out.rudder_u += rudder_u;
+        out.rudder_v += rudder_v;
+    }
+    out
+}
+
+/// Derivatives of a force along `N` directions in the flow, which `seed` sets.
+#[inline(always)]
+fn directions<P: Plain, const N: usize>(
+    at: &Instant<P>,
+    flow: &Flow<P>,
+    seed: impl Fn(&mut Flow<Along<P, N>>),
+    force: impl FnOnce(&Instant<Along<P, N>>, &Flow<Along<P, N>>) -> Force<Along<P, N>>,
+) -> [Force<P>; N]
+where
+    Along<P, N>: Scalar<Coefficient = P>,
+{
+    let mut flow = flow.map(Along::constant, |c| c);
+    seed(&mut flow);
+    let state = State::from_array(at.state.to_array().map(Along::constant));
+    let at = Instant {
+        ship: at.ship,
+        small: at.small,
+        form: at.form,
+        state: &state,
+        heading: at.heading.map(Along::constant),
+        inputs: at.inputs,
+    };
+    let force = force(&at, &flow);
+    std::array::from_fn(|j| Force { x: force.x.eps[j], y: force.y.eps[j], n: force.n.eps[j] })
 }

@@ -3,7 +3,7 @@
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Validity;
-use crate::physics::{Group, Physics, Term, TermInfo};
+use crate::physics::{Group, Physics, Reach, Term, TermInfo};
 use trimtab_ad::Scalar;
 
 /// The pseudo-term that holds the parameters of [`Flow`](crate::physics::Flow).
@@ -98,6 +98,10 @@ impl FlowTerm {
 impl Term for FlowTerm {
     fn info(&self) -> &'static TermInfo {
         &INFO
+    }
+
+    fn reach(&self, _parameter: usize) -> Reach {
+        Reach::Flow
     }
 }
 

@@ -3,11 +3,11 @@
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Flow;
-use crate::physics::{Form, Group, Instant, Physics, Reach, Term, TermInfo};
+use crate::physics::{Adjust, Form, Group, Inertia, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Validity, degrees};
 use crate::ship::Ship;
 use crate::state::Force;
-use trimtab_ad::Scalar;
+use trimtab_ad::{Dual, Scalar};
 
 /// Inertia and hull forces.
 pub struct Hull;
@@ -97,12 +97,46 @@ impl Term for Hull {
     }
 
     fn reach(&self, parameter: usize) -> Reach {
-        if parameter < DAMPING { Reach::Anything } else { Reach::LinearForce }
+        if parameter < DAMPING { Reach::Inertia } else { Reach::LinearForce }
     }
 }
 
 /// Index of the first damping coefficient: before it are masses, inertia and added masses.
-const DAMPING: usize = 8;
+pub(crate) const DAMPING: usize = 8;
+
+/// Mass \[kg\] and its moment about midship \[kg m\], and the added masses Yvdot \[kg\] and Yrdot \[kg m\], as they turn with the ship.
+#[inline(always)]
+fn turning<C: Scalar<Coefficient = C>>(p: &[C], a: &Adjust<C>) -> [C; 4] {
+    [p[0] * a.mass, p[0] * a.mass * (p[2] + a.x_g), p[4] * a.added_mass, p[5] * a.added_mass]
+}
+
+/// What one of the masses of the term changes, per unit: the mass matrix and the masses that turn with the ship.
+#[derive(Clone, Copy, Debug)]
+pub struct MassSlope<C> {
+    matrix: Inertia<C>,
+    turning: [C; 4],
+}
+
+impl<C: Scalar<Coefficient = C>> MassSlope<C> {
+    /// By each of the masses from m to Nrdot at the parameters `p` of the term, under what other terms change.
+    #[inline(always)]
+    pub fn all(p: &[C], adjust: &Adjust<C>) -> [Self; DAMPING] {
+        let p: [Dual<C, DAMPING>; DAMPING] = std::array::from_fn(|j| Dual::variable(p[j], j));
+        let adjust = adjust.map(Dual::constant);
+        let (matrix, turning) = (Inertia::new(&p, &adjust), turning(&p, &adjust));
+        std::array::from_fn(|j| Self { matrix: matrix.map(|m| m.eps[j]), turning: turning.map(|m| m.eps[j]) })
+    }
+
+    /// The change of force per unit mass, less what the changed mass matrix takes for itself at the accelerations (u', v', r')
+    /// through the water: the change of the accelerations follows from it as from a force.
+    #[inline(always)]
+    pub fn force(&self, flow: &Flow<C>, rates: &[C; 3]) -> Force<C> {
+        let [m, moment, yvdot, yrdot] = self.turning;
+        let ur = flow.u * flow.r;
+        let x = flow.v * flow.r * (m - yvdot) + flow.r * flow.r * (moment - yrdot);
+        Force { x, y: -(ur * m), n: -(ur * moment) } - self.matrix.force(rates)
+    }
+}
 
 /// What each damping coefficient is multiplied with, from Xvr to Nvvr: a surge force, seven sway forces and yaw moments as the
 /// coefficient's name says.
@@ -139,9 +173,7 @@ impl<S: Scalar> Physics<S> for Hull {
     /// Everything of eq. (1)'s left-hand side but the accelerations, moved to the right.
     #[inline(always)]
     fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
-        let a = &flow.adjust;
-        let (m, moment) = (p[0] * a.mass, p[0] * a.mass * (p[2] + a.x_g));
-        let (yvdot, yrdot) = (p[4] * a.added_mass, p[5] * a.added_mass);
+        let [m, moment, yvdot, yrdot] = turning(p, &flow.adjust);
         let [vr, y_v, y_r, n_v, n_r, y_vv, y_vr, y_rr, n_rr, n_rrv, n_vvr] = damping(at, flow);
         let p = &p[DAMPING..];
         let ur = flow.u * flow.r;

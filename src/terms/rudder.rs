@@ -116,6 +116,24 @@ impl<S: Scalar> Blade<S> {
         let side = y * lift - x * drag;
         Force { x: x * lift + y * drag, y: side, n: side * at.ship.rudder_x() }
     }
+
+    /// The force with the parameters `p`.
+    #[inline(always)]
+    fn total(&self, p: &[S::Coefficient], at: &Instant<S>) -> Force<S> {
+        let (l, d) = (&self.lift, &self.drag);
+        let lift = l[0] * p[0] + l[1] * p[1] + l[2] * p[2] + l[3] * p[3] + self.plate[0];
+        let drag = d[0] * p[4] + d[1] * p[5] + d[2] * p[6] + self.plate[1];
+        self.force(at, lift, drag)
+    }
+
+    /// The force per unit of each parameter.
+    #[inline(always)]
+    fn slopes(&self, at: &Instant<S>) -> [Force<S>; 7] {
+        let lift = |lift: S| self.force(at, lift, S::zero());
+        let drag = |drag: S| self.force(at, S::zero(), drag);
+        let ([l0, l1, l2, l3], [d0, d1, d2]) = (self.lift, self.drag);
+        [lift(l0), lift(l1), lift(l2), lift(l3), drag(d0), drag(d1), drag(d2)]
+    }
 }
 
 impl Term for Rudder {
@@ -128,25 +146,27 @@ impl Term for Rudder {
     }
 }
 
+impl Rudder {
+    /// The force, and the force per unit of each parameter, from one evaluation of what they share.
+    #[inline(always)]
+    pub fn force_and_slopes<S: Scalar>(
+        p: &[S::Coefficient],
+        at: &Instant<S>,
+        flow: &Flow<S>,
+    ) -> (Force<S>, [Force<S>; 7]) {
+        let blade = Blade::new(at, flow);
+        (blade.total(p, at), blade.slopes(at))
+    }
+}
+
 impl<S: Scalar> Physics<S> for Rudder {
     #[inline(always)]
     fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
-        let blade = Blade::new(at, flow);
-        let (l, d) = (&blade.lift, &blade.drag);
-        let lift = l[0] * p[0] + l[1] * p[1] + l[2] * p[2] + l[3] * p[3] + blade.plate[0];
-        let drag = d[0] * p[4] + d[1] * p[5] + d[2] * p[6] + blade.plate[1];
-        blade.force(at, lift, drag)
+        Blade::new(at, flow).total(p, at)
     }
 
     #[inline(always)]
     fn slopes(&self, _p: &mut [S::Coefficient], at: &Instant<S>, flow: &Flow<S>, out: &mut [Force<S>]) {
-        let blade = Blade::new(at, flow);
-        let (lifts, drags) = out.split_at_mut(blade.lift.len());
-        for (out, lift) in lifts.iter_mut().zip(blade.lift) {
-            *out = blade.force(at, lift, S::zero());
-        }
-        for (out, drag) in drags.iter_mut().zip(blade.drag) {
-            *out = blade.force(at, S::zero(), drag);
-        }
+        out.copy_from_slice(&Blade::new(at, flow).slopes(at));
     }
 }

@@ -89,53 +89,72 @@ fn dot<S: Scalar, const N: usize>(p: &[S::Coefficient], monomials: &[S; N]) -> S
     p.iter().zip(monomials).fold(S::zero(), |sum, (p, m)| sum + *m * *p)
 }
 
+/// The monomials of X and those of Y and N, all in the hull's unit of force: 1/2 rho L d.
+#[inline(always)]
+fn monomials<S: Scalar>(at: &Instant<S>, flow: &Flow<S>) -> ([S; SURGE], [S; LATERAL]) {
+    let ship = at.ship;
+    let l = ship.hull.lpp;
+    let d = ship.propeller.diameter;
+    let hull = size::pressure(ship);
+    // Conversions from the hull's unit to those of propeller and rudder.
+    let propeller = ship.hull.water_density * d * d / hull;
+    let rudder = 0.5 * ship.hull.water_density * ship.rudder.area / hull;
+    let small = at.small;
+    let (u, v, r) = (flow.u, flow.v, flow.r * l);
+    let (abs_u, abs_v, abs_r) = (flow.abs_u, flow.abs_v, flow.abs_r * l);
+    let n = at.inputs.n * d;
+    let abs_n = (n * n + small * small).sqrt();
+    let delta = at.inputs.delta;
+    let race = flow.rudder_u * (flow.rudder_u * flow.rudder_u + small * small).sqrt();
+    let surge = [
+        u * abs_u,
+        u * u,
+        u * (0.2 * size::speed(ship)),
+        v * v,
+        v * r,
+        r * r,
+        S::lift(n * abs_n * propeller),
+        S::lift(n * n * propeller),
+        u * abs_n * propeller,
+        race * (delta * delta) * rudder,
+    ];
+    let lateral = [
+        v * abs_u,
+        v * u,
+        v * abs_v,
+        r * abs_u,
+        r * u,
+        r * abs_r,
+        v * abs_r,
+        abs_v * r,
+        v * abs_n * propeller,
+        r * abs_n * propeller,
+        S::lift(delta * n * abs_n * propeller),
+        u * abs_u * delta * rudder,
+        race * (delta * delta * delta) * rudder,
+    ];
+    (surge, lateral)
+}
+
 impl<S: Scalar> Physics<S> for Symmetric {
     fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
-        let ship = at.ship;
-        let l = ship.hull.lpp;
-        let d = ship.propeller.diameter;
-        let hull = size::pressure(ship);
-        // Conversions from the hull's unit to those of propeller and rudder.
-        let propeller = ship.hull.water_density * d * d / hull;
-        let rudder = 0.5 * ship.hull.water_density * ship.rudder.area / hull;
-        let small = at.small;
-        let (u, v, r) = (flow.u, flow.v, flow.r * l);
-        let (abs_u, abs_v, abs_r) = (flow.abs_u, flow.abs_v, flow.abs_r * l);
-        let n = at.inputs.n * d;
-        let abs_n = (n * n + small * small).sqrt();
-        let delta = at.inputs.delta;
-        let race = flow.rudder_u * (flow.rudder_u * flow.rudder_u + small * small).sqrt();
-        let surge: [S; SURGE] = [
-            u * abs_u,
-            u * u,
-            u * (0.2 * size::speed(ship)),
-            v * v,
-            v * r,
-            r * r,
-            S::lift(n * abs_n * propeller),
-            S::lift(n * n * propeller),
-            u * abs_n * propeller,
-            race * (delta * delta) * rudder,
-        ];
-        let lateral: [S; LATERAL] = [
-            v * abs_u,
-            v * u,
-            v * abs_v,
-            r * abs_u,
-            r * u,
-            r * abs_r,
-            v * abs_r,
-            abs_v * r,
-            v * abs_n * propeller,
-            r * abs_n * propeller,
-            S::lift(delta * n * abs_n * propeller),
-            u * abs_u * delta * rudder,
-            race * (delta * delta * delta) * rudder,
-        ];
+        let (hull, l) = (size::pressure(at.ship), at.ship.hull.lpp);
+        let (surge, lateral) = monomials(at, flow);
         Force {
             x: dot(&p[..SURGE], &surge) * hull,
             y: dot(&p[SURGE..SURGE + LATERAL], &lateral) * hull,
             n: dot(&p[SURGE + LATERAL..], &lateral) * (hull * l),
         }
+    }
+
+    fn slopes(&self, _p: &mut [S::Coefficient], at: &Instant<S>, flow: &Flow<S>, out: &mut [Force<S>]) {
+        let (hull, l) = (size::pressure(at.ship), at.ship.hull.lpp);
+        let (surge, lateral) = monomials(at, flow);
+        let (x, rest) = out.split_at_mut(SURGE);
+        let (y, n) = rest.split_at_mut(LATERAL);
+        let none = Force::zero();
+        x.iter_mut().zip(surge).for_each(|(out, m)| *out = Force { x: m * hull, ..none });
+        y.iter_mut().zip(lateral).for_each(|(out, m)| *out = Force { y: m * hull, ..none });
+        n.iter_mut().zip(lateral).for_each(|(out, m)| *out = Force { n: m * (hull * l), ..none });
     }
 }
