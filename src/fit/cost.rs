@@ -174,7 +174,8 @@ impl<P: Plain> Block<P> {
     /// The block of some runs; `None` where one cannot be read.
     fn of(model: &Model, runs: Runs, weights: &[[f64; STATES]], lanes: &[usize]) -> Option<Self> {
         let runs = lanes.iter().map(|run| runs.get(*run)).collect::<Option<Vec<Cow<Run>>>>()?;
-        let in_lane = |lane: usize| &*runs[lane.min(runs.len() - 1)];
+        let runs: Vec<&Run> = runs.iter().map(|run| &**run).collect();
+        let in_lane = |lane: usize| runs[lane.min(runs.len() - 1)];
         let steps = runs.iter().map(|r| r.inputs.len()).max().unwrap_or(0);
         let sample = |lane: usize, k: usize| {
             let inputs = &in_lane(lane).inputs;
@@ -190,12 +191,9 @@ impl<P: Plain> Block<P> {
         };
         let measured =
             |lane: usize, k: usize, c: usize| in_lane(lane).measured.get(k).and_then(|m| m[c]).unwrap_or(0.0);
-        let table = |f: &dyn Fn(usize, usize, usize) -> f64| -> Vec<[P; STATES]> {
-            (0..steps).map(|k| std::array::from_fn(|c| P::gather(|lane| f(lane, k, c)))).collect()
-        };
-        let channels = |lane: usize| in_lane(lane).channels();
-        let whole =
-            (0..steps).map(|k| (0..P::WIDTH).all(|lane| (0..STATES).all(|c| weight(lane, k, c) > 0.0))).collect();
+        let root: Vec<[P; STATES]> = table(steps, weight);
+        let weighted = |root: &[P; STATES]| (0..P::WIDTH).all(|lane| root.iter().all(|w| w.in_lane(lane) > 0.0));
+        let measured_at_all: Vec<[bool; STATES]> = (0..P::WIDTH).map(|lane| in_lane(lane).channels()).collect();
         let mut by_lane: Vec<Vec<f64>> = Vec::new();
         for lane in 0..P::WIDTH {
             let mut values: Vec<f64> = model.parameters.iter().map(|p| if p.free { 0.0 } else { p.value }).collect();
@@ -209,10 +207,10 @@ impl<P: Plain> Block<P> {
             dt: in_lane(0).dt,
             inputs,
             initial: std::array::from_fn(|c| P::gather(|lane| in_lane(lane).initial[c])),
-            channels: std::array::from_fn(|c| P::gather(|lane| f64::from(u8::from(channels(lane)[c])))),
-            target: table(&measured),
-            root: table(&weight),
-            whole,
+            channels: std::array::from_fn(|c| P::gather(|lane| f64::from(u8::from(measured_at_all[lane][c])))),
+            target: table(steps, measured),
+            whole: root.iter().map(weighted).collect(),
+            root,
             base: (0..model.parameters.len()).map(|i| P::gather(|lane| by_lane[lane][i])).collect(),
             still: runs.iter().all(|run| is_still(run)),
         })
@@ -285,6 +283,11 @@ struct Shape {
 /// Whether no current was recorded in a run.
 fn is_still(run: &Run) -> bool {
     run.inputs.iter().all(|i| i.current == [0.0; 2])
+}
+
+/// What `f` says of lane, sample and channel, side by side.
+fn table<P: Plain>(samples: usize, f: impl Fn(usize, usize, usize) -> f64) -> Vec<[P; STATES]> {
+    (0..samples).map(|k| std::array::from_fn(|c| P::gather(|lane| f(lane, k, c)))).collect()
 }
 
 /// Whether a run can be fitted to.
@@ -472,6 +475,45 @@ impl<'a> Cost<'a> {
             Some(())
         })?;
         Some(squares)
+    }
+
+    /// Hands the weighted residuals of each run at `p` to `take`, by sample and channel, NaN where nothing is compared and after
+    /// the run's end. The order depends on the runs alone. `None` where a run cannot be read or `take` says no more.
+    pub(super) fn residuals_by_run(
+        &self,
+        p: &[f64],
+        take: impl FnMut(usize, Vec<[f64; STATES]>) -> Option<()>,
+    ) -> Option<()> {
+        if self.lanes.is_empty() {
+            self.residuals_over(&self.single, p, take)
+        } else {
+            self.residuals_over(&self.lanes, p, take)
+        }
+    }
+
+    fn residuals_over<P: Plain>(
+        &self,
+        blocks: &Blocks<P>,
+        p: &[f64],
+        mut take: impl FnMut(usize, Vec<[f64; STATES]>) -> Option<()>,
+    ) -> Option<()> {
+        let by_lane = |block: &Block<P>| {
+            let mut residuals = vec![[P::zero(); STATES]; block.inputs.len()];
+            self.rollout(block, p, |k, y| residuals[k] = block.residuals(k, y));
+            let of_lane = |lane: usize| {
+                let entry = |(residual, root): (&P, &P)| {
+                    if root.in_lane(lane) > 0.0 { residual.in_lane(lane) } else { f64::NAN }
+                };
+                let sample = |(residuals, roots): (&[P; STATES], &[P; STATES])| {
+                    std::array::from_fn(|c| entry((&residuals[c], &roots[c])))
+                };
+                residuals.iter().zip(&block.root).map(sample).collect()
+            };
+            (0..block.runs.len()).map(of_lane).collect::<Vec<Vec<[f64; STATES]>>>()
+        };
+        self.each(blocks, by_lane, |runs, values| {
+            runs.iter().zip(values).try_for_each(|(run, values)| take(*run, values))
+        })
     }
 
     /// The cost with its gradient and Gauss-Newton matrix, or `None` where a simulation or a derivative diverges.

@@ -78,8 +78,8 @@ impl Covariances {
     pub fn of(task: &Task, end: &End, cost: f64, likeness: Option<f64>) -> Self {
         let n = task.scales.len();
         let directions = task.free_directions(&end.active);
-        let quadratic = task.cost.quadratic(&end.p);
-        let own = scores_by_recording(task, quadratic.as_ref());
+        let quadratic = task.evaluations.quadratic(&end.p);
+        let own = scores_by_recording(task, quadratic.as_deref());
         let (meat, clusters) = clustered_variance(task.cost.ranks(), &own, n);
         let data = quadratic.map_or_else(|| DMatrix::zeros(n, n), |q| task.scaled(&q.gauss_newton));
         let mut prior = DMatrix::zeros(n, n);

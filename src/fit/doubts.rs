@@ -17,15 +17,12 @@
 
 use super::covariance::Covariances;
 use super::task::Task;
-use crate::model::Model;
 use crate::ranks::{ExactSums, Ranks};
-use crate::recording::{Measured, Run};
-use crate::simulate::{Scenario, reported};
+use crate::recording::Run;
 use crate::state::STATES;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use trimtab_ad::smooth::wrap_angle;
 
 /// Residual variance over the sensors' from which on a cost is far above its noise.
 pub const MODEL_ERROR_LIMIT: f64 = 10.0;
@@ -47,6 +44,9 @@ const UNCORRELATED: f64 = 0.05;
 
 /// Windows over which autocorrelations are taken, evenly drawn where there are more.
 const WINDOWS: usize = 1000;
+
+/// Lags of which products are computed at once.
+const LAGS: usize = 16;
 
 /// A reason not to take a fit at its word.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -92,7 +92,7 @@ pub struct ResidualStatistics {
 struct Residuals {
     recording: String,
     values: Vec<[f64; STATES]>,
-    /// Weighted variance of what was measured of each channel; NaN where nothing was.
+    /// Weighted variance of what was measured of each channel that a rudder moves; NaN in the others and where nothing was.
     variance: [f64; STATES],
 }
 
@@ -103,17 +103,22 @@ const VELOCITIES: std::ops::Range<usize> = 3..6;
 const STEERED: std::ops::Range<usize> = 4..6;
 
 impl ResidualStatistics {
-    /// The statistics of a model on the runs of a task.
-    pub(super) fn of(task: &Task, model: &Model) -> Self {
-        let ranks = task.cost.ranks();
+    /// The statistics of a task's residuals at `p`.
+    pub(super) fn of(task: &Task, p: &[f64]) -> Self {
         let every = task.cost.runs().div_ceil(WINDOWS).max(1);
-        let mut tally = Tally::after(ranks.before(task.runs.len()));
-        for first in (0..task.runs.len()).step_by(TOGETHER) {
-            let some = first..(first + TOGETHER).min(task.runs.len());
-            let of = |i: usize| Some(residuals(task, model, &*task.runs.get(i)?, &task.cost.weights()[i]));
-            let some: Vec<Option<Residuals>> = some.into_par_iter().map(of).collect();
-            some.into_iter().flatten().for_each(|one| tally.add(one, every));
-        }
+        let ranks = task.cost.ranks();
+        let before = ranks.before(task.runs.len());
+        let mut tally = Tally::new();
+        // A run that cannot be read ends the sums; the fit itself then says so.
+        let _ = task.cost.residuals_by_run(p, |run, mut values| {
+            let drawn = (before + run).is_multiple_of(every);
+            let weights = &task.cost.weights()[run];
+            let run = task.runs.get(run)?;
+            values.truncate(run.measured.len());
+            let variance = measured_variance(&run, weights);
+            tally.add(Residuals { recording: run.recording.clone(), values, variance }, drawn);
+            Some(())
+        });
         tally.statistics(ranks)
     }
 
@@ -182,28 +187,16 @@ pub(super) fn headline(converged: bool, words: &str, doubts: &[Doubt]) -> String
     }
 }
 
-fn residuals(task: &Task, model: &Model, run: &Run, weights: &[f64; STATES]) -> Residuals {
-    let theta = model.values_in(&run.session);
-    let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
-    let predicted = reported(model, &theta, task.settings.integration, &scenario, &run.channels());
-    let of_sample = |(measured, simulated): (&Measured, &[f64; STATES])| {
-        std::array::from_fn(|c| {
-            let Some(value) = measured[c].filter(|_| weights[c] > 0.0) else { return f64::NAN };
-            let difference = value - simulated[c];
-            weights[c].sqrt() * if c == 2 { wrap_angle(difference) } else { difference }
-        })
-    };
-    let variance = |c: usize| {
+/// Weighted variance of what was measured of the channels that a rudder moves; NaN in the others.
+fn measured_variance(run: &Run, weights: &[f64; STATES]) -> [f64; STATES] {
+    let mut variance = [f64::NAN; STATES];
+    for c in STEERED {
         let values = || run.measured.iter().filter_map(|m| m[c]);
         let count = values().count() as f64;
         let mean = values().sum::<f64>() / count;
-        weights[c] * values().map(|v| (v - mean).powi(2)).sum::<f64>() / count
-    };
-    Residuals {
-        recording: run.recording.clone(),
-        values: run.measured.iter().zip(&predicted.states).map(of_sample).collect(),
-        variance: std::array::from_fn(variance),
+        variance[c] = weights[c] * values().map(|v| (v - mean).powi(2)).sum::<f64>() / count;
     }
+    variance
 }
 
 /// Mean square of some channels over some samples, with the number of values.
@@ -212,13 +205,8 @@ fn squares(values: &[[f64; STATES]], channels: std::ops::Range<usize>) -> (f64, 
     finite.fold((0.0, 0.0), |(sum, count), e| (sum + e * e, count + 1.0))
 }
 
-/// Runs whose residuals are computed before they are added up.
-const TOGETHER: usize = 256;
-
 /// Sums over the residuals of runs, from which the statistics come.
 struct Tally {
-    /// Index of the next run among those of all ranks.
-    next: usize,
     /// For each channel: the sum of squares and the number of values, and the same of the second differences, a sixth each.
     squares: ExactSums,
     /// Mean squares of velocities in the second and in the last quarter, summed by recording.
@@ -230,14 +218,14 @@ struct Tally {
 }
 
 impl Tally {
-    /// Of no run yet, after those of the ranks before.
-    fn after(runs: usize) -> Self {
+    /// Of no run yet.
+    fn new() -> Self {
         let (squares, lost) = (ExactSums::new(4 * STATES), ExactSums::new(3));
-        Self { next: runs, squares, quarters: BTreeMap::new(), lost, drawn: Vec::new() }
+        Self { squares, quarters: BTreeMap::new(), lost, drawn: Vec::new() }
     }
 
-    /// Adds a run; every so many are kept for autocorrelations.
-    fn add(&mut self, run: Residuals, every: usize) {
+    /// Adds a run, which is kept for autocorrelations where it was drawn for them.
+    fn add(&mut self, run: Residuals, drawn: bool) {
         for c in 0..STATES {
             let (square, count) = squares(&run.values, c..c + 1);
             let second = |w: &[[f64; STATES]]| w[2][c] - 2.0 * w[1][c] + w[0][c];
@@ -250,10 +238,9 @@ impl Tally {
         if quarter >= 2 {
             self.add_quarters(&run, quarter);
         }
-        if self.next.is_multiple_of(every) {
+        if drawn {
             self.drawn.push(run);
         }
-        self.next += 1;
     }
 
     fn add_quarters(&mut self, run: &Residuals, quarter: usize) {
@@ -322,33 +309,74 @@ fn loss(ranks: &Ranks, sums: ExactSums) -> Option<[f64; 2]> {
     (total[2] > 0.0).then(|| [total[0] / total[2], total[1] / total[2]])
 }
 
+/// Residuals of one run in one row, sample after sample.
+struct Flat {
+    /// 0 where there is none.
+    values: Vec<f64>,
+    /// 1 where there is a residual and 0 where there is none; empty where there are all.
+    present: Vec<f64>,
+}
+
+impl Flat {
+    fn of(residuals: &Residuals) -> Self {
+        let entries = || residuals.values.iter().flatten();
+        let present: Vec<f64> = if entries().all(|e| e.is_finite()) {
+            Vec::new()
+        } else {
+            entries().map(|e| f64::from(u8::from(e.is_finite()))).collect()
+        };
+        Self { values: entries().map(|e| if e.is_finite() { *e } else { 0.0 }).collect(), present }
+    }
+
+    /// Sum of the products of residuals that are `lag` samples apart, with their number.
+    fn product(&self, lag: usize) -> (f64, f64) {
+        let shift = (lag * STATES).min(self.values.len());
+        let apart = |x: &[f64]| dot(&x[..x.len() - shift], &x[shift..]);
+        let count = if self.present.is_empty() { (self.values.len() - shift) as f64 } else { apart(&self.present) };
+        (apart(&self.values), count)
+    }
+}
+
+/// The scalar product, in eight partial sums that a machine can add side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
+    let mut sums = [0.0; 8];
+    for (a, b) in a.zip(b) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
 /// How many successive residuals count as one: `1 + 2 sum rho(l)` over the lags up to where rho is lost in scatter.
 fn likeness(ranks: &Ranks, drawn: &[Residuals]) -> Option<f64> {
-    let longest = drawn.iter().map(|r| r.values.len()).max().unwrap_or(0);
+    let drawn: Vec<Flat> = drawn.iter().map(Flat::of).collect();
+    let longest = drawn.iter().map(|r| r.values.len() / STATES).max().unwrap_or(0);
     let longest = ranks.largest(&[longest as f64])[0] as usize;
-    let product = |lag: usize| {
-        let of_run = |r: &Residuals| {
-            let mut sum = (0.0, 0.0);
-            for (a, b) in r.values.iter().zip(r.values.iter().skip(lag)) {
-                for (a, b) in a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite()) {
-                    sum = (sum.0 + a * b, sum.1 + 1.0);
-                }
-            }
-            sum
-        };
-        let mut sums = ExactSums::new(2);
-        for (sum, count) in drawn.par_iter().map(of_run).collect::<Vec<_>>() {
-            sums.add(0, sum);
-            sums.add(1, count);
+    // Mean products at some lags in one go: threads and ranks meet once for all of them.
+    let products = |lags: std::ops::Range<usize>| -> Vec<f64> {
+        let of_run = |r: &Flat| lags.clone().map(|lag| r.product(lag)).collect::<Vec<_>>();
+        let mut sums = ExactSums::new(2 * lags.len());
+        for (i, (sum, count)) in
+            drawn.par_iter().map(of_run).collect::<Vec<_>>().iter().flat_map(|p| p.iter().enumerate())
+        {
+            sums.add(2 * i, *sum);
+            sums.add(2 * i + 1, *count);
         }
-        ranks.total(sums).filter(|total| total[1] > 0.0).map_or(0.0, |total| total[0] / total[1])
+        let total = ranks.total(sums).unwrap_or_default();
+        let mean =
+            |i: usize| total.get(2 * i + 1).filter(|count| **count > 0.0).map_or(0.0, |count| total[2 * i] / count);
+        (0..lags.len()).map(mean).collect()
     };
-    let variance = product(0);
+    let variance = products(0..1)[0];
     if variance <= FINEST * FINEST {
         return None;
     }
-    let correlations = (1..longest / 2).map(|lag| product(lag) / variance).take_while(|rho| *rho > UNCORRELATED);
-    Some(1.0 + 2.0 * correlations.sum::<f64>())
+    let batches = (1..longest / 2).step_by(LAGS).map(|lag| lag..(lag + LAGS).min(longest / 2));
+    let correlations = batches.flat_map(products).map(|product| product / variance);
+    Some(1.0 + 2.0 * correlations.take_while(|rho| *rho > UNCORRELATED).sum::<f64>())
 }
 
 #[cfg(test)]
@@ -374,9 +402,9 @@ mod tests {
     fn view(made: &[(String, Vec<[f64; STATES]>)]) -> ResidualStatistics {
         // Sway that was measured to vary by 0.1.
         let variance = [f64::NAN, f64::NAN, f64::NAN, f64::NAN, 0.01, f64::NAN];
-        let mut tally = Tally::after(0);
+        let mut tally = Tally::new();
         for (recording, values) in made.iter().cloned() {
-            tally.add(Residuals { recording, values, variance }, 1);
+            tally.add(Residuals { recording, values, variance }, true);
         }
         tally.statistics(Ranks::one())
     }

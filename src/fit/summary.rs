@@ -180,9 +180,9 @@ pub fn fit_over<'a>(
 
 /// The outcome of a task from where it ended.
 fn describe(task: &Task, end: End, clock: Instant) -> Fit {
-    let cost = task.cost.value(&end.p).unwrap_or(task.start_cost);
+    let cost = task.evaluations.value(&end.p).unwrap_or(task.start_cost);
     let model = task.model_at(&end.p);
-    let statistics = ResidualStatistics::of(task, &model);
+    let statistics = ResidualStatistics::of(task, &end.p);
     let covariances = Covariances::of(task, &end, cost, statistics.likeness);
     let doubts = statistics.doubts(&covariances, task.scales.len());
     let mut validity = Count::new(&model);

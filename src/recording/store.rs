@@ -74,7 +74,8 @@ impl<'a> Runs<'a> {
     }
 }
 
-/// Samples up to which runs are kept in memory: a hundred bytes each, twice as many with what a fit makes of them.
+/// Samples up to which runs are kept in memory: about 200 bytes each, twice as many with what a fit makes of them. In the file a
+/// sample of propeller, rudder and six channels takes 72 bytes.
 pub const HELD_SAMPLES: usize = 400_000;
 
 /// Keeps runs that are added one after the other.
