@@ -208,7 +208,7 @@ impl<'f, P: Plain> Filtering<'f, P> {
             let mut s = self.noise.white[j] + ph[9 + j] + along(senses, &h, j, |l| ph[l]);
             if let Some(frozen) = self.wanted.frozen {
                 s = self.given(frozen, |g| Some(g.variance.get(k)?[j]));
-                present = present * P::gather(|lane| f64::from(u8::from(s.in_lane(lane).is_finite())));
+                present *= P::gather(|lane| f64::from(u8::from(s.in_lane(lane).is_finite())));
             }
             s = P::select(zero.less(present), s, one);
             let sigma = s.sqrt();
