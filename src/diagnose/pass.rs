@@ -2,15 +2,13 @@
 //! It computes nothing: the filter does.
 
 use super::covariance::Z;
+pub use super::settings::GATE;
 use crate::model::Model;
 use crate::physics::Probe;
 use crate::recording::Run;
 use crate::sensitivity::columns;
 use crate::state::{Inputs, STATES, State};
 use nalgebra::{DMatrix, DVector};
-
-/// Innovations larger than this many standard deviations are set aside as outliers.
-pub const GATE: f64 = 6.0;
 
 /// Factor on the variance of the unknown force at a sample: where a known event pushed the ship, the force may be anything.
 pub fn boost(run: &Run, sample: usize) -> f64 {
