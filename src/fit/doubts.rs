@@ -246,7 +246,7 @@ impl Tally {
         if quarter >= 2 {
             self.add_quarters(&run, quarter);
         }
-        if self.runs % every == 0 {
+        if self.runs.is_multiple_of(every) {
             self.drawn.push(run);
         }
         self.runs += 1;
