@@ -4,6 +4,7 @@
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::physics::{Flow, Form, Quantity, Validity, range_in_words};
+use crate::ranks::Ranks;
 use crate::recording::{Run, or_nan};
 use crate::state::{Inputs, STATES, State};
 use crate::units::GRAVITY;
@@ -50,9 +51,12 @@ struct Limit {
 
 /// Samples counted against the ranges of a model's terms, some at a time.
 pub struct Count<'a> {
-    model: &'a Model,
     dynamics: Dynamics<'a, f64>,
+    scales: Scales,
     limits: Vec<Limit>,
+    /// The quantities that the limits are about, each once, and the place of each limit's own among them.
+    quantities: Vec<Quantity>,
+    places: Vec<usize>,
     samples: usize,
     anywhere: usize,
 }
@@ -61,11 +65,17 @@ impl<'a> Count<'a> {
     /// Nothing counted yet, with the parameters as the model has them.
     pub fn new(model: &'a Model) -> Self {
         let dynamics = Dynamics::new(model, model.values());
-        Self { model, dynamics, limits: limits(model), samples: 0, anywhere: 0 }
+        let limits = limits(model);
+        let mut quantities: Vec<Quantity> = limits.iter().map(|l| l.quantity).collect();
+        quantities.sort_unstable();
+        quantities.dedup();
+        let places = limits.iter().map(|l| quantities.partition_point(|q| *q < l.quantity)).collect();
+        Self { scales: Scales::of(model), dynamics, limits, quantities, places, samples: 0, anywhere: 0 }
     }
 
     /// Counts samples; see [`outside`].
     pub fn add<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(&mut self, samples: impl IntoIterator<Item = (Y, I)>) {
+        let mut values = vec![None; self.quantities.len()];
         for (state, inputs) in samples {
             let (state, inputs) = (State::from_array(*state.borrow()), inputs.borrow());
             if ![state.u, state.v, state.r, inputs.n, inputs.delta].iter().all(|x| x.is_finite()) {
@@ -76,8 +86,11 @@ impl<'a> Count<'a> {
             let flow = self.dynamics.flow(&self.dynamics.instant(&state, inputs));
             self.samples += 1;
             let mut out = false;
-            for limit in &mut self.limits {
-                out |= limit.meet(value(limit.quantity, self.model, inputs, &flow));
+            for (value, quantity) in values.iter_mut().zip(&self.quantities) {
+                *value = self.scales.value(*quantity, inputs, &flow);
+            }
+            for (limit, place) in self.limits.iter_mut().zip(&self.places) {
+                out |= limit.meet(values[*place]);
             }
             self.anywhere += usize::from(out);
         }
@@ -91,6 +104,14 @@ impl<'a> Count<'a> {
             limit.known += more.known;
             limit.beyond += more.beyond;
             limit.met = [limit.met[0].min(more.met[0]), limit.met[1].max(more.met[1])];
+        }
+    }
+
+    /// Adds what the other ranks counted for the same model.
+    pub fn gather(&mut self, ranks: &Ranks) {
+        [self.samples, self.anywhere] = ranks.counts([self.samples, self.anywhere]);
+        for limit in &mut self.limits {
+            limit.gather(ranks);
         }
     }
 
@@ -111,8 +132,18 @@ pub fn outside<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
     model: &Model,
     samples: impl IntoIterator<Item = (Y, I)>,
 ) -> Coverage {
+    outside_over(Ranks::one(), model, samples)
+}
+
+/// As [`outside`], of the samples of all ranks, of which this one has `samples`.
+pub fn outside_over<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
+    ranks: &Ranks,
+    model: &Model,
+    samples: impl IntoIterator<Item = (Y, I)>,
+) -> Coverage {
     let mut count = Count::new(model);
     count.add(samples);
+    count.gather(ranks);
     count.coverage()
 }
 
@@ -153,27 +184,49 @@ fn limits(model: &Model) -> Vec<Limit> {
         .collect()
 }
 
-/// A quantity at a sample; `None` where it means nothing there.
-fn value(quantity: Quantity, model: &Model, inputs: &Inputs<f64>, flow: &Flow<f64>) -> Option<f64> {
-    let hull = &model.ship.hull;
-    let tip = inputs.n * model.ship.propeller.diameter;
-    Some(match quantity {
-        Quantity::Froude => flow.u / (GRAVITY * hull.lpp).sqrt(),
-        // Below the small speed of the ship the direction of motion is noise.
-        Quantity::Drift if flow.u.hypot(flow.v) < model.ship.small_speed() => 0.0,
-        Quantity::Drift => flow.v.abs().atan2(flow.u.abs()),
-        Quantity::Turn => flow.r.abs() * hull.lpp / flow.speed,
-        Quantity::Depth => 1.0 / inputs.draught_to_depth.max(0.0),
-        Quantity::Rate => inputs.n,
-        Quantity::Advance if inputs.n >= 0.0 && tip < flow.advance.abs() * 1e-6 => {
-            // A shaft at rest, or nearly.
-            if flow.u.abs() < model.ship.small_speed() { 0.0 } else { f64::INFINITY.copysign(flow.advance) }
+/// What the ship's size makes of motions.
+struct Scales {
+    /// Lpp \[m\].
+    length: f64,
+    /// sqrt(g Lpp) \[m/s\].
+    wave_speed: f64,
+    /// Speed below which the direction of motion is noise \[m/s\].
+    small_speed: f64,
+    /// Propeller diameter \[m\].
+    diameter: f64,
+}
+
+impl Scales {
+    fn of(model: &Model) -> Self {
+        let length = model.ship.hull.lpp;
+        Self {
+            length,
+            wave_speed: (GRAVITY * length).sqrt(),
+            small_speed: model.ship.small_speed(),
+            diameter: model.ship.propeller.diameter,
         }
-        Quantity::Advance if inputs.n >= 0.0 => flow.advance / tip,
-        Quantity::Reversing if inputs.n < 0.0 => flow.u / tip,
-        Quantity::Advance | Quantity::Reversing => return None,
-        Quantity::Attack => trimtab_ad::smooth::wrap_angle(inputs.delta - flow.rudder_v.atan2(flow.rudder_u)).abs(),
-    })
+    }
+
+    /// A quantity at a sample; `None` where it means nothing there.
+    fn value(&self, quantity: Quantity, inputs: &Inputs<f64>, flow: &Flow<f64>) -> Option<f64> {
+        let tip = inputs.n * self.diameter;
+        Some(match quantity {
+            Quantity::Froude => flow.u / self.wave_speed,
+            Quantity::Drift if (flow.u * flow.u + flow.v * flow.v).sqrt() < self.small_speed => 0.0,
+            Quantity::Drift => flow.v.abs().atan2(flow.u.abs()),
+            Quantity::Turn => flow.r.abs() * self.length / flow.speed,
+            Quantity::Depth => 1.0 / inputs.draught_to_depth.max(0.0),
+            Quantity::Rate => inputs.n,
+            Quantity::Advance if inputs.n >= 0.0 && tip < flow.advance.abs() * 1e-6 => {
+                // A shaft at rest, or nearly.
+                if flow.u.abs() < self.small_speed { 0.0 } else { f64::INFINITY.copysign(flow.advance) }
+            }
+            Quantity::Advance if inputs.n >= 0.0 => flow.advance / tip,
+            Quantity::Reversing if inputs.n < 0.0 => flow.u / tip,
+            Quantity::Advance | Quantity::Reversing => return None,
+            Quantity::Attack => trimtab_ad::smooth::wrap_angle(inputs.delta - flow.rudder_v.atan2(flow.rudder_u)).abs(),
+        })
+    }
 }
 
 impl Limit {
@@ -187,6 +240,13 @@ impl Limit {
             self.met = [self.met[0].min(value), self.met[1].max(value)];
         }
         out
+    }
+
+    /// Counts what the other ranks met too.
+    fn gather(&mut self, ranks: &Ranks) {
+        [self.known, self.beyond] = ranks.counts([self.known, self.beyond]);
+        let ends = ranks.largest(&[-self.met[0], self.met[1]]);
+        self.met = [-ends[0], ends[1]];
     }
 
     fn report(&self) -> Outside {

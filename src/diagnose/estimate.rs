@@ -121,14 +121,22 @@ pub struct Estimate {
     pub log_posterior: f64,
 }
 
-/// Works on the runs side by side; what each gives goes to `take` in the order of the runs, so that sums have the same bits on any
+/// Passes over the runs, and what `work` makes of each goes to `take` in the order of the runs, so that sums have the same bits on any
 /// number of threads. No more of it is held at once than a few runs give.
-pub fn each_run<T: Send>(runs: &[Run], work: impl Fn(usize, &Run) -> T + Sync, mut take: impl FnMut(usize, T)) {
-    let together = TOGETHER * rayon::current_num_threads();
-    for (group, some) in runs.chunks(together).enumerate() {
-        let first = group * together;
-        let done: Vec<T> = some.par_iter().enumerate().map(|(i, run)| work(first + i, run)).collect();
-        done.into_iter().enumerate().for_each(|(i, one)| take(first + i, one));
+pub fn each_pass<T: Send>(
+    filter: &Filter,
+    runs: &[Run],
+    noise: &Noise,
+    wanted: Wanted,
+    work: impl Fn(&Run, Pass) -> T + Sync,
+    mut take: impl FnMut(T),
+) {
+    for (group, some) in runs.chunks(TOGETHER).enumerate() {
+        let first = group * TOGETHER;
+        let frozen = wanted.frozen.map(|gains| &gains[first..first + some.len()]);
+        let passes = filter.passes(some, noise, Wanted { frozen, ..wanted });
+        let done: Vec<T> = some.par_iter().zip(passes).map(|(run, pass)| work(run, pass)).collect();
+        done.into_iter().for_each(&mut take);
     }
 }
 
@@ -142,12 +150,8 @@ pub fn passes(
     tangent: bool,
 ) -> Vec<Pass> {
     let filter = Filter::new(model, integration, columns);
-    let pass = |r: &Run| Pass {
-        filtered: Vec::new(),
-        force_sd: Vec::new(),
-        ..filter.pass(r, noise, Wanted { tangent, ..Wanted::default() })
-    };
-    runs.par_iter().map(pass).collect()
+    let keep = |pass: Pass| Pass { filtered: Vec::new(), force_sd: Vec::new(), ..pass };
+    filter.passes(runs, noise, Wanted { tangent, ..Wanted::default() }).into_iter().map(keep).collect()
 }
 
 /// Scores and information of passes over runs.
@@ -189,12 +193,11 @@ impl Sums {
     /// Passes over all runs; `sessions` as for [`evidence`]. Sums by session are kept where `apart`.
     pub fn of(filter: &Filter, runs: &[Run], noise: &Noise, sessions: &[Option<Vec<String>>], apart: bool) -> Self {
         let mut out = Self { evidence: Evidence::default(), log_likelihood: 0.0, used: 0, outliers: 0 };
-        let work = |_: usize, run: &Run| {
-            let Pass { score, information, log_likelihood, used, outliers, .. } =
-                filter.pass(run, noise, Wanted::default());
+        let work = |run: &Run, pass: Pass| {
+            let Pass { score, information, log_likelihood, used, outliers, .. } = pass;
             (run_evidence(run, score, information, sessions), log_likelihood, used, outliers)
         };
-        each_run(runs, work, |_, (one, log_likelihood, used, outliers)| {
+        each_pass(filter, runs, noise, Wanted::default(), work, |(one, log_likelihood, used, outliers)| {
             out.evidence.add(one, apart);
             out.log_likelihood += log_likelihood;
             out.used += used;
@@ -213,7 +216,7 @@ impl Sums {
 fn tangents(model: &Model, integration: Integration, runs: &[&Run], noise: &Noise) -> Vec<Tangent> {
     let filter = Filter::new(model, integration, &[]);
     let wanted = Wanted { tangent: true, ..Wanted::default() };
-    runs.par_iter().map(|run| filter.pass(run, noise, wanted).tangent.unwrap_or_default()).collect()
+    filter.passes(runs, noise, wanted).into_iter().map(|pass| pass.tangent.unwrap_or_default()).collect()
 }
 
 /// The session restrictions of free parameters, in their order.
@@ -265,9 +268,9 @@ pub fn log_posterior(
 /// The noise of the calmer runs: what disturbs some runs only is no noise.
 pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prior: &NoisePrior) -> Noise {
     let filter = Filter::new(&found.model, integration, &[]);
-    let share =
-        |run: &Run| filter.pass(run, &found.noise, Wanted::default()).log_likelihood / run.measured.len() as f64;
-    let likelihood: Vec<f64> = runs.par_iter().map(share).collect();
+    let share = |run: &Run, pass: Pass| pass.log_likelihood / run.measured.len() as f64;
+    let mut likelihood: Vec<f64> = Vec::with_capacity(runs.len());
+    each_pass(&filter, runs, &found.noise, Wanted::default(), share, |one| likelihood.push(one));
     let mut order: Vec<usize> = (0..runs.len()).collect();
     order.sort_by(|a, b| likelihood[*b].total_cmp(&likelihood[*a]));
     order.truncate((CALM_SHARE * runs.len() as f64).ceil() as usize);

@@ -7,6 +7,7 @@
 //! | `sums` | sums over samples behind the cost, its gradient and the Gauss-Newton matrix |
 //! | [`constraints`] | the constraints as data: curves bounded on grids |
 //! | `settings` | section `[fit]` of a study |
+//! | `evaluations` | the last evaluations of a cost, each made once |
 //! | `task` | what stays fixed during a fit: model, cost, constraints, scales, start |
 //! | `problem` | the task with the priors, scaled, as Ipopt wants it |
 //! | `stages` | runs in shorter pieces, to be fitted first |
@@ -24,6 +25,8 @@ mod covariance;
 #[cfg(feature = "ipopt")]
 mod doubts;
 mod error;
+#[cfg(feature = "ipopt")]
+mod evaluations;
 #[cfg(feature = "ipopt")]
 pub mod multistart;
 #[cfg(feature = "ipopt")]
@@ -51,9 +54,9 @@ pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;
 #[cfg(feature = "ipopt")]
-pub use multistart::{MultiStart, StartOutcome, multi_start};
+pub use multistart::{MultiStart, StartOutcome, StartRow, multi_start, multi_start_over};
 #[cfg(feature = "ipopt")]
 pub use problem::Progress;
 pub use settings::{FitSettings, Hessian};
 #[cfg(feature = "ipopt")]
-pub use summary::{Active, Combination, Estimate, Fit, fit};
+pub use summary::{Active, Combination, Estimate, Fit, fit, fit_over};

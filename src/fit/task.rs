@@ -4,6 +4,7 @@
 use super::constraints::{self, Row};
 use super::cost::{Cost, CostOptions};
 use super::error::FitError;
+use super::evaluations::Evaluations;
 use super::settings::FitSettings;
 use super::subspace::null_space;
 use crate::model::{Model, Parameter};
@@ -21,9 +22,14 @@ const KEPT: f64 = 1e-7;
 pub(super) struct Task<'a> {
     pub model: &'a Model,
     pub cost: &'a Cost<'a>,
+    /// Its evaluations.
+    pub evaluations: Evaluations<'a>,
+    /// The runs of this rank.
     pub runs: Runs<'a>,
     pub settings: &'a FitSettings,
     pub rows: Vec<Row>,
+    /// Size of each row over a change of one scale in every free parameter.
+    pub sizes: Vec<f64>,
     pub scales: Vec<f64>,
     pub bounds: Vec<(f64, f64)>,
     pub start: Vec<f64>,
@@ -51,20 +57,26 @@ impl<'a> Task<'a> {
         if free.is_empty() {
             return Err(FitError::NothingFree);
         }
-        let rows = constraints::rows(model, &settings.constraints, constraints::speed_range(runs))?;
+        let [slowest, fastest] = constraints::speed_range(runs);
+        let ends = cost.ranks().largest(&[-slowest, fastest]);
+        let rows = constraints::rows(model, &settings.constraints, [-ends[0], ends[1]])?;
         let mut bounds: Vec<(f64, f64)> = free.iter().map(|p| (p.lower, p.upper)).collect();
         keep_mass_matrix_positive(model, &free, &mut bounds);
         let start: Vec<f64> = free.iter().zip(&bounds).map(|(p, (lo, hi))| p.value.max(*lo).min(*hi)).collect();
-        let start_cost = cost.value(&start).unwrap_or(f64::INFINITY);
-        let scales = free.iter().map(|p| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 }).collect();
+        let evaluations = Evaluations::of(cost);
+        let start_cost = evaluations.value(&start).unwrap_or(f64::INFINITY);
+        let scale = |p: &&Parameter| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 };
+        let scales: Vec<f64> = free.iter().map(scale).collect();
+        let sizes = rows.iter().map(|row| row.size(&scales)).collect();
         let mut sessions: Vec<String> = if model.sessions.is_empty() {
             Vec::new()
         } else {
-            let met: BTreeSet<String> = runs.iter().map(|r| r.session.clone()).collect();
+            let own: BTreeSet<String> = runs.iter().map(|r| r.session.clone()).collect();
+            let met: BTreeSet<String> = cost.ranks().gather(&own).into_iter().flatten().collect();
             met.into_iter().filter(|s| model.sessions.contains_key(s)).collect()
         };
         sessions.push(String::new());
-        Ok(Self { model, cost, runs, settings, rows, scales, bounds, start, start_cost, sessions })
+        Ok(Self { model, cost, evaluations, runs, settings, rows, sizes, scales, bounds, start, start_cost, sessions })
     }
 
     /// How costs of this task are evaluated.
@@ -107,7 +119,7 @@ impl<'a> Task<'a> {
         let inside =
             |((p, (lo, hi)), scale): ((&f64, &(f64, f64)), &f64)| *p >= lo - KEPT * scale && *p <= hi + KEPT * scale;
         p.iter().zip(&self.bounds).zip(&self.scales).all(inside)
-            && self.rows.iter().all(|row| row.violation(p) <= KEPT * row.size(&self.scales))
+            && self.rows.iter().zip(&self.sizes).all(|(row, size)| row.violation(p) <= KEPT * size)
             && self.has_mass(p)
     }
 
@@ -116,15 +128,15 @@ impl<'a> Task<'a> {
         p.iter().zip(&self.bounds).map(|(p, (lower, upper))| p.max(*lower).min(*upper)).collect()
     }
 
-    /// Variance of the weighted residuals of a cost over `runs` runs, at a given value.
-    pub fn variance_of(&self, cost: &Cost, runs: usize, value: f64) -> f64 {
+    /// Variance of the weighted residuals of a cost, at a given value.
+    pub fn variance_of(&self, cost: &Cost, value: f64) -> f64 {
         let freedom = cost.residuals().saturating_sub(self.scales.len()).max(1);
-        value * runs as f64 / freedom as f64
+        value * cost.runs() as f64 / freedom as f64
     }
 
     /// Variance of the weighted residuals at a given value of the fit's cost.
     pub fn variance(&self, value: f64) -> f64 {
-        self.variance_of(self.cost, self.runs.len(), value)
+        self.variance_of(self.cost, value)
     }
 
     /// Directions in scaled parameters along which no active constraint changes.
@@ -132,9 +144,7 @@ impl<'a> Task<'a> {
         let n = self.scales.len();
         let mut normals: Vec<DVector<f64>> = Vec::new();
         for i in &active.rows {
-            let row = &self.rows[*i];
-            let size = row.size(&self.scales);
-            let scaled = row.coefficients.iter().zip(&self.scales).map(|(a, s)| a * s / size);
+            let scaled = self.rows[*i].coefficients.iter().zip(&self.scales).map(|(a, s)| a * s / self.sizes[*i]);
             normals.push(DVector::from_iterator(n, scaled));
         }
         for (j, _) in &active.bounds {
