@@ -78,6 +78,7 @@ pub mod diagnose;
 pub mod dynamics;
 pub mod error;
 pub mod evaluate;
+pub mod files;
 pub mod fit;
 pub mod ipopt;
 pub mod maneuver;
@@ -87,6 +88,7 @@ pub mod parameter;
 pub mod physics;
 #[cfg(feature = "plot")]
 pub mod plot;
+pub mod ranges;
 pub mod recording;
 pub mod report;
 pub mod sensitivity;

@@ -4,6 +4,7 @@
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::physics::Number;
+use crate::ranges::{Limited, OutOfRange, counted};
 use crate::state::{Force, Inputs, STATES, State};
 use crate::units::GRAVITY;
 use serde::{Deserialize, Serialize};
@@ -36,6 +37,15 @@ impl Default for Integration {
         Self { method: Method::Euler, substeps: 1 }
     }
 }
+
+impl Limited for Integration {
+    fn limits(&self) -> Result<(), OutOfRange> {
+        counted("substeps", self.substeps, &(1..=MOST_SUBSTEPS), "steps of the integration in one sample period")
+    }
+}
+
+/// More sub-steps than any recording needs: a sample period of 10 s in steps of 10 ms.
+pub const MOST_SUBSTEPS: usize = 1000;
 
 impl Integration {
     /// Instants in a sample period at which a simulation looks at the inputs, one end included: 1 for Euler's step, 2 for RK4's.

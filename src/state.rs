@@ -54,47 +54,76 @@ impl<S: Scalar> State<S> {
     }
 }
 
-/// What acts on the ship from outside at one instant: actuators and environment.
-///
-/// A channel that was not recorded holds its neutral value (no wind, no current, no waves, deep water, no bank, no
-/// thruster), so that the terms which read it give no force.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inputs<S> {
-    /// Time \[s\].
-    pub t: S,
-    /// Propeller rate \[1/s\], negative astern.
-    pub n: S,
-    /// Rudder angle \[rad\], positive turns to starboard.
-    pub delta: S,
-    /// True wind velocity over ground \[m/s\] as (north, east) components of where it blows TO.
-    pub wind: [S; 2],
-    /// Current velocity over ground \[m/s\] as (north, east) components of where it sets TO.
-    pub current: [S; 2],
-    /// Wave height and direction as `H_s^2 (north, east)` of where waves travel TO \[m2\].
-    pub waves: [S; 2],
-    /// Draught over water depth, d/h \[-\]; 0 in deep water.
-    pub draught_to_depth: S,
-    /// Bank proximity `1/y_s - 1/y_p` \[1/m\] from the distances to the starboard and the port bank; 0 in open water.
-    pub bank: S,
-    /// Bow thruster command \[-\], -1 (full to port) to 1 (full to starboard).
-    pub thruster: S,
+/// The inputs that a simulation takes from one channel of a recording as it is: one row each, and `$then!` makes of them what it
+/// needs. A row gives field, variant of `Channel`, quantity, smallest and largest value accepted (SI), the name in messages and
+/// the meaning with its sign.
+macro_rules! recorded_inputs {
+    ($then:ident) => {
+        $then! {
+            n N: Rotation, (-60.0, 60.0), "propeller rate", "propeller rate, positive ahead";
+            delta Delta: Angle, (-1.6, 1.6), "rudder angle", "rudder angle, positive turns the ship to starboard";
+            thruster Thruster: Number, (-1.01, 1.01), "bow thruster command",
+                "bow thruster command, -1 full to port, 1 full to starboard";
+        }
+    };
 }
+pub(crate) use recorded_inputs;
+
+macro_rules! inputs {
+    ($($name:ident $channel:ident: $quantity:ident, $limits:expr, $words:literal, $doc:literal;)*) => {
+        /// What acts on the ship from outside at one instant: actuators and environment.
+        ///
+        /// A channel that was not recorded holds its neutral value (no wind, no current, no waves, deep water, no bank, no
+        /// thruster), so that the terms which read it give no force.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Inputs<S> {
+            /// Time \[s\].
+            pub t: S,
+            $(
+                #[doc = concat!($doc, " (SI units, radians).")]
+                pub $name: S,
+            )*
+            /// True wind velocity over ground \[m/s\] as (north, east) components of where it blows TO.
+            pub wind: [S; 2],
+            /// Current velocity over ground \[m/s\] as (north, east) components of where it sets TO.
+            pub current: [S; 2],
+            /// Wave height and direction as `H_s^2 (north, east)` of where waves travel TO \[m2\].
+            pub waves: [S; 2],
+            /// Draught over water depth, d/h \[-\]; 0 in deep water.
+            pub draught_to_depth: S,
+            /// Bank proximity `1/y_s - 1/y_p` \[1/m\] from the distances to the starboard and the port bank; 0 in open water.
+            pub bank: S,
+        }
+
+        impl<S> Inputs<S> {
+            /// From what `f` makes of each entry of inputs of another type; it is given the way to look an entry up.
+            #[inline(always)]
+            pub fn from_entries<T>(mut f: impl FnMut(fn(&Inputs<T>) -> &T) -> S) -> Self {
+                Self {
+                    t: f(|i| &i.t),
+                    $($name: f(|i| &i.$name),)*
+                    wind: [f(|i| &i.wind[0]), f(|i| &i.wind[1])],
+                    current: [f(|i| &i.current[0]), f(|i| &i.current[1])],
+                    waves: [f(|i| &i.waves[0]), f(|i| &i.waves[1])],
+                    draught_to_depth: f(|i| &i.draught_to_depth),
+                    bank: f(|i| &i.bank),
+                }
+            }
+
+            /// The entries that are a channel of a recording as it is, by the channel's name.
+            pub fn recorded(&mut self) -> impl Iterator<Item = (&'static str, &mut S)> {
+                [$((stringify!($name), &mut self.$name)),*].into_iter()
+            }
+        }
+    };
+}
+recorded_inputs!(inputs);
 
 impl<S: Scalar> Inputs<S> {
     /// Propeller and rudder alone, in a neutral environment.
     pub fn actuators(t: f64, n: f64, delta: f64) -> Self {
-        let zero = S::zero();
-        Self {
-            t: S::from_f64(t),
-            n: S::from_f64(n),
-            delta: S::from_f64(delta),
-            wind: [zero; 2],
-            current: [zero; 2],
-            waves: [zero; 2],
-            draught_to_depth: zero,
-            bank: zero,
-            thruster: zero,
-        }
+        let neutral = Self::from_entries(|_: fn(&Inputs<S>) -> &S| S::zero());
+        Self { t: S::from_f64(t), n: S::from_f64(n), delta: S::from_f64(delta), ..neutral }
     }
 
     /// The inputs as a constant of another number type.
@@ -106,36 +135,15 @@ impl<S: Scalar> Inputs<S> {
 
 impl<S: Copy> Inputs<S> {
     /// Applies `f` to every entry.
-    #[inline]
+    #[inline(always)]
     pub fn map<T>(&self, f: impl Fn(S) -> T) -> Inputs<T> {
-        Inputs {
-            t: f(self.t),
-            n: f(self.n),
-            delta: f(self.delta),
-            wind: self.wind.map(&f),
-            current: self.current.map(&f),
-            waves: self.waves.map(&f),
-            draught_to_depth: f(self.draught_to_depth),
-            bank: f(self.bank),
-            thruster: f(self.thruster),
-        }
+        Inputs::from_entries(|entry| f(*entry(self)))
     }
 
     /// Applies `f` to the entries of two inputs pairwise.
-    #[inline]
+    #[inline(always)]
     pub fn zip<T>(&self, other: &Self, f: impl Fn(S, S) -> T) -> Inputs<T> {
-        let pair = |a: [S; 2], b: [S; 2]| [f(a[0], b[0]), f(a[1], b[1])];
-        Inputs {
-            t: f(self.t, other.t),
-            n: f(self.n, other.n),
-            delta: f(self.delta, other.delta),
-            wind: pair(self.wind, other.wind),
-            current: pair(self.current, other.current),
-            waves: pair(self.waves, other.waves),
-            draught_to_depth: f(self.draught_to_depth, other.draught_to_depth),
-            bank: f(self.bank, other.bank),
-            thruster: f(self.thruster, other.thruster),
-        }
+        Inputs::from_entries(|entry| f(*entry(self), *entry(other)))
     }
 }
 

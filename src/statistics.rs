@@ -26,10 +26,14 @@ pub fn variance(values: &[f64]) -> Option<f64> {
 
 /// Median of the finite values, the mean of the two in the middle for an even number; `None` of nothing.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
-    let mut sorted: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let (n, half) = (sorted.len(), sorted.len() / 2);
-    (n > 0).then(|| if n % 2 == 1 { sorted[half] } else { 0.5 * (sorted[half - 1] + sorted[half]) })
+    let mut values: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
+    if values.is_empty() {
+        return None;
+    }
+    let (odd, half) = (values.len() % 2 == 1, values.len() / 2);
+    let (below, middle, _) = values.select_nth_unstable_by(half, f64::total_cmp);
+    let next = below.iter().copied().max_by(f64::total_cmp).filter(|_| !odd);
+    Some(next.map_or(*middle, |next| 0.5 * (next + *middle)))
 }
 
 /// Value below which a share (0 to 1) of the sorted values lies, by linear interpolation; `None` of nothing.

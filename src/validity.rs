@@ -48,6 +48,72 @@ struct Limit {
     met: [f64; 2],
 }
 
+/// Samples counted against the ranges of a model's terms, some at a time.
+pub struct Count<'a> {
+    dynamics: Dynamics<'a, f64>,
+    scales: Scales,
+    limits: Vec<Limit>,
+    /// The quantities that the limits are about, each once, and the place of each limit's own among them.
+    quantities: Vec<Quantity>,
+    places: Vec<usize>,
+    samples: usize,
+    anywhere: usize,
+}
+
+impl<'a> Count<'a> {
+    /// Nothing counted yet, with the parameters as the model has them.
+    pub fn new(model: &'a Model) -> Self {
+        let dynamics = Dynamics::new(model, model.values());
+        let limits = limits(model);
+        let mut quantities: Vec<Quantity> = limits.iter().map(|l| l.quantity).collect();
+        quantities.sort_unstable();
+        quantities.dedup();
+        let places = limits.iter().map(|l| quantities.partition_point(|q| *q < l.quantity)).collect();
+        Self { scales: Scales::of(model), dynamics, limits, quantities, places, samples: 0, anywhere: 0 }
+    }
+
+    /// Counts samples; see [`outside`].
+    pub fn add<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(&mut self, samples: impl IntoIterator<Item = (Y, I)>) {
+        let mut values = vec![None; self.quantities.len()];
+        for (state, inputs) in samples {
+            let (state, inputs) = (State::from_array(*state.borrow()), inputs.borrow());
+            if ![state.u, state.v, state.r, inputs.n, inputs.delta].iter().all(|x| x.is_finite()) {
+                continue;
+            }
+            // The terms look at the heading only for what turns with the earth.
+            let state = State { psi: if state.psi.is_finite() { state.psi } else { 0.0 }, ..state };
+            let flow = self.dynamics.flow(&self.dynamics.instant(&state, inputs));
+            self.samples += 1;
+            let mut out = false;
+            for (value, quantity) in values.iter_mut().zip(&self.quantities) {
+                *value = self.scales.value(*quantity, inputs, &flow);
+            }
+            for (limit, place) in self.limits.iter_mut().zip(&self.places) {
+                out |= limit.meet(values[*place]);
+            }
+            self.anywhere += usize::from(out);
+        }
+    }
+
+    /// Adds what was counted elsewhere for the same model.
+    pub fn join(&mut self, other: &Count) {
+        self.samples += other.samples;
+        self.anywhere += other.anywhere;
+        for (limit, more) in self.limits.iter_mut().zip(&other.limits) {
+            limit.known += more.known;
+            limit.beyond += more.beyond;
+            limit.met = [limit.met[0].min(more.met[0]), limit.met[1].max(more.met[1])];
+        }
+    }
+
+    /// What was counted, as shares.
+    pub fn coverage(&self) -> Coverage {
+        let mut outside: Vec<Outside> = self.limits.iter().filter(|l| l.beyond > 0).map(Limit::report).collect();
+        outside.sort_by(|a, b| b.share.total_cmp(&a.share));
+        Coverage { samples: self.samples, share_outside: share(self.anywhere, self.samples), outside }
+    }
+}
+
 /// How many samples lie outside the ranges of the model's terms, with the parameters as the model has them.
 ///
 /// A sample is the state `[x, y, psi, u, v, r]` \[m, rad, m/s, rad/s\], velocities over ground, and the inputs then. A sample
@@ -57,27 +123,9 @@ pub fn outside<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
     model: &Model,
     samples: impl IntoIterator<Item = (Y, I)>,
 ) -> Coverage {
-    let mut limits = limits(model);
-    let dynamics = Dynamics::new(model, model.values());
-    let (mut count, mut anywhere) = (0, 0);
-    for (state, inputs) in samples {
-        let (state, inputs) = (State::from_array(*state.borrow()), inputs.borrow());
-        if ![state.u, state.v, state.r, inputs.n, inputs.delta].iter().all(|x| x.is_finite()) {
-            continue;
-        }
-        // The terms look at the heading only for what turns with the earth.
-        let state = State { psi: if state.psi.is_finite() { state.psi } else { 0.0 }, ..state };
-        let flow = dynamics.flow(&dynamics.instant(&state, inputs));
-        count += 1;
-        let mut out = false;
-        for limit in &mut limits {
-            out |= limit.meet(value(limit.quantity, model, inputs, &flow));
-        }
-        anywhere += usize::from(out);
-    }
-    let mut outside: Vec<Outside> = limits.iter().filter(|l| l.beyond > 0).map(Limit::report).collect();
-    outside.sort_by(|a, b| b.share.total_cmp(&a.share));
-    Coverage { samples: count, share_outside: share(anywhere, count), outside }
+    let mut count = Count::new(model);
+    count.add(samples);
+    count.coverage()
 }
 
 /// The samples of a run for [`outside`]: states with NaN where a channel has no value, and the inputs.
@@ -117,27 +165,49 @@ fn limits(model: &Model) -> Vec<Limit> {
         .collect()
 }
 
-/// A quantity at a sample; `None` where it means nothing there.
-fn value(quantity: Quantity, model: &Model, inputs: &Inputs<f64>, flow: &Flow<f64>) -> Option<f64> {
-    let hull = &model.ship.hull;
-    let tip = inputs.n * model.ship.propeller.diameter;
-    Some(match quantity {
-        Quantity::Froude => flow.u / (GRAVITY * hull.lpp).sqrt(),
-        // Below the small speed of the ship the direction of motion is noise.
-        Quantity::Drift if flow.u.hypot(flow.v) < model.ship.small_speed() => 0.0,
-        Quantity::Drift => flow.v.abs().atan2(flow.u.abs()),
-        Quantity::Turn => flow.r.abs() * hull.lpp / flow.speed,
-        Quantity::Depth => 1.0 / inputs.draught_to_depth.max(0.0),
-        Quantity::Rate => inputs.n,
-        Quantity::Advance if inputs.n >= 0.0 && tip < flow.advance.abs() * 1e-6 => {
-            // A shaft at rest, or nearly.
-            if flow.u.abs() < model.ship.small_speed() { 0.0 } else { f64::INFINITY.copysign(flow.advance) }
+/// What the ship's size makes of motions.
+struct Scales {
+    /// Lpp \[m\].
+    length: f64,
+    /// sqrt(g Lpp) \[m/s\].
+    wave_speed: f64,
+    /// Speed below which the direction of motion is noise \[m/s\].
+    small_speed: f64,
+    /// Propeller diameter \[m\].
+    diameter: f64,
+}
+
+impl Scales {
+    fn of(model: &Model) -> Self {
+        let length = model.ship.hull.lpp;
+        Self {
+            length,
+            wave_speed: (GRAVITY * length).sqrt(),
+            small_speed: model.ship.small_speed(),
+            diameter: model.ship.propeller.diameter,
         }
-        Quantity::Advance if inputs.n >= 0.0 => flow.advance / tip,
-        Quantity::Reversing if inputs.n < 0.0 => flow.u / tip,
-        Quantity::Advance | Quantity::Reversing => return None,
-        Quantity::Attack => trimtab_ad::smooth::wrap_angle(inputs.delta - flow.rudder_v.atan2(flow.rudder_u)).abs(),
-    })
+    }
+
+    /// A quantity at a sample; `None` where it means nothing there.
+    fn value(&self, quantity: Quantity, inputs: &Inputs<f64>, flow: &Flow<f64>) -> Option<f64> {
+        let tip = inputs.n * self.diameter;
+        Some(match quantity {
+            Quantity::Froude => flow.u / self.wave_speed,
+            Quantity::Drift if (flow.u * flow.u + flow.v * flow.v).sqrt() < self.small_speed => 0.0,
+            Quantity::Drift => flow.v.abs().atan2(flow.u.abs()),
+            Quantity::Turn => flow.r.abs() * self.length / flow.speed,
+            Quantity::Depth => 1.0 / inputs.draught_to_depth.max(0.0),
+            Quantity::Rate => inputs.n,
+            Quantity::Advance if inputs.n >= 0.0 && tip < flow.advance.abs() * 1e-6 => {
+                // A shaft at rest, or nearly.
+                if flow.u.abs() < self.small_speed { 0.0 } else { f64::INFINITY.copysign(flow.advance) }
+            }
+            Quantity::Advance if inputs.n >= 0.0 => flow.advance / tip,
+            Quantity::Reversing if inputs.n < 0.0 => flow.u / tip,
+            Quantity::Advance | Quantity::Reversing => return None,
+            Quantity::Attack => trimtab_ad::smooth::wrap_angle(inputs.delta - flow.rudder_v.atan2(flow.rudder_u)).abs(),
+        })
+    }
 }
 
 impl Limit {
@@ -282,6 +352,20 @@ mod tests {
         inputs.draught_to_depth = 0.8;
         let aground = outside(&model(Form::Paper, &["shallow"]), [(state, inputs)]);
         assert_eq!(share_of(&aground, "shallow", Quantity::Depth), 1.0);
+    }
+
+    #[test]
+    fn samples_counted_in_parts_give_the_coverage_of_all_of_them() {
+        let model = model(Form::Paper, &[]);
+        let samples =
+            [at(5.0, 0.0, 2.0, 0.0), at(3.0, 3.0, 2.0, 0.0), at(-3.0, 1.0, -2.0, 0.0), at(4.0, 0.2, 0.0, 0.0)];
+        let mut joined = Count::new(&model);
+        for part in samples.chunks(2) {
+            let mut count = Count::new(&model);
+            count.add(part.iter().map(|(state, inputs)| (state, inputs)));
+            joined.join(&count);
+        }
+        assert_eq!(joined.coverage(), outside(&model, samples));
     }
 
     #[test]

@@ -327,6 +327,74 @@ fn unknown_keys_are_named_with_line_and_a_near_name() {
 }
 
 #[test]
+fn recordings_that_contradict_themselves_stop_a_command_unless_that_is_accepted() {
+    let study = Study::new();
+    for entry in std::fs::read_dir(study.path("recordings")).unwrap() {
+        let path = entry.unwrap().path();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let turned = text.lines().map(|line| {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if let Ok(r) = cells[6].parse::<f64>() {
+                cells[6] = (-r).to_string();
+            }
+            cells.join(",") + "\n"
+        });
+        std::fs::write(&path, turned.collect::<String>()).unwrap();
+    }
+    for command in ["fit", "simulate", "evaluate"] {
+        let message = study.refuses(&[command, "study.toml"]);
+        contains_all(&message, &["study.toml: r: ", "the sign is turned", "8 runs", "`--accept sign_error`"]);
+        let out = study.does(&[command, "study.toml", "--accept", "sign_error"]);
+        let first = out.lines().next().unwrap();
+        assert!(first.starts_with("accepted error: r: heading turns") && first.contains("8 of 8 runs"), "{first}");
+        let value = study.json(&[command, "study.toml", "--accept", "sign_error"]);
+        assert_eq!(at(&value, "recordings.doubts.0.fault"), "sign_error");
+        assert_eq!(at(&value, "recordings.doubts.0.runs").as_array().unwrap().len(), 8);
+    }
+    let message = study.refuses(&["fit", "study.toml", "--accept", "sign"]);
+    contains_all(&message, &["no fault `sign`", "did you mean `sign_error`?"]);
+}
+
+#[test]
+fn settings_outside_their_range_are_named_with_line_and_range() {
+    let cases: [(&str, &str, &str, &[&str]); 9] = [
+        ("[fit]", "difference_step = nan", "fit", &["`difference_step` = NaN", "between"]),
+        ("[fit]", "max_iterations = 0", "fit", &["`max_iterations` = 0", "between 1 and"]),
+        ("[fit.constraints]", "drag = { lower = nan }", "fit", &["`drag` = NaN", "finite"]),
+        ("[fit.constraints]", "drag = { from = -30, to = 30, step = 1e-9 }", "fit", &["`drag`", "10000 samples"]),
+        ("[fit.integration]", "substeps = 1000000000", "fit", &["`substeps` = 1000000000", "between 1 and 1000"]),
+        ("[evaluate]", "resamples = 1000000000000", "evaluate", &["`resamples`", "between 0 and 100000"]),
+        ("[diagnose]", "alpha = nan", "diagnose", &["`alpha` = NaN", "nothing is missing"]),
+        ("[diagnose]", "most = 0", "check", &["`most` = 0", "between 1 and 20"]),
+        ("[diagnose]", "substeps = 0", "diagnose", &["`substeps` = 0", "sample period"]),
+    ];
+    for (table, line, command, expected) in cases {
+        let study = Study::new();
+        let text = std::fs::read_to_string(study.path("study.toml")).unwrap();
+        // A table that the study has gets the key; a table that it has not is added.
+        if text.contains(&format!("{table}\n")) {
+            study.edit("study.toml", &format!("{table}\n"), &format!("{table}\n{line}\n"));
+        } else {
+            study.append("study.toml", &format!("\n{table}\n{line}\n"));
+        }
+        let message = study.refuses(&[command, "study.toml"]);
+        contains_all(&message, &["study.toml:"]);
+        contains_all(&message, expected);
+    }
+    let study = Study::new();
+    study.edit("study.toml", "[maneuver]\n", "[maneuver]\nstep = 1e-300\n");
+    contains_all(
+        &study.refuses(&["maneuver", "turning", "study.toml"]),
+        &["`step` = ", "while the ship sails its length"],
+    );
+    let output = study.run(&["--threads", "65535", "check", "study.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    contains_all(&text(&output.stderr), &["65535", "1..=1024"]);
+    study.edit("study.toml", "name = ", "step = 1e-9\nname = ");
+    contains_all(&study.refuses(&["fit", "study.toml"]), &["`step` = 0.000000001 s is less than"]);
+}
+
+#[test]
 fn faults_of_the_ship_file_are_named() {
     let study = Study::new();
     std::fs::remove_file(study.path("ship.toml")).unwrap();

@@ -134,6 +134,7 @@ fn no_key_is_explained_that_the_document_cannot_have() {
     let absent = [
         "surrogate[]",
         "admission.issues[]",
+        "recordings.doubts[]",
         "location.windows[]",
         "findings[].windows[]",
         "absorbed[]",

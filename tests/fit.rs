@@ -7,10 +7,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::path::Path;
-use trimtab::fit::{CovarianceKind, DoubtKind, Fit, FitSettings, MultiStart, Rule, fit, multi_start};
+use trimtab::fit::{Cost, CovarianceKind, DoubtKind, Fit, FitSettings, MultiStart, Rule, fit, multi_start};
 use trimtab::model::Model;
 use trimtab::physics::Form;
-use trimtab::recording::{Run, Split};
+use trimtab::recording::{Run, RunStore, Runs, Split};
 use trimtab::ship::Ship;
 use trimtab::simulate::{Integration, Scenario, simulate};
 use trimtab::state::Inputs;
@@ -108,6 +108,36 @@ fn freed() -> Model {
 }
 
 #[test]
+fn runs_in_a_file_are_fitted_to_the_same_bits_as_runs_in_memory() {
+    let mut runs = recordings(&truth(), 6, 1.0, unspoiled);
+    // Lengths, a session and a channel that differ from run to run.
+    runs[3].inputs.truncate(80);
+    runs[3].measured.truncate(80);
+    runs[5].measured.iter_mut().step_by(3).for_each(|m| m[4] = None);
+    let mut store = RunStore::new(0);
+    runs.iter().for_each(|run| store.push(run.clone()).unwrap());
+    let model = freed();
+    let options = settings().cost_options();
+    let costs = [Cost::new(&model, &runs, options).unwrap(), Cost::new(&model, &store, options).unwrap()];
+    let p: Vec<f64> = model.free().iter().map(|i| 1.01 * model.parameters[*i].value).collect();
+    let [held, stored] = costs.each_ref().map(|cost| cost.quadratic(&p).unwrap());
+    assert_eq!(
+        (held.value, &held.gradient, &held.gauss_newton),
+        (stored.value, &stored.gradient, &stored.gauss_newton)
+    );
+    assert_eq!(costs[0].squares(&p), costs[1].squares(&p));
+    assert_eq!(costs[0].residuals(), costs[1].residuals());
+    // The stages of a freed hull cut the runs and fit the pieces first.
+    let settings = FitSettings { max_iterations: 4, ..settings() };
+    let [held, stored] =
+        [Runs::from(&runs), Runs::from(&store)].map(|r| fit(&model, r, &settings, &mut |_| true).unwrap());
+    assert!(held.first_stage_parts > 1 && held.iterations > 4, "{} {}", held.first_stage_parts, held.iterations);
+    let said = |f: &Fit| serde_json::to_value(Fit { seconds: 0.0, ..f.clone() }).unwrap();
+    assert_eq!(said(&held), said(&stored));
+    assert!(store.failure().is_none());
+}
+
+#[test]
 fn a_fit_stopped_anywhere_is_no_worse_than_its_start() {
     let runs = recordings(&truth(), 4, 1.0, unspoiled);
     for last in [0, 1, 2, 3, 5, 8, 13] {
@@ -122,6 +152,23 @@ fn a_fit_stopped_anywhere_is_no_worse_than_its_start() {
         assert!(!fit.converged && fit.headline.starts_with("NOT CONVERGED"), "{}", fit.headline);
         assert!(fit.status.contains("stopped"), "{}", fit.status);
     }
+}
+
+#[test]
+fn a_fit_inside_its_limits_imposes_no_rows_and_one_that_is_held_back_imposes_all() {
+    let runs = recordings(&model(), 4, 1.0, unspoiled);
+    let mut start = model();
+    start.set_eleven(&P.map(|p| 1.2 * p));
+    let inside = quiet(&start, &runs, &settings());
+    assert!(inside.converged && inside.active.is_empty() && inside.constraints > 0, "{}", inside.report());
+    assert_eq!(inside.counts.constraints, 0);
+    let drag = |fit: &Fit| fit.estimates.iter().find(|e| e.symbol == "p8").unwrap().value;
+    let mut settings = settings();
+    settings.constraints.drag_zero = Rule { upper: Some(0.5 * drag(&inside)), ..Rule::default() };
+    let held = quiet(&start, &runs, &settings);
+    assert!(held.converged && held.counts.constraints > 0 && held.cost > inside.cost, "{}", held.report());
+    assert!(held.active.iter().any(|a| a.rule == "drag_zero"), "{}", held.report());
+    assert!((drag(&held) / drag(&inside) - 0.5).abs() < 1e-6);
 }
 
 #[test]

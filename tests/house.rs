@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// Modules of the library from the bottom up: a module uses its own line and those before it.
 const LAYERS: [&[&str]; 13] = [
-    &["units", "error", "numerals", "state", "ship", "parameter"],
+    &["units", "error", "numerals", "state", "ship", "parameter", "ranges", "files"],
     &["physics"],
     &["terms"],
     &["model", "dynamics"],
@@ -38,10 +38,10 @@ const LONGEST: usize = 80;
 const UPWARD: &[(&str, &str)] = &[];
 
 /// Files that still use each other in circles.
-const CIRCLES: &[&[&str]] = &[&["src/recording/mod.rs", "src/recording/read.rs"]];
+const CIRCLES: &[&[&str]] = &[];
 
 /// Functions that are still too long: file, name.
-const LONG: &[(&str, &str)] = &[("src/recording/read.rs", "parse"), ("src/study.rs", "parse")];
+const LONG: &[(&str, &str)] = &[];
 
 fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -14,12 +14,12 @@ pub const HESSIAN_CHUNK: usize = 4;
 /// A function of `x.len()` numbers with [`outputs`](Self::outputs) results, written once for every [`Scalar`].
 ///
 /// It is a trait because a closure cannot be generic over the number it takes. Constants (data, settings) are
-/// fields; the variables are `x`.
+/// fields; the variables are `x`. A law's coefficients may be among them, since [`Scalar::Coefficient`] is the number itself.
 pub trait VectorFunction {
     /// How many numbers [`eval`](Self::eval) writes.
     fn outputs(&self) -> usize;
     /// Writes `f(x)` over all of `y`, which has length [`outputs`](Self::outputs) and arrives filled with zeros.
-    fn eval<S: Scalar>(&self, x: &[S], y: &mut [S]);
+    fn eval<S: Scalar<Coefficient = S>>(&self, x: &[S], y: &mut [S]);
 }
 
 /// A function of `x.len()` numbers with one result, written once for every [`Scalar`]: a cost, or one force.
@@ -27,14 +27,14 @@ pub trait VectorFunction {
 /// Each is a [`VectorFunction`] of one output as well.
 pub trait ScalarFunction {
     /// The value `f(x)`.
-    fn of<S: Scalar>(&self, x: &[S]) -> S;
+    fn of<S: Scalar<Coefficient = S>>(&self, x: &[S]) -> S;
 }
 
 impl<F: ScalarFunction> VectorFunction for F {
     fn outputs(&self) -> usize {
         1
     }
-    fn eval<S: Scalar>(&self, x: &[S], y: &mut [S]) {
+    fn eval<S: Scalar<Coefficient = S>>(&self, x: &[S], y: &mut [S]) {
         y[0] = self.of(x);
     }
 }

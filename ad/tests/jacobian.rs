@@ -18,7 +18,7 @@ impl VectorFunction for Pendulum {
     fn outputs(&self) -> usize {
         3
     }
-    fn eval<S: Scalar>(&self, x: &[S], y: &mut [S]) {
+    fn eval<S: Scalar<Coefficient = S>>(&self, x: &[S], y: &mut [S]) {
         let (mut angle, mut rate) = (S::from_f64(0.3), S::zero());
         for step in 0..40 {
             let push = x[step % x.len()];
@@ -36,7 +36,7 @@ impl VectorFunction for Pendulum {
 struct Cost;
 
 impl ScalarFunction for Cost {
-    fn of<S: Scalar>(&self, x: &[S]) -> S {
+    fn of<S: Scalar<Coefficient = S>>(&self, x: &[S]) -> S {
         let mut y = [S::zero(); 3];
         Pendulum.eval(x, &mut y);
         let coupling = x.iter().fold(S::one(), |product, &xi| product * (xi + 2.0).ln());
@@ -97,7 +97,7 @@ proptest! {
             fn outputs(&self) -> usize {
                 1
             }
-            fn eval<S: Scalar>(&self, x: &[S], y: &mut [S]) {
+            fn eval<S: Scalar<Coefficient = S>>(&self, x: &[S], y: &mut [S]) {
                 y[0] = x.iter().fold(S::zero(), |sum, &xi| sum + (xi * 3.0).exp());
             }
         }
@@ -149,7 +149,7 @@ impl VectorFunction for SlightlyWrong {
     fn outputs(&self) -> usize {
         2
     }
-    fn eval<S: Scalar>(&self, x: &[S], y: &mut [S]) {
+    fn eval<S: Scalar<Coefficient = S>>(&self, x: &[S], y: &mut [S]) {
         let stuck = S::from_f64(x[2].value());
         y[0] = x[0] * 1e-4 + (x[2] * 0.999 + stuck * 0.001) * 1e-6;
         y[1] = x[0] * x[1] * x[2];
@@ -170,7 +170,7 @@ fn the_gradient_check_passes_a_slope_beside_a_large_constant() {
     /// A value of a million hides a slope of one behind its rounding.
     struct Offset;
     impl ScalarFunction for Offset {
-        fn of<S: Scalar>(&self, x: &[S]) -> S {
+        fn of<S: Scalar<Coefficient = S>>(&self, x: &[S]) -> S {
             x[0] + 1e6
         }
     }
@@ -185,7 +185,7 @@ fn the_gradient_check_reports_a_derivative_that_is_not_finite_without_printing_i
     /// The root of a sum of squares has no derivative where they all vanish.
     struct Speed;
     impl ScalarFunction for Speed {
-        fn of<S: Scalar>(&self, x: &[S]) -> S {
+        fn of<S: Scalar<Coefficient = S>>(&self, x: &[S]) -> S {
             (x[0] * x[0] + x[1] * x[1]).sqrt()
         }
     }
@@ -203,7 +203,7 @@ fn a_function_without_variables_or_results_has_an_empty_jacobian() {
         fn outputs(&self) -> usize {
             self.0
         }
-        fn eval<S: Scalar>(&self, _: &[S], y: &mut [S]) {
+        fn eval<S: Scalar<Coefficient = S>>(&self, _: &[S], y: &mut [S]) {
             y.fill(S::from_f64(4.0));
         }
     }
@@ -224,7 +224,7 @@ fn the_jacobian_of_a_linear_function_is_its_matrix() {
         fn outputs(&self) -> usize {
             self.0.nrows()
         }
-        fn eval<S: Scalar>(&self, x: &[S], y: &mut [S]) {
+        fn eval<S: Scalar<Coefficient = S>>(&self, x: &[S], y: &mut [S]) {
             for (i, yi) in y.iter_mut().enumerate() {
                 for (j, &xj) in x.iter().enumerate() {
                     *yi += xj * self.0[(i, j)];
@@ -241,7 +241,7 @@ fn the_hessian_of_rosenbrocks_valley_is_the_published_one() {
     /// `(1 - x)^2 + 100 (y - x^2)^2`, whose Hessian at (1, 1) is [[802, -400], [-400, 200]].
     struct Rosenbrock;
     impl ScalarFunction for Rosenbrock {
-        fn of<S: Scalar>(&self, x: &[S]) -> S {
+        fn of<S: Scalar<Coefficient = S>>(&self, x: &[S]) -> S {
             (x[0] - 1.0).squared() + (x[1] - x[0] * x[0]).squared() * 100.0
         }
     }

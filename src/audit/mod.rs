@@ -9,6 +9,7 @@ mod gaps;
 mod issue;
 mod jumps;
 mod kinematics;
+mod propeller;
 mod receiver;
 mod record;
 mod runs;
@@ -28,6 +29,7 @@ pub use study::{StudyAudit, audit_study};
 mod tests {
     use super::*;
     use crate::recording::{Channel, ColumnMap, Recording};
+    use crate::ship::Ship;
     use std::f64::consts::TAU;
     use std::path::Path;
 
@@ -118,6 +120,26 @@ mod tests {
             let hit = found.iter().find(|i| i.severity == Severity::Error);
             let hit = hit.unwrap_or_else(|| panic!("{channels:?} x {factor}: no error in {found:?}"));
             assert!(hit.channel == Some(at) && hit.text.contains(words), "{channels:?} x {factor}: {hit:?}");
+        }
+    }
+
+    #[test]
+    fn a_time_in_milliseconds_is_an_error_of_every_gain() {
+        let found = scaled(&[Channel::T], 1000.0);
+        let told: Vec<&Issue> = found.iter().filter(|i| i.text.contains("the time is in ms")).collect();
+        assert!(told.len() == 2 && told.iter().all(|i| i.severity == Severity::Error), "{found:?}");
+    }
+
+    #[test]
+    fn a_propeller_rate_of_another_unit_shows_in_the_advance_ratio() {
+        let ship = Ship::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/ships/a.toml")).unwrap();
+        for (factor, told) in [(1.0, None), (TAU, Some("rad/s")), (1.0 / 60.0, Some("rps"))] {
+            let mut run = swing();
+            values(&mut run, Channel::N).iter_mut().for_each(|n| *n *= factor);
+            let mut issues = Vec::new();
+            propeller::advance(&Recording::from_channels("run", run).unwrap(), &ship, &mut issues);
+            assert_eq!(issues.len(), usize::from(told.is_some()), "{issues:?}");
+            assert!(told.is_none_or(|t| issues[0].text.contains(&format!("the column is in {t} "))), "{issues:?}");
         }
     }
 

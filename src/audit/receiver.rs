@@ -7,6 +7,7 @@ use crate::recording::{Channel, Run, or_nan};
 use crate::state::STATES;
 use crate::statistics::median;
 use nalgebra::SMatrix;
+use std::borrow::Cow;
 use trimtab_ad::smooth::wrap_angle;
 
 /// Samples on each side of a jump that tell it from motion.
@@ -31,8 +32,10 @@ pub struct Jump {
 
 /// The runs parted where the position jumps and without what was held instead of measured, and one note a run on each. `length`
 /// is that of the ship \[m\].
-pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
-    let mut out = runs.to_vec();
+pub fn settled<'r>(runs: impl Into<Cow<'r, [Run]>>, length: f64) -> (Vec<Run>, Vec<Issue>) {
+    let runs = runs.into();
+    let jumps = jumps(&runs, length);
+    let mut out = runs.into_owned();
     let mut issues = Vec::new();
     for run in &mut out {
         let held = held(run);
@@ -52,7 +55,7 @@ pub fn settled(runs: &[Run], length: f64) -> (Vec<Run>, Vec<Issue>) {
         }
     }
     let mut parted = Vec::with_capacity(out.len());
-    for (run, jumps) in out.into_iter().zip(jumps(runs, length)) {
+    for (run, jumps) in out.into_iter().zip(jumps) {
         let Some(first) = jumps.first() else {
             parted.push(run);
             continue;

@@ -2,11 +2,13 @@
 //! It asks nothing of its own of a recording; the questions are in the files beside it.
 
 use super::issue::{Issue, Severity};
+use super::propeller::advance;
 use super::receiver::settled;
 use super::record::{Audit, audit};
 use crate::recording::Split;
 use crate::ship::Ship;
 use crate::study::{Listed, Study, StudyError};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// The audit of a study: every run, and what comes of cutting them.
@@ -44,32 +46,45 @@ pub fn audit_study(study: &Study, ship: &Ship) -> StudyAudit {
         test_windows: 0,
         issues: sides(study),
     };
-    for run in &study.runs {
-        let recording = match study.recording(run) {
-            Ok(recording) => recording,
-            Err(error) => {
-                result.recordings.push(unreadable(run, &error));
-                continue;
-            }
-        };
-        let mut audit = audit(&recording);
-        match recording.windows(&run.labels, &study.settings(run, ship.hull.draught)) {
-            Ok(windows) => {
-                let test = windows.windows.iter().filter(|w| w.split == Split::Test).count();
-                result.test_windows += test;
-                result.train_windows += windows.windows.len() - test;
-                audit.issues.extend(settled(&windows.windows, ship.hull.lpp).1);
-                for skipped in windows.skipped {
-                    let text = format!("{:.2} s, shorter than a window, are left out", skipped.length);
-                    let issue = Issue::new(Severity::Note, "too_short", text, "set a shorter `window` to use them");
-                    audit.issues.push(issue.at((skipped.first_line, skipped.last_line)));
-                }
-            }
-            Err(error) => audit.issues.insert(0, failure(&error.into())),
-        }
+    let audited: Vec<Audited> = study.runs.par_iter().with_max_len(1).map(|run| audited(study, ship, run)).collect();
+    for Audited { audit, train, test } in audited {
+        result.train_windows += train;
+        result.test_windows += test;
         result.recordings.push(audit);
     }
     result
+}
+
+/// The audit of one run, and how many windows came of it.
+struct Audited {
+    audit: Audit,
+    train: usize,
+    test: usize,
+}
+
+/// Reads, audits and cuts one run; nothing of its recording is kept.
+fn audited(study: &Study, ship: &Ship, run: &Listed) -> Audited {
+    let recording = match study.recording(run) {
+        Ok(recording) => recording,
+        Err(error) => return Audited { audit: unreadable(run, &error), train: 0, test: 0 },
+    };
+    let mut audit = audit(&recording);
+    advance(&recording, ship, &mut audit.issues);
+    let (mut train, mut test) = (0, 0);
+    match recording.windows(&run.labels, &study.settings(run, ship.hull.draught)) {
+        Ok(windows) => {
+            test = windows.windows.iter().filter(|w| w.split == Split::Test).count();
+            train = windows.windows.len() - test;
+            audit.issues.extend(settled(windows.windows, ship.hull.lpp).1);
+            for skipped in windows.skipped {
+                let text = format!("{:.2} s, shorter than a window, are left out", skipped.length);
+                let issue = Issue::new(Severity::Note, "too_short", text, "set a shorter `window` to use them");
+                audit.issues.push(issue.at((skipped.first_line, skipped.last_line)));
+            }
+        }
+        Err(error) => audit.issues.insert(0, failure(&error.into())),
+    }
+    Audited { audit, train, test }
 }
 
 /// Whether there are runs on both sides of the split.

@@ -26,7 +26,9 @@ pub fn magnitudes(recording: &Recording, issues: &mut Vec<Issue>) {
 }
 
 /// Known wrong units and signs by the gain they cause on a speed, and what each means.
-pub const SPEED_GAINS: [(f64, &str); 6] = [
+pub const SPEED_GAINS: [(f64, &str); 8] = [
+    (1e-3, "the time is in ms and was declared s"),
+    (1e3, "the time is in s and was declared ms"),
     (-1.0, "the sign is turned"),
     (1852.0 / 3600.0, "the column is in knots and was declared m/s"),
     (3600.0 / 1852.0, "the column is in m/s and was declared kn"),
@@ -36,7 +38,9 @@ pub const SPEED_GAINS: [(f64, &str); 6] = [
 ];
 
 /// The same on a yaw rate.
-pub const TURN_GAINS: [(f64, &str); 7] = [
+pub const TURN_GAINS: [(f64, &str); 9] = [
+    (1e-3, "the time is in ms and was declared s"),
+    (1e3, "the time is in s and was declared ms"),
     (-1.0, "the sign is turned"),
     (1.0 / 57.295_779_5, "the yaw rate is in deg/s and was declared rad/s, or the heading in rad and declared deg"),
     (57.295_779_5, "the yaw rate is in rad/s and was declared deg/s, or the heading in deg and declared rad"),

@@ -4,7 +4,8 @@
 use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text, progress};
+use super::output::{Output, OutputArgs, csv_text};
+use super::progress::progress;
 use trimtab::audit::{Audit, Issue, Severity, StudyAudit, audit_study};
 use trimtab::numerals::{fixed, sig};
 use trimtab::report::Table;
@@ -41,6 +42,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let loaded = Loaded::new(&args.study)?;
     loaded.fit_settings()?;
     loaded.evaluation_settings()?;
+    loaded.diagnose_settings()?;
     loaded.maneuver_settings()?;
     let bar = progress(format!("auditing {} recordings", loaded.study.runs.len()));
     let audit = audit_study(&loaded.study, &loaded.model.ship);

@@ -10,11 +10,12 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use trimtab::demo;
 use trimtab::evaluate::Evaluation;
+use trimtab::files::write_whole;
 use trimtab::fit::Fit;
 use trimtab::maneuver::{Side, turning_trial};
 use trimtab::model::Model;
 use trimtab::numerals::{DASH, interval, sig};
-use trimtab::recording::Split;
+use trimtab::recording::{Runs, Split};
 use trimtab::report::Table;
 use trimtab::report::maneuver::{turning_figure, turning_table};
 
@@ -58,8 +59,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let loaded = Loaded::new(&StudyArgs { study: study.clone(), model: None })?;
     let train = loaded.windows_of(Split::Train)?;
     let test = loaded.windows_of(Split::Test)?;
-    let fit = fit::fit_windows(&loaded, &loaded.model, &train)?;
-    fit::write(&mut output, &loaded.model, &fit, &train)?;
+    let fit = fit::fit_windows(&loaded, &loaded.model, Runs::from(&train))?;
+    fit::write(&mut output, &loaded.model, &fit, Runs::from(&train))?;
     let baseline = evaluate::baseline(&loaded, None)?;
     let evaluation = evaluate::judge(&loaded, &baseline, &fit.model, &test)?;
     let integration = loaded.fit_settings()?.integration;
@@ -98,7 +99,7 @@ fn write_study(folder: &Path) -> Result<usize, CliError> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(fail)?;
         }
-        std::fs::write(&path, text).map_err(fail)?;
+        write_whole(&path, text.as_bytes()).map_err(fail)?;
     }
     Ok(files.len())
 }

@@ -2,10 +2,12 @@
 //! The library makes the diagnosis, its report and its figures; this file calls it, shows progress and writes files.
 
 use super::answer::Answer;
+use super::audited::{AcceptArgs, examined};
 use super::error::CliError;
 use super::fit::model_text;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, print, progress};
+use super::output::{Output, OutputArgs, print};
+use super::progress::progress;
 use std::path::PathBuf;
 use trimtab::audit::Issue;
 use trimtab::diagnose::{Settings, Verdict, diagnose};
@@ -42,7 +44,7 @@ improved.toml (a model file with the mechanisms found, which every command takes
 base.toml (the study's model, refitted alike), figures/*.png with the CSV behind each.
 
 Exit code 0 if any verdict was reached; 1 if the recordings cannot answer (verdict
-`insufficient`, or a fault in them that must be mended first); 2 if it could not run.
+`insufficient`, or a fault in them that must be mended first or accepted); 2 if it could not run.
 
 diagnosis.json (and --json), in SI units and radians; a number that does not exist or is not
 finite is absent:
@@ -61,6 +63,8 @@ pub struct Args {
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     #[command(flatten)]
+    accept: AcceptArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
@@ -69,6 +73,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("diagnose", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
     let mut settings = settings(args, loaded.diagnose_settings()?)?;
+    let audited = examined(&loaded, &args.accept)?;
     settings.judging = Judging::new(&loaded.fit_settings()?, loaded.evaluation_settings()?);
     let windows = loaded.windows()?.windows;
     let (train, held_out): (Vec<Run>, Vec<Run>) = windows.into_iter().partition(|w| w.split == Split::Train);
@@ -77,12 +82,14 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     }
     let bar = progress("diagnosing");
     let diagnosis =
-        diagnose(&loaded.model, &train, &held_out, &settings, &|step| bar.set_message(format!("diagnosing: {step}")));
+        diagnose(&loaded.model, train, &held_out, &settings, &|step| bar.set_message(format!("diagnosing: {step}")));
     bar.finish_and_clear();
-    let diagnosis = diagnosis.map_err(|error| CliError::Model { path: None, error })?;
+    let diagnosis = diagnosis.map_err(|error| CliError::Diagnose { path: loaded.study.path.clone(), error })?;
 
     let name = &loaded.study.name;
-    let json = serde_json::to_string_pretty(&document(&diagnosis, name)?)? + "\n";
+    let mut json = document(&diagnosis, name)?;
+    json["recordings"] = serde_json::to_value(&audited)?;
+    let json = serde_json::to_string_pretty(&json)? + "\n";
     output.file("diagnosis.json", json.as_bytes())?;
     if output.has_folder() {
         output.file("improved.toml", model_text(&diagnosis.model)?.as_bytes())?;
@@ -106,10 +113,11 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
                 )
             },
         );
-        print(&(summary(&diagnosis, name) + &written))?;
+        print(&(audited.lines() + &summary(&diagnosis, name) + &written))?;
     }
-    let unanswered =
-        diagnosis.verdict == Verdict::Insufficient || diagnosis.admission.issues.iter().any(Issue::blocking);
+    let unanswered = diagnosis.verdict == Verdict::Insufficient
+        || audited.refused()
+        || diagnosis.admission.issues.iter().any(Issue::blocking);
     Ok(if unanswered { Answer::No } else { Answer::Yes })
 }
 

@@ -2,6 +2,7 @@
 //! Every text says what is wrong, where, and what to do next; nothing is mended here.
 
 use std::path::PathBuf;
+use trimtab::diagnose::DiagnoseError;
 use trimtab::fit::FitError;
 use trimtab::maneuver::ManeuverError;
 use trimtab::model::ModelError;
@@ -26,6 +27,16 @@ pub enum CliError {
         /// What the library says.
         error: ModelError,
     },
+    /// Recordings that contradict themselves.
+    #[error("{path}: {what}; mend it, or go on with `--accept {fault}`", path = path.display())]
+    Faulty {
+        /// The study.
+        path: PathBuf,
+        /// What was found, where, and what to do.
+        what: String,
+        /// The fault's name.
+        fault: &'static str,
+    },
     /// A table of the study.
     #[error("{path}:{line}: [{table}] {message}", path = path.display())]
     Table {
@@ -45,6 +56,14 @@ pub enum CliError {
         path: PathBuf,
         /// What the library says.
         error: FitError,
+    },
+    /// The diagnosis.
+    #[error("{path}: {error}", path = path.display())]
+    Diagnose {
+        /// The study.
+        path: PathBuf,
+        /// What the library says.
+        error: DiagnoseError,
     },
     /// A trial.
     #[error("{path}: {error}", path = path.display())]

@@ -2,11 +2,14 @@
 //! The library computes the measures; this file prints, tabulates and draws them.
 
 use super::answer::Answer;
+use super::audited::{AcceptArgs, audited};
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text, progress};
+use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
+use super::progress::progress;
+use serde::Serialize;
 use std::path::PathBuf;
-use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Summary, predict, prove};
+use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Proof, Summary, predict, prove};
 use trimtab::model::Model;
 use trimtab::numerals::{DASH, sig};
 use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
@@ -14,6 +17,7 @@ use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
 use trimtab::simulate::Integration;
 use trimtab::state::STATE_NAMES;
+use trimtab::validity::Coverage;
 
 const LONG: &str = "\
 Simulates the recordings of a study with two models and compares both with the measured motion, first on the test runs: \
@@ -34,7 +38,8 @@ Measures: MD = mean |simulated - measured|; cVDM = 100 x mean of |dx|/L + |dy|/L
     any that does not, and left out of the means.
 
 With --out: evaluate.json, trajectories.csv, summary.csv, improvement.png, cvdm.png, tracks.png, each with its CSV.
-JSON: result.baseline, result.fitted (names), result.summaries[] with group (test, train, then `manoeuvre: ...` and \
+JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
+    result.baseline, result.fitted (names), result.summaries[] with group (test, train, then `manoeuvre: ...` and \
     `session: ...` of test), runs, trajectories, md_baseline, md_fitted, md_improvement (x, y, psi, u, v, r), cvdm_baseline, \
     cvdm_fitted [%], cvdm_improvement, mari, consistency [-] (each value and ci95), better, worse, runs_better, runs_worse, \
     diverged_baseline, diverged_fitted, worst, most_worsened; result.trajectories[] with run, split, baseline and fitted (md, \
@@ -51,6 +56,8 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
     #[command(flatten)]
+    accept: AcceptArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
@@ -58,16 +65,62 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("evaluate", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
+    output.recordings(audited(&loaded, &args.accept)?);
     let baseline = baseline(&loaded, args.baseline.as_ref())?;
-    let windows = loaded.windows()?.windows;
-    if !windows.iter().any(|w| w.split == Split::Test) {
-        loaded.windows_of(Split::Test)?;
+    let judging = judging(&loaded)?;
+    let mut proof = Proof::new(&baseline, &loaded.model, &judging);
+    let blank = Proof::new(&baseline, &loaded.model, &judging);
+    loaded.each(
+        "evaluating",
+        |_| true,
+        |windows| blank.part(&windows),
+        |part| {
+            proof.add(part);
+            Ok(())
+        },
+    )?;
+    let evaluation = proof.evaluation();
+    if !evaluation.trajectories.iter().any(|t| t.split == Split::Test) {
+        return Err(loaded.nothing(Split::Test));
     }
-    let evaluation = judge(&loaded, &baseline, &loaded.model, &windows)?;
-    let integration = loaded.fit_settings()?.integration;
-    write(&mut output, &evaluation, [&baseline, &loaded.model], &windows, integration)?;
-    output.finish(&text(&loaded.study.name, &evaluation), &evaluation)?;
+    let shown = if output.has_folder() { recorded(&loaded, &shown(&evaluation))? } else { Vec::new() };
+    write(&mut output, &evaluation, [&baseline, &loaded.model], &shown, judging.integration)?;
+    output.finish_long(&text(&loaded.study.name, &evaluation), &Document::from(&evaluation))?;
     Ok(Answer::Yes)
+}
+
+/// An evaluation as JSON that is written trajectory by trajectory; its members are in the order of their names.
+#[derive(Serialize)]
+struct Document<'a> {
+    baseline: &'a str,
+    fitted: &'a str,
+    max_yaw_rate: f64,
+    resamples: usize,
+    seed: u64,
+    summaries: Each<'a, Summary>,
+    trajectories: Each<'a, Comparison>,
+    validity: Pruned<'a, Coverage>,
+}
+
+impl<'a> From<&'a Evaluation> for Document<'a> {
+    fn from(e: &'a Evaluation) -> Self {
+        let Evaluation { baseline, fitted, trajectories, summaries, validity, max_yaw_rate, resamples, seed } = e;
+        Self {
+            baseline,
+            fitted,
+            max_yaw_rate: *max_yaw_rate,
+            resamples: *resamples,
+            seed: *seed,
+            summaries: Each(summaries),
+            trajectories: Each(trajectories),
+            validity: Pruned(validity),
+        }
+    }
+}
+
+/// How the models of a study are judged.
+fn judging(loaded: &Loaded) -> Result<Judging, CliError> {
+    Ok(Judging::new(&loaded.fit_settings()?, loaded.evaluation_settings()?))
 }
 
 /// The baseline: the file given, else that of the study, else the study's model.
@@ -79,10 +132,9 @@ pub fn baseline(loaded: &Loaded, given: Option<&PathBuf>) -> Result<Model, CliEr
 
 /// Judges a model with the settings of the study.
 pub fn judge(loaded: &Loaded, baseline: &Model, model: &Model, windows: &[Run]) -> Result<Evaluation, CliError> {
-    let fit = loaded.fit_settings()?;
-    let settings = loaded.evaluation_settings()?;
+    let judging = judging(loaded)?;
     let bar = progress(format!("evaluating {} windows", windows.len()));
-    let evaluation = prove(baseline, model, windows, &Judging::new(&fit, settings));
+    let evaluation = prove(baseline, model, windows, &judging);
     bar.finish_and_clear();
     Ok(evaluation)
 }
@@ -227,7 +279,7 @@ fn groups(summaries: &[Summary], compared: bool) -> Table {
     table
 }
 
-/// Writes the files of an evaluation.
+/// Writes the files of an evaluation; among `windows` are those of the trajectories that are [`shown`].
 pub fn write(
     output: &mut Output,
     evaluation: &Evaluation,
@@ -334,26 +386,51 @@ fn cvdm_figure(test: &[&Comparison]) -> Figure {
     )
 }
 
-/// Tracks of test trajectories, recorded and under both models: best, median and worst of the fitted model.
+/// The test trajectories of which tracks are drawn: best, median and worst of the fitted model.
+fn shown(evaluation: &Evaluation) -> Vec<(&'static str, &Comparison)> {
+    let mut order: Vec<&Comparison> = evaluation.trajectories.iter().filter(|t| t.split == Split::Test).collect();
+    let size = |t: &Comparison| t.fitted.deviation().map_or(f64::INFINITY, |d| d.cvdm);
+    order.sort_by(|a, b| size(a).total_cmp(&size(b)));
+    let named = [("best", order.first()), ("median", order.get(order.len() / 2)), ("worst", order.last())];
+    let mut shown: Vec<(&str, &Comparison)> = named.iter().filter_map(|(n, t)| Some((*n, **(t.as_ref()?)))).collect();
+    shown.dedup_by(|a, b| std::ptr::eq(a.1, b.1));
+    shown
+}
+
+/// Whether a trajectory is of a window.
+fn is_of(t: &Comparison, w: &Run) -> bool {
+    t.run == w.recording && t.start_time == w.start_time()
+}
+
+/// The windows of some trajectories, read again.
+fn recorded(loaded: &Loaded, shown: &[(&str, &Comparison)]) -> Result<Vec<Run>, CliError> {
+    let mut found = Vec::new();
+    let drawn = |w: &Run| shown.iter().any(|(_, t)| is_of(t, w));
+    loaded.each(
+        "reading",
+        |listed| shown.iter().any(|(_, t)| t.run == listed.labels.run),
+        |windows| windows.into_iter().filter(drawn).collect::<Vec<Run>>(),
+        |some| {
+            found.extend(some);
+            Ok(())
+        },
+    )?;
+    Ok(found)
+}
+
+/// Tracks of the trajectories that are [`shown`], recorded and under both models.
 fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Run], integration: Integration) -> Figure {
-    let mut order: Vec<usize> = (0..windows.len()).filter(|&i| windows[i].split == Split::Test).collect();
-    let size = |i: usize| evaluation.trajectories[i].fitted.deviation().map_or(f64::INFINITY, |d| d.cvdm);
-    order.sort_by(|&a, &b| size(a).total_cmp(&size(b)));
-    let middle = order.len() / 2;
-    let named = [("best", order.first()), ("median", order.get(middle)), ("worst", order.last())];
-    let mut chosen: Vec<(&str, usize)> = named.iter().filter_map(|(n, i)| Some((*n, **(i.as_ref()?)))).collect();
-    chosen.dedup_by_key(|c| c.1);
     let mut figure = Figure::new("Test runs: recorded, baseline and fitted").columns(3).panel_size(680, 600);
     let ship = &models[0].ship;
     let mut below = Vec::new();
-    for (word, i) in chosen {
-        let w = &windows[i];
+    for (word, trajectory) in shown(evaluation) {
+        let Some(w) = windows.iter().find(|w| is_of(trajectory, w)) else { continue };
         let shown = [
             ("recorded", RECORDED, w.measured.iter().map(or_nan).collect()),
             ("baseline", BASELINE, predict(models[0], w, integration).states),
             ("fitted", FITTED, predict(models[1], w, integration).states),
         ];
-        let mut track = Panel::track(format!("{word}: {}, {}", w.recording, cvdm(&evaluation.trajectories[i].fitted)));
+        let mut track = Panel::track(format!("{word}: {}, {}", w.recording, cvdm(&trajectory.fitted)));
         let mut heading = Panel::new("", Axis::new("time [s]"), Axis::new("heading psi [deg]"));
         for (name, color, states) in shown {
             let stride = (states.len() / 6).max(1);

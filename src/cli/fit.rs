@@ -2,13 +2,15 @@
 //! The library makes the fit and its report; this file calls it, shows progress and writes files.
 
 use super::answer::Answer;
+use super::audited::{AcceptArgs, audited};
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text, progress};
+use super::output::{Output, OutputArgs, csv_text};
+use super::progress::progress;
 use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::Model;
 use trimtab::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
-use trimtab::recording::{Run, Split};
+use trimtab::recording::{Run, RunStore, Runs, Split};
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
 
@@ -34,7 +36,8 @@ Example:
 
 With --out: fitted.toml (a model file with the estimates, which every command takes as --model), fit.json, fit.txt (the \
     report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end).
-JSON: result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
+JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
+    result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
     value, limit, sentence), result.residual_statistics (model_error, growth, growth_error, likeness), result.estimates[] \
     (name, symbol, unit, start, value, standard_error, interval, at_bound), result.start_cost, result.start_prior_cost, \
     result.cost, result.prior_cost, result.first_stage_parts, result.residual_variance, result.active[] (sentence, rule), \
@@ -52,6 +55,8 @@ pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
     #[command(flatten)]
+    accept: AcceptArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
@@ -59,9 +64,15 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("fit", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
-    let windows = loaded.windows_of(Split::Train)?;
-    let fit = fit_windows(&loaded, &loaded.model, &windows)?;
-    write(&mut output, &loaded.model, &fit, &windows)?;
+    output.recordings(audited(&loaded, &args.accept)?);
+    let store = stored(&loaded)?;
+    let windows = Runs::from(&store);
+    let fit = fit_windows(&loaded, &loaded.model, windows);
+    if let Some(source) = store.failure() {
+        return Err(CliError::Write { path: std::env::temp_dir(), source });
+    }
+    let fit = fit?;
+    write(&mut output, &loaded.model, &fit, windows)?;
     let mut text = fit.report();
     if !output.has_folder() {
         text += "\nGive --out DIR to keep the fitted model as a file.";
@@ -70,11 +81,25 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     Ok(if fit.converged { Answer::Yes } else { Answer::No })
 }
 
+/// The windows to train on, in memory or in a temporary file.
+fn stored(loaded: &Loaded) -> Result<RunStore, CliError> {
+    let mut store = RunStore::default();
+    let fail = |source| CliError::Write { path: std::env::temp_dir(), source };
+    let train = |windows: Vec<Run>| windows.into_iter().filter(|w| w.split == Split::Train).collect::<Vec<Run>>();
+    loaded.each(
+        "reading",
+        |_| true,
+        train,
+        |windows| windows.into_iter().try_for_each(|window| store.push(window)).map_err(fail),
+    )?;
+    if store.is_empty() { Err(loaded.nothing(Split::Train)) } else { Ok(store) }
+}
+
 /// What a fit adds to the name of its model.
 const FITTED_NAME: &str = ", fitted";
 
 /// Fits a model to windows with the settings of the study.
-pub fn fit_windows(loaded: &Loaded, start: &Model, windows: &[Run]) -> Result<Fit, CliError> {
+pub fn fit_windows(loaded: &Loaded, start: &Model, windows: Runs) -> Result<Fit, CliError> {
     let settings: FitSettings = loaded.fit_settings()?;
     let bar = progress(format!("fitting to {} windows", windows.len()));
     let result = fit(start, windows, &settings, &mut |p| {
@@ -90,7 +115,7 @@ pub fn fit_windows(loaded: &Loaded, start: &Model, windows: &[Run]) -> Result<Fi
 }
 
 /// Writes the files of a fit.
-pub fn write(output: &mut Output, start: &Model, fit: &Fit, windows: &[Run]) -> Result<(), CliError> {
+pub fn write(output: &mut Output, start: &Model, fit: &Fit, windows: Runs) -> Result<(), CliError> {
     output.file("fitted.toml", model_text(&fit.model)?.as_bytes())?;
     output.file("fit.txt", fit.report().as_bytes())?;
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
@@ -121,9 +146,10 @@ pub fn model_text(model: &Model) -> Result<String, CliError> {
 }
 
 /// R(u) over the recorded speeds, c_L and c_D over the angles of attack at which the curves hold.
-pub fn curves(models: &[(&str, Color, &Model)], windows: &[Run]) -> Figure {
-    let speeds = windows.iter().flat_map(|w| &w.measured).filter_map(|s| s[3]);
-    let (low, high) = speeds.fold((0.0_f64, 1.0_f64), |(a, b), u| (a.min(u), b.max(u)));
+pub fn curves(models: &[(&str, Color, &Model)], windows: Runs) -> Figure {
+    let (low, high) = windows.iter().fold((0.0_f64, 1.0_f64), |range, w| {
+        w.measured.iter().filter_map(|s| s[3]).fold(range, |(a, b), u| (a.min(u), b.max(u)))
+    });
     let over = |from: f64, to: f64| (0..=120).map(move |i| from + (to - from) * f64::from(i) / 120.0);
     let layers = |f: &dyn Fn(&Model) -> Vec<(f64, f64)>| {
         models.iter().map(|(name, color, model)| Layer::line(*name, *color, f(model))).collect::<Vec<_>>()

@@ -2,7 +2,7 @@
 //! It checks and computes nothing beyond that.
 
 use super::error::CliError;
-use super::output::progress;
+use super::progress::progress;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use trimtab::diagnose::Settings;
@@ -11,9 +11,10 @@ use trimtab::evaluate::EvaluationSettings;
 use trimtab::fit::FitSettings;
 use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::{Model, ModelError};
+use trimtab::ranges::Limited;
 use trimtab::recording::{Run, Split, Windows};
 use trimtab::ship::Ship;
-use trimtab::study::Study;
+use trimtab::study::{Listed, Study};
 
 /// Arguments of every command on a study.
 #[derive(Clone, Debug, clap::Args)]
@@ -56,23 +57,52 @@ impl Loaded {
         Ok(windows?)
     }
 
+    /// Reads the runs for which `wanted` says so and hands the windows of each to `work`, without keeping them; what `work`
+    /// makes of them goes to `take` in the order listed.
+    pub fn each<T: Send>(
+        &self,
+        doing: &str,
+        wanted: impl Fn(&Listed) -> bool,
+        work: impl Fn(Vec<Run>) -> T + Sync,
+        mut take: impl FnMut(T) -> Result<(), CliError>,
+    ) -> Result<(), CliError> {
+        let (mut done, of) = (0, self.study.runs.iter().filter(|run| wanted(run)).count());
+        let bar = progress(format!("{doing} {of} recordings"));
+        let draught = self.model.ship.hull.draught;
+        let result = self.study.each(
+            draught,
+            wanted,
+            |windows| work(windows.windows),
+            |one| {
+                done += 1;
+                bar.set_message(format!("{doing}: {done} of {of} recordings"));
+                take(one)
+            },
+        );
+        bar.finish_and_clear();
+        result
+    }
+
     /// The windows of one split, of which there must be some.
     pub fn windows_of(&self, split: Split) -> Result<Vec<Run>, CliError> {
         let mut windows = self.windows()?.windows;
         windows.retain(|w| w.split == split);
         if windows.is_empty() {
-            let (word, verb) = match split {
-                Split::Train => ("train", "fit to"),
-                Split::Test => ("test", "judge by"),
-            };
-            return Err(CliError::Nothing {
-                path: self.study.path.clone(),
-                message: format!(
-                    "there is no run to {verb}; mark one with `split = \"{word}\"`, or set a [split] rule"
-                ),
-            });
+            return Err(self.nothing(split));
         }
         Ok(windows)
+    }
+
+    /// The error of a study without a run on one side of its split.
+    pub fn nothing(&self, split: Split) -> CliError {
+        let (word, verb) = match split {
+            Split::Train => ("train", "fit to"),
+            Split::Test => ("test", "judge by"),
+        };
+        CliError::Nothing {
+            path: self.study.path.clone(),
+            message: format!("there is no run to {verb}; mark one with `split = \"{word}\"`, or set a [split] rule"),
+        }
     }
 
     /// Table `[fit]`.
@@ -96,8 +126,8 @@ impl Loaded {
     }
 
     /// A table of the study as settings.
-    fn table<T: DeserializeOwned>(&self, name: &'static str, table: &toml::Table) -> Result<T, CliError> {
-        table.clone().try_into().map_err(|e: toml::de::Error| {
+    fn table<T: DeserializeOwned + Limited>(&self, name: &'static str, table: &toml::Table) -> Result<T, CliError> {
+        let settings: T = table.clone().try_into().map_err(|e: toml::de::Error| {
             let message = e.message().trim().replace('\n', " ");
             // serde writes: unknown field `found`, expected one of `a`, `b`
             let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
@@ -112,7 +142,14 @@ impl Loaded {
                 table: name,
                 message: format!("{message}{near}"),
             }
-        })
+        })?;
+        settings.limits().map_err(|outside| CliError::Table {
+            path: self.study.path.clone(),
+            line: self.study.line_of(name, outside.key),
+            table: name,
+            message: outside.to_string(),
+        })?;
+        Ok(settings)
     }
 }
 

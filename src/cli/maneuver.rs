@@ -4,7 +4,8 @@
 use super::answer::Answer;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, progress};
+use super::output::{Output, OutputArgs};
+use super::progress::progress;
 use clap::Subcommand;
 use serde::Serialize;
 use trimtab::maneuver::{Approach, Ended, ManeuverSettings, Side, Trial, stopping_trial, turning_trial, zigzag_trial};

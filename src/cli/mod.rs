@@ -2,6 +2,7 @@
 //! The library computes; a command only reads arguments, calls it, and prints.
 
 mod answer;
+mod audited;
 mod check;
 mod demo;
 mod diagnose;
@@ -11,12 +12,15 @@ mod fit;
 mod load;
 mod maneuver;
 mod output;
+mod processor;
+mod progress;
 mod simulate;
 mod terms;
 
 use answer::Answer;
 use clap::{Parser, Subcommand};
 use error::CliError;
+use processor::Build;
 use std::process::ExitCode;
 
 const AFTER_HELP: &str = "\
@@ -36,12 +40,17 @@ Exit codes
   1  it ran, but the answer is no: did not converge, a check failed
   2  it could not run: one message on standard error says why and what to do";
 
+const TOO_NEW: &str = "this program was built for processors with AVX2 and FMA, which this one lacks. Build it for this one: \
+                       RUSTFLAGS=\"-C target-cpu=native\" cargo build --release";
+const TOO_OLD: &str = "this program was built without AVX2, which this processor has: results are the same, but a fit takes several \
+                       times as long. Build it in its own folder, where `.cargo/config.toml` asks for AVX2.";
+
 /// Fits an interpretable manoeuvring model to recordings of a ship, and finds the physics it lacks.
 #[derive(Debug, Parser)]
 #[command(name = "trimtab", version, after_help = AFTER_HELP, max_term_width = 100)]
 struct Cli {
     /// Number of threads; the number of processors if not given. Results do not depend on it.
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     #[command(subcommand)]
     command: Command,
@@ -61,6 +70,14 @@ enum Command {
 
 /// Runs the command that the process was given.
 pub fn run() -> ExitCode {
+    match processor::build() {
+        Build::Suits => {}
+        Build::TooNew => {
+            eprintln!("trimtab: {TOO_NEW}");
+            return ExitCode::from(2);
+        }
+        Build::TooOld => eprintln!("warning: {TOO_OLD}"),
+    }
     let cli = Cli::parse();
     match execute(&cli) {
         Ok(Answer::Yes) => ExitCode::SUCCESS,

@@ -1,13 +1,13 @@
 //! Where results go: text or JSON to standard output, files to the folder given with `--out`.
 //! No other file writes to standard output; progress and errors go to standard error.
 
+use super::audited::Audited;
 use super::error::CliError;
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use serde_json::{Map, Value, json};
-use std::io::{ErrorKind, Write};
+use serde_json::Value;
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use trimtab::files::{fill_whole, write_whole};
 use trimtab::plot::Figure;
 
 /// Arguments that every command with results has.
@@ -27,6 +27,7 @@ pub struct Output {
     json: bool,
     folder: Option<PathBuf>,
     files: Vec<PathBuf>,
+    audited: Option<Audited>,
 }
 
 impl Output {
@@ -35,7 +36,12 @@ impl Output {
         if let Some(folder) = &args.out {
             std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
         }
-        Ok(Self { command, json: args.json, folder: args.out.clone(), files: Vec::new() })
+        Ok(Self { command, json: args.json, folder: args.out.clone(), files: Vec::new(), audited: None })
+    }
+
+    /// Takes what is to be said of the recordings: before the answer, and as `recordings` in JSON.
+    pub fn recordings(&mut self, audited: Audited) {
+        self.audited = Some(audited);
     }
 
     /// Whether files are wanted.
@@ -51,7 +57,7 @@ impl Output {
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent).map_err(fail)?;
         }
-        std::fs::write(&path, bytes).map_err(fail)?;
+        write_whole(&path, bytes).map_err(fail)?;
         self.files.push(path);
         Ok(())
     }
@@ -67,24 +73,77 @@ impl Output {
     /// Ends the command: prints `text`, or the result as JSON; writes the JSON into the folder too.
     ///
     /// Object members without a value are left out, so that `null` occurs only in arrays, for entries that do not exist.
-    pub fn finish(mut self, text: &str, result: &impl Serialize) -> Result<(), CliError> {
-        let mut members = Map::new();
-        members.insert("command".into(), json!(self.command));
-        members.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
-        members.insert("result".into(), without_nulls(serde_json::to_value(result)?));
+    pub fn finish(self, text: &str, result: &impl Serialize) -> Result<(), CliError> {
+        self.finish_long(text, &Pruned(result))
+    }
+
+    /// As [`Self::finish`], with a result that is written piece by piece and has no member without a value; its members are in
+    /// the order of their names.
+    pub fn finish_long(mut self, text: &str, result: &impl Serialize) -> Result<(), CliError> {
         let name = format!("{}.json", self.command.replace(' ', "_"));
-        let saved = serde_json::to_string_pretty(&members)? + "\n";
-        self.file(name, saved.as_bytes())?;
-        if self.json {
-            members.insert("files".into(), json!(self.files));
-            return print(&(serde_json::to_string_pretty(&members)? + "\n"));
+        if let Some(folder) = &self.folder {
+            let path = folder.join(name);
+            let document = Document::new(self.command, None, self.audited.as_ref(), result);
+            let fill = |file: &mut dyn Write| {
+                serde_json::to_writer_pretty(&mut *file, &document)?;
+                file.write_all(b"\n")
+            };
+            fill_whole(&path, fill).map_err(|source| CliError::Write { path: path.clone(), source })?;
+            self.files.push(path);
         }
-        let mut text = text.trim_end().to_owned() + "\n";
+        if self.json {
+            let document = Document::new(self.command, Some(&self.files), self.audited.as_ref(), result);
+            let mut stdout = BufWriter::new(std::io::stdout().lock());
+            return serde_json::to_writer_pretty(&mut stdout, &document)
+                .map_err(std::io::Error::from)
+                .and_then(|()| stdout.write_all(b"\n"))
+                .and_then(|()| stdout.flush())
+                .map_err(unprinted);
+        }
+        let doubts = self.audited.as_ref().map_or_else(String::new, Audited::lines);
+        let mut text = doubts + text.trim_end() + "\n";
         if let Some(folder) = &self.folder {
             let names = self.files.iter().map(|f| f.strip_prefix(folder).unwrap_or(f).display().to_string());
             text += &format!("\nWritten to {}: {}\n", folder.display(), abridged(names.collect()));
         }
         print(&text)
+    }
+}
+
+/// The JSON document of a command, its members in the order of their names.
+#[derive(Serialize)]
+struct Document<'a, T: Serialize> {
+    command: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    files: Option<&'a [PathBuf]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    recordings: Option<&'a Audited>,
+    result: &'a T,
+    version: &'static str,
+}
+
+impl<'a, T: Serialize> Document<'a, T> {
+    fn new(command: &'a str, files: Option<&'a [PathBuf]>, recordings: Option<&'a Audited>, result: &'a T) -> Self {
+        Self { command, files, recordings, result, version: env!("CARGO_PKG_VERSION") }
+    }
+}
+
+/// A value in JSON without object members that are null, its members in the order of their names.
+pub struct Pruned<'a, T>(pub &'a T);
+
+impl<T: Serialize> Serialize for Pruned<'_, T> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let value = serde_json::to_value(self.0).map_err(serde::ser::Error::custom)?;
+        without_nulls(value).serialize(serializer)
+    }
+}
+
+/// Values in JSON, each [`Pruned`] when its turn comes.
+pub struct Each<'a, T>(pub &'a [T]);
+
+impl<T: Serialize> Serialize for Each<'_, T> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.0.iter().map(Pruned))
     }
 }
 
@@ -115,21 +174,15 @@ fn without_nulls(value: Value) -> Value {
 /// Prints to standard output.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut stdout = std::io::stdout().lock();
-    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|e| match e.kind() {
-        ErrorKind::BrokenPipe => CliError::Closed,
-        _ => CliError::Stdout(e),
-    })
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(unprinted)
 }
 
-/// A progress line on standard error while a computation runs; nothing if standard error is not a terminal.
-pub fn progress(doing: impl Into<String>) -> ProgressBar {
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
-        bar.set_style(style);
+/// The error of standard output that takes no more.
+fn unprinted(error: std::io::Error) -> CliError {
+    match error.kind() {
+        ErrorKind::BrokenPipe => CliError::Closed,
+        _ => CliError::Stdout(error),
     }
-    bar.set_message(doing.into());
-    bar.enable_steady_tick(Duration::from_millis(120));
-    bar
 }
 
 /// CSV text of a header and rows of fields.
@@ -149,6 +202,7 @@ pub fn csv_text<R: IntoIterator<Item = String>>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     #[test]
     fn members_without_a_value_are_left_out_and_array_entries_stay() {

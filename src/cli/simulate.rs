@@ -2,17 +2,21 @@
 //! It compares no models; it prints how far each simulation is from the measured motion.
 
 use super::answer::Answer;
+use super::audited::{AcceptArgs, audited};
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text, progress};
+use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
 use serde::Serialize;
+use std::sync::Arc;
 use trimtab::evaluate::{Outcome, outcome, predict_all};
+use trimtab::fit::FitSettings;
+use trimtab::model::Model;
 use trimtab::numerals::sig;
 use trimtab::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
 use trimtab::simulate::Trajectory;
-use trimtab::validity::{self, Coverage};
+use trimtab::validity::{self, Count, Coverage};
 
 const LONG: &str = "\
 Simulates every recording of a study (or every window of it, where the study cuts them) with the study's model or another: \
@@ -28,7 +32,8 @@ cVDM is the mean deviation over position, heading and velocities, each relative 
 
 With --out: simulate.json, simulations.csv, tracks.png and .csv, and trajectories/RUN.csv, each in the layout of a \
     recording, so that a simulation can be read like a measurement.
-JSON: result.model, result.runs[] with run, split, start_time [s], duration [s], steps, md (x, y [m], psi [rad], u, v [m/s], \
+JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
+    result.model, result.runs[] with run, split, start_time [s], duration [s], steps, md (x, y [m], psi [rad], u, v [m/s], \
     r [rad/s]) and cvdm [%], or diverged_after [s]; result.validity (share_outside of the recorded samples; outside[] with term, \
     quantity, range, share, met).
 
@@ -41,19 +46,22 @@ pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
     #[command(flatten)]
+    accept: AcceptArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
 #[derive(Serialize)]
 struct Report<'a> {
     model: &'a str,
-    runs: Vec<Row<'a>>,
-    validity: Coverage,
+    runs: Each<'a, Row>,
+    validity: Pruned<'a, Coverage>,
 }
 
 #[derive(Serialize)]
-struct Row<'a> {
-    run: &'a str,
+struct Row {
+    #[serde(serialize_with = "as_text")]
+    run: Arc<str>,
     split: Split,
     start_time: f64,
     duration: f64,
@@ -62,47 +70,72 @@ struct Row<'a> {
     outcome: Outcome,
 }
 
+fn as_text<S: serde::Serializer>(text: &Arc<str>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(text)
+}
+
+/// Windows in the table that is printed; the files and the JSON have all of them.
+const PRINTED: usize = 2000;
+
+/// Tracks in the figure.
+const PANELS: usize = 12;
+
+/// What comes of the windows of one recording.
+struct Simulated<'a> {
+    rows: Vec<Row>,
+    validity: Count<'a>,
+    /// Name and text of each trajectory's file, where files are wanted.
+    files: Vec<(String, String)>,
+    tracks: Vec<Track>,
+}
+
+/// A window beside its simulation, to be drawn.
+struct Track {
+    name: String,
+    window: Run,
+    simulated: Trajectory,
+}
+
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("simulate", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
+    output.recordings(audited(&loaded, &args.accept)?);
     let settings = loaded.fit_settings()?;
     let model = &loaded.model;
-    let windows = loaded.windows()?.windows;
-    let bar = progress(format!("simulating {} windows", windows.len()));
-    let trajectories = predict_all(model, &windows, settings.integration);
-    bar.finish_and_clear();
-
-    let row = |(w, t): (&Run, &Trajectory)| outcome(w, t, &model.ship, settings.max_yaw_rate);
-    let outcomes: Vec<Outcome> = windows.iter().zip(&trajectories).map(row).collect();
-    let rows: Vec<Row<'_>> = windows
-        .iter()
-        .zip(&outcomes)
-        .map(|(w, o)| Row {
-            run: &w.recording,
-            split: w.split,
-            start_time: w.start_time(),
-            duration: w.duration(),
-            steps: w.steps(),
-            outcome: *o,
-        })
-        .collect();
-    let table = table(&rows);
-    let header: Vec<&str> = table.header().iter().map(String::as_str).collect();
-    output.file("simulations.csv", &csv_text(&header, table.rows().iter().cloned())?)?;
-    if output.has_folder() {
-        for (i, (w, t)) in windows.iter().zip(&trajectories).enumerate() {
-            output.file(format!("trajectories/{}.csv", file_name(&windows, i)), recording(w, t).as_bytes())?;
-        }
+    let written = output.has_folder();
+    let (mut rows, mut tracks, mut validity) = (Vec::new(), Tracks::default(), Count::new(model));
+    loaded.each(
+        "simulating",
+        |_| true,
+        |windows| simulated(model, &settings, windows, written),
+        |one| {
+            rows.extend(one.rows);
+            validity.join(&one.validity);
+            tracks.add(one.tracks);
+            one.files
+                .iter()
+                .try_for_each(|(name, text)| output.file(format!("trajectories/{name}.csv"), text.as_bytes()))
+        },
+    )?;
+    let header = table(&[]);
+    let header: Vec<&str> = header.header().iter().map(String::as_str).collect();
+    if written {
+        output.file("simulations.csv", &csv_text(&header, rows.iter().map(cells))?)?;
     }
-    output.figure("tracks", || figure(&model.name, &windows, &trajectories))?;
-    let samples = windows.iter().flat_map(validity::samples);
-    let validity = validity::outside(model, samples);
-    let text = format!("{} simulated with `{}`:\n\n{table}\n\n{}", loaded.study.name, model.name, validity.line());
-    let report = Report { model: &model.name, runs: rows, validity };
-    output.finish(&text, &report)?;
-    let diverged = report.runs.iter().find_map(|r| match r.outcome {
-        Outcome::Diverged { diverged_after } => Some((r.run, diverged_after)),
+    output.figure("tracks", || figure(&model.name, rows.len(), tracks))?;
+    let validity = validity.coverage();
+    let table = table(&rows[..rows.len().min(PRINTED)]);
+    let more = match rows.len().saturating_sub(PRINTED) {
+        0 => String::new(),
+        more => format!("\nand {more} windows more (in --out and --json)\n"),
+    };
+    let text =
+        format!("{} simulated with `{}`:\n\n{table}\n{more}\n{}", loaded.study.name, model.name, validity.line());
+    let report = Report { model: &model.name, runs: Each(&rows), validity: Pruned(&validity) };
+    output.finish_long(&text, &report)?;
+    let diverged = rows.iter().find_map(|r| match r.outcome {
+        Outcome::Diverged { diverged_after } => Some((&r.run, diverged_after)),
         Outcome::Simulated(_) => None,
     });
     match diverged {
@@ -111,7 +144,51 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     }
 }
 
-fn table(rows: &[Row<'_>]) -> Table {
+/// Simulates the windows of one recording.
+fn simulated<'a>(model: &'a Model, settings: &FitSettings, windows: Vec<Run>, written: bool) -> Simulated<'a> {
+    let trajectories = predict_all(model, &windows, settings.integration);
+    let run: Arc<str> = windows.first().map_or("", |w| w.recording.as_str()).into();
+    let row = |(w, t): (&Run, &Trajectory)| Row {
+        run: run.clone(),
+        split: w.split,
+        start_time: w.start_time(),
+        duration: w.duration(),
+        steps: w.steps(),
+        outcome: outcome(w, t, &model.ship, settings.max_yaw_rate),
+    };
+    let rows = windows.iter().zip(&trajectories).map(row).collect();
+    let mut validity = Count::new(model);
+    validity.add(windows.iter().flat_map(validity::samples));
+    let (mut files, mut tracks) = (Vec::new(), Vec::new());
+    if written {
+        let name = |i: usize| file_name(&windows, i);
+        files = windows.iter().zip(&trajectories).enumerate().map(|(i, (w, t))| (name(i), recording(w, t))).collect();
+        let names: Vec<String> = (0..windows.len().min(PANELS)).map(name).collect();
+        let all = windows.into_iter().zip(trajectories).zip(names);
+        tracks = all.map(|((window, simulated), name)| Track { name, window, simulated }).collect();
+    }
+    Simulated { rows, validity, files, tracks }
+}
+
+/// The tracks that are drawn: the first ones, test before train.
+#[derive(Default)]
+struct Tracks {
+    test: Vec<Track>,
+    train: Vec<Track>,
+}
+
+impl Tracks {
+    fn add(&mut self, tracks: Vec<Track>) {
+        for track in tracks {
+            let side = if track.window.split == Split::Test { &mut self.test } else { &mut self.train };
+            if side.len() < PANELS {
+                side.push(track);
+            }
+        }
+    }
+}
+
+fn table(rows: &[Row]) -> Table {
     let mut table = Table::new([
         "run",
         "split",
@@ -126,38 +203,39 @@ fn table(rows: &[Row<'_>]) -> Table {
         "cVDM [%]",
     ]);
     for r in rows {
-        let split = match r.split {
-            Split::Train => "train",
-            Split::Test => "test",
-        };
-        let mut cells = vec![r.run.to_owned(), split.into(), sig(r.start_time, 5), r.steps.to_string()];
-        match &r.outcome {
-            Outcome::Simulated(d) => {
-                let degrees = |i: usize| if i == 2 || i == 5 { 180.0 / std::f64::consts::PI } else { 1.0 };
-                let md = d.md.iter().enumerate().map(|(i, v)| v.map_or_else(|| "–".into(), |v| sig(v * degrees(i), 3)));
-                cells.extend(md);
-                cells.push(sig(d.cvdm, 3));
-            }
-            Outcome::Diverged { diverged_after } => {
-                cells.extend(std::iter::repeat_n("–".to_owned(), 6));
-                cells.push(format!("diverged after {diverged_after:.0} s"));
-            }
-        }
-        table.row(cells);
+        table.row(cells(r));
     }
     table
 }
 
-/// The name of a window's file: its run, with its start where the run has several.
-pub fn file_name(windows: &[Run], i: usize) -> String {
+/// The cells of a window's row.
+fn cells(r: &Row) -> Vec<String> {
+    let split = match r.split {
+        Split::Train => "train",
+        Split::Test => "test",
+    };
+    let mut cells = vec![r.run.to_string(), split.into(), sig(r.start_time, 5), r.steps.to_string()];
+    match &r.outcome {
+        Outcome::Simulated(d) => {
+            let degrees = |i: usize| if i == 2 || i == 5 { 180.0 / std::f64::consts::PI } else { 1.0 };
+            let md = d.md.iter().enumerate().map(|(i, v)| v.map_or_else(|| "–".into(), |v| sig(v * degrees(i), 3)));
+            cells.extend(md);
+            cells.push(sig(d.cvdm, 3));
+        }
+        Outcome::Diverged { diverged_after } => {
+            cells.extend(std::iter::repeat_n("–".to_owned(), 6));
+            cells.push(format!("diverged after {diverged_after:.0} s"));
+        }
+    }
+    cells
+}
+
+/// The name of a window's file: its run, with its start where the run has several. `windows` are those of one recording.
+fn file_name(windows: &[Run], i: usize) -> String {
     let w = &windows[i];
     let safe: String =
         w.recording.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
-    if windows.iter().filter(|o| o.recording == w.recording).count() > 1 {
-        format!("{safe}_{:.0}s", w.start_time())
-    } else {
-        safe
-    }
+    if windows.len() > 1 { format!("{safe}_{:.0}s", w.start_time()) } else { safe }
 }
 
 /// A trajectory in the layout of a recording.
@@ -170,28 +248,25 @@ fn recording(window: &Run, trajectory: &Trajectory) -> String {
     text
 }
 
-/// Tracks of the first windows, test before train: measured and simulated.
-fn figure(model: &str, windows: &[Run], trajectories: &[Trajectory]) -> Figure {
-    const PANELS: usize = 12;
-    let mut order: Vec<usize> = (0..windows.len()).collect();
-    order.sort_by_key(|&i| windows[i].split == Split::Train);
-    let panels = order.into_iter().take(PANELS).map(|i| {
-        let (w, t) = (&windows[i], &trajectories[i]);
-        let track = |states: &[[f64; 6]]| states.iter().map(|s| east_north(s[0], s[1])).collect::<Vec<_>>();
+/// Tracks of the first windows, measured and simulated.
+fn figure(model: &str, windows: usize, tracks: Tracks) -> Figure {
+    let panels = tracks.test.iter().chain(&tracks.train).take(PANELS).map(|track| {
+        let (w, t) = (&track.window, &track.simulated);
+        let line = |states: &[[f64; 6]]| states.iter().map(|s| east_north(s[0], s[1])).collect::<Vec<_>>();
         let start = east_north(w.initial[0], w.initial[1]);
-        let mut panel = Panel::track(file_name(windows, i));
+        let mut panel = Panel::track(track.name.clone());
         let recorded: Vec<[f64; 6]> = w.measured.iter().map(or_nan).collect();
         if recorded.iter().any(|s| s[0].is_finite() && s[1].is_finite()) {
-            panel = panel.with(Layer::line("recorded", RECORDED, track(&recorded)));
+            panel = panel.with(Layer::line("recorded", RECORDED, line(&recorded)));
         }
-        panel.with(Layer::line("simulated", BLUE, track(&t.states)).dashed()).with(Layer::scatter(
+        panel.with(Layer::line("simulated", BLUE, line(&t.states)).dashed()).with(Layer::scatter(
             "start",
             GREY,
             [start],
         ))
     });
     Figure::new(format!("Recorded and simulated with {model}"))
-        .columns(4.min(windows.len().max(1)))
+        .columns(4.min(windows.max(1)))
         .panel_size(560, 520)
         .with_all(panels.collect::<Vec<_>>())
 }

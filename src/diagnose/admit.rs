@@ -121,6 +121,9 @@ fn loss(run: &Run, pass: &Pass) -> Option<Loss> {
     (0..STATES).filter_map(of).max_by_key(|l| l.count)
 }
 
+/// How many runs have their innovations of both step sizes in memory at once.
+const COMPARED: usize = 64;
+
 /// Audits the recordings' kinematics and the numerics.
 pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run]) -> Admission {
     let issues = audit_runs(runs);
@@ -130,20 +133,15 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
         sin += heading.sin();
         count += 1.0;
     }
-    let passes = |integration: Integration| -> Vec<Vec<[f64; 6]>> {
-        let filter = Filter::new(model, integration, &[]);
-        filter.passes(runs, noise, Wanted::default()).into_iter().map(|pass| pass.innovations).collect()
+    let refined = Integration { method: Method::Rk4, substeps: integration.substeps.max(1) * 8 };
+    let filters = [integration, refined].map(|integration| Filter::new(model, integration, &[]));
+    let error = |some: &[Run]| {
+        let [as_used, refined] = filters.each_ref().map(|f| f.passes(some, noise, Wanted::default()));
+        let innovations = |passes: Vec<Pass>| passes.into_iter().flat_map(|pass| pass.innovations).flatten();
+        let pairs = innovations(as_used).zip(innovations(refined));
+        pairs.map(|(a, b)| (a - b).abs()).filter(|e| e.is_finite()).fold(0.0, f64::max)
     };
-    let innovations = passes(integration);
-    let refined = passes(Integration { method: Method::Rk4, substeps: integration.substeps.max(1) * 8 });
-    let error = innovations
-        .iter()
-        .flatten()
-        .zip(refined.iter().flatten())
-        .flat_map(|(a, b)| (0..6).map(move |j| (a[j] - b[j]).abs()))
-        .filter(|e| e.is_finite())
-        .collect::<Vec<f64>>();
-    let largest = error.iter().copied().fold(0.0, f64::max);
+    let largest = runs.chunks(COMPARED).map(error).fold(0.0, f64::max);
     let sessions: std::collections::BTreeSet<&str> = runs.iter().map(|r| r.session.as_str()).collect();
     Admission {
         runs: runs.len(),

@@ -56,5 +56,6 @@ mod tests {
         let inverse = pseudo_inverse(&DMatrix::from_element(2, 2, 4.0));
         assert!(inverse.iter().all(|v| (v - 1.0 / 16.0).abs() < 1e-12), "{inverse}");
         assert_eq!(pseudo_inverse(&DMatrix::zeros(2, 2)).amax(), 0.0);
+        assert_eq!(pseudo_inverse(&DMatrix::zeros(0, 0)).len(), 0);
     }
 }

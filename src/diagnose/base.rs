@@ -12,6 +12,7 @@ use crate::audit::{Issue, settled};
 use crate::model::{Model, ModelError};
 use crate::recording::Run;
 use crate::simulate::{Integration, Method};
+use std::borrow::Cow;
 
 /// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
 const NUISANCE: [&str; 31] = [
@@ -100,7 +101,7 @@ pub struct AuditedRuns {
 
 impl AuditedRuns {
     /// Parts runs where positions jump and leaves out what was not measured; `length` is that of the ship \[m\].
-    pub fn new(runs: &[Run], length: f64) -> Self {
+    pub fn new<'r>(runs: impl Into<Cow<'r, [Run]>>, length: f64) -> Self {
         let (runs, issues) = settled(runs, length);
         Self { runs, issues }
     }
@@ -122,8 +123,8 @@ pub struct BaseFit {
 
 impl BaseFit {
     /// Fits parameters and noise, leaves out what the filter cannot follow, and audits recordings and integration step.
-    pub fn new(question: &Question, audited: &AuditedRuns) -> Self {
-        let (mut kept, mut issues) = (audited.runs.clone(), audited.issues.clone());
+    pub fn new(question: &Question, audited: AuditedRuns) -> Self {
+        let AuditedRuns { runs: mut kept, mut issues } = audited;
         let integration = question.settings.integration();
         (question.progress)("estimating parameters and noise of the base model");
         let free = base_parameters(&question.full, question.settings.nuisance);
@@ -188,7 +189,7 @@ mod tests {
     fn a_sound_recording_is_fitted_whole_and_not_read_as_euler() {
         let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
         let audited = AuditedRuns::new(&runs(&model, 6), model.ship.hull.lpp);
-        let base = BaseFit::new(&question(&model, &settings), &audited);
+        let base = BaseFit::new(&question(&model, &settings), audited);
         assert!(!is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
         assert_eq!((base.admission.samples, base.integration), (6 * SAMPLES, settings.integration()));
         assert!(base.admission.issues.is_empty(), "{:?}", base.admission.issues);
@@ -209,7 +210,7 @@ mod tests {
                 (0..6).for_each(|c| m[c] = m[c].map(|v| v + b[c] - a[c]));
             }
         }
-        let base = BaseFit::new(&question(&model, &settings), &AuditedRuns::new(&runs, 85.0));
+        let base = BaseFit::new(&question(&model, &settings), AuditedRuns::new(runs, 85.0));
         assert!(is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
         assert_eq!((base.integration, base.admission.integration), (coarse, coarse));
     }

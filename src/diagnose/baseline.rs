@@ -13,7 +13,7 @@ use super::noise_fit::guess;
 use super::optimise::{Damping, Proposal};
 use super::problem::Problem;
 use super::prove::mean_cvdm;
-use super::screen::screen;
+use super::screen::screen_by_session;
 use super::settings::{GIVEN_FINISH, GIVEN_START, Settings};
 use crate::evaluate::Judging;
 use crate::model::{Model, ModelError};
@@ -238,7 +238,7 @@ pub fn oracle(
 /// The model with the problem's one mechanism at the amplitudes that a linear step from the estimate gives, and everything else
 /// moved along.
 fn started(found: &Estimate, problem: Problem, extent: &Extent) -> (Model, Vec<FreeParameter>) {
-    let s = screen(found, problem.integration, problem.runs, problem.candidates);
+    let s = screen_by_session(found, problem.integration, problem.runs, problem.candidates, true);
     let test = s.test(0, extent);
     start_with(&s, 0, extent, &test.amplitude, found, problem, &found.noise)
 }

@@ -14,13 +14,15 @@ pub fn block_length(runs: &[Run]) -> usize {
     longest.div_ceil(BLOCKS).max(BLOCK_SAMPLES)
 }
 
-/// Running sums of a run's block-wise force evidence after the base, so that every span of blocks costs the same.
+/// A run's force evidence after the base, by spans of blocks, so that every span costs the same.
 pub struct Blocks {
     /// Samples in a block.
     pub length: usize,
     count: usize,
+    /// Sums of the scores of the blocks before each.
     score: Vec<Vector3<f64>>,
-    information: Vec<Matrix3<f64>>,
+    /// Information of every span, the first block rising before the last, as the six entries of its lower triangle.
+    information: Vec<[f64; 6]>,
 }
 
 impl Blocks {
@@ -40,29 +42,38 @@ impl Blocks {
         Self::sums(length, count, &g, &h)
     }
 
-    /// Running sums of score and information, three columns a block.
+    /// Of score and information, three columns a block.
     pub fn sums(length: usize, count: usize, g: &DVector<f64>, h: &DMatrix<f64>) -> Self {
         let w = count + 1;
         let mut score = vec![Vector3::zeros(); w];
-        let mut information = vec![Matrix3::zeros(); w * w];
+        // Sums over the rectangles of blocks that begin with the first.
+        let mut corner = vec![Matrix3::<f64>::zeros(); w * w];
         for i in 0..count {
             score[i + 1] = score[i] + Vector3::from_fn(|a, _| g[3 * i + a]);
             for j in 0..count {
-                information[(i + 1) * w + j + 1] = Matrix3::from_fn(|a, b| h[(3 * i + a, 3 * j + b)])
-                    + information[i * w + j + 1]
-                    + information[(i + 1) * w + j]
-                    - information[i * w + j];
+                corner[(i + 1) * w + j + 1] = Matrix3::from_fn(|a, b| h[(3 * i + a, 3 * j + b)])
+                    + corner[i * w + j + 1]
+                    + corner[(i + 1) * w + j]
+                    - corner[i * w + j];
             }
         }
-        Self { length, count, score, information }
+        let span = |(from, to): (usize, usize)| {
+            let h = corner[to * w + to] - corner[from * w + to] - corner[to * w + from] + corner[from * w + from];
+            let h = (h + h.transpose()) * 0.5;
+            TRIANGLE.map(|place| h[place])
+        };
+        Self { length, count, score, information: spans(count).map(span).collect() }
     }
 
     /// Score of a constant force in blocks `from..to`, and its information.
     pub fn span(&self, from: usize, to: usize) -> (Vector3<f64>, Matrix3<f64>) {
-        let w = self.count + 1;
-        let h = self.information[to * w + to] - self.information[from * w + to] - self.information[to * w + from]
-            + self.information[from * w + from];
-        (self.score[to] - self.score[from], (h + h.transpose()) * 0.5)
+        // Before the spans that begin with `from` are those that begin earlier: count, count - 1, ...
+        let before = from * self.count - from * from.saturating_sub(1) / 2;
+        let mut h = Matrix3::zeros();
+        for ((i, j), value) in TRIANGLE.into_iter().zip(self.information[before + to - from - 1]) {
+            (h[(i, j)], h[(j, i)]) = (value, value);
+        }
+        (self.score[to] - self.score[from], h)
     }
 
     /// What a constant force in blocks `from..to` gains in log-likelihood.
@@ -82,8 +93,7 @@ impl Blocks {
 
     /// Every span of blocks, as the first and the one after the last.
     pub fn spans(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let count = self.count;
-        (0..count).flat_map(move |from| (from + 1..=count).map(move |to| (from, to)))
+        spans(self.count)
     }
 
     /// Spans that leave a good part of the run without the force.
@@ -91,6 +101,14 @@ impl Blocks {
         let most = PUSH_LONGEST * self.count as f64;
         self.spans().filter(move |(from, to)| (to - from) as f64 <= most)
     }
+}
+
+/// The lower triangle of a force's information, row by row.
+const TRIANGLE: [(usize, usize); 6] = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
+
+/// Every span of so many blocks, as the first and the one after the last.
+fn spans(count: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+    (0..count).flat_map(move |from| (from + 1..=count).map(move |to| (from, to)))
 }
 
 /// Spans of a run of `blocks` blocks.
@@ -173,9 +191,9 @@ mod tests {
         let four = DVector::from_fn(4, |i, _| score[i]);
         let joint = DMatrix::from_fn(4, 4, |i, j| information[(i, j)]);
         let run = RunEvidence { session: "a".into(), score: four.clone(), information: joint.clone() };
-        let e = super::super::evidence::Evidence::new(vec![run]);
+        let e = super::super::evidence::Evidence::new(vec![run.clone()]);
         let base = e.base(&[0], &[0.0], &[0.0]);
-        let blocks = Blocks::new(2, 1, &e.runs[0], &base, &base.step(), 1);
+        let blocks = Blocks::new(2, 1, &run, &base, &base.step(), 1);
         let alone = blocks.fit(0, 1).ok_or("no fit")?;
         let both = joint.try_inverse().ok_or("singular")? * four;
         assert!((alone.estimate - Vector3::new(both[1], both[2], both[3])).amax() < 1e-12);

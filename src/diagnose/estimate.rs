@@ -2,7 +2,7 @@
 //! likelihood, in turn. Which parameters are free, and what is concluded, is decided elsewhere.
 
 use super::evidence::{Base, Evidence, RunEvidence};
-use super::filter::{Column, Filter, GATE, Pass, Wanted};
+use super::filter::{Column, Filter, GATE, Pass, Tangent, Wanted};
 use super::noise::{Noise, NoisePrior};
 use super::noise_fit::fit_noise;
 use super::optimise::{Outcome, Proposal, Quadratic};
@@ -13,7 +13,8 @@ use super::settings::{
 use crate::model::{Model, Prior};
 use crate::recording::Run;
 use crate::simulate::Integration;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 /// A free parameter of the estimate.
 #[derive(Clone, Debug)]
@@ -119,13 +120,7 @@ pub struct Estimate {
     pub log_posterior: f64,
 }
 
-/// Share of the measurements that passes set aside as outliers.
-fn outlier_share(passes: &[Pass]) -> f64 {
-    let (outliers, used) = passes.iter().fold((0, 0), |(o, u), p| (o + p.outliers, u + p.used));
-    outliers as f64 / (outliers + used).max(1) as f64
-}
-
-/// One pass over all runs.
+/// One pass over all runs, for scores, information and innovations; filtered states are dropped.
 pub fn passes(
     model: &Model,
     integration: Integration,
@@ -135,25 +130,78 @@ pub fn passes(
     tangent: bool,
 ) -> Vec<Pass> {
     let filter = Filter::new(model, integration, columns);
-    filter.passes(runs, noise, Wanted { tangent, ..Wanted::default() })
+    let mut out = Vec::with_capacity(runs.len());
+    let kept = |_: usize, _: &Run, pass: Pass| Pass { filtered: Vec::new(), force_sd: Vec::new(), ..pass };
+    filter.each(runs, noise, Wanted { tangent, ..Wanted::default() }, kept, |_, pass| out.push(pass));
+    out
 }
 
 /// Scores and information of passes over runs.
 ///
 /// `sessions[c]` restricts column c to runs of those sessions; columns beyond the slice act in every run.
 pub fn evidence(runs: &[Run], passes: &[Pass], sessions: &[Option<Vec<String>>]) -> Evidence {
-    let of = |r: &Run, p: &Pass| {
-        let (mut score, mut information) = (p.score.clone(), p.information.clone());
-        for (c, only) in sessions.iter().enumerate() {
-            if only.as_ref().is_some_and(|s| !s.contains(&r.session)) {
-                score[c] = 0.0;
-                information.row_mut(c).fill(0.0);
-                information.column_mut(c).fill(0.0);
-            }
+    let of = |(r, p): (&Run, &Pass)| run_evidence(r, p.score.clone(), p.information.clone(), sessions);
+    Evidence::new(runs.iter().zip(passes).map(of).collect())
+}
+
+/// Score and information of one run, without those of columns that are restricted to other sessions.
+pub fn run_evidence(
+    run: &Run,
+    mut score: DVector<f64>,
+    mut information: DMatrix<f64>,
+    sessions: &[Option<Vec<String>>],
+) -> RunEvidence {
+    for (c, only) in sessions.iter().enumerate() {
+        if only.as_ref().is_some_and(|s| !s.contains(&run.session)) {
+            score[c] = 0.0;
+            information.row_mut(c).fill(0.0);
+            information.column_mut(c).fill(0.0);
         }
-        RunEvidence { session: r.session.clone(), score, information }
-    };
-    Evidence::new(runs.iter().zip(passes).map(|(r, p)| of(r, p)).collect())
+    }
+    RunEvidence { session: run.session.clone(), score, information }
+}
+
+/// What passes over all runs add up to.
+pub struct Sums {
+    /// Scores and information.
+    pub evidence: Evidence,
+    /// Log-likelihood.
+    pub log_likelihood: f64,
+    used: usize,
+    outliers: usize,
+}
+
+impl Sums {
+    /// Passes over all runs; `sessions` as for [`evidence`]. Sums by session are kept where `apart`.
+    pub fn of(filter: &Filter, runs: &[Run], noise: &Noise, sessions: &[Option<Vec<String>>], apart: bool) -> Self {
+        let mut out = Self { evidence: Evidence::default(), log_likelihood: 0.0, used: 0, outliers: 0 };
+        let work = |_: usize, run: &Run, pass: Pass| {
+            let Pass { score, information, log_likelihood, used, outliers, .. } = pass;
+            (run_evidence(run, score, information, sessions), log_likelihood, used, outliers)
+        };
+        filter.each(runs, noise, Wanted::default(), work, |_, (one, log_likelihood, used, outliers)| {
+            out.evidence.add(one, apart);
+            out.log_likelihood += log_likelihood;
+            out.used += used;
+            out.outliers += outliers;
+        });
+        out
+    }
+
+    /// Share of the measurements that were set aside as outliers.
+    fn outlier_share(&self) -> f64 {
+        self.outliers as f64 / (self.outliers + self.used).max(1) as f64
+    }
+}
+
+/// The step maps of some runs, linearised along their filtered paths.
+fn tangents(model: &Model, integration: Integration, runs: &[&Run], noise: &Noise) -> Vec<Tangent> {
+    let filter = Filter::new(model, integration, &[]);
+    let wanted = Wanted { tangent: true, ..Wanted::default() };
+    let mut out = Vec::with_capacity(runs.len());
+    let tangent = |_: usize, _: &Run, pass: Pass| pass.tangent.unwrap_or_default();
+    filter.each(runs, noise, wanted, tangent, |_, tangent| out.push(tangent));
+    out
 }
 
 /// The session restrictions of free parameters, in their order.
@@ -198,20 +246,23 @@ pub fn log_posterior(
     free: &[FreeParameter],
     noise: &Noise,
 ) -> f64 {
-    let likelihood: f64 = passes(model, integration, &[], runs, noise, false).iter().map(|p| p.log_likelihood).sum();
+    let likelihood = Sums::of(&Filter::new(model, integration, &[]), runs, noise, &[], false).log_likelihood;
     likelihood + free.iter().map(|f| f.log_prior(model)).sum::<f64>()
 }
 
 /// The noise of the calmer runs: what disturbs some runs only is no noise.
 pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prior: &NoisePrior) -> Noise {
-    let p = passes(&found.model, integration, &[], runs, &found.noise, true);
-    let likelihood = |i: &usize| p[*i].log_likelihood / runs[*i].measured.len() as f64;
+    let filter = Filter::new(&found.model, integration, &[]);
+    let share =
+        |run: &Run| filter.pass(run, &found.noise, Wanted::default()).log_likelihood / run.measured.len() as f64;
+    let likelihood: Vec<f64> = runs.par_iter().map(share).collect();
     let mut order: Vec<usize> = (0..runs.len()).collect();
-    order.sort_by(|a, b| likelihood(b).total_cmp(&likelihood(a)));
+    order.sort_by(|a, b| likelihood[*b].total_cmp(&likelihood[*a]));
     order.truncate((CALM_SHARE * runs.len() as f64).ceil() as usize);
     order.sort_unstable();
     let some: Vec<&Run> = order.iter().map(|i| &runs[*i]).collect();
-    let tangents: Vec<_> = order.iter().filter_map(|i| p[*i].tangent.as_ref()).collect();
+    let tangents = tangents(&found.model, integration, &some, &found.noise);
+    let tangents: Vec<&Tangent> = tangents.iter().collect();
     fit_noise(&some, &tangents, &found.model, &found.noise, prior, GATE, CALM_ITERATIONS)
 }
 
@@ -247,8 +298,7 @@ pub fn estimate_above(
     let mut point = fit.at(start.clone(), *noise);
     let mut damping = 0.0;
     for round in 0..effort.rounds {
-        let e = evidence(runs, &point.passes, &restrictions(free));
-        let quadratic = quadratic(&e, &point.model, free);
+        let quadratic = quadratic(&point.sums.evidence, &point.model, free);
         // A law that bends may hold more than its slope where it starts promises: never before the first step.
         if round > 0 && least.is_finite() && point.value + 2.0 * quadratic.promise(&quadratic.step(0.0)) < least {
             break;
@@ -278,21 +328,22 @@ struct Fit<'a> {
     effort: Effort,
 }
 
-/// A model and a noise with the passes over all runs.
+/// A model and a noise with the sums of the passes over all runs.
 struct Point {
     model: Model,
     noise: Noise,
-    passes: Vec<Pass>,
+    sums: Sums,
     /// Log-likelihood plus log-prior.
     value: f64,
 }
 
 impl Fit<'_> {
     fn at(&self, model: Model, noise: Noise) -> Point {
-        let passes = passes(&model, self.integration, &self.columns, self.runs, &noise, true);
+        let filter = Filter::new(&model, self.integration, &self.columns);
+        let sums = Sums::of(&filter, self.runs, &noise, &restrictions(self.free), false);
         let log_prior = self.free.iter().map(|f| f.log_prior(&model)).sum::<f64>();
-        let value = passes.iter().map(|p| p.log_likelihood).sum::<f64>() + log_prior;
-        Point { model, noise, passes, value }
+        let value = sums.log_likelihood + log_prior;
+        Point { model, noise, sums, value }
     }
 
     /// The point after a step of the parameters, where one gains, and the length of the last step that was tried.
@@ -333,12 +384,12 @@ impl Fit<'_> {
     }
 
     /// The noise of every `stride`-th run at a point.
-    fn noise(&self, Point { model, noise, passes, .. }: &Point, stride: usize) -> Noise {
-        let chosen = || (0..self.runs.len()).step_by(stride);
-        let some: Vec<&Run> = chosen().map(|i| &self.runs[i]).collect();
-        let tangents: Vec<_> = chosen().filter_map(|i| passes[i].tangent.as_ref()).collect();
+    fn noise(&self, Point { model, noise, sums, .. }: &Point, stride: usize) -> Noise {
+        let some: Vec<&Run> = self.runs.iter().step_by(stride).collect();
+        let tangents = tangents(model, self.integration, &some, noise);
+        let tangents: Vec<&Tangent> = tangents.iter().collect();
         // Where many measurements are set aside the noise is too small by far, and a gate hides that: everything counts first.
-        let gates = if outlier_share(passes) > OUTLIER_SHARE { &[f64::INFINITY, GATE][..] } else { &[GATE] };
+        let gates = if sums.outlier_share() > OUTLIER_SHARE { &[f64::INFINITY, GATE][..] } else { &[GATE] };
         gates.iter().fold(*noise, |noise, gate| {
             fit_noise(&some, &tangents, model, &noise, self.prior, *gate, self.effort.noise_iterations)
         })

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::collections::BTreeMap;
 
 /// Score and information of one run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct RunEvidence {
     /// Session of the run.
     pub session: String,
@@ -19,14 +19,30 @@ pub struct RunEvidence {
     pub information: DMatrix<f64>,
 }
 
-/// Sums of scores and information over sessions and over all runs.
+impl RunEvidence {
+    /// Nothing known of so many columns.
+    fn zero(session: &str, columns: usize) -> Self {
+        Self { session: session.into(), score: DVector::zeros(columns), information: DMatrix::zeros(columns, columns) }
+    }
+}
+
+/// Score of one run.
 #[derive(Clone, Debug)]
+pub struct RunScore {
+    /// Session of the run.
+    pub session: String,
+    /// Score by column.
+    pub score: DVector<f64>,
+}
+
+/// Sums of scores and information over sessions and over all runs. The information of single runs is not kept.
+#[derive(Clone, Debug, Default)]
 pub struct Evidence {
     /// By run, in order.
-    pub runs: Vec<RunEvidence>,
+    pub runs: Vec<RunScore>,
     /// Sum over all runs.
     pub total: RunEvidence,
-    /// Sums by session.
+    /// Sums by session; empty where sessions are not told apart.
     pub sessions: BTreeMap<String, RunEvidence>,
 }
 
@@ -64,22 +80,25 @@ impl Test {
 impl Evidence {
     /// Sums the runs in order.
     pub fn new(runs: Vec<RunEvidence>) -> Self {
-        let n = runs.first().map_or(0, |r| r.score.len());
-        let empty = |session: &str| RunEvidence {
-            session: session.into(),
-            score: DVector::zeros(n),
-            information: DMatrix::zeros(n, n),
-        };
-        let mut total = empty("");
-        let mut sessions: BTreeMap<String, RunEvidence> = BTreeMap::new();
-        for r in &runs {
-            total.score += &r.score;
-            total.information += &r.information;
-            let s = sessions.entry(r.session.clone()).or_insert_with(|| empty(&r.session));
-            s.score += &r.score;
-            s.information += &r.information;
+        let mut sum = Self::default();
+        runs.into_iter().for_each(|run| sum.add(run, true));
+        sum
+    }
+
+    /// Adds a run; `apart` where its session is told apart from the others.
+    pub fn add(&mut self, run: RunEvidence, apart: bool) {
+        let RunEvidence { session, score, information } = run;
+        if self.runs.is_empty() {
+            self.total = RunEvidence::zero("", score.len());
         }
-        Self { runs, total, sessions }
+        self.total.score += &score;
+        self.total.information += &information;
+        if apart {
+            let sum = self.sessions.entry(session.clone()).or_insert_with(|| RunEvidence::zero(&session, score.len()));
+            sum.score += &score;
+            sum.information += &information;
+        }
+        self.runs.push(RunScore { session, score });
     }
 
     /// The base block: its information with the prior precision added, factorised.
@@ -171,8 +190,7 @@ impl Evidence {
     /// The amplitudes are those of each session in turn (session-major), relative to the common part. `None` when there
     /// are fewer than two sessions, or more than half as many as runs.
     pub fn contrast(&self, base: &Base, columns: &[usize]) -> Option<Test> {
-        // A session of one run is a run, not a reference.
-        let parted = self.sessions.len() >= 2 && 2 * self.sessions.len() <= self.runs.len();
+        let parted = self.sessions.len() >= 2 && are_references(self.sessions.len(), self.runs.len());
         parted.then(|| self.test_each(&self.extend(base, columns), columns))
     }
 
@@ -193,6 +211,11 @@ impl Evidence {
         }
         base.test(&g, &h, &c)
     }
+}
+
+/// Whether so many sessions of so many runs can be held against each other: a session of one run is a run, not a reference.
+pub fn are_references(sessions: usize, runs: usize) -> bool {
+    2 * sessions <= runs
 }
 
 /// How far estimates scatter beyond their information.
@@ -226,7 +249,7 @@ impl Base {
         let reduced = own - cross * &self.inverse * cross.transpose();
         let effective = score - cross * self.step();
         let k = score.len();
-        if !effective.iter().chain(reduced.iter()).all(|v| v.is_finite()) {
+        if k == 0 || !effective.iter().chain(reduced.iter()).all(|v| v.is_finite()) {
             return Test::blind(k);
         }
         // In units in which each column alone carries information 1.
@@ -304,6 +327,16 @@ mod tests {
         let t = e.test(&base, &[1]);
         assert_eq!(t.degrees, 0);
         assert!(t.retained < 1e-12 && t.p == 1.0);
+    }
+
+    #[test]
+    fn without_a_column_and_without_a_number_the_test_sees_nothing() {
+        let e = Evidence::new(vec![one_run("a", &[3.0, f64::NAN], &[4.0, 0.0, 0.0, f64::NAN])]);
+        let base = e.base(&[0], &[0.0], &[0.0]);
+        for columns in [&[][..], &[1]] {
+            let t = e.test(&base, columns);
+            assert_eq!((t.degrees, t.p, t.amplitude.len()), (0, 1.0, columns.len()));
+        }
     }
 
     #[test]

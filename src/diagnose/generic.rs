@@ -68,7 +68,7 @@ pub fn widen(evidence: &Evidence, base: &Base, columns: &[usize]) -> Base {
     let eigen = SymmetricEigen::new((&own + own.transpose()) * 0.5);
     let z = eigen.eigenvectors.transpose() * &score;
     let Some(variance) = shrinkage(&eigen.eigenvalues, &z) else { return base.clone() };
-    let mut shrunk = evidence.clone();
+    let mut shrunk = Evidence { total: evidence.total.clone(), ..Evidence::default() };
     for c in columns {
         shrunk.total.information[(*c, *c)] += 1.0 / variance;
     }

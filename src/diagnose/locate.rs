@@ -2,18 +2,18 @@
 //! It tests constant forces against the base; the cause of a force is named elsewhere.
 
 use super::blocks::{Blocks, block_length, choices};
-use super::estimate::{Estimate, base_of, evidence, restrictions};
-use super::evidence::{Base, Evidence};
+use super::estimate::{Estimate, Sums, base_of, restrictions, run_evidence};
+use super::evidence::{Base, Evidence, RunEvidence};
 use super::filter::{Column, Filter, Pass, Wanted};
 use super::generic::{GenericLaw, widen};
 use super::place::{Chart, PARTS, Place, place};
 use super::push::{Push, Window, pushes, significant};
-use super::region::{REGIONS, RegionTest, regions};
+use super::region::{REGIONS, RegionTest, Visits, regions, visited};
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
-use rayon::prelude::*;
+use nalgebra::DVector;
 use serde::Serialize;
 
 /// Unexplained force in one equation.
@@ -108,72 +108,110 @@ impl<'a> Layout<'a> {
 }
 
 /// Tests constant forces in every window of every run, in every region and in every part of the water.
+///
+/// The base and the smooth force law beside it come from a first pass, so that a second one needs to keep no more of a run than
+/// the evidence for a force in each span of its time.
 pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Location {
     let model = &found.model;
     let mut columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
     let law = GenericLaw::append(&mut columns, model);
     let (first, filter) = (columns.len(), Filter::new(model, integration, &columns));
+    let restrictions = restrictions(&found.free);
+    let parameters = Sums::of(&filter, runs, &found.noise, &restrictions, false).evidence;
+    let base = base_of(&parameters, model, &found.free);
+    // A force that comes back with the ship's state is no event: what a smooth force law can mimic is taken out of the windows.
+    let widened = widen(&parameters, &base, &law.columns());
+    drop(parameters);
     let layout = Layout::new(found, runs);
     let unit = &layout.unit;
     let basis = |(_, k): (usize, usize), s: &State<f64>, i: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
         layout.forces(k, s, i, out);
     };
     let wanted = Wanted { basis: Some((layout.count(), &basis)), ..Wanted::default() };
-    let passes: Vec<Pass> = filter.passes(runs, &found.noise, wanted);
-    let evidence = evidence(runs, &passes, &restrictions(&found.free));
-    let base = base_of(&evidence, model, &found.free);
-    // A force that comes back with the ship's state is no event: what a smooth force law can mimic is taken out of the windows.
-    let widened = widen(&evidence, &base, &law.columns());
-    let step = widened.step();
+    let (step, widened_step) = (base.step(), widened.step());
     let blocks_in = |r: &Run| r.measured.len().div_ceil(layout.length);
+    let of_run = |_: usize, run: &Run, pass: Pass| {
+        let Pass { score, information, filtered, .. } = pass;
+        let one = run_evidence(run, score, information, &restrictions);
+        RunForces {
+            blocks: Blocks::new(layout.length, blocks_in(run), &one, &widened, &widened_step, first),
+            excess: excess(&one, &base, &step, first, layout.blocks),
+            squares: filtered.iter().map(|z| std::array::from_fn(|eq| z[6 + eq] * z[6 + eq])).collect(),
+            visited: visited(run, &filtered, model),
+            evidence: one,
+        }
+    };
+    let (mut evidence, mut blocks) = (Evidence::default(), Vec::with_capacity(runs.len()));
+    let (mut forces, mut samples) = (Forces::default(), Visits::default());
+    filter.each(runs, &found.noise, wanted, of_run, |_, one| {
+        evidence.add(one.evidence, false);
+        blocks.push(one.blocks);
+        forces.add(&one.excess, &one.squares);
+        samples.add(&one.visited);
+    });
     let looked_at: f64 = runs.iter().map(|r| choices(blocks_in(r))).sum();
-    let blocks: Vec<Blocks> = runs
-        .par_iter()
-        .zip(&evidence.runs)
-        .map(|(run, e)| Blocks::new(layout.length, blocks_in(run), e, &widened, &step, first))
-        .collect();
     let pushes = pushes(runs, &blocks, unit, looked_at);
     Location {
-        equations: equation_shares(&passes, &evidence, &base, first, layout.blocks, unit),
+        equations: forces.shares(unit),
         windows: significant(runs, &blocks, unit, looked_at),
         push: pushes.first().cloned(),
         pushes,
-        regions: regions(runs, &passes, model, &evidence, &base, first + layout.regions(), unit),
+        regions: regions(&samples, &evidence, &base, first + layout.regions(), unit),
         place: layout.chart.as_ref().and_then(|c| place(c, &evidence, &widened, first + layout.parts(), unit[1])),
     }
 }
 
-/// Share of each equation in the block-wise force evidence, and the filtered force's root mean square.
-fn equation_shares(
-    passes: &[Pass],
-    evidence: &Evidence,
-    base: &Base,
-    first: usize,
-    blocks: usize,
-    sigma: &[f64; 3],
-) -> [EquationShare; 3] {
-    let step = base.step();
-    let mut excess = [0.0; 3];
-    for e in &evidence.runs {
-        for b in 0..blocks {
-            for eq in 0..3 {
-                let c = first + 3 * b + eq;
-                let own = e.information[(c, c)];
-                if own > 1e-6 {
-                    let cross: f64 =
-                        base.columns.iter().zip(step.iter()).map(|(j, s)| e.information[(c, *j)] * s).sum();
-                    excess[eq] += ((e.score[c] - cross).powi(2) / own - 1.0).max(0.0);
-                }
-            }
+/// What is kept of the pass over one run until it is added up.
+struct RunForces {
+    evidence: RunEvidence,
+    blocks: Blocks,
+    /// Significance of the force in each block beyond what chance makes, by equation.
+    excess: Vec<[f64; 3]>,
+    /// Squares of the filtered force by sample and equation.
+    squares: Vec<[f64; 3]>,
+    visited: Visits,
+}
+
+/// Squared significance of the force in each block, less 1, by equation; 0 where that is below 0 or the data see no force.
+fn excess(e: &RunEvidence, base: &Base, step: &DVector<f64>, first: usize, blocks: usize) -> Vec<[f64; 3]> {
+    let of = |b: usize, eq: usize| {
+        let c = first + 3 * b + eq;
+        let own = e.information[(c, c)];
+        if own > 1e-6 {
+            let cross: f64 = base.columns.iter().zip(step.iter()).map(|(j, s)| e.information[(c, *j)] * s).sum();
+            ((e.score[c] - cross).powi(2) / own - 1.0).max(0.0)
+        } else {
+            0.0
         }
+    };
+    (0..blocks).map(|b| std::array::from_fn(|eq| of(b, eq))).collect()
+}
+
+/// Sums over the runs of the block-wise force evidence and of the squared filtered force, by equation.
+#[derive(Default)]
+struct Forces {
+    excess: [f64; 3],
+    squares: [f64; 3],
+    samples: usize,
+}
+
+impl Forces {
+    fn add(&mut self, excess: &[[f64; 3]], squares: &[[f64; 3]]) {
+        excess.iter().for_each(|e| (0..3).for_each(|eq| self.excess[eq] += e[eq]));
+        squares.iter().for_each(|s| (0..3).for_each(|eq| self.squares[eq] += s[eq]));
+        self.samples += squares.len();
     }
-    let total: f64 = excess.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-    let count: f64 = passes.iter().map(|p| p.filtered.len() as f64).sum::<f64>().max(1.0);
-    std::array::from_fn(|eq| EquationShare {
-        share: excess[eq] / total,
-        rms: (passes.iter().flat_map(|p| &p.filtered).map(|z| z[6 + eq] * z[6 + eq]).sum::<f64>() / count).sqrt(),
-        sigma: sigma[eq],
-    })
+
+    /// Share of each equation in the evidence, and the filtered force's root mean square.
+    fn shares(&self, sigma: &[f64; 3]) -> [EquationShare; 3] {
+        let total = self.excess.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let count = (self.samples as f64).max(1.0);
+        std::array::from_fn(|eq| EquationShare {
+            share: self.excess[eq] / total,
+            rms: (self.squares[eq] / count).sqrt(),
+            sigma: sigma[eq],
+        })
+    }
 }
 
 #[cfg(test)]

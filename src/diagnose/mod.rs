@@ -32,6 +32,7 @@ mod describe;
 pub mod diagnosis;
 mod directions;
 mod eligible;
+mod error;
 pub mod estimate;
 mod event;
 pub mod evidence;
@@ -69,6 +70,7 @@ mod words;
 
 pub use decide::Verdict;
 pub use diagnosis::Diagnosis;
+pub use error::DiagnoseError;
 pub use finding::Finding;
 pub use pipeline::diagnose;
 pub use settings::Settings;

@@ -5,6 +5,7 @@ use super::base::{AuditedRuns, BaseFit, Question};
 use super::decide::{Decision, Unlisted, decide};
 use super::describe::{findings, kinds};
 use super::diagnosis::Diagnosis;
+use super::error::DiagnoseError;
 use super::event::{BaseTests, Opening};
 use super::generic::{corrected, surrogate};
 use super::improved::trimmed;
@@ -15,27 +16,31 @@ use super::settings::Settings;
 use super::sides::sides;
 use super::summary::{absorbed, adequacy, budget, confusable, detectable, moves, ranking, traces};
 use super::words::{Missing, headline, next_trial};
-use crate::model::{Model, ModelError};
+use crate::model::Model;
+use crate::ranges::Limited;
 use crate::recording::Run;
 use crate::validity::{self, Coverage};
+use std::borrow::Cow;
 
 /// Diagnoses a model against recordings.
 ///
-/// `runs` are used to locate, name and model; `held_out` only to prove. `progress` is told each step in words. The result is
+/// `runs` are used to locate, name and model, and are not copied where they are given away; `held_out` only to prove. `progress` is told each step in words. The result is
 /// the same bits on any number of threads.
 ///
 /// # Errors
-/// When the catalogue's terms cannot be added to the model (a singular mass matrix, for instance).
-pub fn diagnose(
+/// A setting outside its range, or a term of the catalogue that cannot be added to the model (a singular mass matrix, for
+/// instance).
+pub fn diagnose<'r>(
     model: &Model,
-    runs: &[Run],
+    runs: impl Into<Cow<'r, [Run]>>,
     held_out: &[Run],
     settings: &Settings,
     progress: &(dyn Fn(&str) + Sync),
-) -> Result<Diagnosis, ModelError> {
+) -> Result<Diagnosis, DiagnoseError> {
+    settings.limits()?;
     let question = Question::new(model, settings, progress)?;
     let audited = AuditedRuns::new(runs, question.full.ship.hull.lpp);
-    let base: BaseFit = BaseFit::new(&question, &audited);
+    let base: BaseFit = BaseFit::new(&question, audited);
     let tests: BaseTests = BaseTests::new(&question, base);
     let opening: Opening = Opening::new(&question, tests);
     let selection: Selection = Selection::new(&question, opening).refitted(&question);
@@ -106,7 +111,7 @@ fn report(question: &Question, kept: &Kept, decision: &Decision, proof: Option<H
         held_out: proof,
         findings,
         settings: question.settings.clone(),
-        traces: traces(&fit.runs, first, last),
+        traces: traces(&fit.runs, fit.integration, base, last.map(|_| found)),
         validity: coverage(&improved, &fit.runs),
         model: improved,
         base: trimmed(&base.model, question.model, &base.free),
@@ -121,7 +126,7 @@ mod tests {
     use std::sync::Mutex;
 
     #[test]
-    fn the_steps_run_in_order_and_a_current_is_named_with_its_proof() -> Result<(), ModelError> {
+    fn the_steps_run_in_order_and_a_current_is_named_with_its_proof() -> Result<(), DiagnoseError> {
         let truth = runs(&with(&[("current.north", 0.3)]), 15);
         let settings = Settings { nuisance: false, ..Settings::default() };
         let steps = Mutex::new(Vec::new());
@@ -138,10 +143,22 @@ mod tests {
     }
 
     #[test]
-    fn without_held_out_runs_there_is_no_proof() -> Result<(), ModelError> {
+    fn without_held_out_runs_there_is_no_proof() -> Result<(), DiagnoseError> {
         let settings = Settings { nuisance: false, ..Settings::default() };
         let d = diagnose(&model(), &runs(&model(), 6), &[], &settings, &|_| ())?;
         assert!(d.held_out.is_none() && d.findings.is_empty());
         Ok(())
+    }
+
+    #[test]
+    fn a_setting_outside_its_range_is_refused_before_anything_is_computed() {
+        for settings in [
+            Settings { alpha: f64::NAN, ..Settings::default() },
+            Settings { most: 0, ..Settings::default() },
+            Settings { substeps: 1_000_000_000, ..Settings::default() },
+        ] {
+            let refused = diagnose(&model(), &runs(&model(), 6), &[], &settings, &|_| ());
+            assert!(matches!(refused, Err(DiagnoseError::Setting(_))), "{settings:?}");
+        }
     }
 }

@@ -4,8 +4,8 @@
 //! With gains fixed, `sum e^2/s` is a smooth function of the parameters, its gradient is exactly the score of an exact pass and
 //! its Gauss-Newton Hessian the information. The filter's gains are then computed anew and the problem solved again.
 
-use super::estimate::{Estimate, base_of, evidence, log_posterior, restrictions};
-use super::evidence::Base;
+use super::estimate::{Estimate, base_of, log_posterior, restrictions, run_evidence};
+use super::evidence::{Base, Evidence};
 use super::filter::{Column, Filter, Gains, Pass, Wanted};
 use crate::ipopt::{IpoptError, Nlp, OptionValue, Options, Solution, solve};
 use crate::model::Model;
@@ -39,20 +39,28 @@ impl Refit<'_> {
         model
     }
 
-    /// Passes with the gains held fixed, and the objective's part that they make: half the sum of squared innovations.
-    fn passes(&self, model: &Model, columns: &[Column]) -> (Vec<Pass>, f64) {
+    /// Passes with the gains held fixed: what they say, and the objective's part that they make, half the sum of squared
+    /// innovations.
+    fn passes(&self, model: &Model, columns: &[Column]) -> (Evidence, f64) {
         let filter = Filter::new(model, self.integration, columns);
+        let restrictions = if columns.is_empty() { Vec::new() } else { restrictions(&self.found.free) };
+        let (mut evidence, mut value) = (Evidence::default(), 0.0);
         let wanted = Wanted { frozen: Some(self.gains), exact: true, ..Wanted::default() };
-        let passes = filter.passes(self.runs, &self.found.noise, wanted);
-        let mut value = 0.0;
-        for e in passes.iter().flat_map(|p| p.innovations.iter().flatten()).filter(|e| !e.is_nan()) {
-            value += 0.5 * e * e;
-        }
-        // A model that left the numbers has no innovations at all, and would look perfect.
-        if !passes.iter().flat_map(|p| p.filtered.iter().flatten()).all(|z| z.is_finite()) {
-            value = f64::INFINITY;
-        }
-        (passes, value)
+        let work = |_: usize, run: &Run, pass: Pass| {
+            let Pass { score, information, innovations, filtered, .. } = pass;
+            // A model that left the numbers has no innovations at all, and would look perfect.
+            let finite = filtered.iter().flatten().all(|z| z.is_finite());
+            (run_evidence(run, score, information, &restrictions), innovations, finite)
+        };
+        let mut finite = true;
+        filter.each(self.runs, &self.found.noise, wanted, work, |_, (one, innovations, is_finite)| {
+            evidence.add(one, false);
+            for e in innovations.iter().flatten().filter(|e| !e.is_nan()) {
+                value += 0.5 * e * e;
+            }
+            finite &= is_finite;
+        });
+        (evidence, if finite { value } else { f64::INFINITY })
     }
 
     /// The objective alone, without sensitivities: most of what a line search asks for.
@@ -72,8 +80,7 @@ impl Refit<'_> {
     fn at(&mut self, x: &[f64]) -> Option<&Point> {
         if self.cached.as_ref().is_none_or(|c| c.x != x) {
             let model = self.model_at(x);
-            let (passes, mut value) = self.passes(&model, &self.columns);
-            let e = evidence(self.runs, &passes, &restrictions(&self.found.free));
+            let (e, mut value) = self.passes(&model, &self.columns);
             let Base { score, .. } = base_of(&e, &model, &self.found.free);
             let mut hessian = e.total.information;
             for (i, f) in self.found.free.iter().enumerate() {

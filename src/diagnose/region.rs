@@ -1,8 +1,8 @@
 //! Regions of state and inputs, and the test of a constant force in each of them.
 //! A region says where a force shows, not what it is.
 
+use super::covariance::Z;
 use super::evidence::{Base, Evidence};
-use super::filter::Pass;
 use crate::model::Model;
 use crate::recording::Run;
 use crate::state::{Inputs, State};
@@ -55,21 +55,13 @@ pub const REGIONS: [(&str, Predicate); 12] = [
 
 /// Tests a constant force in every region that was visited, the most significant first. `first` is the first of the forces'
 /// columns, three a region, and `unit` their scales \[N, N, N m\].
-pub fn regions(
-    runs: &[Run],
-    passes: &[Pass],
-    model: &Model,
-    evidence: &Evidence,
-    base: &Base,
-    first: usize,
-    unit: &[f64; 3],
-) -> Vec<RegionTest> {
-    let test = |(j, (name, inside)): (usize, &(&str, Predicate))| {
+pub fn regions(visits: &Visits, evidence: &Evidence, base: &Base, first: usize, unit: &[f64; 3]) -> Vec<RegionTest> {
+    let test = |(j, (name, _)): (usize, &(&str, Predicate))| {
         let at = first + 3 * j;
         let test = evidence.test(base, &[at, at + 1, at + 2]);
         (test.degrees > 0).then(|| RegionTest {
             region: (*name).into(),
-            samples: share(runs, passes, model, *inside),
+            samples: visits.inside[j] as f64 / visits.samples.max(1) as f64,
             force: std::array::from_fn(|e| test.amplitude[e] * unit[e]),
             error: std::array::from_fn(|e| test.covariance[(e, e)].max(0.0).sqrt() * unit[e]),
             statistic: test.statistic,
@@ -81,17 +73,32 @@ pub fn regions(
     out
 }
 
-/// Share of all samples that lie in a region.
-fn share(runs: &[Run], passes: &[Pass], model: &Model, inside: Predicate) -> f64 {
-    let (mut hit, mut all) = (0.0, 0.0);
-    for (r, p) in runs.iter().zip(passes) {
-        for (z, i) in p.filtered.iter().zip(&r.inputs) {
-            let s = State { x: z[0], y: z[1], psi: z[2], u: z[3], v: z[4], r: z[5] };
-            all += 1.0;
-            hit += f64::from(u8::from(inside(model, &s, i)));
+/// How many samples lie in each region.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Visits {
+    samples: usize,
+    inside: [usize; REGIONS.len()],
+}
+
+impl Visits {
+    /// Adds those of another run.
+    pub fn add(&mut self, other: &Self) {
+        self.samples += other.samples;
+        self.inside.iter_mut().zip(other.inside).for_each(|(sum, more)| *sum += more);
+    }
+}
+
+/// The regions in which a run was, by its filtered states.
+pub fn visited(run: &Run, filtered: &[[f64; Z]], model: &Model) -> Visits {
+    let mut visits = Visits::default();
+    for (z, i) in filtered.iter().zip(&run.inputs) {
+        let s = State { x: z[0], y: z[1], psi: z[2], u: z[3], v: z[4], r: z[5] };
+        visits.samples += 1;
+        for (count, (_, inside)) in visits.inside.iter_mut().zip(&REGIONS) {
+            *count += usize::from(inside(model, &s, i));
         }
     }
-    hit / f64::max(all, 1.0)
+    visits
 }
 
 #[cfg(test)]

@@ -3,9 +3,9 @@
 
 use super::algebra::pick;
 use super::candidate::{Candidate, Extent, append};
-use super::estimate::{Estimate, base_of, evidence, restrictions};
-use super::evidence::{Base, Evidence, Test};
-use super::filter::{Column, Filter, Pass, Wanted};
+use super::estimate::{Estimate, Sums, base_of, restrictions};
+use super::evidence::{Base, Evidence, Test, are_references};
+use super::filter::{Column, Filter};
 use super::generic::{GenericLaw, widen};
 use super::settings::{AMPLITUDE_GAIN, DIVIDED_SESSIONS, EQUAL_STATISTICS, IDENTIFIABLE_SHARE, SESSIONS_GAIN};
 use crate::model::Model;
@@ -14,6 +14,7 @@ use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// One mechanism's row in the ranking.
 #[derive(Clone, Debug)]
@@ -58,8 +59,6 @@ pub struct Screen {
     pub symmetric_test: Test,
     /// Test of the asymmetric basis.
     pub asymmetric_test: Test,
-    /// The passes behind it.
-    pub passes: Vec<Pass>,
 }
 
 impl Screen {
@@ -77,6 +76,9 @@ impl Screen {
     pub fn base_shift(&self, columns: &[usize], extent: &Extent, amplitude: &DVector<f64>) -> DVector<f64> {
         let k = columns.len();
         let mut pull = DVector::zeros(self.base.columns.len());
+        if self.evidence.sessions.is_empty() {
+            pull += pick(&self.evidence.total.information, &self.base.columns, columns) * amplitude;
+        }
         for (i, part) in extent.parts().iter().enumerate() {
             for (name, e) in &self.evidence.sessions {
                 if part.as_ref().is_none_or(|s| s.contains(name)) {
@@ -126,13 +128,25 @@ fn named(sessions: &[String]) -> Vec<&str> {
 
 /// Runs one sensitivity pass over everything and tests every candidate.
 pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidates: &[Candidate]) -> Screen {
+    // Sessions that are no reference are told apart by no test.
+    let sessions: BTreeSet<&str> = runs.iter().map(|r| r.session.as_str()).collect();
+    screen_by_session(found, integration, runs, candidates, are_references(sessions.len(), runs.len()))
+}
+
+/// As [`screen`]; the evidence of every session is kept where they are to be told `apart`.
+pub fn screen_by_session(
+    found: &Estimate,
+    integration: Integration,
+    runs: &[Run],
+    candidates: &[Candidate],
+    apart: bool,
+) -> Screen {
     let model = &found.model;
     let mut columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
     let groups = append(&mut columns, candidates);
     let law = GenericLaw::append(&mut columns, model);
     let filter = Filter::new(model, integration, &columns);
-    let passes = filter.passes(runs, &found.noise, Wanted::default());
-    let evidence = evidence(runs, &passes, &restrictions(&found.free));
+    let evidence = Sums::of(&filter, runs, &found.noise, &restrictions(&found.free), apart).evidence;
     let base = base_of(&evidence, model, &found.free);
     let widened = widen(&evidence, &base, &law.symmetric);
     let sessions: Vec<String> = evidence.sessions.keys().cloned().collect();
@@ -164,7 +178,7 @@ pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidat
     });
     let symmetric_test = evidence.test(&base, &law.symmetric);
     let asymmetric_test = evidence.test(&widened, &law.asymmetric);
-    Screen { evidence, base, widened, groups, law, rows, symmetric_test, asymmetric_test, passes }
+    Screen { evidence, base, widened, groups, law, rows, symmetric_test, asymmetric_test }
 }
 
 /// The test of a candidate in some sessions, and its p-value with a generic force law as rival.

@@ -188,7 +188,7 @@ mod tests {
         let model = model();
         let question = Question { model: &model, full: model.clone(), settings, progress: &|_| () };
         let audited = AuditedRuns::new(&runs(truth, 12), model.ship.hull.lpp);
-        let tests = BaseTests::new(&question, BaseFit::new(&question, &audited));
+        let tests = BaseTests::new(&question, BaseFit::new(&question, audited));
         Selection::new(&question, Opening { tests, push: None, first: None })
     }
 

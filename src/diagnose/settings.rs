@@ -4,6 +4,7 @@
 use super::optimise::Damping;
 use crate::evaluate::{EvaluationSettings, Judging};
 use crate::fit::FitSettings;
+use crate::ranges::{Limited, OutOfRange, counted, within};
 use crate::simulate::{Integration, Method};
 use serde::{Deserialize, Serialize};
 
@@ -38,12 +39,20 @@ fn judging() -> Judging {
 impl Settings {
     /// How steps are integrated.
     pub fn integration(&self) -> Integration {
-        Integration { method: Method::Rk4, substeps: self.substeps.max(1) }
+        Integration { method: Method::Rk4, substeps: self.substeps }
     }
 
     /// Whether a mechanism may be considered.
     pub fn allows(&self, mechanism: &str) -> bool {
         !self.withhold.iter().any(|w| w == mechanism)
+    }
+}
+
+impl Limited for Settings {
+    fn limits(&self) -> Result<(), OutOfRange> {
+        within("alpha", self.alpha, &(1e-12..=0.5), "the chance of naming anything when nothing is missing")?;
+        counted("most", self.most, &(1..=20), "the largest number of mechanisms that are named")?;
+        self.integration().limits()
     }
 }
 
@@ -267,6 +276,8 @@ numbers! {
 
     /// Blocks of the time scan of the longest run, at most.
     BLOCKS: usize = 64, COST;
+    /// Runs that each thread passes over before what they gave is added up.
+    TOGETHER: usize = 8, COST;
     /// Samples in a block of the time scan, at least.
     BLOCK_SAMPLES: usize = 2, COST;
     /// Share of the runs that a push is expected to act in beforehand.

@@ -5,6 +5,7 @@ use super::candidate::{Candidate, Extent};
 use super::covariance::Z;
 use super::diagnosis::{Absorbed, Adequacy, Budget, Detectable, Likeness, Move, Ranked, Trace};
 use super::estimate::Estimate;
+use super::filter::{Filter, Pass, Wanted};
 use super::screen::{Row, Screen};
 use super::settings::Settings;
 use super::wald::Wald;
@@ -12,6 +13,7 @@ use crate::model::Model;
 use crate::physics::Probe;
 use crate::recording::Run;
 use crate::simulate::Integration;
+use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Likeness above which a pair of mechanisms is listed.
@@ -151,22 +153,27 @@ pub fn budget(found: &Estimate) -> Vec<Budget> {
 }
 
 /// The filtered states and unknown forces along every run, at the base model and with the findings.
-pub fn traces(runs: &[Run], before: &Screen, after: Option<&Screen>) -> Vec<Trace> {
+pub fn traces(runs: &[Run], integration: Integration, before: &Estimate, after: Option<&Estimate>) -> Vec<Trace> {
+    let filter = Filter::new(&before.model, integration, &[]);
+    let last = after.map(|found| (Filter::new(&found.model, integration, &[]), &found.noise));
     let force = |z: &[f64; Z]| [z[6], z[7], z[8]];
-    runs.iter()
-        .enumerate()
-        .map(|(index, r)| Trace {
+    let of = |(index, r): (usize, &Run)| {
+        let Pass { filtered, force_sd, .. } = filter.pass(r, &before.noise, Wanted::default());
+        let forces: Vec<[f64; 3]> = filtered.iter().map(force).collect();
+        let after = last.as_ref().map(|(filter, noise)| filter.pass(r, noise, Wanted::default()).filtered);
+        Trace {
             index,
             run: r.name.clone(),
             session: r.session.clone(),
             time: r.inputs.iter().map(|i| i.t).collect(),
-            state: before.passes[index].filtered.iter().map(|z| [z[0], z[1], z[2], z[3], z[4], z[5]]).collect(),
+            state: filtered.iter().map(|z| [z[0], z[1], z[2], z[3], z[4], z[5]]).collect(),
             inputs: r.inputs.iter().map(|i| [i.n, i.delta]).collect(),
-            before: before.passes[index].filtered.iter().map(force).collect(),
-            after: after.unwrap_or(before).passes[index].filtered.iter().map(force).collect(),
-            sd: before.passes[index].force_sd.clone(),
-        })
-        .collect()
+            after: after.map_or_else(|| forces.clone(), |filtered| filtered.iter().map(force).collect()),
+            before: forces,
+            sd: force_sd,
+        }
+    };
+    runs.par_iter().enumerate().map(of).collect()
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 //! It takes estimate and covariance as they are; whether a parameter is worth naming is decided elsewhere.
 
 use super::algebra::pick;
-use super::estimate::{Estimate, FreeParameter, base_of, evidence, passes, restrictions};
-use super::filter::Column;
+use super::estimate::{Estimate, FreeParameter, Sums, base_of, restrictions};
+use super::filter::{Column, Filter};
 use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
@@ -20,8 +20,8 @@ impl Wald {
     /// All free parameters of an estimate, with the inverse of the information at it.
     pub fn at(found: &Estimate, integration: Integration, runs: &[Run]) -> Self {
         let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
-        let p = passes(&found.model, integration, &columns, runs, &found.noise, false);
-        let e = evidence(runs, &p, &restrictions(&found.free));
+        let filter = Filter::new(&found.model, integration, &columns);
+        let e = Sums::of(&filter, runs, &found.noise, &restrictions(&found.free), false).evidence;
         Self::of(found, base_of(&e, &found.model, &found.free).inverse)
     }
 

@@ -29,7 +29,7 @@ mod summary;
 
 pub use compare::{Comparison, compare, predict, predict_all};
 pub use cvdm::{Deviation, Outcome, outcome};
-pub use prove::{Evaluation, Judging, prove};
+pub use prove::{Evaluation, Judging, Part, Proof, prove};
 pub use settings::EvaluationSettings;
 pub use summary::{Estimate, Named, Summary, summarise};
 
@@ -226,6 +226,19 @@ mod tests {
         assert!(matches!(test.worst.as_ref().unwrap().fitted, Outcome::Diverged { .. }));
         let text = serde_json::to_string(&evaluation).unwrap();
         assert!(!text.contains("null") && !text.contains("NaN"), "{text}");
+    }
+
+    #[test]
+    fn runs_judged_in_parts_give_the_evaluation_of_all_of_them() {
+        let truth = model();
+        let windows = windows(&truth, 7);
+        let (baseline, judging) = (changed(0.2), judging(1));
+        let mut proof = Proof::new(&baseline, &truth, &judging);
+        for some in windows.chunks(3) {
+            let part = proof.part(some);
+            proof.add(part);
+        }
+        assert_eq!(proof.evaluation(), prove(&baseline, &truth, &windows, &judging));
     }
 
     #[test]

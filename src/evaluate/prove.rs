@@ -1,14 +1,15 @@
 //! The proof: two models against each other on the same runs, as `trimtab evaluate` prints it and a diagnosis concludes with it.
 //! It fits nothing, and asks each model for nothing but its predictions.
 
-use super::compare::{Comparison, compare, predict_all};
+use super::compare::{Comparison, compare, predict};
 use super::settings::EvaluationSettings;
 use super::summary::{Summary, summaries};
 use crate::fit::FitSettings;
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;
-use crate::validity::{self, Coverage};
+use crate::validity::{Count, Coverage, samples};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// How models are simulated and weighed where they are judged.
@@ -59,19 +60,64 @@ impl Evaluation {
 
 /// Judges `fitted` against `baseline` on runs, each simulated from the run's initial state.
 pub fn prove(baseline: &Model, fitted: &Model, runs: &[Run], judging: &Judging) -> Evaluation {
-    let Judging { integration, max_yaw_rate, settings } = judging;
-    let before = predict_all(baseline, runs, *integration);
-    let after = predict_all(fitted, runs, *integration);
-    let trajectories: Vec<Comparison> =
-        runs.iter().zip(before.iter().zip(&after)).map(|(r, p)| compare(r, fitted, *max_yaw_rate, p)).collect();
-    Evaluation {
-        validity: validity::outside(fitted, runs.iter().flat_map(validity::samples)),
-        baseline: baseline.name.clone(),
-        fitted: fitted.name.clone(),
-        summaries: summaries(&trajectories, settings),
-        trajectories,
-        max_yaw_rate: *max_yaw_rate,
-        resamples: settings.resamples,
-        seed: settings.seed,
+    let mut proof = Proof::new(baseline, fitted, judging);
+    let part = proof.part(runs);
+    proof.add(part);
+    proof.evaluation()
+}
+
+/// A proof on more runs than are held at once: parts of them are judged, on any thread, and added in their order.
+pub struct Proof<'a> {
+    baseline: &'a Model,
+    fitted: &'a Model,
+    judging: &'a Judging,
+    sum: Part<'a>,
+}
+
+/// What some runs say of two models.
+pub struct Part<'a> {
+    trajectories: Vec<Comparison>,
+    validity: Count<'a>,
+}
+
+impl<'a> Proof<'a> {
+    /// Of no run yet.
+    pub fn new(baseline: &'a Model, fitted: &'a Model, judging: &'a Judging) -> Self {
+        let sum = Part { trajectories: Vec::new(), validity: Count::new(fitted) };
+        Self { baseline, fitted, judging, sum }
+    }
+
+    /// Judges both models on some runs.
+    pub fn part(&self, runs: &[Run]) -> Part<'a> {
+        let Judging { integration, max_yaw_rate, .. } = self.judging;
+        let of = |run: &Run| {
+            let (before, after) = (predict(self.baseline, run, *integration), predict(self.fitted, run, *integration));
+            compare(run, self.fitted, *max_yaw_rate, (&before, &after))
+        };
+        let mut validity = Count::new(self.fitted);
+        validity.add(runs.iter().flat_map(samples));
+        Part { trajectories: runs.par_iter().map(of).collect(), validity }
+    }
+
+    /// Adds what further runs say.
+    pub fn add(&mut self, part: Part) {
+        self.sum.trajectories.extend(part.trajectories);
+        self.sum.validity.join(&part.validity);
+    }
+
+    /// The evaluation on all runs that were added.
+    pub fn evaluation(self) -> Evaluation {
+        let Judging { max_yaw_rate, settings, .. } = self.judging;
+        let Part { trajectories, validity } = self.sum;
+        Evaluation {
+            validity: validity.coverage(),
+            baseline: self.baseline.name.clone(),
+            fitted: self.fitted.name.clone(),
+            summaries: summaries(&trajectories, settings),
+            trajectories,
+            max_yaw_rate: *max_yaw_rate,
+            resamples: settings.resamples,
+            seed: settings.seed,
+        }
     }
 }

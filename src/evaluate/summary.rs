@@ -9,6 +9,7 @@ use crate::state::STATES;
 use crate::statistics::{Bootstrap, mean, median, variance};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// One of the two outcomes of a comparison.
 type Which = fn(&Comparison) -> &Outcome;
@@ -154,18 +155,19 @@ pub fn summarise(group: String, members: &[&Comparison], settings: &EvaluationSe
         trajectories: members.len(),
         diverged_baseline: diverged(before),
         diverged_fitted: diverged(after),
-        md_baseline: std::array::from_fn(|i| resampled.estimate(|ts| mean(column(ts, before, i)))),
-        md_fitted: std::array::from_fn(|i| resampled.estimate(|ts| mean(column(ts, after, i)))),
+        md_baseline: std::array::from_fn(|i| resampled.estimate(|d| mean(d.column(BEFORE + i)))),
+        md_fitted: std::array::from_fn(|i| resampled.estimate(|d| mean(d.column(AFTER + i)))),
         md_improvement: std::array::from_fn(|i| {
-            resampled.estimate(|ts| gain(mean(column(ts, before, i))?, mean(column(ts, after, i))?))
+            resampled.estimate(|d| gain(mean(d.column(BEFORE + i))?, mean(d.column(AFTER + i))?))
         }),
-        cvdm_baseline: resampled.estimate(|ts| mean(cvdm(ts, before))),
-        cvdm_fitted: resampled.estimate(|ts| mean(cvdm(ts, after))),
-        cvdm_improvement: resampled.estimate(|ts| gain(mean(cvdm(ts, before))?, mean(cvdm(ts, after))?)),
-        mari: resampled.estimate(|ts| median(ts.iter().filter_map(|t| t.average_relative_improvement()))),
-        consistency: resampled.estimate(|ts| {
-            let spread = |f: Which| variance(&cvdm(ts, f).collect::<Vec<_>>());
-            gain(spread(before)?, spread(after)?)
+        cvdm_baseline: resampled.estimate(|d| mean(d.column(BEFORE + STATES))),
+        cvdm_fitted: resampled.estimate(|d| mean(d.column(AFTER + STATES))),
+        cvdm_improvement: resampled
+            .estimate(|d| gain(mean(d.column(BEFORE + STATES))?, mean(d.column(AFTER + STATES))?)),
+        mari: resampled.estimate(|d| median(d.column(RELATIVE))),
+        consistency: resampled.estimate(|d| {
+            let spread = |c: usize| variance(&d.column(c).collect::<Vec<_>>());
+            gain(spread(BEFORE + STATES)?, spread(AFTER + STATES)?)
         }),
         better: members.iter().map(|t| lower(t.fitted.order(), t.baseline.order())).sum(),
         worse: members.iter().map(|t| lower(t.baseline.order(), t.fitted.order())).sum(),
@@ -176,35 +178,70 @@ pub fn summarise(group: String, members: &[&Comparison], settings: &EvaluationSe
     }
 }
 
-fn column<'a>(ts: &'a [&Comparison], f: Which, i: usize) -> impl Iterator<Item = f64> + 'a {
-    ts.iter().filter_map(move |t| f(t).deviation()?.md[i])
-}
-
-fn cvdm<'a>(ts: &'a [&Comparison], f: Which) -> impl Iterator<Item = f64> + 'a {
-    ts.iter().filter_map(move |t| Some(f(t).deviation()?.cvdm))
-}
-
 /// `1 - after/before`; `None` where there was nothing to gain.
 fn gain(before: f64, after: f64) -> Option<f64> {
     (before > 0.0).then(|| 1.0 - after / before)
 }
 
-/// Trajectories by run, with draws of whole runs.
-struct Resampled<'a> {
-    clusters: Vec<Vec<&'a Comparison>>,
+/// Columns of the numbers that are resampled: MD of every dimension and then cVDM of the baseline, the same of the fitted model,
+/// and the average relative improvement.
+const BEFORE: usize = 0;
+const AFTER: usize = BEFORE + STATES + 1;
+const RELATIVE: usize = AFTER + STATES + 1;
+
+/// The numbers of trajectories by run, with draws of whole runs.
+struct Resampled {
+    /// Each number of every trajectory, run after run; NaN where there is none.
+    columns: Vec<Vec<f64>>,
+    /// Where the trajectories of each run are in a column.
+    clusters: Vec<Range<usize>>,
     bootstrap: Bootstrap,
 }
 
-impl<'a> Resampled<'a> {
-    fn new(clusters: Vec<Vec<&'a Comparison>>, settings: &EvaluationSettings) -> Self {
-        let bootstrap = Bootstrap::new(clusters.len(), settings.resamples, settings.seed);
-        Self { clusters, bootstrap }
+/// Some runs of them, one perhaps several times.
+struct Drawn<'a> {
+    columns: &'a [Vec<f64>],
+    clusters: &'a [Range<usize>],
+    /// The runs; all of them in order where absent.
+    drawn: Option<&'a [usize]>,
+}
+
+impl Drawn<'_> {
+    /// A number of their trajectories.
+    fn column(&self, column: usize) -> impl Iterator<Item = f64> {
+        let count = self.drawn.map_or(self.clusters.len(), <[usize]>::len);
+        let cluster = |k: usize| self.drawn.map_or(k, |drawn| drawn[k]);
+        (0..count).flat_map(move |k| &self.columns[column][self.clusters[cluster(k)].clone()]).copied()
+    }
+}
+
+impl Resampled {
+    fn new(runs: Vec<Vec<&Comparison>>, settings: &EvaluationSettings) -> Self {
+        let bootstrap = Bootstrap::new(runs.len(), settings.resamples, settings.seed);
+        let number = |t: &Comparison, column: usize| -> Option<f64> {
+            let of = |outcome: &Outcome, i: usize| {
+                let deviation = outcome.deviation()?;
+                if i == STATES { Some(deviation.cvdm) } else { deviation.md[i] }
+            };
+            match column {
+                RELATIVE => t.average_relative_improvement(),
+                AFTER.. => of(&t.fitted, column - AFTER),
+                _ => of(&t.baseline, column - BEFORE),
+            }
+        };
+        let column = |c: usize| runs.iter().flatten().map(|t| number(t, c).unwrap_or(f64::NAN)).collect();
+        let mut end = 0;
+        let place = |run: &Vec<&Comparison>| {
+            end += run.len();
+            end - run.len()..end
+        };
+        Self { columns: (0..=RELATIVE).map(column).collect(), clusters: runs.iter().map(place).collect(), bootstrap }
     }
 
-    fn estimate(&self, statistic: impl Fn(&[&Comparison]) -> Option<f64> + Sync) -> Option<Estimate> {
-        let value = statistic(&self.clusters.concat()).filter(|v| v.is_finite())?;
+    fn estimate(&self, statistic: impl Fn(&Drawn) -> Option<f64> + Sync) -> Option<Estimate> {
         let of =
-            |drawn: &[usize]| statistic(&drawn.iter().flat_map(|c| &self.clusters[*c]).copied().collect::<Vec<_>>());
-        Some(Estimate { value, ci95: self.bootstrap.interval(of) })
+            |drawn: Option<&[usize]>| statistic(&Drawn { columns: &self.columns, clusters: &self.clusters, drawn });
+        let value = of(None).filter(|v| v.is_finite())?;
+        Some(Estimate { value, ci95: self.bootstrap.interval(|drawn| of(Some(drawn))) })
     }
 }

@@ -20,12 +20,14 @@
 
 use super::error::FitError;
 use crate::model::Model;
-use crate::physics::{Form, Number};
-use crate::recording::Run;
+use crate::physics::Form;
+use crate::ranges::{Limited, OutOfRange, within};
+use crate::recording::Runs;
 use crate::terms::flow::FlowTerm;
 use crate::terms::resistance::Resistance;
 use crate::terms::rudder::Rudder;
 use serde::{Deserialize, Serialize};
+use trimtab_ad::{Dual, Scalar, VectorFunction, jacobian};
 
 /// Which limits the rules default to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -90,6 +92,50 @@ pub struct ConstraintSettings {
     pub thrust: Rule,
 }
 
+impl ConstraintSettings {
+    /// The rules by their keys.
+    fn rules(&self) -> [(&'static str, Rule); 8] {
+        [
+            ("resistance", self.resistance),
+            ("resistance_slope", self.resistance_slope),
+            ("side_force", self.side_force),
+            ("lift_port", self.lift_port),
+            ("lift_starboard", self.lift_starboard),
+            ("drag", self.drag),
+            ("drag_zero", self.drag_zero),
+            ("thrust", self.thrust),
+        ]
+    }
+}
+
+/// Samples that a rule may have: more cost time and bind nothing that these do not.
+const MOST_SAMPLES: f64 = 10_000.0;
+
+impl Limited for ConstraintSettings {
+    fn limits(&self) -> Result<(), OutOfRange> {
+        within(
+            "tolerance",
+            self.tolerance,
+            &(0.0..=10.0),
+            "the share of its size by which each limit is moved outwards",
+        )?;
+        for (key, rule) in self.rules() {
+            let numbers = [rule.from, rule.to, rule.step, rule.lower, rule.upper];
+            if let Some(value) = numbers.into_iter().flatten().find(|v| !v.is_finite()) {
+                let expected = "a finite number; leave out what is not to be limited".into();
+                return Err(OutOfRange { key, value, expected });
+            }
+            if let (Some(from), Some(to), Some(step)) = (rule.from, rule.to, rule.step)
+                && !(step > 0.0 && (to - from) / step <= MOST_SAMPLES)
+            {
+                let expected = format!("a step above 0 that divides the range into {MOST_SAMPLES} samples at most");
+                return Err(OutOfRange { key, value: step, expected });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// A curve of the model, linear in the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Curve {
@@ -102,18 +148,20 @@ enum Curve {
 }
 
 impl Curve {
-    fn at<S: Number<Coefficient = S>>(self, model: &Model, theta: &[S], x: f64) -> S {
-        let resistance = model.part("resistance", theta);
-        let rudder = model.part("rudder", theta);
+    fn at<S: Scalar<Coefficient = S>>(self, model: &Model, theta: &[S], x: f64) -> S {
+        let part = |term| model.part(term, theta);
         match self {
-            Curve::Resistance => Resistance::curve(resistance, x),
-            // In the fore-aft consistent form R is odd in u, and its slope even.
-            Curve::ResistanceSlope if model.form == Form::Regular => Resistance::slope(resistance, x.abs()),
-            Curve::ResistanceSlope => Resistance::slope(resistance, x),
-            Curve::SideForce => model.part("propeller", theta)[0],
-            Curve::Lift => Rudder::lift_polynomial(rudder, S::from_f64(x.to_radians())),
-            Curve::Drag => Rudder::drag_polynomial(rudder, S::from_f64(x.to_radians())),
-            Curve::Thrust => FlowTerm::thrust_coefficient(model.part("flow", theta), S::from_f64(x)),
+            Curve::Resistance => Resistance::curve(part("resistance"), S::from_f64(x)),
+            Curve::ResistanceSlope => {
+                // In the fore-aft consistent form R is odd in u, and its slope even.
+                let u = S::from_f64(if model.form == Form::Regular { x.abs() } else { x });
+                let constants: Vec<Dual<S, 1>> = part("resistance").iter().map(|p| Dual::constant(*p)).collect();
+                Resistance::curve(&constants, Dual::variable(u, 0)).eps[0]
+            }
+            Curve::SideForce => part("propeller")[0],
+            Curve::Lift => Rudder::lift_polynomial(part("rudder"), S::from_f64(x.to_radians())),
+            Curve::Drag => Rudder::drag_polynomial(part("rudder"), S::from_f64(x.to_radians())),
+            Curve::Thrust => FlowTerm::thrust_coefficient(part("flow"), S::from_f64(x)),
         }
     }
 
@@ -186,10 +234,11 @@ impl Row {
 }
 
 /// Smallest and largest recorded surge speed \[m/s\]; `[0, 0]` where none was recorded.
-pub fn speed_range(runs: &[Run]) -> [f64; 2] {
-    let recorded = runs.iter().flat_map(|r| r.measured.iter().filter_map(|m| m[3]));
-    let start = runs.iter().map(|r| r.initial[3]);
-    recorded.chain(start).filter(|u| u.is_finite()).fold([0.0, 0.0], |[lo, hi], u| [lo.min(u), hi.max(u)])
+pub fn speed_range<'a>(runs: impl Into<Runs<'a>>) -> [f64; 2] {
+    runs.into().iter().fold([0.0, 0.0], |range, run| {
+        let recorded = run.measured.iter().filter_map(|m| m[3]).chain([run.initial[3]]);
+        recorded.filter(|u| u.is_finite()).fold(range, |[lo, hi], u| [lo.min(u), hi.max(u)])
+    })
 }
 
 /// The rows of all rules for a model, given the recorded range of surge speed \[m/s\].
@@ -222,7 +271,7 @@ pub fn rows(model: &Model, settings: &ConstraintSettings, speeds: [f64; 2]) -> R
         ("drag_zero", Curve::Drag, settings.drag_zero, [0.0, 0.0, 1.0, f64::NEG_INFINITY, 0.05]),
         ("thrust", Curve::Thrust, settings.thrust, [0.0, 0.5, 0.05, 0.0, f64::INFINITY]),
     ];
-    let mut rows = Vec::new();
+    let mut samples = Vec::new();
     for (name, curve, rule, [from, to, step, lower, upper]) in defaults {
         if rule.on == Some(false) {
             continue;
@@ -249,37 +298,60 @@ pub fn rows(model: &Model, settings: &ConstraintSettings, speeds: [f64; 2]) -> R
         }
         let intervals = ((to - from) / step - 1e-9).ceil().max(0.0) as usize;
         for i in 0..=intervals {
-            let row = sample(model, name, curve, (from + i as f64 * step).min(to), lower, upper);
-            if row.coefficients.iter().any(|a| *a != 0.0) {
-                rows.push(row);
-            }
+            samples.push(Sample { rule: name, curve, x: (from + i as f64 * step).min(to), lower, upper });
         }
     }
-    Ok(rows)
+    Ok(linear_rows(&Sampled { model, free: model.free(), fixed: model.values(), samples }))
 }
 
-fn sample(model: &Model, rule: &'static str, curve: Curve, x: f64, lower: f64, upper: f64) -> Row {
-    let mut fixed = model.values();
-    let free = model.free();
-    for i in &free {
-        fixed[*i] = 0.0;
+/// A curve at one abscissa, with its limits.
+struct Sample {
+    rule: &'static str,
+    curve: Curve,
+    x: f64,
+    lower: f64,
+    upper: f64,
+}
+
+/// The curves of all samples as a function of the free parameters.
+struct Sampled<'a> {
+    model: &'a Model,
+    free: Vec<usize>,
+    /// Values of all parameters, of which the free ones are replaced.
+    fixed: Vec<f64>,
+    samples: Vec<Sample>,
+}
+
+impl VectorFunction for Sampled<'_> {
+    fn outputs(&self) -> usize {
+        self.samples.len()
     }
-    let mut unit = vec![0.0; fixed.len()];
-    let mut slope = |i: usize| {
-        unit[i] = 1.0;
-        let slope = curve.at(model, &unit, x);
-        unit[i] = 0.0;
-        slope
+
+    fn eval<S: Scalar<Coefficient = S>>(&self, p: &[S], y: &mut [S]) {
+        let mut theta: Vec<S> = self.fixed.iter().map(|value| S::from_f64(*value)).collect();
+        for (i, p) in self.free.iter().zip(p) {
+            theta[*i] = *p;
+        }
+        for (y, sample) in y.iter_mut().zip(&self.samples) {
+            *y = sample.curve.at(self.model, &theta, sample.x);
+        }
+    }
+}
+
+/// The rows of curves that are linear in the parameters: their values where the free parameters are 0, and their slopes.
+fn linear_rows(curves: &Sampled) -> Vec<Row> {
+    let (constants, slopes) = jacobian(curves, &vec![0.0; curves.free.len()]);
+    let row = |(i, sample): (usize, &Sample)| Row {
+        rule: sample.rule,
+        quantity: sample.curve.describe(sample.x),
+        unit: sample.curve.unit(),
+        coefficients: slopes.row(i).iter().copied().collect(),
+        constant: constants[i],
+        lower: sample.lower,
+        upper: sample.upper,
     };
-    Row {
-        rule,
-        quantity: curve.describe(x),
-        unit: curve.unit(),
-        coefficients: free.iter().map(|i| slope(*i)).collect(),
-        constant: curve.at(model, &fixed, x),
-        lower,
-        upper,
-    }
+    let all = curves.samples.iter().enumerate().map(row);
+    all.filter(|row| row.coefficients.iter().any(|a| *a != 0.0)).collect()
 }
 
 #[cfg(test)]

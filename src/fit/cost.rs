@@ -15,7 +15,7 @@ use super::sums::Sums;
 use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model};
 use crate::physics::{CHUNK, Curvature, Gradient, Group, Lanes, NumDual, Number};
-use crate::recording::{Measured, Run};
+use crate::recording::{Measured, Run, Runs};
 use crate::sensitivity::local::side_by_side;
 use crate::sensitivity::{Column, Columns, Plain, Sensitivity};
 use crate::ship::Ship;
@@ -24,6 +24,7 @@ use crate::state::{Inputs, STATES};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use trimtab_ad::{Dual, Scalar};
 
@@ -72,9 +73,11 @@ pub struct Quadratic {
 /// The cost of a model against runs, as a function of the model's free parameters.
 pub struct Cost<'a> {
     model: &'a Model,
-    runs: &'a [Run],
+    runs: Runs<'a>,
     /// The diagonal of W of each run.
     weights: Vec<[f64; STATES]>,
+    residuals: usize,
+    samples: usize,
     free: Vec<usize>,
     derivatives: Derivatives,
     difference_step: f64,
@@ -83,8 +86,8 @@ pub struct Cost<'a> {
     /// Whether a term may change what is reported of the state.
     sensed: bool,
     columns: Columns,
-    lanes: Vec<Block<Lanes>>,
-    single: Vec<Block<f64>>,
+    lanes: Blocks<Lanes>,
+    single: Blocks<f64>,
 }
 
 /// Settings of a [`Cost`].
@@ -99,6 +102,15 @@ pub struct CostOptions {
     /// Integration of the simulation.
     pub integration: Integration,
 }
+
+/// Blocks of runs: built, or planned as the indices of their runs where these are too many to be held.
+enum Blocks<P> {
+    Built(Vec<Block<P>>),
+    Planned(Vec<Vec<usize>>),
+}
+
+/// Blocks that are evaluated before what they gave is added up.
+const TOGETHER: usize = 256;
 
 /// Runs that are evaluated side by side.
 struct Block<P> {
@@ -157,27 +169,28 @@ impl Seeded for NumDual {
 }
 
 impl<P: Plain> Block<P> {
-    fn of(model: &Model, runs: &[Run], weights: &[[f64; STATES]], lanes: &[usize]) -> Self {
-        let in_lane = |lane: usize| &runs[lanes[lane.min(lanes.len() - 1)]];
-        let steps = lanes.iter().map(|r| runs[*r].inputs.len()).max().unwrap_or(0);
+    /// The block of some runs; `None` where one cannot be read.
+    fn of(model: &Model, runs: Runs, weights: &[[f64; STATES]], lanes: &[usize]) -> Option<Self> {
+        let runs = lanes.iter().map(|run| runs.get(*run)).collect::<Option<Vec<Cow<Run>>>>()?;
+        let runs: Vec<&Run> = runs.iter().map(|run| &**run).collect();
+        let in_lane = |lane: usize| runs[lane.min(runs.len() - 1)];
+        let steps = runs.iter().map(|r| r.inputs.len()).max().unwrap_or(0);
         let sample = |lane: usize, k: usize| {
             let inputs = &in_lane(lane).inputs;
             &inputs[k.min(inputs.len() - 1)]
         };
         let inputs = (0..steps).map(|k| side_by_side(|lane| sample(lane, k))).collect();
+        let roots: Vec<[f64; STATES]> = lanes.iter().map(|run| weights[*run].map(|w| w.max(0.0).sqrt())).collect();
         let weight = |lane: usize, k: usize, c: usize| {
-            let Some(&run) = lanes.get(lane) else { return 0.0 };
-            let compared = runs[run].measured.get(k).is_some_and(|m| m[c].is_some());
-            if compared { weights[run][c].max(0.0).sqrt() } else { 0.0 }
+            let Some(run) = runs.get(lane) else { return 0.0 };
+            let compared = run.measured.get(k).is_some_and(|m| m[c].is_some());
+            if compared { roots[lane][c] } else { 0.0 }
         };
         let measured =
             |lane: usize, k: usize, c: usize| in_lane(lane).measured.get(k).and_then(|m| m[c]).unwrap_or(0.0);
-        let table = |f: &dyn Fn(usize, usize, usize) -> f64| -> Vec<[P; STATES]> {
-            (0..steps).map(|k| std::array::from_fn(|c| P::gather(|lane| f(lane, k, c)))).collect()
-        };
-        let channels = |lane: usize| in_lane(lane).channels();
-        let whole =
-            (0..steps).map(|k| (0..P::WIDTH).all(|lane| (0..STATES).all(|c| weight(lane, k, c) > 0.0))).collect();
+        let root: Vec<[P; STATES]> = table(steps, weight);
+        let weighted = |root: &[P; STATES]| (0..P::WIDTH).all(|lane| root.iter().all(|w| w.in_lane(lane) > 0.0));
+        let measured_at_all: Vec<[bool; STATES]> = (0..P::WIDTH).map(|lane| in_lane(lane).channels()).collect();
         let mut by_lane: Vec<Vec<f64>> = Vec::new();
         for lane in 0..P::WIDTH {
             let mut values: Vec<f64> = model.parameters.iter().map(|p| if p.free { 0.0 } else { p.value }).collect();
@@ -186,29 +199,35 @@ impl<P: Plain> Block<P> {
             }
             by_lane.push(values);
         }
-        Self {
+        Some(Self {
             runs: lanes.to_vec(),
             dt: in_lane(0).dt,
             inputs,
             initial: std::array::from_fn(|c| P::gather(|lane| in_lane(lane).initial[c])),
-            channels: std::array::from_fn(|c| P::gather(|lane| f64::from(u8::from(channels(lane)[c])))),
-            target: table(&measured),
-            root: table(&weight),
-            whole,
+            channels: std::array::from_fn(|c| P::gather(|lane| f64::from(u8::from(measured_at_all[lane][c])))),
+            target: table(steps, measured),
+            whole: root.iter().map(weighted).collect(),
+            root,
             base: (0..model.parameters.len()).map(|i| P::gather(|lane| by_lane[lane][i])).collect(),
-            still: lanes.iter().all(|run| runs[*run].inputs.iter().all(|i| i.current == [0.0; 2])),
-        }
+            still: runs.iter().all(|run| run.inputs.iter().all(|i| i.current == [0.0; 2])),
+        })
     }
 
-    /// Runs in blocks of equal sample period and similar length, in an order that depends on the runs alone.
-    fn group(model: &Model, runs: &[Run], weights: &[[f64; STATES]]) -> Vec<Self> {
+    /// Runs in blocks of equal sample period and similar length, in an order that depends on the runs alone. `shapes` are sample
+    /// period and number of samples of each. `None` where a run cannot be read.
+    fn group(model: &Model, runs: Runs, weights: &[[f64; STATES]], shapes: &[(f64, usize)]) -> Option<Blocks<P>> {
         let mut order: Vec<usize> = (0..runs.len()).collect();
         order.sort_by(|a, b| {
-            let (a, b) = (&runs[*a], &runs[*b]);
-            a.dt.total_cmp(&b.dt).then(b.inputs.len().cmp(&a.inputs.len()))
+            let (a, b) = (&shapes[*a], &shapes[*b]);
+            a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))
         });
-        let same_dt = order.chunk_by(|a, b| runs[*a].dt == runs[*b].dt);
-        same_dt.flat_map(|runs| runs.chunks(P::WIDTH)).map(|lanes| Self::of(model, runs, weights, lanes)).collect()
+        let same_dt = order.chunk_by(|a, b| shapes[*a].0 == shapes[*b].0);
+        let mut lanes = same_dt.flat_map(|runs| runs.chunks(P::WIDTH));
+        if runs.held() {
+            lanes.map(|lanes| Self::of(model, runs, weights, lanes)).collect::<Option<_>>().map(Blocks::Built)
+        } else {
+            Some(Blocks::Planned(lanes.by_ref().map(<[usize]>::to_vec).collect()))
+        }
     }
 
     /// The weighted difference in one channel, and its factor on the derivatives of the simulated value.
@@ -241,44 +260,83 @@ impl<P: Plain> Block<P> {
     }
 }
 
+impl<P> Blocks<P> {
+    fn is_empty(&self) -> bool {
+        match self {
+            Self::Built(blocks) => blocks.is_empty(),
+            Self::Planned(plans) => plans.is_empty(),
+        }
+    }
+}
+
+/// What `f` says of lane, sample and channel, side by side.
+fn table<P: Plain>(samples: usize, f: impl Fn(usize, usize, usize) -> f64) -> Vec<[P; STATES]> {
+    (0..samples).map(|k| std::array::from_fn(|c| P::gather(|lane| f(lane, k, c)))).collect()
+}
+
+/// Whether a run can be fitted to.
+fn check(run: &Run, weights: &[f64; STATES]) -> Result<(), FitError> {
+    let bad = |what: &str| Err(FitError::BadRun { run: run.recording.clone(), what: what.into() });
+    if run.inputs.len() != run.measured.len() || run.inputs.len() < 2 {
+        return bad("inputs and measured states must have the same number of samples, at least 2");
+    }
+    if !(run.dt.is_finite() && run.dt > 0.0) {
+        return bad("the sample period must be positive");
+    }
+    if !run.initial.iter().chain(weights).all(|v| v.is_finite()) {
+        return bad("the initial state and the weights must be finite");
+    }
+    Ok(())
+}
+
 impl<'a> Cost<'a> {
     /// The cost of `model` against `runs`.
     ///
     /// # Errors
     /// No runs, a run without samples or of unequal lengths, or a sample period that is not positive.
-    pub fn new(model: &'a Model, runs: &'a [Run], options: CostOptions) -> Result<Self, FitError> {
-        let weights = runs.iter().map(|r| weights(&model.ship, r, options.max_yaw_rate)).collect();
+    pub fn new(model: &'a Model, runs: impl Into<Runs<'a>>, options: CostOptions) -> Result<Self, FitError> {
+        let runs = runs.into();
+        let weights = runs.iter().map(|r| weights(&model.ship, &r, options.max_yaw_rate)).collect();
         Self::weighted(model, runs, weights, options)
     }
 
     /// As [`Cost::new`], with the diagonal of W of each run given, as for pieces that keep the weights of their whole run.
     pub(super) fn weighted(
         model: &'a Model,
-        runs: &'a [Run],
+        runs: Runs<'a>,
         weights: Vec<[f64; STATES]>,
         options: CostOptions,
     ) -> Result<Self, FitError> {
         if runs.is_empty() {
             return Err(FitError::NoRuns);
         }
+        let (mut shapes, mut residuals) = (Vec::with_capacity(runs.len()), 0);
         for (run, weights) in runs.iter().zip(&weights) {
-            let bad = |what: &str| Err(FitError::BadRun { run: run.recording.clone(), what: what.into() });
-            if run.inputs.len() != run.measured.len() || run.inputs.len() < 2 {
-                return bad("inputs and measured states must have the same number of samples, at least 2");
-            }
-            if !(run.dt.is_finite() && run.dt > 0.0) {
-                return bad("the sample period must be positive");
-            }
-            if !run.initial.iter().chain(weights).all(|v| v.is_finite()) {
-                return bad("the initial state and the weights must be finite");
-            }
+            check(&run, weights)?;
+            shapes.push((run.dt, run.inputs.len()));
+            let of = |m: &Measured| (0..STATES).filter(|c| weights[*c] > 0.0 && m[*c].is_some()).count();
+            residuals += run.measured.iter().map(of).sum::<usize>();
+        }
+        if shapes.len() < runs.len() {
+            return Err(FitError::Unreadable);
         }
         let free = model.free();
         let columns: Vec<Column> = free.iter().map(|p| Column { parameter: *p, scale: 1.0 }).collect();
-        let mut cost = Self {
+        let (mut lanes, mut single) = (Blocks::Built(Vec::new()), Blocks::Built(Vec::new()));
+        match options.derivatives {
+            Derivatives::Lanes | Derivatives::FiniteDifferences => {
+                lanes = Block::group(model, runs, &weights, &shapes).ok_or(FitError::Unreadable)?;
+            }
+            Derivatives::Dual | Derivatives::NumDual => {
+                single = Block::group(model, runs, &weights, &shapes).ok_or(FitError::Unreadable)?;
+            }
+        }
+        Ok(Self {
             model,
             runs,
             weights,
+            residuals,
+            samples: shapes.iter().map(|(_, samples)| samples).sum(),
             columns: Columns::new(model, &columns),
             free,
             derivatives: options.derivatives,
@@ -286,16 +344,9 @@ impl<'a> Cost<'a> {
             integration: options.integration,
             limit: absurd_speed(model),
             sensed: model.placed()[BASE.len()..].iter().any(|t| t.term.info().group == Group::Sensor),
-            lanes: Vec::new(),
-            single: Vec::new(),
-        };
-        match options.derivatives {
-            Derivatives::Lanes | Derivatives::FiniteDifferences => {
-                cost.lanes = Block::group(model, runs, &cost.weights)
-            }
-            Derivatives::Dual | Derivatives::NumDual => cost.single = Block::group(model, runs, &cost.weights),
-        }
-        Ok(cost)
+            lanes,
+            single,
+        })
     }
 
     /// Indices of the free parameters in the model.
@@ -310,11 +361,38 @@ impl<'a> Cost<'a> {
 
     /// Number of residuals that count: measured values with a weight above 0.
     pub fn residuals(&self) -> usize {
-        let counted = |(run, weights): (&Run, &[f64; STATES])| {
-            let of = |m: &Measured| (0..STATES).filter(|c| weights[*c] > 0.0 && m[*c].is_some()).count();
-            run.measured.iter().map(of).sum::<usize>()
-        };
-        self.runs.iter().zip(&self.weights).map(counted).sum()
+        self.residuals
+    }
+
+    /// Number of samples of all runs.
+    pub(super) fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// Hands every block to `work`, side by side, and what that makes of it to `take` in the order of the blocks, until `take` says
+    /// no more or a run cannot be read: `None` then.
+    fn each<P: Plain, T: Send>(
+        &self,
+        blocks: &Blocks<P>,
+        work: impl Fn(&Block<P>) -> T + Sync,
+        mut take: impl FnMut(&[usize], T) -> Option<()>,
+    ) -> Option<()> {
+        match blocks {
+            Blocks::Built(blocks) => {
+                for some in blocks.chunks(TOGETHER) {
+                    let done: Vec<T> = some.par_iter().map(&work).collect();
+                    some.iter().zip(done).try_for_each(|(block, one)| take(&block.runs, one))?;
+                }
+            }
+            Blocks::Planned(plans) => {
+                for some in plans.chunks(TOGETHER) {
+                    let one = |lanes: &Vec<usize>| Some(work(&Block::of(self.model, self.runs, &self.weights, lanes)?));
+                    let done: Vec<Option<T>> = some.par_iter().map(one).collect();
+                    some.iter().zip(done).try_for_each(|(lanes, one)| take(lanes, one?))?;
+                }
+            }
+        }
+        Some(())
     }
 
     /// The cost at the free parameters `p`, or `None` where a simulation diverges.
@@ -328,31 +406,68 @@ impl<'a> Cost<'a> {
         if self.lanes.is_empty() { self.squares_over(&self.single, p) } else { self.squares_over(&self.lanes, p) }
     }
 
-    fn squares_over<P: Plain>(&self, blocks: &[Block<P>], p: &[f64]) -> Option<Vec<f64>> {
-        let parts: Vec<Option<P>> = blocks
-            .par_iter()
-            .map(|block| {
-                let (mut square, mut fastest) = (P::zero(), P::zero());
-                self.rollout(block, p, |k, y| {
-                    for residual in block.residuals(k, y) {
-                        square = residual.mul_add(residual, square);
-                    }
-                    fastest =
-                        fastest.max(P::select(P::zero().less(block.root[k][3]), y[3] * y[3] + y[4] * y[4], P::zero()));
-                });
-                let sane = (0..P::WIDTH)
-                    .all(|lane| square.in_lane(lane).is_finite() && fastest.in_lane(lane) < self.limit * self.limit);
-                sane.then_some(square)
-            })
-            .collect();
+    fn squares_over<P: Plain>(&self, blocks: &Blocks<P>, p: &[f64]) -> Option<Vec<f64>> {
+        let of_block = |block: &Block<P>| {
+            let (mut square, mut fastest) = (P::zero(), P::zero());
+            self.rollout(block, p, |k, y| {
+                for residual in block.residuals(k, y) {
+                    square = residual.mul_add(residual, square);
+                }
+                fastest =
+                    fastest.max(P::select(P::zero().less(block.root[k][3]), y[3] * y[3] + y[4] * y[4], P::zero()));
+            });
+            let sane = (0..P::WIDTH)
+                .all(|lane| square.in_lane(lane).is_finite() && fastest.in_lane(lane) < self.limit * self.limit);
+            sane.then_some(square)
+        };
         let mut squares = vec![0.0; self.runs.len()];
-        for (block, part) in blocks.iter().zip(parts) {
+        self.each(blocks, of_block, |runs, part| {
             let part = part?;
-            for (lane, run) in block.runs.iter().enumerate() {
+            for (lane, run) in runs.iter().enumerate() {
                 squares[*run] = part.in_lane(lane);
             }
-        }
+            Some(())
+        })?;
         Some(squares)
+    }
+
+    /// Hands the weighted residuals of each run at `p` to `take`, by sample and channel, NaN where nothing is compared and after
+    /// the run's end. The order depends on the runs alone. `None` where a run cannot be read or `take` says no more.
+    pub(super) fn residuals_by_run(
+        &self,
+        p: &[f64],
+        take: impl FnMut(usize, Vec<[f64; STATES]>) -> Option<()>,
+    ) -> Option<()> {
+        if self.lanes.is_empty() {
+            self.residuals_over(&self.single, p, take)
+        } else {
+            self.residuals_over(&self.lanes, p, take)
+        }
+    }
+
+    fn residuals_over<P: Plain>(
+        &self,
+        blocks: &Blocks<P>,
+        p: &[f64],
+        mut take: impl FnMut(usize, Vec<[f64; STATES]>) -> Option<()>,
+    ) -> Option<()> {
+        let by_lane = |block: &Block<P>| {
+            let mut residuals = vec![[P::zero(); STATES]; block.inputs.len()];
+            self.rollout(block, p, |k, y| residuals[k] = block.residuals(k, y));
+            let of_lane = |lane: usize| {
+                let entry = |(residual, root): (&P, &P)| {
+                    if root.in_lane(lane) > 0.0 { residual.in_lane(lane) } else { f64::NAN }
+                };
+                let sample = |(residuals, roots): (&[P; STATES], &[P; STATES])| {
+                    std::array::from_fn(|c| entry((&residuals[c], &roots[c])))
+                };
+                residuals.iter().zip(&block.root).map(sample).collect()
+            };
+            (0..block.runs.len()).map(of_lane).collect::<Vec<Vec<[f64; STATES]>>>()
+        };
+        self.each(blocks, by_lane, |runs, values| {
+            runs.iter().zip(values).try_for_each(|(run, values)| take(*run, values))
+        })
     }
 
     /// The cost with its gradient and Gauss-Newton matrix, or `None` where a simulation or a derivative diverges.
@@ -377,27 +492,27 @@ impl<'a> Cost<'a> {
     /// Adds up the blocks, in their order whatever thread computed them.
     fn assemble<P: Plain>(
         &self,
-        blocks: &[Block<P>],
+        blocks: &Blocks<P>,
         sums: impl Fn(&Block<P>) -> Sums<P> + Sync + Send,
     ) -> Option<Quadratic> {
         let n = self.free.len();
-        let parts: Vec<Sums<P>> = blocks.par_iter().map(sums).collect();
         let mut squares = vec![0.0; self.runs.len()];
         let mut by_run = vec![DVector::zeros(n); self.runs.len()];
         let mut matrix = DMatrix::zeros(n, n);
         let factor = 2.0 / self.runs.len() as f64;
-        for (block, part) in blocks.iter().zip(&parts) {
-            for (lane, run) in block.runs.iter().enumerate() {
+        self.each(blocks, sums, |runs, part| {
+            for (lane, run) in runs.iter().enumerate() {
                 squares[*run] = part.square.in_lane(lane);
                 by_run[*run] = DVector::from_iterator(n, part.gradient.iter().map(|g| factor * g.in_lane(lane)));
             }
             for i in 0..n {
                 for j in 0..=i {
                     let product = part.product(i, j);
-                    matrix[(i, j)] += factor * (0..block.runs.len()).map(|lane| product.in_lane(lane)).sum::<f64>();
+                    matrix[(i, j)] += factor * (0..runs.len()).map(|lane| product.in_lane(lane)).sum::<f64>();
                 }
             }
-        }
+            Some(())
+        })?;
         matrix.fill_upper_triangle_with_lower_triangle();
         let mut gradient = DVector::zeros(n);
         for part in &by_run {
@@ -480,22 +595,22 @@ impl<'a> Cost<'a> {
     /// The exact Hessian of the cost, by second-order dual numbers in blocks of 6 by 6, or `None` where it diverges.
     pub fn hessian(&self, p: &[f64]) -> Option<DMatrix<f64>> {
         let n = self.free.len();
-        let parts: Vec<DMatrix<f64>> = (0..self.runs.len())
-            .into_par_iter()
-            .map(|run| {
-                let block = Block::<f64>::of(self.model, self.runs, &self.weights, &[run]);
-                let mut sum = DMatrix::zeros(n, n);
-                for row in (0..n).step_by(BLOCK) {
-                    for column in (0..=row).step_by(BLOCK) {
-                        self.add_curvature(&block, p, row, column, &mut sum);
-                    }
+        let of_run = |run: usize| {
+            let block = Block::<f64>::of(self.model, self.runs, &self.weights, &[run])?;
+            let mut sum = DMatrix::zeros(n, n);
+            for row in (0..n).step_by(BLOCK) {
+                for column in (0..=row).step_by(BLOCK) {
+                    self.add_curvature(&block, p, row, column, &mut sum);
                 }
-                sum
-            })
-            .collect();
+            }
+            Some(sum)
+        };
         let mut hessian = DMatrix::zeros(n, n);
-        for part in parts {
-            hessian += part * (2.0 / self.runs.len() as f64);
+        for first in (0..self.runs.len()).step_by(TOGETHER) {
+            let some = first..(first + TOGETHER).min(self.runs.len());
+            for part in some.into_par_iter().map(of_run).collect::<Option<Vec<DMatrix<f64>>>>()? {
+                hessian += part * (2.0 / self.runs.len() as f64);
+            }
         }
         hessian.fill_upper_triangle_with_lower_triangle();
         hessian.iter().all(|v: &f64| v.is_finite()).then_some(hessian)
@@ -586,7 +701,7 @@ impl<'a> Cost<'a> {
     /// The first run whose simulation diverges at `p`, and when \[s\] on its recording's clock.
     pub fn divergence(&self, p: &[f64]) -> Option<(String, f64)> {
         self.runs.iter().enumerate().find_map(|(i, run)| {
-            let theta = self.theta(&Block::<f64>::of(self.model, self.runs, &self.weights, &[i]), p);
+            let theta = self.theta(&Block::<f64>::of(self.model, self.runs, &self.weights, &[i])?, p);
             let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
             let trajectory = simulate::reported(self.model, &theta, self.integration, &scenario, &run.channels());
             trajectory.diverged_at.map(|k| (run.recording.clone(), run.time(k)))

@@ -21,6 +21,7 @@ use super::task::Task;
 use crate::statistics::clustered_variance;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Number of recordings from which on standard errors allow for what residuals of one recording share.
 pub const SANDWICH_FROM: usize = 8;
@@ -77,8 +78,8 @@ impl Covariances {
     pub fn of(task: &Task, end: &End, cost: f64, likeness: Option<f64>) -> Self {
         let n = task.scales.len();
         let directions = task.free_directions(&end.active);
-        let quadratic = task.cost.quadratic(&end.p);
-        let clusters = scores_by_recording(task, quadratic.as_ref());
+        let quadratic = task.evaluations.quadratic(&end.p);
+        let clusters = scores_by_recording(task, quadratic.as_deref());
         let data = quadratic.map_or_else(|| DMatrix::zeros(n, n), |q| task.scaled(&q.gauss_newton));
         let mut prior = DMatrix::zeros(n, n);
         end.priors.add_hessian(&mut prior);
@@ -160,15 +161,18 @@ fn square(n: usize, entry: impl Fn(usize, usize) -> Option<f64>) -> Covariance {
 
 /// The gradient of each recording's part of the cost.
 fn scores_by_recording(task: &Task, quadratic: Option<&Quadratic>) -> Vec<DVector<f64>> {
-    let mut clusters: Vec<(&str, DVector<f64>)> = Vec::new();
+    let mut clusters: Vec<DVector<f64>> = Vec::new();
+    let mut known: BTreeMap<String, usize> = BTreeMap::new();
     for (run, score) in task.runs.iter().zip(quadratic.map_or(&[][..], |q| &q.by_run)) {
         let score = task.scaled_vector(score);
-        match clusters.iter_mut().find(|(name, _)| *name == run.recording) {
-            Some((_, sum)) => *sum += score,
-            None => clusters.push((&run.recording, score)),
+        if let Some(cluster) = known.get(&run.recording) {
+            clusters[*cluster] += score;
+        } else {
+            known.insert(run.recording.clone(), clusters.len());
+            clusters.push(score);
         }
     }
-    clusters.into_iter().map(|(_, score)| score).collect()
+    clusters
 }
 
 /// A direction in words: its largest entries by name, `0.71 p5 - 0.70 p7`.

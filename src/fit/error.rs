@@ -3,6 +3,7 @@
 
 #[cfg(feature = "ipopt")]
 use crate::ipopt::IpoptError;
+use crate::ranges::OutOfRange;
 
 /// Why there is no fit.
 #[derive(Debug, thiserror::Error)]
@@ -11,6 +12,11 @@ pub enum FitError {
     /// There is nothing to fit to.
     #[error("there are no recordings to fit to; mark at least one run of the study for training")]
     NoRuns,
+    /// The file that keeps the runs cannot be read.
+    #[error(
+        "the temporary file with the recordings cannot be read; check the disk that holds the folder for temporary files"
+    )]
+    Unreadable,
     /// There is nothing to fit.
     #[error("no parameter is free; set `free = true` for at least one parameter in the model file")]
     NothingFree,
@@ -22,16 +28,9 @@ pub enum FitError {
         /// What is wrong.
         what: String,
     },
-    /// A setting that makes no sense.
-    #[error("[fit] {name} = {value}: {expected}")]
-    BadSetting {
-        /// Its key.
-        name: &'static str,
-        /// The value found.
-        value: f64,
-        /// What it should be.
-        expected: &'static str,
-    },
+    /// A setting with a value that cannot be used.
+    #[error("[fit] {0}")]
+    Setting(#[from] OutOfRange),
     /// A constraint rule that cannot be imposed.
     #[error("[fit.constraints] {rule}: {what}")]
     BadRule {

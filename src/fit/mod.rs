@@ -7,6 +7,7 @@
 //! | `sums` | sums over samples behind the cost, its gradient and the Gauss-Newton matrix |
 //! | [`constraints`] | the constraints as data: curves bounded on grids |
 //! | `settings` | section `[fit]` of a study |
+//! | `evaluations` | the last evaluations of a cost, each made once |
 //! | `task` | what stays fixed during a fit: model, cost, constraints, scales, start |
 //! | `problem` | the task with the priors, scaled, as Ipopt wants it |
 //! | `stages` | runs in shorter pieces, to be fitted first |
@@ -24,6 +25,8 @@ mod covariance;
 #[cfg(feature = "ipopt")]
 mod doubts;
 mod error;
+#[cfg(feature = "ipopt")]
+mod evaluations;
 #[cfg(feature = "ipopt")]
 pub mod multistart;
 #[cfg(feature = "ipopt")]

@@ -2,13 +2,15 @@
 //! It decides nothing about what is fitted and reports nothing: it translates, and remembers what evaluations share.
 
 use super::constraints::Row;
-use super::cost::{Cost, Quadratic};
+use super::cost::Quadratic;
+use super::evaluations::Evaluations;
 use super::settings::Hessian;
 use super::task::Task;
 use crate::ipopt::{IterationReport, Nlp};
 use crate::model::Model;
-use crate::recording::Run;
+use crate::recording::Runs;
 use nalgebra::{DMatrix, DVector};
+use std::rc::Rc;
 
 /// Where a running fit stands.
 #[derive(Clone, Copy, Debug)]
@@ -70,10 +72,12 @@ pub(super) struct Point {
 pub(super) struct Problem<'a, 'f> {
     pub task: &'a Task<'a>,
     /// The cost that is minimised: the task's, or that of its runs cut into shorter pieces.
-    pub cost: &'a Cost<'a>,
+    pub evaluations: &'a Evaluations<'a>,
     pub priors: &'a Priors,
     /// Start, in the parameters' own units.
     pub start: &'a [f64],
+    /// The constraint rows that are imposed: the task's, or none.
+    pub rows: &'a [Row],
     /// Factor from cost to the solver's objective: one over the mean number of samples of a run, so that it is of order one.
     pub factor: f64,
     pub progress: &'f mut dyn FnMut(&Progress) -> bool,
@@ -81,38 +85,55 @@ pub(super) struct Problem<'a, 'f> {
     pub best: Option<Point>,
     /// Number of points evaluated.
     pub evaluated: usize,
-    cached: Option<(Vec<f64>, Quadratic)>,
+    /// Points after which the solve is given up, and whether it was.
+    pub most: usize,
+    pub exhausted: bool,
 }
 
 impl<'a, 'f> Problem<'a, 'f> {
     pub fn new(
         task: &'a Task<'a>,
-        cost: &'a Cost<'a>,
-        runs: &[Run],
+        evaluations: &'a Evaluations<'a>,
+        runs: Runs,
         priors: &'a Priors,
         start: &'a [f64],
+        rows: &'a [Row],
         progress: &'f mut dyn FnMut(&Progress) -> bool,
     ) -> Self {
-        let samples: usize = runs.iter().map(|r| r.measured.len()).sum();
+        let samples = evaluations.cost.samples();
         let factor = runs.len() as f64 / samples.max(1) as f64;
-        Self { task, cost, priors, start, factor, progress, best: None, evaluated: 0, cached: None }
-    }
-
-    fn unscaled(&self, z: &[f64]) -> Vec<f64> {
-        z.iter().zip(&self.task.scales).map(|(z, s)| z * s).collect()
-    }
-
-    /// Value, gradient and Gauss-Newton matrix of the data's part at a point, computed once for all that ask.
-    fn quadratic(&mut self, z: &[f64]) -> Option<&Quadratic> {
-        if self.cached.as_ref().is_none_or(|(at, _)| at != z) {
-            let p = self.unscaled(z);
-            let quadratic = match self.task.settings.hessian {
-                Hessian::GaussNewton => self.cost.quadratic(&p),
-                Hessian::Exact | Hessian::LimitedMemory => self.cost.with_gradient(&p),
-            };
-            self.cached = Some((z.to_vec(), quadratic?));
+        Self {
+            task,
+            evaluations,
+            priors,
+            start,
+            rows,
+            factor,
+            progress,
+            best: None,
+            evaluated: 0,
+            most: usize::MAX,
+            exhausted: false,
         }
-        self.cached.as_ref().map(|(_, quadratic)| quadratic)
+    }
+
+    /// A point in the parameters' own units; the start without the rounding of scaling there and back.
+    pub fn unscaled(&self, z: &[f64]) -> Vec<f64> {
+        let unscaled = |((z, scale), start): ((&f64, &f64), &f64)| if *z == start / scale { *start } else { z * scale };
+        z.iter().zip(&self.task.scales).zip(self.start).map(unscaled).collect()
+    }
+
+    /// Value and gradient of the data's part at a point, with the Gauss-Newton matrix where the solver wants it.
+    fn quadratic(&self, p: &[f64]) -> Option<Rc<Quadratic>> {
+        match self.task.settings.hessian {
+            Hessian::GaussNewton => self.evaluations.quadratic(p),
+            Hessian::Exact | Hessian::LimitedMemory => self.evaluations.with_gradient(p),
+        }
+    }
+
+    /// The rows that are imposed, with their sizes.
+    fn imposed(&self) -> impl Iterator<Item = (&Row, f64)> {
+        self.rows.iter().zip(self.task.sizes.iter().copied())
     }
 
     fn keep_if_best(&mut self, p: Vec<f64>, total: f64) {
@@ -128,7 +149,7 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn constraints(&self) -> usize {
-        self.task.rows.len()
+        self.rows.len()
     }
 
     fn variable_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
@@ -138,8 +159,7 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn constraint_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
-        for (i, row) in self.task.rows.iter().enumerate() {
-            let size = row.size(&self.task.scales);
+        for (i, (row, size)) in self.imposed().enumerate() {
             (lower[i], upper[i]) = ((row.lower - row.constant) / size, (row.upper - row.constant) / size);
         }
     }
@@ -159,8 +179,8 @@ impl Nlp for Problem<'_, '_> {
         }
         // Nearly every point that is tried is accepted: its derivatives are computed with its value.
         let value = match self.task.settings.hessian {
-            Hessian::GaussNewton => self.quadratic(z)?.value,
-            Hessian::Exact | Hessian::LimitedMemory => self.cost.value(&p)?,
+            Hessian::GaussNewton => self.evaluations.quadratic(&p)?.value,
+            Hessian::Exact | Hessian::LimitedMemory => self.evaluations.value(&p)?,
         };
         let total = value + self.priors.value(&p);
         self.keep_if_best(p, total);
@@ -169,7 +189,7 @@ impl Nlp for Problem<'_, '_> {
 
     fn gradient(&mut self, z: &[f64], gradient: &mut [f64]) -> bool {
         let p = self.unscaled(z);
-        let Some(mut total) = self.quadratic(z).map(|q| q.gradient.clone()) else { return false };
+        let Some(mut total) = self.quadratic(&p).map(|q| q.gradient.clone()) else { return false };
         self.priors.add_gradient(&p, &mut total);
         for (j, g) in gradient.iter_mut().enumerate() {
             *g = self.factor * total[j] * self.task.scales[j];
@@ -178,25 +198,24 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn constraint_values(&mut self, z: &[f64], values: &mut [f64]) -> bool {
-        for (value, row) in values.iter_mut().zip(&self.task.rows) {
+        for (value, (row, size)) in values.iter_mut().zip(self.imposed()) {
             let linear: f64 = row.coefficients.iter().zip(&self.task.scales).zip(z).map(|((a, s), z)| a * s * z).sum();
-            *value = linear / row.size(&self.task.scales);
+            *value = linear / size;
         }
         true
     }
 
     fn jacobian_structure(&self) -> Vec<(usize, usize)> {
-        let entries = |(i, row): (usize, &Row)| {
+        let entries = |(i, (row, _)): (usize, (&Row, f64))| {
             let nonzero = row.coefficients.iter().enumerate().filter(|(_, a)| **a != 0.0);
             nonzero.map(move |(j, _)| (i, j)).collect::<Vec<_>>()
         };
-        self.task.rows.iter().enumerate().flat_map(entries).collect()
+        self.imposed().enumerate().flat_map(entries).collect()
     }
 
     fn jacobian_values(&mut self, _z: &[f64], values: &mut [f64]) -> bool {
         let mut values = values.iter_mut();
-        for row in &self.task.rows {
-            let size = row.size(&self.task.scales);
+        for (row, size) in self.imposed() {
             let nonzero = row.coefficients.iter().zip(&self.task.scales).filter(|(a, _)| **a != 0.0);
             for ((a, scale), value) in nonzero.zip(&mut values) {
                 *value = a * scale / size;
@@ -212,8 +231,8 @@ impl Nlp for Problem<'_, '_> {
     fn hessian_values(&mut self, z: &[f64], factor: f64, _multipliers: &[f64], values: &mut [f64]) -> bool {
         let p = self.unscaled(z);
         let matrix = match self.task.settings.hessian {
-            Hessian::Exact => self.cost.hessian(&p),
-            _ => self.quadratic(z).map(|q| q.gauss_newton.clone()),
+            Hessian::Exact => self.evaluations.cost.hessian(&p),
+            _ => self.quadratic(&p).map(|q| q.gauss_newton.clone()),
         };
         let Some(mut matrix) = matrix else { return false };
         self.priors.add_hessian(&mut matrix);
@@ -224,11 +243,13 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn iteration(&mut self, report: &IterationReport) -> bool {
-        (self.progress)(&Progress {
-            iteration: report.iteration,
-            cost: report.objective / self.factor,
-            violation: report.inf_pr,
-            optimality: report.inf_du,
-        })
+        self.exhausted = self.evaluated > self.most;
+        !self.exhausted
+            && (self.progress)(&Progress {
+                iteration: report.iteration,
+                cost: report.objective / self.factor,
+                violation: report.inf_pr,
+                optimality: report.inf_du,
+            })
     }
 }

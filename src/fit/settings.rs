@@ -3,8 +3,8 @@
 
 use super::constraints::ConstraintSettings;
 use super::cost::{CostOptions, Derivatives};
-use super::error::FitError;
 use crate::ipopt::DEFAULT_HISTORY;
+use crate::ranges::{Limited, OutOfRange, counted, within};
 use crate::simulate::Integration;
 use serde::{Deserialize, Serialize};
 
@@ -74,26 +74,22 @@ impl Default for FitSettings {
     }
 }
 
-impl FitSettings {
-    /// Whether the settings make sense.
-    ///
-    /// # Errors
-    /// [`FitError::BadSetting`] for a number that must be positive and is not.
-    pub fn check(&self) -> Result<(), FitError> {
-        let positive = [
-            ("difference_step", self.difference_step),
-            ("tolerance", self.tolerance),
-            ("max_yaw_rate", self.max_yaw_rate),
-            ("correlated_samples", self.correlated_samples),
-        ];
-        match positive.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
-            Some((name, value)) => {
-                Err(FitError::BadSetting { name, value: *value, expected: "it must be a positive number" })
-            }
-            None => Ok(()),
-        }
+impl Limited for FitSettings {
+    fn limits(&self) -> Result<(), OutOfRange> {
+        within("difference_step", self.difference_step, &(1e-12..=0.1), "a step in units of each parameter's scale")?;
+        counted("history", self.history, &(1..=10_000), "steps that the limited-memory Hessian remembers")?;
+        within("tolerance", self.tolerance, &(1e-15..=1.0), "the optimality tolerance of the solver")?;
+        counted("max_iterations", self.max_iterations, &(1..=1_000_000), "iterations of the solver")?;
+        counted("polish_steps", self.polish_steps, &(0..=1000), "Newton steps after the solver")?;
+        within("max_yaw_rate", self.max_yaw_rate, &(1e-6..=10.0), "a yaw rate in rad/s, as the ship turns at most")?;
+        within("correlated_samples", self.correlated_samples, &(1.0..=1e6), "samples that count as one")?;
+        counted("prior_updates", self.prior_updates, &(0..=1000), "times that the weight of the priors is set anew")?;
+        self.constraints.limits()?;
+        self.integration.limits()
     }
+}
 
+impl FitSettings {
     /// The part of the settings that a [`Cost`](super::Cost) takes.
     pub fn cost_options(&self) -> CostOptions {
         CostOptions {

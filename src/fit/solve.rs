@@ -9,19 +9,23 @@
 //!   (`monotone`), so that each step must lower the cost. Without hull coefficients Ipopt's adaptive barrier takes fewer
 //!   iterations.
 //! - A trial point that cannot be simulated, or whose mass matrix cannot be inverted, has no value: the solver steps back.
+//! - Without hull coefficients the first try leaves the constraint rows out (see [`Way::Inside`]): most fits end inside all of
+//!   them, a third of the iterations is enough, and each is cheaper. Else the solver starts again with all rows.
 //! - The best feasible point of all evaluations is kept; the solver starts again from it where it ended elsewhere.
 //! - Where hull coefficients are free, shorter pieces of the runs are fitted first (see `stages`).
 
 use super::constraints::Row;
 use super::cost::Cost;
 use super::error::FitError;
+use super::evaluations::Evaluations;
 use super::problem::{Point, Priors, Problem, Progress};
 use super::settings::Hessian;
 use super::stages;
 use super::subspace::inverse;
 use super::task::{ActiveSet, Task};
 use crate::ipopt::{self, Counts, HessianMode, IpoptError, OptionValue, Options, Solution, Status};
-use crate::recording::Run;
+use crate::recording::Runs;
+use nalgebra::{DMatrix, DVector};
 
 /// How often the solver starts again from a better point that it left.
 const RESTARTS: usize = 3;
@@ -38,6 +42,19 @@ const SAME_WEIGHT: f64 = 1e-3;
 
 /// Barrier parameter at the start over the objective there. A thousand constraints then weigh about as much as the cost.
 const BARRIER_SHARE: f64 = 1e-3;
+
+/// Share of the cost that its rounding may hide.
+const ROUNDING: f64 = 1e-12;
+
+/// Barrier parameter, iterations, evaluations and distance from every bound (in scales) of a solve that leaves the constraint
+/// rows out.
+const INSIDE_BARRIER: f64 = 1e-5;
+const INSIDE_ITERATIONS: usize = 15;
+const INSIDE_EVALUATIONS: usize = 20;
+const INSIDE_DISTANCE: f64 = 1e-3;
+
+/// Step, relative to the scaled parameters, that is taken without asking whether the cost fell: its rounding hides that.
+const INSIDE_TINY_STEP: f64 = 1e-7;
 
 /// Iterations of a fit to shorter pieces, and its tolerance: it only has to bring the fit near.
 const STAGE_ITERATIONS: usize = 100;
@@ -75,10 +92,40 @@ struct Descent {
     evaluated: usize,
 }
 
+/// How the solver is set out.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    /// Without constraint rows and with a barrier that is small from the start, for an optimum inside all limits.
+    Inside,
+    /// With all rows.
+    Whole,
+    /// With all rows, from a point near the optimum.
+    Again,
+}
+
+/// A step in scaled parameters, and by how much a quadratic model of the cost expects it to fall.
+struct NewtonStep {
+    direction: DVector<f64>,
+    gain: f64,
+}
+
+/// What one run of the solver left.
+struct Attempt {
+    status: Status,
+    solution: Option<Solution>,
+    /// Where it ended, put back within the bounds.
+    at: Option<Vec<f64>>,
+    /// The best feasible point it met.
+    best: Option<Point>,
+    evaluated: usize,
+    /// Whether it was given up for the number of its evaluations.
+    exhausted: bool,
+}
+
 /// What is solved: a cost over runs, and where from.
 struct Stage<'a> {
-    cost: &'a Cost<'a>,
-    runs: &'a [Run],
+    evaluations: &'a Evaluations<'a>,
+    runs: Runs<'a>,
     tolerance: f64,
     max_iterations: usize,
     /// Whether the start is near the optimum: the barrier then starts lower still, and the bounds do not push the start away.
@@ -92,7 +139,7 @@ impl Task<'_> {
         let (parts, from) = self.approach(&mut work, progress)?;
         let settings = self.settings;
         let mut stage = Stage {
-            cost: self.cost,
+            evaluations: &self.evaluations,
             runs: self.runs,
             tolerance: settings.tolerance,
             max_iterations: settings.max_iterations,
@@ -103,7 +150,7 @@ impl Task<'_> {
         let mut end: Option<Descent> = None;
         let mut p = from;
         for _ in 0..rounds {
-            let value = self.cost.value(&p).ok_or_else(|| self.diverged())?;
+            let value = self.evaluations.value(&p).ok_or_else(|| self.diverged())?;
             let weight = self.weight(self.cost, self.runs, value);
             if end.is_some() && (weight - priors.weight).abs() <= SAME_WEIGHT * weight {
                 break;
@@ -130,15 +177,20 @@ impl Task<'_> {
     ) -> Result<(usize, Vec<f64>), FitError> {
         let parts = stages::parts(self);
         let mut p = self.start.clone();
+        if parts < 2 {
+            return if self.start_cost.is_finite() { Ok((parts, p)) } else { Err(self.diverged()) };
+        }
         let mut priors = Priors::of(self.model);
         for parts in stages::falling(parts) {
-            let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts);
-            let cost = Cost::weighted(self.model, &pieces, weights, self.cost_options())?;
-            let Some(value) = cost.value(&p) else { continue };
-            priors.weight = self.weight(&cost, &pieces, value);
+            let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts)?;
+            let pieces = Runs::from(&pieces);
+            let cost = Cost::weighted(self.model, pieces, weights, self.cost_options())?;
+            let evaluations = Evaluations::of(&cost);
+            let Some(value) = evaluations.value(&p) else { continue };
+            priors.weight = self.weight(&cost, pieces, value);
             let stage = Stage {
-                cost: &cost,
-                runs: &pieces,
+                evaluations: &evaluations,
+                runs: pieces,
                 tolerance: self.settings.tolerance.max(STAGE_TOLERANCE),
                 max_iterations: self.settings.max_iterations.min(STAGE_ITERATIONS),
                 near: false,
@@ -150,7 +202,7 @@ impl Task<'_> {
             }
         }
         priors.weight = self.weight(self.cost, self.runs, self.start_cost);
-        let total = |p: &[f64]| Some(self.cost.value(p)? + priors.value(p));
+        let total = |p: &[f64]| Some(self.evaluations.value(p)? + priors.value(p));
         match (total(&p), total(&self.start)) {
             (Some(staged), Some(start)) if staged <= start || !self.is_feasible(&self.start) => Ok((parts, p)),
             (Some(_), None) => Ok((parts, p)),
@@ -160,13 +212,13 @@ impl Task<'_> {
     }
 
     /// Weight of the priors at a cost: see [`Priors`].
-    fn weight(&self, cost: &Cost, runs: &[Run], value: f64) -> f64 {
+    fn weight(&self, cost: &Cost, runs: Runs, value: f64) -> f64 {
         self.variance_of(cost, runs.len(), value) * self.settings.correlated_samples / runs.len() as f64
     }
 
-    fn options(&self, stage: &Stage, objective: f64, again: bool) -> Options {
+    fn options(&self, stage: &Stage, objective: f64, way: Way) -> Options {
         let number = |name: &str, value: f64| (name.to_owned(), OptionValue::Number(value));
-        let near = stage.near || again;
+        let near = stage.near || way == Way::Again;
         let strategy = |word: &str| ("mu_strategy".to_owned(), OptionValue::Text(word.to_owned()));
         let mut extra = vec![strategy("adaptive")];
         if near || stages::frees_hull(self) {
@@ -177,9 +229,16 @@ impl Task<'_> {
             let pushes = ["bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"];
             extra.extend(pushes.map(|name| number(name, 1e-8)));
         }
+        let mut max_iterations = stage.max_iterations;
+        if way == Way::Inside {
+            let by_barrier = ("bound_mult_init_method".to_owned(), OptionValue::Text("mu-based".to_owned()));
+            let (barrier, tiny_step) = (number("mu_init", INSIDE_BARRIER), number("tiny_step_tol", INSIDE_TINY_STEP));
+            extra = vec![strategy("monotone"), barrier, by_barrier, tiny_step];
+            max_iterations = max_iterations.min(INSIDE_ITERATIONS);
+        }
         Options {
             tolerance: stage.tolerance,
-            max_iterations: stage.max_iterations,
+            max_iterations,
             hessian: match self.settings.hessian {
                 Hessian::LimitedMemory => HessianMode::LimitedMemory { history: self.settings.history },
                 Hessian::GaussNewton | Hessian::Exact => HessianMode::Given,
@@ -191,7 +250,8 @@ impl Task<'_> {
         }
     }
 
-    /// Solves from `from`, and again from the best feasible point where the solver ended above it.
+    /// Solves from `from`: inside the limits where that may do, else under all of them, and again from the best feasible point
+    /// where the solver ended above it.
     fn descend(
         &self,
         stage: &Stage,
@@ -200,30 +260,16 @@ impl Task<'_> {
         work: &mut Work,
         progress: &mut dyn FnMut(&Progress) -> bool,
     ) -> Result<Descent, FitError> {
-        let total = |p: &[f64]| Some(stage.cost.value(p)? + priors.value(p));
-        let mut best = total(from).map(|total| Point { p: from.to_vec(), total });
-        let feasible_start = self.is_feasible(from);
-        if !feasible_start {
-            best = None;
-        }
-        let mut evaluated = 0;
+        let total = |p: &[f64]| Some(stage.evaluations.value(p)? + priors.value(p));
+        let mut best = total(from).filter(|_| self.is_feasible(from)).map(|total| Point { p: from.to_vec(), total });
         let mut start = from.to_vec();
-        for attempt in 0..=RESTARTS {
-            let mut problem = Problem::new(self, stage.cost, stage.runs, priors, &start, progress);
-            let objective = problem.factor * total(&start).unwrap_or(1.0);
-            let outcome = ipopt::solve(&mut problem, &self.options(stage, objective, attempt > 0));
-            let found = problem.best.take();
-            evaluated += problem.evaluated;
-            let (status, solution) = match outcome {
-                Ok(solution) => (solution.status.clone(), Some(solution)),
-                // The start could be evaluated, a point near it could not.
-                Err(IpoptError::NoIterate { status }) => (status, None),
-                Err(error) => return Err(error.into()),
-            };
-            if let Some(solution) = &solution {
-                work.add(solution);
-            }
-            let at = solution.as_ref().map(|s| self.within_bounds(&self.unscaled(&s.x)));
+        let mut evaluated = 0;
+        let mut restarts = 0;
+        let mut way = if self.may_end_inside(stage) { Way::Inside } else { Way::Whole };
+        loop {
+            let attempt = self.attempt(stage, &start, way, priors, work, progress)?;
+            evaluated += attempt.evaluated;
+            let Attempt { status, solution, at, best: found, exhausted, .. } = attempt;
             let better = found.filter(|f| best.as_ref().is_none_or(|b| f.total < b.total));
             let improved = better
                 .as_ref()
@@ -231,24 +277,84 @@ impl Task<'_> {
             best = better.or(best);
             let reached = at.as_ref().and_then(|p| total(p).filter(|_| self.has_mass(p)));
             let is_best = |value: f64| best.as_ref().is_none_or(|b| value <= b.total + BETTER * b.total.abs());
-            if let (Some(p), Some(value), true) = (&at, reached, status.is_success())
+            let is_answer = |p: &[f64]| status.is_success() && (way != Way::Inside || self.is_inside(p));
+            if let (Some(p), Some(value)) = (&at, reached)
+                && is_answer(p)
                 && is_best(value)
             {
                 let better = best.filter(|b| b.total < value - SAME * value.abs());
                 let p = better.map_or_else(|| p.clone(), |b| b.p);
                 return Ok(Descent { p, status, last: solution.clone(), solution, evaluated });
             }
-            let given_up = matches!(status, Status::Stopped | Status::MaxIterations { .. } | Status::Panicked(_));
+            let stopped = !exhausted && matches!(status, Status::Stopped | Status::Panicked(_));
+            if way == Way::Inside && !stopped {
+                way = Way::Whole;
+                continue;
+            }
+            let given_up = stopped || matches!(status, Status::MaxIterations { .. });
             match &best {
-                Some(best) if improved && attempt < RESTARTS && !given_up => start.clone_from(&best.p),
+                Some(best) if improved && restarts < RESTARTS && !given_up => start.clone_from(&best.p),
                 _ => {
                     let fallback = || at.filter(|_| reached.is_some()).unwrap_or_else(|| from.to_vec());
                     let p = best.map_or_else(fallback, |b| b.p);
                     return Ok(Descent { p, status, solution: None, last: solution, evaluated });
                 }
             }
+            (restarts, way) = (restarts + 1, Way::Again);
         }
-        Ok(Descent { p: start, status: Status::TinyStep, solution: None, last: None, evaluated })
+    }
+
+    /// One run of the solver.
+    fn attempt(
+        &self,
+        stage: &Stage,
+        start: &[f64],
+        way: Way,
+        priors: &Priors,
+        work: &mut Work,
+        progress: &mut dyn FnMut(&Progress) -> bool,
+    ) -> Result<Attempt, FitError> {
+        let rows = if way == Way::Inside { &[] } else { &self.rows[..] };
+        let mut problem = Problem::new(self, stage.evaluations, stage.runs, priors, start, rows, progress);
+        if way == Way::Inside {
+            problem.most = INSIDE_EVALUATIONS;
+        }
+        let total = stage.evaluations.value(start).map(|value| value + priors.value(start));
+        let objective = problem.factor * total.unwrap_or(1.0);
+        let (status, solution) = match ipopt::solve(&mut problem, &self.options(stage, objective, way)) {
+            Ok(solution) => (solution.status.clone(), Some(solution)),
+            // The start could be evaluated, a point near it could not.
+            Err(IpoptError::NoIterate { status }) => (status, None),
+            Err(error) => return Err(error.into()),
+        };
+        if let Some(solution) = &solution {
+            work.add(solution);
+        }
+        let at = solution.as_ref().map(|s| self.within_bounds(&problem.unscaled(&s.x)));
+        Ok(Attempt {
+            status,
+            solution,
+            at,
+            best: problem.best.take(),
+            evaluated: problem.evaluated,
+            exhausted: problem.exhausted,
+        })
+    }
+
+    /// Whether a solve may leave the constraint rows out at first. Free hull coefficients need all rows to keep the solver's
+    /// path inside, and without the Gauss-Newton matrix the iterations would not be few.
+    fn may_end_inside(&self, stage: &Stage) -> bool {
+        self.settings.hessian == Hessian::GaussNewton
+            && !stages::frees_hull(self)
+            && stage.max_iterations > INSIDE_ITERATIONS
+    }
+
+    /// Whether `p` keeps every row and is away from every bound, so that no limit holds it back.
+    fn is_inside(&self, p: &[f64]) -> bool {
+        let away = |((p, (lower, upper)), scale): ((&f64, &(f64, f64)), &f64)| {
+            (p - lower).min(upper - p) > INSIDE_DISTANCE * scale
+        };
+        p.iter().zip(&self.bounds).zip(&self.scales).all(away) && self.rows.iter().all(|row| row.violation(p) == 0.0)
     }
 
     fn unscaled(&self, z: &[f64]) -> Vec<f64> {
@@ -257,8 +363,8 @@ impl Task<'_> {
 
     /// The better of where the solver ended and the start, with what holds it back and why it is the answer.
     fn settle(&self, end: Descent, priors: Priors, work: Work, parts: usize) -> End {
-        let total = |p: &[f64]| self.cost.value(p).map_or(f64::INFINITY, |value| value + priors.value(p));
-        let (here, there) = (total(&end.p), total(&self.start));
+        let here = self.evaluations.value(&end.p).map_or(f64::INFINITY, |value| value + priors.value(&end.p));
+        let there = self.start_cost + priors.value(&self.start);
         let start_is_better = there < here - BETTER * here.abs() && self.is_feasible(&self.start);
         let p = if start_is_better { self.start.clone() } else { end.p };
         let solution = end.solution.filter(|_| !start_is_better);
@@ -286,10 +392,11 @@ impl Task<'_> {
             return Ok(());
         }
         let p = end.last.as_ref().map_or_else(|| end.p.clone(), |s| self.within_bounds(&self.unscaled(&s.x)));
-        let broken = |row: &&Row| row.violation(&p) / row.size(&self.scales);
-        let worst = self.rows.iter().max_by(|a, b| broken(a).total_cmp(&broken(b)));
+        let broken = |i: usize| self.rows[i].violation(&p) / self.sizes[i];
+        let worst = (0..self.rows.len()).max_by(|a, b| broken(*a).total_cmp(&broken(*b)));
         match worst {
-            Some(row) if broken(&row) > 1e-6 => {
+            Some(worst) if broken(worst) > 1e-6 => {
+                let row = &self.rows[worst];
                 Err(FitError::Infeasible { rule: row.rule, sentence: row.sentence(&p), violation: row.violation(&p) })
             }
             _ => Ok(()),
@@ -300,11 +407,13 @@ impl Task<'_> {
     fn active_set(&self, p: &[f64], solution: &Solution) -> ActiveSet {
         let least = 1e3 * self.settings.tolerance * self.settings.tolerance.min(1e-3);
         let is_active = |multiplier: f64, slack: f64| multiplier.abs() > slack.abs().max(least);
-        let rows = (0..self.rows.len()).filter(|i| {
+        // A solution inside all limits has no multipliers of rows.
+        let multipliers = solution.constraint_multipliers.iter().enumerate();
+        let rows = multipliers.filter(|(i, multiplier)| {
             let row = &self.rows[*i];
             let value = row.value(p);
-            let slack = (value - row.lower).abs().min((row.upper - value).abs()) / row.size(&self.scales);
-            is_active(solution.constraint_multipliers[*i], slack)
+            let slack = (value - row.lower).abs().min((row.upper - value).abs()) / self.sizes[*i];
+            is_active(**multiplier, slack)
         });
         let mut bounds = Vec::new();
         for (j, (lower, upper)) in self.bounds.iter().enumerate() {
@@ -314,7 +423,7 @@ impl Task<'_> {
                 bounds.push((j, "upper"));
             }
         }
-        ActiveSet { rows: rows.collect(), bounds }
+        ActiveSet { rows: rows.map(|(i, _)| i).collect(), bounds }
     }
 
     /// Rows and bounds that a point touches, where no multipliers say which of them hold it back.
@@ -323,7 +432,7 @@ impl Task<'_> {
         let touches = |i: &usize| {
             let row = &self.rows[*i];
             let value = row.value(p);
-            (value - row.lower).abs().min((row.upper - value).abs()) <= TOUCH * row.size(&self.scales)
+            (value - row.lower).abs().min((row.upper - value).abs()) <= TOUCH * self.sizes[*i]
         };
         let mut bounds = Vec::new();
         for (j, (lower, upper)) in self.bounds.iter().enumerate() {
@@ -343,33 +452,45 @@ impl Task<'_> {
             return;
         }
         let z = self.free_directions(&end.active);
-        let total = |p: &[f64]| Some(self.cost.value(p)? + end.priors.value(p));
-        let Some(mut best) = total(&end.p) else { return };
+        let total = |p: &[f64]| Some(self.evaluations.value(p)? + end.priors.value(p));
+        let (Some(mut best), Some(mut step)) = (total(&end.p), self.newton_step(&end.p, &end.priors, &z)) else {
+            return;
+        };
+        let start = self.start_cost + end.priors.value(&self.start);
         for _ in 0..self.settings.polish_steps {
-            let Some(quadratic) = self.cost.quadratic(&end.p) else { return };
-            let (mut gradient, mut hessian) = (quadratic.gradient, quadratic.gauss_newton);
-            if self.settings.hessian == Hessian::Exact {
-                let Some(exact) = self.cost.hessian(&end.p) else { return };
-                hessian = exact;
-            }
-            end.priors.add_gradient(&end.p, &mut gradient);
-            end.priors.add_hessian(&mut hessian);
-            let inverse = inverse(&self.scaled(&hessian), &z);
-            let step = -(inverse.matrix * self.scaled_vector(&gradient));
-            let moved: Vec<f64> = (0..step.len()).map(|j| end.p[j] + step[j] * self.scales[j]).collect();
+            let moved: Vec<f64> = (0..end.p.len()).map(|j| end.p[j] + step.direction[j] * self.scales[j]).collect();
             let inside = |(j, p): (usize, &f64)| *p >= self.bounds[j].0 && *p <= self.bounds[j].1;
-            let broken = |row: &Row| row.violation(&moved) > row.violation(&end.p) + 1e-9 * row.size(&self.scales);
-            if !moved.iter().enumerate().all(inside) || self.rows.iter().any(broken) || !self.has_mass(&moved) {
+            let broken = |(row, size): (&Row, &f64)| row.violation(&moved) > row.violation(&end.p) + 1e-9 * size;
+            let outside = !moved.iter().enumerate().all(inside) || self.rows.iter().zip(&self.sizes).any(broken);
+            if outside || !self.has_mass(&moved) || step.gain <= f64::EPSILON * best {
                 return;
             }
-            match total(&moved) {
-                Some(value) if value < best => (end.p, best) = (moved, value),
-                _ => return,
-            }
-            if step.amax() < 1e-14 {
+            let Some(next) = self.newton_step(&moved, &end.priors, &z) else { return };
+            let Some(value) = total(&moved) else { return };
+            // A gain that the rounding of the cost hides still shows in the gradient.
+            let hidden = step.gain <= ROUNDING * best
+                && next.gain < step.gain
+                && value <= best * (1.0 + ROUNDING)
+                && value <= start;
+            if !(value < best || hidden) {
                 return;
             }
+            (end.p, best, step) = (moved, value, next);
         }
+    }
+
+    /// The step to the minimum of the cost's quadratic model within the span of `directions`.
+    fn newton_step(&self, p: &[f64], priors: &Priors, directions: &DMatrix<f64>) -> Option<NewtonStep> {
+        let quadratic = self.evaluations.quadratic(p)?;
+        let (mut gradient, mut hessian) = (quadratic.gradient.clone(), quadratic.gauss_newton.clone());
+        if self.settings.hessian == Hessian::Exact {
+            hessian = self.cost.hessian(p)?;
+        }
+        priors.add_gradient(p, &mut gradient);
+        priors.add_hessian(&mut hessian);
+        let gradient = self.scaled_vector(&gradient);
+        let direction = -(inverse(&self.scaled(&hessian), directions).matrix * &gradient);
+        Some(NewtonStep { gain: -0.5 * direction.dot(&gradient), direction })
     }
 }
 

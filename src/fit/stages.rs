@@ -8,8 +8,9 @@
 //! Modelling of Chemical Reaction Systems (1981) 102-125; here the states at the cuts are the measured ones.
 
 use super::cost::Cost;
+use super::error::FitError;
 use super::task::Task;
-use crate::recording::{Run, or_nan};
+use crate::recording::{Run, RunStore, Runs, or_nan};
 use crate::state::STATES;
 
 /// Steps that a piece has at least.
@@ -30,8 +31,8 @@ pub(super) fn parts(task: &Task) -> usize {
     }
     let longest = task.runs.iter().map(|r| r.measured.len().saturating_sub(1)).max().unwrap_or(0);
     let cost = |parts: usize| {
-        let (pieces, weights) = cut(task.runs, task.cost.weights(), parts);
-        let cost = Cost::weighted(task.model, &pieces, weights, task.cost_options()).ok()?;
+        let (pieces, weights) = cut(task.runs, task.cost.weights(), parts).ok()?;
+        let cost = Cost::weighted(task.model, Runs::from(&pieces), weights, task.cost_options()).ok()?;
         cost.value(&task.start).map(|c| c * pieces.len() as f64)
     };
     let mut parts = 1;
@@ -61,9 +62,23 @@ pub(super) fn falling(parts: usize) -> impl Iterator<Item = usize> {
 /// Every run cut into `parts` pieces of equal length, each started from the state measured there.
 ///
 /// A run whose state is not measured at a cut stays in one piece there. Pieces keep the weights and the name of their run.
-pub(super) fn cut(runs: &[Run], weights: &[[f64; STATES]], parts: usize) -> (Vec<Run>, Vec<[f64; STATES]>) {
-    let weighted = runs.iter().zip(weights);
-    weighted.flat_map(|(run, weights)| cut_run(run, parts).into_iter().map(|piece| (piece, *weights))).unzip()
+///
+/// # Errors
+/// [`FitError::Unreadable`] where the pieces of runs in a file cannot be kept in another.
+pub(super) fn cut(
+    runs: Runs,
+    weights: &[[f64; STATES]],
+    parts: usize,
+) -> Result<(RunStore, Vec<[f64; STATES]>), FitError> {
+    let mut pieces = RunStore::new(if runs.held() { usize::MAX } else { 0 });
+    let mut kept = Vec::new();
+    for (run, weights) in runs.iter().zip(weights) {
+        for piece in cut_run(&run, parts) {
+            pieces.push(piece).map_err(|_| FitError::Unreadable)?;
+            kept.push(*weights);
+        }
+    }
+    Ok((pieces, kept))
 }
 
 fn cut_run(run: &Run, parts: usize) -> Vec<Run> {
@@ -91,6 +106,7 @@ mod tests {
     use super::*;
     use crate::recording::{Split, measured};
     use crate::state::Inputs;
+    use std::borrow::Cow;
 
     fn run(steps: usize) -> Run {
         Run {
@@ -107,13 +123,18 @@ mod tests {
         }
     }
 
+    fn held(runs: &[Run], weights: &[[f64; STATES]]) -> (Vec<Run>, Vec<[f64; STATES]>) {
+        let (pieces, weights) = cut(Runs::from(runs), weights, 2).unwrap();
+        (Runs::from(&pieces).iter().map(Cow::into_owned).collect(), weights)
+    }
+
     fn pieces(run: Run) -> Vec<Run> {
-        cut(&[run], &[[1.0; STATES]], 2).0
+        held(&[run], &[[1.0; STATES]]).0
     }
 
     #[test]
     fn pieces_share_the_sample_at_a_cut_and_start_from_what_was_measured_there() {
-        let (pieces, weights) = cut(&[run(40), run(8)], &[[1.0; STATES], [2.0; STATES]], 2);
+        let (pieces, weights) = held(&[run(40), run(8)], &[[1.0; STATES], [2.0; STATES]]);
         assert_eq!(weights, [[1.0; STATES], [1.0; STATES], [2.0; STATES]]);
         assert_eq!(pieces.iter().map(|p| p.measured.len()).collect::<Vec<_>>(), [21, 21, 9]);
         assert_eq!(pieces[0].initial, [-1.0; 6]);

@@ -12,8 +12,9 @@ use super::subspace::inverse;
 use super::task::Task;
 use crate::ipopt::Counts;
 use crate::model::Model;
-use crate::recording::Run;
-use crate::validity::{self, Coverage};
+use crate::ranges::Limited;
+use crate::recording::Runs;
+use crate::validity::{self, Count, Coverage};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::time::Instant;
@@ -142,14 +143,15 @@ fn serialize_counts<S: serde::Serializer>(counts: &Counts, serializer: S) -> Res
 /// # Errors
 /// See [`FitError`]: nothing to fit or to fit to, unusable runs or settings, a simulation that diverges at the start,
 /// constraints that contradict each other.
-pub fn fit(
-    model: &Model,
-    runs: &[Run],
+pub fn fit<'a>(
+    model: &'a Model,
+    runs: impl Into<Runs<'a>>,
     settings: &FitSettings,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Fit, FitError> {
     let clock = Instant::now();
-    settings.check()?;
+    settings.limits()?;
+    let runs = runs.into();
     let cost = Cost::new(model, runs, settings.cost_options())?;
     let task = Task::new(model, &cost, runs, settings)?;
     let mut end = task.solve(progress)?;
@@ -159,14 +161,15 @@ pub fn fit(
 
 /// The outcome of a task from where it ended.
 fn describe(task: &Task, end: End, clock: Instant) -> Fit {
-    let cost = task.cost.value(&end.p).unwrap_or(task.start_cost);
+    let cost = task.evaluations.value(&end.p).unwrap_or(task.start_cost);
     let model = task.model_at(&end.p);
-    let statistics = ResidualStatistics::of(task, &model);
+    let statistics = ResidualStatistics::of(task, &end.p);
     let covariances = Covariances::of(task, &end, cost, statistics.likeness);
     let doubts = statistics.doubts(&covariances, task.scales.len());
-    let samples = task.runs.iter().flat_map(validity::samples);
+    let mut validity = Count::new(&model);
+    task.runs.iter().for_each(|run| validity.add(validity::samples(&run)));
     Fit {
-        validity: validity::outside(&model, samples),
+        validity: validity.coverage(),
         converged: end.converged,
         headline: headline(end.converged, &end.words, &doubts),
         doubts,

@@ -4,11 +4,13 @@
 use super::constraints::{self, Row};
 use super::cost::{Cost, CostOptions};
 use super::error::FitError;
+use super::evaluations::Evaluations;
 use super::settings::FitSettings;
 use super::subspace::null_space;
 use crate::model::{Model, Parameter};
-use crate::recording::Run;
+use crate::recording::Runs;
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeSet;
 
 /// Share of its largest possible value that the product of the off-diagonal entries of the sway-yaw mass matrix may reach.
 const MASS_MARGIN: f64 = 0.9;
@@ -20,9 +22,13 @@ const KEPT: f64 = 1e-7;
 pub(super) struct Task<'a> {
     pub model: &'a Model,
     pub cost: &'a Cost<'a>,
-    pub runs: &'a [Run],
+    /// Its evaluations.
+    pub evaluations: Evaluations<'a>,
+    pub runs: Runs<'a>,
     pub settings: &'a FitSettings,
     pub rows: Vec<Row>,
+    /// Size of each row over a change of one scale in every free parameter.
+    pub sizes: Vec<f64>,
     pub scales: Vec<f64>,
     pub bounds: Vec<(f64, f64)>,
     pub start: Vec<f64>,
@@ -43,7 +49,7 @@ impl<'a> Task<'a> {
     pub fn new(
         model: &'a Model,
         cost: &'a Cost<'a>,
-        runs: &'a [Run],
+        runs: Runs<'a>,
         settings: &'a FitSettings,
     ) -> Result<Self, FitError> {
         let free: Vec<&Parameter> = cost.free().iter().map(|i| &model.parameters[*i]).collect();
@@ -54,14 +60,19 @@ impl<'a> Task<'a> {
         let mut bounds: Vec<(f64, f64)> = free.iter().map(|p| (p.lower, p.upper)).collect();
         keep_mass_matrix_positive(model, &free, &mut bounds);
         let start: Vec<f64> = free.iter().zip(&bounds).map(|(p, (lo, hi))| p.value.max(*lo).min(*hi)).collect();
-        let start_cost = cost.value(&start).unwrap_or(f64::INFINITY);
-        let scales = free.iter().map(|p| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 }).collect();
-        let mut sessions: Vec<String> = runs.iter().map(|r| r.session.clone()).collect();
-        sessions.sort();
-        sessions.dedup();
-        sessions.retain(|s| model.sessions.contains_key(s));
+        let evaluations = Evaluations::of(cost);
+        let start_cost = evaluations.value(&start).unwrap_or(f64::INFINITY);
+        let scale = |p: &&Parameter| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 };
+        let scales: Vec<f64> = free.iter().map(scale).collect();
+        let sizes = rows.iter().map(|row| row.size(&scales)).collect();
+        let mut sessions: Vec<String> = if model.sessions.is_empty() {
+            Vec::new()
+        } else {
+            let met: BTreeSet<String> = runs.iter().map(|r| r.session.clone()).collect();
+            met.into_iter().filter(|s| model.sessions.contains_key(s)).collect()
+        };
         sessions.push(String::new());
-        Ok(Self { model, cost, runs, settings, rows, scales, bounds, start, start_cost, sessions })
+        Ok(Self { model, cost, evaluations, runs, settings, rows, sizes, scales, bounds, start, start_cost, sessions })
     }
 
     /// How costs of this task are evaluated.
@@ -71,7 +82,7 @@ impl<'a> Task<'a> {
 
     /// The error of a start whose simulation diverges.
     pub fn diverged(&self) -> FitError {
-        let first = || (self.runs[0].recording.clone(), self.runs[0].start_time());
+        let first = || self.runs.get(0).map_or((String::new(), 0.0), |run| (run.recording.clone(), run.start_time()));
         let (run, time) = self.cost.divergence(&self.start).unwrap_or_else(first);
         FitError::Diverged { run, time }
     }
@@ -104,7 +115,7 @@ impl<'a> Task<'a> {
         let inside =
             |((p, (lo, hi)), scale): ((&f64, &(f64, f64)), &f64)| *p >= lo - KEPT * scale && *p <= hi + KEPT * scale;
         p.iter().zip(&self.bounds).zip(&self.scales).all(inside)
-            && self.rows.iter().all(|row| row.violation(p) <= KEPT * row.size(&self.scales))
+            && self.rows.iter().zip(&self.sizes).all(|(row, size)| row.violation(p) <= KEPT * size)
             && self.has_mass(p)
     }
 
@@ -129,9 +140,7 @@ impl<'a> Task<'a> {
         let n = self.scales.len();
         let mut normals: Vec<DVector<f64>> = Vec::new();
         for i in &active.rows {
-            let row = &self.rows[*i];
-            let size = row.size(&self.scales);
-            let scaled = row.coefficients.iter().zip(&self.scales).map(|(a, s)| a * s / size);
+            let scaled = self.rows[*i].coefficients.iter().zip(&self.scales).map(|(a, s)| a * s / self.sizes[*i]);
             normals.push(DVector::from_iterator(n, scaled));
         }
         for (j, _) in &active.bounds {

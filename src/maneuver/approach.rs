@@ -4,6 +4,7 @@
 use super::error::ManeuverError;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
+use crate::ranges::{Limited, OutOfRange, within};
 use crate::state::{Force, Inputs, STATES, State};
 use crate::units::GRAVITY;
 use serde::{Deserialize, Serialize};
@@ -71,7 +72,7 @@ impl ManeuverSettings {
     /// # Errors
     /// [`ManeuverError`]: an impossible setting, or no balance between thrust and resistance.
     pub fn approach(&self, model: &Model, theta: &[f64]) -> Result<Approach, ManeuverError> {
-        self.check()?;
+        self.limits()?;
         let length = model.ship.hull.lpp;
         let (speed, n, balanced) = match (self.speed, self.n_rpm) {
             (Some(speed), Some(rpm)) => (speed, rpm / 60.0, false),
@@ -81,6 +82,12 @@ impl ManeuverSettings {
                 (speed, balanced_rate(model, theta, speed)?, true)
             }
         };
+        let step = 0.02 * length / speed;
+        if let Some(value) = self.step {
+            let range = 0.01 * step..=10.0 * step;
+            within("step", value, &range, "5 to 5000 integration steps while the ship sails its length")?;
+        }
+        let step = self.step.unwrap_or(step);
         let usual = if length < 20.0 { 2.32 * (200.0 / length).sqrt() } else { 2.32 };
         let astern = self.astern_rpm.map_or(-n, |rpm| rpm / 60.0);
         let engine = (n - astern).abs().max(1e-3) * speed / (2.0 * length);
@@ -91,12 +98,13 @@ impl ManeuverSettings {
             rudder_rate: self.rudder_rate_deg_s.unwrap_or(usual).to_radians(),
             astern,
             engine_rate: self.engine_rate_rpm_s.map_or(engine, |rate| rate / 60.0),
-            step: self.step.unwrap_or(0.02 * length / speed),
+            step,
         })
     }
+}
 
-    fn check(&self) -> Result<(), ManeuverError> {
-        let fail = |key, found, expected| Err(ManeuverError::Setting { key, found, expected });
+impl Limited for ManeuverSettings {
+    fn limits(&self) -> Result<(), OutOfRange> {
         let positive = [
             ("speed", self.speed),
             ("n_rpm", self.n_rpm),
@@ -105,18 +113,20 @@ impl ManeuverSettings {
             ("step", self.step),
         ];
         for (key, value) in positive {
-            if let Some(found) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-                return fail(key, found, "must be a positive number");
+            if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+                return Err(OutOfRange { key, value, expected: "a positive number".into() });
             }
         }
-        if let Some(found) = self.astern_rpm.filter(|v| !(v.is_finite() && *v < 0.0)) {
-            return fail("astern_rpm", found, "must be negative: the propeller turns astern");
+        if let Some(value) = self.astern_rpm.filter(|v| !(v.is_finite() && *v < 0.0)) {
+            return Err(OutOfRange {
+                key: "astern_rpm",
+                value,
+                expected: "negative: the propeller turns astern".into(),
+            });
         }
         let angles = self.zigzag_deg.iter().flatten().flatten().map(|a| ("zigzag_deg", *a));
-        for (key, found) in angles.chain(self.turning_deg.map(|a| ("turning_deg", a))) {
-            if !(found > 0.0 && found <= 90.0) {
-                return fail(key, found, "must be an angle between 0 and 90 degrees; both sides are sailed");
-            }
+        for (key, value) in angles.chain(self.turning_deg.map(|a| ("turning_deg", a))) {
+            within(key, value, &(0.1..=90.0), "an angle in degrees; both sides are sailed")?;
         }
         Ok(())
     }

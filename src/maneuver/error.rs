@@ -1,20 +1,15 @@
 //! Why a trial could not be simulated.
 //! A trial that ends early is no error; see `trial`.
 
+use crate::ranges::OutOfRange;
+
 /// Why a trial could not be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ManeuverError {
-    /// A setting with an impossible value.
-    #[error("`{key}` = {found} in [maneuver]: {expected}")]
-    Setting {
-        /// Key.
-        key: &'static str,
-        /// Value found.
-        found: f64,
-        /// What it should be.
-        expected: &'static str,
-    },
+    /// A setting with a value that cannot be used.
+    #[error("[maneuver] {0}")]
+    Setting(#[from] OutOfRange),
     /// No propeller rate holds the approach speed.
     #[error(
         "no propeller rate up to {limit:.2} rps holds the approach speed of {speed:.3} m/s on a straight course; set a lower `speed`, or `speed` and `n` together to approach without balance"

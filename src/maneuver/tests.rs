@@ -140,7 +140,7 @@ fn an_impossible_setting_is_refused_by_name() {
     ];
     for (settings, name) in bad {
         match settings.approach(&model, &theta) {
-            Err(ManeuverError::Setting { key, .. }) => assert_eq!(key, name),
+            Err(ManeuverError::Setting(outside)) => assert_eq!(outside.key, name),
             other => panic!("{name}: {other:?}"),
         }
     }

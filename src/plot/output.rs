@@ -5,6 +5,7 @@ use super::error::FigureError;
 use super::figure::Figure;
 use super::layout::draw;
 use super::{raster, svg};
+use crate::files::write_whole;
 use std::path::{Path, PathBuf};
 
 impl Figure {
@@ -47,7 +48,7 @@ fn write(stem: &Path, extension: &str, bytes: &[u8]) -> Result<PathBuf, FigureEr
     if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(failed(folder))?;
     }
-    std::fs::write(&path, bytes).map_err(failed(&path))?;
+    write_whole(&path, bytes).map_err(failed(&path))?;
     Ok(path)
 }
 

@@ -2,39 +2,8 @@
 //! How a channel is found in a file is not here (`map.rs`, `read.rs`), nor what a channel does to the ship (the terms).
 
 use super::unit::Quantity;
+use crate::state::recorded_inputs;
 use serde::{Deserialize, Serialize};
-
-/// A channel of a recording. Stored in SI units and radians, whatever the file's units were.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[allow(missing_docs)] // each is documented, for users too, in `CHANNELS`
-pub enum Channel {
-    T,
-    X,
-    Y,
-    Psi,
-    U,
-    V,
-    R,
-    N,
-    Delta,
-    WindSpeed,
-    WindDirection,
-    ApparentWindSpeed,
-    ApparentWindDirection,
-    CurrentSpeed,
-    CurrentDirection,
-    WaveHeight,
-    WaveDirection,
-    Depth,
-    BankStarboard,
-    BankPort,
-    Thruster,
-    DeltaOrder,
-    NOrder,
-    UWater,
-    VWater,
-}
 
 /// What is to be known about a channel: one row of the table in the help and the README.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -69,186 +38,205 @@ const ANY: (f64, f64) = (f64::MIN, f64::MAX);
 const HEADING: (f64, f64) = (-126.0, 126.0);
 /// A little over one turn either way: directions are read in 0..360 or in +-180 degrees, with room for noise.
 const DIRECTION: (f64, f64) = (-7.0, 7.0);
-/// A little over a right angle: the limit the message about a rudder of 212 "rad" names.
+/// A little over a right angle, as for the rudder angle.
 const RUDDER: (f64, f64) = (-1.6, 1.6);
 /// Revolutions a second: above those of model propellers, below a ship's in rpm.
 const SHAFT: (f64, f64) = (-60.0, 60.0);
 
-/// Every channel, in the order of [`Channel`].
-pub const CHANNELS: &[ChannelInfo] = &[
-    info(Channel::T, "t", Quantity::Time, ANY, "time", "time, increasing from row to row"),
-    info(
-        Channel::X,
-        "x",
-        Quantity::Length,
-        ANY,
-        "north position",
-        "position of midship along the earth axis of heading 0 (north)",
-    ),
-    info(
-        Channel::Y,
-        "y",
-        Quantity::Length,
-        ANY,
-        "east position",
-        "position of midship along the earth axis of heading +90 deg (east)",
-    ),
-    info(
-        Channel::Psi,
-        "psi",
-        Quantity::Angle,
-        HEADING,
-        "heading",
-        "heading, clockwise from north; may be wrapped, is unwrapped on reading",
-    ),
-    info(Channel::U, "u", Quantity::Speed, (-40.0, 40.0), "surge velocity", "velocity of midship over ground, forward"),
-    info(
-        Channel::V,
-        "v",
-        Quantity::Speed,
-        (-20.0, 20.0),
-        "sway velocity",
-        "velocity of midship over ground, to starboard",
-    ),
-    info(Channel::R, "r", Quantity::AngularRate, (-3.5, 3.5), "yaw rate", "yaw rate, bow to starboard"),
-    info(Channel::N, "n", Quantity::Rotation, SHAFT, "propeller rate", "propeller rate, positive ahead"),
-    info(
-        Channel::Delta,
-        "delta",
-        Quantity::Angle,
-        RUDDER,
-        "rudder angle",
-        "rudder angle, positive turns the ship to starboard",
-    ),
-    info(
-        Channel::WindSpeed,
-        "wind_speed",
-        Quantity::Speed,
-        (0.0, 100.0),
-        "true wind speed",
-        "true wind speed over ground",
-    ),
-    info(
-        Channel::WindDirection,
-        "wind_direction",
-        Quantity::Angle,
-        DIRECTION,
-        "true wind direction",
-        "direction the true wind comes FROM, clockwise from north",
-    ),
-    info(
-        Channel::ApparentWindSpeed,
-        "apparent_wind_speed",
-        Quantity::Speed,
-        (0.0, 100.0),
-        "apparent wind speed",
-        "wind speed relative to the moving ship; becomes true wind with the ship's own motion",
-    ),
-    info(
-        Channel::ApparentWindDirection,
-        "apparent_wind_direction",
-        Quantity::Angle,
-        DIRECTION,
-        "apparent wind direction",
-        "direction the apparent wind comes FROM, clockwise from the bow",
-    ),
-    info(
-        Channel::CurrentSpeed,
-        "current_speed",
-        Quantity::Speed,
-        (0.0, 10.0),
-        "current speed",
-        "speed of the current over ground",
-    ),
-    info(
-        Channel::CurrentDirection,
-        "current_direction",
-        Quantity::Angle,
-        DIRECTION,
-        "current direction",
-        "direction the current sets TO, clockwise from north",
-    ),
-    info(
-        Channel::WaveHeight,
-        "wave_height",
-        Quantity::Length,
-        (0.0, 30.0),
-        "wave height",
-        "significant wave height H_s",
-    ),
-    info(
-        Channel::WaveDirection,
-        "wave_direction",
-        Quantity::Angle,
-        DIRECTION,
-        "wave direction",
-        "direction waves come FROM, clockwise from north",
-    ),
-    info(
-        Channel::Depth,
-        "depth",
-        Quantity::Length,
-        (0.01, 12_000.0),
-        "water depth",
-        "water depth h from the surface to the bottom",
-    ),
-    info(
-        Channel::BankStarboard,
-        "bank_starboard",
-        Quantity::Length,
-        (0.01, 1e7),
-        "distance to the starboard bank",
-        "distance from midship to the bank on the starboard side",
-    ),
-    info(
-        Channel::BankPort,
-        "bank_port",
-        Quantity::Length,
-        (0.01, 1e7),
-        "distance to the port bank",
-        "distance from midship to the bank on the port side",
-    ),
-    info(
-        Channel::Thruster,
-        "thruster",
-        Quantity::Number,
-        (-1.01, 1.01),
-        "bow thruster command",
-        "bow thruster command, -1 full to port, 1 full to starboard",
-    ),
-    info(
-        Channel::DeltaOrder,
-        "delta_order",
-        Quantity::Angle,
-        RUDDER,
-        "ordered rudder angle",
-        "rudder angle ordered, same sign as delta",
-    ),
-    info(
-        Channel::NOrder,
-        "n_order",
-        Quantity::Rotation,
-        SHAFT,
-        "ordered propeller rate",
-        "propeller rate ordered, same sign as n",
-    ),
-    info(
-        Channel::UWater,
-        "u_water",
-        Quantity::Speed,
-        (-40.0, 40.0),
-        "surge velocity through water",
-        "velocity through water, forward (a log)",
-    ),
-    info(
-        Channel::VWater,
-        "v_water",
-        Quantity::Speed,
-        (-20.0, 20.0),
-        "sway velocity through water",
-        "velocity through water, to starboard (a log)",
-    ),
-];
+macro_rules! channel {
+    ($($name:ident $channel:ident: $quantity:ident, $limits:expr, $words:literal, $doc:literal;)*) => {
+        /// A channel of a recording. Stored in SI units and radians, whatever the file's units were.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        #[allow(missing_docs)] // each is documented, for users too, in `CHANNELS`
+        pub enum Channel {
+            T,
+            X,
+            Y,
+            Psi,
+            U,
+            V,
+            R,
+            $($channel,)*
+            WindSpeed,
+            WindDirection,
+            ApparentWindSpeed,
+            ApparentWindDirection,
+            CurrentSpeed,
+            CurrentDirection,
+            WaveHeight,
+            WaveDirection,
+            Depth,
+            BankStarboard,
+            BankPort,
+            DeltaOrder,
+            NOrder,
+            UWater,
+            VWater,
+        }
+
+        /// Every channel, in the order of [`Channel`].
+        pub const CHANNELS: &[ChannelInfo] = &[
+            info(Channel::T, "t", Quantity::Time, ANY, "time", "time, increasing from row to row"),
+            info(
+                Channel::X,
+                "x",
+                Quantity::Length,
+                ANY,
+                "north position",
+                "position of midship along the earth axis of heading 0 (north)",
+            ),
+            info(
+                Channel::Y,
+                "y",
+                Quantity::Length,
+                ANY,
+                "east position",
+                "position of midship along the earth axis of heading +90 deg (east)",
+            ),
+            info(
+                Channel::Psi,
+                "psi",
+                Quantity::Angle,
+                HEADING,
+                "heading",
+                "heading, clockwise from north; may be wrapped, is unwrapped on reading",
+            ),
+            info(Channel::U, "u", Quantity::Speed, (-40.0, 40.0), "surge velocity", "velocity of midship over ground, forward"),
+            info(
+                Channel::V,
+                "v",
+                Quantity::Speed,
+                (-20.0, 20.0),
+                "sway velocity",
+                "velocity of midship over ground, to starboard",
+            ),
+            info(Channel::R, "r", Quantity::AngularRate, (-3.5, 3.5), "yaw rate", "yaw rate, bow to starboard"),
+            $(info(Channel::$channel, stringify!($name), Quantity::$quantity, $limits, $words, $doc),)*
+            info(
+                Channel::WindSpeed,
+                "wind_speed",
+                Quantity::Speed,
+                (0.0, 100.0),
+                "true wind speed",
+                "true wind speed over ground",
+            ),
+            info(
+                Channel::WindDirection,
+                "wind_direction",
+                Quantity::Angle,
+                DIRECTION,
+                "true wind direction",
+                "direction the true wind comes FROM, clockwise from north",
+            ),
+            info(
+                Channel::ApparentWindSpeed,
+                "apparent_wind_speed",
+                Quantity::Speed,
+                (0.0, 100.0),
+                "apparent wind speed",
+                "wind speed relative to the moving ship; becomes true wind with the ship's own motion",
+            ),
+            info(
+                Channel::ApparentWindDirection,
+                "apparent_wind_direction",
+                Quantity::Angle,
+                DIRECTION,
+                "apparent wind direction",
+                "direction the apparent wind comes FROM, clockwise from the bow",
+            ),
+            info(
+                Channel::CurrentSpeed,
+                "current_speed",
+                Quantity::Speed,
+                (0.0, 10.0),
+                "current speed",
+                "speed of the current over ground",
+            ),
+            info(
+                Channel::CurrentDirection,
+                "current_direction",
+                Quantity::Angle,
+                DIRECTION,
+                "current direction",
+                "direction the current sets TO, clockwise from north",
+            ),
+            info(
+                Channel::WaveHeight,
+                "wave_height",
+                Quantity::Length,
+                (0.0, 30.0),
+                "wave height",
+                "significant wave height H_s",
+            ),
+            info(
+                Channel::WaveDirection,
+                "wave_direction",
+                Quantity::Angle,
+                DIRECTION,
+                "wave direction",
+                "direction waves come FROM, clockwise from north",
+            ),
+            info(
+                Channel::Depth,
+                "depth",
+                Quantity::Length,
+                (0.01, 12_000.0),
+                "water depth",
+                "water depth h from the surface to the bottom",
+            ),
+            info(
+                Channel::BankStarboard,
+                "bank_starboard",
+                Quantity::Length,
+                (0.01, 1e7),
+                "distance to the starboard bank",
+                "distance from midship to the bank on the starboard side",
+            ),
+            info(
+                Channel::BankPort,
+                "bank_port",
+                Quantity::Length,
+                (0.01, 1e7),
+                "distance to the port bank",
+                "distance from midship to the bank on the port side",
+            ),
+            info(
+                Channel::DeltaOrder,
+                "delta_order",
+                Quantity::Angle,
+                RUDDER,
+                "ordered rudder angle",
+                "rudder angle ordered, same sign as delta",
+            ),
+            info(
+                Channel::NOrder,
+                "n_order",
+                Quantity::Rotation,
+                SHAFT,
+                "ordered propeller rate",
+                "propeller rate ordered, same sign as n",
+            ),
+            info(
+                Channel::UWater,
+                "u_water",
+                Quantity::Speed,
+                (-40.0, 40.0),
+                "surge velocity through water",
+                "velocity through water, forward (a log)",
+            ),
+            info(
+                Channel::VWater,
+                "v_water",
+                Quantity::Speed,
+                (-20.0, 20.0),
+                "sway velocity through water",
+                "velocity through water, to starboard (a log)",
+            ),
+        ];
+    };
+}
+recorded_inputs!(channel);
 
 /// The measured state, in the order of [`crate::state::STATE_NAMES`].
 pub const STATE_CHANNELS: [Channel; 6] = [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R];

@@ -1,13 +1,15 @@
 //! From raw channels to the project's frames: range and time checks, unwrapped heading, body velocities at midship, derived channels.
 //! Nothing is smoothed here and nothing invented: a channel that is derived is derived because the column map asks for it.
 
-use super::Recording;
 use super::channel::{CHANNELS, Channel};
 use super::error::RecordingError;
+use super::lines::LineNumbers;
 use super::local::slope;
 use super::map::{ColumnMap, Derived, VelocityFrame};
+use super::record::{GAP_IN_STEPS, Recording};
 use super::unit::Quantity;
 use std::f64::consts::{PI, TAU};
+use std::path::Path;
 
 /// Rows over which a channel is derived when the map gives no span.
 const DERIVE_ROWS: f64 = 8.0;
@@ -25,6 +27,30 @@ const PAIRS: [[Channel; 2]; 5] = [
 ];
 
 impl Recording {
+    /// A recording from arrays already in SI units and the project's frames; `t` must be among them.
+    ///
+    /// # Errors
+    /// [`RecordingError`] as for a file; row `i` is spoken of as line `i + 2`, where it stands once written.
+    pub fn from_channels(name: &str, channels: Vec<(Channel, Vec<f64>)>) -> Result<Self, RecordingError> {
+        let rows = channels.iter().find(|(c, _)| *c == Channel::T).map_or(0, |(_, t)| t.len());
+        let mut recording = Self::empty(name.to_owned(), Path::new(name), 1);
+        recording.lines = LineNumbers::from(2, rows);
+        for (channel, values) in channels {
+            if values.len() != rows {
+                return Err(RecordingError::Lengths {
+                    name: name.to_owned(),
+                    channel,
+                    expected: rows,
+                    found: values.len(),
+                });
+            }
+            recording.units[channel as usize] = Some(channel.info().quantity.si().to_owned());
+            recording.data[channel as usize] = Some(values);
+        }
+        recording.finish(&ColumnMap::default())?;
+        Ok(recording)
+    }
+
     /// Checks raw channels and brings them to the project's frames.
     pub(super) fn finish(&mut self, map: &ColumnMap) -> Result<(), RecordingError> {
         self.require(Channel::T, "for every run", "give a time column, or `dt` in a column map")?;
@@ -174,7 +200,7 @@ impl Recording {
     /// Slope at every row, from the unbroken stretch the row lies in; NaN in dropouts.
     fn slopes(&self, values: &[f64], span: f64) -> Vec<f64> {
         let t = self.time();
-        let longest = super::GAP_IN_STEPS * self.step();
+        let longest = GAP_IN_STEPS * self.step();
         let mut slopes = vec![f64::NAN; values.len()];
         let mut start = 0;
         for row in 1..=values.len() {
@@ -314,7 +340,6 @@ fn round(value: f64) -> f64 {
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use std::path::Path;
 
     /// A circle at constant speed and drift, recorded at a point of the ship, in body or earth axes.
     fn circle(point: [f64; 2], earth: bool) -> Vec<(Channel, Vec<f64>)> {

@@ -3,8 +3,10 @@
 
 use super::channel::{CHANNELS, Channel};
 use super::error::RecordingError;
+use super::lines::LineNumbers;
 use super::map::{Column, ColumnMap, Decimal, Delimiter, SpeedReference};
-use super::{Recording, UNITS};
+use super::record::Recording;
+use super::unit::UNITS;
 use crate::error::suggestion;
 use std::borrow::Cow;
 use std::io::{BufRead, BufReader};
@@ -36,16 +38,24 @@ struct Source {
     offset: f64,
 }
 
-/// Reads a recording; see [`Recording::read`].
-pub(super) fn read(path: &Path, map: &ColumnMap) -> Result<Recording, RecordingError> {
-    let fail = |source| RecordingError::Read { path: path.to_owned(), source };
-    let file = std::fs::File::open(path).map_err(fail)?;
-    recording(Lines::new(BufReader::with_capacity(1 << 16, file)), path, map)
-}
+impl Recording {
+    /// Reads a recording by its column map and checks it.
+    ///
+    /// # Errors
+    /// Any [`RecordingError`] about the file: unreadable, empty, columns, units, numbers, time, or nothing usable.
+    pub fn read(path: &Path, map: &ColumnMap) -> Result<Self, RecordingError> {
+        let fail = |source| RecordingError::Read { path: path.to_owned(), source };
+        let file = std::fs::File::open(path).map_err(fail)?;
+        recording(Lines::new(BufReader::with_capacity(1 << 16, file)), path, map)
+    }
 
-/// Reads the text of a recording that stands, or would stand, at `path`.
-pub(super) fn parse(text: &str, path: &Path, map: &ColumnMap) -> Result<Recording, RecordingError> {
-    recording(Lines::new(text.as_bytes()), path, map)
+    /// Reads a recording from the text of a file; `path` is used in messages and, without its ending, as the name.
+    ///
+    /// # Errors
+    /// As [`Recording::read`], but for a file that cannot be opened.
+    pub fn parse(text: &str, path: &Path, map: &ColumnMap) -> Result<Self, RecordingError> {
+        recording(Lines::new(text.as_bytes()), path, map)
+    }
 }
 
 /// The lines of a file one at a time, numbered from 1; what is not UTF-8 is replaced, a byte order mark left out.
@@ -78,7 +88,7 @@ impl<R: BufRead> Lines<R> {
 
 /// The rows of a file as columns of numbers, one a source, with the line of each row.
 struct Rows {
-    lines: Vec<usize>,
+    lines: LineNumbers,
     columns: Vec<Vec<f64>>,
     /// Rows up to the last one with a value.
     data: usize,
@@ -106,7 +116,7 @@ fn recording<R: BufRead>(mut lines: Lines<R>, path: &Path, map: &ColumnMap) -> R
     let sources = sources(header.as_deref(), header_line, path, map)?;
     let needed = sources.iter().filter_map(|s| s.field).max().map_or(0, |f| f + 1);
     let shape = Shape { expected: header.as_ref().map(Vec::len), needed };
-    let mut rows = Rows { lines: Vec::new(), columns: vec![Vec::new(); sources.len()], data: 0 };
+    let mut rows = Rows { lines: LineNumbers::default(), columns: vec![Vec::new(); sources.len()], data: 0 };
     if let Some((line, content)) = first {
         rows.add(line, &content, &sources, &shape, path, map)?;
     }
@@ -117,23 +127,16 @@ fn recording<R: BufRead>(mut lines: Lines<R>, path: &Path, map: &ColumnMap) -> R
         return Err(empty(header_line, "no row of data follows"));
     }
     let without_time = rows.keep_timed(&sources, map);
-    if rows.lines.is_empty() {
+    if rows.lines.len() == 0 {
         return Err(empty(header_line, "no row has a time"));
     }
     let used: Vec<usize> = sources.iter().filter_map(|s| s.field).collect();
     let unused = header.iter().flatten().enumerate().filter(|(i, _)| !used.contains(i)).map(|(_, h)| h.full.clone());
-    let mut recording = Recording {
-        name: path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default(),
-        path: path.to_owned(),
-        header_line,
-        lines: rows.lines,
-        data: vec![None; CHANNELS.len()],
-        units: vec![None; CHANNELS.len()],
-        derived: Vec::new(),
-        without_time: ranges(&without_time),
-        unused: unused.collect(),
-        bridged: Vec::new(),
-    };
+    let name = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let mut recording = Recording::empty(name, path, header_line);
+    recording.lines = rows.lines;
+    recording.without_time = ranges(&without_time);
+    recording.unused = unused.collect();
     for (source, column) in sources.into_iter().zip(rows.columns) {
         let slot = match (source.channel, map.speed) {
             (Channel::U, SpeedReference::ThroughWater) => Channel::UWater,
@@ -197,7 +200,8 @@ impl Rows {
 
     /// Gives rows their time and drops those without one and the blank ones at the end; returns the lines of both.
     fn keep_timed(&mut self, sources: &[Source], map: &ColumnMap) -> Vec<usize> {
-        let mut without = self.lines.split_off(self.data);
+        let (kept, mut without) = self.lines.parted(|row| row < self.data);
+        self.lines = kept;
         self.columns.iter_mut().for_each(|c| c.truncate(self.data));
         let Some(time) = sources.iter().position(|s| s.channel == Channel::T) else { return without };
         if let Some(dt) = map.dt {
@@ -205,9 +209,9 @@ impl Rows {
         }
         if self.columns[time].iter().any(|t| !t.is_finite()) {
             let timed: Vec<bool> = self.columns[time].iter().map(|t| t.is_finite()).collect();
-            without.extend(self.lines.iter().zip(&timed).filter(|(_, timed)| !**timed).map(|(line, _)| *line));
-            let mut keep = timed.iter();
-            self.lines.retain(|_| keep.next().is_some_and(|k| *k));
+            let (kept, untimed) = self.lines.parted(|row| timed[row]);
+            self.lines = kept;
+            without.extend(untimed);
             for column in &mut self.columns {
                 let mut keep = timed.iter();
                 column.retain(|_| keep.next().is_some_and(|k| *k));
@@ -449,7 +453,7 @@ mod tests {
 
     fn read(text: &str, map: &str) -> Result<Recording, RecordingError> {
         let map = ColumnMap::parse(map, Path::new("columns.toml")).unwrap();
-        parse(text, Path::new("run.csv"), &map)
+        Recording::parse(text, Path::new("run.csv"), &map)
     }
 
     #[test]
@@ -482,6 +486,73 @@ mod tests {
                    n = { index = 2, unit = \"rps\" }\ndelta = { index = 3, unit = \"rad\" }\n";
         let r = read("0.0  1 0.1\n 1.0 1 0.1\n1.0\t1 0.1\n", map).unwrap();
         assert_eq!(r.time(), [0.0, 0.5, 1.0]);
+    }
+
+    /// Reads a text as a file and as a text, which must be one recording, and gives it.
+    fn both_ways(bytes: &[u8], map: &str) -> Recording {
+        let map = ColumnMap::parse(map, Path::new("columns.toml")).unwrap();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), bytes).unwrap();
+        let from_file = Recording::read(file.path(), &map).unwrap();
+        let from_text = Recording::parse(&String::from_utf8_lossy(bytes), file.path(), &map).unwrap();
+        let bits = |r: &Recording| -> Vec<_> {
+            r.channels().map(|(c, v)| (c, v.iter().map(|x| x.to_bits()).collect::<Vec<_>>())).collect()
+        };
+        assert_eq!(bits(&from_file), bits(&from_text));
+        assert!((0..from_file.len()).all(|row| from_file.line(row) == from_text.line(row)));
+        from_file
+    }
+
+    #[test]
+    fn line_ends_a_byte_order_mark_and_a_missing_last_line_end_change_nothing() {
+        let plain = both_ways(TABLE.as_bytes(), "");
+        let windows = format!("\u{feff}{}", TABLE.replace('\n', "\r\n"));
+        let cut = TABLE.trim_end().to_owned();
+        for text in [windows, cut.clone(), format!("{cut}\r"), format!("\n\n{TABLE}\n\n")] {
+            let r = both_ways(text.as_bytes(), "");
+            assert!(plain.channels().eq(r.channels()), "{text:?}");
+        }
+        assert_eq!(both_ways(format!("\n\n{TABLE}").as_bytes(), "").line(0), 4);
+    }
+
+    #[test]
+    fn a_quoted_field_may_hold_the_delimiter_and_blanks() {
+        let text = "\"t [s]\",\"n [rps]\",delta [rad],\"remark, long\"\n\
+                    0,\" 1 \",0.1,\"calm, clear\"\n1,1,\"0.2\",\"a \"\"turn\"\"\"\n2,1,0.3,\n";
+        let r = both_ways(text.as_bytes(), "");
+        assert_eq!(r.get(Channel::Delta).unwrap(), [0.1, 0.2, 0.3]);
+        assert_eq!(r.unused(), ["remark, long"]);
+        let map = "delimiter = \"semicolon\"\ndecimal = \"comma\"\n";
+        let semicolons = "t [s];n [rps];delta [rad];remark\n0,0;1;\"0,1\";\"a;b\"\n0,5;1;0,2;\n";
+        let r = both_ways(semicolons.as_bytes(), map);
+        assert_eq!((r.time(), r.get(Channel::Delta).unwrap()), (&[0.0, 0.5][..], &[0.1, 0.2][..]));
+    }
+
+    #[test]
+    fn a_file_wider_than_the_buffer_and_letters_of_another_encoding_are_read() {
+        let columns = 20_000;
+        let mut bytes = b"t [s],n [rps],delta [rad],rem\xe4rk".to_vec();
+        (0..columns).for_each(|i| bytes.extend(format!(",channel {i}").bytes()));
+        for row in 0..5 {
+            bytes.extend(format!("\n{row},1,0.{row},\u{fc}").bytes());
+            (0..columns).for_each(|i| bytes.extend(format!(",{i}.5").bytes()));
+        }
+        let r = both_ways(&bytes, "");
+        assert_eq!((r.len(), r.unused().len(), r.line(4)), (5, columns + 1, 6));
+        assert_eq!(r.get(Channel::Delta).unwrap(), [0.0, 0.1, 0.2, 0.3, 0.4]);
+    }
+
+    #[test]
+    fn rows_that_are_blank_or_without_a_time_keep_their_lines() {
+        let text = "t [s],n [rps],delta [rad]\n0,1,0\n\n1,1,0\n,,\n2,1,0\n,1,0\n3,1,0\n,,\n,,\n";
+        let r = both_ways(text.as_bytes(), "");
+        assert_eq!((0..r.len()).map(|row| r.line(row)).collect::<Vec<_>>(), [2, 4, 6, 8]);
+        assert_eq!(r.without_time(), [(5, 5), (7, 7), (9, 10)]);
+        // A line that starts with another sign is no comment: it is told, with its line.
+        let message = read("t [s],n [rps],delta [rad]\n# calm\n0,1,0\n", "").unwrap_err().to_string();
+        assert!(message.starts_with("run.csv:2: "), "{message}");
+        let message = read("t [s],n [rps],delta [rad]\n0,1,0\n1,1,0,7\n", "").unwrap_err().to_string();
+        assert!(message.starts_with("run.csv:3: "), "{message}");
     }
 
     #[test]

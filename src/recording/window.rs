@@ -1,11 +1,11 @@
 //! From a recording to windows: runs on a uniform grid, ready to be simulated, that never reach across a dropout or a gap.
 //! Which windows train and which test is decided by the study.
 
-use super::Recording;
 use super::channel::{Channel, STATE_CHANNELS};
 use super::convert::to_earth;
 use super::error::RecordingError;
 use super::local::local_fit;
+use super::record::Recording;
 use super::run::{Measured, Run, Split};
 use crate::state::{Inputs, STATES};
 use serde::{Deserialize, Serialize};
@@ -120,6 +120,8 @@ pub struct Windows {
 
 /// Steps a window must have to say anything of a motion.
 const MIN_STEPS: usize = 2;
+/// A grid may divide the recording's own step into so many parts: a finer one repeats what is known and asks for memory.
+const FINEST: f64 = 1000.0;
 /// Relative difference below which two steps are the same.
 const SAME_STEP: f64 = 1e-6;
 
@@ -159,7 +161,8 @@ impl Recording {
             let stride = length - grid.overlap;
             let mut start = 0;
             while start + length <= sampler.steps {
-                result.windows.push(self.window(labels, settings, &columns, &sampler, start..start + length + 1)?);
+                let samples = start..start + length + 1;
+                result.windows.push(self.window(labels, settings, &grid, &columns, &sampler, samples)?);
                 start += stride;
             }
         }
@@ -176,7 +179,8 @@ impl Recording {
         &self,
         labels: &Labels,
         settings: &WindowSettings,
-        columns: &Columns,
+        grid: &Grid,
+        columns: &Inputs<Vec<f64>>,
         sampler: &Sampler,
         samples: Range<usize>,
     ) -> Result<Run, RecordingError> {
@@ -185,21 +189,15 @@ impl Recording {
         let rows = samples.len();
         let value = |k: usize, i: usize| Some(measured_columns[i].as_ref()?[k]).filter(|v| v.is_finite());
         let measured: Vec<Measured> = (0..rows).map(|k| std::array::from_fn(|i| value(k, i))).collect();
-        let inputs_columns = columns.inputs.each_ref().map(|c| take(c));
         let start_time = sampler.time(samples.start);
-        let inputs = (0..rows).map(|k| {
-            let at = |i: usize| inputs_columns[i][k];
-            Inputs {
-                t: sampler.time(samples.start + k),
-                n: at(0),
-                delta: at(1),
-                wind: [at(2), at(3)],
-                current: [at(4), at(5)],
-                waves: [at(6), at(7)],
-                draught_to_depth: at(8),
-                bank: at(9),
-                thruster: at(10),
-            }
+        let taken: Inputs<Vec<f64>> =
+            Inputs::from_entries(|entry: fn(&Inputs<Vec<f64>>) -> &Vec<f64>| match &entry(columns)[..] {
+                [] => vec![0.0; rows],
+                values => take(values),
+            });
+        let inputs = (0..rows).map(|k| Inputs {
+            t: sampler.time(samples.start + k),
+            ..Inputs::from_entries(|entry: fn(&Inputs<Vec<f64>>) -> &Vec<f64>| entry(&taken)[k])
         });
         let first = measured[0];
         let mut run = Run {
@@ -215,7 +213,7 @@ impl Recording {
             disturbed: Vec::new(),
         };
         let (span, all) = match settings.initial {
-            Initial::First => (10.0 * self.step(), false),
+            Initial::First => (10.0 * grid.usual, false),
             Initial::Smoothed { span } => (span, true),
         };
         if all || first.contains(&None) {
@@ -224,7 +222,7 @@ impl Recording {
                 path: self.path.clone(),
                 message: format!(
                     "`initial_span` = {span} s covers fewer than three rows at {start_time:.2} s; set it to several steps of {:.3} s",
-                    self.step()
+                    grid.usual
                 ),
             })?;
             for i in 0..STATES {
@@ -250,6 +248,12 @@ impl Recording {
         if let Some((key, value)) = times.into_iter().find(|(_, v)| !v.is_finite() || *v <= 0.0) {
             return Err(fail(format!("`{key}` = {value} s is not a positive time; correct it in the study")));
         }
+        if step * FINEST < own {
+            let text = format!(
+                "`step` = {step} s is less than a {FINEST}th of the recording's own step of {own} s; leave it out, or set it to that step or more"
+            );
+            return Err(fail(text));
+        }
         let window = settings.window.map(|w| (w / step).round() as usize);
         if let Some(short) = window.filter(|&w| w < MIN_STEPS) {
             let text = format!(
@@ -265,11 +269,11 @@ impl Recording {
         }
         let as_recorded = (step / own - 1.0).abs() < SAME_STEP;
         let width = if step > own * (1.0 + SAME_STEP) { step } else { 0.0 };
-        Ok(Grid { step, window, overlap, as_recorded, width })
+        Ok(Grid { usual: median, step, window, overlap, as_recorded, width })
     }
 
-    /// Inputs at every row, by column, in the order of [`Inputs`].
-    fn columns(&self, draught: f64) -> Result<Columns, RecordingError> {
+    /// Inputs at every row, by column; a column that is 0 throughout is empty, and so is time, for it is that of a window's own grid.
+    fn columns(&self, draught: f64) -> Result<Inputs<Vec<f64>>, RecordingError> {
         let need = |c, next: &str| self.require(c, "to simulate the run", next);
         let from_position = "record it, or derive it from position and heading with `derive` in a column map";
         let positions = self.has(Channel::X) && self.has(Channel::Y) && self.has(Channel::Psi);
@@ -280,18 +284,21 @@ impl Recording {
         if !self.has(Channel::Psi) {
             need(Channel::R, "record it or the heading")?;
         }
-        let rows = self.len();
-        let zero = || vec![0.0; rows];
-        let mut inputs: [Vec<f64>; 11] = std::array::from_fn(|_| zero());
-        inputs[0] = need(Channel::N, "add the column")?.to_vec();
-        inputs[1] = need(Channel::Delta, "add the column")?.to_vec();
+        need(Channel::N, "add the column")?;
+        need(Channel::Delta, "add the column")?;
+        let mut inputs = Inputs::from_entries(|_: fn(&Inputs<f64>) -> &f64| Vec::new());
+        for (name, values) in inputs.recorded() {
+            if let Some(recorded) = Channel::from_name(name).and_then(|c| self.get(c)) {
+                *values = recorded.to_vec();
+            }
+        }
         let mut directed = false;
-        let mut put = |at: usize, vectors: Vec<[f64; 2]>| {
+        let mut put = |vectors: &mut [Vec<f64>; 2], values: Vec<[f64; 2]>| {
             directed = true;
-            (inputs[at], inputs[at + 1]) = vectors.into_iter().map(|v| (v[0], v[1])).unzip();
+            *vectors = <[Vec<f64>; 2]>::from(values.into_iter().map(|v| (v[0], v[1])).unzip());
         };
         if let Some((speed, from)) = self.pair(Channel::WindSpeed, Channel::WindDirection) {
-            put(2, polar(speed, from, -1.0).collect());
+            put(&mut inputs.wind, polar(speed, from, -1.0).collect());
         } else if let Some((speed, from)) = self.pair(Channel::ApparentWindSpeed, Channel::ApparentWindDirection) {
             let purpose = "to turn apparent into true wind";
             let next = "record it, or record the true wind";
@@ -299,25 +306,23 @@ impl Recording {
             let u = self.require(Channel::U, purpose, next)?;
             let v = self.require(Channel::V, purpose, next)?;
             let air = polar(speed, from, -1.0).enumerate();
-            put(2, air.map(|(i, air)| to_earth(psi[i], [air[0] + u[i], air[1] + v[i]])).collect());
+            put(&mut inputs.wind, air.map(|(i, air)| to_earth(psi[i], [air[0] + u[i], air[1] + v[i]])).collect());
         }
         if let Some((speed, to)) = self.pair(Channel::CurrentSpeed, Channel::CurrentDirection) {
-            put(4, polar(speed, to, 1.0).collect());
+            put(&mut inputs.current, polar(speed, to, 1.0).collect());
         }
         if let Some((height, from)) = self.pair(Channel::WaveHeight, Channel::WaveDirection) {
             let squared: Vec<f64> = height.iter().map(|h| h * h).collect();
-            put(6, polar(&squared, from, -1.0).collect());
+            put(&mut inputs.waves, polar(&squared, from, -1.0).collect());
         }
         if let Some(depth) = self.get(Channel::Depth) {
-            inputs[8] = depth.iter().map(|h| draught / h).collect();
+            inputs.draught_to_depth = depth.iter().map(|h| draught / h).collect();
         }
         for (channel, sign) in [(Channel::BankStarboard, 1.0), (Channel::BankPort, -1.0)] {
             if let Some(distance) = self.get(channel) {
-                inputs[9].iter_mut().zip(distance).for_each(|(bank, y)| *bank += sign / y);
+                inputs.bank.resize(distance.len(), 0.0);
+                inputs.bank.iter_mut().zip(distance).for_each(|(bank, y)| *bank += sign / y);
             }
-        }
-        if let Some(thruster) = self.get(Channel::Thruster) {
-            inputs[10] = thruster.to_vec();
         }
         if directed {
             self.require(
@@ -326,7 +331,7 @@ impl Recording {
                 "record it, or leave them out",
             )?;
         }
-        Ok(Columns { inputs })
+        Ok(inputs)
     }
 
     fn pair(&self, a: Channel, b: Channel) -> Option<(&[f64], &[f64])> {
@@ -342,20 +347,21 @@ impl Recording {
         let (first, last) = (t[segment.start], t[segment.end - 1]);
         let from = (t0 - 0.5 * span).min(last - span).max(first);
         let slack = 1e-9 * span;
-        let rows: Vec<usize> =
-            segment.clone().filter(|&i| t[i] >= from - slack && t[i] <= from + span + slack).collect();
+        let inside = &t[segment.clone()];
+        let rows = segment.start + inside.partition_point(|ti| *ti < from - slack)
+            ..segment.start + inside.partition_point(|ti| *ti <= from + span + slack);
         if rows.len() < 3 {
             return None;
         }
-        let tau: Vec<f64> = rows.iter().map(|&i| t[i] - t0).collect();
-        let channel = |c: Channel| self.get(c).map(|v| rows.iter().map(|&i| v[i]).collect::<Vec<f64>>());
+        let tau: Vec<f64> = t[rows.clone()].iter().map(|ti| ti - t0).collect();
+        let channel = |c: Channel| self.get(c).map(|v| &v[rows.clone()]);
         let [x, y, psi, u, v, r] = STATE_CHANNELS.map(channel);
 
         let mut turn = Rows::default();
-        if let Some(psi) = &psi {
+        if let Some(psi) = psi {
             turn.push(&tau, psi, |_, s| vec![1.0, s, 0.5 * s * s]);
         }
-        if let Some(r) = &r {
+        if let Some(r) = r {
             turn.push(&tau, r, |_, s| vec![0.0, 1.0, s]);
         }
         let heading = turn.solve(3)?;
@@ -384,30 +390,30 @@ impl Recording {
         // Unknowns: x0, y0, u0, u', v0, v'. Without a heading the track cannot be told from drift, so it is left out.
         if psi.is_some() {
             let table: Vec<[f64; 4]> = tau.iter().map(|&s| integrals(s)).collect();
-            if let Some(x) = &x {
+            if let Some(x) = x {
                 motion.push(&tau, x, |i, _| {
                     let [c, s, ct, st] = table[i];
                     vec![1.0, 0.0, c, ct, -s, -st]
                 });
             }
-            if let Some(y) = &y {
+            if let Some(y) = y {
                 motion.push(&tau, y, |i, _| {
                     let [c, s, ct, st] = table[i];
                     vec![0.0, 1.0, s, st, c, ct]
                 });
             }
         }
-        if let Some(u) = &u {
+        if let Some(u) = u {
             motion.push(&tau, u, |_, s| vec![0.0, 0.0, 1.0, s, 0.0, 0.0]);
         }
-        if let Some(v) = &v {
+        if let Some(v) = v {
             motion.push(&tau, v, |_, s| vec![0.0, 0.0, 0.0, 0.0, 1.0, s]);
         }
         let m = motion.solve(6)?;
         let mut state = [m[0], m[1], heading[0], m[2], m[4], heading[1]];
         if psi.is_none() {
             for (i, values) in [x, y].into_iter().enumerate() {
-                state[i] = values.and_then(|v| local_fit(&tau, &v, 0.0)).map_or(0.0, |c| c[0]);
+                state[i] = values.and_then(|v| local_fit(&tau, v, 0.0)).map_or(0.0, |c| c[0]);
             }
         }
         state.iter().all(|s| s.is_finite()).then_some(state)
@@ -416,6 +422,8 @@ impl Recording {
 
 /// Grid step and lengths in steps.
 struct Grid {
+    /// The recording's usual step.
+    usual: f64,
     step: f64,
     window: Option<usize>,
     overlap: usize,
@@ -423,11 +431,6 @@ struct Grid {
     as_recorded: bool,
     /// Width of the mean around each sample \[s\], 0 for none.
     width: f64,
-}
-
-/// Inputs by column and row.
-struct Columns {
-    inputs: [Vec<f64>; 11],
 }
 
 /// Samples an unbroken stretch on a grid.
@@ -626,6 +629,22 @@ mod tests {
         for i in &w.inputs {
             assert!((i.wind[0] + 6.0 * from.cos()).abs() < 1e-12 && (i.wind[1] + 6.0 * from.sin()).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn every_input_recorded_as_it_is_reaches_the_run() {
+        let mut channels = straight(10, 1.0);
+        let mut wanted = Inputs::<f64>::actuators(0.0, 0.0, 0.0);
+        for (i, (name, value)) in wanted.recorded().enumerate() {
+            *value = 0.1 + 0.2 * i as f64;
+            let channel = Channel::from_name(name).unwrap();
+            channels.retain(|(c, _)| *c != channel);
+            channels.push((channel, vec![*value; 10]));
+        }
+        let r = Recording::from_channels("run", channels).unwrap();
+        let mut got = r.windows(&labels(), &settings()).unwrap().windows[0].inputs[4];
+        let values = |i: &mut Inputs<f64>| i.recorded().map(|(_, v)| *v).collect::<Vec<f64>>();
+        assert_eq!(values(&mut got), values(&mut wanted));
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::error::StudyError;
 use super::file::RunEntry;
 use super::split::{SplitRule, draw};
 use crate::recording::{Labels, Split};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// A run of a study, as listed.
@@ -49,14 +50,13 @@ pub(super) fn label(
         ));
     }
     let mut runs: Vec<Listed> = Vec::new();
+    let mut named: HashMap<String, usize> = HashMap::new();
     for (line, e) in entries {
         let stem = e.file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         let name = e.name.unwrap_or(stem);
-        if let Some(other) = runs.iter().find(|r| r.labels.run == name) {
-            let text = format!(
-                "run `{name}` is listed twice, here and at line {}; give one of them a `name` of its own",
-                other.line
-            );
+        if let Some(other) = named.insert(name.clone(), line) {
+            let text =
+                format!("run `{name}` is listed twice, here and at line {other}; give one of them a `name` of its own");
             return Err(fail(line, text));
         }
         if let (Some(from), Some(to)) = (e.from, e.to)

@@ -8,7 +8,11 @@ use super::settings::window_settings;
 use super::split::{SplitBy, SplitRule};
 use crate::error::suggestion;
 use crate::recording::{ColumnMap, Recording, Split, WindowSettings, Windows, key_line, line_at, toml_problem};
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
+
+/// Runs that are read for each thread before what became of them is taken in order.
+const AHEAD: usize = 4;
 
 /// A study, with every path resolved against the folder of its file.
 #[derive(Clone, Debug)]
@@ -136,17 +140,53 @@ impl Study {
         WindowSettings { from: run.from, to: run.to, draught, ..self.windows.clone() }
     }
 
+    /// Reads one run and cuts it into windows; `draught` \[m\] is the ship's.
+    ///
+    /// # Errors
+    /// A [`StudyError`] about this run.
+    pub fn cut(&self, run: &Listed, draught: f64) -> Result<Windows, StudyError> {
+        Ok(self.recording(run)?.windows(&run.labels, &self.settings(run, draught))?)
+    }
+
+    /// Reads the runs for which `wanted` says so, cuts each into windows, and hands these to `work`; what that makes of them goes
+    /// to `take` in the order listed. No more recordings are held in memory than there are threads. `draught` \[m\] is the ship's.
+    ///
+    /// # Errors
+    /// The first [`StudyError`] in the order of the runs, or what `take` fails with.
+    pub fn each<T: Send, E: From<StudyError>>(
+        &self,
+        draught: f64,
+        wanted: impl Fn(&Listed) -> bool,
+        work: impl Fn(Windows) -> T + Sync,
+        mut take: impl FnMut(T) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let runs: Vec<&Listed> = self.runs.iter().filter(|run| wanted(run)).collect();
+        for some in runs.chunks(AHEAD * rayon::current_num_threads()) {
+            let done: Vec<Result<T, StudyError>> =
+                some.par_iter().with_max_len(1).map(|run| Ok(work(self.cut(run, draught)?))).collect();
+            for one in done {
+                take(one?)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Reads every run and cuts it into windows, in the order listed; `draught` \[m\] is the ship's.
     ///
     /// # Errors
     /// The first [`StudyError`] in the order of the runs.
     pub fn windows(&self, draught: f64) -> Result<Windows, StudyError> {
         let mut all = Windows::default();
-        for run in &self.runs {
-            let one = self.recording(run)?.windows(&run.labels, &self.settings(run, draught))?;
-            all.windows.extend(one.windows);
-            all.skipped.extend(one.skipped);
-        }
+        self.each(
+            draught,
+            |_| true,
+            |one| one,
+            |one| {
+                all.windows.extend(one.windows);
+                all.skipped.extend(one.skipped);
+                Ok::<(), StudyError>(())
+            },
+        )?;
         Ok(all)
     }
 

@@ -5,6 +5,7 @@ use crate::recording::{Labels, Split};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 
 /// How runs are divided where the table of runs does not say.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,19 +43,16 @@ pub(super) fn draw<'a>(labels: impl Iterator<Item = &'a mut Labels>, rule: Split
         SplitBy::Run => l.run.clone(),
         SplitBy::Session => l.session.clone(),
     };
-    let mut groups: Vec<String> = Vec::new();
-    for label in &labels {
-        if !groups.contains(&group(label)) {
-            groups.push(group(label));
-        }
-    }
+    let mut seen = HashSet::new();
+    let mut groups: Vec<String> = labels.iter().map(|l| group(l)).filter(|g| seen.insert(g.clone())).collect();
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(rule.seed);
     groups.shuffle(&mut rng);
     // A study with a test side has at least one group on each side, when it has two.
     let wanted = (rule.test * groups.len() as f64).round() as usize;
     let least = usize::from(rule.test > 0.0 && groups.len() > 1);
     groups.truncate(wanted.clamp(least, groups.len().saturating_sub(1).max(least)));
+    let test: HashSet<String> = groups.into_iter().collect();
     for label in &mut labels {
-        label.split = if groups.contains(&group(label)) { Split::Test } else { Split::Train };
+        label.split = if test.contains(&group(label)) { Split::Test } else { Split::Train };
     }
 }

@@ -42,12 +42,8 @@ fn rate<const POWER: i32>(ship: &crate::ship::Ship) -> f64 {
 
 impl Resistance {
     /// R(u) \[N\] of the printed form.
-    pub fn curve<S: Scalar>(p: &[S], u: f64) -> S {
+    pub fn curve<S: Scalar>(p: &[S::Coefficient], u: S) -> S {
         p[0] * u + p[1] * (u * u) + p[2] * (u * u * u)
-    }
-    /// dR/du \[N s/m\] of the printed form.
-    pub fn slope<S: Scalar>(p: &[S], u: f64) -> S {
-        p[0] + p[1] * (2.0 * u) + p[2] * (3.0 * u * u)
     }
 }
 

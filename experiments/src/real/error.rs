@@ -35,6 +35,9 @@ pub enum RealError {
     /// The fit.
     #[error(transparent)]
     Fit(#[from] trimtab::fit::FitError),
+    /// The diagnosis.
+    #[error(transparent)]
+    Diagnose(#[from] trimtab::diagnose::DiagnoseError),
     /// A standard trial.
     #[error(transparent)]
     Maneuver(#[from] trimtab::maneuver::ManeuverError),

@@ -1,0 +1,182 @@
+//! The audit of a study's recordings before a command uses them: faults stop it, doubts are told first.
+//! The faults are the library's; this file groups them over the runs and says what was accepted.
+
+use super::error::CliError;
+use super::load::Loaded;
+use super::progress::progress;
+use serde::Serialize;
+use trimtab::audit::{Issue, Severity, audit_study};
+use trimtab::error::suggestion;
+use trimtab::recording::Channel;
+
+/// Arguments of the commands that compute with recordings.
+#[derive(Clone, Debug, clap::Args)]
+pub struct AcceptArgs {
+    /// Go on in spite of this fault of the recordings, by the name in the message (such as `sign_error`); may be given several
+    /// times.
+    #[arg(long, value_name = "FAULT")]
+    accept: Vec<String>,
+}
+
+/// A warning, or an error that was accepted, in so many of the runs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Doubt {
+    severity: Severity,
+    fault: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    channel: Option<Channel>,
+    /// What was found in the first of the runs.
+    text: String,
+    next_step: String,
+    /// The runs in which it was found.
+    runs: Vec<String>,
+    /// Whether the user accepts it.
+    accepted: bool,
+}
+
+/// What a command has to say of the recordings that it used.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Audited {
+    /// Runs that were looked at.
+    runs: usize,
+    /// What was found, the gravest first.
+    doubts: Vec<Doubt>,
+}
+
+/// Faults that can be accepted: the recordings can be read and say what they say.
+const CONTRADICTIONS: [&str; 3] = ["unit_error", "sign_error", "axes_error"];
+
+/// Audits the recordings of a study for a command that computes with what they say.
+///
+/// # Errors
+/// [`CliError::Faulty`] where the recordings contradict themselves and this was not accepted. A recording that cannot be read, or a
+/// study without runs on one side, is left to the command, whose message says more.
+pub fn audited(loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> {
+    let audited = examined(loaded, args)?;
+    match audited.doubts.iter().find(|d| d.refused()) {
+        Some(doubt) => {
+            Err(CliError::Faulty { path: loaded.study.path.clone(), what: audited.sentence(doubt), fault: doubt.fault })
+        }
+        None => Ok(audited),
+    }
+}
+
+/// Audits the recordings of a study for a command whose own answer may be that they contradict themselves.
+///
+/// # Errors
+/// A fault to accept that there is not.
+pub fn examined(loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> {
+    for name in &args.accept {
+        if !CONTRADICTIONS.contains(&name.as_str()) {
+            let known = CONTRADICTIONS.join(", ");
+            let near = suggestion(name, CONTRADICTIONS.into_iter());
+            return Err(CliError::Argument(format!("there is no fault `{name}` to accept; they are {known}{near}")));
+        }
+    }
+    let bar = progress(format!("auditing {} recordings", loaded.study.runs.len()));
+    let audit = audit_study(&loaded.study, &loaded.model.ship);
+    bar.finish_and_clear();
+    let found = audit.recordings.iter().flat_map(|a| a.issues.iter().map(|i| (a.run.as_str(), i)));
+    let mut doubts = grouped(found);
+    for doubt in &mut doubts {
+        doubt.accepted = args.accept.iter().any(|a| a == doubt.fault);
+    }
+    Ok(Audited { runs: audit.recordings.len(), doubts })
+}
+
+/// Warnings and contradictions by fault and channel, the gravest first, then in the order found.
+fn grouped<'a>(issues: impl Iterator<Item = (&'a str, &'a Issue)>) -> Vec<Doubt> {
+    let mut doubts: Vec<Doubt> = Vec::new();
+    for (run, issue) in issues {
+        let told = match issue.severity {
+            Severity::Note => false,
+            Severity::Warning => true,
+            Severity::Error => CONTRADICTIONS.contains(&issue.fault),
+        };
+        if !told {
+            continue;
+        }
+        let same = |d: &&mut Doubt| (d.severity, d.fault, d.channel) == (issue.severity, issue.fault, issue.channel);
+        match doubts.iter_mut().find(same) {
+            Some(doubt) if doubt.runs.last().is_some_and(|r| r == run) => {}
+            Some(doubt) => doubt.runs.push(run.to_owned()),
+            None => doubts.push(Doubt {
+                severity: issue.severity,
+                fault: issue.fault,
+                channel: issue.channel,
+                text: issue.text.clone(),
+                next_step: issue.next_step.clone(),
+                runs: vec![run.to_owned()],
+                accepted: false,
+            }),
+        }
+    }
+    doubts.sort_by_key(|d| std::cmp::Reverse(d.severity));
+    doubts
+}
+
+impl Doubt {
+    fn refused(&self) -> bool {
+        self.severity == Severity::Error && !self.accepted
+    }
+}
+
+impl Audited {
+    /// One doubt in a sentence, with the number of runs.
+    fn sentence(&self, doubt: &Doubt) -> String {
+        let channel = doubt.channel.map_or(String::new(), |c| format!("{c}: "));
+        let (first, count) = (doubt.runs.first().map_or("", String::as_str), doubt.runs.len());
+        let runs = if count == 1 { format!("run {first}") } else { format!("{count} of {} runs", self.runs) };
+        let told = if count == 1 { String::new() } else { format!(" (as in {first})") };
+        format!("{channel}{}{told}: {runs}; {}", doubt.text, doubt.next_step)
+    }
+
+    /// Whether there is an error that the user does not accept.
+    pub fn refused(&self) -> bool {
+        self.doubts.iter().any(Doubt::refused)
+    }
+
+    /// The lines that come before the answer; empty where there is nothing to say.
+    pub fn lines(&self) -> String {
+        let line = |d: &Doubt| {
+            let word = match (d.severity, d.accepted) {
+                (Severity::Error, true) => "accepted error",
+                (Severity::Error, false) => "error",
+                _ => "warning",
+            };
+            format!("{word}: {}\n", self.sentence(d))
+        };
+        let mut text: String = self.doubts.iter().map(line).collect();
+        if !text.is_empty() {
+            text += "`trimtab check` lists all that was found in the recordings.\n\n";
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn issue(severity: Severity, fault: &'static str, channel: Channel, text: &str) -> Issue {
+        Issue::new(severity, fault, text, "look at it").of(channel)
+    }
+
+    #[test]
+    fn a_fault_of_many_runs_is_told_once_with_their_number_and_errors_come_first() {
+        let warning = |text| issue(Severity::Warning, "frozen", Channel::Psi, text);
+        let error = issue(Severity::Error, "sign_error", Channel::R, "the sign is turned");
+        let note = issue(Severity::Note, "clock", Channel::R, "runs late");
+        let found = [("a", warning("stands still for 3 s")), ("a", warning("stands still for 9 s")), ("b", error)];
+        let more = [("b", warning("stands still for 5 s")), ("c", note)];
+        let all: Vec<(&str, Issue)> = found.into_iter().chain(more).collect();
+        let audited = Audited { runs: 3, doubts: grouped(all.iter().map(|(r, i)| (*r, i))) };
+        let lines = audited.lines();
+        let lines: Vec<&str> = lines.lines().collect();
+        assert!(audited.refused());
+        assert_eq!(lines[0], "error: r: the sign is turned: run b; look at it");
+        assert_eq!(lines[1], "warning: psi: stands still for 3 s (as in a): 2 of 3 runs; look at it");
+        assert!(lines[2].starts_with("`trimtab check`") && lines.len() == 4, "{lines:?}");
+        assert_eq!(Audited::default().lines(), "");
+    }
+}
