@@ -3,7 +3,7 @@
 
 use super::filter::{Filter, GATE, Pass, Wanted};
 use super::noise::Noise;
-use super::settings::{FEW_LOST_SHARE, LOST_MEASUREMENTS, TOGETHER};
+use super::settings::{FEW_LOST_SHARE, LOST_MEASUREMENTS};
 use crate::audit::{Issue, Severity, audit_runs, piece};
 use crate::model::Model;
 use crate::numerals::sig;
@@ -121,6 +121,9 @@ fn loss(run: &Run, pass: &Pass) -> Option<Loss> {
     (0..STATES).filter_map(of).max_by_key(|l| l.count)
 }
 
+/// How many runs have their innovations of both step sizes in memory at once.
+const COMPARED: usize = 64;
+
 /// Audits the recordings' kinematics and the numerics.
 pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run]) -> Admission {
     let issues = audit_runs(runs);
@@ -132,13 +135,13 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
     }
     let refined = Integration { method: Method::Rk4, substeps: integration.substeps.max(1) * 8 };
     let filters = [integration, refined].map(|integration| Filter::new(model, integration, &[]));
-    let error = |runs: &[Run]| {
-        let [as_used, refined] = filters.each_ref().map(|f| f.passes(runs, noise, Wanted::default()));
-        let innovations = |passes: Vec<Pass>| passes.into_iter().flat_map(|p| p.innovations).flatten();
+    let error = |some: &[Run]| {
+        let [as_used, refined] = filters.each_ref().map(|f| f.passes(some, noise, Wanted::default()));
+        let innovations = |passes: Vec<Pass>| passes.into_iter().flat_map(|pass| pass.innovations).flatten();
         let pairs = innovations(as_used).zip(innovations(refined));
         pairs.map(|(a, b)| (a - b).abs()).filter(|e| e.is_finite()).fold(0.0, f64::max)
     };
-    let largest = runs.chunks(TOGETHER).map(error).fold(0.0, f64::max);
+    let largest = runs.chunks(COMPARED).map(error).fold(0.0, f64::max);
     let sessions: std::collections::BTreeSet<&str> = runs.iter().map(|r| r.session.as_str()).collect();
     Admission {
         runs: runs.len(),

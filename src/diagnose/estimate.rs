@@ -9,7 +9,6 @@ use super::optimise::{Outcome, Proposal, Quadratic};
 pub use super::settings::Effort;
 use super::settings::{
     CALM_ITERATIONS, CALM_SHARE, NOISE_REFUSED, OUTLIER_SHARE, STEP_DAMPING, STEP_GAIN, STEP_LONGEST, STEP_SHORTEST,
-    TOGETHER,
 };
 use crate::model::{Model, Prior};
 use crate::recording::Run;
@@ -121,25 +120,6 @@ pub struct Estimate {
     pub log_posterior: f64,
 }
 
-/// Passes over the runs, and what `work` makes of each goes to `take` in the order of the runs, so that sums have the same bits on any
-/// number of threads. No more of it is held at once than a few runs give.
-pub fn each_pass<T: Send>(
-    filter: &Filter,
-    runs: &[Run],
-    noise: &Noise,
-    wanted: Wanted,
-    work: impl Fn(&Run, Pass) -> T + Sync,
-    mut take: impl FnMut(T),
-) {
-    for (group, some) in runs.chunks(TOGETHER).enumerate() {
-        let first = group * TOGETHER;
-        let frozen = wanted.frozen.map(|gains| &gains[first..first + some.len()]);
-        let passes = filter.passes(some, noise, Wanted { frozen, ..wanted });
-        let done: Vec<T> = some.par_iter().zip(passes).map(|(run, pass)| work(run, pass)).collect();
-        done.into_iter().for_each(&mut take);
-    }
-}
-
 /// One pass over all runs, for scores, information and innovations; filtered states are dropped.
 pub fn passes(
     model: &Model,
@@ -150,8 +130,10 @@ pub fn passes(
     tangent: bool,
 ) -> Vec<Pass> {
     let filter = Filter::new(model, integration, columns);
-    let keep = |pass: Pass| Pass { filtered: Vec::new(), force_sd: Vec::new(), ..pass };
-    filter.passes(runs, noise, Wanted { tangent, ..Wanted::default() }).into_iter().map(keep).collect()
+    let mut out = Vec::with_capacity(runs.len());
+    let kept = |_: usize, _: &Run, pass: Pass| Pass { filtered: Vec::new(), force_sd: Vec::new(), ..pass };
+    filter.each(runs, noise, Wanted { tangent, ..Wanted::default() }, kept, |_, pass| out.push(pass));
+    out
 }
 
 /// Scores and information of passes over runs.
@@ -193,11 +175,11 @@ impl Sums {
     /// Passes over all runs; `sessions` as for [`evidence`]. Sums by session are kept where `apart`.
     pub fn of(filter: &Filter, runs: &[Run], noise: &Noise, sessions: &[Option<Vec<String>>], apart: bool) -> Self {
         let mut out = Self { evidence: Evidence::default(), log_likelihood: 0.0, used: 0, outliers: 0 };
-        let work = |run: &Run, pass: Pass| {
+        let work = |_: usize, run: &Run, pass: Pass| {
             let Pass { score, information, log_likelihood, used, outliers, .. } = pass;
             (run_evidence(run, score, information, sessions), log_likelihood, used, outliers)
         };
-        each_pass(filter, runs, noise, Wanted::default(), work, |(one, log_likelihood, used, outliers)| {
+        filter.each(runs, noise, Wanted::default(), work, |_, (one, log_likelihood, used, outliers)| {
             out.evidence.add(one, apart);
             out.log_likelihood += log_likelihood;
             out.used += used;
@@ -216,7 +198,10 @@ impl Sums {
 fn tangents(model: &Model, integration: Integration, runs: &[&Run], noise: &Noise) -> Vec<Tangent> {
     let filter = Filter::new(model, integration, &[]);
     let wanted = Wanted { tangent: true, ..Wanted::default() };
-    filter.passes(runs, noise, wanted).into_iter().map(|pass| pass.tangent.unwrap_or_default()).collect()
+    let mut out = Vec::with_capacity(runs.len());
+    let tangent = |_: usize, _: &Run, pass: Pass| pass.tangent.unwrap_or_default();
+    filter.each(runs, noise, wanted, tangent, |_, tangent| out.push(tangent));
+    out
 }
 
 /// The session restrictions of free parameters, in their order.
@@ -268,9 +253,9 @@ pub fn log_posterior(
 /// The noise of the calmer runs: what disturbs some runs only is no noise.
 pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prior: &NoisePrior) -> Noise {
     let filter = Filter::new(&found.model, integration, &[]);
-    let share = |run: &Run, pass: Pass| pass.log_likelihood / run.measured.len() as f64;
-    let mut likelihood: Vec<f64> = Vec::with_capacity(runs.len());
-    each_pass(&filter, runs, &found.noise, Wanted::default(), share, |one| likelihood.push(one));
+    let share =
+        |run: &Run| filter.pass(run, &found.noise, Wanted::default()).log_likelihood / run.measured.len() as f64;
+    let likelihood: Vec<f64> = runs.par_iter().map(share).collect();
     let mut order: Vec<usize> = (0..runs.len()).collect();
     order.sort_by(|a, b| likelihood[*b].total_cmp(&likelihood[*a]));
     order.truncate((CALM_SHARE * runs.len() as f64).ceil() as usize);

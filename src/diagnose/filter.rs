@@ -9,6 +9,7 @@
 use super::directions::Directions;
 use super::noise::Noise;
 pub use super::pass::{Column, ForceBasis, GATE, Gains, Pass, Tangent, Wanted, boost};
+use super::settings::TOGETHER;
 use super::side_by_side;
 use crate::model::Model;
 use crate::physics::Lanes;
@@ -34,19 +35,35 @@ impl<'a> Filter<'a> {
         side_by_side::passes::<f64>(&self.directions, &[(0, run)], noise, &wanted).remove(0)
     }
 
-    /// A pass over each run, four runs of one sample period side by side, in an order that depends on the runs alone.
-    pub fn passes(&self, runs: &[impl Borrow<Run>], noise: &Noise, wanted: Wanted) -> Vec<Pass> {
-        let mut order: Vec<(usize, &Run)> = runs.iter().map(Borrow::borrow).enumerate().collect();
-        order.sort_by(|(_, a), (_, b)| a.dt.total_cmp(&b.dt).then(b.measured.len().cmp(&a.measured.len())));
-        let blocks: Vec<&[(usize, &Run)]> =
-            order.chunk_by(|(_, a), (_, b)| a.dt == b.dt).flat_map(|alike| alike.chunks(Lanes::WIDTH)).collect();
-        let pass = |block: &&[(usize, &Run)]| -> Vec<(usize, Pass)> {
+    /// A pass over each run, in their order; for what does not need all passes at once there is [`Self::each`].
+    pub fn passes<R: Borrow<Run> + Sync>(&self, runs: &[R], noise: &Noise, wanted: Wanted) -> Vec<Pass> {
+        let mut passes = Vec::with_capacity(runs.len());
+        self.each(runs, noise, wanted, |_, _, pass| pass, |_, pass| passes.push(pass));
+        passes
+    }
+
+    /// A pass over each run, up to four that follow each other with one sample period side by side. What `work` makes of the pass of
+    /// a run goes to `take` in the order of the runs, so that sums have the same bits on any number of threads; no more of it is held
+    /// at once than a few runs give.
+    pub fn each<R: Borrow<Run> + Sync, T: Send>(
+        &self,
+        runs: &[R],
+        noise: &Noise,
+        wanted: Wanted,
+        work: impl Fn(usize, &Run, Pass) -> T + Sync,
+        mut take: impl FnMut(usize, T),
+    ) {
+        let indexed: Vec<(usize, &Run)> = runs.iter().map(Borrow::borrow).enumerate().collect();
+        let alike = indexed.chunk_by(|(_, a), (_, b)| a.dt == b.dt);
+        let blocks: Vec<&[(usize, &Run)]> = alike.flat_map(|alike| alike.chunks(Lanes::WIDTH)).collect();
+        let pass = |block: &&[(usize, &Run)]| -> Vec<(usize, T)> {
             let passes = side_by_side::passes::<Lanes>(&self.directions, block, noise, &wanted);
-            block.iter().map(|(run, _)| *run).zip(passes).collect()
+            block.iter().zip(passes).map(|((i, run), pass)| (*i, work(*i, run, pass))).collect()
         };
-        let mut passes: Vec<(usize, Pass)> = blocks.par_iter().flat_map_iter(pass).collect();
-        passes.sort_by_key(|(run, _)| *run);
-        passes.into_iter().map(|(_, pass)| pass).collect()
+        for some in blocks.chunks(TOGETHER.div_ceil(Lanes::WIDTH) * rayon::current_num_threads()) {
+            let done: Vec<Vec<(usize, T)>> = some.par_iter().map(pass).collect();
+            done.into_iter().flatten().for_each(|(i, one)| take(i, one));
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 //! With gains fixed, `sum e^2/s` is a smooth function of the parameters, its gradient is exactly the score of an exact pass and
 //! its Gauss-Newton Hessian the information. The filter's gains are then computed anew and the problem solved again.
 
-use super::estimate::{Estimate, base_of, each_pass, log_posterior, restrictions, run_evidence};
+use super::estimate::{Estimate, base_of, log_posterior, restrictions, run_evidence};
 use super::evidence::{Base, Evidence};
 use super::filter::{Column, Filter, Gains, Pass, Wanted};
 use crate::ipopt::{IpoptError, Nlp, OptionValue, Options, Solution, solve};
@@ -44,15 +44,16 @@ impl Refit<'_> {
     fn passes(&self, model: &Model, columns: &[Column]) -> (Evidence, f64) {
         let filter = Filter::new(model, self.integration, columns);
         let restrictions = if columns.is_empty() { Vec::new() } else { restrictions(&self.found.free) };
-        let (mut evidence, mut value, mut finite) = (Evidence::default(), 0.0, true);
+        let (mut evidence, mut value) = (Evidence::default(), 0.0);
         let wanted = Wanted { frozen: Some(self.gains), exact: true, ..Wanted::default() };
-        let work = |run: &Run, pass: Pass| {
+        let work = |_: usize, run: &Run, pass: Pass| {
             let Pass { score, information, innovations, filtered, .. } = pass;
             // A model that left the numbers has no innovations at all, and would look perfect.
             let finite = filtered.iter().flatten().all(|z| z.is_finite());
             (run_evidence(run, score, information, &restrictions), innovations, finite)
         };
-        each_pass(&filter, self.runs, &self.found.noise, wanted, work, |(one, innovations, is_finite)| {
+        let mut finite = true;
+        filter.each(self.runs, &self.found.noise, wanted, work, |_, (one, innovations, is_finite)| {
             evidence.add(one, false);
             for e in innovations.iter().flatten().filter(|e| !e.is_nan()) {
                 value += 0.5 * e * e;

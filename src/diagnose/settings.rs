@@ -278,8 +278,8 @@ numbers! {
 
     /// Blocks of the time scan of the longest run, at most.
     BLOCKS: usize = 64, COST;
-    /// Runs that are passed over before what they gave is added up.
-    TOGETHER: usize = 32, COST;
+    /// Runs that each thread passes over before what they gave is added up.
+    TOGETHER: usize = 8, COST;
     /// Samples in a block of the time scan, at least.
     BLOCK_SAMPLES: usize = 2, COST;
     /// Share of the runs that a push is expected to act in beforehand.

@@ -130,18 +130,7 @@ plain!(Lanes, Lanes::LANES, |f| Lanes::from_fn(f), |x, lane| x.lane(lane));
 
 /// Inputs of a few runs side by side, from those of each.
 pub fn side_by_side<'i, P: Plain>(of: impl Fn(usize) -> &'i Inputs<f64>) -> Inputs<P> {
-    let lanes = |field: fn(&Inputs<f64>) -> f64| P::gather(|lane| field(of(lane)));
-    Inputs {
-        t: lanes(|i| i.t),
-        n: lanes(|i| i.n),
-        delta: lanes(|i| i.delta),
-        wind: [lanes(|i| i.wind[0]), lanes(|i| i.wind[1])],
-        current: [lanes(|i| i.current[0]), lanes(|i| i.current[1])],
-        waves: [lanes(|i| i.waves[0]), lanes(|i| i.waves[1])],
-        draught_to_depth: lanes(|i| i.draught_to_depth),
-        bank: lanes(|i| i.bank),
-        thruster: lanes(|i| i.thruster),
-    }
+    Inputs::from_entries(|entry| P::gather(|lane| *entry(of(lane))))
 }
 
 /// Rates and Jacobian by one evaluation along `N` directions.
