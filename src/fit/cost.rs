@@ -407,6 +407,7 @@ impl<'a> Cost<'a> {
     }
 
     /// Number of samples of the runs of all ranks.
+    #[cfg(feature = "ipopt")]
     pub(super) fn samples(&self) -> usize {
         self.counts[1]
     }
@@ -479,6 +480,7 @@ impl<'a> Cost<'a> {
 
     /// Hands the weighted residuals of each run at `p` to `take`, by sample and channel, NaN where nothing is compared and after
     /// the run's end. The order depends on the runs alone. `None` where a run cannot be read or `take` says no more.
+    #[cfg(feature = "ipopt")]
     pub(super) fn residuals_by_run(
         &self,
         p: &[f64],
@@ -491,6 +493,7 @@ impl<'a> Cost<'a> {
         }
     }
 
+    #[cfg(feature = "ipopt")]
     fn residuals_over<P: Plain>(
         &self,
         blocks: &Blocks<P>,
