@@ -3,7 +3,7 @@
 
 use super::filter::{Filter, GATE, Pass, Wanted};
 use super::noise::Noise;
-use super::settings::{FEW_LOST_SHARE, LOST_MEASUREMENTS};
+use super::settings::{COMPARED, FEW_LOST_SHARE, LOST_MEASUREMENTS};
 use crate::audit::{Issue, Severity, audit_runs, piece};
 use crate::model::Model;
 use crate::numerals::sig;
@@ -120,9 +120,6 @@ fn loss(run: &Run, pass: &Pass) -> Option<Loss> {
     };
     (0..STATES).filter_map(of).max_by_key(|l| l.count)
 }
-
-/// How many runs have their innovations of both step sizes in memory at once.
-const COMPARED: usize = 64;
 
 /// Audits the recordings' kinematics and the numerics.
 pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run]) -> Admission {

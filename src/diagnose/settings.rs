@@ -280,6 +280,8 @@ numbers! {
     BLOCKS: usize = 64, COST;
     /// Runs that each thread passes over before what they gave is added up.
     TOGETHER: usize = 8, COST;
+    /// Runs whose innovations with the step as used and with a finer one are in memory at once.
+    COMPARED: usize = 64, COST;
     /// Samples in a block of the time scan, at least.
     BLOCK_SAMPLES: usize = 2, COST;
     /// Share of the runs that a push is expected to act in beforehand.
