@@ -342,14 +342,14 @@ mod tests {
                 ..Inputs::actuators(0.1 * k as f64, 1.0 + (k as f64).sin(), -0.2)
             };
             let measured = |k: usize| -> [Option<f64>; STATES] {
-                std::array::from_fn(|c| (c != 4 && (k + c) % 7 > 0).then(|| (k * c) as f64 / 7.0))
+                std::array::from_fn(|c| (c != 4 && !(k + c).is_multiple_of(7)).then(|| (k * c) as f64 / 7.0))
             };
             Run {
                 name: format!("ü {i}"),
                 recording: format!("recording {}", i / 3),
                 session: "day".into(),
                 manoeuvre: "zigzag".into(),
-                split: if i % 2 == 0 { Split::Train } else { Split::Test },
+                split: if i.is_multiple_of(2) { Split::Train } else { Split::Test },
                 dt: 0.1,
                 inputs: (0..samples).map(inputs).collect(),
                 measured: (0..samples).map(measured).collect(),
