@@ -1,8 +1,8 @@
 //! Measures how memory and time of the commands grow with the recordings, from 10^4 to 10^8 recorded steps, and draws it.
 //! It runs the command `trimtab` as a user does, on studies that it makes from a seed; no test depends on a number it finds.
 //!
-//! `stream_growth COMMAND STEPS [BINARY]` measures one command at one size and adds it to `figures/growth.csv`;
-//! `stream_growth make FOLDER STEPS` only makes the study, and `stream_growth draw` draws the picture from that table.
+//! `stream_growth COMMAND STEPS [BINARY [FOLDER]]` measures one command at one size and adds it to `figures/growth.csv`; the
+//! recordings are made for it, or are those that `stream_growth make FOLDER STEPS` made. `stream_growth draw` draws the table.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -10,7 +10,8 @@ use rand_distr::StandardNormal;
 use rayon::prelude::*;
 use std::error::Error;
 use std::fmt::Write as _;
-use std::io::Write as _;
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -47,11 +48,13 @@ fn main() -> Result<(), Failure> {
     let words: Vec<&str> = args.iter().map(String::as_str).collect();
     match words[..] {
         ["draw"] => draw(),
-        ["make", folder, steps] => {
-            make(Path::new(folder), "check", size(steps)?).map(|study| println!("{}", study.display()))
-        }
+        ["make", folder, steps] => make(Path::new(folder), ROWS, size(steps)?),
         [command, steps] => measure(command, size(steps)?, &beside()?),
         [command, steps, binary] => measure(command, size(steps)?, Path::new(binary)),
+        [command, steps, binary, folder] => {
+            let study = study(Path::new(folder), command)?;
+            note(command, size(steps)?, &run(Path::new(binary), command, &study)?)
+        }
         _ => Err("give a command and a number of steps, or `draw`".into()),
     }
 }
@@ -72,13 +75,17 @@ fn table() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("figures/growth.csv")
 }
 
-/// Makes a study, runs a command on it, and adds what it took to the table.
+/// Makes recordings, runs a command on them, and adds what it took to the table.
 fn measure(command: &str, steps: usize, binary: &Path) -> Result<(), Failure> {
     let folder = std::env::temp_dir().join(format!("trimtab-growth-{}", std::process::id()));
-    let study = make(&folder, command, steps)?;
-    let taken = run(binary, command, &study);
+    make(&folder, if command == "diagnose" { DIAGNOSED } else { ROWS }, steps)?;
+    let taken = study(&folder, command).and_then(|study| run(binary, command, &study));
     std::fs::remove_dir_all(&folder)?;
-    let taken = taken?;
+    note(command, steps, &taken?)
+}
+
+/// Adds a line to the table, in place of an older one of the same command and size.
+fn note(command: &str, steps: usize, taken: &Taken) -> Result<(), Failure> {
     let rows = steps as f64;
     let line = format!(
         "{command},{steps},{:.2},{:.2},{:.3},{:.1},{:.1}",
@@ -137,22 +144,26 @@ fn run(binary: &Path, command: &str, study: &Path) -> Result<Taken, Failure> {
     Ok(Taken { processor, elapsed: began.elapsed().as_secs_f64(), peak })
 }
 
-/// Makes the study of a command: recordings of ship A with sensor noise under rudder and shaft orders drawn from the seed.
-fn make(folder: &Path, command: &str, steps: usize) -> Result<PathBuf, Failure> {
+/// Makes recordings of ship A with sensor noise under rudder and shaft orders drawn from the seed, two at least.
+fn make(folder: &Path, rows: usize, steps: usize) -> Result<(), Failure> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/demo");
     std::fs::create_dir_all(folder.join("recordings"))?;
     for name in ["ship.toml", "model.toml", "baseline.toml"] {
         std::fs::copy(source.join(name), folder.join(name))?;
     }
-    let rows = if command == "diagnose" { DIAGNOSED } else { ROWS };
-    let count = (steps / rows).max(2);
     let mut model = Model::read(&source.join("model.toml"), Ship::read(&source.join("ship.toml"))?)?;
     model.set_eleven(&STAR);
-    (0..count).into_par_iter().try_for_each(|i| {
+    (0..(steps / rows).max(2)).into_par_iter().try_for_each(|i| {
         let path = folder.join(format!("recordings/{i}.csv"));
         std::fs::write(path, recording(&model, SEED + i as u64, rows)).map_err(Failure::from)
-    })?;
-    let mut runs = std::io::BufWriter::new(std::fs::File::create(folder.join("runs.csv"))?);
+    })
+}
+
+/// Writes the study of a command on recordings that were made: a fit has all of them to train on, a diagnosis keeps a quarter
+/// aside, whole, and the others half.
+fn study(folder: &Path, command: &str) -> Result<PathBuf, Failure> {
+    let count = std::fs::read_dir(folder.join("recordings"))?.count();
+    let mut runs = BufWriter::new(File::create(folder.join(format!("{command}.csv")))?);
     writeln!(runs, "file,split")?;
     for i in 0..count {
         let train = match command {
@@ -165,10 +176,10 @@ fn make(folder: &Path, command: &str, steps: usize) -> Result<PathBuf, Failure> 
     runs.flush()?;
     let window = if command == "diagnose" { String::new() } else { format!("window = {WINDOW:?}\n") };
     let text = format!(
-        "name = \"growth\"\nship = \"ship.toml\"\nmodel = \"model.toml\"\nruns = \"runs.csv\"\n{window}\n\
+        "name = \"growth\"\nship = \"ship.toml\"\nmodel = \"model.toml\"\nruns = \"{command}.csv\"\n{window}\n\
          [fit.constraints]\nlimits = \"paper\"\n\n[evaluate]\nbaseline = \"baseline.toml\"\n"
     );
-    let study = folder.join("study.toml");
+    let study = folder.join(format!("{command}.toml"));
     std::fs::write(&study, text)?;
     Ok(study)
 }

@@ -8,8 +8,8 @@ use std::error::Error;
 use trimtab::parameter::ParameterInfo;
 use trimtab::physics::{Flow, Group, Instant, Kind, Mechanism, Physics, Probe, Reach, Term, TermInfo, Validity};
 use trimtab::{
-    Channel, FitSettings, Force, Form, Inputs, Integration, Labels, Method, Model, Recording, Run, Scenario, Settings,
-    Split, WindowSettings, demo, diagnose, fit, report, simulate, terms,
+    Channel, Diagnosis, FitSettings, Force, Form, Inputs, Integration, Labels, Method, Model, Recording, Run, Scenario,
+    Settings, Split, WindowSettings, demo, diagnose, fit, report, simulate, terms,
 };
 use trimtab_ad::Scalar;
 
@@ -68,8 +68,10 @@ impl<S: Scalar> Physics<S> for Rotor {
 
 const DT: f64 = 2.0;
 
+/// Lift coefficient times area of the rotor in the recordings \[m2\].
+const TRUE_LIFT_AREA: f64 = 300.0;
+
 fn main() -> Result<(), Box<dyn Error>> {
-    let wind = [("wind.drag", 0.7), ("wind.side", 0.8), ("wind.yaw", 0.1)];
     let mut believed = Model::with_catalogue(
         terms::standard().with(&Rotor),
         demo::example()?.model.ship,
@@ -77,25 +79,51 @@ fn main() -> Result<(), Box<dyn Error>> {
         Form::Regular,
         &["wind"],
     )?;
-    believed.set(&wind)?;
+    believed.set(&[("wind.drag", 0.7), ("wind.side", 0.8), ("wind.yaw", 0.1)])?;
     believed.set_eleven(&[-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370]);
     let mut truth = believed.clone();
     truth.add_term("rotor")?;
-    truth.set(&[("rotor.lift_area", 300.0)])?;
+    truth.set(&[("rotor.lift_area", TRUE_LIFT_AREA)])?;
 
     let (test, train): (Vec<Run>, Vec<Run>) = runs_of(&truth)?.into_iter().partition(|run| run.split == Split::Test);
     let diagnosis = diagnose(&believed, &train, &test, &Settings::default(), &|_| ())?;
     println!("{}", report::diagnosis::summary(&diagnosis, "a ship with a rotor"));
+    println!("WHAT WAS LEFT OUT, in short");
+    println!("{}", found(&diagnosis)?);
 
     let mut model = believed;
     model.add_term("rotor")?;
     let rotor = model.find("rotor.lift_area")?;
     model.parameters[rotor].free = true;
-    let settings = FitSettings::default();
-    let fitted = fit(&model, &train, &settings, &mut |_| true)?;
-    println!("{}", fitted.brief());
-    println!("rotor.lift_area: true 300, fitted {:.1} m2", fitted.model.parameters[rotor].value);
+    let fitted = fit(&model, &train, &FitSettings::default(), &mut |_| true)?;
+    println!("\nTHE SAME TERM IN A FIT\n{}", fitted.brief());
+    let estimate = fitted.estimates.iter().find(|e| e.name == "rotor.lift_area").ok_or("the rotor was not fitted")?;
+    println!("rotor.lift_area = {:.0} m2{}, true {TRUE_LIFT_AREA}", estimate.value, interval(estimate.interval));
     Ok(())
+}
+
+/// The rotor as the diagnosis found it, with its size and what it gains on the runs kept aside; an error if it was not found.
+fn found(diagnosis: &Diagnosis) -> Result<String, Box<dyn Error>> {
+    let named = diagnosis.findings.iter().find(|f| f.mechanism == "rotor");
+    let finding = named.ok_or_else(|| format!("the diagnosis does not name the rotor: {}", diagnosis.headline))?;
+    let amplitude = finding.parameters.first().ok_or("the finding has no parameter")?;
+    let gain = finding.held_out.as_ref().ok_or("the finding was not tested on other runs")?;
+    let size = format!("{} = {:.0} m2{}", amplitude.name, amplitude.value, interval(Some(amplitude.ci95)));
+    let (Some(before), Some(after), Some(share)) = (gain.before, gain.after, gain.improvement) else {
+        return Err("a simulation of the runs kept aside diverged".into());
+    };
+    let reach = interval(gain.ci95.map(|ends| ends.map(|share| 100.0 * share)));
+    Ok(format!(
+        "{}\n{size}, true {TRUE_LIFT_AREA}\n{} runs kept aside: cVDM {before:.1} % before, {after:.1} % after, improvement {:.0} %{reach}",
+        finding.title,
+        gain.runs,
+        100.0 * share,
+    ))
+}
+
+/// A 95 % interval in words; nothing where there is none.
+fn interval(interval: Option<[f64; 2]>) -> String {
+    interval.map_or(String::new(), |[low, high]| format!(" (95 % {low:.0} to {high:.0})"))
 }
 
 /// Twenty-four runs of four minutes on all headings in 10 m/s of wind, measured with noise; every sixth is kept aside.

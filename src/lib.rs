@@ -89,6 +89,7 @@ pub mod physics;
 #[cfg(feature = "plot")]
 pub mod plot;
 pub mod ranges;
+pub mod ranks;
 pub mod recording;
 pub mod report;
 pub mod sensitivity;

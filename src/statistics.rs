@@ -1,6 +1,7 @@
 //! The statistics that every judgement uses: quantiles, tails, shares, the bootstrap over clusters, cluster-robust variance.
 //! It knows nothing of ships: what is counted, compared or resampled is told where it is asked.
 
+use crate::ranks::{ExactSums, Ranks};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -68,14 +69,17 @@ pub fn corrected(p: f64, tried: f64) -> f64 {
 }
 
 /// The variance of a sum of scores over c clusters, `c/(c-1) sum_c g_c g_c^T` with `g_c` the sum of the scores of cluster c (Liang &
-/// Zeger 1986, Biometrika 73, p. 13); `n` is the length of a score.
-pub fn clustered_variance(clusters: &[DVector<f64>], n: usize) -> DMatrix<f64> {
-    let mut sum = DMatrix::zeros(n, n);
+/// Zeger 1986, Biometrika 73, p. 13), and c; `n` is the length of a score. The clusters are those of all ranks, each with whole
+/// ones. A score that is not finite leaves zeros.
+pub fn clustered_variance(ranks: &Ranks, clusters: &[DVector<f64>], n: usize) -> (DMatrix<f64>, usize) {
+    let mut sums = ExactSums::new(n * n);
     for g in clusters {
-        sum += g * g.transpose();
+        (g * g.transpose()).iter().enumerate().for_each(|(i, x)| sums.add(i, *x));
     }
-    let c = clusters.len() as f64;
-    if c > 1.0 { sum * (c / (c - 1.0)) } else { sum }
+    let [count] = ranks.counts([clusters.len()]);
+    let sum = ranks.total(sums).map_or_else(|| DMatrix::zeros(n, n), |sum| DMatrix::from_vec(n, n, sum));
+    let c = count as f64;
+    (if c > 1.0 { sum * (c / (c - 1.0)) } else { sum }, count)
 }
 
 /// A share of so many cases, with its Wilson score interval at 95 %.
@@ -123,8 +127,9 @@ impl std::fmt::Display for Share {
 
 /// A bootstrap over clusters: whole clusters are drawn, since what is in one shares what is unknown, and every statistic is
 /// asked of the same draws.
-pub struct Bootstrap {
+pub struct Bootstrap<'a> {
     draws: Vec<Vec<usize>>,
+    ranks: &'a Ranks,
 }
 
 /// Fewest draws from which the ends of an interval are told: of fewer they are single draws.
@@ -132,19 +137,25 @@ const FEWEST_DRAWS: usize = 100;
 /// Fewest clusters that are resampled: of fewer an interval would only seem to say something.
 const FEWEST_CLUSTERS: usize = 3;
 
-impl Bootstrap {
+impl<'a> Bootstrap<'a> {
     /// So many draws of as many clusters as there are.
     pub fn new(clusters: usize, resamples: usize, seed: u64) -> Self {
+        Self::over(Ranks::one(), clusters, resamples, seed)
+    }
+
+    /// As [`Self::new`], with the draws divided among the ranks: each asks for the same intervals in the same order.
+    pub fn over(ranks: &'a Ranks, clusters: usize, resamples: usize, seed: u64) -> Self {
         let resamples = if clusters < FEWEST_CLUSTERS { 0 } else { resamples };
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let draws = (0..resamples).map(|_| (0..clusters).map(|_| random.random_range(0..clusters)).collect());
-        Self { draws: draws.collect() }
+        Self { draws: draws.collect(), ranks }
     }
 
     /// The 95 % percentile interval of a statistic of drawn clusters; `None` where too few draws have one.
     pub fn interval(&self, statistic: impl Fn(&[usize]) -> Option<f64> + Sync) -> Option<[f64; 2]> {
-        let mut drawn: Vec<f64> =
-            self.draws.par_iter().filter_map(|d| statistic(d)).filter(|v| v.is_finite()).collect();
+        let own = &self.draws[self.ranks.share(self.draws.len())];
+        let own: Vec<f64> = own.par_iter().filter_map(|d| statistic(d)).filter(|v| v.is_finite()).collect();
+        let mut drawn = self.ranks.gather(&own).concat();
         drawn.sort_by(f64::total_cmp);
         let at = |share: f64| drawn[((drawn.len() - 1) as f64 * share).round() as usize];
         (drawn.len() >= FEWEST_DRAWS).then(|| [at(0.025), at(0.975)])
@@ -193,8 +204,8 @@ mod tests {
     #[test]
     fn clusters_that_repeat_a_score_add_its_square_not_its_size() {
         let vector = |values: &[f64]| DVector::from_row_slice(values);
-        let m = clustered_variance(&[vector(&[1.0, 0.0]), vector(&[-1.0, 0.0])], 2);
-        assert_eq!(m, DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0]));
+        let m = clustered_variance(Ranks::one(), &[vector(&[1.0, 0.0]), vector(&[-1.0, 0.0])], 2);
+        assert_eq!(m.0, DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0]));
     }
 
     #[test]

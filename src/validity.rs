@@ -4,6 +4,7 @@
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::physics::{Flow, Form, Quantity, Validity, range_in_words};
+use crate::ranks::Ranks;
 use crate::recording::{Run, or_nan};
 use crate::state::{Inputs, STATES, State};
 use crate::units::GRAVITY;
@@ -106,6 +107,14 @@ impl<'a> Count<'a> {
         }
     }
 
+    /// Adds what the other ranks counted for the same model.
+    pub fn gather(&mut self, ranks: &Ranks) {
+        [self.samples, self.anywhere] = ranks.counts([self.samples, self.anywhere]);
+        for limit in &mut self.limits {
+            limit.gather(ranks);
+        }
+    }
+
     /// What was counted, as shares.
     pub fn coverage(&self) -> Coverage {
         let mut outside: Vec<Outside> = self.limits.iter().filter(|l| l.beyond > 0).map(Limit::report).collect();
@@ -123,8 +132,18 @@ pub fn outside<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
     model: &Model,
     samples: impl IntoIterator<Item = (Y, I)>,
 ) -> Coverage {
+    outside_over(Ranks::one(), model, samples)
+}
+
+/// As [`outside`], of the samples of all ranks, of which this one has `samples`.
+pub fn outside_over<I: Borrow<Inputs<f64>>, Y: Borrow<[f64; STATES]>>(
+    ranks: &Ranks,
+    model: &Model,
+    samples: impl IntoIterator<Item = (Y, I)>,
+) -> Coverage {
     let mut count = Count::new(model);
     count.add(samples);
+    count.gather(ranks);
     count.coverage()
 }
 
@@ -221,6 +240,13 @@ impl Limit {
             self.met = [self.met[0].min(value), self.met[1].max(value)];
         }
         out
+    }
+
+    /// Counts what the other ranks met too.
+    fn gather(&mut self, ranks: &Ranks) {
+        [self.known, self.beyond] = ranks.counts([self.known, self.beyond]);
+        let ends = ranks.largest(&[-self.met[0], self.met[1]]);
+        self.met = [-ends[0], ends[1]];
     }
 
     fn report(&self) -> Outside {

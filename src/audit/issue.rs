@@ -2,10 +2,10 @@
 //! It finds no fault itself; the questions asked of recordings are in the files beside it.
 
 use crate::recording::Channel;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How much an issue weighs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// Worth knowing.

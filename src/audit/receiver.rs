@@ -293,7 +293,7 @@ mod tests {
 
     #[test]
     fn neither_noise_nor_a_sudden_force_is_a_jump() {
-        let (runs, issues) = settled(&circles(), LENGTH);
+        let (runs, issues) = settled(circles(), LENGTH);
         assert!(issues.is_empty(), "{issues:?}");
         assert_eq!(runs.len(), 8);
     }

@@ -4,9 +4,10 @@
 use super::error::CliError;
 use super::load::Loaded;
 use super::progress::progress;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use trimtab::audit::{Issue, Severity, audit_study};
 use trimtab::error::suggestion;
+use trimtab::ranks::Ranks;
 use trimtab::recording::Channel;
 
 /// Arguments of the commands that compute with recordings.
@@ -19,10 +20,10 @@ pub struct AcceptArgs {
 }
 
 /// A warning, or an error that was accepted, in so many of the runs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Doubt {
     severity: Severity,
-    fault: &'static str,
+    fault: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     channel: Option<Channel>,
     /// What was found in the first of the runs.
@@ -52,11 +53,21 @@ const CONTRADICTIONS: [&str; 3] = ["unit_error", "sign_error", "axes_error"];
 /// [`CliError::Faulty`] where the recordings contradict themselves and this was not accepted. A recording that cannot be read, or a
 /// study without runs on one side, is left to the command, whose message says more.
 pub fn audited(loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> {
-    let audited = examined(loaded, args)?;
+    audited_over(Ranks::one(), loaded, args)
+}
+
+/// As [`audited`], with the recordings divided among the ranks, each of which gets the same answer.
+///
+/// # Errors
+/// As [`audited`], on every rank.
+pub fn audited_over(ranks: &Ranks, loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> {
+    let audited = examined_over(ranks, loaded, args)?;
     match audited.doubts.iter().find(|d| d.refused()) {
-        Some(doubt) => {
-            Err(CliError::Faulty { path: loaded.study.path.clone(), what: audited.sentence(doubt), fault: doubt.fault })
-        }
+        Some(doubt) => Err(CliError::Faulty {
+            path: loaded.study.path.clone(),
+            what: audited.sentence(doubt),
+            fault: doubt.fault.clone(),
+        }),
         None => Ok(audited),
     }
 }
@@ -66,6 +77,10 @@ pub fn audited(loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> 
 /// # Errors
 /// A fault to accept that there is not.
 pub fn examined(loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> {
+    examined_over(Ranks::one(), loaded, args)
+}
+
+fn examined_over(ranks: &Ranks, loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError> {
     for name in &args.accept {
         if !CONTRADICTIONS.contains(&name.as_str()) {
             let known = CONTRADICTIONS.join(", ");
@@ -73,42 +88,46 @@ pub fn examined(loaded: &Loaded, args: &AcceptArgs) -> Result<Audited, CliError>
             return Err(CliError::Argument(format!("there is no fault `{name}` to accept; they are {known}{near}")));
         }
     }
-    let bar = progress(format!("auditing {} recordings", loaded.study.runs.len()));
-    let audit = audit_study(&loaded.study, &loaded.model.ship);
+    let own = loaded.part(ranks, |_| true).study;
+    let bar = progress(format!("auditing {} recordings", own.runs.len()));
+    let audit = audit_study(&own, &loaded.model.ship);
     bar.finish_and_clear();
     let found = audit.recordings.iter().flat_map(|a| a.issues.iter().map(|i| (a.run.as_str(), i)));
-    let mut doubts = grouped(found);
+    let own: Vec<Doubt> = found.filter_map(|(run, issue)| told(run, issue)).collect();
+    let mut doubts = grouped(ranks.gather(&own).into_iter().flatten());
     for doubt in &mut doubts {
-        doubt.accepted = args.accept.iter().any(|a| a == doubt.fault);
+        doubt.accepted = args.accept.contains(&doubt.fault);
     }
-    Ok(Audited { runs: audit.recordings.len(), doubts })
+    Ok(Audited { runs: loaded.study.runs.len(), doubts })
 }
 
-/// Warnings and contradictions by fault and channel, the gravest first, then in the order found.
-fn grouped<'a>(issues: impl Iterator<Item = (&'a str, &'a Issue)>) -> Vec<Doubt> {
+/// The doubt that an issue of a run is; none that is only worth knowing, or that the command tells itself.
+fn told(run: &str, issue: &Issue) -> Option<Doubt> {
+    let told = match issue.severity {
+        Severity::Note => false,
+        Severity::Warning => true,
+        Severity::Error => CONTRADICTIONS.contains(&issue.fault),
+    };
+    told.then(|| Doubt {
+        severity: issue.severity,
+        fault: issue.fault.to_owned(),
+        channel: issue.channel,
+        text: issue.text.clone(),
+        next_step: issue.next_step.clone(),
+        runs: vec![run.to_owned()],
+        accepted: false,
+    })
+}
+
+/// Doubts of one run each by fault and channel, the gravest first, then in the order found.
+fn grouped(found: impl Iterator<Item = Doubt>) -> Vec<Doubt> {
     let mut doubts: Vec<Doubt> = Vec::new();
-    for (run, issue) in issues {
-        let told = match issue.severity {
-            Severity::Note => false,
-            Severity::Warning => true,
-            Severity::Error => CONTRADICTIONS.contains(&issue.fault),
-        };
-        if !told {
-            continue;
-        }
-        let same = |d: &&mut Doubt| (d.severity, d.fault, d.channel) == (issue.severity, issue.fault, issue.channel);
+    for one in found {
+        let same = |d: &&mut Doubt| (d.severity, &d.fault, d.channel) == (one.severity, &one.fault, one.channel);
         match doubts.iter_mut().find(same) {
-            Some(doubt) if doubt.runs.last().is_some_and(|r| r == run) => {}
-            Some(doubt) => doubt.runs.push(run.to_owned()),
-            None => doubts.push(Doubt {
-                severity: issue.severity,
-                fault: issue.fault,
-                channel: issue.channel,
-                text: issue.text.clone(),
-                next_step: issue.next_step.clone(),
-                runs: vec![run.to_owned()],
-                accepted: false,
-            }),
+            Some(doubt) if doubt.runs.last() == one.runs.last() => {}
+            Some(doubt) => doubt.runs.extend(one.runs),
+            None => doubts.push(one),
         }
     }
     doubts.sort_by_key(|d| std::cmp::Reverse(d.severity));
@@ -170,7 +189,7 @@ mod tests {
         let found = [("a", warning("stands still for 3 s")), ("a", warning("stands still for 9 s")), ("b", error)];
         let more = [("b", warning("stands still for 5 s")), ("c", note)];
         let all: Vec<(&str, Issue)> = found.into_iter().chain(more).collect();
-        let audited = Audited { runs: 3, doubts: grouped(all.iter().map(|(r, i)| (*r, i))) };
+        let audited = Audited { runs: 3, doubts: grouped(all.iter().filter_map(|(r, i)| told(r, i))) };
         let lines = audited.lines();
         let lines: Vec<&str> = lines.lines().collect();
         assert!(audited.refused());

@@ -15,6 +15,7 @@ use trimtab::fit::Fit;
 use trimtab::maneuver::{Side, turning_trial};
 use trimtab::model::Model;
 use trimtab::numerals::{DASH, interval, sig};
+use trimtab::ranks::Ranks;
 use trimtab::recording::{Runs, Split};
 use trimtab::report::Table;
 use trimtab::report::maneuver::{turning_figure, turning_table};
@@ -59,8 +60,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let loaded = Loaded::new(&StudyArgs { study: study.clone(), model: None })?;
     let train = loaded.windows_of(Split::Train)?;
     let test = loaded.windows_of(Split::Test)?;
-    let fit = fit::fit_windows(&loaded, &loaded.model, Runs::from(&train))?;
-    fit::write(&mut output, &loaded.model, &fit, Runs::from(&train))?;
+    let fit = fit::fit_windows(Ranks::one(), &loaded, &loaded.model, Runs::from(&train), None)?;
+    fit::write(&mut output, &loaded.model, &fit, fit::speeds(Ranks::one(), Runs::from(&train)))?;
     let baseline = evaluate::baseline(&loaded, None)?;
     let evaluation = evaluate::judge(&loaded, &baseline, &fit.model, &test)?;
     let integration = loaded.fit_settings()?.integration;

@@ -35,7 +35,7 @@ pub enum CliError {
         /// What was found, where, and what to do.
         what: String,
         /// The fault's name.
-        fault: &'static str,
+        fault: String,
     },
     /// A table of the study.
     #[error("{path}:{line}: [{table}] {message}", path = path.display())]

@@ -2,7 +2,7 @@
 //! The library computes the measures; this file prints, tabulates and draws them.
 
 use super::answer::Answer;
-use super::audited::{AcceptArgs, audited};
+use super::audited::{AcceptArgs, audited_over};
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
@@ -13,6 +13,7 @@ use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Proo
 use trimtab::model::Model;
 use trimtab::numerals::{DASH, sig};
 use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
+use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
 use trimtab::simulate::Integration;
@@ -62,15 +63,15 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<Answer, CliError> {
-    let mut output = Output::new("evaluate", &args.output)?;
+pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
+    let mut output = Output::of_rank(ranks, "evaluate", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
-    output.recordings(audited(&loaded, &args.accept)?);
+    output.recordings(audited_over(ranks, &loaded, &args.accept)?);
     let baseline = baseline(&loaded, args.baseline.as_ref())?;
     let judging = judging(&loaded)?;
     let mut proof = Proof::new(&baseline, &loaded.model, &judging);
     let blank = Proof::new(&baseline, &loaded.model, &judging);
-    loaded.each(
+    loaded.part(ranks, |_| true).each(
         "evaluating",
         |_| true,
         |windows| blank.part(&windows),
@@ -79,7 +80,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             Ok(())
         },
     )?;
-    let evaluation = proof.evaluation();
+    let evaluation = proof.evaluation_over(ranks);
     if !evaluation.trajectories.iter().any(|t| t.split == Split::Test) {
         return Err(loaded.nothing(Split::Test));
     }

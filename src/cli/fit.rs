@@ -2,14 +2,18 @@
 //! The library makes the fit and its report; this file calls it, shows progress and writes files.
 
 use super::answer::Answer;
-use super::audited::{AcceptArgs, audited};
+use super::audited::{AcceptArgs, audited_over};
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text};
 use super::progress::progress;
-use trimtab::fit::{Fit, FitSettings, fit};
+use std::path::{Path, PathBuf};
+use trimtab::files::write_whole;
+use trimtab::fit::{Fit, FitSettings, MultiStart, StartRow, fit_over, multi_start_over};
 use trimtab::model::Model;
+use trimtab::numerals::sig;
 use trimtab::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
+use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, RunStore, Runs, Split};
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
@@ -35,7 +39,8 @@ Example:
   trimtab evaluate study.toml --model results/fitted.toml
 
 With --out: fitted.toml (a model file with the estimates, which every command takes as --model), fit.json, fit.txt (the \
-    report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end).
+    report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end); with --starts also starts.csv (how each start \
+    ended). While the fit runs, best.toml is the model at the best point so far; it is removed at the end.
 JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
     result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
     value, limit, sentence), result.residual_statistics (model_error, growth, growth_error, likeness), result.estimates[] \
@@ -54,6 +59,9 @@ Exit code 1 if the fit did not converge; its result is written all the same.";
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
+    /// Fit from this many starts drawn around the model's values first, and then from the best of their ends.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    starts: Option<u16>,
     #[command(flatten)]
     accept: AcceptArgs,
     #[command(flatten)]
@@ -61,19 +69,23 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<Answer, CliError> {
-    let mut output = Output::new("fit", &args.output)?;
+pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
+    let mut output = Output::of_rank(ranks, "fit", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
-    output.recordings(audited(&loaded, &args.accept)?);
-    let store = stored(&loaded)?;
+    output.recordings(audited_over(ranks, &loaded, &args.accept)?);
+    let (start, starts) = match args.starts {
+        Some(count) => from_many(ranks, &loaded, count.into(), &mut output)?,
+        None => (loaded.model.clone(), String::new()),
+    };
+    let store = stored(ranks, &loaded)?;
     let windows = Runs::from(&store);
-    let fit = fit_windows(&loaded, &loaded.model, windows);
+    let fit = fit_windows(ranks, &loaded, &start, windows, output.path(BEST));
     if let Some(source) = store.failure() {
         return Err(CliError::Write { path: std::env::temp_dir(), source });
     }
     let fit = fit?;
-    write(&mut output, &loaded.model, &fit, windows)?;
-    let mut text = fit.report();
+    write(&mut output, &start, &fit, speeds(ranks, windows))?;
+    let mut text = fit.report() + &starts;
     if !output.has_folder() {
         text += "\nGive --out DIR to keep the fitted model as a file.";
     }
@@ -81,32 +93,55 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     Ok(if fit.converged { Answer::Yes } else { Answer::No })
 }
 
-/// The windows to train on, in memory or in a temporary file.
-fn stored(loaded: &Loaded) -> Result<RunStore, CliError> {
+/// The windows to train on that are this rank's, in memory or in a temporary file. One of several ranks opens no other recording.
+fn stored(ranks: &Ranks, loaded: &Loaded) -> Result<RunStore, CliError> {
     let mut store = RunStore::default();
     let fail = |source| CliError::Write { path: std::env::temp_dir(), source };
     let train = |windows: Vec<Run>| windows.into_iter().filter(|w| w.split == Split::Train).collect::<Vec<Run>>();
-    loaded.each(
+    loaded.part(ranks, |run| ranks.size() == 1 || run.labels.split == Split::Train).each(
         "reading",
         |_| true,
         train,
         |windows| windows.into_iter().try_for_each(|window| store.push(window)).map_err(fail),
     )?;
-    if store.is_empty() { Err(loaded.nothing(Split::Train)) } else { Ok(store) }
+    if ranks.counts([store.len()]) == [0] { Err(loaded.nothing(Split::Train)) } else { Ok(store) }
 }
+
+/// Share of the lowest cost within which starts ended at the same place.
+const SAME_PLACE: f64 = 1e-4;
 
 /// What a fit adds to the name of its model.
 const FITTED_NAME: &str = ", fitted";
 
-/// Fits a model to windows with the settings of the study.
-pub fn fit_windows(loaded: &Loaded, start: &Model, windows: Runs) -> Result<Fit, CliError> {
+/// File of the best point so far, while a fit runs.
+const BEST: &str = "best.toml";
+
+/// Fits a model to the windows of all ranks with the settings of the study. While it runs, `kept` is a model file of the best
+/// point so far.
+pub fn fit_windows(
+    ranks: &Ranks,
+    loaded: &Loaded,
+    start: &Model,
+    windows: Runs,
+    kept: Option<PathBuf>,
+) -> Result<Fit, CliError> {
     let settings: FitSettings = loaded.fit_settings()?;
     let bar = progress(format!("fitting to {} windows", windows.len()));
-    let result = fit(start, windows, &settings, &mut |p| {
+    let mut last: Vec<f64> = Vec::new();
+    let result = fit_over(ranks, start, windows, &settings, &mut |p| {
         bar.set_message(format!("fitting: iteration {}, cost {:.5}", p.iteration, p.cost));
+        if let (Some(path), Some(best)) = (&kept, p.best.filter(|best| *best != last)) {
+            last = best.to_vec();
+            // A fit does not end because a copy of its best point cannot be written.
+            let _ = keep(path, start, best);
+        }
         true
     });
     bar.finish_and_clear();
+    if let Some(path) = &kept {
+        // Without a better point than the start there is no such file.
+        let _ = std::fs::remove_file(path);
+    }
     let mut fit = result.map_err(|error| CliError::Fit { path: loaded.study.path.clone(), error })?;
     if !start.name.ends_with(FITTED_NAME) {
         fit.model.name += FITTED_NAME;
@@ -114,8 +149,68 @@ pub fn fit_windows(loaded: &Loaded, start: &Model, windows: Runs) -> Result<Fit,
     Ok(fit)
 }
 
+/// Writes a model file with the free parameters at `best`, whole or not at all.
+fn keep(path: &Path, start: &Model, best: &[f64]) -> Result<(), CliError> {
+    let fail = |source| CliError::Write { path: path.to_owned(), source };
+    let mut model = start.clone();
+    for (i, value) in start.free().into_iter().zip(best) {
+        model.parameters[i].value = *value;
+    }
+    write_whole(path, model_text(&model)?.as_bytes()).map_err(fail)
+}
+
+/// Fits from many starts, dealt out to the ranks, and writes how each ended: the model at the best end, and what to say of it.
+fn from_many(ranks: &Ranks, loaded: &Loaded, count: usize, output: &mut Output) -> Result<(Model, String), CliError> {
+    let windows = loaded.windows_of(Split::Train)?;
+    let starts = MultiStart { count, ..MultiStart::default() };
+    let bar = progress(format!("fitting from {count} starts"));
+    let each = |start| bar.set_message(format!("fitting from start {start} of {count}"));
+    let rows = multi_start_over(ranks, &loaded.model, &windows, &loaded.fit_settings()?, &starts, each);
+    bar.finish_and_clear();
+    let mut model = loaded.model.clone();
+    let free = model.free();
+    let names = free.iter().map(|i| model.parameters[*i].name.clone());
+    let (from, to): (Vec<String>, Vec<String>) = names.map(|n| (format!("start {n}"), format!("end {n}"))).unzip();
+    let header = ["start", "converged", "cost", "iterations", "ended"].into_iter();
+    let header: Vec<&str> = header.chain(from.iter().chain(&to).map(String::as_str)).collect();
+    let fields = |(i, row): (usize, &StartRow)| {
+        let cost = row.cost.map_or(String::new(), |c| c.to_string());
+        let first = [i.to_string(), row.converged.to_string(), cost, row.iterations.to_string(), row.ended.clone()];
+        let ends = (0..free.len()).map(|j| row.end.get(j).map_or(String::new(), f64::to_string));
+        first.into_iter().chain(row.start.iter().map(f64::to_string)).chain(ends).collect::<Vec<String>>()
+    };
+    output.file("starts.csv", &csv_text(&header, rows.iter().enumerate().map(fields))?)?;
+    let converged: Vec<&StartRow> = rows.iter().filter(|row| row.converged).collect();
+    let best = converged.iter().min_by(|a, b| a.cost.unwrap_or(f64::NAN).total_cmp(&b.cost.unwrap_or(f64::NAN)));
+    let Some((best, cost)) = best.and_then(|row| Some((row, row.cost?))) else {
+        return Ok((
+            model,
+            format!("\n\nStarts: none of {count} converged; the fit is from the model's own values.\n"),
+        ));
+    };
+    for (i, value) in free.iter().zip(&best.end) {
+        model.parameters[*i].value = *value;
+    }
+    let same = converged.iter().filter(|row| row.cost.is_some_and(|c| c <= cost * (1.0 + SAME_PLACE))).count();
+    let said = format!(
+        "\n\nStarts: {} of {count} converged, {same} of them at the lowest cost {}; the fit is from there.\n",
+        converged.len(),
+        sig(cost, 4)
+    );
+    Ok((model, said))
+}
+
+/// The recorded range of surge speed \[m/s\] over all ranks, at least 0 to 1.
+pub fn speeds(ranks: &Ranks, windows: Runs) -> [f64; 2] {
+    let [slowest, fastest] = windows.iter().fold([0.0_f64, 1.0_f64], |range, w| {
+        w.measured.iter().filter_map(|s| s[3]).fold(range, |[a, b], u| [a.min(u), b.max(u)])
+    });
+    let ends = ranks.largest(&[-slowest, fastest]);
+    [-ends[0], ends[1]]
+}
+
 /// Writes the files of a fit.
-pub fn write(output: &mut Output, start: &Model, fit: &Fit, windows: Runs) -> Result<(), CliError> {
+pub fn write(output: &mut Output, start: &Model, fit: &Fit, speeds: [f64; 2]) -> Result<(), CliError> {
     output.file("fitted.toml", model_text(&fit.model)?.as_bytes())?;
     output.file("fit.txt", fit.report().as_bytes())?;
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
@@ -135,7 +230,7 @@ pub fn write(output: &mut Output, start: &Model, fit: &Fit, windows: Runs) -> Re
     });
     let header = ["parameter", "symbol", "unit", "start", "estimate", "standard_error", "low95", "high95", "at_bound"];
     output.file("parameters.csv", &csv_text(&header, rows)?)?;
-    output.figure("curves", || curves(&[("start", GREY, start), ("fitted", FITTED, &fit.model)], windows))
+    output.figure("curves", || curves(&[("start", GREY, start), ("fitted", FITTED, &fit.model)], speeds))
 }
 
 /// A model as the text of a model file.
@@ -146,10 +241,7 @@ pub fn model_text(model: &Model) -> Result<String, CliError> {
 }
 
 /// R(u) over the recorded speeds, c_L and c_D over the angles of attack at which the curves hold.
-pub fn curves(models: &[(&str, Color, &Model)], windows: Runs) -> Figure {
-    let (low, high) = windows.iter().fold((0.0_f64, 1.0_f64), |range, w| {
-        w.measured.iter().filter_map(|s| s[3]).fold(range, |(a, b), u| (a.min(u), b.max(u)))
-    });
+pub fn curves(models: &[(&str, Color, &Model)], [low, high]: [f64; 2]) -> Figure {
     let over = |from: f64, to: f64| (0..=120).map(move |i| from + (to - from) * f64::from(i) / 120.0);
     let layers = |f: &dyn Fn(&Model) -> Vec<(f64, f64)>| {
         models.iter().map(|(name, color, model)| Layer::line(*name, *color, f(model))).collect::<Vec<_>>()

@@ -12,6 +12,7 @@ use trimtab::fit::FitSettings;
 use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::{Model, ModelError};
 use trimtab::ranges::Limited;
+use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Split, Windows};
 use trimtab::ship::Ship;
 use trimtab::study::{Listed, Study};
@@ -91,6 +92,14 @@ impl Loaded {
             return Err(self.nothing(split));
         }
         Ok(windows)
+    }
+
+    /// The same study with this rank's part of the runs for which `wanted` says so.
+    pub fn part(&self, ranks: &Ranks, wanted: impl Fn(&Listed) -> bool) -> Self {
+        let mut study = self.study.clone();
+        study.runs.retain(wanted);
+        study.runs = study.runs[ranks.share(study.runs.len())].to_vec();
+        Self { study, model: self.model.clone() }
     }
 
     /// The error of a study without a run on one side of its split.

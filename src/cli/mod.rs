@@ -22,6 +22,7 @@ use clap::{Parser, Subcommand};
 use error::CliError;
 use processor::Build;
 use std::process::ExitCode;
+use trimtab::ranks::{Ranks, Traffic};
 
 const AFTER_HELP: &str = "\
 Begin with
@@ -79,7 +80,16 @@ pub fn run() -> ExitCode {
         Build::TooOld => eprintln!("warning: {TOO_OLD}"),
     }
     let cli = Cli::parse();
-    match execute(&cli) {
+    let ranks = Ranks::join();
+    let outcome = execute(&cli, &ranks);
+    if let (Err(error), true) = (&outcome, ranks.size() > 1) {
+        ranks.fail(&error.to_string());
+    }
+    if ranks.is_first() && ranks.size() > 1 {
+        let Traffic { exchanges, bytes } = ranks.traffic();
+        eprintln!("trimtab: {} ranks; each sent {bytes} bytes in {exchanges} exchanges", ranks.size());
+    }
+    match outcome {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
         Ok(Answer::No) => ExitCode::from(1),
         // The reader of standard output closed it, as in `trimtab terms | head`.
@@ -91,15 +101,17 @@ pub fn run() -> ExitCode {
     }
 }
 
-fn execute(cli: &Cli) -> Result<Answer, CliError> {
+fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
     if let Some(threads) = cli.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
     }
     match &cli.command {
+        Command::Fit(args) => fit::run(args, ranks),
+        Command::Evaluate(args) => evaluate::run(args, ranks),
+        // The work of the others is not divided: one rank does it.
+        _ if !ranks.is_first() => Ok(Answer::Yes),
         Command::Check(args) => check::run(args),
         Command::Simulate(args) => simulate::run(args),
-        Command::Fit(args) => fit::run(args),
-        Command::Evaluate(args) => evaluate::run(args),
         Command::Diagnose(args) => diagnose::run(args),
         Command::Maneuver(args) => maneuver::run(args),
         Command::Terms(args) => terms::run(args),

@@ -9,6 +9,7 @@ use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use trimtab::files::{fill_whole, write_whole};
 use trimtab::plot::Figure;
+use trimtab::ranks::Ranks;
 
 /// Arguments that every command with results has.
 #[derive(Clone, Debug, clap::Args)]
@@ -25,6 +26,7 @@ pub struct OutputArgs {
 pub struct Output {
     command: &'static str,
     json: bool,
+    silent: bool,
     folder: Option<PathBuf>,
     files: Vec<PathBuf>,
     audited: Option<Audited>,
@@ -36,7 +38,20 @@ impl Output {
         if let Some(folder) = &args.out {
             std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
         }
-        Ok(Self { command, json: args.json, folder: args.out.clone(), files: Vec::new(), audited: None })
+        Ok(Self { command, json: args.json, silent: false, folder: args.out.clone(), files: Vec::new(), audited: None })
+    }
+
+    /// The output of one of several ranks: the first one's as [`Self::new`] has it, no output of the others.
+    pub fn of_rank(ranks: &Ranks, command: &'static str, args: &OutputArgs) -> Result<Self, CliError> {
+        if ranks.is_first() {
+            return Self::new(command, args);
+        }
+        Ok(Self { command, json: false, silent: true, folder: None, files: Vec::new(), audited: None })
+    }
+
+    /// The path of a file in the folder, if there is one.
+    pub fn path(&self, name: &str) -> Option<PathBuf> {
+        self.folder.as_ref().map(|folder| folder.join(name))
     }
 
     /// Takes what is to be said of the recordings: before the answer, and as `recordings` in JSON.
@@ -80,6 +95,9 @@ impl Output {
     /// As [`Self::finish`], with a result that is written piece by piece and has no member without a value; its members are in
     /// the order of their names.
     pub fn finish_long(mut self, text: &str, result: &impl Serialize) -> Result<(), CliError> {
+        if self.silent {
+            return Ok(());
+        }
         let name = format!("{}.json", self.command.replace(' ', "_"));
         if let Some(folder) = &self.folder {
             let path = folder.join(name);

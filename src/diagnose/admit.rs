@@ -3,14 +3,13 @@
 
 use super::filter::{Filter, GATE, Pass, Wanted};
 use super::noise::Noise;
-use super::settings::{FEW_LOST_SHARE, LOST_MEASUREMENTS};
+use super::settings::{COMPARED, FEW_LOST_SHARE, LOST_MEASUREMENTS};
 use crate::audit::{Issue, Severity, audit_runs, piece};
 use crate::model::Model;
 use crate::numerals::sig;
 use crate::recording::{Channel, Run, STATE_CHANNELS};
 use crate::simulate::{Integration, Method};
 use crate::state::{STATE_NAMES, STATES};
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// The admission of the recordings.
@@ -133,12 +132,13 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
     }
     let refined = Integration { method: Method::Rk4, substeps: integration.substeps.max(1) * 8 };
     let filters = [integration, refined].map(|integration| Filter::new(model, integration, &[]));
-    let error = |run: &Run| {
-        let [as_used, refined] = filters.each_ref().map(|f| f.pass(run, noise, Wanted::default()).innovations);
-        let pairs = as_used.iter().flatten().zip(refined.iter().flatten());
+    let error = |some: &[Run]| {
+        let [as_used, refined] = filters.each_ref().map(|f| f.passes(some, noise, Wanted::default()));
+        let innovations = |passes: Vec<Pass>| passes.into_iter().flat_map(|pass| pass.innovations).flatten();
+        let pairs = innovations(as_used).zip(innovations(refined));
         pairs.map(|(a, b)| (a - b).abs()).filter(|e| e.is_finite()).fold(0.0, f64::max)
     };
-    let largest = runs.par_iter().map(error).reduce(|| 0.0, f64::max);
+    let largest = runs.chunks(COMPARED).map(error).fold(0.0, f64::max);
     let sessions: std::collections::BTreeSet<&str> = runs.iter().map(|r| r.session.as_str()).collect();
     Admission {
         runs: runs.len(),

@@ -188,7 +188,7 @@ mod tests {
     #[test]
     fn a_sound_recording_is_fitted_whole_and_not_read_as_euler() {
         let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
-        let audited = AuditedRuns::new(&runs(&model, 6), model.ship.hull.lpp);
+        let audited = AuditedRuns::new(runs(&model, 6), model.ship.hull.lpp);
         let base = BaseFit::new(&question(&model, &settings), audited);
         assert!(!is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
         assert_eq!((base.admission.samples, base.integration), (6 * SAMPLES, settings.integration()));

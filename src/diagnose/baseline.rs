@@ -21,7 +21,6 @@ use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::STATES;
 use nalgebra::DVector;
-use rayon::prelude::*;
 
 /// The model refitted to whole trajectories: its own free parameters by least squares, every residual taken as independent of
 /// every other. This is the paper's way to improve a model, without its constraints.
@@ -63,14 +62,10 @@ impl Trajectories {
     /// Simulates all runs. A filter whose gains are zero never corrects its state: its innovations are the residuals of the
     /// free simulation, its scores and information those of least squares with residuals of these variances.
     fn new(filter: &Filter, runs: &[Run], noise: &Noise, variance: &[f64; STATES], exact: bool) -> Self {
-        let passes: Vec<Pass> = runs
-            .par_iter()
-            .map(|r| {
-                let samples = r.measured.len();
-                let open = Gains { variance: vec![*variance; samples], gain: vec![[[0.0; Z]; STATES]; samples] };
-                filter.pass(r, noise, Wanted { frozen: Some(&open), exact, ..Wanted::default() })
-            })
-            .collect();
+        let open =
+            |samples: usize| Gains { variance: vec![*variance; samples], gain: vec![[[0.0; Z]; STATES]; samples] };
+        let open: Vec<Gains> = runs.iter().map(|r| open(r.measured.len())).collect();
+        let passes = filter.passes(runs, noise, Wanted { frozen: Some(&open), exact, ..Wanted::default() });
         let (mut sums, mut used) = ([0.0; STATES], [0.0; STATES]);
         for innovation in passes.iter().flat_map(|p| &p.innovations) {
             for j in (0..STATES).filter(|j| !innovation[*j].is_nan()) {

@@ -8,7 +8,6 @@ use super::settings::{BEYOND_BOUNDS, QUARTER_TIDE};
 use crate::model::Model;
 use crate::physics::{Group, Mechanism, Probe};
 use crate::recording::Run;
-use crate::terms::CATALOGUE;
 use nalgebra::DVector;
 
 /// Whether recordings can possibly show a mechanism: a tide needs a good part of its period.
@@ -145,7 +144,7 @@ pub fn append(columns: &mut Vec<Column>, candidates: &[Candidate]) -> Vec<Vec<us
 /// Every mechanism of the catalogue whose term is in the model, except the ones withheld.
 pub fn candidates(model: &Model, withhold: &[String]) -> Vec<Candidate> {
     let mut out = Vec::new();
-    for term in CATALOGUE {
+    for term in model.catalogue().iter() {
         let info = term.info();
         for mechanism in info.mechanisms {
             if withhold.iter().any(|w| w == mechanism.name) {

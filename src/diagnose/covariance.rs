@@ -6,6 +6,7 @@ use super::settings::START_SPREAD;
 use crate::model::Model;
 use crate::state::STATES;
 use crate::units::GRAVITY;
+use std::ops::Mul;
 use trimtab_ad::{Lanes, Scalar};
 
 /// Length of the filter state `[x y psi u v r | w_X w_Y w_N | e_1 .. e_6]`.
@@ -39,6 +40,17 @@ impl Discrete<f64> {
             rho: std::array::from_fn(|j| (-dt / sensor(j).time).exp()),
             force: noise.force.map(|f| f * f),
             fade: (-dt / noise.force_time).exp(),
+        }
+    }
+
+    /// The same noise in another number.
+    pub fn lift<S: Scalar>(&self) -> Discrete<S> {
+        Discrete {
+            white: self.white.map(S::from_f64),
+            coloured: self.coloured.map(S::from_f64),
+            rho: self.rho.map(S::from_f64),
+            force: self.force.map(S::from_f64),
+            fade: S::from_f64(self.fade),
         }
     }
 }
@@ -77,18 +89,21 @@ pub fn initial<S: Scalar>(noise: &Discrete<S>, model: &Model) -> Square<S> {
 }
 
 /// `F P F' + Q` with the block structure of the filter state: `a` moves the ship, `gamma` lets the unknown force act on it,
-/// everything else fades on its own. `boost` multiplies what the unknown force gains.
-pub fn predict<S: Scalar>(
+/// everything else fades on its own. The first two columns of `a` are those of the identity: the motion does not depend on the
+/// position. `boost` multiplies what the unknown force gains.
+pub fn predict<S: Scalar + Mul<A, Output = S>, A: Copy>(
     p: &mut Square<S>,
-    a: &[[f64; STATES]; STATES],
-    gamma: &[[f64; 3]; STATES],
+    a: &[[A; STATES]; STATES],
+    gamma: &[[A; 3]; STATES],
     noise: &Discrete<S>,
-    boost: f64,
+    boost: A,
 ) {
     let mut moved = [[S::zero(); Z]; STATES];
     for i in 0..STATES {
-        let row = a[i].iter().enumerate().chain(gamma[i].iter().enumerate().map(|(l, g)| (STATES + l, g)));
-        for (l, factor) in row.filter(|(_, factor)| **factor != 0.0) {
+        if i < 2 {
+            moved[i] = p[i];
+        }
+        for (l, factor) in (2..).zip(a[i][2..].iter().chain(&gamma[i])) {
             for c in 0..Z {
                 moved[i][c] += p[l][c] * *factor;
             }
@@ -98,8 +113,8 @@ pub fn predict<S: Scalar>(
     for i in 0..Z {
         for j in 0..=i {
             let value = if i < STATES {
-                let mut sum = S::zero();
-                (0..STATES).for_each(|l| sum += moved[i][l] * a[j][l]);
+                let mut sum = if j < 2 { moved[i][j] } else { S::zero() };
+                (2..STATES).for_each(|l| sum += moved[i][l] * a[j][l]);
                 (0..3).for_each(|l| sum += moved[i][STATES + l] * gamma[j][l]);
                 sum
             } else if j < STATES {
@@ -128,7 +143,8 @@ mod tests {
     type Dense = SMatrix<f64, Z, Z>;
 
     fn jacobians() -> ([[f64; STATES]; STATES], [[f64; 3]; STATES]) {
-        let value = |i: usize, j: usize| f64::from(u8::from(i == j)) + 0.01 * ((3 * i + 5 * j) % 7) as f64;
+        let moves = |i: usize, j: usize| if j < 2 { 0.0 } else { 0.01 * ((3 * i + 5 * j) % 7) as f64 };
+        let value = |i: usize, j: usize| f64::from(u8::from(i == j)) + moves(i, j);
         (
             std::array::from_fn(|i| std::array::from_fn(|j| value(i, j))),
             std::array::from_fn(|i| std::array::from_fn(|j| if i < 3 { 0.0 } else { 1e-5 * (i + j) as f64 })),

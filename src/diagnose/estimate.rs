@@ -9,7 +9,6 @@ use super::optimise::{Outcome, Proposal, Quadratic};
 pub use super::settings::Effort;
 use super::settings::{
     CALM_ITERATIONS, CALM_SHARE, NOISE_REFUSED, OUTLIER_SHARE, STEP_DAMPING, STEP_GAIN, STEP_LONGEST, STEP_SHORTEST,
-    TOGETHER,
 };
 use crate::model::{Model, Prior};
 use crate::recording::Run;
@@ -121,17 +120,6 @@ pub struct Estimate {
     pub log_posterior: f64,
 }
 
-/// Works on the runs side by side; what each gives goes to `take` in the order of the runs, so that sums have the same bits on any
-/// number of threads. No more of it is held at once than a few runs give.
-pub fn each_run<T: Send>(runs: &[Run], work: impl Fn(usize, &Run) -> T + Sync, mut take: impl FnMut(usize, T)) {
-    let together = TOGETHER * rayon::current_num_threads();
-    for (group, some) in runs.chunks(together).enumerate() {
-        let first = group * together;
-        let done: Vec<T> = some.par_iter().enumerate().map(|(i, run)| work(first + i, run)).collect();
-        done.into_iter().enumerate().for_each(|(i, one)| take(first + i, one));
-    }
-}
-
 /// One pass over all runs, for scores, information and innovations; filtered states are dropped.
 pub fn passes(
     model: &Model,
@@ -142,12 +130,10 @@ pub fn passes(
     tangent: bool,
 ) -> Vec<Pass> {
     let filter = Filter::new(model, integration, columns);
-    let pass = |r: &Run| Pass {
-        filtered: Vec::new(),
-        force_sd: Vec::new(),
-        ..filter.pass(r, noise, Wanted { tangent, ..Wanted::default() })
-    };
-    runs.par_iter().map(pass).collect()
+    let mut out = Vec::with_capacity(runs.len());
+    let kept = |_: usize, _: &Run, pass: Pass| Pass { filtered: Vec::new(), force_sd: Vec::new(), ..pass };
+    filter.each(runs, noise, Wanted { tangent, ..Wanted::default() }, kept, |_, pass| out.push(pass));
+    out
 }
 
 /// Scores and information of passes over runs.
@@ -189,12 +175,11 @@ impl Sums {
     /// Passes over all runs; `sessions` as for [`evidence`]. Sums by session are kept where `apart`.
     pub fn of(filter: &Filter, runs: &[Run], noise: &Noise, sessions: &[Option<Vec<String>>], apart: bool) -> Self {
         let mut out = Self { evidence: Evidence::default(), log_likelihood: 0.0, used: 0, outliers: 0 };
-        let work = |_: usize, run: &Run| {
-            let Pass { score, information, log_likelihood, used, outliers, .. } =
-                filter.pass(run, noise, Wanted::default());
+        let work = |_: usize, run: &Run, pass: Pass| {
+            let Pass { score, information, log_likelihood, used, outliers, .. } = pass;
             (run_evidence(run, score, information, sessions), log_likelihood, used, outliers)
         };
-        each_run(runs, work, |_, (one, log_likelihood, used, outliers)| {
+        filter.each(runs, noise, Wanted::default(), work, |_, (one, log_likelihood, used, outliers)| {
             out.evidence.add(one, apart);
             out.log_likelihood += log_likelihood;
             out.used += used;
@@ -213,7 +198,10 @@ impl Sums {
 fn tangents(model: &Model, integration: Integration, runs: &[&Run], noise: &Noise) -> Vec<Tangent> {
     let filter = Filter::new(model, integration, &[]);
     let wanted = Wanted { tangent: true, ..Wanted::default() };
-    runs.par_iter().map(|run| filter.pass(run, noise, wanted).tangent.unwrap_or_default()).collect()
+    let mut out = Vec::with_capacity(runs.len());
+    let tangent = |_: usize, _: &Run, pass: Pass| pass.tangent.unwrap_or_default();
+    filter.each(runs, noise, wanted, tangent, |_, tangent| out.push(tangent));
+    out
 }
 
 /// The session restrictions of free parameters, in their order.

@@ -180,7 +180,7 @@ mod tests {
 
     fn tests(model: &Model, settings: &Settings) -> BaseTests {
         let question = Question { model, full: model.clone(), settings, progress: &|_| () };
-        let audited = AuditedRuns::new(&runs(model, 6), model.ship.hull.lpp);
+        let audited = AuditedRuns::new(runs(model, 6), model.ship.hull.lpp);
         BaseTests::new(&question, BaseFit::new(&question, audited))
     }
 

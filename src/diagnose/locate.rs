@@ -2,7 +2,7 @@
 //! It tests constant forces against the base; the cause of a force is named elsewhere.
 
 use super::blocks::{Blocks, block_length, choices};
-use super::estimate::{Estimate, Sums, base_of, each_run, restrictions, run_evidence};
+use super::estimate::{Estimate, Sums, base_of, restrictions, run_evidence};
 use super::evidence::{Base, Evidence, RunEvidence};
 use super::filter::{Column, Filter, Pass, Wanted};
 use super::generic::{GenericLaw, widen};
@@ -124,12 +124,14 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
     drop(parameters);
     let layout = Layout::new(found, runs);
     let unit = &layout.unit;
-    let basis = |k: usize, s: &State<f64>, i: &Inputs<f64>, out: &mut Vec<[f64; 3]>| layout.forces(k, s, i, out);
+    let basis = |(_, k): (usize, usize), s: &State<f64>, i: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
+        layout.forces(k, s, i, out);
+    };
     let wanted = Wanted { basis: Some((layout.count(), &basis)), ..Wanted::default() };
     let (step, widened_step) = (base.step(), widened.step());
     let blocks_in = |r: &Run| r.measured.len().div_ceil(layout.length);
-    let of_run = |_: usize, run: &Run| {
-        let Pass { score, information, filtered, .. } = filter.pass(run, &found.noise, wanted);
+    let of_run = |_: usize, run: &Run, pass: Pass| {
+        let Pass { score, information, filtered, .. } = pass;
         let one = run_evidence(run, score, information, &restrictions);
         RunForces {
             blocks: Blocks::new(layout.length, blocks_in(run), &one, &widened, &widened_step, first),
@@ -141,7 +143,7 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
     };
     let (mut evidence, mut blocks) = (Evidence::default(), Vec::with_capacity(runs.len()));
     let (mut forces, mut samples) = (Forces::default(), Visits::default());
-    each_run(runs, of_run, |_, one| {
+    filter.each(runs, &found.noise, wanted, of_run, |_, one| {
         evidence.add(one.evidence, false);
         blocks.push(one.blocks);
         forces.add(&one.excess, &one.squares);

@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn without_held_out_runs_there_is_no_proof() -> Result<(), DiagnoseError> {
         let settings = Settings { nuisance: false, ..Settings::default() };
-        let d = diagnose(&model(), &runs(&model(), 6), &[], &settings, &|_| ())?;
+        let d = diagnose(&model(), runs(&model(), 6), &[], &settings, &|_| ())?;
         assert!(d.held_out.is_none() && d.findings.is_empty());
         Ok(())
     }
@@ -157,7 +157,7 @@ mod tests {
             Settings { most: 0, ..Settings::default() },
             Settings { substeps: 1_000_000_000, ..Settings::default() },
         ] {
-            let refused = diagnose(&model(), &runs(&model(), 6), &[], &settings, &|_| ());
+            let refused = diagnose(&model(), runs(&model(), 6), &[], &settings, &|_| ());
             assert!(matches!(refused, Err(DiagnoseError::Setting(_))), "{settings:?}");
         }
     }

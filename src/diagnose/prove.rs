@@ -1,7 +1,7 @@
 //! The proof of a diagnosis: models against each other on runs that no earlier step has touched, in free simulation as
 //! [`crate::evaluate::prove`] judges it, and in likelihood. It fits nothing.
 
-use super::filter::{Filter, GATE, Wanted};
+use super::filter::{Filter, GATE, Pass, Wanted};
 use super::noise::Noise;
 use crate::audit::settled;
 use crate::evaluate::{Comparison, Judging, Outcome, outcome, predict_all, summarise};
@@ -10,7 +10,6 @@ use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::STATES;
 use crate::statistics::mean;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// How well one model does on one run.
@@ -60,14 +59,13 @@ pub struct HeldOut {
 /// Log-likelihood of runs under a model, and the mean square of its standardised innovations without the outliers.
 pub fn likelihood(model: &Model, integration: Integration, noise: &Noise, runs: &[Run]) -> (f64, f64) {
     let filter = Filter::new(model, integration, &[]);
-    let of = |run: &Run| {
-        let pass = filter.pass(run, noise, Wanted::default());
+    let of = |pass: &Pass| {
         let usual = pass.innovations.iter().flatten().filter(|e| e.is_finite() && e.abs() < GATE);
         let (sum, count) = usual.fold((0.0, 0.0), |(sum, count), e| (sum + e * e, count + 1.0));
         (pass.log_likelihood, sum, count)
     };
-    let passes: Vec<(f64, f64, f64)> = runs.par_iter().map(of).collect();
-    let total = passes.iter().fold((0.0, 0.0, 0.0), |a, p| (a.0 + p.0, a.1 + p.1, a.2 + p.2));
+    let passes = filter.passes(runs, noise, Wanted::default());
+    let total = passes.iter().map(of).fold((0.0, 0.0, 0.0), |a, p| (a.0 + p.0, a.1 + p.1, a.2 + p.2));
     (total.0, total.1 / f64::max(total.2, 1.0))
 }
 

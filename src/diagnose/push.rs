@@ -251,7 +251,7 @@ fn edges(
     let inside = first.len();
     let limits: Vec<usize> = first.chain(last).collect();
     let count = limits.len().saturating_sub(1);
-    let basis = |k: usize, _: &State<f64>, _: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
+    let basis = |(_, k): (usize, usize), _: &State<f64>, _: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
         out.clear();
         out.resize(3 * count, [0.0; 3]);
         let piece = limits.partition_point(|l| *l <= k);

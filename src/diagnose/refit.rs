@@ -4,7 +4,7 @@
 //! With gains fixed, `sum e^2/s` is a smooth function of the parameters, its gradient is exactly the score of an exact pass and
 //! its Gauss-Newton Hessian the information. The filter's gains are then computed anew and the problem solved again.
 
-use super::estimate::{Estimate, base_of, each_run, log_posterior, restrictions, run_evidence};
+use super::estimate::{Estimate, base_of, log_posterior, restrictions, run_evidence};
 use super::evidence::{Base, Evidence};
 use super::filter::{Column, Filter, Gains, Pass, Wanted};
 use crate::ipopt::{IpoptError, Nlp, OptionValue, Options, Solution, solve};
@@ -12,7 +12,6 @@ use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::DMatrix;
-use rayon::prelude::*;
 
 struct Refit<'a> {
     found: &'a Estimate,
@@ -46,15 +45,15 @@ impl Refit<'_> {
         let filter = Filter::new(model, self.integration, columns);
         let restrictions = if columns.is_empty() { Vec::new() } else { restrictions(&self.found.free) };
         let (mut evidence, mut value) = (Evidence::default(), 0.0);
-        let work = |i: usize, run: &Run| {
-            let wanted = Wanted { frozen: Some(&self.gains[i]), exact: true, ..Wanted::default() };
-            let Pass { score, information, innovations, filtered, .. } = filter.pass(run, &self.found.noise, wanted);
+        let wanted = Wanted { frozen: Some(self.gains), exact: true, ..Wanted::default() };
+        let work = |_: usize, run: &Run, pass: Pass| {
+            let Pass { score, information, innovations, filtered, .. } = pass;
             // A model that left the numbers has no innovations at all, and would look perfect.
             let finite = filtered.iter().flatten().all(|z| z.is_finite());
             (run_evidence(run, score, information, &restrictions), innovations, finite)
         };
         let mut finite = true;
-        each_run(self.runs, work, |_, (one, innovations, is_finite)| {
+        filter.each(self.runs, &self.found.noise, wanted, work, |_, (one, innovations, is_finite)| {
             evidence.add(one, false);
             for e in innovations.iter().flatten().filter(|e| !e.is_nan()) {
                 value += 0.5 * e * e;
@@ -178,8 +177,8 @@ fn options() -> Options {
 pub fn refit(found: &Estimate, integration: Integration, runs: &[Run]) -> Result<Estimate, IpoptError> {
     let filter = Filter::new(&found.model, integration, &[]);
     let wanted = Wanted { gains: true, ..Wanted::default() };
-    let gains: Vec<Gains> =
-        runs.par_iter().map(|r| filter.pass(r, &found.noise, wanted).gains.unwrap_or_default()).collect();
+    let passes = filter.passes(runs, &found.noise, wanted);
+    let gains: Vec<Gains> = passes.into_iter().map(|pass| pass.gains.unwrap_or_default()).collect();
     let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
     let mut problem = Refit { found, integration, runs, gains: &gains, columns, cached: None };
     let Solution { x, .. } = solve(&mut problem, &options())?;

@@ -147,7 +147,7 @@ mod tests {
     }
 
     fn residual(question: &Question, truth: &Model) -> Residual {
-        let audited = AuditedRuns::new(&runs(truth, 12), truth.ship.hull.lpp);
+        let audited = AuditedRuns::new(runs(truth, 12), truth.ship.hull.lpp);
         let tests = BaseTests::new(question, BaseFit::new(question, audited));
         Residual::new(question, Selection::new(question, Opening { tests, push: None, first: None }))
     }

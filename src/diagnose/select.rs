@@ -187,7 +187,7 @@ mod tests {
     fn selection(truth: &Model, settings: &Settings) -> Selection {
         let model = model();
         let question = Question { model: &model, full: model.clone(), settings, progress: &|_| () };
-        let audited = AuditedRuns::new(&runs(truth, 12), model.ship.hull.lpp);
+        let audited = AuditedRuns::new(runs(truth, 12), model.ship.hull.lpp);
         let tests = BaseTests::new(&question, BaseFit::new(&question, audited));
         Selection::new(&question, Opening { tests, push: None, first: None })
     }

@@ -182,6 +182,8 @@ numbers! {
     /// Loss in log-posterior of an unfitted Euler reading beyond which it is not fitted.
     EULER_HOPELESS: f64 = 1000.0, COST;
 
+    /// Innovations larger than this many standard deviations are set aside as outliers.
+    GATE: f64 = 6.0, CUSTOM;
     /// Share of measurements beyond the outlier gate above which the noise is taken as too small and everything counts first.
     OUTLIER_SHARE: f64 = 0.03, "recordings of Esso Osaka, where a quarter lay beyond the gate of the first guess";
     /// Loss in log-posterior above which a noise that was fitted to some runs is fitted to all of them.
@@ -278,6 +280,8 @@ numbers! {
     BLOCKS: usize = 64, COST;
     /// Runs that each thread passes over before what they gave is added up.
     TOGETHER: usize = 8, COST;
+    /// Runs whose innovations with the step as used and with a finer one are in memory at once.
+    COMPARED: usize = 64, COST;
     /// Samples in a block of the time scan, at least.
     BLOCK_SAMPLES: usize = 2, COST;
     /// Share of the runs that a push is expected to act in beforehand.
@@ -352,8 +356,8 @@ mod tests {
 
     #[test]
     fn no_other_file_of_the_diagnosis_hides_a_number_behind_a_name() {
-        // How an answer is listed, how a search ends, rival methods, and the outlier gate of the filter.
-        let own = ["optimise.rs", "filter.rs", "baseline.rs", "summary.rs", "push.rs"];
+        // How an answer is listed, how a search ends, and rival methods.
+        let own = ["optimise.rs", "baseline.rs", "summary.rs", "push.rs"];
         let mut found = Vec::new();
         for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/src/diagnose")).unwrap() {
             let path = entry.unwrap().path();
@@ -368,7 +372,9 @@ mod tests {
         }
         // Sizes of arrays are no thresholds.
         found.retain(|l| {
-            !["NOISE_PARAMETERS", "const N:", "const Z:", "BLOCKS:", "PARTS:", "NUDGE:"].iter().any(|n| l.contains(n))
+            !["NOISE_PARAMETERS", "const N:", "const W:", "const FIXED:", "const Z:", "BLOCKS:", "PARTS:", "NUDGE:"]
+                .iter()
+                .any(|n| l.contains(n))
         });
         assert!(found.is_empty(), "{found:#?}");
     }

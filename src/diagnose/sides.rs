@@ -8,7 +8,6 @@ use super::screen::Screen;
 use super::wald::Wald;
 use crate::parameter::Parity;
 use crate::physics::Group;
-use crate::terms;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -31,7 +30,7 @@ pub struct Sides {
 pub fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -> Option<Sides> {
     // A sensor that reads to one side is not the ship.
     let of_the_ship = |name: &str| {
-        let term = name.split('.').next().and_then(terms::find);
+        let term = name.split('.').next().and_then(|name| found.model.catalogue().find(name));
         term.is_some_and(|t| matches!(t.info().group, Group::Hull | Group::Propulsion | Group::Rudder))
     };
     let differs = |i: &usize| {

@@ -5,7 +5,7 @@ use super::base::base_parameters;
 use super::candidate::{Candidate, append, candidates};
 use super::estimate::{Estimate, base_of, estimate, evidence, passes, restrictions};
 use super::evidence::{Base, Evidence};
-use super::filter::{Column, Filter, Pass, Wanted};
+use super::filter::{Column, Filter, Wanted};
 use super::noise::NoisePrior;
 use super::noise_fit::guess;
 use super::settings::{SIGNAL, Settings};
@@ -14,7 +14,6 @@ use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
 use nalgebra::DVector;
-use rayon::prelude::*;
 
 /// The base model fitted to runs without an effect, ready to measure the same runs with it.
 pub struct Signal {
@@ -89,15 +88,13 @@ impl Signal {
         let free = self.null.free.len();
         let filter = Filter::new(&self.null.model, self.integration, &self.columns[..free]);
         let seen = |runs: &[Run]| {
-            let pass = |(index, run): (usize, &Run)| {
-                let basis = |k: usize, _: &State<f64>, _: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
-                    let on = windows.iter().any(|(i, from, to)| *i == index && (*from..=*to).contains(&k));
-                    let unit = |e: usize| if on { self.null.noise.force[e] } else { 0.0 };
-                    out.extend([[unit(0), 0.0, 0.0], [0.0, unit(1), 0.0], [0.0, 0.0, unit(2)]]);
-                };
-                filter.pass(run, &self.null.noise, Wanted { basis: Some((3, &basis)), ..Wanted::default() })
+            let basis = |(run, k): (usize, usize), _: &State<f64>, _: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
+                let on = windows.iter().any(|(i, from, to)| *i == run && (*from..=*to).contains(&k));
+                let unit = |e: usize| if on { self.null.noise.force[e] } else { 0.0 };
+                out.extend([[unit(0), 0.0, 0.0], [0.0, unit(1), 0.0], [0.0, 0.0, unit(2)]]);
             };
-            let p: Vec<Pass> = runs.par_iter().enumerate().map(pass).collect();
+            let wanted = Wanted { basis: Some((3, &basis)), ..Wanted::default() };
+            let p = filter.passes(runs, &self.null.noise, wanted);
             evidence(runs, &p, &restrictions(&self.null.free))
         };
         let mut difference = seen(&self.runs);

@@ -7,10 +7,10 @@ use crate::recording::{Run, Split};
 use crate::simulate::{Integration, Scenario, Trajectory, reported};
 use crate::statistics::mean;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A window under two models.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// Name of the run.
     pub run: String,

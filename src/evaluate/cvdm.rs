@@ -6,14 +6,15 @@ use crate::recording::Run;
 use crate::ship::Ship;
 use crate::simulate::Trajectory;
 use crate::state::{STATE_NAMES, STATES};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use trimtab_ad::smooth::wrap_angle;
 
 /// How far a simulated trajectory is from the measured one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Deviation {
     /// Mean deviation of x, y, psi, u, v, r (m, m, rad, m/s, m/s, rad/s); absent where not measured.
-    #[serde(serialize_with = "by_dimension")]
+    #[serde(serialize_with = "by_dimension", deserialize_with = "from_dimensions")]
     pub md: [Option<f64>; STATES],
     /// cVDM \[%\].
     pub cvdm: f64,
@@ -27,8 +28,14 @@ pub(super) fn by_dimension<T: Serialize, S: serde::Serializer>(
     serializer.collect_map(STATE_NAMES.iter().zip(values).filter_map(|(name, value)| Some((name, value.as_ref()?))))
 }
 
+/// The values that [`by_dimension`] wrote.
+fn from_dimensions<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<[Option<f64>; STATES], D::Error> {
+    let by_name = BTreeMap::<String, f64>::deserialize(deserializer)?;
+    Ok(STATE_NAMES.map(|name| by_name.get(name).copied()))
+}
+
 /// What a model makes of a window.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", untagged)]
 pub enum Outcome {
     /// The simulation ran through.

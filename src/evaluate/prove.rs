@@ -6,6 +6,7 @@ use super::settings::EvaluationSettings;
 use super::summary::{Summary, summaries};
 use crate::fit::FitSettings;
 use crate::model::Model;
+use crate::ranks::Ranks;
 use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::validity::{Count, Coverage, samples};
@@ -107,13 +108,21 @@ impl<'a> Proof<'a> {
 
     /// The evaluation on all runs that were added.
     pub fn evaluation(self) -> Evaluation {
+        self.evaluation_over(Ranks::one())
+    }
+
+    /// The evaluation on all runs that were added on any rank, in the order of the ranks; each rank gets it. The draws of the
+    /// bootstrap are divided among them.
+    pub fn evaluation_over(self, ranks: &Ranks) -> Evaluation {
         let Judging { max_yaw_rate, settings, .. } = self.judging;
-        let Part { trajectories, validity } = self.sum;
+        let Part { trajectories, mut validity } = self.sum;
+        let trajectories = ranks.gather(&trajectories).concat();
+        validity.gather(ranks);
         Evaluation {
             validity: validity.coverage(),
             baseline: self.baseline.name.clone(),
             fitted: self.fitted.name.clone(),
-            summaries: summaries(&trajectories, settings),
+            summaries: summaries(ranks, &trajectories, settings),
             trajectories,
             max_yaw_rate: *max_yaw_rate,
             resamples: settings.resamples,

@@ -4,6 +4,7 @@
 use super::compare::Comparison;
 use super::cvdm::{Outcome, by_dimension};
 use super::settings::EvaluationSettings;
+use crate::ranks::Ranks;
 use crate::recording::Split;
 use crate::state::STATES;
 use crate::statistics::{Bootstrap, mean, median, variance};
@@ -91,11 +92,11 @@ pub struct Summary {
 }
 
 /// Summaries by split, then by manoeuvre and by session of the test trajectories where there are several.
-pub(super) fn summaries(trajectories: &[Comparison], settings: &EvaluationSettings) -> Vec<Summary> {
+pub(super) fn summaries(ranks: &Ranks, trajectories: &[Comparison], settings: &EvaluationSettings) -> Vec<Summary> {
     let mut summaries = Vec::new();
     let mut add = |group: String, members: Vec<&Comparison>| {
         if !members.is_empty() {
-            summaries.push(summarise(group, &members, settings));
+            summaries.push(summarise_over(ranks, group, &members, settings));
         }
     };
     let of = |split: Split| trajectories.iter().filter(move |t| t.split == split);
@@ -131,11 +132,16 @@ fn by_run<'a>(members: &[&'a Comparison]) -> BTreeMap<&'a str, Vec<&'a Compariso
 
 /// Compares two models over a group of trajectories.
 pub fn summarise(group: String, members: &[&Comparison], settings: &EvaluationSettings) -> Summary {
+    summarise_over(Ranks::one(), group, members, settings)
+}
+
+/// As [`summarise`], with the draws of the bootstrap divided among the ranks.
+fn summarise_over(ranks: &Ranks, group: String, members: &[&Comparison], settings: &EvaluationSettings) -> Summary {
     let runs = by_run(members);
     // Trajectories that both models run through, by run.
     let sound = |t: &&Comparison| t.baseline.deviation().is_some() && t.fitted.deviation().is_some();
     let clusters = runs.values().map(|of_run| of_run.iter().copied().filter(sound).collect::<Vec<_>>());
-    let resampled = Resampled::new(clusters.filter(|c| !c.is_empty()).collect(), settings);
+    let resampled = Resampled::new(ranks, clusters.filter(|c| !c.is_empty()).collect(), settings);
     let diverged = |f: Which| members.iter().filter(|t| f(t).deviation().is_none()).count();
     let lower = |a: f64, b: f64| usize::from(a < b);
     let mean_order =
@@ -190,12 +196,12 @@ const AFTER: usize = BEFORE + STATES + 1;
 const RELATIVE: usize = AFTER + STATES + 1;
 
 /// The numbers of trajectories by run, with draws of whole runs.
-struct Resampled {
+struct Resampled<'a> {
     /// Each number of every trajectory, run after run; NaN where there is none.
     columns: Vec<Vec<f64>>,
     /// Where the trajectories of each run are in a column.
     clusters: Vec<Range<usize>>,
-    bootstrap: Bootstrap,
+    bootstrap: Bootstrap<'a>,
 }
 
 /// Some runs of them, one perhaps several times.
@@ -215,9 +221,9 @@ impl Drawn<'_> {
     }
 }
 
-impl Resampled {
-    fn new(runs: Vec<Vec<&Comparison>>, settings: &EvaluationSettings) -> Self {
-        let bootstrap = Bootstrap::new(runs.len(), settings.resamples, settings.seed);
+impl<'a> Resampled<'a> {
+    fn new(ranks: &'a Ranks, runs: Vec<Vec<&Comparison>>, settings: &EvaluationSettings) -> Self {
+        let bootstrap = Bootstrap::over(ranks, runs.len(), settings.resamples, settings.seed);
         let number = |t: &Comparison, column: usize| -> Option<f64> {
             let of = |outcome: &Outcome, i: usize| {
                 let deviation = outcome.deviation()?;

@@ -15,7 +15,9 @@ use super::sums::Sums;
 use crate::dynamics::Dynamics;
 use crate::model::{BASE, Model};
 use crate::physics::{CHUNK, Curvature, Gradient, Group, Lanes, NumDual, Number};
+use crate::ranks::{ExactSums, Ranks};
 use crate::recording::{Measured, Run, Runs};
+use crate::sensitivity::local::side_by_side;
 use crate::sensitivity::{Column, Columns, Plain, Sensitivity};
 use crate::ship::Ship;
 use crate::simulate::{self, Integration, Scenario, absurd_speed};
@@ -65,18 +67,20 @@ pub struct Quadratic {
     pub gradient: DVector<f64>,
     /// `2/M sum_ik J^T W J`: the Hessian without the residuals' own curvature.
     pub gauss_newton: DMatrix<f64>,
-    /// Gradient of each run's part, in the order of the runs; they add up to `gradient`.
+    /// Gradient of the part of each of this rank's runs, in their order; those of all ranks add up to `gradient`.
     pub by_run: Vec<DVector<f64>>,
 }
 
 /// The cost of a model against runs, as a function of the model's free parameters.
 pub struct Cost<'a> {
     model: &'a Model,
+    ranks: &'a Ranks,
+    /// The runs of this rank.
     runs: Runs<'a>,
-    /// The diagonal of W of each run.
+    /// Runs, samples and residuals of all ranks.
+    counts: [usize; 3],
+    /// The diagonal of W of each run of this rank.
     weights: Vec<[f64; STATES]>,
-    residuals: usize,
-    samples: usize,
     free: Vec<usize>,
     derivatives: Derivatives,
     difference_step: f64,
@@ -171,14 +175,14 @@ impl<P: Plain> Block<P> {
     /// The block of some runs; `None` where one cannot be read.
     fn of(model: &Model, runs: Runs, weights: &[[f64; STATES]], lanes: &[usize]) -> Option<Self> {
         let runs = lanes.iter().map(|run| runs.get(*run)).collect::<Option<Vec<Cow<Run>>>>()?;
-        let in_lane = |lane: usize| &*runs[lane.min(runs.len() - 1)];
+        let runs: Vec<&Run> = runs.iter().map(|run| &**run).collect();
+        let in_lane = |lane: usize| runs[lane.min(runs.len() - 1)];
         let steps = runs.iter().map(|r| r.inputs.len()).max().unwrap_or(0);
         let sample = |lane: usize, k: usize| {
             let inputs = &in_lane(lane).inputs;
             &inputs[k.min(inputs.len() - 1)]
         };
-        let inputs =
-            (0..steps).map(|k| Inputs::from_entries(|entry| P::gather(|lane| *entry(sample(lane, k))))).collect();
+        let inputs = (0..steps).map(|k| side_by_side(|lane| sample(lane, k))).collect();
         let roots: Vec<[f64; STATES]> = lanes.iter().map(|run| weights[*run].map(|w| w.max(0.0).sqrt())).collect();
         let weight = |lane: usize, k: usize, c: usize| {
             let Some(run) = runs.get(lane) else { return 0.0 };
@@ -187,12 +191,9 @@ impl<P: Plain> Block<P> {
         };
         let measured =
             |lane: usize, k: usize, c: usize| in_lane(lane).measured.get(k).and_then(|m| m[c]).unwrap_or(0.0);
-        let table = |f: &dyn Fn(usize, usize, usize) -> f64| -> Vec<[P; STATES]> {
-            (0..steps).map(|k| std::array::from_fn(|c| P::gather(|lane| f(lane, k, c)))).collect()
-        };
-        let channels = |lane: usize| in_lane(lane).channels();
-        let whole =
-            (0..steps).map(|k| (0..P::WIDTH).all(|lane| (0..STATES).all(|c| weight(lane, k, c) > 0.0))).collect();
+        let root: Vec<[P; STATES]> = table(steps, weight);
+        let weighted = |root: &[P; STATES]| (0..P::WIDTH).all(|lane| root.iter().all(|w| w.in_lane(lane) > 0.0));
+        let measured_at_all: Vec<[bool; STATES]> = (0..P::WIDTH).map(|lane| in_lane(lane).channels()).collect();
         let mut by_lane: Vec<Vec<f64>> = Vec::new();
         for lane in 0..P::WIDTH {
             let mut values: Vec<f64> = model.parameters.iter().map(|p| if p.free { 0.0 } else { p.value }).collect();
@@ -206,25 +207,25 @@ impl<P: Plain> Block<P> {
             dt: in_lane(0).dt,
             inputs,
             initial: std::array::from_fn(|c| P::gather(|lane| in_lane(lane).initial[c])),
-            channels: std::array::from_fn(|c| P::gather(|lane| f64::from(u8::from(channels(lane)[c])))),
-            target: table(&measured),
-            root: table(&weight),
-            whole,
+            channels: std::array::from_fn(|c| P::gather(|lane| f64::from(u8::from(measured_at_all[lane][c])))),
+            target: table(steps, measured),
+            whole: root.iter().map(weighted).collect(),
+            root,
             base: (0..model.parameters.len()).map(|i| P::gather(|lane| by_lane[lane][i])).collect(),
-            still: runs.iter().all(|run| run.inputs.iter().all(|i| i.current == [0.0; 2])),
+            still: runs.iter().all(|run| is_still(run)),
         })
     }
 
-    /// Runs in blocks of equal sample period and similar length, in an order that depends on the runs alone. `shapes` are sample
-    /// period and number of samples of each. `None` where a run cannot be read.
-    fn group(model: &Model, runs: Runs, weights: &[[f64; STATES]], shapes: &[(f64, usize)]) -> Option<Blocks<P>> {
+    /// Runs in blocks of one sample period and similar length, in an order that depends on the runs alone, in still water or not:
+    /// a run is computed the same way whatever runs are beside it. `None` where a run cannot be read.
+    fn group(model: &Model, runs: Runs, weights: &[[f64; STATES]], shapes: &[Shape]) -> Option<Blocks<P>> {
         let mut order: Vec<usize> = (0..runs.len()).collect();
         order.sort_by(|a, b| {
             let (a, b) = (&shapes[*a], &shapes[*b]);
-            a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))
+            a.dt.total_cmp(&b.dt).then(a.still.cmp(&b.still)).then(b.samples.cmp(&a.samples))
         });
-        let same_dt = order.chunk_by(|a, b| shapes[*a].0 == shapes[*b].0);
-        let mut lanes = same_dt.flat_map(|runs| runs.chunks(P::WIDTH));
+        let alike = order.chunk_by(|a, b| (shapes[*a].dt, shapes[*a].still) == (shapes[*b].dt, shapes[*b].still));
+        let mut lanes = alike.flat_map(|runs| runs.chunks(P::WIDTH));
         if runs.held() {
             lanes.map(|lanes| Self::of(model, runs, weights, lanes)).collect::<Option<_>>().map(Blocks::Built)
         } else {
@@ -271,6 +272,24 @@ impl<P> Blocks<P> {
     }
 }
 
+/// What decides which runs are evaluated side by side.
+struct Shape {
+    /// Sample period \[s\].
+    dt: f64,
+    still: bool,
+    samples: usize,
+}
+
+/// Whether no current was recorded in a run.
+fn is_still(run: &Run) -> bool {
+    run.inputs.iter().all(|i| i.current == [0.0; 2])
+}
+
+/// What `f` says of lane, sample and channel, side by side.
+fn table<P: Plain>(samples: usize, f: impl Fn(usize, usize, usize) -> f64) -> Vec<[P; STATES]> {
+    (0..samples).map(|k| std::array::from_fn(|c| P::gather(|lane| f(lane, k, c)))).collect()
+}
+
 /// Whether a run can be fitted to.
 fn check(run: &Run, weights: &[f64; STATES]) -> Result<(), FitError> {
     let bad = |what: &str| Err(FitError::BadRun { run: run.recording.clone(), what: what.into() });
@@ -292,30 +311,46 @@ impl<'a> Cost<'a> {
     /// # Errors
     /// No runs, a run without samples or of unequal lengths, or a sample period that is not positive.
     pub fn new(model: &'a Model, runs: impl Into<Runs<'a>>, options: CostOptions) -> Result<Self, FitError> {
-        let runs = runs.into();
-        let weights = runs.iter().map(|r| weights(&model.ship, &r, options.max_yaw_rate)).collect();
-        Self::weighted(model, runs, weights, options)
+        Self::over(Ranks::one(), model, runs, options)
     }
 
-    /// As [`Cost::new`], with the diagonal of W of each run given, as for pieces that keep the weights of their whole run.
+    /// The cost of `model` against the runs of all ranks, of which this one has `runs`. Every rank calls the same methods at the
+    /// same points, and gets the same values, which do not depend on which rank has which run.
+    ///
+    /// # Errors
+    /// As [`Cost::new`], for the runs of this rank; no runs on any rank.
+    pub fn over(
+        ranks: &'a Ranks,
+        model: &'a Model,
+        runs: impl Into<Runs<'a>>,
+        options: CostOptions,
+    ) -> Result<Self, FitError> {
+        let runs = runs.into();
+        let weights = runs.iter().map(|r| weights(&model.ship, &r, options.max_yaw_rate)).collect();
+        Self::weighted(ranks, model, runs, weights, options)
+    }
+
+    /// As [`Cost::over`], with the diagonal of W of each run given, as for pieces that keep the weights of their whole run.
     pub(super) fn weighted(
+        ranks: &'a Ranks,
         model: &'a Model,
         runs: Runs<'a>,
         weights: Vec<[f64; STATES]>,
         options: CostOptions,
     ) -> Result<Self, FitError> {
-        if runs.is_empty() {
-            return Err(FitError::NoRuns);
-        }
         let (mut shapes, mut residuals) = (Vec::with_capacity(runs.len()), 0);
         for (run, weights) in runs.iter().zip(&weights) {
             check(&run, weights)?;
-            shapes.push((run.dt, run.inputs.len()));
+            shapes.push(Shape { dt: run.dt, still: is_still(&run), samples: run.inputs.len() });
             let of = |m: &Measured| (0..STATES).filter(|c| weights[*c] > 0.0 && m[*c].is_some()).count();
             residuals += run.measured.iter().map(of).sum::<usize>();
         }
         if shapes.len() < runs.len() {
             return Err(FitError::Unreadable);
+        }
+        let counts = ranks.counts([runs.len(), shapes.iter().map(|s| s.samples).sum(), residuals]);
+        if counts[0] == 0 {
+            return Err(FitError::NoRuns);
         }
         let free = model.free();
         let columns: Vec<Column> = free.iter().map(|p| Column { parameter: *p, scale: 1.0 }).collect();
@@ -330,10 +365,10 @@ impl<'a> Cost<'a> {
         }
         Ok(Self {
             model,
+            ranks,
             runs,
+            counts,
             weights,
-            residuals,
-            samples: shapes.iter().map(|(_, samples)| samples).sum(),
             columns: Columns::new(model, &columns),
             free,
             derivatives: options.derivatives,
@@ -351,19 +386,30 @@ impl<'a> Cost<'a> {
         &self.free
     }
 
-    /// The diagonal of W of each run.
+    /// The ranks whose runs the cost is of.
+    pub fn ranks(&self) -> &'a Ranks {
+        self.ranks
+    }
+
+    /// Number of runs on all ranks.
+    pub fn runs(&self) -> usize {
+        self.counts[0]
+    }
+
+    /// The diagonal of W of each run of this rank.
     pub fn weights(&self) -> &[[f64; STATES]] {
         &self.weights
     }
 
-    /// Number of residuals that count: measured values with a weight above 0.
+    /// Number of residuals that count, on all ranks: measured values with a weight above 0.
     pub fn residuals(&self) -> usize {
-        self.residuals
+        self.counts[2]
     }
 
-    /// Number of samples of all runs.
+    /// Number of samples of the runs of all ranks.
+    #[cfg(feature = "ipopt")]
     pub(super) fn samples(&self) -> usize {
-        self.samples
+        self.counts[1]
     }
 
     /// Hands every block to `work`, side by side, and what that makes of it to `take` in the order of the blocks, until `take` says
@@ -394,11 +440,15 @@ impl<'a> Cost<'a> {
 
     /// The cost at the free parameters `p`, or `None` where a simulation diverges.
     pub fn value(&self, p: &[f64]) -> Option<f64> {
-        let squares = self.squares(p)?;
-        Some(squares.iter().sum::<f64>() / self.runs.len() as f64)
+        let mut sums = ExactSums::new(1).at(p);
+        match self.squares(p) {
+            Some(squares) => squares.into_iter().for_each(|square| sums.add(0, square)),
+            None => sums.spoil(),
+        }
+        Some(self.ranks.total(sums)?[0] / self.runs() as f64)
     }
 
-    /// The sum of squared weighted residuals of each run, or `None` where a simulation diverges.
+    /// The sum of squared weighted residuals of each run of this rank, or `None` where a simulation diverges.
     pub fn squares(&self, p: &[f64]) -> Option<Vec<f64>> {
         if self.lanes.is_empty() { self.squares_over(&self.single, p) } else { self.squares_over(&self.lanes, p) }
     }
@@ -430,6 +480,7 @@ impl<'a> Cost<'a> {
 
     /// Hands the weighted residuals of each run at `p` to `take`, by sample and channel, NaN where nothing is compared and after
     /// the run's end. The order depends on the runs alone. `None` where a run cannot be read or `take` says no more.
+    #[cfg(feature = "ipopt")]
     pub(super) fn residuals_by_run(
         &self,
         p: &[f64],
@@ -442,6 +493,7 @@ impl<'a> Cost<'a> {
         }
     }
 
+    #[cfg(feature = "ipopt")]
     fn residuals_over<P: Plain>(
         &self,
         blocks: &Blocks<P>,
@@ -479,43 +531,57 @@ impl<'a> Cost<'a> {
 
     fn evaluate(&self, p: &[f64], with_matrix: bool) -> Option<Quadratic> {
         match self.derivatives {
-            Derivatives::Lanes => self.assemble(&self.lanes, |b| self.sweep(b, p, with_matrix)),
-            Derivatives::Dual => self.assemble(&self.single, |b| self.by_duals::<Gradient>(b, p, with_matrix)),
-            Derivatives::NumDual => self.assemble(&self.single, |b| self.by_duals::<NumDual>(b, p, with_matrix)),
-            Derivatives::FiniteDifferences => self.assemble(&self.lanes, |b| self.differences(b, p, with_matrix)),
+            Derivatives::Lanes => self.assemble(&self.lanes, p, with_matrix, |b| self.sweep(b, p, with_matrix)),
+            Derivatives::Dual => {
+                self.assemble(&self.single, p, with_matrix, |b| self.by_duals::<Gradient>(b, p, with_matrix))
+            }
+            Derivatives::NumDual => {
+                self.assemble(&self.single, p, with_matrix, |b| self.by_duals::<NumDual>(b, p, with_matrix))
+            }
+            Derivatives::FiniteDifferences => {
+                self.assemble(&self.lanes, p, with_matrix, |b| self.differences(b, p, with_matrix))
+            }
         }
     }
 
-    /// Adds up the blocks, in their order whatever thread computed them.
+    /// Adds up the runs of all ranks: exactly, so that neither ranks, threads nor blocks change a bit.
     fn assemble<P: Plain>(
         &self,
         blocks: &Blocks<P>,
+        p: &[f64],
+        with_matrix: bool,
         sums: impl Fn(&Block<P>) -> Sums<P> + Sync + Send,
     ) -> Option<Quadratic> {
         let n = self.free.len();
-        let mut squares = vec![0.0; self.runs.len()];
         let mut by_run = vec![DVector::zeros(n); self.runs.len()];
-        let mut matrix = DMatrix::zeros(n, n);
-        let factor = 2.0 / self.runs.len() as f64;
-        self.each(blocks, sums, |runs, part| {
+        let entries = if with_matrix { n * (n + 1) / 2 } else { 0 };
+        let mut total = ExactSums::new(1 + n + entries).at(p);
+        let factor = 2.0 / self.runs() as f64;
+        let read = self.each(blocks, sums, |runs, part| {
             for (lane, run) in runs.iter().enumerate() {
-                squares[*run] = part.square.in_lane(lane);
+                let pairs = (0..if with_matrix { n } else { 0 }).flat_map(|i| (0..=i).map(move |j| (i, j)));
+                let products = pairs.map(|(i, j)| part.product(i, j));
+                let own = std::iter::once(part.square).chain(part.gradient.iter().copied()).chain(products);
+                own.enumerate().for_each(|(i, sum)| total.add(i, sum.in_lane(lane)));
                 by_run[*run] = DVector::from_iterator(n, part.gradient.iter().map(|g| factor * g.in_lane(lane)));
             }
-            for i in 0..n {
-                for j in 0..=i {
-                    let product = part.product(i, j);
-                    matrix[(i, j)] += factor * (0..runs.len()).map(|lane| product.in_lane(lane)).sum::<f64>();
-                }
-            }
             Some(())
-        })?;
-        matrix.fill_upper_triangle_with_lower_triangle();
-        let mut gradient = DVector::zeros(n);
-        for part in &by_run {
-            gradient += part;
+        });
+        if read.is_none() {
+            total.spoil();
         }
-        let value = squares.iter().sum::<f64>() / self.runs.len() as f64;
+        let total = self.ranks.total(total)?;
+        let (gradient, packed) = total[1..].split_at(n);
+        let mut matrix = DMatrix::zeros(n, n);
+        let mut packed = packed.iter();
+        for i in 0..n {
+            for (j, entry) in (0..=i).zip(&mut packed) {
+                matrix[(i, j)] = factor * entry;
+            }
+        }
+        matrix.fill_upper_triangle_with_lower_triangle();
+        let gradient = DVector::from_iterator(n, gradient.iter().map(|g| factor * g));
+        let value = total[0] / self.runs() as f64;
         let finite = value.is_finite() && gradient.iter().chain(matrix.iter()).all(|v| v.is_finite());
         finite.then_some(Quadratic { value, gradient, gauss_newton: matrix, by_run })
     }
@@ -602,13 +668,17 @@ impl<'a> Cost<'a> {
             }
             Some(sum)
         };
-        let mut hessian = DMatrix::zeros(n, n);
+        let mut total = ExactSums::new(n * n).at(p);
         for first in (0..self.runs.len()).step_by(TOGETHER) {
             let some = first..(first + TOGETHER).min(self.runs.len());
-            for part in some.into_par_iter().map(of_run).collect::<Option<Vec<DMatrix<f64>>>>()? {
-                hessian += part * (2.0 / self.runs.len() as f64);
+            for part in some.into_par_iter().map(of_run).collect::<Vec<Option<DMatrix<f64>>>>() {
+                match part {
+                    Some(part) => part.iter().enumerate().for_each(|(i, sum)| total.add(i, *sum)),
+                    None => total.spoil(),
+                }
             }
         }
+        let mut hessian = DMatrix::from_vec(n, n, self.ranks.total(total)?) * (2.0 / self.runs() as f64);
         hessian.fill_upper_triangle_with_lower_triangle();
         hessian.iter().all(|v: &f64| v.is_finite()).then_some(hessian)
     }
@@ -695,13 +765,14 @@ impl<'a> Cost<'a> {
         });
     }
 
-    /// The first run whose simulation diverges at `p`, and when \[s\] on its recording's clock.
+    /// The first run, on any rank, whose simulation diverges at `p`, and when \[s\] on its recording's clock.
     pub fn divergence(&self, p: &[f64]) -> Option<(String, f64)> {
-        self.runs.iter().enumerate().find_map(|(i, run)| {
+        let own = self.runs.iter().enumerate().find_map(|(i, run)| {
             let theta = self.theta(&Block::<f64>::of(self.model, self.runs, &self.weights, &[i])?, p);
             let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
             let trajectory = simulate::reported(self.model, &theta, self.integration, &scenario, &run.channels());
             trajectory.diverged_at.map(|k| (run.recording.clone(), run.time(k)))
-        })
+        });
+        self.ranks.gather(&own).into_iter().flatten().next()
     }
 }

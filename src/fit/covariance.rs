@@ -79,20 +79,20 @@ impl Covariances {
         let n = task.scales.len();
         let directions = task.free_directions(&end.active);
         let quadratic = task.evaluations.quadratic(&end.p);
-        let clusters = scores_by_recording(task, quadratic.as_deref());
+        let own = scores_by_recording(task, quadratic.as_deref());
+        let (meat, clusters) = clustered_variance(task.cost.ranks(), &own, n);
         let data = quadratic.map_or_else(|| DMatrix::zeros(n, n), |q| task.scaled(&q.gauss_newton));
         let mut prior = DMatrix::zeros(n, n);
         end.priors.add_hessian(&mut prior);
         let prior = task.scaled(&prior);
-        let unit = 2.0 * task.variance(cost) * task.settings.correlated_samples / task.runs.len() as f64;
+        let unit = 2.0 * task.variance(cost) * task.settings.correlated_samples / task.cost.runs() as f64;
         let bread = inverse(&(&data + &prior), &directions);
-        let meat = clustered_variance(&clusters, n);
         let ratio = (&bread.matrix * &meat).trace() / (&bread.matrix * &data * unit).trace();
         let likeness = likeness.unwrap_or(1.0).max(1.0) / task.settings.correlated_samples.max(1.0);
         let likeness = likeness.max(1.0);
         let freedom = task.cost.residuals().saturating_sub(n).max(1);
-        let (kind, freedom) = if clusters.len() >= SANDWICH_FROM {
-            (CovarianceKind::Sandwich, clusters.len() - 1)
+        let (kind, freedom) = if clusters >= SANDWICH_FROM {
+            (CovarianceKind::Sandwich, clusters - 1)
         } else if likeness > 1.0 {
             (CovarianceKind::Correlated, ((freedom as f64 / likeness) as usize).max(1))
         } else {
@@ -110,8 +110,8 @@ impl Covariances {
             sandwich: &bread.matrix * (meat + prior * unit) * &bread.matrix,
             kind,
             freedom,
-            clusters: clusters.len(),
-            design_effect: (clusters.len() > 1 && ratio.is_finite()).then_some(ratio),
+            clusters,
+            design_effect: (clusters > 1 && ratio.is_finite()).then_some(ratio),
             determined: bread.determined(),
         }
     }
@@ -159,7 +159,7 @@ fn square(n: usize, entry: impl Fn(usize, usize) -> Option<f64>) -> Covariance {
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
-/// The gradient of each recording's part of the cost.
+/// The gradient of the part of the cost of each recording of this rank.
 fn scores_by_recording(task: &Task, quadratic: Option<&Quadratic>) -> Vec<DVector<f64>> {
     let mut clusters: Vec<DVector<f64>> = Vec::new();
     let mut known: BTreeMap<String, usize> = BTreeMap::new();

@@ -17,6 +17,7 @@
 
 use super::covariance::Covariances;
 use super::task::Task;
+use crate::ranks::{ExactSums, Ranks};
 use crate::recording::Run;
 use crate::state::STATES;
 use rayon::prelude::*;
@@ -104,18 +105,21 @@ const STEERED: std::ops::Range<usize> = 4..6;
 impl ResidualStatistics {
     /// The statistics of a task's residuals at `p`.
     pub(super) fn of(task: &Task, p: &[f64]) -> Self {
-        let every = task.runs.len().div_ceil(WINDOWS).max(1);
-        let mut tally = Tally::default();
+        let every = task.cost.runs().div_ceil(WINDOWS).max(1);
+        let ranks = task.cost.ranks();
+        let before = ranks.before(task.runs.len());
+        let mut tally = Tally::new();
         // A run that cannot be read ends the sums; the fit itself then says so.
         let _ = task.cost.residuals_by_run(p, |run, mut values| {
+            let drawn = (before + run).is_multiple_of(every);
             let weights = &task.cost.weights()[run];
             let run = task.runs.get(run)?;
             values.truncate(run.measured.len());
             let variance = measured_variance(&run, weights);
-            tally.add(Residuals { recording: run.recording.clone(), values, variance }, every);
+            tally.add(Residuals { recording: run.recording.clone(), values, variance }, drawn);
             Some(())
         });
-        tally.statistics()
+        tally.statistics(ranks)
     }
 
     /// What the statistics say against the fit.
@@ -202,42 +206,41 @@ fn squares(values: &[[f64; STATES]], channels: std::ops::Range<usize>) -> (f64, 
 }
 
 /// Sums over the residuals of runs, from which the statistics come.
-#[derive(Default)]
 struct Tally {
-    runs: usize,
-    /// Sum of squares and number of values, by channel.
-    squares: [(f64, f64); STATES],
-    /// The same of the second differences, a sixth each.
-    differences: [(f64, f64); STATES],
+    /// For each channel: the sum of squares and the number of values, and the same of the second differences, a sixth each.
+    squares: ExactSums,
     /// Mean squares of velocities in the second and in the last quarter, summed by recording.
     quarters: BTreeMap<String, [f64; 2]>,
     /// Mean squares in sway and yaw rate in the first and the last quarter, and the variance measured.
-    lost: [f64; 2],
-    measured: f64,
+    lost: ExactSums,
     /// Residuals of some runs, evenly drawn.
     drawn: Vec<Residuals>,
 }
 
 impl Tally {
-    /// Adds a run; every so many are kept for autocorrelations.
-    fn add(&mut self, run: Residuals, every: usize) {
+    /// Of no run yet.
+    fn new() -> Self {
+        let (squares, lost) = (ExactSums::new(4 * STATES), ExactSums::new(3));
+        Self { squares, quarters: BTreeMap::new(), lost, drawn: Vec::new() }
+    }
+
+    /// Adds a run, which is kept for autocorrelations where it was drawn for them.
+    fn add(&mut self, run: Residuals, drawn: bool) {
         for c in 0..STATES {
-            for e in run.values.iter().map(|e| e[c]).filter(|e| e.is_finite()) {
-                self.squares[c] = (self.squares[c].0 + e * e, self.squares[c].1 + 1.0);
-            }
+            let (square, count) = squares(&run.values, c..c + 1);
             let second = |w: &[[f64; STATES]]| w[2][c] - 2.0 * w[1][c] + w[0][c];
-            for d in run.values.windows(3).map(second).filter(|d| d.is_finite()) {
-                self.differences[c] = (self.differences[c].0 + d * d / 6.0, self.differences[c].1 + 1.0);
-            }
+            let seconds = run.values.windows(3).map(second).filter(|d| d.is_finite());
+            let (differences, triples) = seconds.fold((0.0, 0.0), |(sum, n), d| (sum + d * d / 6.0, n + 1.0));
+            let of_channel = [square, count, differences, triples].into_iter().enumerate();
+            of_channel.for_each(|(i, x)| self.squares.add(4 * c + i, x));
         }
         let quarter = run.values.len() / 4;
         if quarter >= 2 {
             self.add_quarters(&run, quarter);
         }
-        if self.runs % every == 0 {
+        if drawn {
             self.drawn.push(run);
         }
-        self.runs += 1;
     }
 
     fn add_quarters(&mut self, run: &Residuals, quarter: usize) {
@@ -251,51 +254,59 @@ impl Tally {
         for c in STEERED.filter(|c| run.variance[*c].is_finite()) {
             let ends = [first, last].map(|part| squares(part, c..c + 1));
             if ends.iter().all(|(_, count)| *count > 0.0) {
-                self.measured += run.variance[c];
-                self.lost = std::array::from_fn(|i| self.lost[i] + ends[i].0 / ends[i].1);
+                ends.iter().enumerate().for_each(|(i, (square, count))| self.lost.add(i, square / count));
+                self.lost.add(2, run.variance[c]);
             }
         }
     }
 
-    fn statistics(&self) -> ResidualStatistics {
-        let growth = self.growth();
+    /// The statistics of the runs of all ranks.
+    fn statistics(self, ranks: &Ranks) -> ResidualStatistics {
+        let growth = growth(ranks, &self.quarters);
         ResidualStatistics {
-            model_error: self.model_error(),
+            model_error: model_error(ranks, self.squares),
             growth: growth.map(|g| g.0),
             growth_error: growth.and_then(|g| g.1),
-            loss: self.loss(),
-            likeness: likeness(&self.drawn),
+            loss: loss(ranks, self.lost),
+            likeness: likeness(ranks, &self.drawn),
         }
     }
+}
 
-    /// Mean square of the residuals over that of the sensors' noise.
-    fn model_error(&self) -> Option<f64> {
-        let (mut square, mut noise) = (0.0, 0.0);
-        for ((sum, count), (differences, triples)) in self.squares.iter().zip(self.differences) {
-            if triples > 0.0 {
-                square += sum;
-                noise += count * f64::max(differences / triples, FINEST * FINEST);
-            }
+/// Mean square of the residuals over that of the sensors' noise.
+fn model_error(ranks: &Ranks, sums: ExactSums) -> Option<f64> {
+    let (mut square, mut noise) = (0.0, 0.0);
+    for of_channel in ranks.total(sums)?.chunks(4) {
+        let [sum, count, differences, triples] = [0, 1, 2, 3].map(|i| of_channel[i]);
+        if triples > 0.0 {
+            square += sum;
+            noise += count * f64::max(differences / triples, FINEST * FINEST);
         }
-        (noise > 0.0).then(|| square / noise)
     }
+    (noise > 0.0).then(|| square / noise)
+}
 
-    /// Exponent of the growth of the residuals along the windows, with its standard error over the recordings.
-    fn growth(&self) -> Option<(f64, Option<f64>)> {
-        let exponent = |[early, late]: &[f64; 2]| {
-            (*early > FINEST * FINEST && *late > 0.0).then(|| 0.5 * (late / early).ln() / (7.0_f64 / 3.0).ln())
-        };
-        let exponents: Vec<f64> = self.quarters.values().filter_map(exponent).collect();
-        let n = exponents.len() as f64;
-        let mean = exponents.iter().sum::<f64>() / n;
-        let scatter = exponents.iter().map(|b| (b - mean).powi(2)).sum::<f64>();
-        mean.is_finite().then(|| (mean, (n > 2.0).then(|| (scatter / (n * (n - 1.0))).sqrt())))
-    }
+/// Exponent of the growth of the residuals along the windows, with its standard error over the recordings.
+fn growth(ranks: &Ranks, quarters: &BTreeMap<String, [f64; 2]>) -> Option<(f64, Option<f64>)> {
+    let exponent = |[early, late]: &[f64; 2]| {
+        (*early > FINEST * FINEST && *late > 0.0).then(|| 0.5 * (late / early).ln() / (7.0_f64 / 3.0).ln())
+    };
+    let exponents: Vec<f64> = quarters.values().filter_map(exponent).collect();
+    let total = |of: &dyn Fn(f64) -> f64| {
+        let mut sums = ExactSums::new(1);
+        exponents.iter().for_each(|b| sums.add(0, of(*b)));
+        ranks.total(sums).map_or(f64::NAN, |sum| sum[0])
+    };
+    let n = total(&|_| 1.0);
+    let mean = total(&|b| b) / n;
+    let scatter = total(&|b| (b - mean).powi(2));
+    mean.is_finite().then(|| (mean, (n > 2.0).then(|| (scatter / (n * (n - 1.0))).sqrt())))
+}
 
-    /// Shares of the measured variance of sway and yaw rate that the first and the last quarter of the windows lose.
-    fn loss(&self) -> Option<[f64; 2]> {
-        (self.measured > 0.0).then(|| self.lost.map(|l| l / self.measured))
-    }
+/// Shares of the measured variance of sway and yaw rate that the first and the last quarter of the windows lose.
+fn loss(ranks: &Ranks, sums: ExactSums) -> Option<[f64; 2]> {
+    let total = ranks.total(sums)?;
+    (total[2] > 0.0).then(|| [total[0] / total[2], total[1] / total[2]])
 }
 
 /// Residuals of one run in one row, sample after sample.
@@ -340,17 +351,23 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// How many successive residuals count as one: `1 + 2 sum rho(l)` over the lags up to where rho is lost in scatter.
-fn likeness(drawn: &[Residuals]) -> Option<f64> {
+fn likeness(ranks: &Ranks, drawn: &[Residuals]) -> Option<f64> {
     let drawn: Vec<Flat> = drawn.iter().map(Flat::of).collect();
-    let longest = drawn.iter().map(|r| r.values.len() / STATES).max()?;
-    // Mean products at some lags in one go: threads meet once for all of them.
+    let longest = drawn.iter().map(|r| r.values.len() / STATES).max().unwrap_or(0);
+    let longest = ranks.largest(&[longest as f64])[0] as usize;
+    // Mean products at some lags in one go: threads and ranks meet once for all of them.
     let products = |lags: std::ops::Range<usize>| -> Vec<f64> {
         let of_run = |r: &Flat| lags.clone().map(|lag| r.product(lag)).collect::<Vec<_>>();
-        let of_runs: Vec<Vec<(f64, f64)>> = drawn.par_iter().map(of_run).collect();
-        let mean = |i: usize| {
-            let (sum, count) = of_runs.iter().fold((0.0, 0.0), |s, p| (s.0 + p[i].0, s.1 + p[i].1));
-            if count > 0.0 { sum / count } else { 0.0 }
-        };
+        let mut sums = ExactSums::new(2 * lags.len());
+        for (i, (sum, count)) in
+            drawn.par_iter().map(of_run).collect::<Vec<_>>().iter().flat_map(|p| p.iter().enumerate())
+        {
+            sums.add(2 * i, *sum);
+            sums.add(2 * i + 1, *count);
+        }
+        let total = ranks.total(sums).unwrap_or_default();
+        let mean =
+            |i: usize| total.get(2 * i + 1).filter(|count| **count > 0.0).map_or(0.0, |count| total[2 * i] / count);
         (0..lags.len()).map(mean).collect()
     };
     let variance = products(0..1)[0];
@@ -385,11 +402,11 @@ mod tests {
     fn view(made: &[(String, Vec<[f64; STATES]>)]) -> ResidualStatistics {
         // Sway that was measured to vary by 0.1.
         let variance = [f64::NAN, f64::NAN, f64::NAN, f64::NAN, 0.01, f64::NAN];
-        let mut tally = Tally::default();
+        let mut tally = Tally::new();
         for (recording, values) in made.iter().cloned() {
-            tally.add(Residuals { recording, values, variance }, 1);
+            tally.add(Residuals { recording, values, variance }, true);
         }
-        tally.statistics()
+        tally.statistics(Ranks::one())
     }
 
     #[test]

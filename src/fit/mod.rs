@@ -54,9 +54,9 @@ pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;
 #[cfg(feature = "ipopt")]
-pub use multistart::{MultiStart, StartOutcome, multi_start};
+pub use multistart::{MultiStart, StartOutcome, StartRow, multi_start, multi_start_over};
 #[cfg(feature = "ipopt")]
 pub use problem::Progress;
 pub use settings::{FitSettings, Hessian};
 #[cfg(feature = "ipopt")]
-pub use summary::{Active, Combination, Estimate, Fit, fit};
+pub use summary::{Active, Combination, Estimate, Fit, fit, fit_over};

@@ -5,6 +5,7 @@ use super::error::FitError;
 use super::settings::FitSettings;
 use super::summary::{Fit, fit};
 use crate::model::Model;
+use crate::ranks::Ranks;
 use crate::recording::Run;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -37,6 +38,23 @@ pub struct StartOutcome {
     pub outcome: Result<Fit, FitError>,
 }
 
+/// How one start ended, in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StartRow {
+    /// Values of the free parameters at the start.
+    pub start: Vec<f64>,
+    /// Their values at the end; empty where there is no fit.
+    pub end: Vec<f64>,
+    /// Cost there, priors included; absent where there is no fit.
+    pub cost: Option<f64>,
+    /// Whether the solver found an optimum.
+    pub converged: bool,
+    /// Iterations of the solver.
+    pub iterations: usize,
+    /// How it ended, in words.
+    pub ended: String,
+}
+
 /// Fits from each start in turn, in an order and from values that depend on the seed alone.
 pub fn multi_start(
     model: &Model,
@@ -45,20 +63,67 @@ pub fn multi_start(
     starts: &MultiStart,
     mut progress: impl FnMut(usize),
 ) -> Vec<StartOutcome> {
-    let mut random = ChaCha8Rng::seed_from_u64(starts.seed);
-    let free = model.free();
-    let mut outcomes = Vec::with_capacity(starts.count);
-    for count in 0..starts.count {
+    let from = drawn(model, starts);
+    let outcome = |(count, from): (usize, &Model)| {
         progress(count);
+        StartOutcome { start: free_values(from), outcome: fit(from, runs, settings, &mut |_| true) }
+    };
+    from.iter().enumerate().map(outcome).collect()
+}
+
+/// As [`multi_start`], with the starts dealt out to the ranks, each of which has all `runs`: every rank gets every row.
+pub fn multi_start_over(
+    ranks: &Ranks,
+    model: &Model,
+    runs: &[Run],
+    settings: &FitSettings,
+    starts: &MultiStart,
+    mut progress: impl FnMut(usize),
+) -> Vec<StartRow> {
+    let from = drawn(model, starts);
+    let own = from.iter().enumerate().filter(|(count, _)| ranks.takes(*count));
+    let row = |(count, from): (usize, &Model)| {
+        progress(count);
+        (count, StartRow::of(free_values(from), fit(from, runs, settings, &mut |_| true)))
+    };
+    ranks.rows(own.map(row).collect())
+}
+
+impl StartRow {
+    fn of(start: Vec<f64>, outcome: Result<Fit, FitError>) -> Self {
+        match outcome {
+            Ok(fit) => Self {
+                start,
+                end: fit.estimates.iter().map(|e| e.value).collect(),
+                cost: Some(fit.cost + fit.prior_cost),
+                converged: fit.converged,
+                iterations: fit.iterations,
+                ended: fit.status,
+            },
+            Err(error) => {
+                let ended = error.to_string();
+                Self { start, end: Vec::new(), cost: None, converged: false, iterations: 0, ended }
+            }
+        }
+    }
+}
+
+/// The model at every start.
+fn drawn(model: &Model, starts: &MultiStart) -> Vec<Model> {
+    let mut random = ChaCha8Rng::seed_from_u64(starts.seed);
+    let mut one = |_| {
         let mut from = model.clone();
-        for i in &free {
-            let parameter = &mut from.parameters[*i];
+        for i in model.free() {
+            let parameter = &mut from.parameters[i];
             let size = if parameter.value == 0.0 { parameter.scale } else { parameter.value.abs() };
             let moved = parameter.value + starts.spread * size * random.random_range(-1.0..=1.0);
             parameter.value = moved.max(parameter.lower).min(parameter.upper);
         }
-        let start = free.iter().map(|i| from.parameters[*i].value).collect();
-        outcomes.push(StartOutcome { start, outcome: fit(&from, runs, settings, &mut |_| true) });
-    }
-    outcomes
+        from
+    };
+    (0..starts.count).map(&mut one).collect()
+}
+
+fn free_values(model: &Model) -> Vec<f64> {
+    model.free().into_iter().map(|i| model.parameters[i].value).collect()
 }

@@ -8,13 +8,12 @@ use super::settings::Hessian;
 use super::task::Task;
 use crate::ipopt::{IterationReport, Nlp};
 use crate::model::Model;
-use crate::recording::Runs;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
 
 /// Where a running fit stands.
 #[derive(Clone, Copy, Debug)]
-pub struct Progress {
+pub struct Progress<'a> {
     /// Iteration of the solver.
     pub iteration: usize,
     /// Cost, priors included.
@@ -23,6 +22,8 @@ pub struct Progress {
     pub violation: f64,
     /// Largest entry of the gradient of the Lagrangian, scaled.
     pub optimality: f64,
+    /// The free parameters at the best feasible point of this solve, in their own units; absent before there is one.
+    pub best: Option<&'a [f64]>,
 }
 
 /// Priors on the free parameters, as residuals beside those of the data.
@@ -94,14 +95,12 @@ impl<'a, 'f> Problem<'a, 'f> {
     pub fn new(
         task: &'a Task<'a>,
         evaluations: &'a Evaluations<'a>,
-        runs: Runs,
         priors: &'a Priors,
         start: &'a [f64],
         rows: &'a [Row],
         progress: &'f mut dyn FnMut(&Progress) -> bool,
     ) -> Self {
-        let samples = evaluations.cost.samples();
-        let factor = runs.len() as f64 / samples.max(1) as f64;
+        let factor = evaluations.cost.runs() as f64 / evaluations.cost.samples().max(1) as f64;
         Self {
             task,
             evaluations,
@@ -250,6 +249,7 @@ impl Nlp for Problem<'_, '_> {
                 cost: report.objective / self.factor,
                 violation: report.inf_pr,
                 optimality: report.inf_du,
+                best: self.best.as_ref().map(|best| best.p.as_slice()),
             })
     }
 }

@@ -125,7 +125,6 @@ struct Attempt {
 /// What is solved: a cost over runs, and where from.
 struct Stage<'a> {
     evaluations: &'a Evaluations<'a>,
-    runs: Runs<'a>,
     tolerance: f64,
     max_iterations: usize,
     /// Whether the start is near the optimum: the barrier then starts lower still, and the bounds do not push the start away.
@@ -140,7 +139,6 @@ impl Task<'_> {
         let settings = self.settings;
         let mut stage = Stage {
             evaluations: &self.evaluations,
-            runs: self.runs,
             tolerance: settings.tolerance,
             max_iterations: settings.max_iterations,
             near: false,
@@ -151,7 +149,7 @@ impl Task<'_> {
         let mut p = from;
         for _ in 0..rounds {
             let value = self.evaluations.value(&p).ok_or_else(|| self.diverged())?;
-            let weight = self.weight(self.cost, self.runs, value);
+            let weight = self.weight(self.cost, value);
             if end.is_some() && (weight - priors.weight).abs() <= SAME_WEIGHT * weight {
                 break;
             }
@@ -184,13 +182,12 @@ impl Task<'_> {
         for parts in stages::falling(parts) {
             let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts)?;
             let pieces = Runs::from(&pieces);
-            let cost = Cost::weighted(self.model, pieces, weights, self.cost_options())?;
+            let cost = Cost::weighted(self.cost.ranks(), self.model, pieces, weights, self.cost_options())?;
             let evaluations = Evaluations::of(&cost);
             let Some(value) = evaluations.value(&p) else { continue };
-            priors.weight = self.weight(&cost, pieces, value);
+            priors.weight = self.weight(&cost, value);
             let stage = Stage {
                 evaluations: &evaluations,
-                runs: pieces,
                 tolerance: self.settings.tolerance.max(STAGE_TOLERANCE),
                 max_iterations: self.settings.max_iterations.min(STAGE_ITERATIONS),
                 near: false,
@@ -201,7 +198,7 @@ impl Task<'_> {
                 break;
             }
         }
-        priors.weight = self.weight(self.cost, self.runs, self.start_cost);
+        priors.weight = self.weight(self.cost, self.start_cost);
         let total = |p: &[f64]| Some(self.evaluations.value(p)? + priors.value(p));
         match (total(&p), total(&self.start)) {
             (Some(staged), Some(start)) if staged <= start || !self.is_feasible(&self.start) => Ok((parts, p)),
@@ -212,8 +209,8 @@ impl Task<'_> {
     }
 
     /// Weight of the priors at a cost: see [`Priors`].
-    fn weight(&self, cost: &Cost, runs: Runs, value: f64) -> f64 {
-        self.variance_of(cost, runs.len(), value) * self.settings.correlated_samples / runs.len() as f64
+    fn weight(&self, cost: &Cost, value: f64) -> f64 {
+        self.variance_of(cost, value) * self.settings.correlated_samples / cost.runs() as f64
     }
 
     fn options(&self, stage: &Stage, objective: f64, way: Way) -> Options {
@@ -315,7 +312,7 @@ impl Task<'_> {
         progress: &mut dyn FnMut(&Progress) -> bool,
     ) -> Result<Attempt, FitError> {
         let rows = if way == Way::Inside { &[] } else { &self.rows[..] };
-        let mut problem = Problem::new(self, stage.evaluations, stage.runs, priors, start, rows, progress);
+        let mut problem = Problem::new(self, stage.evaluations, priors, start, rows, progress);
         if way == Way::Inside {
             problem.most = INSIDE_EVALUATIONS;
         }

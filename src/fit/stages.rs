@@ -30,10 +30,12 @@ pub(super) fn parts(task: &Task) -> usize {
         return 1;
     }
     let longest = task.runs.iter().map(|r| r.measured.len().saturating_sub(1)).max().unwrap_or(0);
+    let longest = task.cost.ranks().largest(&[longest as f64])[0] as usize;
     let cost = |parts: usize| {
         let (pieces, weights) = cut(task.runs, task.cost.weights(), parts).ok()?;
-        let cost = Cost::weighted(task.model, Runs::from(&pieces), weights, task.cost_options()).ok()?;
-        cost.value(&task.start).map(|c| c * pieces.len() as f64)
+        let cost =
+            Cost::weighted(task.cost.ranks(), task.model, Runs::from(&pieces), weights, task.cost_options()).ok()?;
+        cost.value(&task.start).map(|c| c * cost.runs() as f64)
     };
     let mut parts = 1;
     let mut here = cost(parts);

@@ -13,6 +13,7 @@ use super::task::Task;
 use crate::ipopt::Counts;
 use crate::model::Model;
 use crate::ranges::Limited;
+use crate::ranks::Ranks;
 use crate::recording::Runs;
 use crate::validity::{self, Count, Coverage};
 use serde::Serialize;
@@ -149,10 +150,28 @@ pub fn fit<'a>(
     settings: &FitSettings,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Fit, FitError> {
+    fit_over(Ranks::one(), model, runs, settings, progress)
+}
+
+/// As [`fit`], to the runs of all ranks, of which this one has `runs`; those of a recording are all on one rank.
+///
+/// Every rank calls this with the same model and settings and gets the same fit, whose numbers do not depend on how many ranks
+/// there are: each evaluates its own runs and adds to the sums of all, and each solves the same program.
+///
+/// # Errors
+/// As [`fit`]. An error that only this rank meets, such as an unusable run, must end the job ([`Ranks::fail`]): the other ranks
+/// wait for its sums.
+pub fn fit_over<'a>(
+    ranks: &'a Ranks,
+    model: &'a Model,
+    runs: impl Into<Runs<'a>>,
+    settings: &FitSettings,
+    progress: &mut dyn FnMut(&Progress) -> bool,
+) -> Result<Fit, FitError> {
     let clock = Instant::now();
     settings.limits()?;
     let runs = runs.into();
-    let cost = Cost::new(model, runs, settings.cost_options())?;
+    let cost = Cost::over(ranks, model, runs, settings.cost_options())?;
     let task = Task::new(model, &cost, runs, settings)?;
     let mut end = task.solve(progress)?;
     task.polish(&mut end);
@@ -168,6 +187,7 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
     let doubts = statistics.doubts(&covariances, task.scales.len());
     let mut validity = Count::new(&model);
     task.runs.iter().for_each(|run| validity.add(validity::samples(&run)));
+    validity.gather(task.cost.ranks());
     Fit {
         validity: validity.coverage(),
         converged: end.converged,
@@ -189,7 +209,7 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
         start_prior_cost: end.priors.value(&task.start),
         first_stage_parts: end.parts,
         residual_variance: task.variance(cost),
-        runs: task.runs.len(),
+        runs: task.cost.runs(),
         recordings: covariances.clusters,
         residuals: task.cost.residuals(),
         constraints: task.rows.len(),

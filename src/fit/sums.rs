@@ -1,17 +1,9 @@
 //! What runs add to the cost and its derivatives: sums of squares, of gradients and of the products behind the Gauss-Newton matrix.
 //! It knows no run, weight or model: it is given weighted residuals and their derivatives, sample by sample.
 
-use crate::sensitivity::Plain;
+use crate::sensitivity::{Plain, Products};
 use crate::state::STATES;
 use trimtab_ad::Scalar;
-
-/// How many samples are gathered before their products are added.
-const SAMPLES: usize = 4;
-/// Values of one column in the samples gathered.
-const DEPTH: usize = SAMPLES * STATES;
-/// Rows and columns of a tile: its sums, and one value of each row and column, fit the sixteen vector registers of AVX2.
-const HIGH: usize = 4;
-const WIDE: usize = 3;
 
 /// Sums of `e^2`, `e de/dp_j` and `de/dp_i de/dp_j`, lane by lane.
 pub(super) struct Sums<P> {
@@ -41,15 +33,11 @@ impl<P: Plain> Sums<P> {
                 }
             }
             Some(products) => {
-                let from = products.gathered * STATES;
-                for ((g, column), row) in self.gradient.iter_mut().zip(&mut products.columns).zip(rows) {
+                for (c, (g, row)) in self.gradient.iter_mut().zip(rows).enumerate() {
                     *g = dot(residuals, &row, *g);
-                    column[from..from + STATES].copy_from_slice(&row);
+                    products.set(c, &row);
                 }
-                products.gathered += 1;
-                if products.gathered == SAMPLES {
-                    products.multiply();
-                }
+                products.next_sample();
             }
         }
     }
@@ -57,16 +45,14 @@ impl<P: Plain> Sums<P> {
     /// The sums when the last sample is in.
     pub(super) fn finished(mut self) -> Self {
         if let Some(products) = &mut self.products {
-            let from = products.gathered * STATES;
-            products.columns.iter_mut().for_each(|column| column[from..].fill(P::zero()));
-            products.multiply();
+            products.finish();
         }
         self
     }
 
     /// Sum of `de/dp_i de/dp_j` where `j <= i`; 0 without matrix.
     pub(super) fn product(&self, i: usize, j: usize) -> P {
-        self.products.as_ref().map_or_else(P::zero, |p| p.panels[i / HIGH][j / WIDE][i % HIGH][j % WIDE])
+        self.products.as_ref().map_or_else(P::zero, |p| p.get(i, j))
     }
 }
 
@@ -74,57 +60,6 @@ impl<P: Plain> Sums<P> {
 #[inline(always)]
 fn dot<P: Scalar>(a: &[P; STATES], b: &[P; STATES], sum: P) -> P {
     a.iter().zip(b).fold(sum, |sum, (a, b)| a.mul_add(*b, sum))
-}
-
-/// A tile of the matrix.
-type Tile<P> = [[P; WIDE]; HIGH];
-
-/// Sums of products of any two columns, added a few samples at a time and tile by tile, so that a value that is loaded enters several
-/// products and a sum is stored once for all samples gathered.
-struct Products<P> {
-    /// The values of each column in the samples gathered; columns of zeros fill up the last tiles.
-    columns: Vec<[P; DEPTH]>,
-    /// How many samples are gathered.
-    gathered: usize,
-    /// Tiles that touch the lower triangle: by rows, then columns.
-    panels: Vec<Vec<Tile<P>>>,
-}
-
-impl<P: Plain> Products<P> {
-    fn new(n: usize) -> Self {
-        let panels: Vec<Vec<Tile<P>>> = (0..n.div_ceil(HIGH))
-            .map(|panel| vec![[[P::zero(); WIDE]; HIGH]; n.min((panel + 1) * HIGH).div_ceil(WIDE)])
-            .collect();
-        let filled = (n.div_ceil(HIGH) * HIGH).max(n.div_ceil(WIDE) * WIDE);
-        Self { columns: vec![[P::zero(); DEPTH]; filled], gathered: 0, panels }
-    }
-
-    /// Adds the products of the samples gathered.
-    #[inline(always)]
-    fn multiply(&mut self) {
-        for (panel, rows) in self.panels.iter_mut().zip(self.columns.chunks_exact(HIGH)) {
-            let Some(rows) = rows.first_chunk::<HIGH>() else { continue };
-            for (tile, columns) in panel.iter_mut().zip(self.columns.chunks_exact(WIDE)) {
-                let Some(columns) = columns.first_chunk::<WIDE>() else { continue };
-                multiply(rows, columns, tile);
-            }
-        }
-        self.gathered = 0;
-    }
-}
-
-/// Adds the products of a tile's rows and columns.
-#[inline(always)]
-fn multiply<P: Plain>(rows: &[[P; DEPTH]; HIGH], columns: &[[P; DEPTH]; WIDE], tile: &mut Tile<P>) {
-    let mut sums = *tile;
-    for k in 0..DEPTH {
-        for i in 0..HIGH {
-            for j in 0..WIDE {
-                sums[i][j] = rows[i][k].mul_add(columns[j][k], sums[i][j]);
-            }
-        }
-    }
-    *tile = sums;
 }
 
 #[cfg(test)]

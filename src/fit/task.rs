@@ -24,6 +24,7 @@ pub(super) struct Task<'a> {
     pub cost: &'a Cost<'a>,
     /// Its evaluations.
     pub evaluations: Evaluations<'a>,
+    /// The runs of this rank.
     pub runs: Runs<'a>,
     pub settings: &'a FitSettings,
     pub rows: Vec<Row>,
@@ -56,7 +57,9 @@ impl<'a> Task<'a> {
         if free.is_empty() {
             return Err(FitError::NothingFree);
         }
-        let rows = constraints::rows(model, &settings.constraints, constraints::speed_range(runs))?;
+        let [slowest, fastest] = constraints::speed_range(runs);
+        let ends = cost.ranks().largest(&[-slowest, fastest]);
+        let rows = constraints::rows(model, &settings.constraints, [-ends[0], ends[1]])?;
         let mut bounds: Vec<(f64, f64)> = free.iter().map(|p| (p.lower, p.upper)).collect();
         keep_mass_matrix_positive(model, &free, &mut bounds);
         let start: Vec<f64> = free.iter().zip(&bounds).map(|(p, (lo, hi))| p.value.max(*lo).min(*hi)).collect();
@@ -68,7 +71,8 @@ impl<'a> Task<'a> {
         let mut sessions: Vec<String> = if model.sessions.is_empty() {
             Vec::new()
         } else {
-            let met: BTreeSet<String> = runs.iter().map(|r| r.session.clone()).collect();
+            let own: BTreeSet<String> = runs.iter().map(|r| r.session.clone()).collect();
+            let met: BTreeSet<String> = cost.ranks().gather(&own).into_iter().flatten().collect();
             met.into_iter().filter(|s| model.sessions.contains_key(s)).collect()
         };
         sessions.push(String::new());
@@ -124,15 +128,15 @@ impl<'a> Task<'a> {
         p.iter().zip(&self.bounds).map(|(p, (lower, upper))| p.max(*lower).min(*upper)).collect()
     }
 
-    /// Variance of the weighted residuals of a cost over `runs` runs, at a given value.
-    pub fn variance_of(&self, cost: &Cost, runs: usize, value: f64) -> f64 {
+    /// Variance of the weighted residuals of a cost, at a given value.
+    pub fn variance_of(&self, cost: &Cost, value: f64) -> f64 {
         let freedom = cost.residuals().saturating_sub(self.scales.len()).max(1);
-        value * runs as f64 / freedom as f64
+        value * cost.runs() as f64 / freedom as f64
     }
 
     /// Variance of the weighted residuals at a given value of the fit's cost.
     pub fn variance(&self, value: f64) -> f64 {
-        self.variance_of(self.cost, self.runs.len(), value)
+        self.variance_of(self.cost, value)
     }
 
     /// Directions in scaled parameters along which no active constraint changes.

@@ -274,6 +274,7 @@ fn assert_close(found: &[f64], expected: &[f64], tolerance: f64) {
     }
 }
 
+#[allow(clippy::unwrap_used)]
 fn assert_solves_hs071(options: &Options) -> Solution {
     let solution = solve(&mut Hs071::new(), options).unwrap();
     assert_eq!(solution.status, Status::Solved);

@@ -261,9 +261,9 @@ fn rate<P: Plain, const HEADING: bool>(local: &Local<P>, s: &StateSlope<P>, own:
     ]
 }
 
-/// Columns after one step of Euler's method.
+/// Columns after one step of Euler's method, from the Jacobian at its start. Without `HEADING` no acceleration depends on psi.
 #[inline(always)]
-fn euler<P: Plain, const HEADING: bool>(local: &Local<P>, h: f64, slopes: &mut [StateSlope<P>], own: &[[P; 3]]) {
+pub fn euler<P: Plain, const HEADING: bool>(local: &Local<P>, h: f64, slopes: &mut [StateSlope<P>], own: &[[P; 3]]) {
     let h = P::from_f64(h);
     for (slope, own) in slopes.iter_mut().zip(own) {
         let k = rate::<P, HEADING>(local, slope, own);

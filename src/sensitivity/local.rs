@@ -46,6 +46,12 @@ pub trait Plain: Number<Coefficient = Self> {
         inputs: &Inputs<Self>,
         push: &Force<Self>,
     ) -> (Local<Self>, Flow<Self>);
+    /// What the sensors report of a state, and the derivative by the state.
+    fn reported(
+        dynamics: &Dynamics<Self>,
+        state: &[Self; STATES],
+        inputs: &Inputs<Self>,
+    ) -> ([Self; STATES], [[Self; STATES]; STATES]);
     /// Derivatives of the terms' force by the inflow of propeller and rudder, and into `rudder` the rudder's force per unit of each of
     /// its parameters, which comes with them.
     fn by_inflow(
@@ -100,6 +106,13 @@ macro_rules! plain {
                     along::<$number, 4>(dynamics, state, x, inputs, push, |slopes| slopes)
                 }
             }
+            fn reported(
+                dynamics: &Dynamics<Self>,
+                state: &[Self; STATES],
+                inputs: &Inputs<Self>,
+            ) -> ([Self; STATES], [[Self; STATES]; STATES]) {
+                reported(dynamics, state, inputs)
+            }
             #[inline(always)]
             fn by_inflow(
                 dynamics: &Dynamics<Self>,
@@ -114,6 +127,11 @@ macro_rules! plain {
 }
 plain!(f64, 1, |f| f(0), |x, _lane| x);
 plain!(Lanes, Lanes::LANES, |f| Lanes::from_fn(f), |x, lane| x.lane(lane));
+
+/// Inputs of a few runs side by side, from those of each.
+pub fn side_by_side<'i, P: Plain>(of: impl Fn(usize) -> &'i Inputs<f64>) -> Inputs<P> {
+    Inputs::from_entries(|entry| P::gather(|lane| *entry(of(lane))))
+}
 
 /// Rates and Jacobian by one evaluation along `N` directions.
 #[inline(always)]
@@ -139,6 +157,23 @@ where
         heading: [sin.re, cos.re],
     };
     (local, flow.map(|x| x.re, |c| c))
+}
+
+/// A report and its Jacobian by one evaluation along the heading and the velocities: no sensor's error depends on where the ship is.
+fn reported<P: Plain>(
+    dynamics: &Dynamics<P>,
+    state: &[P; STATES],
+    inputs: &Inputs<P>,
+) -> ([P; STATES], [[P; STATES]; STATES])
+where
+    Along<P, 4>: Number<Coefficient = P>,
+{
+    let x: [Along<P, 4>; STATES] =
+        std::array::from_fn(|j| if j < 2 { Along::constant(state[j]) } else { Along::variable(state[j], j - 2) });
+    let y = dynamics.report(&x, inputs);
+    let position = |i: usize, j: usize| if i == j { P::one() } else { P::zero() };
+    let row = |i: usize| std::array::from_fn(|j| if j < 2 { position(i, j) } else { y[i].eps[j - 2] });
+    (y.map(|v| v.re), std::array::from_fn(row))
 }
 
 /// The force's derivatives by propulsion come from the propeller, those by the rudder's inflow from the rudder; further terms may

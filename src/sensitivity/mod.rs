@@ -4,7 +4,9 @@
 pub mod chain;
 pub mod columns;
 pub mod local;
+pub mod products;
 
 pub use chain::Sensitivity;
 pub use columns::{Column, Columns};
 pub use local::{Local, Plain};
+pub use products::Products;

@@ -144,6 +144,12 @@ fn finish(mut command: Command, program: &Path, limit: Duration) -> Result<Strin
     let temporary = || tempfile::tempfile().map_err(file);
     let (mut out, mut err) = (temporary()?, temporary()?);
     let copy = |f: &std::fs::File| f.try_clone().map(Stdio::from).map_err(file);
+    // A program that is started from a rank is no rank itself.
+    for (name, _) in std::env::vars_os() {
+        if ["OMPI_", "PMIX_", "PMI_"].iter().any(|launcher| name.to_string_lossy().starts_with(launcher)) {
+            command.env_remove(name);
+        }
+    }
     let mut child = command.stdin(Stdio::null()).stdout(copy(&out)?).stderr(copy(&err)?).spawn().map_err(file)?;
     let began = Instant::now();
     let status = loop {

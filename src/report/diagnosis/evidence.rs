@@ -108,7 +108,7 @@ pub(super) fn confusability(d: &Diagnosis) -> Option<Sketch> {
     let values: Vec<Vec<f64>> = names.iter().map(|a| names.iter().map(|b| between(a, b)).collect()).collect();
     let map = Mark::Heatmap { values, range: Some((0.5, 1.0)), annotate: true };
     let short = Axis::categories("", names.iter().copied());
-    let long = Axis::categories("", names.iter().map(|m| title_of(m)));
+    let long = Axis::categories("", names.iter().map(|m| title_of(&d.model, m)));
     let side = 60 * names.len() as u32;
     Some(Sketch {
         stem: "confusability",

@@ -15,7 +15,7 @@ pub(super) fn model(d: &Diagnosis) -> Vec<String> {
     let mut lines = Vec::new();
     for f in &d.findings {
         lines.extend(f.parameters.iter().map(|a| {
-            let about = about(&a.name).map_or(String::new(), |words| format!(", {words}"));
+            let about = about(&d.model, &a.name).map_or(String::new(), |words| format!(", {words}"));
             format!("{} = {}{about}", a.name, amplitude(a, units))
         }));
     }

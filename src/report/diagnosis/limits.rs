@@ -58,7 +58,8 @@ pub(super) fn limits(d: &Diagnosis) -> Vec<String> {
     reasons.sort_unstable();
     reasons.dedup();
     for reason in reasons {
-        let names: Vec<&str> = d.absorbed.iter().filter(|a| a.by == reason).map(|a| title_of(&a.mechanism)).collect();
+        let names: Vec<&str> =
+            d.absorbed.iter().filter(|a| a.by == reason).map(|a| title_of(&d.model, &a.mechanism)).collect();
         lines.push(format!("not identifiable: {} (absorbed by {reason})", names.join(", ")));
     }
     let sizes: Vec<String> = d

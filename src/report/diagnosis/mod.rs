@@ -30,7 +30,7 @@ mod summary;
 mod verdict;
 
 pub use document::{document, keys, keys_listing};
-pub use names::{mechanism_names, title_of};
+pub use names::mechanism_names;
 #[cfg(feature = "plot")]
 pub use page::page;
 pub use parts::{Part, parts};

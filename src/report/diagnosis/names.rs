@@ -2,31 +2,29 @@
 //! The catalogue holds both; only what it does not hold is worded here.
 
 use crate::diagnose::finding::{GENERIC, PUSH, PUSH_TITLE};
-use crate::physics::Mechanism;
+use crate::model::Model;
 use crate::terms::CATALOGUE;
 
 /// The names of all mechanisms that can be named or withheld.
 pub fn mechanism_names() -> impl Iterator<Item = &'static str> {
-    mechanisms().map(|m| m.name).chain([PUSH])
+    CATALOGUE.iter().flat_map(|t| t.info().mechanisms).map(|m| m.name).chain([PUSH])
 }
 
-fn mechanisms() -> impl Iterator<Item = &'static Mechanism> {
-    CATALOGUE.iter().flat_map(|t| t.info().mechanisms)
-}
-
-/// The plain words for a mechanism; its name when the catalogue does not hold it.
-#[must_use]
-pub fn title_of(name: &str) -> &str {
+/// The plain words for a mechanism; its name when the catalogue of the model does not hold it.
+pub(super) fn title_of<'a>(model: &Model, name: &'a str) -> &'a str {
     match name {
         PUSH => PUSH_TITLE,
         GENERIC => "something that the catalogue does not hold",
-        _ => mechanisms().find(|m| m.name == name).map_or(name, |m| m.title),
+        _ => {
+            let mut mechanisms = model.catalogue().iter().flat_map(|t| t.info().mechanisms);
+            mechanisms.find(|m| m.name == name).map_or(name, |m| m.title)
+        }
     }
 }
 
-/// The plain words for a parameter.
-pub(super) fn about(name: &str) -> Option<&'static str> {
+/// The plain words for a parameter, in the catalogue of the model.
+pub(super) fn about(model: &Model, name: &str) -> Option<&'static str> {
     let (term, parameter) = name.split_once(" [").map_or(name, |(name, _)| name).split_once('.')?;
-    let info = CATALOGUE.iter().map(|t| t.info()).find(|i| i.name == term)?;
+    let info = model.catalogue().find(term)?.info();
     info.parameters.iter().find(|p| p.name == parameter).map(|p| p.about)
 }

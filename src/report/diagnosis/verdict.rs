@@ -59,7 +59,7 @@ pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
             p_value(f.p)
         ));
         if f.confidence_set.len() > 1 {
-            let all: Vec<&str> = f.confidence_set.iter().map(|m| title_of(m)).collect();
+            let all: Vec<&str> = f.confidence_set.iter().map(|m| title_of(&d.model, m)).collect();
             lines.push(format!("not distinguishable on these data: {}; {}", all.join(", "), f.why));
         } else {
             lines.push(f.why.clone());

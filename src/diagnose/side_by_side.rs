@@ -1,0 +1,445 @@
+//! The filter over a few runs of one sample period side by side: correction by the measurements, sensitivities, prediction.
+//! What a step or a column does to the ship is computed elsewhere; how runs are put together is the filter's affair.
+
+use super::covariance::{Discrete, Square, Z, initial, predict};
+use super::directions::{Directions, Prepared};
+use super::noise::Noise;
+use super::pass::{GATE, Gains, Pass, Tangent, Wanted, boost};
+use super::step_map::{Jacobians, Slope, carry, exact, none, slope_at};
+use crate::recording::Run;
+use crate::sensitivity::chain::StateSlope;
+use crate::sensitivity::local::side_by_side;
+use crate::sensitivity::{Plain, Products};
+use crate::simulate::{Integration, Method, step};
+use crate::state::{Force, Inputs, STATES, State};
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// Runs of one sample period with their indices, at most one a lane.
+pub(super) type Together<'r> = [(usize, &'r Run)];
+
+/// What the measurements of one sample change, by channel: 0 where a lane has none, or an outlier.
+struct Correction<P> {
+    /// Innovation.
+    error: [P; STATES],
+    /// One over its variance.
+    inverse: [P; STATES],
+    gain: [[P; Z]; STATES],
+    /// How the report changes with the state.
+    report: [[P; STATES]; STATES],
+    /// Derivatives of the report by the columns of sensors.
+    sensed: Vec<(usize, [P; STATES])>,
+    /// Whether some lane has a measurement, and whether all have.
+    some: [bool; STATES],
+    all: [bool; STATES],
+}
+
+/// The filter under way.
+struct Filtering<'f, P: Plain> {
+    runs: &'f Together<'f>,
+    wanted: &'f Wanted<'f>,
+    directions: &'f Directions<'f>,
+    prepared: Prepared<'f, P>,
+    noise: Discrete<P>,
+    dt: f64,
+    /// Whether the accelerations' Jacobian at both ends of a step carries the linearisation over it.
+    smooth: bool,
+    mean: [P; Z],
+    covariance: Square<P>,
+    /// The Jacobian of the rates at the last sample, where it is carried.
+    slope: Slope<P>,
+    /// Derivatives of the mean by column.
+    slopes: Vec<[P; Z]>,
+    /// The columns' part in the accelerations at the start and at the end of a step.
+    rates: [Vec<[P; 3]>; 2],
+    room: Vec<[P; 3]>,
+    score: Vec<P>,
+    information: Products<P>,
+    log_likelihood: P,
+    used: P,
+    outliers: P,
+    passes: Vec<Pass>,
+}
+
+/// Passes over runs side by side.
+pub(super) fn passes<P: Plain>(directions: &Directions, runs: &Together, noise: &Noise, wanted: &Wanted) -> Vec<Pass> {
+    let samples = runs.iter().map(|(_, run)| run.measured.len()).max().unwrap_or(0);
+    if samples == 0 {
+        return Vec::new();
+    }
+    let mut filtering = Filtering::<P>::new(directions, runs, noise, wanted, samples);
+    for k in 0..samples {
+        let correction = filtering.correct(k);
+        filtering.learn(&correction);
+        filtering.record(k);
+        if k + 1 < samples {
+            filtering.advance(k);
+        }
+    }
+    filtering.finish()
+}
+
+/// Where a flag is set.
+#[inline(always)]
+fn where_set<P: Plain>(flag: P, value: P) -> P {
+    P::select(P::zero().less(flag), value, P::zero())
+}
+
+/// A channel's row of the report's Jacobian times a vector; without terms of sensors the report is the state.
+#[inline(always)]
+fn along<P: Plain>(senses: bool, report: &[[P; STATES]; STATES], channel: usize, value: impl Fn(usize) -> P) -> P {
+    if senses {
+        (0..STATES).fold(P::zero(), |sum, l| value(l).mul_add(report[channel][l], sum))
+    } else {
+        value(channel)
+    }
+}
+
+impl<'f, P: Plain> Filtering<'f, P> {
+    fn new(
+        directions: &'f Directions<'f>,
+        runs: &'f Together<'f>,
+        noise: &Noise,
+        wanted: &'f Wanted<'f>,
+        samples: usize,
+    ) -> Self {
+        let run = |lane: usize| runs[lane.min(runs.len() - 1)].1;
+        let dt = run(0).dt;
+        let input = |lane: usize, k: usize| -> &Inputs<f64> { &run(lane).inputs[k.min(run(lane).inputs.len() - 1)] };
+        let inputs: Vec<Inputs<P>> = (0..samples).map(|k| side_by_side(|lane| input(lane, k))).collect();
+        let values: Vec<Vec<f64>> = (0..P::WIDTH).map(|lane| directions.model.values_in(&run(lane).session)).collect();
+        let theta: Vec<P> = (0..values[0].len()).map(|i| P::gather(|lane| values[lane][i])).collect();
+        let prepared = directions.at(&theta, &inputs, dt);
+        let noise: Discrete<P> = Discrete::new(noise, dt).lift();
+        let state: [P; STATES] = std::array::from_fn(|j| P::gather(|lane| run(lane).initial[j]));
+        let mut mean = [P::zero(); Z];
+        mean[..STATES].copy_from_slice(&state);
+        let parameters = directions.len();
+        let width = parameters + wanted.basis.map_or(0, |(n, _)| n);
+        let calm = [P::zero(); 3];
+        let (slope, local) = slope_at(&prepared.dynamics, &state, &calm, &prepared.series[0]);
+        let mut rates = [vec![calm; width], vec![calm; width]];
+        let mut room = Vec::new();
+        if parameters > 0 && !wanted.exact {
+            prepared.rates(&local, 0, &state, &calm, &mut room, &mut rates[0]);
+        }
+        let pass = |(_, run): &(usize, &Run)| Pass {
+            log_likelihood: 0.0,
+            used: 0,
+            outliers: 0,
+            score: DVector::zeros(0),
+            information: DMatrix::zeros(0, 0),
+            innovations: Vec::with_capacity(run.measured.len()),
+            filtered: Vec::with_capacity(run.measured.len()),
+            force_sd: Vec::with_capacity(run.measured.len()),
+            tangent: wanted.tangent.then(Tangent::default),
+            gains: wanted.gains.then(Gains::default),
+        };
+        Self {
+            runs,
+            wanted,
+            directions,
+            prepared,
+            dt,
+            smooth: directions.integration == Integration { method: Method::Rk4, substeps: 1 } && !wanted.exact,
+            mean,
+            covariance: initial(&noise, directions.model),
+            noise,
+            slope,
+            slopes: vec![[P::zero(); Z]; width],
+            rates,
+            room,
+            score: vec![P::zero(); width],
+            information: Products::new(width),
+            log_likelihood: P::zero(),
+            used: P::zero(),
+            outliers: P::zero(),
+            passes: runs.iter().map(pass).collect(),
+        }
+    }
+
+    /// The instant of a sample.
+    fn instant(&self, k: usize) -> usize {
+        k * self.directions.integration.instants()
+    }
+
+    /// Those of the first entries of the mean that are the ship's state.
+    fn state(&self) -> [P; STATES] {
+        std::array::from_fn(|j| self.mean[j])
+    }
+
+    /// A value of the gains that are given, NaN where a run has none.
+    fn given(&self, frozen: &[Gains], of: impl Fn(&Gains) -> Option<f64>) -> P {
+        P::gather(|lane| self.runs.get(lane).and_then(|(run, _)| of(frozen.get(*run)?)).unwrap_or(f64::NAN))
+    }
+
+    /// Corrects mean and covariance by the measurements of a sample, channel after channel.
+    fn correct(&mut self, k: usize) -> Correction<P> {
+        let (zero, one) = (P::zero(), P::one());
+        let reference = self.state();
+        let (report, h) = self.prepared.report(&reference, self.instant(k));
+        let senses = self.directions.senses;
+        let mut out = Correction {
+            error: [zero; STATES],
+            inverse: [zero; STATES],
+            gain: [[zero; Z]; STATES],
+            report: h,
+            sensed: self.prepared.sensed(&reference, self.instant(k)),
+            some: [false; STATES],
+            all: [false; STATES],
+        };
+        let mut innovation = [P::from_f64(f64::NAN); STATES];
+        let mut variance = innovation;
+        for j in 0..STATES {
+            let measured = |lane: usize| self.runs.get(lane).and_then(|(_, run)| run.measured.get(k)?[j]);
+            let mut present = P::gather(|lane| f64::from(u8::from(measured(lane).is_some())));
+            if (0..P::WIDTH).all(|lane| present.in_lane(lane) == 0.0) {
+                continue;
+            }
+            // The state through the report, and this channel's coloured noise.
+            let moved = along(senses, &h, j, |l| self.mean[l] - reference[l]);
+            let predicted = report[j] + self.mean[9 + j] + moved;
+            let mut error = P::gather(|lane| measured(lane).unwrap_or(0.0)) - predicted;
+            if j == 2 {
+                error = trimtab_ad::smooth::wrap_angle(error);
+            }
+            let p = &self.covariance;
+            let ph: [P; Z] = std::array::from_fn(|i| p[i][9 + j] + along(senses, &h, j, |l| p[i][l]));
+            let mut s = self.noise.white[j] + ph[9 + j] + along(senses, &h, j, |l| ph[l]);
+            if let Some(frozen) = self.wanted.frozen {
+                s = self.given(frozen, |g| Some(g.variance.get(k)?[j]));
+                present *= P::gather(|lane| f64::from(u8::from(s.in_lane(lane).is_finite())));
+            }
+            s = P::select(zero.less(present), s, one);
+            let sigma = s.sqrt();
+            innovation[j] = P::select(zero.less(present), error / sigma, innovation[j]);
+            let gate = if self.wanted.frozen.is_none() { GATE } else { f64::INFINITY };
+            let outlier = P::select((sigma * gate).less(error.abs()), present, zero);
+            let used = present - outlier;
+            let square = P::select(zero.less(outlier), P::from_f64(GATE * GATE), error * error / s);
+            self.log_likelihood -= where_set(present, (square + s.ln() + TAU.ln()) * 0.5);
+            self.used += used;
+            self.outliers += outlier;
+            out.error[j] = where_set(used, error);
+            out.inverse[j] = where_set(used, one / s);
+            variance[j] = P::select(zero.less(used), s, variance[j]);
+            out.some[j] = true;
+            out.all[j] = (0..P::WIDTH).all(|lane| used.in_lane(lane) > 0.0);
+            self.apply(k, j, &ph, used, &mut out);
+        }
+        let offset = std::array::from_fn(|j| report[j] - reference[j]);
+        self.note(k, &innovation, &variance, &offset, &out);
+        out
+    }
+
+    /// Notes what the measurements of a sample brought: standardised innovations, their variances, and what the sensors report beside
+    /// the state.
+    fn note(
+        &mut self,
+        k: usize,
+        innovation: &[P; STATES],
+        variance: &[P; STATES],
+        offset: &[P; STATES],
+        correction: &Correction<P>,
+    ) {
+        for (lane, ((_, run), pass)) in self.runs.iter().zip(&mut self.passes).enumerate() {
+            if k >= run.measured.len() {
+                continue;
+            }
+            pass.innovations.push(innovation.map(|e| e.in_lane(lane)));
+            if let Some(t) = &mut pass.tangent {
+                t.offset.push(offset.map(|o| o.in_lane(lane)));
+            }
+            if let Some(g) = &mut pass.gains {
+                g.variance.push(variance.map(|s| s.in_lane(lane)));
+                g.gain.push(correction.gain.map(|gain| gain.map(|gain| gain.in_lane(lane))));
+            }
+        }
+    }
+
+    /// Applies the gain of one channel, from the covariance `ph` of its innovation with the filter state.
+    fn apply(&mut self, k: usize, j: usize, ph: &[P; Z], used: P, out: &mut Correction<P>) {
+        for i in 0..Z {
+            let gain = match self.wanted.frozen {
+                None => where_set(used, ph[i] * out.inverse[j]),
+                Some(frozen) => where_set(used, self.given(frozen, |g| Some(g.gain.get(k)?[j][i]))),
+            };
+            out.gain[j][i] = gain;
+            self.mean[i] += gain * out.error[j];
+            if self.wanted.frozen.is_none() {
+                for l in 0..=i {
+                    self.covariance[i][l] -= gain * ph[l];
+                    self.covariance[l][i] = self.covariance[i][l];
+                }
+            }
+        }
+    }
+
+    /// Carries the sensitivities through a correction, and adds score and information.
+    fn learn(&mut self, correction: &Correction<P>) {
+        if self.slopes.is_empty() {
+            return;
+        }
+        let Correction { error, inverse, gain, report, some, all, .. } = correction;
+        let mut sensed = Vec::new();
+        if !correction.sensed.is_empty() {
+            sensed.resize(self.slopes.len(), [P::zero(); STATES]);
+            correction.sensed.iter().for_each(|(c, report)| sensed[*c] = *report);
+        }
+        let root = inverse.map(|inverse| inverse.sqrt());
+        let senses = self.directions.senses;
+        for (c, slope) in self.slopes.iter_mut().enumerate() {
+            let mut d = *slope;
+            let mut rows = [P::zero(); STATES];
+            for j in (0..STATES).filter(|j| some[*j]) {
+                let mut row = d[9 + j] + along(senses, report, j, |l| d[l]);
+                if let Some(sensed) = sensed.get(c) {
+                    row += sensed[j];
+                }
+                if !all[j] {
+                    row = where_set(inverse[j], row);
+                }
+                self.score[c] = (error[j] * inverse[j]).mul_add(row, self.score[c]);
+                rows[j] = row * root[j];
+                for i in 0..Z {
+                    d[i] = (-gain[j][i]).mul_add(row, d[i]);
+                }
+            }
+            *slope = d;
+            self.information.set(c, &rows);
+        }
+        self.information.next_sample();
+    }
+
+    /// Notes the filtered state of a sample.
+    fn record(&mut self, k: usize) {
+        for (lane, ((_, run), pass)) in self.runs.iter().zip(&mut self.passes).enumerate() {
+            if k < run.measured.len() {
+                pass.filtered.push(self.mean.map(|z| z.in_lane(lane)));
+                let variance = |e: usize| self.covariance[6 + e][6 + e].in_lane(lane);
+                pass.force_sd.push(std::array::from_fn(|e| variance(e).max(0.0).sqrt()));
+            }
+        }
+    }
+
+    /// Predicts the next sample.
+    fn advance(&mut self, k: usize) {
+        let (state, push) = (self.state(), [self.mean[6], self.mean[7], self.mean[8]]);
+        let (from, integration) = (self.instant(k), self.directions.integration);
+        let force = Force { x: push[0], y: push[1], n: push[2] };
+        let Prepared { dynamics, series, .. } = &self.prepared;
+        let image = step(dynamics, integration, self.dt, &state, &series[from..], &force);
+        let jacobians = self.carry_slopes(k, &state, &push, &image);
+        let (a, gamma) = &jacobians;
+        for (lane, ((_, run), pass)) in self.runs.iter().zip(&mut self.passes).enumerate() {
+            let (true, Some(t)) = (k + 1 < run.measured.len(), &mut pass.tangent) else { continue };
+            let pushed = |i: usize| gamma[i][0] * push[0] + gamma[i][1] * push[1] + gamma[i][2] * push[2];
+            t.state.push(state.map(|x| x.in_lane(lane)));
+            t.image.push(std::array::from_fn(|i| (image[i] - pushed(i)).in_lane(lane)));
+            t.a.push(a.map(|row| row.map(|x| x.in_lane(lane))));
+            t.gamma.push(gamma.map(|row| row.map(|x| x.in_lane(lane))));
+        }
+        self.mean[..STATES].copy_from_slice(&image);
+        (0..3).for_each(|i| self.mean[6 + i] *= self.noise.fade);
+        (0..STATES).for_each(|i| self.mean[9 + i] *= self.noise.rho[i]);
+        if self.wanted.frozen.is_none() {
+            let boost = P::gather(|lane| self.runs.get(lane).map_or(1.0, |(_, run)| boost(run, k)));
+            predict(&mut self.covariance, a, gamma, &self.noise, boost);
+        }
+    }
+
+    /// Carries the sensitivities over a step to `image`, and gives its Jacobians.
+    fn carry_slopes(&mut self, k: usize, state: &[P; STATES], push: &[P; 3], image: &[P; STATES]) -> Jacobians<P> {
+        let (from, later) = (self.instant(k), self.instant(k + 1));
+        let (width, parameters) = (self.slopes.len(), self.directions.len());
+        let dynamics = &self.prepared.dynamics;
+        if self.wanted.frozen.is_some() && width == 0 && !self.wanted.tangent {
+            return none();
+        }
+        let faded = push.map(|w| w * self.noise.fade);
+        let mut through: Vec<StateSlope<P>> = Vec::new();
+        let mut end = None;
+        let jacobians = if self.smooth {
+            let (slope, local) = slope_at(dynamics, image, &faded, &self.prepared.series[later]);
+            end = Some(local);
+            let start = std::mem::replace(&mut self.slope, slope);
+            carry(&start, &self.slope, self.dt)
+        } else {
+            through.resize(if self.wanted.exact { parameters } else { 0 }, [P::zero(); STATES]);
+            exact(&self.prepared, self.directions.integration, self.dt, from, state, push, &mut through)
+        };
+        if width == 0 {
+            return jacobians;
+        }
+        if through.is_empty() && parameters > 0 {
+            // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any predictable
+            // sensitivity leaves the score unbiased, so that this costs no more than a little power.
+            let local = end.unwrap_or_else(|| slope_at(dynamics, image, &faded, &self.prepared.series[later]).1);
+            self.prepared.rates(&local, later, image, &faded, &mut self.room, &mut self.rates[1]);
+        }
+        let forces = self.forces(k, state);
+        let half = P::from_f64(0.5 * self.dt);
+        let (a, gamma) = &jacobians;
+        for (c, slope) in self.slopes.iter_mut().enumerate() {
+            let mut d = *slope;
+            let mut next = [P::zero(); STATES];
+            if let Some(force) = c.checked_sub(parameters).map(|c| forces[c]) {
+                (0..3).for_each(|l| d[6 + l] += force[l]);
+            } else if let Some(own) = through.get(c) {
+                next = *own;
+            } else {
+                (0..3).for_each(|l| d[3 + l] = half.mul_add(self.rates[0][c][l], d[3 + l]));
+                (0..3).for_each(|l| next[3 + l] = half * self.rates[1][c][l]);
+            }
+            for i in 0..STATES {
+                let mut sum = if i < 2 { next[i] + d[i] } else { next[i] };
+                for l in 2..STATES {
+                    sum = a[i][l].mul_add(d[l], sum);
+                }
+                for l in 0..3 {
+                    sum = gamma[i][l].mul_add(d[6 + l], sum);
+                }
+                next[i] = sum;
+            }
+            for l in 6..Z {
+                let fade = if l < 9 { self.noise.fade } else { self.noise.rho[l - 9] };
+                d[l] = slope[l] * fade;
+            }
+            d[..STATES].copy_from_slice(&next);
+            *slope = d;
+        }
+        self.rates.swap(0, 1);
+        jacobians
+    }
+
+    /// The forces of the basis at a sample.
+    fn forces(&self, k: usize, state: &[P; STATES]) -> Vec<[P; 3]> {
+        let Some((count, basis)) = self.wanted.basis else { return Vec::new() };
+        let now = &self.prepared.series[self.instant(k)];
+        let mut lanes = vec![Vec::new(); P::WIDTH];
+        for (lane, (forces, (index, run))) in lanes.iter_mut().zip(self.runs).enumerate() {
+            if k >= run.measured.len() {
+                continue;
+            }
+            let state = State::from_array(state.map(|x| x.in_lane(lane)));
+            basis((*index, k), &state, &now.map(|x| x.in_lane(lane)), forces);
+        }
+        let of = |c: usize, l: usize, lane: usize| lanes[lane].get(c).map_or(0.0, |f: &[f64; 3]| f[l]);
+        (0..count).map(|c| std::array::from_fn(|l| P::gather(|lane| of(c, l, lane)))).collect()
+    }
+
+    /// The passes when the last sample is in.
+    fn finish(mut self) -> Vec<Pass> {
+        self.information.finish();
+        let width = self.slopes.len();
+        for (lane, pass) in self.passes.iter_mut().enumerate() {
+            pass.log_likelihood = self.log_likelihood.in_lane(lane);
+            pass.used = self.used.in_lane(lane) as usize;
+            pass.outliers = self.outliers.in_lane(lane) as usize;
+            pass.score = DVector::from_iterator(width, self.score.iter().map(|g| g.in_lane(lane)));
+            pass.information =
+                DMatrix::from_fn(width, width, |i, j| self.information.get(i.max(j), i.min(j)).in_lane(lane));
+        }
+        self.passes
+    }
+}
