@@ -333,7 +333,7 @@ mod tests {
         let mut runs = circles();
         runs[1].measured[0][1] = runs[1].measured[0][1].map(|y| y + 2.0);
         runs[6].measured[0][2] = runs[6].measured[0][2].map(|psi| psi - 0.1);
-        // From the first sample on this ship slows down as fast as a crash stop would have her.
+        // From the first sample on this ship slows down as fast as in a crash stop.
         for (k, m) in runs[4].measured.iter_mut().enumerate() {
             let t = 0.5 * k as f64;
             m[0] = m[0].map(|x| x - 0.025 * t * t);

@@ -17,6 +17,7 @@
 
 use super::covariance::Covariances;
 use super::task::Task;
+use crate::numerals::sig;
 use crate::ranks::{ExactSums, Ranks};
 use crate::recording::Run;
 use crate::state::STATES;
@@ -129,8 +130,9 @@ impl ResidualStatistics {
             value,
             limit: MODEL_ERROR_LIMIT,
             sentence: format!(
-                "the residuals have {value:.0} times the variance of the sensors' noise, so that the estimates make up for physics \
-                 that the model lacks (see `trimtab diagnose`)"
+                "the residuals have {} times the variance of the sensors' noise, so that the estimates make up for physics \
+                 that the model lacks (see `trimtab diagnose`)",
+                sig(value, 2)
             ),
         });
         [model_error, self.too_long(), self.clustered(covariances, parameters)].into_iter().flatten().collect()
