@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let windows = loaded.windows()?.windows;
     let (train, held_out): (Vec<Run>, Vec<Run>) = windows.into_iter().partition(|w| w.split == Split::Train);
     if train.is_empty() {
-        loaded.windows_of(Split::Train)?;
+        return Err(loaded.nothing(Split::Train));
     }
     let bar = progress("diagnosing");
     let diagnosis =

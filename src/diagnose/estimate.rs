@@ -131,8 +131,8 @@ pub fn passes(
 ) -> Vec<Pass> {
     let filter = Filter::new(model, integration, columns);
     let mut out = Vec::with_capacity(runs.len());
-    let kept = |_: usize, _: &Run, pass: Pass| Pass { filtered: Vec::new(), force_sd: Vec::new(), ..pass };
-    filter.each(runs, noise, Wanted { tangent, ..Wanted::default() }, kept, |_, pass| out.push(pass));
+    let kept = |_: &Run, pass: Pass| Pass { filtered: Vec::new(), force_sd: Vec::new(), ..pass };
+    filter.each(runs, noise, Wanted { tangent, ..Wanted::default() }, kept, |pass| out.push(pass));
     out
 }
 
@@ -175,11 +175,11 @@ impl Sums {
     /// Passes over all runs; `sessions` as for [`evidence`]. Sums by session are kept where `apart`.
     pub fn of(filter: &Filter, runs: &[Run], noise: &Noise, sessions: &[Option<Vec<String>>], apart: bool) -> Self {
         let mut out = Self { evidence: Evidence::default(), log_likelihood: 0.0, used: 0, outliers: 0 };
-        let work = |_: usize, run: &Run, pass: Pass| {
+        let work = |run: &Run, pass: Pass| {
             let Pass { score, information, log_likelihood, used, outliers, .. } = pass;
             (run_evidence(run, score, information, sessions), log_likelihood, used, outliers)
         };
-        filter.each(runs, noise, Wanted::default(), work, |_, (one, log_likelihood, used, outliers)| {
+        filter.each(runs, noise, Wanted::default(), work, |(one, log_likelihood, used, outliers)| {
             out.evidence.add(one, apart);
             out.log_likelihood += log_likelihood;
             out.used += used;
@@ -199,8 +199,8 @@ fn tangents(model: &Model, integration: Integration, runs: &[&Run], noise: &Nois
     let filter = Filter::new(model, integration, &[]);
     let wanted = Wanted { tangent: true, ..Wanted::default() };
     let mut out = Vec::with_capacity(runs.len());
-    let tangent = |_: usize, _: &Run, pass: Pass| pass.tangent.unwrap_or_default();
-    filter.each(runs, noise, wanted, tangent, |_, tangent| out.push(tangent));
+    let tangent = |_: &Run, pass: Pass| pass.tangent.unwrap_or_default();
+    filter.each(runs, noise, wanted, tangent, |tangent| out.push(tangent));
     out
 }
 

@@ -38,7 +38,7 @@ impl<'a> Filter<'a> {
     /// A pass over each run, in their order; for what does not need all passes at once there is [`Self::each`].
     pub fn passes<R: Borrow<Run> + Sync>(&self, runs: &[R], noise: &Noise, wanted: Wanted) -> Vec<Pass> {
         let mut passes = Vec::with_capacity(runs.len());
-        self.each(runs, noise, wanted, |_, _, pass| pass, |_, pass| passes.push(pass));
+        self.each(runs, noise, wanted, |_, pass| pass, |pass| passes.push(pass));
         passes
     }
 
@@ -50,19 +50,19 @@ impl<'a> Filter<'a> {
         runs: &[R],
         noise: &Noise,
         wanted: Wanted,
-        work: impl Fn(usize, &Run, Pass) -> T + Sync,
-        mut take: impl FnMut(usize, T),
+        work: impl Fn(&Run, Pass) -> T + Sync,
+        mut take: impl FnMut(T),
     ) {
         let indexed: Vec<(usize, &Run)> = runs.iter().map(Borrow::borrow).enumerate().collect();
         let alike = indexed.chunk_by(|(_, a), (_, b)| a.dt == b.dt);
         let blocks: Vec<&[(usize, &Run)]> = alike.flat_map(|alike| alike.chunks(Lanes::WIDTH)).collect();
-        let pass = |block: &&[(usize, &Run)]| -> Vec<(usize, T)> {
+        let pass = |block: &&[(usize, &Run)]| -> Vec<T> {
             let passes = side_by_side::passes::<Lanes>(&self.directions, block, noise, &wanted);
-            block.iter().zip(passes).map(|((i, run), pass)| (*i, work(*i, run, pass))).collect()
+            block.iter().zip(passes).map(|((_, run), pass)| work(run, pass)).collect()
         };
         for some in blocks.chunks(TOGETHER.div_ceil(Lanes::WIDTH) * rayon::current_num_threads()) {
-            let done: Vec<Vec<(usize, T)>> = some.par_iter().map(pass).collect();
-            done.into_iter().flatten().for_each(|(i, one)| take(i, one));
+            let done: Vec<Vec<T>> = some.par_iter().map(pass).collect();
+            done.into_iter().flatten().for_each(&mut take);
         }
     }
 }

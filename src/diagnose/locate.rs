@@ -130,7 +130,7 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
     let wanted = Wanted { basis: Some((layout.count(), &basis)), ..Wanted::default() };
     let (step, widened_step) = (base.step(), widened.step());
     let blocks_in = |r: &Run| r.measured.len().div_ceil(layout.length);
-    let of_run = |_: usize, run: &Run, pass: Pass| {
+    let of_run = |run: &Run, pass: Pass| {
         let Pass { score, information, filtered, .. } = pass;
         let one = run_evidence(run, score, information, &restrictions);
         RunForces {
@@ -143,7 +143,7 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
     };
     let (mut evidence, mut blocks) = (Evidence::default(), Vec::with_capacity(runs.len()));
     let (mut forces, mut samples) = (Forces::default(), Visits::default());
-    filter.each(runs, &found.noise, wanted, of_run, |_, one| {
+    filter.each(runs, &found.noise, wanted, of_run, |one| {
         evidence.add(one.evidence, false);
         blocks.push(one.blocks);
         forces.add(&one.excess, &one.squares);

@@ -46,14 +46,14 @@ impl Refit<'_> {
         let restrictions = if columns.is_empty() { Vec::new() } else { restrictions(&self.found.free) };
         let (mut evidence, mut value) = (Evidence::default(), 0.0);
         let wanted = Wanted { frozen: Some(self.gains), exact: true, ..Wanted::default() };
-        let work = |_: usize, run: &Run, pass: Pass| {
+        let work = |run: &Run, pass: Pass| {
             let Pass { score, information, innovations, filtered, .. } = pass;
             // A model that left the numbers has no innovations at all, and would look perfect.
             let finite = filtered.iter().flatten().all(|z| z.is_finite());
             (run_evidence(run, score, information, &restrictions), innovations, finite)
         };
         let mut finite = true;
-        filter.each(self.runs, &self.found.noise, wanted, work, |_, (one, innovations, is_finite)| {
+        filter.each(self.runs, &self.found.noise, wanted, work, |(one, innovations, is_finite)| {
             evidence.add(one, false);
             for e in innovations.iter().flatten().filter(|e| !e.is_nan()) {
                 value += 0.5 * e * e;

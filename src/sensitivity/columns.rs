@@ -50,7 +50,7 @@ fn masses<P: Plain>(dynamics: &Dynamics<P>, flow: &Flow<P>) -> [MassSlope<P>; DA
 }
 
 /// Columns grouped by what their parameters can change.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Columns {
     /// All of them, in the order in which results are given.
     all: Vec<Column>,
@@ -73,16 +73,7 @@ pub struct Columns {
 impl Columns {
     /// Groups the columns for a model.
     pub fn new(model: &Model, columns: &[Column]) -> Self {
-        let mut out = Self {
-            all: columns.to_vec(),
-            base: Default::default(),
-            flow: Vec::new(),
-            inertia: Vec::new(),
-            linear: Vec::new(),
-            force: Vec::new(),
-            anything: Vec::new(),
-            sensors: Vec::new(),
-        };
+        let mut out = Self { all: columns.to_vec(), ..Self::default() };
         let mut anything = Vec::new();
         for (place, term) in model.placed().iter().enumerate() {
             let inside = |p: usize| (term.offset..term.offset + term.len).contains(&p);
@@ -113,16 +104,8 @@ impl Columns {
     #[cfg(test)]
     pub(super) fn through_everything(columns: &[Column]) -> Self {
         let all: Vec<usize> = (0..columns.len()).collect();
-        Self {
-            all: columns.to_vec(),
-            base: Default::default(),
-            flow: Vec::new(),
-            inertia: Vec::new(),
-            linear: Vec::new(),
-            force: Vec::new(),
-            anything: all.chunks(FEW).map(<[usize]>::to_vec).collect(),
-            sensors: Vec::new(),
-        }
+        let anything = all.chunks(FEW).map(<[usize]>::to_vec).collect();
+        Self { all: columns.to_vec(), anything, ..Self::default() }
     }
 
     /// What stays as it is over a simulation.
