@@ -16,12 +16,12 @@ use trimtab_experiments::injected::plan::{Planned, SEED, ci_slice, plan, sample}
 use trimtab_experiments::injected::results::{Results, in_order};
 use trimtab_experiments::injected::row::Row;
 use trimtab_experiments::injected::runner::Runner;
-use trimtab_experiments::injected::summary::{by_strength, summary, table};
+use trimtab_experiments::injected::summary::{by_strength, scored, summary, table};
 
 /// Injects known effects into recordings of real ships, diagnoses them, and compares the answers with the truth.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the results (`cases.csv`, `summary.csv`, `strengths.csv`, the figure) and for each case while it runs.
+    /// Folder for the results (`cases.csv`, `scores.csv`, `summary.csv`, `strengths.csv`, the figure) and for each case while it runs.
     #[arg(long)]
     out: PathBuf,
     /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json`.
@@ -155,6 +155,12 @@ fn summarise(out: &Path, rows: &[Row]) -> Result<(), InjectedError> {
     println!("{aims}\n{strengths}");
     write(&out.join("summary.csv"), &aims)?;
     write(&out.join("strengths.csv"), &strengths)?;
+    let path = out.join("scores.csv");
+    let mut writer = csv::Writer::from_path(&path).map_err(|e| InjectedError::content(&path, &e))?;
+    for (_, score) in scored(rows) {
+        writer.serialize(score).map_err(|e| InjectedError::content(&path, &e))?;
+    }
+    writer.flush().map_err(|source| InjectedError::file(&path, source))?;
     let stem = out.join("injected");
     figure(rows).save(&stem).map_err(|e| InjectedError::content(&stem, &e))?;
     Ok(())

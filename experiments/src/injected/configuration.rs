@@ -111,15 +111,16 @@ impl Configuration {
     /// [`InjectedError::Case`] if the committed study is not as expected.
     pub fn draw(set: Set, seed: u64) -> Result<Self, InjectedError> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let (facts, study, listed) = (set.facts(), set.study()?, set.runs()?);
-        let window = study.get("window").and_then(toml::Value::as_float).unwrap_or(set.time() * 5.0);
+        let (facts, listed) = (set.facts(), set.runs()?);
+        let window = set.window()?;
         // Both sides of the split, so that it can be swapped.
         let mut runs = Vec::new();
         for test in [false, true] {
             let mut side: Vec<usize> = (0..listed.len()).filter(|i| listed[*i].test == test).collect();
             side.shuffle(&mut rng);
             let most = side.len().min(if test { 4 } else { 8 });
-            let least = most.min(if test { 2 } else { 3 });
+            // A diagnosis of fewer than four runs says so and nothing else.
+            let least = most.min(4);
             side.truncate(rng.random_range(least..=most));
             runs.extend(side);
         }
@@ -128,15 +129,17 @@ impl Configuration {
         let recorded = if set == Set::Esso { Sessions::Recorded } else { Sessions::Two };
         let sessions = one_of(&mut rng, &[Sessions::None, Sessions::One, Sessions::Two, recorded], Sessions::None);
         let wind = one_of(&mut rng, &[Wind::Modelled, Wind::Modelled, Wind::Withheld], Wind::Modelled);
+        let unseen = [Unseen::Studied, Unseen::Studied, Unseen::Swapped, Unseen::Swapped, Unseen::None];
+        let unseen = one_of(&mut rng, &unseen, Unseen::Studied);
+        // MARIN's two long turning circles alone are too few unless they are cut in windows.
+        let cut = [Some(window), Some(window), Some(window), Some(0.5 * window)];
+        let lengths = [None, None, Some(window), Some(0.5 * window)];
+        let few = set == Set::Marin && unseen == Unseen::Swapped;
         Ok(Self {
             set,
             runs,
-            unseen: one_of(
-                &mut rng,
-                &[Unseen::Studied, Unseen::Studied, Unseen::Swapped, Unseen::Swapped, Unseen::None],
-                Unseen::Studied,
-            ),
-            window: one_of(&mut rng, &[None, None, Some(window), Some(2.0 * window)], None),
+            unseen,
+            window: one_of(&mut rng, if few { &cut } else { &lengths }, None),
             step: one_of(&mut rng, facts.steps, 1.0),
             span: one_of(&mut rng, &[[0.0, 1.0], [0.0, 1.0], [0.0, 0.7], [0.2, 1.0]], [0.0, 1.0]),
             turned,
@@ -312,7 +315,7 @@ mod tests {
             let listed = set.runs().unwrap();
             for c in &all {
                 let unseen = |test: bool| c.runs.iter().filter(|r| listed[**r].test == test).count();
-                assert!(unseen(false) >= 3 && unseen(true) >= 2, "{}", c.words());
+                assert!(unseen(false) >= 4 && unseen(true) >= if set == Set::Marin { 2 } else { 4 }, "{}", c.words());
                 assert!(c.wind != Wind::Modelled || !set.facts().calm);
             }
         }

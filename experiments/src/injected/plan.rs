@@ -206,7 +206,7 @@ impl Planner {
         for what in SAME {
             for index in 0..10 {
                 let base = self.configuration(set, index)?;
-                if let Some(changed) = changed(&base, what) {
+                if let Some(changed) = changed(&base, what)? {
                     let case = self.push(format!("{}/same/{what}/{}", set.name(), index + 1), Kind::Same, changed);
                     case.partner = Some(Self::null(set, index));
                 }
@@ -228,7 +228,10 @@ impl Planner {
         for i in 1..=count {
             let key = format!("{}/{}/{}/x{strength}/{i}", set.name(), kind.name(), names.join("+"));
             let partial = kind == Kind::Some;
-            let (configuration, partner) = self.shared(set, &key, |c| !partial || several_sessions(c))?;
+            // Between drop-outs a recording may have no stretch as long as a window.
+            let parted = names.contains(&"drop_out");
+            let holds = |c: &Configuration| (!partial || several_sessions(c)) && (!parted || c.window.is_none());
+            let (configuration, partner) = self.shared(set, &key, holds)?;
             let case = self.push(key, kind, configuration);
             let mut rng = ChaCha8Rng::seed_from_u64(case.seed);
             case.injections = effects.iter().map(|e| e.at(set, strength, &mut rng)).collect();
@@ -318,7 +321,7 @@ impl Planner {
 }
 
 /// A configuration with one change that changes nothing physical; `None` where the change is none.
-fn changed(base: &Configuration, what: &str) -> Option<Configuration> {
+fn changed(base: &Configuration, what: &str) -> Result<Option<Configuration>, InjectedError> {
     let mut c = base.clone();
     match what {
         // One wind blows over a session: recordings that are turned apart share none.
@@ -335,12 +338,15 @@ fn changed(base: &Configuration, what: &str) -> Option<Configuration> {
         "scaled" if !c.freed => c.scale = if c.set == Set::Marin { 0.25 } else { 4.0 },
         "threads" => c.threads = 2,
         "step" => c.step *= if c.step > c.set.facts().steps[1] { 0.5 } else { 2.0 },
-        "window" => c.window = Some(c.window.map_or(8.0 * c.set.time(), |w| 0.5 * w)),
+        "window" => {
+            let studied = c.set.window()?;
+            c.window = Some(if c.window == Some(studied) { 0.5 * studied } else { studied });
+        }
         "start" => c.start = if c.start == 1.0 { 0.5 } else { 1.0 },
         "span" if c.span == [0.0, 1.0] => c.span = [0.0, 0.9],
-        _ => return None,
+        _ => return Ok(None),
     }
-    Some(c)
+    Ok(Some(c))
 }
 
 /// Every case, in a fixed order: over 2000.
@@ -412,7 +418,7 @@ pub fn ci_slice(plan: &[Planned], campaign: u64) -> Vec<Planned> {
 /// Whether a diagnosis takes little time.
 fn is_short(c: &Configuration) -> bool {
     let steps = c.set.facts().steps;
-    c.runs.len() <= 7 && !c.freed && c.step >= steps[1]
+    c.runs.len() <= 9 && !c.freed && c.step >= steps[1]
 }
 
 #[cfg(test)]

@@ -21,8 +21,30 @@ pub struct Said {
     pub stability: Option<Stability>,
     /// The audit.
     pub admission: Admission,
+    /// The audit of the files.
+    pub recordings: Recordings,
     /// Every mechanism that was tested.
     pub ranking: Vec<Ranked>,
+}
+
+/// The audit of the files of the recordings.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default)]
+pub struct Recordings {
+    /// Its doubts.
+    pub doubts: Vec<Doubt>,
+}
+
+/// One doubt.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default)]
+pub struct Doubt {
+    /// `warning` or `error`; an error stops the diagnosis.
+    pub severity: String,
+    /// Its kind.
+    pub fault: String,
+    /// Whether the user accepts it.
+    pub accepted: bool,
 }
 
 /// One finding.
@@ -138,8 +160,9 @@ impl Said {
 
     /// Kinds of the issues that stop the diagnosis.
     pub fn faults(&self) -> Vec<&str> {
-        let blocking = self.admission.issues.iter().filter(|i| i.blocking);
-        let mut kinds: Vec<&str> = blocking.map(|i| i.mechanism.as_str()).collect();
+        let blocking = self.admission.issues.iter().filter(|i| i.blocking).map(|i| i.mechanism.as_str());
+        let errors = self.recordings.doubts.iter().filter(|d| d.severity == "error" && !d.accepted);
+        let mut kinds: Vec<&str> = blocking.chain(errors.map(|d| d.fault.as_str())).collect();
         kinds.sort_unstable();
         kinds.dedup();
         kinds
@@ -172,10 +195,11 @@ mod tests {
         let new = r#"{"verdict": "named", "findings": [{"mechanism": "current", "grade": "confirmed",
             "held_out": {"recordings": 3, "log_likelihood_ci95": [2.0, 9.0], "improvement_ci95": [0.1, 0.3]}}],
             "withdrawn": [{"mechanism": "tide", "grade": "refuted", "reason": "worse"}], "stability": {"same": 5, "of": 6},
-            "admission": {"issues": [{"mechanism": "sign_error", "blocking": true}, {"mechanism": "held"}]}}"#;
+            "admission": {"issues": [{"mechanism": "sign_error", "blocking": true}, {"mechanism": "held"}]},
+            "recordings": {"doubts": [{"severity": "error", "fault": "unit_error"}, {"severity": "warning", "fault": "held"}]}}"#;
         let said = Said::read(new).unwrap();
         assert_eq!((said.findings[0].grade.as_str(), said.withdrawn[0].grade.as_str()), ("confirmed", "refuted"));
-        assert_eq!((said.stability.unwrap().same, said.faults()), (5, vec!["sign_error"]));
+        assert_eq!((said.stability.unwrap().same, said.faults()), (5, vec!["sign_error", "unit_error"]));
         assert!(Said::read("{}").is_err() && Said::read("error").is_err());
     }
 }

@@ -142,6 +142,14 @@ impl Set {
         facts.length / facts.speed
     }
 
+    /// Length of the windows of the committed study \[s\].
+    ///
+    /// # Errors
+    /// [`InjectedError::Case`] if the study is no TOML.
+    pub fn window(self) -> Result<f64, InjectedError> {
+        Ok(self.study()?.get("window").and_then(toml::Value::as_float).unwrap_or(5.0 * self.time()))
+    }
+
     /// The committed study as a table.
     ///
     /// # Errors
