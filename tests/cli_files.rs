@@ -223,6 +223,70 @@ fn an_answer_is_printed_though_its_files_cannot_be_written() {
     assert!(!study.path("results/simulations.csv").exists());
 }
 
+/// Under a limit on the size of files, as on a full disk, each write fails.
+#[cfg(unix)]
+#[test]
+fn an_answer_is_printed_though_the_disk_is_full() {
+    let study = Study::new();
+    let script = format!("trap '' XFSZ; ulimit -f 1; exec {TRIMTAB} simulate study.toml --out results");
+    let limited = |more: &str| {
+        let script = format!("{script}{more}");
+        Command::new("sh").args(["-c", &script]).current_dir(study.folder.path()).output().unwrap()
+    };
+    // Through pipes, which have no size.
+    let output = limited("");
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+    contains_all(&text(&output.stderr), &["results/", "cannot write"]);
+    let out = text(&output.stdout);
+    assert!(out.contains("ship_a_001") && out.contains("Validity: ") && !out.contains("Written to"), "{out}");
+    let value: Value = serde_json::from_slice(&limited(" --json").stdout).unwrap();
+    assert_eq!(at(&value, "result.runs").as_array().unwrap().len(), 8);
+    assert!(files(&study.path("results")).is_empty(), "{:?}", files(&study.path("results")).keys());
+    study.does(&["simulate", "study.toml", "--out", "results"]);
+    whole(&study.path("results"));
+}
+
+#[test]
+fn a_fit_from_many_starts_that_was_killed_goes_on_with_the_starts_that_are_left() {
+    let study = Study::new();
+    study.edit("study.toml", "[fit]\n", "[fit]\nintegration = { method = \"rk4\", substeps = 40 }\n");
+    let command = ["fit", "study.toml", "--starts", "5", "--out"];
+    study.does(&[&command[..], &["expected"]].concat());
+    let expected = files(&study.path("expected"));
+    let log = study.path("results/.trimtab-starts");
+    let lines = || std::fs::read_to_string(&log).map_or(0, |text| text.lines().count());
+    let mut child = Command::new(TRIMTAB)
+        .args([&command[..], &["results"]].concat())
+        .current_dir(study.folder.path())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    while lines() < 3 && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    // Key and two starts at least; a mark in the second shows that it is not fitted again.
+    let told = std::fs::read_to_string(&log).unwrap();
+    let second = told.lines().nth(2).unwrap();
+    assert!(second.starts_with("[1,"), "{second}");
+    let (before, after) = second.split_once("\"ended\":\"").unwrap();
+    let marked = format!("{before}\"ended\":\"from the log: {after}");
+    std::fs::write(&log, told.replace(second, &marked)).unwrap();
+    study.does(&[&command[..], &["results"]].concat());
+    assert!(!log.exists());
+    for (name, bytes) in files(&study.path("results")).iter().filter(|(n, _)| *n != TIMING && *n != MANIFEST) {
+        let unmarked = text_or(bytes).map_or_else(|| bytes.clone(), |t| t.replace("from the log: ", "").into_bytes());
+        assert!(expected.get(name) == Some(&unmarked), "{name} differs");
+    }
+    let starts = std::fs::read_to_string(study.path("results/starts.csv")).unwrap();
+    assert_eq!(starts.matches("from the log: ").count(), 1, "{starts}");
+}
+
+fn text_or(bytes: &[u8]) -> Option<String> {
+    String::from_utf8(bytes.to_vec()).ok()
+}
+
 /// `/dev/full` takes nothing, as a full disk does.
 #[cfg(target_os = "linux")]
 #[test]

@@ -158,7 +158,7 @@ fn config() -> ProptestConfig {
     let default = ProptestConfig { failure_persistence: None, max_shrink_iters: 2000, ..ProptestConfig::default() };
     let asked = |name: &str| std::env::var_os(name).is_some();
     ProptestConfig {
-        cases: if asked("PROPTEST_CASES") { default.cases } else { 1500 },
+        cases: if asked("PROPTEST_CASES") { default.cases } else { 600 },
         rng_seed: if asked("PROPTEST_RNG_SEED") { default.rng_seed } else { RngSeed::Fixed(17) },
         ..default
     }

@@ -81,7 +81,15 @@ pub fn run() -> ExitCode {
         }
         Build::TooOld => tell(&format!("warning: {TOO_OLD}")),
     }
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(wrong) if wrong.use_stderr() => {
+            tell(wrong.render().to_string().trim_end());
+            return ExitCode::from(2);
+        }
+        // Help, or the version.
+        Err(asked) => asked.exit(),
+    };
     let ranks = Ranks::join();
     let outcome = execute(&cli, &ranks);
     if let (Err(error), true) = (&outcome, ranks.size() > 1) {

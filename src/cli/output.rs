@@ -181,7 +181,10 @@ impl Output {
             return Written { files: Err(failure) };
         }
         let path = folder.path().to_owned();
-        let origin = Origin { arguments: arguments(std::env::args().skip(1)), settings: self.settings };
+        let origin = Origin {
+            arguments: arguments(std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned())),
+            settings: self.settings,
+        };
         let files = folder.complete(origin).map(|files| Some((path, files))).map_err(CliError::from);
         if files.is_ok() {
             self.logs.into_iter().for_each(Log::remove);

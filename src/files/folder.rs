@@ -196,7 +196,9 @@ impl ResultFolder {
     /// Notes the files that the command reads, with their digests; one that cannot be read is noted without, since the command
     /// has more to say of it.
     pub fn reads(&mut self, files: &[PathBuf]) {
-        let seen = |path: &PathBuf| Seen { path: path.clone(), stamp: stamp(path), sha256: sha256_of(path).ok() };
+        // A pipe can be read once only, by the command.
+        let digest = |path: &PathBuf| path.is_file().then(|| sha256_of(path).ok()).flatten();
+        let seen = |path: &PathBuf| Seen { path: path.clone(), stamp: stamp(path), sha256: digest(path) };
         self.inputs.par_extend(files.par_iter().map(seen));
     }
 
