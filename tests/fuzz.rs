@@ -168,7 +168,7 @@ fn config() -> ProptestConfig {
 fn example(name: &str) -> Vec<u8> {
     let files = trimtab::demo::files();
     let text = &files.iter().find(|(n, _)| n == name).unwrap().1;
-    text.split_inclusive('\n').take(120).collect::<String>().into_bytes()
+    text.split_inclusive('\n').take(60).collect::<String>().into_bytes()
 }
 
 static SHIP: LazyLock<Ship> = LazyLock::new(|| ship(&example("ship.toml")).unwrap());

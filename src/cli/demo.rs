@@ -59,6 +59,9 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let written = write_study(&args.out)?;
     let loaded = Loaded::new(&StudyArgs { study: study.clone(), model: None })?;
     output.reads(&loaded, true);
+    output.reads_files(&[evaluate::baseline_path(&loaded, None)?]);
+    output.settings("fit", &loaded.fit_settings()?)?;
+    output.settings("evaluate", &loaded.evaluation_settings()?)?;
     let train = loaded.windows_of(Split::Train)?;
     let test = loaded.windows_of(Split::Test)?;
     let fit = fit::fit_windows(Ranks::one(), &loaded, &loaded.model, Runs::from(&train), None)?;

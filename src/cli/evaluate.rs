@@ -133,7 +133,8 @@ pub fn baseline(loaded: &Loaded, given: Option<&PathBuf>) -> Result<Model, CliEr
     loaded.other_model(&baseline_path(loaded, given)?)
 }
 
-fn baseline_path(loaded: &Loaded, given: Option<&PathBuf>) -> Result<PathBuf, CliError> {
+/// The file of the baseline.
+pub fn baseline_path(loaded: &Loaded, given: Option<&PathBuf>) -> Result<PathBuf, CliError> {
     let folder = loaded.study.path.parent().map(PathBuf::from).unwrap_or_default();
     let listed = loaded.evaluation_settings()?.baseline.map(|b| folder.join(b));
     Ok(given.cloned().or(listed).unwrap_or_else(|| loaded.study.model.clone()))

@@ -51,7 +51,7 @@ fn expected(command: &str) -> &'static [&'static str] {
         "maneuver zigzag" => &["maneuver_zigzag.json", "zigzag.png", "zigzag.csv", "zigzag_measures.csv"],
         "maneuver stopping" => &["maneuver_stopping.json", "stopping.png", "stopping.csv", "stopping_measures.csv"],
         "terms" => &["terms.json", "parameters.csv"],
-        "demo" => &["demo.json", "fitted.toml", "fit.txt", "evaluate.json", "tracks.png", "curves.png"],
+        "demo" => &["demo.json", "fitted.toml", "fit.txt", "parameters.csv", "summary.csv", "tracks.png", "curves.png"],
         _ => &[],
     }
 }
