@@ -6,9 +6,8 @@ use super::audited::{AcceptArgs, examined};
 use super::error::CliError;
 use super::fit::model_text;
 use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, print};
+use super::output::{Output, OutputArgs, print, print_json};
 use super::progress::progress;
-use std::path::PathBuf;
 use trimtab::audit::Issue;
 use trimtab::diagnose::{Settings, Verdict, diagnose};
 use trimtab::error::suggestion;
@@ -72,9 +71,13 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("diagnose", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
+    output.reads(&loaded, true);
     let mut settings = settings(args, loaded.diagnose_settings()?)?;
     let audited = examined(&loaded, &args.accept)?;
     settings.judging = Judging::new(&loaded.fit_settings()?, loaded.evaluation_settings()?);
+    output.settings("fit", &loaded.fit_settings()?)?;
+    output.settings("evaluate", &loaded.evaluation_settings()?)?;
+    output.settings("diagnose", &settings)?;
     let windows = loaded.windows()?.windows;
     let (train, held_out): (Vec<Run>, Vec<Run>) = windows.into_iter().partition(|w| w.split == Split::Train);
     if train.is_empty() {
@@ -89,32 +92,32 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let name = &loaded.study.name;
     let mut json = document(&diagnosis, name)?;
     json["recordings"] = serde_json::to_value(&audited)?;
-    let json = serde_json::to_string_pretty(&json)? + "\n";
-    output.file("diagnosis.json", json.as_bytes())?;
     if output.has_folder() {
-        output.file("improved.toml", model_text(&diagnosis.model)?.as_bytes())?;
-        output.file("base.toml", model_text(&diagnosis.base)?.as_bytes())?;
+        output.file("diagnosis.json", (serde_json::to_string_pretty(&json)? + "\n").as_bytes());
+        output.file("improved.toml", model_text(&diagnosis.model)?.as_bytes());
+        output.file("base.toml", model_text(&diagnosis.base)?.as_bytes());
         let pictures = pictures(&diagnosis)?;
-        output.file("report.html", page(&diagnosis, name, &pictures).render().as_bytes())?;
+        output.file("report.html", page(&diagnosis, name, &pictures).render().as_bytes());
         for p in &pictures {
-            output.file(format!("figures/{}.png", p.stem), &p.png)?;
-            output.file(format!("figures/{}.csv", p.stem), p.csv.as_bytes())?;
+            output.file(format!("figures/{}.png", p.stem), &p.png);
+            output.file(format!("figures/{}.csv", p.stem), p.csv.as_bytes());
         }
     }
-    if args.output.json {
-        print(&json)?;
+    let written = output.close();
+    let told = if args.output.json {
+        print_json(&json)
     } else {
-        let written = args.output.out.as_ref().map_or_else(
-            || "\nGive --out DIR to keep the improved model, the figures and the report.\n".to_owned(),
-            |folder: &PathBuf| {
-                format!(
-                    "\nWritten to {}: report.html, diagnosis.json, improved.toml, base.toml, figures/\n",
-                    folder.display()
-                )
-            },
-        );
-        print(&(audited.lines() + &summary(&diagnosis, name) + &written))?;
-    }
+        let where_to = match (&args.output.out, written.is_there()) {
+            (None, _) => "\nGive --out DIR to keep the improved model, the figures and the report.\n".to_owned(),
+            (Some(folder), true) => format!(
+                "\nWritten to {}: report.html, diagnosis.json, improved.toml, base.toml, figures/\n",
+                folder.display()
+            ),
+            (Some(_), false) => String::new(),
+        };
+        print(&(audited.lines() + &summary(&diagnosis, name) + &where_to))
+    };
+    written.ended(told)?;
     let unanswered = diagnosis.verdict == Verdict::Insufficient
         || audited.refused()
         || diagnosis.admission.issues.iter().any(Issue::blocking);
