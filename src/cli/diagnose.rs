@@ -33,7 +33,8 @@ the table [diagnose] of the study: alpha (chance of naming anything when nothing
 0.01), most (largest number of mechanisms, 3), withhold (mechanisms not to be considered),
 nuisance (estimate unknown hull, propeller and rudder coefficients too, true), substeps (RK4 steps in a sample
 period, 1), repeat (repeat the analysis on the recordings turned, mirrored, cut, thinned and with
-other start values to see whether what is named is stable, true), seed (of the bootstrap).
+other start values to see whether what is named is stable, true), calibrate (simulated studies for
+the error rates of this study, 0), seed (of bootstrap and simulations).
 
 Every finding has a grade. Confirmed: test runs are likelier with it (interval above zero), are not
 simulated worse, and every repetition finds it. Suspected: the training runs speak for it, test
@@ -72,6 +73,10 @@ pub struct Args {
     /// Does not repeat the analysis to see whether what it names is stable: five to seven times as fast.
     #[arg(long)]
     once: bool,
+    /// Analyses N simulated studies with nothing missing, and N with what was found, for the error rates of this study; each takes as
+    /// long as one analysis.
+    #[arg(long, value_name = "N")]
+    calibrate: Option<usize>,
     #[command(flatten)]
     accept: AcceptArgs,
     #[command(flatten)]
@@ -136,6 +141,7 @@ fn settings(args: &Args, mut settings: Settings) -> Result<Settings, CliError> {
     settings.withhold.extend(args.withhold.iter().cloned());
     settings.seed = args.seed.unwrap_or(settings.seed);
     settings.repeat &= !args.once;
+    settings.calibrate = args.calibrate.unwrap_or(settings.calibrate);
     let known: Vec<&str> = mechanism_names().collect();
     for name in &settings.withhold {
         if !known.contains(&name.as_str()) {

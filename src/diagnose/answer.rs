@@ -168,7 +168,7 @@ impl Answer {
     }
 
     /// The training runs without the windows of a push that was found in them.
-    fn recorded(&self) -> Vec<Run> {
+    pub fn recorded(&self) -> Vec<Run> {
         let mut runs = self.kept.selection.tests.fit.runs.clone();
         for w in self.kept.push.iter().flat_map(|p| &p.windows) {
             if let Some(run) = runs.get_mut(w.index) {

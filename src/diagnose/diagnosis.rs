@@ -2,6 +2,7 @@
 //! It holds and computes nothing; the steps that fill it are in other files.
 
 use super::admit::Admission;
+use super::calibrate::ErrorRates;
 use super::decide::Verdict;
 use super::finding::Finding;
 use super::generic::SurrogateTerm;
@@ -165,6 +166,9 @@ pub struct Diagnosis {
     /// Whether the answer is the same on the same recordings told otherwise; absent where nothing was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability: Option<Stability>,
+    /// The study's own error rates, by simulation; absent where they were not asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_rates: Option<ErrorRates>,
     /// How the model follows the training runs.
     pub following: Following,
     /// Recordings that the diagnosis set aside for the proof, because the user marked none.

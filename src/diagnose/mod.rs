@@ -17,6 +17,7 @@
 //! | its grade, a pure function of these | [`grade::Grade`] |
 //! | verdict and what is named, withdrawn findings taken out | `answer::Answer` |
 //! | the same analysis on recordings told otherwise | [`stability::Stability`] |
+//! | the same analysis on simulated recordings | [`calibrate::ErrorRates`] |
 //! | proof of all findings on held-out runs | [`prove::HeldOut`] |
 //! | document | [`diagnosis::Diagnosis`] |
 //!
@@ -30,6 +31,7 @@ mod answer;
 pub mod base;
 pub mod baseline;
 mod blocks;
+pub mod calibrate;
 pub mod candidate;
 mod compete;
 mod conclude;

@@ -3,6 +3,7 @@
 
 use super::answer::Answer;
 use super::base::Question;
+use super::calibrate::ErrorRates;
 use super::decide::Unlisted;
 use super::describe::kinds;
 use super::diagnosis::Diagnosis;
@@ -43,8 +44,10 @@ pub fn diagnose<'r>(
     let Divided { training, held_out, set_aside } = Divided::new(runs.into(), held_out);
     let answer: Answer = Answer::new(&question, training, &held_out);
     let (answer, stability): (Answer, Option<Stability>) = answer.repeated(&question, &held_out)?;
+    let rates: Option<ErrorRates> =
+        ErrorRates::new(&question, &answer, &answer.recorded(), &held_out, settings.calibrate)?;
     let proof: Option<HeldOut> = proof(&question, &answer, &held_out);
-    Ok(report(&question, answer, set_aside, stability, proof))
+    Ok(Diagnosis { set_aside, stability, error_rates: rates, ..report(&question, answer, proof) })
 }
 
 /// The base model against the model with the findings, and against a generic correction, on runs that no step before has used.
@@ -65,14 +68,8 @@ fn coverage(model: &Model, runs: &[Run]) -> Coverage {
     validity::outside(model, runs.iter().flat_map(validity::samples))
 }
 
-/// Everything that the diagnosis says.
-fn report(
-    question: &Question,
-    answer: Answer,
-    set_aside: usize,
-    stability: Option<Stability>,
-    proof: Option<HeldOut>,
-) -> Diagnosis {
+/// Everything that the diagnosis says of one analysis.
+fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagnosis {
     let (tests, found) = (&answer.kept.selection.tests, answer.improved());
     let (fit, first) = (&tests.fit, &tests.screen);
     let base = &fit.estimate;
@@ -121,8 +118,9 @@ fn report(
         sides: sides(last.unwrap_or(first), found, base.free.len(), &kinds(&fit.runs)),
         hull_budget: budget(found),
         held_out: proof,
-        set_aside,
-        stability,
+        set_aside: 0,
+        stability: None,
+        error_rates: None,
         following: answer.base.following.clone(),
         improved_is_base: worse || answer.findings.is_empty(),
         settings: question.settings.clone(),

@@ -26,6 +26,8 @@ pub struct Settings {
     pub seed: u64,
     /// Whether the analysis is repeated with what is named, on the same recordings told otherwise, to see whether it is stable.
     pub repeat: bool,
+    /// Simulated studies with nothing missing, and as many with what was found, that are analysed for the study's own error rates.
+    pub calibrate: usize,
     /// How the proof simulates and weighs the test runs. A study has it in the tables `[fit]` and `[evaluate]`, so that a
     /// diagnosis and an evaluation print the same numbers.
     #[serde(skip, default = "judging")]
@@ -54,6 +56,7 @@ impl Limited for Settings {
     fn limits(&self) -> Result<(), OutOfRange> {
         within("alpha", self.alpha, &(1e-12..=0.5), "the chance of naming anything when nothing is missing")?;
         counted("most", self.most, &(1..=20), "the largest number of mechanisms that are named")?;
+        counted("calibrate", self.calibrate, &(0..=10_000), "the number of simulated studies")?;
         self.integration().limits()
     }
 }
@@ -68,6 +71,7 @@ impl Default for Settings {
             substeps: 1,
             seed: 20250226,
             repeat: true,
+            calibrate: 0,
             judging: judging(),
         }
     }

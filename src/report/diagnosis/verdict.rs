@@ -4,6 +4,7 @@
 use super::names::title_of;
 use super::phrases::{amplitude, p_value, percent};
 use crate::audit::Issue;
+use crate::diagnose::calibrate::ErrorRates;
 use crate::diagnose::stability::Stability;
 use crate::diagnose::{Diagnosis, Finding, Grade, Verdict};
 use crate::numerals::{DASH, fixed, sig};
@@ -78,6 +79,7 @@ pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
     }
     lines.extend(d.withdrawn.iter().map(|f| withdrawn(f, units)));
     lines.extend(d.stability.as_ref().map(stability));
+    lines.extend(d.error_rates.as_ref().map(error_rates));
     lines.extend(notes(&d.admission.issues));
     lines
 }
@@ -118,6 +120,21 @@ fn withdrawn(f: &Finding, units: Units) -> String {
         .filter(|c| c.is_finite())
         .map_or(String::new(), |c| format!("; it changes predictions by {} of their error", percent(c)));
     format!("tried and not named: {}{}: {reason}{change}{proof}", f.title, size(f, units))
+}
+
+/// How often such studies err, by simulation.
+fn error_rates(r: &ErrorRates) -> String {
+    let mut text = format!(
+        "in {} simulated studies of this kind with nothing missing, {} named something ({})",
+        r.false_alarms.of, r.false_alarms.hits, r.false_alarms
+    );
+    if let Some(found) = r.found_again {
+        text += &format!("; with what was found in them, it was found again in {found}");
+    }
+    if let Some(covered) = r.covered {
+        text += &format!(", and its 95 % intervals held the value in {covered}");
+    }
+    text
 }
 
 /// Whether the answer is the same on the same recordings told otherwise.
