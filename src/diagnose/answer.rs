@@ -65,7 +65,8 @@ impl Answer {
         };
         let base = Base::new(question, &kept);
         let grades: Vec<Grade> = tried.iter().map(|f| f.grade).collect();
-        let verdict = conclude(decision.verdict, &grades, base.holds);
+        let rejected = !kept.selection.rejected.is_empty();
+        let verdict = conclude(decision.verdict, &grades, rejected, base.holds);
         let mut findings = findings(&kept, &weights);
         if !base.holds {
             tried.append(&mut findings);

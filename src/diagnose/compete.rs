@@ -365,21 +365,33 @@ pub fn compare(
     Competition { screen, current, problem, tried: leaders.len() }.best(leaders).ok()
 }
 
-/// As [`compare`]; where the leader's own coefficients are implausible, the next mechanism that is unlike it leads.
+/// A mechanism whose gain the refit confirms, and whose own coefficients are not where such coefficients are: something acts, and not
+/// by this law.
+#[derive(Clone, Debug)]
+pub struct Rejected {
+    /// Index into the candidates.
+    pub candidate: usize,
+    /// Corrected p-value of its score test.
+    pub p: f64,
+}
+
+/// As [`compare`]; where the leader's own coefficients are implausible, it goes to `rejected` and the next mechanism that is unlike it
+/// leads.
 pub fn compete(
     screen: &Screen,
     mut leaders: Vec<&Row>,
     current: &Estimate,
     problem: Problem,
+    rejected: &mut Vec<Rejected>,
     progress: &dyn Fn(&str),
 ) -> Option<(Selected, Estimate)> {
     loop {
-        let leader = leaders.first()?.candidate;
+        let Row { candidate: leader, p, .. } = **leaders.first()?;
         progress(&format!("refitting with {}", problem.candidates[leader].mechanism.title));
         match (Competition { screen, current, problem, tried: leaders.len() }).best(&leaders) {
             Ok(outcome) => return Some(outcome),
             Err(Rejection::Unconfirmed) => return None,
-            Err(Rejection::Implausible) => {}
+            Err(Rejection::Implausible) => rejected.push(Rejected { candidate: leader, p }),
         }
         leaders.retain(|r| r.candidate != leader && screen.likeness(leader, r.candidate) < UNRELATED_LIKENESS);
     }

@@ -133,7 +133,8 @@ impl Opening {
             None
         } else {
             let leaders = eligible(&tests.screen, &tests.candidates, &[], true, settings);
-            compete(&tests.screen, leaders, &tests.fit.estimate, problem, question.progress)
+            // What is rejected here is tried again by the selection.
+            compete(&tests.screen, leaders, &tests.fit.estimate, problem, &mut Vec::new(), question.progress)
         };
         let left =
             |(_, found): &(Selected, Estimate)| tests.search.push(found, problem.runs).map_or(0.0, |p| p.statistic);

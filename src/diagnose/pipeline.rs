@@ -89,6 +89,7 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
     let said = Said {
         findings: &answer.findings,
         withdrawn: &answer.withdrawn,
+        rejected: answer.kept.selection.rejected.first().map(|r| tests.candidates[r.candidate].mechanism.title),
         following: &answer.base.following,
         holds: answer.base.holds,
         form_holds: tests.search.form_holds,

@@ -3,7 +3,7 @@
 
 use super::admit::followed;
 use super::base::Question;
-use super::compete::{Selected, amplitudes, compare, compete, form_tolerance};
+use super::compete::{Rejected, Selected, amplitudes, compare, compete, form_tolerance};
 use super::decide::is_euler;
 use super::eligible::{eligible, may_be_further, may_be_named};
 use super::estimate::{Estimate, passes};
@@ -26,6 +26,8 @@ pub struct Selection {
     pub push: Option<Push>,
     /// The mechanisms, in the order in which they were found.
     pub mechanisms: Vec<Selected>,
+    /// Mechanisms that led and whose own coefficients were implausible.
+    pub rejected: Vec<Rejected>,
     /// The estimate with them; that of the base model without any.
     pub estimate: Estimate,
 }
@@ -34,7 +36,7 @@ impl Selection {
     /// Selects mechanisms one after the other while a further one may be named. Recordings with a wrong unit or sign give none.
     pub fn new(question: &Question, Opening { tests, push, mut first }: Opening) -> Self {
         let estimate = tests.fit.estimate.clone();
-        let mut out = Self { tests, push, mechanisms: Vec::new(), estimate };
+        let mut out = Self { tests, push, mechanisms: Vec::new(), rejected: Vec::new(), estimate };
         if out.tests.is_blocked() {
             return out;
         }
@@ -70,7 +72,7 @@ impl Selection {
     }
 
     /// The best further mechanism, with the estimate that holds it.
-    fn next(&self, question: &Question) -> Option<(Selected, Estimate)> {
+    fn next(&mut self, question: &Question) -> Option<(Selected, Estimate)> {
         let problem = self.tests.problem(question.settings);
         let latest;
         let screen: &Screen = if self.mechanisms.is_empty() {
@@ -83,7 +85,7 @@ impl Selection {
         let by_euler = is_euler(self.tests.fit.admission.euler_gain);
         let alone = self.mechanisms.is_empty() && self.push.is_none() && !by_euler;
         let leaders = eligible(screen, problem.candidates, &self.mechanisms, alone, question.settings);
-        compete(screen, leaders, &self.estimate, problem, question.progress)
+        compete(screen, leaders, &self.estimate, problem, &mut self.rejected, question.progress)
     }
 
     /// Removes a mechanism that a later one made needless.

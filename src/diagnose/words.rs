@@ -104,6 +104,8 @@ pub struct Said<'a> {
     pub findings: &'a [Finding],
     /// What was tried and withdrawn.
     pub withdrawn: &'a [Finding],
+    /// The first mechanism that was rejected for its own coefficients.
+    pub rejected: Option<&'a str>,
     /// How the model follows the recordings.
     pub following: &'a Following,
     /// Whether it follows them well enough.
@@ -140,7 +142,11 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
                 tried.title,
                 proof(tried)
             ),
-            (None, None) => String::new(),
+            (None, None) => format!(
+                "Something is missing, and no law of the catalogue is it: {} gains most, but only with coefficients of its own that no \
+                 such force has.",
+                said.rejected.map_or("a mechanism", |title| title)
+            ),
         },
         Verdict::Numerics => {
             "The integration step, not the ship: explicit Euler steps of one sample period reproduce the recordings to rounding."
@@ -287,6 +293,7 @@ mod tests {
                     findings,
                     withdrawn,
                     following: &following,
+                    rejected: Some("wave drift"),
                     holds: verdict != Verdict::Insufficient,
                     form_holds: true,
                     missing,
@@ -306,6 +313,7 @@ mod tests {
         let with = |grade| Finding { grade, change: Some(0.02), ..current() };
         let refuted = said(Verdict::NotInCatalogue, &[], &[with(Grade::Refuted)], None);
         assert!(refuted.contains("steady current") && refuted.contains("refute"), "{refuted}");
+        assert!(said(Verdict::NotInCatalogue, &[], &[], None).contains("wave drift gains most"));
         let small = said(Verdict::NothingMissing, &[], &[with(Grade::Immaterial)], None);
         assert!(small.contains("steady current") && small.contains("2.0 % of their error"), "{small}");
         let lost = headline(Verdict::Insufficient, &[], None);

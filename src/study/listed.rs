@@ -3,7 +3,7 @@
 
 use super::error::StudyError;
 use super::file::RunEntry;
-use super::split::{SplitRule, draw};
+use super::split::{SplitRule, UNNAMED, draw};
 use crate::recording::{Labels, Split};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -65,8 +65,9 @@ pub(super) fn label(
             return Err(fail(line, format!("`from` = {from} s is not before `to` = {to} s")));
         }
         let labels = Labels {
-            session: e.session.filter(|s| !s.is_empty()).unwrap_or_else(|| name.clone()),
-            manoeuvre: e.manoeuvre.filter(|s| !s.is_empty()).unwrap_or_else(|| "unnamed".to_owned()),
+            // Without a word that days differ, one hull under one sky: a session is what may differ in something hidden.
+            session: e.session.filter(|s| !s.is_empty()).unwrap_or_else(|| UNNAMED.to_owned()),
+            manoeuvre: e.manoeuvre.filter(|s| !s.is_empty()).unwrap_or_else(|| UNNAMED.to_owned()),
             run: name,
             split: e.split.unwrap_or(Split::Train),
         };

@@ -62,6 +62,14 @@ mod tests {
     }
 
     #[test]
+    fn runs_without_a_session_share_one_and_are_split_run_by_run() {
+        let text = "[[runs]]\nfile = \"a.csv\"\n[[runs]]\nfile = \"b.csv\"\n[split]\nby = \"session\"\ntest = 0.5\n";
+        let study = parse(text).unwrap();
+        assert_eq!(study.runs[0].labels.session, study.runs[1].labels.session);
+        assert_ne!(study.runs[0].labels.split, study.runs[1].labels.split);
+    }
+
+    #[test]
     fn both_sides_have_a_run_when_there_are_two() {
         let study = parse(&listed(2)).unwrap();
         assert_eq!(study.split_in_words(), "1 runs train, 1 test, drawn by run with seed 1");

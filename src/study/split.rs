@@ -7,6 +7,9 @@ use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 
+/// Session and manoeuvre of a run for which none is given.
+pub(super) const UNNAMED: &str = "unnamed";
+
 /// How runs are divided where the table of runs does not say.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -41,6 +44,8 @@ pub(super) fn draw<'a>(labels: impl Iterator<Item = &'a mut Labels>, rule: Split
     let mut labels: Vec<&mut Labels> = labels.collect();
     let group = |l: &Labels| match rule.by {
         SplitBy::Run => l.run.clone(),
+        // Runs without a session are groups of their own.
+        SplitBy::Session if l.session == UNNAMED => l.run.clone(),
         SplitBy::Session => l.session.clone(),
     };
     let mut seen = HashSet::new();

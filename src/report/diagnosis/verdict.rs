@@ -21,9 +21,10 @@ pub fn subject(d: &Diagnosis, study: &str) -> String {
     let aside = if d.set_aside > 0 { " (set aside here, as none are marked)" } else { "" };
     let held_out = d.held_out.as_ref().map_or("none".to_owned(), |h| format!("{}{aside}", h.runs));
     format!(
-        "{study} · {} runs in {} sessions ({} samples), {held_out} test runs · base model {} · {}, {} a sample",
+        "{study} · {} runs in {} session{} ({} samples), {held_out} test runs · base model {} · {}, {} a sample",
         a.runs,
         a.sessions,
+        if a.sessions == 1 { "" } else { "s" },
         a.samples,
         d.base.name,
         format!("{:?}", a.integration.method).to_uppercase(),
