@@ -1,7 +1,7 @@
 //! The grade of a finding as a pure function of its tests: what the unseen runs, its interval and its size say of it.
 //! It estimates nothing and knows no runs; every number it compares with is in the settings.
 
-use super::settings::{MATERIAL_SHARE, RESOLVED_SAMPLES};
+use super::settings::{ISOLATED_SHARE, MATERIAL_SHARE, RESOLVED_SAMPLES};
 use serde::Serialize;
 
 /// How well a finding is supported.
@@ -18,6 +18,8 @@ pub enum Grade {
     Immaterial,
     /// The interval of its size does not exclude zero.
     Undetermined,
+    /// Weather most of whose effect the ship's own parameters can take over, on the headings that were sailed.
+    NotIsolated,
     /// Most repetitions on the same recordings told otherwise do not find it.
     Unstable,
 }
@@ -53,6 +55,8 @@ impl GainTest {
 pub struct FindingTests {
     /// Whether the interval of its size excludes zero, whichever of its parameters brings it.
     pub excludes_zero: bool,
+    /// For weather, the share of its information that is left beside the ship's own parameters, in the worst direction; 1 for all else.
+    pub isolated: f64,
     /// By how much it changes predictions of the training runs, as a share of the error there is, in the channel where that is most.
     pub change: f64,
     /// The least time in its interval by which it shifts a sensor's clock, in sample periods, where it does so.
@@ -80,6 +84,8 @@ pub fn grade(tests: &FindingTests) -> Grade {
         Grade::Refuted
     } else if !tests.excludes_zero {
         Grade::Undetermined
+    } else if tests.isolated < ISOLATED_SHARE {
+        Grade::NotIsolated
     } else if tests.change < MATERIAL_SHARE || tests.shift.is_some_and(|s| s < RESOLVED_SAMPLES) {
         Grade::Immaterial
     } else if tests.likelihood.is_some_and(|g| g.is_above_zero()) && tests.prediction.is_some_and(|g| g.gain >= 0.0) {
@@ -98,7 +104,14 @@ mod tests {
     const WORSE: Option<GainTest> = Some(GainTest { gain: -9.0, ci95: Some([-15.0, -3.0]) });
 
     fn sound() -> FindingTests {
-        FindingTests { excludes_zero: true, change: 0.5, shift: None, likelihood: BETTER, prediction: BETTER }
+        FindingTests {
+            excludes_zero: true,
+            isolated: 1.0,
+            change: 0.5,
+            shift: None,
+            likelihood: BETTER,
+            prediction: BETTER,
+        }
     }
 
     #[test]
@@ -137,6 +150,7 @@ mod tests {
     #[test]
     fn an_interval_through_zero_and_a_change_too_small_to_matter_are_not_named() {
         assert_eq!(grade(&FindingTests { excludes_zero: false, ..sound() }), Grade::Undetermined);
+        assert_eq!(grade(&FindingTests { isolated: 0.49, ..sound() }), Grade::NotIsolated);
         assert_eq!(grade(&FindingTests { change: 0.049, ..sound() }), Grade::Immaterial);
         assert_eq!(grade(&FindingTests { change: 0.05, ..sound() }), Grade::Confirmed);
         // A clock that is off by less than half a sample.

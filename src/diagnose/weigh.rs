@@ -70,6 +70,11 @@ fn weight(
     });
     let tests = FindingTests {
         excludes_zero: intervals.excludes_zero(found, candidate, &of.extent),
+        isolated: if candidate.mechanism.is_weather() {
+            tests.screen.test(of.candidate, &of.extent).retained
+        } else {
+            1.0
+        },
         change: change(&fit.runs, &predict_all(&without.model, &fit.runs, fit.integration), with),
         shift: (candidate.mechanism.kind == Kind::Sensor).then(|| shift(&amplitudes, &fit.runs)).flatten(),
         likelihood: proof.as_ref().map(FindingProof::likelihood),
@@ -132,7 +137,8 @@ mod tests {
 
     fn weight(grade: Grade, gain: f64) -> Weight {
         let likelihood = Some(GainTest { gain, ci95: None });
-        let tests = FindingTests { excludes_zero: true, change: 1.0, shift: None, likelihood, prediction: None };
+        let tests =
+            FindingTests { excludes_zero: true, isolated: 1.0, change: 1.0, shift: None, likelihood, prediction: None };
         Weight { grade, tests, proof: None, without: crate::diagnose::example::at(&model()) }
     }
 

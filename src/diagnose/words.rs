@@ -158,18 +158,29 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
             .into(),
         Verdict::Insufficient if !said.holds => not_followed(said.following),
         Verdict::Insufficient => "These recordings cannot answer: too few runs.".into(),
-        Verdict::NothingMissing => withdrawn(Grade::Immaterial).map_or_else(
-            || "Nothing is missing that these data could show.".into(),
-            |f| {
-                format!(
-                    "Nothing is missing that matters: {} ({}) is measurable, and changes predictions by {} % of their error.",
-                    f.title,
-                    values(f),
-                    sig(100.0 * f.change.unwrap_or(0.0), 2)
-                )
-            },
-        ),
+        Verdict::NothingMissing => nothing(said),
     }
+}
+
+/// That nothing is named, and what was nearest to it.
+fn nothing(said: &Said) -> String {
+    let withdrawn = |grade: Grade| said.withdrawn.iter().find(|f| f.grade == grade);
+    if let Some(f) = withdrawn(Grade::NotIsolated) {
+        return format!(
+            "Nothing is missing that these data could name: {} is significant, but on the headings that were sailed the ship's own \
+             parameters can take over most of its effect; the same runs on opposite headings would tell.",
+            f.title
+        );
+    }
+    if let Some(f) = withdrawn(Grade::Immaterial) {
+        return format!(
+            "Nothing is missing that matters: {} ({}) is measurable, and changes predictions by {} % of their error.",
+            f.title,
+            values(f),
+            sig(100.0 * f.change.unwrap_or(0.0), 2)
+        );
+    }
+    "Nothing is missing that these data could show.".into()
 }
 
 /// Words at the start of a sentence.
@@ -316,6 +327,8 @@ mod tests {
         assert!(said(Verdict::NotInCatalogue, &[], &[], None).contains("wave drift gains most"));
         let small = said(Verdict::NothingMissing, &[], &[with(Grade::Immaterial)], None);
         assert!(small.contains("steady current") && small.contains("2.0 % of their error"), "{small}");
+        let bound = said(Verdict::NothingMissing, &[], &[with(Grade::NotIsolated)], None);
+        assert!(bound.contains("opposite headings"), "{bound}");
         let lost = headline(Verdict::Insufficient, &[], None);
         assert!(lost.contains("1 of 4 runs") && lost.contains("40.0 %"), "{lost}");
         let confirmed = headline(Verdict::Named, &[with(Grade::Confirmed)], None);

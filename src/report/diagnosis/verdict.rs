@@ -90,7 +90,7 @@ fn grade_words(grade: Grade) -> &'static str {
     match grade {
         Grade::Confirmed => "CONFIRMED:",
         Grade::Suspected => "SUSPECTED:",
-        Grade::Refuted | Grade::Immaterial | Grade::Undetermined | Grade::Unstable => "not named:",
+        Grade::Refuted | Grade::Immaterial | Grade::Undetermined | Grade::NotIsolated | Grade::Unstable => "not named:",
     }
 }
 
@@ -99,6 +99,10 @@ fn withdrawn(f: &Finding, units: Units) -> String {
     let reason = match f.grade {
         Grade::Refuted => "unseen runs refute it",
         Grade::Immaterial => "it is measurable, and too small to matter",
+        Grade::NotIsolated => {
+            "on the headings that were sailed the ship's own parameters (a side force, trim, resistance, the compass zero) can take over \
+             most of its effect; the same runs on opposite headings would part them"
+        }
         Grade::Unstable => "most repetitions on the same recordings told otherwise do not find it",
         Grade::Undetermined => "the interval of every parameter contains zero",
         Grade::Confirmed | Grade::Suspected => "the model does not follow the recordings without it or with it",
