@@ -65,12 +65,20 @@ impl Blocks {
         Self { length, count, score, information: spans(count).map(span).collect() }
     }
 
+    /// How many spans begin before block `from`: count, count - 1, ...
+    fn before(&self, from: usize) -> usize {
+        from * self.count - from * from.saturating_sub(1) / 2
+    }
+
+    /// Whether a span of so many blocks leaves a good part of the run without a force.
+    fn is_local(&self, length: usize) -> bool {
+        length as f64 <= PUSH_LONGEST * self.count as f64
+    }
+
     /// Score of a constant force in blocks `from..to`, and its information.
     pub fn span(&self, from: usize, to: usize) -> (Vector3<f64>, Matrix3<f64>) {
-        // Before the spans that begin with `from` are those that begin earlier: count, count - 1, ...
-        let before = from * self.count - from * from.saturating_sub(1) / 2;
         let mut h = Matrix3::zeros();
-        for ((i, j), value) in TRIANGLE.into_iter().zip(self.information[before + to - from - 1]) {
+        for ((i, j), value) in TRIANGLE.into_iter().zip(self.information[self.before(from) + to - from - 1]) {
             (h[(i, j)], h[(j, i)]) = (value, value);
         }
         (self.score[to] - self.score[from], h)
@@ -78,8 +86,27 @@ impl Blocks {
 
     /// What a constant force in blocks `from..to` gains in log-likelihood.
     pub fn gain(&self, from: usize, to: usize, force: &Vector3<f64>) -> f64 {
-        let (score, information) = self.span(from, to);
-        score.dot(force) - 0.5 * force.dot(&(information * force))
+        self.gain_at(from, to, &self.information[self.before(from) + to - from - 1], force)
+    }
+
+    /// As [`Self::gain`], for the information of the span.
+    fn gain_at(&self, from: usize, to: usize, h: &[f64; 6], force: &Vector3<f64>) -> f64 {
+        let along = |a: f64, b: f64, c: f64| a * force[0] + b * force[1] + c * force[2];
+        let pull = [along(h[0], h[1], h[3]), along(h[1], h[2], h[4]), along(h[3], h[4], h[5])];
+        (self.score[to] - self.score[from]).dot(force) - 0.5 * along(pull[0], pull[1], pull[2])
+    }
+
+    /// What a constant force gains in every span that leaves a good part of the run without it, in the order of
+    /// [`Self::local_spans`].
+    pub fn local_gains(&self, force: &Vector3<f64>, gains: &mut Vec<(usize, usize, f64)>) {
+        gains.clear();
+        let mut rest = self.information.as_slice();
+        for from in 0..self.count {
+            let (own, later) = rest.split_at(self.count - from);
+            rest = later;
+            let local = own.iter().zip(from + 1..).take_while(|(_, to)| self.is_local(to - from));
+            gains.extend(local.map(|(h, to)| (from, to, self.gain_at(from, to, h, force))));
+        }
     }
 
     /// The constant force that fits blocks `from..to` best.
@@ -97,9 +124,8 @@ impl Blocks {
     }
 
     /// Spans that leave a good part of the run without the force.
-    pub fn local_spans(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let most = PUSH_LONGEST * self.count as f64;
-        self.spans().filter(move |(from, to)| (to - from) as f64 <= most)
+    pub fn local_spans(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.spans().filter(|(from, to)| self.is_local(to - from))
     }
 }
 
@@ -165,6 +191,21 @@ mod tests {
             let (score, information) = blocks.span(from, to);
             assert!((score - expected.0).amax() < 1e-12 && (information - expected.1).amax() < 1e-12);
         }
+    }
+
+    #[test]
+    fn the_gains_of_local_spans_are_those_of_each() {
+        let (g, h) = evidence();
+        let blocks = Blocks::sums(2, 4, &g, &h);
+        let force = Vector3::new(0.3, -1.2, 0.7);
+        let mut gains = vec![(0, 0, 0.0)];
+        blocks.local_gains(&force, &mut gains);
+        let each: Vec<(usize, usize, f64)> =
+            blocks.local_spans().map(|(from, to)| (from, to, blocks.gain(from, to, &force))).collect();
+        assert_eq!(gains, each);
+        let (score, information) = blocks.span(1, 3);
+        let expected = score.dot(&force) - 0.5 * force.dot(&(information * force));
+        assert!((blocks.gain(1, 3, &force) - expected).abs() < 1e-12);
     }
 
     #[test]

@@ -6,14 +6,48 @@ use super::settings::START_SPREAD;
 use crate::model::Model;
 use crate::state::STATES;
 use crate::units::GRAVITY;
-use std::ops::Mul;
 use trimtab_ad::{Lanes, Scalar};
 
 /// Length of the filter state `[x y psi u v r | w_X w_Y w_N | e_1 .. e_6]`.
 pub const Z: usize = 15;
 
-/// A square matrix over the filter state.
+/// A symmetric matrix over the filter state, of which the entries `[i][j]` with `j <= i` are kept.
 pub type Square<S> = [[S; Z]; Z];
+
+/// A row of a symmetric matrix.
+#[inline(always)]
+pub fn row<S: Scalar>(p: &Square<S>, place: usize) -> [S; Z] {
+    let mut out = p[place];
+    (place + 1..Z).for_each(|i| out[i] = p[i][place]);
+    out
+}
+
+/// The sum of two rows of a symmetric matrix, `first < second`.
+#[inline(always)]
+pub fn sum_of_rows<S: Scalar>(p: &Square<S>, first: usize, second: usize) -> [S; Z] {
+    let mut out = [S::zero(); Z];
+    (0..=first).for_each(|i| out[i] = p[first][i] + p[second][i]);
+    (first + 1..=second).for_each(|i| out[i] = p[i][first] + p[second][i]);
+    (second + 1..Z).for_each(|i| out[i] = p[i][first] + p[i][second]);
+    out
+}
+
+/// Takes `gain ph'` out of the covariance: what a measurement tells, `ph` being the covariance of the filter state with it.
+#[inline(always)]
+pub fn correct<S: Scalar>(p: &mut Square<S>, gain: &[S; Z], ph: &[S; Z]) {
+    // Each row by itself, so that the loop along it has a fixed length.
+    macro_rules! rows {
+        ($($i:literal)*) => { $((0..=$i).for_each(|l| p[$i][l] -= gain[$i] * ph[l]);)* };
+    }
+    rows!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14);
+}
+
+/// Adds a multiple of row `L` of a symmetric matrix.
+#[inline(always)]
+fn add_row<S: Scalar, const L: usize>(p: &Square<S>, factor: S, sums: &mut [S; Z]) {
+    (0..=L).for_each(|c| sums[c] += p[L][c] * factor);
+    (L + 1..Z).for_each(|c| sums[c] += p[c][L] * factor);
+}
 
 /// The noise over one sample period: variances, and what is left of a correlation after it.
 #[derive(Clone, Copy, Debug)]
@@ -91,40 +125,46 @@ pub fn initial<S: Scalar>(noise: &Discrete<S>, model: &Model) -> Square<S> {
 /// `F P F' + Q` with the block structure of the filter state: `a` moves the ship, `gamma` lets the unknown force act on it,
 /// everything else fades on its own. The first two columns of `a` are those of the identity: the motion does not depend on the
 /// position. `boost` multiplies what the unknown force gains.
-pub fn predict<S: Scalar + Mul<A, Output = S>, A: Copy>(
+pub fn predict<S: Scalar>(
     p: &mut Square<S>,
-    a: &[[A; STATES]; STATES],
-    gamma: &[[A; 3]; STATES],
+    a: &[[S; STATES]; STATES],
+    gamma: &[[S; 3]; STATES],
     noise: &Discrete<S>,
-    boost: A,
+    boost: S,
 ) {
     let mut moved = [[S::zero(); Z]; STATES];
-    for i in 0..STATES {
-        if i < 2 {
-            moved[i] = p[i];
-        }
-        for (l, factor) in (2..).zip(a[i][2..].iter().chain(&gamma[i])) {
-            for c in 0..Z {
-                moved[i][c] += p[l][c] * *factor;
+    for (i, moved) in moved.iter_mut().enumerate() {
+        let mut sums = [S::zero(); Z];
+        match i {
+            0 => (0..Z).for_each(|c| sums[c] = p[c][0]),
+            1 => {
+                sums[0] = p[1][0];
+                (1..Z).for_each(|c| sums[c] = p[c][1]);
             }
+            _ => (),
+        }
+        add_row::<S, 2>(p, a[i][2], &mut sums);
+        add_row::<S, 3>(p, a[i][3], &mut sums);
+        add_row::<S, 4>(p, a[i][4], &mut sums);
+        add_row::<S, 5>(p, a[i][5], &mut sums);
+        add_row::<S, 6>(p, gamma[i][0], &mut sums);
+        add_row::<S, 7>(p, gamma[i][1], &mut sums);
+        add_row::<S, 8>(p, gamma[i][2], &mut sums);
+        (0..Z).for_each(|c| moved[c] = sums[c]);
+    }
+    for i in 0..STATES {
+        for j in 0..=i {
+            let mut sum = if j < 2 { moved[i][j] } else { S::zero() };
+            (2..STATES).for_each(|l| sum += moved[i][l] * a[j][l]);
+            (0..3).for_each(|l| sum += moved[i][STATES + l] * gamma[j][l]);
+            p[i][j] = sum;
         }
     }
     let fade: [S; Z - STATES] = std::array::from_fn(|i| if i < 3 { noise.fade } else { noise.rho[i - 3] });
-    for i in 0..Z {
-        for j in 0..=i {
-            let value = if i < STATES {
-                let mut sum = if j < 2 { moved[i][j] } else { S::zero() };
-                (2..STATES).for_each(|l| sum += moved[i][l] * a[j][l]);
-                (0..3).for_each(|l| sum += moved[i][STATES + l] * gamma[j][l]);
-                sum
-            } else if j < STATES {
-                moved[j][i] * fade[i - STATES]
-            } else {
-                p[i][j] * fade[i - STATES] * fade[j - STATES]
-            };
-            p[i][j] = value;
-            p[j][i] = value;
-        }
+    for i in STATES..Z {
+        let own = fade[i - STATES];
+        (0..STATES).for_each(|j| p[i][j] = moved[j][i] * own);
+        (STATES..=i).for_each(|j| p[i][j] = p[i][j] * own * fade[j - STATES]);
     }
     for i in 0..3 {
         p[6 + i][6 + i] += noise.force[i] * (S::one() - noise.fade * noise.fade) * boost;
@@ -175,10 +215,26 @@ mod tests {
         let mut p = full();
         predict(&mut p, &a, &gamma, &noise, 5.0);
         for i in 0..Z {
-            for j in 0..Z {
+            for j in 0..=i {
                 let off = (p[i][j] - expected[(i, j)]).abs();
                 assert!(off < 1e-10 * expected[(i, i)].max(expected[(j, j)]).max(1.0), "{i} {j}");
             }
+        }
+    }
+
+    #[test]
+    fn a_correction_takes_a_product_out_of_the_lower_triangle_and_a_row_is_whole() {
+        let mut p = full();
+        (0..Z).for_each(|i| (i + 1..Z).for_each(|j| p[i][j] = f64::NAN));
+        assert!((0..Z).all(|i| row(&p, i) == full()[i]));
+        for (i, j) in [(0, 9), (3, 12), (5, 14)] {
+            let sum = sum_of_rows(&p, i, j);
+            assert!((0..Z).all(|c| sum[c] == full()[i][c] + full()[j][c]));
+        }
+        let gain: [f64; Z] = std::array::from_fn(|i| 0.1 * i as f64);
+        correct(&mut p, &gain, &full()[4]);
+        for i in 0..Z {
+            assert!((0..=i).all(|l| (p[i][l] - full()[i][l] + gain[i] * full()[4][l]).abs() < 1e-12));
         }
     }
 
@@ -201,12 +257,13 @@ mod tests {
         let side_by_side = Discrete::side_by_side(&noises);
         let model = example::model();
         let mut all = initial(&side_by_side, &model);
-        predict(&mut all, &a, &gamma, &side_by_side, 1.0);
+        let lift = Lanes::from_f64;
+        predict(&mut all, &a.map(|row| row.map(lift)), &gamma.map(|row| row.map(lift)), &side_by_side, Lanes::one());
         for (lane, noise) in noises.iter().enumerate() {
             let mut one = initial(noise, &model);
             predict(&mut one, &a, &gamma, noise, 1.0);
             for i in 0..Z {
-                for j in 0..Z {
+                for j in 0..=i {
                     let off = all[i][j].to_array()[lane] - one[i][j];
                     assert!(off.abs() <= 1e-12 * one[i][i].max(one[j][j]), "{lane} {i} {j}");
                 }

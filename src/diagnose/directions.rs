@@ -200,13 +200,9 @@ impl<P: Plain> Prepared<'_, P> {
         }
     }
 
-    /// What the sensors report at a state, and the derivative with respect to the state.
+    /// What the sensors report at a state, and the derivative with respect to the state. Without terms of sensors that is the state.
     pub(super) fn report(&self, state: &[P; STATES], when: usize) -> ([P; STATES], [[P; STATES]; STATES]) {
-        if self.directions.senses {
-            return P::reported(&self.dynamics, state, &self.series[when]);
-        }
-        let unit = |i: usize, j: usize| if i == j { P::one() } else { P::zero() };
-        (*state, std::array::from_fn(|i| std::array::from_fn(|j| unit(i, j))))
+        P::reported(&self.dynamics, state, &self.series[when])
     }
 
     /// Derivatives of the report by the columns of sensors: which column, and the report by channel.

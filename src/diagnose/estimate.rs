@@ -179,7 +179,8 @@ impl Sums {
             let Pass { score, information, log_likelihood, used, outliers, .. } = pass;
             (run_evidence(run, score, information, sessions), log_likelihood, used, outliers)
         };
-        filter.each(runs, noise, Wanted::default(), work, |(one, log_likelihood, used, outliers)| {
+        let wanted = Wanted { sums_only: true, ..Wanted::default() };
+        filter.each(runs, noise, wanted, work, |(one, log_likelihood, used, outliers)| {
             out.evidence.add(one, apart);
             out.log_likelihood += log_likelihood;
             out.used += used;
@@ -197,7 +198,7 @@ impl Sums {
 /// The step maps of some runs, linearised along their filtered paths.
 fn tangents(model: &Model, integration: Integration, runs: &[&Run], noise: &Noise) -> Vec<Tangent> {
     let filter = Filter::new(model, integration, &[]);
-    let wanted = Wanted { tangent: true, ..Wanted::default() };
+    let wanted = Wanted { tangent: true, sums_only: true, ..Wanted::default() };
     let mut out = Vec::with_capacity(runs.len());
     let tangent = |_: &Run, pass: Pass| pass.tangent.unwrap_or_default();
     filter.each(runs, noise, wanted, tangent, |tangent| out.push(tangent));
@@ -295,22 +296,24 @@ pub fn estimate_above(
 ) -> Estimate {
     let columns = free.iter().map(|f| f.column).collect();
     let fit = Fit { integration, runs, free, columns, prior, effort };
-    let mut point = fit.at(start.clone(), *noise);
-    let mut damping = 0.0;
+    let mut point = fit.at(start.clone(), *noise, effort.rounds > 0);
+    let (mut damping, mut sparse_serves) = (0.0, false);
     for round in 0..effort.rounds {
+        point = fit.differentiated(point);
         let quadratic = quadratic(&point.sums.evidence, &point.model, free);
         // A law that bends may hold more than its slope where it starts promises: never before the first step.
         if round > 0 && least.is_finite() && point.value + 2.0 * quadratic.promise(&quadratic.step(0.0)) < least {
             break;
         }
-        let (next, length) = fit.step(&point, &quadratic, &mut damping);
+        let (fits_noise, last) = (round < effort.noise_rounds, round + 1 == effort.rounds);
+        let (next, length) = fit.step(&point, &quadratic, &mut damping, !fits_noise && !last);
         let settled = match &next {
             None => true,
             Some(next) => length < STEP_SHORTEST || next.value - point.value < STEP_GAIN,
         };
         point = next.unwrap_or(point);
-        if round < effort.noise_rounds {
-            point = fit.with_noise(point);
+        if fits_noise {
+            point = fit.with_noise(point, &mut sparse_serves, !last);
         } else if settled {
             break;
         }
@@ -335,19 +338,35 @@ struct Point {
     sums: Sums,
     /// Log-likelihood plus log-prior.
     value: f64,
+    /// Whether the sums hold scores and information.
+    differentiated: bool,
 }
 
 impl Fit<'_> {
-    fn at(&self, model: Model, noise: Noise) -> Point {
-        let filter = Filter::new(&model, self.integration, &self.columns);
-        let sums = Sums::of(&filter, self.runs, &noise, &restrictions(self.free), false);
+    /// The point of a model and a noise; its value has the same bits with derivatives and without them.
+    fn at(&self, model: Model, noise: Noise, differentiated: bool) -> Point {
+        let (columns, restrictions) = if differentiated {
+            (self.columns.as_slice(), restrictions(self.free))
+        } else {
+            (Default::default(), Vec::new())
+        };
+        let filter = Filter::new(&model, self.integration, columns);
+        let sums = Sums::of(&filter, self.runs, &noise, &restrictions, false);
         let log_prior = self.free.iter().map(|f| f.log_prior(&model)).sum::<f64>();
         let value = sums.log_likelihood + log_prior;
-        Point { model, noise, sums, value }
+        Point { model, noise, sums, value, differentiated }
+    }
+
+    /// The point with its scores and information.
+    fn differentiated(&self, point: Point) -> Point {
+        if point.differentiated { point } else { self.at(point.model, point.noise, true) }
     }
 
     /// The point after a step of the parameters, where one gains, and the length of the last step that was tried.
-    fn step(&self, from: &Point, quadratic: &Quadratic, damping: &mut f64) -> (Option<Point>, f64) {
+    ///
+    /// A pass with derivatives costs three without: steps are tried with them only where `goes_on` says that another may follow, and
+    /// the first is no end by its length. Steps after it are mostly refused.
+    fn step(&self, from: &Point, quadratic: &Quadratic, damping: &mut f64, goes_on: bool) -> (Option<Point>, f64) {
         let propose = |damping: f64| {
             let mut step = quadratic.step(damping);
             let length = step.amax();
@@ -357,8 +376,11 @@ impl Fit<'_> {
             let promise = quadratic.promise(&step);
             Some(Proposal { step: (step, length.min(STEP_LONGEST)), promise })
         };
-        let evaluate = |(step, _): &(DVector<f64>, f64)| {
-            let point = self.at(moved(&from.model, self.free, step), from.noise);
+        let mut differentiated = goes_on;
+        let evaluate = |(step, length): &(DVector<f64>, f64)| {
+            differentiated &= *length >= STEP_SHORTEST;
+            let point = self.at(moved(&from.model, self.free, step), from.noise, differentiated);
+            differentiated = false;
             let value = point.value;
             (point, value)
         };
@@ -367,13 +389,18 @@ impl Fit<'_> {
     }
 
     /// The point with the noise fitted to some runs, linearised; where that noise does not serve all runs, to all of them.
-    fn with_noise(&self, point: Point) -> Point {
+    ///
+    /// `sparse_serves` says whether the noise of some runs did last, and `goes_on` whether the point is stepped from.
+    fn with_noise(&self, point: Point, sparse_serves: &mut bool, goes_on: bool) -> Point {
         let sparse = self.runs.len().div_ceil(self.effort.noise_runs.max(1)).max(1);
         let mut strides = vec![sparse, 1];
         strides.dedup();
         for stride in strides {
-            let trial = self.at(point.model.clone(), self.noise(&point, stride));
-            if trial.value > point.value {
+            let differentiated = goes_on && (stride == 1 || *sparse_serves);
+            let trial = self.at(point.model.clone(), self.noise(&point, stride), differentiated);
+            let serves = trial.value > point.value;
+            *sparse_serves = serves && stride > 1;
+            if serves {
                 return trial;
             }
             if point.value - trial.value < NOISE_REFUSED {
@@ -444,6 +471,22 @@ mod tests {
         assert_eq!(e.total.score[1], in_a);
         assert_eq!((e.sessions["b"].score[1], e.sessions["b"].information[(0, 1)]), (0.0, 0.0));
         assert!(e.sessions["b"].information[(0, 0)] > 0.0);
+    }
+
+    #[test]
+    fn a_point_has_the_same_value_with_derivatives_and_without() {
+        let m = model();
+        let (runs, free, prior) = (runs(&m, 5), at(&m).free, NoisePrior::around(&noise()));
+        for method in [crate::simulate::Method::Rk4, crate::simulate::Method::Euler] {
+            let integration = Integration { method, substeps: 1 };
+            let columns = free.iter().map(|f| f.column).collect();
+            let fit = Fit { integration, runs: &runs, free: &free, columns, prior: &prior, effort: REFIT };
+            let [with, without] = [true, false].map(|d| fit.at(m.clone(), noise(), d));
+            assert_eq!(with.value, without.value);
+            assert_eq!((with.sums.used, with.sums.outliers), (without.sums.used, without.sums.outliers));
+            let later = fit.differentiated(without);
+            assert!(later.differentiated && later.sums.evidence.total.score == with.sums.evidence.total.score);
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The estimate of the noise by maximum likelihood on linearised runs, and a first guess of it from the recordings alone.
 //! The ship's parameters are held: they are estimated elsewhere, in turn with the noise.
 
-use super::covariance::{Discrete, Z, initial, predict};
+use super::covariance::{Discrete, Z, correct, initial, predict, sum_of_rows};
 use super::filter::{Tangent, boost};
 use super::noise::{GROUP_OF, NOISE_PARAMETERS, Noise, NoisePrior, NoiseScore, SensorNoise};
 use super::optimise::{Outcome, Proposal};
@@ -21,48 +21,128 @@ struct Innovation<S> {
     variance: S,
 }
 
-/// Innovations of one run under the linearised step maps, for a noise or for eight at once: a Kalman filter without
+/// The linearised step maps and the measurements that a filter passes over: those of one run for four noises, or of four runs for
+/// one noise each.
+trait Linearised {
+    /// Samples of the longest run.
+    fn samples(&self) -> usize;
+    /// Where the filter starts.
+    fn start(&self) -> [Lanes; STATES];
+    /// A measurement less what its sensor adds to the state, and 1 where there is one; `None` without any.
+    fn measured(&self, sample: usize, channel: usize) -> Option<(Lanes, Lanes)>;
+    /// The step from a sample to the next.
+    fn step(&self, sample: usize) -> Step;
+}
+
+/// A linearised step, with the factor on what the unknown force gains in it.
+struct Step {
+    state: [Lanes; STATES],
+    image: [Lanes; STATES],
+    a: [[Lanes; STATES]; STATES],
+    gamma: [[Lanes; 3]; STATES],
+    boost: Lanes,
+}
+
+/// A run with its step maps, the same in every lane.
+struct One<'a>(&'a Run, &'a Tangent);
+
+impl Linearised for One<'_> {
+    fn samples(&self) -> usize {
+        self.0.measured.len()
+    }
+    fn start(&self) -> [Lanes; STATES] {
+        self.0.initial.map(Lanes::from_f64)
+    }
+    #[inline(always)]
+    fn measured(&self, sample: usize, channel: usize) -> Option<(Lanes, Lanes)> {
+        let y = self.0.measured[sample][channel]?;
+        Some((Lanes::from_f64(y - self.1.offset[sample][channel]), Lanes::one()))
+    }
+    #[inline(always)]
+    fn step(&self, sample: usize) -> Step {
+        let lift = Lanes::from_f64;
+        let Self(run, tangent) = self;
+        Step {
+            state: tangent.state[sample].map(lift),
+            image: tangent.image[sample].map(lift),
+            a: tangent.a[sample].map(|row| row.map(lift)),
+            gamma: tangent.gamma[sample].map(|row| row.map(lift)),
+            boost: lift(boost(run, sample)),
+        }
+    }
+}
+
+/// Up to four runs with their step maps, one a lane; what a run does not have is 0.
+struct Four<'a>(&'a [(&'a Run, &'a Tangent)]);
+
+impl Four<'_> {
+    fn gather(&self, of: impl Fn(&Run, &Tangent) -> Option<f64>) -> Lanes {
+        Lanes::from_fn(|lane| self.0.get(lane).and_then(|(run, tangent)| of(run, tangent)).unwrap_or(0.0))
+    }
+}
+
+impl Linearised for Four<'_> {
+    fn samples(&self) -> usize {
+        self.0.iter().map(|(run, _)| run.measured.len()).max().unwrap_or(0)
+    }
+    fn start(&self) -> [Lanes; STATES] {
+        std::array::from_fn(|i| self.gather(|run, _| Some(run.initial[i])))
+    }
+    fn measured(&self, sample: usize, channel: usize) -> Option<(Lanes, Lanes)> {
+        let has = |run: &Run| run.measured.get(sample).and_then(|m| m[channel]);
+        let error = self.gather(|run, t| Some(has(run)? - t.offset[sample][channel]));
+        let some = self.0.iter().any(|(run, _)| has(run).is_some());
+        some.then(|| (error, self.gather(|run, _| has(run).map(|_| 1.0))))
+    }
+    fn step(&self, sample: usize) -> Step {
+        Step {
+            state: std::array::from_fn(|i| self.gather(|_, t| Some(t.state.get(sample)?[i]))),
+            image: std::array::from_fn(|i| self.gather(|_, t| Some(t.image.get(sample)?[i]))),
+            a: std::array::from_fn(|i| std::array::from_fn(|l| self.gather(|_, t| Some(t.a.get(sample)?[i][l])))),
+            gamma: std::array::from_fn(|i| {
+                std::array::from_fn(|l| self.gather(|_, t| Some(t.gamma.get(sample)?[i][l])))
+            }),
+            boost: self.gather(|run, _| Some(boost(run, sample))),
+        }
+    }
+}
+
+/// Innovations under the linearised step maps, each with a flag by lane, 1 where the lane has one: a Kalman filter without
 /// sensitivities. What lies beyond `gate` standard deviations is an outlier, from which the filter learns nothing.
-fn innovations<S: Scalar>(
-    run: &Run,
-    tangent: &Tangent,
-    noise: &Discrete<S>,
+fn innovations<L: Linearised>(
+    along: &L,
+    noise: &Discrete<Lanes>,
     model: &Model,
     gate: f64,
-) -> Vec<Innovation<S>> {
-    let mut out = Vec::with_capacity(run.measured.len() * STATES);
-    let gate = S::from_f64(gate * gate);
-    let mut z = [S::zero(); Z];
-    (0..STATES).for_each(|i| z[i] = S::from_f64(run.initial[i]));
+    mut take: impl FnMut(Innovation<Lanes>, Lanes),
+) {
+    let gate = Lanes::from_f64(gate * gate);
+    let mut z = [Lanes::zero(); Z];
+    z[..STATES].copy_from_slice(&along.start());
     let mut p = initial(noise, model);
-    for k in 0..run.measured.len() {
+    let samples = along.samples();
+    for k in 0..samples {
         for j in 0..STATES {
-            let Some(y) = run.measured[k][j] else { continue };
-            let mut error = -(z[j] + z[9 + j]) + (y - tangent.offset[k][j]);
+            let Some((y, present)) = along.measured(k, j) else { continue };
+            let mut error = -(z[j] + z[9 + j]) + y;
             if j == 2 {
                 error = trimtab_ad::smooth::wrap_angle(error);
             }
-            let ph: [S; Z] = std::array::from_fn(|i| p[j][i] + p[9 + j][i]);
+            let ph = sum_of_rows(&p, j, 9 + j);
             let variance = noise.white[j] + ph[j] + ph[9 + j];
             let outlier = (gate * variance).less(error * error);
-            let inverse = S::select(outlier, S::zero(), S::one() / variance);
-            for i in 0..Z {
-                let gain = ph[i] * inverse;
-                z[i] += gain * error;
-                for l in 0..=i {
-                    p[i][l] -= gain * ph[l];
-                    p[l][i] = p[i][l];
-                }
-            }
-            out.push(Innovation { error, variance });
+            let inverse = Lanes::select(outlier, Lanes::zero(), present / variance);
+            let gain = ph.map(|ph| ph * inverse);
+            (0..Z).for_each(|i| z[i] += gain[i] * error);
+            correct(&mut p, &gain, &ph);
+            take(Innovation { error, variance }, present);
         }
-        if k + 1 == run.measured.len() {
-            break;
+        if k + 1 < samples {
+            let step = along.step(k);
+            z = move_mean(&z, &step, noise);
+            predict(&mut p, &step.a, &step.gamma, noise, step.boost);
         }
-        z = move_mean(&z, tangent, k, noise);
-        predict(&mut p, &tangent.a[k], &tangent.gamma[k], noise, boost(run, k));
     }
-    out
 }
 
 /// Log-likelihood of innovations: an outlier counts as if it were at the gate.
@@ -72,15 +152,15 @@ fn log_likelihood(innovations: &[Innovation<f64>], gate: f64) -> f64 {
 }
 
 /// The mean one sample later under the linearised step map.
-fn move_mean<S: Scalar>(z: &[S; Z], tangent: &Tangent, k: usize, noise: &Discrete<S>) -> [S; Z] {
-    let mut next = [S::zero(); Z];
+fn move_mean(z: &[Lanes; Z], step: &Step, noise: &Discrete<Lanes>) -> [Lanes; Z] {
+    let mut next = [Lanes::zero(); Z];
     for i in 0..STATES {
-        next[i] = S::from_f64(tangent.image[k][i]);
+        next[i] = step.image[i];
         for l in 0..STATES {
-            next[i] += (z[l] - tangent.state[k][l]) * tangent.a[k][i][l];
+            next[i] += (z[l] - step.state[l]) * step.a[i][l];
         }
         for l in 0..3 {
-            next[i] += z[6 + l] * tangent.gamma[k][i][l];
+            next[i] += z[6 + l] * step.gamma[i][l];
         }
     }
     for i in 0..3 {
@@ -96,25 +176,34 @@ fn move_mean<S: Scalar>(z: &[S; Z], tangent: &Tangent, k: usize, noise: &Discret
 /// `g_i = sum (e^2/s - 1) s_i / (2 s) - e e_i / s`, `H_ij = sum s_i s_j / (2 s^2) + e_i e_j / s`, with `e_i`, `s_i` the
 /// derivatives of innovation and variance (Gupta & Mehra 1974, IEEE Trans. Autom. Control 19). Outliers have no part in it.
 fn noise_score(at: &[Innovation<f64>], nudged: &[Vec<Innovation<Lanes>>; BLOCKS], gate: f64) -> NoiseScore {
-    let (mut score, mut information) = (SVector::<f64, N>::zeros(), SMatrix::<f64, N, N>::zeros());
+    let root = std::f64::consts::FRAC_1_SQRT_2;
+    let mut score = [Lanes::zero(); BLOCKS];
+    // The lower triangle, four columns side by side.
+    let mut information = [[Lanes::zero(); BLOCKS]; N];
     for (m, Innovation { error, variance }) in at.iter().enumerate() {
         let square = error * error / variance;
         if square > gate * gate {
             continue;
         }
-        let slope = |of: fn(&Innovation<Lanes>) -> Lanes, from: f64, unit: f64| {
-            let blocks: [[f64; Lanes::LANES]; BLOCKS] =
-                std::array::from_fn(|b| ((of(&nudged[b][m]) - from) * (unit / NUDGE)).to_array());
-            SVector::<f64, N>::from_fn(|i, _| blocks[i / Lanes::LANES][i % Lanes::LANES])
-        };
         // In units of the standard deviation, and of the variance times the square root of 2.
-        let errors = slope(|i| i.error, *error, 1.0 / variance.sqrt());
-        let variances = slope(|i| i.variance, *variance, std::f64::consts::FRAC_1_SQRT_2 / variance);
-        score += variances * ((square - 1.0) * std::f64::consts::FRAC_1_SQRT_2) - errors * (error / variance.sqrt());
-        information.ger(1.0, &errors, &errors, 1.0);
-        information.ger(1.0, &variances, &variances, 1.0);
+        let sigma = variance.sqrt();
+        let slope = |value: Lanes, from: f64, unit: f64| (value - from) * (unit / NUDGE);
+        let errors: [Lanes; BLOCKS] = std::array::from_fn(|b| slope(nudged[b][m].error, *error, 1.0 / sigma));
+        let variances: [Lanes; BLOCKS] =
+            std::array::from_fn(|b| slope(nudged[b][m].variance, *variance, root / variance));
+        for b in 0..BLOCKS {
+            score[b] += variances[b] * ((square - 1.0) * root) - errors[b] * (error / sigma);
+            let (own_errors, own_variances) = (errors[b].to_array(), variances[b].to_array());
+            for lane in 0..Lanes::LANES {
+                let (e, s) = (Lanes::from_f64(own_errors[lane]), Lanes::from_f64(own_variances[lane]));
+                for (c, sum) in information[b * Lanes::LANES + lane][..=b].iter_mut().enumerate() {
+                    *sum = *sum + e * errors[c] + s * variances[c];
+                }
+            }
+        }
     }
-    (score, information)
+    let in_lane = |of: &[Lanes; BLOCKS], i: usize| of[i / Lanes::LANES].lane(i % Lanes::LANES);
+    (SVector::from_fn(|i, _| in_lane(&score, i)), SMatrix::from_fn(|i, j| in_lane(&information[i.max(j)], i.min(j))))
 }
 
 /// How far the logarithms are nudged for derivatives.
@@ -175,11 +264,24 @@ struct NoiseFit<'a> {
 }
 
 impl NoiseFit<'_> {
-    /// Innovations of every run.
+    /// Innovations of every run, four runs at a time.
     fn innovations(&self, v: &[f64; N]) -> Vec<Vec<Innovation<f64>>> {
         let noise = Noise::from_log(v);
-        let one = |(r, t): (&&Run, &&Tangent)| innovations(r, t, &Discrete::new(&noise, r.dt), self.model, self.gate);
-        self.runs.par_iter().zip(self.tangents.par_iter()).map(one).collect()
+        let linearised: Vec<(&Run, &Tangent)> = self.runs.iter().copied().zip(self.tangents.iter().copied()).collect();
+        let of = |runs: &[(&Run, &Tangent)]| {
+            let dt = |lane: usize| runs[lane.min(runs.len() - 1)].0.dt;
+            let noise = Discrete::side_by_side(&std::array::from_fn(|lane| Discrete::new(&noise, dt(lane))));
+            let room = |(run, _): &(&Run, &Tangent)| Vec::with_capacity(run.measured.len() * STATES);
+            let mut out: Vec<Vec<Innovation<f64>>> = runs.iter().map(room).collect();
+            innovations(&Four(runs), &noise, self.model, self.gate, |Innovation { error, variance }, present| {
+                for (lane, out) in out.iter_mut().enumerate().filter(|(lane, _)| present.lane(*lane) > 0.0) {
+                    out.push(Innovation { error: error.lane(lane), variance: variance.lane(lane) });
+                }
+            });
+            out
+        };
+        let together: Vec<_> = linearised.par_chunks(Lanes::LANES).map(of).collect();
+        together.into_iter().flatten().collect()
     }
 
     /// Log-likelihood of innovations plus log-prior.
@@ -197,7 +299,10 @@ impl NoiseFit<'_> {
         let one = |((r, t), i): ((&&Run, &&Tangent), &Vec<Innovation<f64>>)| {
             let blocks = std::array::from_fn(|block| {
                 let some = std::array::from_fn(|lane| Discrete::new(&nudged[block * Lanes::LANES + lane], r.dt));
-                innovations(r, t, &Discrete::side_by_side(&some), self.model, self.gate)
+                let mut out = Vec::with_capacity(i.len());
+                let noises = Discrete::side_by_side(&some);
+                innovations(&One(r, t), &noises, self.model, self.gate, |innovation, _| out.push(innovation));
+                out
             });
             noise_score(i, &blocks, self.gate)
         };
@@ -269,6 +374,35 @@ mod tests {
 
     fn linearised(runs: &[Run]) -> Vec<Pass> {
         passes(&model(), RK4, &[], runs, &noise(), true)
+    }
+
+    #[test]
+    fn runs_side_by_side_have_the_innovations_that_each_has_alone() {
+        let (model, prior) = (model(), NoisePrior::around(&noise()));
+        let mut runs = runs(&model, 5);
+        runs[1].measured.truncate(40);
+        runs[2].dt = 1.5;
+        runs[2].measured.iter_mut().step_by(3).for_each(|m| m[4] = None);
+        runs[3].measured[7][3] = Some(90.0);
+        runs[3].disturbed.push((10, 14));
+        let passes = linearised(&runs);
+        let tangents: Vec<&Tangent> = passes.iter().filter_map(|p| p.tangent.as_ref()).collect();
+        let runs: Vec<&Run> = runs.iter().collect();
+        let of = |runs: &[&Run], tangents: &[&Tangent]| {
+            let fit = NoiseFit { runs, tangents, model: &model, prior: &prior, gate: GATE };
+            fit.innovations(&noise().to_log())
+        };
+        let together = of(&runs, &tangents);
+        for i in 0..runs.len() {
+            let alone = &of(&runs[i..=i], &tangents[i..=i])[0];
+            assert_eq!(together[i].len(), runs[i].measured.iter().flatten().flatten().count());
+            let same = |(a, b): (&Innovation<f64>, &Innovation<f64>)| (a.error, a.variance) == (b.error, b.variance);
+            assert!(together[i].len() == alone.len() && together[i].iter().zip(alone).all(same), "{i}");
+            // The linearised filter is the filter itself along its own path.
+            let sizes = together[i].iter().map(|i| i.error / i.variance.sqrt());
+            let filtered = passes[i].innovations.iter().flatten().filter(|e| !e.is_nan());
+            assert!(sizes.zip(filtered).all(|(a, b)| (a - b).abs() < 1e-6 * b.abs().max(1.0)), "{i}");
+        }
     }
 
     #[test]

@@ -103,6 +103,8 @@ pub struct Wanted<'a> {
     pub gains: bool,
     /// Use these gains, run by run, instead of computing them.
     pub frozen: Option<&'a [Gains]>,
+    /// Leave out what is kept by sample: innovations, filtered states and the unknown force's standard deviations.
+    pub sums_only: bool,
     /// Differentiate the parameters through every stage of the step, instead of by the trapezoidal rule over it.
     pub exact: bool,
 }

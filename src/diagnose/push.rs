@@ -151,10 +151,9 @@ type Place = (usize, usize, usize);
 /// of them have it, in any of their spans, than when none has.
 fn chosen(blocks: &[Blocks], force: &Vector3<f64>) -> (Vec<Place>, f64) {
     let mut spans = Vec::new();
-    let mut statistic = 0.0;
+    let (mut statistic, mut gains) = (0.0, Vec::new());
     for (index, b) in blocks.iter().enumerate() {
-        let gains: Vec<(usize, usize, f64)> =
-            b.local_spans().map(|(from, to)| (from, to, b.gain(from, to, force))).collect();
+        b.local_gains(force, &mut gains);
         let Some((from, to, most)) = gains.iter().copied().max_by(|a, b| a.2.total_cmp(&b.2)) else { continue };
         let mean = gains.iter().map(|g| (g.2 - most).exp()).sum::<f64>() / gains.len() as f64;
         let (with, without) = ((PUSH_PRIOR * mean).ln() + most, (1.0 - PUSH_PRIOR).ln());

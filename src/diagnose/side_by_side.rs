@@ -1,11 +1,11 @@
 //! The filter over a few runs of one sample period side by side: correction by the measurements, sensitivities, prediction.
 //! What a step or a column does to the ship is computed elsewhere; how runs are put together is the filter's affair.
 
-use super::covariance::{Discrete, Square, Z, initial, predict};
+use super::covariance::{self, Discrete, Square, Z, initial, predict, row, sum_of_rows};
 use super::directions::{Directions, Prepared};
 use super::noise::Noise;
 use super::pass::{GATE, Gains, Pass, Tangent, Wanted, boost};
-use super::step_map::{Jacobians, Slope, carry, exact, none, slope_at};
+use super::step_map::{Jacobians, Slope, carry, exact, no_slope, none, slope_at};
 use crate::recording::Run;
 use crate::sensitivity::chain::StateSlope;
 use crate::sensitivity::local::side_by_side;
@@ -34,6 +34,35 @@ struct Correction<P> {
     all: [bool; STATES],
 }
 
+impl<P: Plain> Correction<P> {
+    /// By no measurement, of sensors that report the state.
+    fn none() -> Self {
+        let (zero, one) = (P::zero(), P::one());
+        Self {
+            error: [zero; STATES],
+            inverse: [zero; STATES],
+            gain: [[zero; Z]; STATES],
+            report: std::array::from_fn(|i| std::array::from_fn(|j| if i == j { one } else { zero })),
+            sensed: Vec::new(),
+            some: [false; STATES],
+            all: [false; STATES],
+        }
+    }
+}
+
+/// The forces of a basis at a sample, and the columns that they have begun to move: those before their first force are zero and are
+/// not carried.
+struct Basis<P> {
+    /// The column of each force that has begun, in the order in which they begin.
+    begun: Vec<usize>,
+    /// Whether a force has begun.
+    has_begun: Vec<bool>,
+    /// The forces by lane.
+    forces: Vec<Vec<[f64; 3]>>,
+    /// The forces that have begun, X, Y, N over lanes.
+    side_by_side: Vec<[P; 3]>,
+}
+
 /// The filter under way.
 struct Filtering<'f, P: Plain> {
     runs: &'f Together<'f>,
@@ -46,10 +75,15 @@ struct Filtering<'f, P: Plain> {
     smooth: bool,
     mean: [P; Z],
     covariance: Square<P>,
-    /// The Jacobian of the rates at the last sample, where it is carried.
-    slope: Slope<P>,
-    /// Derivatives of the mean by column.
+    /// The Jacobian of the rates at the last sample, where it is carried, and room for the next.
+    ends: Box<[Slope<P>; 2]>,
+    /// Which of the two is that of the last sample.
+    last: usize,
+    /// The Jacobians of the last step.
+    jacobians: Jacobians<P>,
+    /// Derivatives of the mean by column: by the parameters, then by the forces of the basis that have begun.
     slopes: Vec<[P; Z]>,
+    basis: Basis<P>,
     /// The columns' part in the accelerations at the start and at the end of a step.
     rates: [Vec<[P; 3]>; 2],
     room: Vec<[P; 3]>,
@@ -68,8 +102,9 @@ pub(super) fn passes<P: Plain>(directions: &Directions, runs: &Together, noise: 
         return Vec::new();
     }
     let mut filtering = Filtering::<P>::new(directions, runs, noise, wanted, samples);
+    let mut correction = Correction::none();
     for k in 0..samples {
-        let correction = filtering.correct(k);
+        filtering.correct(k, &mut correction);
         filtering.learn(&correction);
         filtering.record(k);
         if k + 1 < samples {
@@ -115,26 +150,30 @@ impl<'f, P: Plain> Filtering<'f, P> {
         let mut mean = [P::zero(); Z];
         mean[..STATES].copy_from_slice(&state);
         let parameters = directions.len();
-        let width = parameters + wanted.basis.map_or(0, |(n, _)| n);
+        let forces = wanted.basis.map_or(0, |(n, _)| n);
         let calm = [P::zero(); 3];
-        let (slope, local) = slope_at(&prepared.dynamics, &state, &calm, &prepared.series[0]);
-        let mut rates = [vec![calm; width], vec![calm; width]];
+        let mut ends = Box::new([no_slope(); 2]);
+        let local = slope_at(&prepared.dynamics, &state, &calm, &prepared.series[0], &mut ends[0]);
+        let mut rates = [vec![calm; parameters], vec![calm; parameters]];
         let mut room = Vec::new();
         if parameters > 0 && !wanted.exact {
             prepared.rates(&local, 0, &state, &calm, &mut room, &mut rates[0]);
         }
+        let kept = |run: &Run| if wanted.sums_only { 0 } else { run.measured.len() };
         let pass = |(_, run): &(usize, &Run)| Pass {
             log_likelihood: 0.0,
             used: 0,
             outliers: 0,
             score: DVector::zeros(0),
             information: DMatrix::zeros(0, 0),
-            innovations: Vec::with_capacity(run.measured.len()),
-            filtered: Vec::with_capacity(run.measured.len()),
-            force_sd: Vec::with_capacity(run.measured.len()),
+            innovations: Vec::with_capacity(kept(run)),
+            filtered: Vec::with_capacity(kept(run)),
+            force_sd: Vec::with_capacity(kept(run)),
             tangent: wanted.tangent.then(Tangent::default),
             gains: wanted.gains.then(Gains::default),
         };
+        let mut information = Products::new(parameters + forces);
+        information.begin(parameters);
         Self {
             runs,
             wanted,
@@ -145,12 +184,15 @@ impl<'f, P: Plain> Filtering<'f, P> {
             mean,
             covariance: initial(&noise, directions.model),
             noise,
-            slope,
-            slopes: vec![[P::zero(); Z]; width],
+            ends,
+            last: 0,
+            jacobians: none(),
+            slopes: vec![[P::zero(); Z]; parameters],
+            basis: Basis::new(forces),
             rates,
             room,
-            score: vec![P::zero(); width],
-            information: Products::new(width),
+            score: vec![P::zero(); parameters],
+            information,
             log_likelihood: P::zero(),
             used: P::zero(),
             outliers: P::zero(),
@@ -174,43 +216,41 @@ impl<'f, P: Plain> Filtering<'f, P> {
     }
 
     /// Corrects mean and covariance by the measurements of a sample, channel after channel.
-    fn correct(&mut self, k: usize) -> Correction<P> {
+    fn correct(&mut self, k: usize, out: &mut Correction<P>) {
         let (zero, one) = (P::zero(), P::one());
         let reference = self.state();
-        let (report, h) = self.prepared.report(&reference, self.instant(k));
+        let mut report = reference;
         let senses = self.directions.senses;
-        let mut out = Correction {
-            error: [zero; STATES],
-            inverse: [zero; STATES],
-            gain: [[zero; Z]; STATES],
-            report: h,
-            sensed: self.prepared.sensed(&reference, self.instant(k)),
-            some: [false; STATES],
-            all: [false; STATES],
-        };
+        if senses {
+            (report, out.report) = self.prepared.report(&reference, self.instant(k));
+        }
+        out.sensed = self.prepared.sensed(&reference, self.instant(k));
         let mut innovation = [P::from_f64(f64::NAN); STATES];
         let mut variance = innovation;
         for j in 0..STATES {
             let measured = |lane: usize| self.runs.get(lane).and_then(|(_, run)| run.measured.get(k)?[j]);
             let mut present = P::gather(|lane| f64::from(u8::from(measured(lane).is_some())));
+            (out.some[j], out.all[j]) = (false, false);
             if (0..P::WIDTH).all(|lane| present.in_lane(lane) == 0.0) {
+                (out.error[j], out.inverse[j], out.gain[j]) = (zero, zero, [zero; Z]);
                 continue;
             }
             // The state through the report, and this channel's coloured noise.
-            let moved = along(senses, &h, j, |l| self.mean[l] - reference[l]);
+            let moved = along(senses, &out.report, j, |l| self.mean[l] - reference[l]);
             let predicted = report[j] + self.mean[9 + j] + moved;
             let mut error = P::gather(|lane| measured(lane).unwrap_or(0.0)) - predicted;
             if j == 2 {
                 error = trimtab_ad::smooth::wrap_angle(error);
             }
-            let p = &self.covariance;
-            let ph: [P; Z] = std::array::from_fn(|i| p[i][9 + j] + along(senses, &h, j, |l| p[i][l]));
-            let mut s = self.noise.white[j] + ph[9 + j] + along(senses, &h, j, |l| ph[l]);
-            if let Some(frozen) = self.wanted.frozen {
-                s = self.given(frozen, |g| Some(g.variance.get(k)?[j]));
-                present *= P::gather(|lane| f64::from(u8::from(s.in_lane(lane).is_finite())));
-            }
-            s = P::select(zero.less(present), s, one);
+            let (ph, s) = if let Some(frozen) = self.wanted.frozen {
+                let given = self.given(frozen, |g| Some(g.variance.get(k)?[j]));
+                present *= P::gather(|lane| f64::from(u8::from(given.in_lane(lane).is_finite())));
+                ([zero; Z], given)
+            } else {
+                let ph = self.covariance_with(j, &out.report);
+                (ph, self.noise.white[j] + ph[9 + j] + along(senses, &out.report, j, |l| ph[l]))
+            };
+            let s = P::select(zero.less(present), s, one);
             let sigma = s.sqrt();
             innovation[j] = P::select(zero.less(present), error / sigma, innovation[j]);
             let gate = if self.wanted.frozen.is_none() { GATE } else { f64::INFINITY };
@@ -225,11 +265,26 @@ impl<'f, P: Plain> Filtering<'f, P> {
             variance[j] = P::select(zero.less(used), s, variance[j]);
             out.some[j] = true;
             out.all[j] = (0..P::WIDTH).all(|lane| used.in_lane(lane) > 0.0);
-            self.apply(k, j, &ph, used, &mut out);
+            self.apply(k, j, &ph, used, out);
         }
         let offset = std::array::from_fn(|j| report[j] - reference[j]);
-        self.note(k, &innovation, &variance, &offset, &out);
-        out
+        self.note(k, &innovation, &variance, &offset, out);
+    }
+
+    /// The covariance of the filter state with what a channel reports.
+    #[inline(always)]
+    fn covariance_with(&self, channel: usize, report: &[[P; STATES]; STATES]) -> [P; Z] {
+        let p = &self.covariance;
+        if !self.directions.senses {
+            return sum_of_rows(p, channel, 9 + channel);
+        }
+        let mut sum = [P::zero(); Z];
+        for (l, factor) in report[channel].iter().enumerate() {
+            let of_state = row(p, l);
+            (0..Z).for_each(|i| sum[i] = of_state[i].mul_add(*factor, sum[i]));
+        }
+        let coloured = row(p, 9 + channel);
+        std::array::from_fn(|i| coloured[i] + sum[i])
     }
 
     /// Notes what the measurements of a sample brought: standardised innovations, their variances, and what the sensors report beside
@@ -246,7 +301,9 @@ impl<'f, P: Plain> Filtering<'f, P> {
             if k >= run.measured.len() {
                 continue;
             }
-            pass.innovations.push(innovation.map(|e| e.in_lane(lane)));
+            if !self.wanted.sums_only {
+                pass.innovations.push(innovation.map(|e| e.in_lane(lane)));
+            }
             if let Some(t) = &mut pass.tangent {
                 t.offset.push(offset.map(|o| o.in_lane(lane)));
             }
@@ -266,12 +323,9 @@ impl<'f, P: Plain> Filtering<'f, P> {
             };
             out.gain[j][i] = gain;
             self.mean[i] += gain * out.error[j];
-            if self.wanted.frozen.is_none() {
-                for l in 0..=i {
-                    self.covariance[i][l] -= gain * ph[l];
-                    self.covariance[l][i] = self.covariance[i][l];
-                }
-            }
+        }
+        if self.wanted.frozen.is_none() {
+            covariance::correct(&mut self.covariance, &out.gain[j], ph);
         }
     }
 
@@ -313,6 +367,9 @@ impl<'f, P: Plain> Filtering<'f, P> {
 
     /// Notes the filtered state of a sample.
     fn record(&mut self, k: usize) {
+        if self.wanted.sums_only {
+            return;
+        }
         for (lane, ((_, run), pass)) in self.runs.iter().zip(&mut self.passes).enumerate() {
             if k < run.measured.len() {
                 pass.filtered.push(self.mean.map(|z| z.in_lane(lane)));
@@ -329,8 +386,8 @@ impl<'f, P: Plain> Filtering<'f, P> {
         let force = Force { x: push[0], y: push[1], n: push[2] };
         let Prepared { dynamics, series, .. } = &self.prepared;
         let image = step(dynamics, integration, self.dt, &state, &series[from..], &force);
-        let jacobians = self.carry_slopes(k, &state, &push, &image);
-        let (a, gamma) = &jacobians;
+        self.carry_slopes(k, &state, &push, &image);
+        let (a, gamma) = &self.jacobians;
         for (lane, ((_, run), pass)) in self.runs.iter().zip(&mut self.passes).enumerate() {
             let (true, Some(t)) = (k + 1 < run.measured.len(), &mut pass.tangent) else { continue };
             let pushed = |i: usize| gamma[i][0] * push[0] + gamma[i][1] * push[1] + gamma[i][2] * push[2];
@@ -348,98 +405,139 @@ impl<'f, P: Plain> Filtering<'f, P> {
         }
     }
 
-    /// Carries the sensitivities over a step to `image`, and gives its Jacobians.
-    fn carry_slopes(&mut self, k: usize, state: &[P; STATES], push: &[P; 3], image: &[P; STATES]) -> Jacobians<P> {
+    /// Carries the sensitivities over a step to `image`, and keeps its Jacobians.
+    fn carry_slopes(&mut self, k: usize, state: &[P; STATES], push: &[P; 3], image: &[P; STATES]) {
         let (from, later) = (self.instant(k), self.instant(k + 1));
-        let (width, parameters) = (self.slopes.len(), self.directions.len());
-        let dynamics = &self.prepared.dynamics;
-        if self.wanted.frozen.is_some() && width == 0 && !self.wanted.tangent {
-            return none();
+        let parameters = self.directions.len();
+        let any = parameters > 0 || self.wanted.basis.is_some();
+        if self.wanted.frozen.is_some() && !any && !self.wanted.tangent {
+            return;
         }
+        let Prepared { dynamics, series, .. } = &self.prepared;
         let faded = push.map(|w| w * self.noise.fade);
         let mut through: Vec<StateSlope<P>> = Vec::new();
+        let next = 1 - self.last;
         let mut end = None;
-        let jacobians = if self.smooth {
-            let (slope, local) = slope_at(dynamics, image, &faded, &self.prepared.series[later]);
-            end = Some(local);
-            let start = std::mem::replace(&mut self.slope, slope);
-            carry(&start, &self.slope, self.dt)
+        if self.smooth {
+            end = Some(slope_at(dynamics, image, &faded, &series[later], &mut self.ends[next]));
+            carry(&self.ends[self.last], &self.ends[next], self.dt, &mut self.jacobians);
+            self.last = next;
         } else {
             through.resize(if self.wanted.exact { parameters } else { 0 }, [P::zero(); STATES]);
-            exact(&self.prepared, self.directions.integration, self.dt, from, state, push, &mut through)
-        };
-        if width == 0 {
-            return jacobians;
+            let integration = self.directions.integration;
+            self.jacobians = exact(&self.prepared, integration, self.dt, from, state, push, &mut through);
+        }
+        if !any {
+            return;
         }
         if through.is_empty() && parameters > 0 {
             // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any predictable
             // sensitivity leaves the score unbiased, so that this costs no more than a little power.
-            let local = end.unwrap_or_else(|| slope_at(dynamics, image, &faded, &self.prepared.series[later]).1);
-            self.prepared.rates(&local, later, image, &faded, &mut self.room, &mut self.rates[1]);
+            let ends = &mut self.ends;
+            let local = end.get_or_insert_with(|| slope_at(dynamics, image, &faded, &series[later], &mut ends[next]));
+            self.prepared.rates(local, later, image, &faded, &mut self.room, &mut self.rates[1]);
         }
-        let forces = self.forces(k, state);
+        self.push(k, state);
+        self.move_slopes(&through);
+        self.rates.swap(0, 1);
+    }
+
+    /// Moves the derivatives of the mean over a step by its Jacobians, with the columns' own part in it: `through` the parameters'
+    /// where it is not empty, and else by the rates at the ends.
+    fn move_slopes(&mut self, through: &[StateSlope<P>]) {
         let half = P::from_f64(0.5 * self.dt);
-        let (a, gamma) = &jacobians;
+        let (a, gamma) = &self.jacobians;
+        let parameters = self.directions.len();
         for (c, slope) in self.slopes.iter_mut().enumerate() {
-            let mut d = *slope;
+            // Of heading, velocities and unknown force; the position moves nothing but itself.
+            let mut d: [P; 7] = std::array::from_fn(|l| slope[2 + l]);
             let mut next = [P::zero(); STATES];
-            if let Some(force) = c.checked_sub(parameters).map(|c| forces[c]) {
-                (0..3).for_each(|l| d[6 + l] += force[l]);
+            if let Some(force) = c.checked_sub(parameters).map(|c| self.basis.side_by_side[c]) {
+                (0..3).for_each(|l| d[4 + l] += force[l]);
             } else if let Some(own) = through.get(c) {
                 next = *own;
             } else {
-                (0..3).for_each(|l| d[3 + l] = half.mul_add(self.rates[0][c][l], d[3 + l]));
+                (0..3).for_each(|l| d[1 + l] = half.mul_add(self.rates[0][c][l], d[1 + l]));
                 (0..3).for_each(|l| next[3 + l] = half * self.rates[1][c][l]);
             }
             for i in 0..STATES {
-                let mut sum = if i < 2 { next[i] + d[i] } else { next[i] };
-                for l in 2..STATES {
-                    sum = a[i][l].mul_add(d[l], sum);
-                }
-                for l in 0..3 {
-                    sum = gamma[i][l].mul_add(d[6 + l], sum);
-                }
-                next[i] = sum;
+                let mut sum = if i < 2 { next[i] + slope[i] } else { next[i] };
+                (0..4).for_each(|l| sum = a[i][2 + l].mul_add(d[l], sum));
+                (0..3).for_each(|l| sum = gamma[i][l].mul_add(d[4 + l], sum));
+                slope[i] = sum;
             }
-            for l in 6..Z {
-                let fade = if l < 9 { self.noise.fade } else { self.noise.rho[l - 9] };
-                d[l] = slope[l] * fade;
-            }
-            d[..STATES].copy_from_slice(&next);
-            *slope = d;
+            (6..9).for_each(|l| slope[l] *= self.noise.fade);
+            (9..Z).for_each(|l| slope[l] *= self.noise.rho[l - 9]);
         }
-        self.rates.swap(0, 1);
-        jacobians
     }
 
-    /// The forces of the basis at a sample.
-    fn forces(&self, k: usize, state: &[P; STATES]) -> Vec<[P; 3]> {
-        let Some((count, basis)) = self.wanted.basis else { return Vec::new() };
-        let now = &self.prepared.series[self.instant(k)];
-        let mut lanes = vec![Vec::new(); P::WIDTH];
-        for (lane, (forces, (index, run))) in lanes.iter_mut().zip(self.runs).enumerate() {
-            if k >= run.measured.len() {
-                continue;
+    /// Evaluates the forces of the basis at a sample; those that act for the first time get a column.
+    fn push(&mut self, k: usize, state: &[P; STATES]) {
+        let Some((_, basis)) = self.wanted.basis else { return };
+        let now = &self.prepared.series[k * self.directions.integration.instants()];
+        for (lane, (forces, (index, run))) in self.basis.forces.iter_mut().zip(self.runs).enumerate() {
+            forces.clear();
+            if k < run.measured.len() {
+                let state = State::from_array(state.map(|x| x.in_lane(lane)));
+                basis((*index, k), &state, &now.map(|x| x.in_lane(lane)), forces);
             }
-            let state = State::from_array(state.map(|x| x.in_lane(lane)));
-            basis((*index, k), &state, &now.map(|x| x.in_lane(lane)), forces);
         }
-        let of = |c: usize, l: usize, lane: usize| lanes[lane].get(c).map_or(0.0, |f: &[f64; 3]| f[l]);
-        (0..count).map(|c| std::array::from_fn(|l| P::gather(|lane| of(c, l, lane)))).collect()
+        self.basis.begin();
+        let carried = self.directions.len() + self.basis.begun.len();
+        self.slopes.resize(carried, [P::zero(); Z]);
+        self.score.resize(carried, P::zero());
+        self.information.begin(carried);
     }
 
     /// The passes when the last sample is in.
     fn finish(mut self) -> Vec<Pass> {
         self.information.finish();
-        let width = self.slopes.len();
+        let parameters = self.directions.len();
+        let width = parameters + self.basis.has_begun.len();
+        let place = |c: usize| c.checked_sub(parameters).map_or(c, |c| parameters + self.basis.begun[c]);
         for (lane, pass) in self.passes.iter_mut().enumerate() {
             pass.log_likelihood = self.log_likelihood.in_lane(lane);
             pass.used = self.used.in_lane(lane) as usize;
             pass.outliers = self.outliers.in_lane(lane) as usize;
-            pass.score = DVector::from_iterator(width, self.score.iter().map(|g| g.in_lane(lane)));
-            pass.information =
-                DMatrix::from_fn(width, width, |i, j| self.information.get(i.max(j), i.min(j)).in_lane(lane));
+            pass.score = DVector::zeros(width);
+            pass.information = DMatrix::zeros(width, width);
+            self.score.iter().enumerate().for_each(|(c, g)| pass.score[place(c)] = g.in_lane(lane));
+        }
+        for i in 0..self.slopes.len() {
+            for j in 0..=i {
+                let (sums, at) = (self.information.get(i, j), (place(i), place(j)));
+                for (lane, pass) in self.passes.iter_mut().enumerate() {
+                    let sum = sums.in_lane(lane);
+                    (pass.information[at], pass.information[(at.1, at.0)]) = (sum, sum);
+                }
+            }
         }
         self.passes
+    }
+}
+
+impl<P: Plain> Basis<P> {
+    /// Of so many forces, none of which has acted.
+    fn new(count: usize) -> Self {
+        Self {
+            begun: Vec::new(),
+            has_begun: vec![false; count],
+            forces: vec![Vec::new(); P::WIDTH],
+            side_by_side: Vec::new(),
+        }
+    }
+
+    /// Puts the forces of a sample side by side, with a place for those that act for the first time.
+    fn begin(&mut self) {
+        let Self { begun, has_begun, forces, side_by_side } = self;
+        for (c, has_begun) in has_begun.iter_mut().enumerate().filter(|(_, has_begun)| !**has_begun) {
+            if forces.iter().any(|lane| lane.get(c).is_some_and(|force| *force != [0.0; 3])) {
+                *has_begun = true;
+                begun.push(c);
+            }
+        }
+        let of = |c: usize, l: usize, lane: usize| forces[lane].get(c).map_or(0.0, |force| force[l]);
+        side_by_side.clear();
+        side_by_side.extend(begun.iter().map(|c| std::array::from_fn(|l| P::gather(|lane| of(*c, l, lane)))));
     }
 }

@@ -10,7 +10,10 @@ use crate::simulate::{Integration, Method};
 use crate::state::{Force, Inputs, STATES};
 
 /// Jacobian of the six rates with respect to the six states and the three forces.
-pub(super) type Slope<P> = [[P; STATES + 3]; STATES];
+pub(super) type Slope<P> = [[P; W]; STATES];
+
+/// Columns of [`Slope`]: states and forces.
+const W: usize = STATES + 3;
 
 /// The Jacobians of a step by the state and by the force.
 pub(super) type Jacobians<P> = ([[P; STATES]; STATES], [[P; 3]; STATES]);
@@ -20,18 +23,25 @@ pub(super) fn none<P: Plain>() -> Jacobians<P> {
     ([[P::zero(); STATES]; STATES], [[P::zero(); 3]; STATES])
 }
 
-/// The Jacobian of the state's rates with respect to state and force, and the rates behind it.
+/// The Jacobian of rates that nothing changes.
+pub(super) fn no_slope<P: Plain>() -> Slope<P> {
+    [[P::zero(); W]; STATES]
+}
+
+/// Writes the Jacobian of the state's rates with respect to state and force into `slope`, whose entries that are zero at every state
+/// are left as they are; gives the rates behind it.
+#[inline(always)]
 pub(super) fn slope_at<P: Plain>(
     dynamics: &Dynamics<P>,
     state: &[P; STATES],
     push: &[P; 3],
     inputs: &Inputs<P>,
-) -> (Slope<P>, (Local<P>, Flow<P>)) {
+    slope: &mut Slope<P>,
+) -> (Local<P>, Flow<P>) {
     let force = Force { x: push[0], y: push[1], n: push[2] };
     let (local, flow) = P::linearise(dynamics, state, inputs, &force);
     let [sin, cos] = local.heading;
     let mobility = dynamics.mobility(&flow);
-    let mut slope = [[P::zero(); STATES + 3]; STATES];
     (slope[0][2], slope[0][3], slope[0][4]) = (-local.rates[1], cos, -sin);
     (slope[1][2], slope[1][3], slope[1][4]) = (local.rates[0], sin, cos);
     slope[2][5] = P::one();
@@ -41,43 +51,66 @@ pub(super) fn slope_at<P: Plain>(
     slope[3][6] = mobility.surge;
     (slope[4][7], slope[4][8]) = (mobility.sway, mobility.sway_yaw);
     (slope[5][7], slope[5][8]) = (mobility.yaw_sway, mobility.yaw);
-    (slope, (local, flow))
+    (local, flow)
+}
+
+/// The rate of `[d state / d state, d state / d force]` where it has reached `at`, for the Jacobian `j` of the rates. No rate depends
+/// on the position, that of the position on heading and velocities alone, and that of the heading is the yaw rate.
+#[inline(always)]
+fn rate<P: Plain>(j: &Slope<P>, at: &Slope<P>, out: &mut Slope<P>) {
+    for i in [0, 1, 3, 4, 5] {
+        let last = if i < 2 { 5 } else { STATES };
+        for c in 2..W {
+            let mut sum = P::zero();
+            (2..last).for_each(|l| sum = j[i][l].mul_add(at[l][c], sum));
+            out[i][c] = if c < STATES { sum } else { sum + j[i][c] };
+        }
+    }
+    out[2][2..].copy_from_slice(&at[5][2..]);
+}
+
+/// Where a rate `k` leads from the identity in the time `h` \[s\].
+#[inline(always)]
+fn moved<P: Plain>(k: &Slope<P>, h: f64, out: &mut Slope<P>) {
+    for i in 0..STATES {
+        (2..W).for_each(|c| out[i][c] = k[i][c] * h);
+        if i >= 2 {
+            out[i][i] += P::one();
+        }
+    }
 }
 
 /// The Jacobians of a step of length `h` \[s\] from those of the rates at its ends: RK4 on the variational equation, whose slope in
 /// the middle is the mean of the ends'.
-pub(super) fn carry<P: Plain>(start: &Slope<P>, end: &Slope<P>, h: f64) -> Jacobians<P> {
-    const W: usize = STATES + 3;
-    let middle: Slope<P> = std::array::from_fn(|i| std::array::from_fn(|j| (start[i][j] + end[i][j]) * 0.5));
-    // The rate of [d state / d state, d state / d force] where it has reached `at`. No rate depends on the position.
-    let rate = |j: &Slope<P>, at: &Slope<P>| -> Slope<P> {
-        std::array::from_fn(|i| {
-            let mut row = [P::zero(); W];
-            for l in 2..STATES {
-                for c in 2..W {
-                    row[c] = j[i][l].mul_add(at[l][c], row[c]);
-                }
+pub(super) fn carry<P: Plain>(start: &Slope<P>, end: &Slope<P>, h: f64, (a, gamma): &mut Jacobians<P>) {
+    let mut middle = *end;
+    for (row, from) in middle.iter_mut().zip(start) {
+        (2..W).for_each(|c| row[c] = (from[c] + row[c]) * 0.5);
+    }
+    // The rates in the middle and at the end, those in the middle added up; the rate at the start is `start`.
+    let (mut at, mut k, mut twice) = (no_slope(), no_slope(), *start);
+    moved(start, 0.5 * h, &mut at);
+    rate(&middle, &at, &mut twice);
+    moved(&twice, 0.5 * h, &mut at);
+    rate(&middle, &at, &mut k);
+    moved(&k, h, &mut at);
+    for i in 0..STATES {
+        (2..W).for_each(|c| twice[i][c] = start[i][c] + (twice[i][c] + k[i][c]) * 2.0);
+    }
+    rate(end, &at, &mut k);
+    for i in 0..STATES {
+        for c in 2..W {
+            let change = (twice[i][c] + k[i][c]) * (h / 6.0);
+            if c < STATES {
+                a[i][c] = if i == c { change + P::one() } else { change };
+            } else {
+                gamma[i][c - STATES] = change;
             }
-            for c in STATES..W {
-                row[c] += j[i][c];
-            }
-            row
-        })
-    };
-    let unit = |i: usize, c: usize| if i == c { P::one() } else { P::zero() };
-    let moved = |k: &Slope<P>, h: f64| -> Slope<P> {
-        std::array::from_fn(|i| std::array::from_fn(|c| k[i][c] * h + unit(i, c)))
-    };
-    let k1 = rate(start, &moved(start, 0.0));
-    let k2 = rate(&middle, &moved(&k1, 0.5 * h));
-    let k3 = rate(&middle, &moved(&k2, 0.5 * h));
-    let k4 = rate(end, &moved(&k3, h));
-    let sum = |i: usize, c: usize| k1[i][c] + (k2[i][c] + k3[i][c]) * 2.0 + k4[i][c];
-    let at = |i: usize, c: usize| sum(i, c) * (h / 6.0) + unit(i, c);
-    (
-        std::array::from_fn(|i| std::array::from_fn(|c| at(i, c))),
-        std::array::from_fn(|i| std::array::from_fn(|c| at(i, STATES + c))),
-    )
+        }
+        for c in 0..2 {
+            a[i][c] = if i == c { P::one() } else { P::zero() };
+        }
+    }
 }
 
 /// The exact Jacobians of a step that begins at instant `from`, and into `parameters`, where it is not empty, the derivatives by the
@@ -91,17 +124,17 @@ pub(super) fn exact<P: Plain>(
     push: &[P; 3],
     parameters: &mut [StateSlope<P>],
 ) -> Jacobians<P> {
-    const FIXED: usize = STATES + 3;
+    const FIXED: usize = W;
     let width = parameters.len();
     let count = integration.substeps.max(1);
     let h = dt / count as f64;
     let mut columns = vec![[P::zero(); STATES]; FIXED + width];
     (0..STATES).for_each(|i| columns[i][i] = P::one());
     let mut own: [Vec<[P; 3]>; 4] = std::array::from_fn(|_| vec![[P::zero(); 3]; FIXED + width]);
-    let mut room = Vec::new();
+    let (mut room, mut slope) = (Vec::new(), no_slope());
     // The rates at a stage, and the part in the accelerations that force and parameters have there.
     let mut stage = |x: &[P; STATES], when: usize, own: &mut [[P; 3]]| -> Local<P> {
-        let (slope, local) = slope_at(&prepared.dynamics, x, push, &prepared.series[when]);
+        let local = slope_at(&prepared.dynamics, x, push, &prepared.series[when], &mut slope);
         for l in 0..3 {
             own[STATES + l] = std::array::from_fn(|i| slope[3 + i][STATES + l]);
         }

@@ -75,17 +75,17 @@ fn heights(pieces: &[Vec<Px>], width: f32) -> (f32, f32) {
 fn average(samples: &[u8], stride: usize) -> Vec<u8> {
     const N: usize = SAMPLES as usize;
     const ALL: u16 = (N * N) as u16;
-    let mut rgb = Vec::with_capacity(samples.len() / (N * N));
+    let mut rgb = vec![0; samples.len() / (N * N)];
     let mut sums = vec![0u16; stride];
-    for rows in samples.chunks(stride * N) {
+    for (rows, out) in samples.chunks(stride * N).zip(rgb.chunks_mut(stride / N)) {
         sums.fill(0);
         for row in rows.chunks(stride) {
             sums.iter_mut().zip(row).for_each(|(sum, &v)| *sum += u16::from(v));
         }
-        for pixel in sums.chunks_exact(3 * N) {
+        for (pixel, mean) in sums.chunks_exact(3 * N).zip(out.chunks_exact_mut(3)) {
             for channel in 0..3 {
                 let sum: u16 = (0..N).map(|i| pixel[3 * i + channel]).sum();
-                rgb.push(((sum + ALL / 2) / ALL) as u8);
+                mean[channel] = ((sum + ALL / 2) / ALL) as u8;
             }
         }
     }

@@ -22,6 +22,8 @@ pub struct Products<P> {
     columns: Vec<[P; DEPTH]>,
     /// How many samples are gathered.
     gathered: usize,
+    /// How many of the columns, the first ones, have had values: the others are zero.
+    begun: usize,
     /// Tiles that touch the lower triangle: by rows, then columns.
     panels: Vec<Vec<Tile<P>>>,
 }
@@ -33,7 +35,12 @@ impl<P: Plain> Products<P> {
             .map(|panel| vec![[[P::zero(); WIDE]; HIGH]; n.min((panel + 1) * HIGH).div_ceil(WIDE)])
             .collect();
         let filled = (n.div_ceil(HIGH) * HIGH).max(n.div_ceil(WIDE) * WIDE);
-        Self { columns: vec![[P::zero(); DEPTH]; filled], gathered: 0, panels }
+        Self { columns: vec![[P::zero(); DEPTH]; filled], gathered: 0, begun: n, panels }
+    }
+
+    /// Leaves the columns from `begun` on at zero until they begin too; none that had values may be among them.
+    pub fn begin(&mut self, begun: usize) {
+        self.begun = begun;
     }
 
     /// The values of a column in the sample that is being gathered.
@@ -67,7 +74,8 @@ impl<P: Plain> Products<P> {
     /// Adds the products of the samples gathered.
     #[inline(always)]
     fn multiply(&mut self) {
-        for (panel, rows) in self.panels.iter_mut().zip(self.columns.chunks_exact(HIGH)) {
+        let begun = self.panels.iter_mut().take(self.begun.div_ceil(HIGH));
+        for (panel, rows) in begun.zip(self.columns.chunks_exact(HIGH)) {
             let Some(rows) = rows.first_chunk::<HIGH>() else { continue };
             for (tile, columns) in panel.iter_mut().zip(self.columns.chunks_exact(WIDE)) {
                 let Some(columns) = columns.first_chunk::<WIDE>() else { continue };
