@@ -9,7 +9,8 @@ use std::process::Command;
 use std::sync::Mutex;
 use std::time::Duration;
 
-use trimtab_experiments::injected::plan::{Kind, Planned, ci_slice, plan};
+use trimtab_experiments::injected::configuration::{Configuration, Sessions, Turned, Unseen};
+use trimtab_experiments::injected::plan::{Planned, ci_slice, plan};
 use trimtab_experiments::injected::results::{Results, in_order};
 use trimtab_experiments::injected::row::Row;
 use trimtab_experiments::injected::runner::Runner;
@@ -100,10 +101,24 @@ fn a_current_is_found_as_the_difference_that_was_injected_and_a_null_twice_alike
     }
     let folder = tempfile::tempdir().unwrap();
     let all = plan(SEED).unwrap();
-    // A current of twice a tenth of the speed, in the configuration that is quickest to diagnose.
-    let strong = |c: &&Planned| c.kind == Kind::Single && c.key.starts_with("marin/single/current/x2/");
-    let case = all.iter().filter(strong).max_by(|a, b| a.configuration.step.total_cmp(&b.configuration.step)).unwrap();
-    let null = all.iter().find(|c| Some(&c.key) == case.partner.as_ref()).unwrap();
+    // A current of a fifth of the speed, on recordings of all headings, as the committed study cuts them.
+    let null = all.iter().find(|c| c.key == "marin/null/001").unwrap();
+    let configuration = Configuration {
+        runs: (0..6).collect(),
+        unseen: Unseen::Studied,
+        window: Some(240.0),
+        step: 2.0,
+        span: [0.0, 1.0],
+        turned: Turned::Each,
+        mirrored: false,
+        start: 1.0,
+        freed: false,
+        sessions: Sessions::None,
+        ..null.configuration.clone()
+    };
+    let null = &Planned { configuration: configuration.clone(), ..null.clone() };
+    let case = all.iter().find(|c| c.key == "marin/single/current/x2/1").unwrap();
+    let case = &Planned { configuration, partner: Some(null.key.clone()), ..case.clone() };
     let runner = runner(folder.path());
     let rows = run(&[null.clone(), case.clone()], &runner);
     let scores = scored(&rows);

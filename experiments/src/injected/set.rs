@@ -218,6 +218,9 @@ impl Set {
             // Printed with three digits: rebuilt from the step.
             record[Column::T] = (0..record.len()).map(|row| MARIN_ROW * row as f64).collect();
         }
+        // Rows of a logger that had stopped have no time either.
+        let timed: Vec<bool> = record[Column::T].iter().map(|t| t.is_finite()).collect();
+        record.retain(|row| timed[row]);
         unwrap(&mut record[Column::Psi]);
         if self != Self::Esso {
             // Velocities are earth-fixed.
@@ -339,8 +342,9 @@ mod tests {
         let hsva = " a\n b\n c\n d\n .05 1.5 -.25 90.0 .0 1.2 .5 .01 -10.0 10.2 41. 1.\n";
         let record = Set::Hsva.parse(hsva).unwrap();
         assert!((record[Column::U][0] - 1.2).abs() < 1e-12 && (record[Column::Y][0] + 0.25).abs() < 1e-12);
-        let esso = "header\n0.0,1,0.3,2,0.1,3,,10,0.2,1,2,3,4\n";
+        let esso = "header\n0.0,1,0.3,2,0.1,3,,10,0.2,1,2,3,4\n,,,,,,,,,,,,\n";
         let record = Set::Esso.parse(esso).unwrap();
+        assert_eq!(record.len(), 1);
         assert!(record[Column::R][0].is_nan());
         assert_eq!((record[Column::U][0], record[Column::Y][0], record[Column::WindFrom][0]), (0.3, 2.0, 4.0));
         assert!(Set::Esso.parse("header\n0.0,1\n").is_none() && Set::Hsva.parse("").is_none());
