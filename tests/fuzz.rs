@@ -4,10 +4,12 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestCaseError};
+use std::collections::HashMap;
+use std::panic::UnwindSafe;
 use std::path::Path;
-use std::sync::LazyLock;
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
+use std::sync::{LazyLock, Mutex};
+use std::thread::ThreadId;
+use std::time::{Duration, Instant};
 use trimtab::audit::audit_study;
 use trimtab::files::Manifest;
 use trimtab::model::Model;
@@ -138,19 +140,38 @@ fn damaged(text: &[u8], damages: &[Damage]) -> Vec<u8> {
     bytes
 }
 
-/// Runs `read` on a thread of its own; fails where it panics, or gives no answer in half a minute.
-fn ends(bytes: Vec<u8>, read: impl FnOnce(Vec<u8>) + Send + 'static) -> Result<(), TestCaseError> {
-    let shown = String::from_utf8_lossy(&bytes).chars().take(2000).collect::<String>();
-    let (send, ended) = channel();
-    std::thread::spawn(move || {
-        read(bytes);
-        let _ = send.send(());
+/// The inputs that are being read, since when.
+static READING: LazyLock<Mutex<HashMap<ThreadId, (Instant, Vec<u8>)>>> = LazyLock::new(Mutex::default);
+
+/// Ends the test, and tells the input, when a reader gives no answer in half a minute.
+static WATCH: LazyLock<()> = LazyLock::new(|| {
+    std::thread::spawn(|| {
+        loop {
+            std::thread::sleep(Duration::from_secs(1));
+            let reading = READING.lock().unwrap();
+            if let Some((_, bytes)) = reading.values().find(|(since, _)| since.elapsed() > Duration::from_secs(30)) {
+                eprintln!("does not end on\n{}", shown(bytes));
+                std::process::exit(101);
+            }
+        }
     });
-    match ended.recv_timeout(Duration::from_secs(30)) {
-        Ok(()) => Ok(()),
-        Err(RecvTimeoutError::Disconnected) => Err(TestCaseError::fail(format!("panics on\n{shown}"))),
-        Err(RecvTimeoutError::Timeout) => Err(TestCaseError::fail(format!("does not end on\n{shown}"))),
-    }
+});
+
+fn shown(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).chars().take(2000).collect()
+}
+
+/// Runs `read`, which must not panic and not take half a minute.
+fn ends(bytes: Vec<u8>, read: impl FnOnce(Vec<u8>) + UnwindSafe) -> Result<(), TestCaseError> {
+    LazyLock::force(&WATCH);
+    let this = std::thread::current().id();
+    READING.lock().unwrap().insert(this, (Instant::now(), bytes.clone()));
+    let outcome = std::panic::catch_unwind({
+        let bytes = bytes.clone();
+        move || read(bytes)
+    });
+    READING.lock().unwrap().remove(&this);
+    outcome.map_err(|_| TestCaseError::fail(format!("panics on\n{}", shown(&bytes))))
 }
 
 /// The same cases every time, unless the environment asks for more or for others.
@@ -166,10 +187,11 @@ fn config() -> ProptestConfig {
 
 /// A file of the example study; a recording cut to its first rows.
 fn example(name: &str) -> Vec<u8> {
-    let files = trimtab::demo::files();
-    let text = &files.iter().find(|(n, _)| n == name).unwrap().1;
+    let text = &FILES.iter().find(|(n, _)| n == name).unwrap().1;
     text.split_inclusive('\n').take(60).collect::<String>().into_bytes()
 }
+
+static FILES: LazyLock<Vec<(String, String)>> = LazyLock::new(trimtab::demo::files);
 
 static SHIP: LazyLock<Ship> = LazyLock::new(|| ship(&example("ship.toml")).unwrap());
 
