@@ -10,8 +10,10 @@
 //! | `evaluations` | the last evaluations of a cost, each made once |
 //! | `task` | what stays fixed during a fit: model, cost, constraints, scales, start |
 //! | `problem` | the task with the priors, scaled, as Ipopt wants it |
+//! | `quadratic_program` | the least of a quadratic function under linear limits |
+//! | `steps` | Gauss-Newton steps within the limits, each a quadratic program |
 //! | `stages` | runs in shorter pieces, to be fitted first |
-//! | `solve` | from the start through Ipopt to the best point |
+//! | `solve` | from the start through the steps, or Ipopt, to the best point |
 //! | `subspace` | directions that constraints leave free |
 //! | `covariance` | covariances, and what the data do not determine |
 //! | `doubts` | what residuals say against a fit: model error, windows too long, residuals alike |
@@ -31,11 +33,15 @@ mod evaluations;
 pub mod multistart;
 #[cfg(feature = "ipopt")]
 mod problem;
+#[cfg(feature = "ipopt")]
+mod quadratic_program;
 mod settings;
 #[cfg(feature = "ipopt")]
 mod solve;
 #[cfg(feature = "ipopt")]
 mod stages;
+#[cfg(feature = "ipopt")]
+mod steps;
 #[cfg(feature = "ipopt")]
 mod subspace;
 #[cfg(feature = "ipopt")]

@@ -77,8 +77,6 @@ pub(super) struct Problem<'a, 'f> {
     pub priors: &'a Priors,
     /// Start, in the parameters' own units.
     pub start: &'a [f64],
-    /// The constraint rows that are imposed: the task's, or none.
-    pub rows: &'a [Row],
     /// Factor from cost to the solver's objective: one over the mean number of samples of a run, so that it is of order one.
     pub factor: f64,
     pub progress: &'f mut dyn FnMut(&Progress) -> bool,
@@ -86,9 +84,6 @@ pub(super) struct Problem<'a, 'f> {
     pub best: Option<Point>,
     /// Number of points evaluated.
     pub evaluated: usize,
-    /// Points after which the solve is given up, and whether it was.
-    pub most: usize,
-    pub exhausted: bool,
 }
 
 impl<'a, 'f> Problem<'a, 'f> {
@@ -97,23 +92,10 @@ impl<'a, 'f> Problem<'a, 'f> {
         evaluations: &'a Evaluations<'a>,
         priors: &'a Priors,
         start: &'a [f64],
-        rows: &'a [Row],
         progress: &'f mut dyn FnMut(&Progress) -> bool,
     ) -> Self {
         let factor = evaluations.cost.runs() as f64 / evaluations.cost.samples().max(1) as f64;
-        Self {
-            task,
-            evaluations,
-            priors,
-            start,
-            rows,
-            factor,
-            progress,
-            best: None,
-            evaluated: 0,
-            most: usize::MAX,
-            exhausted: false,
-        }
+        Self { task, evaluations, priors, start, factor, progress, best: None, evaluated: 0 }
     }
 
     /// A point in the parameters' own units; the start without the rounding of scaling there and back.
@@ -130,9 +112,9 @@ impl<'a, 'f> Problem<'a, 'f> {
         }
     }
 
-    /// The rows that are imposed, with their sizes.
-    fn imposed(&self) -> impl Iterator<Item = (&Row, f64)> {
-        self.rows.iter().zip(self.task.sizes.iter().copied())
+    /// The constraint rows with their sizes.
+    fn rows(&self) -> impl Iterator<Item = (&Row, f64)> {
+        self.task.rows.iter().zip(self.task.sizes.iter().copied())
     }
 
     fn keep_if_best(&mut self, p: Vec<f64>, total: f64) {
@@ -148,7 +130,7 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn constraints(&self) -> usize {
-        self.rows.len()
+        self.task.rows.len()
     }
 
     fn variable_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
@@ -158,7 +140,7 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn constraint_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
-        for (i, (row, size)) in self.imposed().enumerate() {
+        for (i, (row, size)) in self.rows().enumerate() {
             (lower[i], upper[i]) = ((row.lower - row.constant) / size, (row.upper - row.constant) / size);
         }
     }
@@ -197,7 +179,7 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn constraint_values(&mut self, z: &[f64], values: &mut [f64]) -> bool {
-        for (value, (row, size)) in values.iter_mut().zip(self.imposed()) {
+        for (value, (row, size)) in values.iter_mut().zip(self.rows()) {
             let linear: f64 = row.coefficients.iter().zip(&self.task.scales).zip(z).map(|((a, s), z)| a * s * z).sum();
             *value = linear / size;
         }
@@ -209,12 +191,12 @@ impl Nlp for Problem<'_, '_> {
             let nonzero = row.coefficients.iter().enumerate().filter(|(_, a)| **a != 0.0);
             nonzero.map(move |(j, _)| (i, j)).collect::<Vec<_>>()
         };
-        self.imposed().enumerate().flat_map(entries).collect()
+        self.rows().enumerate().flat_map(entries).collect()
     }
 
     fn jacobian_values(&mut self, _z: &[f64], values: &mut [f64]) -> bool {
         let mut values = values.iter_mut();
-        for (row, size) in self.imposed() {
+        for (row, size) in self.rows() {
             let nonzero = row.coefficients.iter().zip(&self.task.scales).filter(|(a, _)| **a != 0.0);
             for ((a, scale), value) in nonzero.zip(&mut values) {
                 *value = a * scale / size;
@@ -242,14 +224,12 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn iteration(&mut self, report: &IterationReport) -> bool {
-        self.exhausted = self.evaluated > self.most;
-        !self.exhausted
-            && (self.progress)(&Progress {
-                iteration: report.iteration,
-                cost: report.objective / self.factor,
-                violation: report.inf_pr,
-                optimality: report.inf_du,
-                best: self.best.as_ref().map(|best| best.p.as_slice()),
-            })
+        (self.progress)(&Progress {
+            iteration: report.iteration,
+            cost: report.objective / self.factor,
+            violation: report.inf_pr,
+            optimality: report.inf_du,
+            best: self.best.as_ref().map(|best| best.p.as_slice()),
+        })
     }
 }

@@ -21,6 +21,7 @@ use super::evaluations::Evaluations;
 use super::problem::{Point, Priors, Problem, Progress};
 use super::settings::Hessian;
 use super::stages;
+use super::steps::{Residual, Walk};
 use super::subspace::inverse;
 use super::task::{ActiveSet, Task};
 use crate::ipopt::{self, Counts, HessianMode, IpoptError, OptionValue, Options, Solution, Status};
@@ -45,16 +46,6 @@ const BARRIER_SHARE: f64 = 1e-3;
 
 /// Share of the cost that its rounding may hide.
 const ROUNDING: f64 = 1e-12;
-
-/// Barrier parameter, iterations, evaluations and distance from every bound (in scales) of a solve that leaves the constraint
-/// rows out.
-const INSIDE_BARRIER: f64 = 1e-5;
-const INSIDE_ITERATIONS: usize = 15;
-const INSIDE_EVALUATIONS: usize = 20;
-const INSIDE_DISTANCE: f64 = 1e-3;
-
-/// Step, relative to the scaled parameters, that is taken without asking whether the cost fell: its rounding hides that.
-const INSIDE_TINY_STEP: f64 = 1e-7;
 
 /// Iterations of a fit to shorter pieces, and its tolerance: it only has to bring the fit near.
 const STAGE_ITERATIONS: usize = 100;
@@ -85,21 +76,19 @@ pub(super) struct Work {
 struct Descent {
     p: Vec<f64>,
     status: Status,
-    /// The solver's own answer, where `p` is its optimum.
-    solution: Option<Solution>,
-    /// The solver's last answer, to say what it could not satisfy.
+    /// What holds `p` back, where it is the solver's optimum.
+    active: Option<ActiveSet>,
+    /// Ipopt's last answer, to say what it could not satisfy.
     last: Option<Solution>,
     evaluated: usize,
 }
 
-/// How the solver is set out.
+/// How Ipopt is set out.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
-    /// Without constraint rows and with a barrier that is small from the start, for an optimum inside all limits.
-    Inside,
-    /// With all rows.
+    /// From a point far from the optimum.
     Whole,
-    /// With all rows, from a point near the optimum.
+    /// From a point near the optimum.
     Again,
 }
 
@@ -109,7 +98,7 @@ struct NewtonStep {
     gain: f64,
 }
 
-/// What one run of the solver left.
+/// What one run of Ipopt left.
 struct Attempt {
     status: Status,
     solution: Option<Solution>,
@@ -118,8 +107,6 @@ struct Attempt {
     /// The best feasible point it met.
     best: Option<Point>,
     evaluated: usize,
-    /// Whether it was given up for the number of its evaluations.
-    exhausted: bool,
 }
 
 /// What is solved: a cost over runs, and where from.
@@ -147,6 +134,7 @@ impl Task<'_> {
         let rounds = if priors.terms.is_empty() { 1 } else { 1 + settings.prior_updates };
         let mut end: Option<Descent> = None;
         let mut p = from;
+        let mut residual = Residual::unknown(p.len());
         for _ in 0..rounds {
             let value = self.evaluations.value(&p).ok_or_else(|| self.diverged())?;
             let weight = self.weight(self.cost, value);
@@ -154,9 +142,9 @@ impl Task<'_> {
                 break;
             }
             priors.weight = weight;
-            let descent = self.descend(&stage, &p, &priors, &mut work, progress)?;
+            let descent = self.descend(&stage, &p, &priors, &mut residual, &mut work, progress)?;
             p.clone_from(&descent.p);
-            stage.near = descent.solution.is_some();
+            stage.near = descent.active.is_some();
             end = Some(descent);
             if !stage.near {
                 break;
@@ -192,7 +180,7 @@ impl Task<'_> {
                 max_iterations: self.settings.max_iterations.min(STAGE_ITERATIONS),
                 near: false,
             };
-            let descent = self.descend(&stage, &p, &priors, work, progress)?;
+            let descent = self.descend(&stage, &p, &priors, &mut Residual::unknown(p.len()), work, progress)?;
             p = descent.p;
             if descent.status == Status::Stopped {
                 break;
@@ -226,16 +214,9 @@ impl Task<'_> {
             let pushes = ["bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"];
             extra.extend(pushes.map(|name| number(name, 1e-8)));
         }
-        let mut max_iterations = stage.max_iterations;
-        if way == Way::Inside {
-            let by_barrier = ("bound_mult_init_method".to_owned(), OptionValue::Text("mu-based".to_owned()));
-            let (barrier, tiny_step) = (number("mu_init", INSIDE_BARRIER), number("tiny_step_tol", INSIDE_TINY_STEP));
-            extra = vec![strategy("monotone"), barrier, by_barrier, tiny_step];
-            max_iterations = max_iterations.min(INSIDE_ITERATIONS);
-        }
         Options {
             tolerance: stage.tolerance,
-            max_iterations,
+            max_iterations: stage.max_iterations,
             hessian: match self.settings.hessian {
                 Hessian::LimitedMemory => HessianMode::LimitedMemory { history: self.settings.history },
                 Hessian::GaussNewton | Hessian::Exact => HessianMode::Given,
@@ -247,9 +228,36 @@ impl Task<'_> {
         }
     }
 
-    /// Solves from `from`: inside the limits where that may do, else under all of them, and again from the best feasible point
-    /// where the solver ended above it.
+    /// Solves from `from`: by Gauss-Newton steps within the limits, and through Ipopt where these find no optimum.
     fn descend(
+        &self,
+        stage: &Stage,
+        from: &[f64],
+        priors: &Priors,
+        residual: &mut Residual,
+        work: &mut Work,
+        progress: &mut dyn FnMut(&Progress) -> bool,
+    ) -> Result<Descent, FitError> {
+        if self.settings.hessian != Hessian::GaussNewton {
+            return self.through_ipopt(stage, from, priors, work, progress);
+        }
+        let limit = (stage.tolerance, stage.max_iterations);
+        let Some(walk) = self.walk(stage.evaluations, from, priors, residual, limit, progress) else {
+            return self.through_ipopt(stage, from, priors, work, progress);
+        };
+        work.walked(&walk);
+        let Walk { status, p, evaluated, active, .. } = walk;
+        match status {
+            Status::Solved => Ok(Descent { p, status, active: Some(active), last: None, evaluated }),
+            Status::Stopped | Status::MaxIterations { .. } => {
+                Ok(Descent { p, status, active: None, last: None, evaluated })
+            }
+            _ => self.through_ipopt(stage, &p, priors, work, progress),
+        }
+    }
+
+    /// Solves through Ipopt, and again from the best feasible point where it ended above that.
+    fn through_ipopt(
         &self,
         stage: &Stage,
         from: &[f64],
@@ -262,11 +270,11 @@ impl Task<'_> {
         let mut start = from.to_vec();
         let mut evaluated = 0;
         let mut restarts = 0;
-        let mut way = if self.may_end_inside(stage) { Way::Inside } else { Way::Whole };
+        let mut way = Way::Whole;
         loop {
             let attempt = self.attempt(stage, &start, way, priors, work, progress)?;
             evaluated += attempt.evaluated;
-            let Attempt { status, solution, at, best: found, exhausted, .. } = attempt;
+            let Attempt { status, solution, at, best: found, .. } = attempt;
             let better = found.filter(|f| best.as_ref().is_none_or(|b| f.total < b.total));
             let improved = better
                 .as_ref()
@@ -274,34 +282,29 @@ impl Task<'_> {
             best = better.or(best);
             let reached = at.as_ref().and_then(|p| total(p).filter(|_| self.has_mass(p)));
             let is_best = |value: f64| best.as_ref().is_none_or(|b| value <= b.total + BETTER * b.total.abs());
-            let is_answer = |p: &[f64]| status.is_success() && (way != Way::Inside || self.is_inside(p));
-            if let (Some(p), Some(value)) = (&at, reached)
-                && is_answer(p)
+            if let (Some(p), Some(value), Some(solution)) = (&at, reached, &solution)
+                && status.is_success()
                 && is_best(value)
             {
                 let better = best.filter(|b| b.total < value - SAME * value.abs());
                 let p = better.map_or_else(|| p.clone(), |b| b.p);
-                return Ok(Descent { p, status, last: solution.clone(), solution, evaluated });
+                let active = Some(self.active_set(&p, solution));
+                return Ok(Descent { p, status, active, last: None, evaluated });
             }
-            let stopped = !exhausted && matches!(status, Status::Stopped | Status::Panicked(_));
-            if way == Way::Inside && !stopped {
-                way = Way::Whole;
-                continue;
-            }
-            let given_up = stopped || matches!(status, Status::MaxIterations { .. });
+            let given_up = matches!(status, Status::Stopped | Status::Panicked(_) | Status::MaxIterations { .. });
             match &best {
                 Some(best) if improved && restarts < RESTARTS && !given_up => start.clone_from(&best.p),
                 _ => {
                     let fallback = || at.filter(|_| reached.is_some()).unwrap_or_else(|| from.to_vec());
                     let p = best.map_or_else(fallback, |b| b.p);
-                    return Ok(Descent { p, status, solution: None, last: solution, evaluated });
+                    return Ok(Descent { p, status, active: None, last: solution, evaluated });
                 }
             }
             (restarts, way) = (restarts + 1, Way::Again);
         }
     }
 
-    /// One run of the solver.
+    /// One run of Ipopt.
     fn attempt(
         &self,
         stage: &Stage,
@@ -311,11 +314,7 @@ impl Task<'_> {
         work: &mut Work,
         progress: &mut dyn FnMut(&Progress) -> bool,
     ) -> Result<Attempt, FitError> {
-        let rows = if way == Way::Inside { &[] } else { &self.rows[..] };
-        let mut problem = Problem::new(self, stage.evaluations, priors, start, rows, progress);
-        if way == Way::Inside {
-            problem.most = INSIDE_EVALUATIONS;
-        }
+        let mut problem = Problem::new(self, stage.evaluations, priors, start, progress);
         let total = stage.evaluations.value(start).map(|value| value + priors.value(start));
         let objective = problem.factor * total.unwrap_or(1.0);
         let (status, solution) = match ipopt::solve(&mut problem, &self.options(stage, objective, way)) {
@@ -328,30 +327,7 @@ impl Task<'_> {
             work.add(solution);
         }
         let at = solution.as_ref().map(|s| self.within_bounds(&problem.unscaled(&s.x)));
-        Ok(Attempt {
-            status,
-            solution,
-            at,
-            best: problem.best.take(),
-            evaluated: problem.evaluated,
-            exhausted: problem.exhausted,
-        })
-    }
-
-    /// Whether a solve may leave the constraint rows out at first. Free hull coefficients need all rows to keep the solver's
-    /// path inside, and without the Gauss-Newton matrix the iterations would not be few.
-    fn may_end_inside(&self, stage: &Stage) -> bool {
-        self.settings.hessian == Hessian::GaussNewton
-            && !stages::frees_hull(self)
-            && stage.max_iterations > INSIDE_ITERATIONS
-    }
-
-    /// Whether `p` keeps every row and is away from every bound, so that no limit holds it back.
-    fn is_inside(&self, p: &[f64]) -> bool {
-        let away = |((p, (lower, upper)), scale): ((&f64, &(f64, f64)), &f64)| {
-            (p - lower).min(upper - p) > INSIDE_DISTANCE * scale
-        };
-        p.iter().zip(&self.bounds).zip(&self.scales).all(away) && self.rows.iter().all(|row| row.violation(p) == 0.0)
+        Ok(Attempt { status, solution, at, best: problem.best.take(), evaluated: problem.evaluated })
     }
 
     fn unscaled(&self, z: &[f64]) -> Vec<f64> {
@@ -364,8 +340,8 @@ impl Task<'_> {
         let there = self.start_cost + priors.value(&self.start);
         let start_is_better = there < here - BETTER * here.abs() && self.is_feasible(&self.start);
         let p = if start_is_better { self.start.clone() } else { end.p };
-        let solution = end.solution.filter(|_| !start_is_better);
-        let words = match &solution {
+        let active = end.active.filter(|_| !start_is_better);
+        let words = match &active {
             Some(_) => end.status.to_string(),
             None if start_is_better || p == self.start => format!(
                 "no point better than the start was found in {} evaluations, and the start is returned; the solver says: {}",
@@ -376,11 +352,9 @@ impl Task<'_> {
                 end.evaluated, end.status
             ),
         };
-        let active = match &solution {
-            Some(solution) => self.active_set(&p, solution),
-            None => self.touched(&p),
-        };
-        End { converged: solution.is_some(), words, p, priors, work, active, parts }
+        let converged = active.is_some();
+        let active = active.unwrap_or_else(|| self.touched(&p));
+        End { converged, words, p, priors, work, active, parts }
     }
 
     /// Infeasibility is an error where it is the constraints' own: they are linear, so that Ipopt's word is final.
@@ -404,7 +378,6 @@ impl Task<'_> {
     fn active_set(&self, p: &[f64], solution: &Solution) -> ActiveSet {
         let least = 1e3 * self.settings.tolerance * self.settings.tolerance.min(1e-3);
         let is_active = |multiplier: f64, slack: f64| multiplier.abs() > slack.abs().max(least);
-        // A solution inside all limits has no multipliers of rows.
         let multipliers = solution.constraint_multipliers.iter().enumerate();
         let rows = multipliers.filter(|(i, multiplier)| {
             let row = &self.rows[*i];
@@ -492,6 +465,14 @@ impl Task<'_> {
 }
 
 impl Work {
+    fn walked(&mut self, walk: &Walk) {
+        self.iterations += walk.steps;
+        let counts = &mut self.counts;
+        for count in [&mut counts.objective, &mut counts.gradient, &mut counts.hessian] {
+            *count += walk.evaluated;
+        }
+    }
+
     fn add(&mut self, solution: &Solution) {
         self.iterations += solution.iterations;
         let (sum, counts) = (&mut self.counts, &solution.counts);
