@@ -178,6 +178,108 @@ fn the_sound_recordings_raise_nothing() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
+/// A ship of the same run on a course that is nearly straight: rudder and heading swing by tenths of a degree.
+fn straight(t: &mut Table) {
+    let time = t.get("t");
+    let rudder = |t: f64| 0.006 * (0.05 * t).sin() + 0.001 * (0.31 * t).sin();
+    // Nomoto's ship, integrated finely, with a yaw of the waves that the rudder does not cause.
+    let (mut r, mut psi, mut x, mut y) = (0.0_f64, 0.4_f64, 0.0_f64, 0.0_f64);
+    let mut rows = Vec::new();
+    for now in &time {
+        let waves = 5e-4 * (0.3 * now).sin();
+        let yaw = 0.3 * 5e-4 * (0.3 * now).cos();
+        rows.push([x, y, psi + waves, 5.0, 0.0, r + yaw, 2.0, rudder(*now)]);
+        for k in 0..20 {
+            let (at, h) = (now + 0.1 * f64::from(k), 0.1);
+            r += h * (0.05 * rudder(at) - r) / 8.0;
+            psi += h * r;
+            x += h * 5.0 * psi.cos();
+            y += h * 5.0 * psi.sin();
+        }
+    }
+    for (i, name) in ["x", "y", "psi", "u", "v", "r", "n", "delta"].iter().enumerate() {
+        t.set(name, &rows.iter().map(|r| r[i]).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn sound_recordings_of_other_kinds_raise_nothing() {
+    let degrees = |t: &mut Table| {
+        t.rename("delta", "delta [deg]");
+        t.each("delta", |_, d| d.to_degrees());
+    };
+    let coarse = |t: &mut Table| t.each("psi", |_, p| (p.to_degrees() / 0.04).round().mul_add(0.04, 0.0).to_radians());
+    let wrapped = |t: &mut Table| t.each("psi", |_, p| p.rem_euclid(std::f64::consts::TAU));
+    let started = |t: &mut Table| t.each("t", |_, v| v + 86_000.0);
+    let kinds: [(&str, Files); 6] = [
+        ("a straight course", Files::sound().run(RUN, straight)),
+        (
+            "a straight course, rudder in degrees",
+            Files::sound().run(RUN, |t| {
+                straight(t);
+                degrees(t);
+            }),
+        ),
+        ("a compass of 0.04 deg", Files::sound().all(coarse)),
+        ("headings from 0 to 360 deg", Files::sound().all(wrapped)),
+        ("another clock", Files::sound().all(started)),
+        (
+            "80 more columns",
+            Files::sound().all(|t| {
+                for i in 0..80 {
+                    t.header.push(format!("pressure {i}"));
+                    t.rows.iter_mut().for_each(|r| r.push(f64::from(i)));
+                }
+            }),
+        ),
+    ];
+    for (name, files) in kinds {
+        let audit = files.audit();
+        assert!(doubts(&audit).is_empty(), "{name}: {:#?}", doubts(&audit));
+        let most = audit.recordings.iter().map(|a| a.issues.len()).max().unwrap();
+        assert!(most <= 1, "{name}: {most} notes on a run");
+    }
+}
+
+#[test]
+fn of_a_run_that_is_cut_the_part_is_audited_and_each_thing_is_told_once() {
+    // The damaged row is in the first part of three of one file; the unused column is told once a file.
+    let files = Files::sound().run(RUN, |t| {
+        t.each("u", |i, u| if i == 20 { 3.0 * u } else { u });
+        t.header.push("remark".into());
+        t.rows.iter_mut().for_each(|r| r.push(1.0));
+    });
+    let runs: String = (0..3)
+        .map(|i| format!("[[runs]]\nfile = \"recordings/{RUN}.csv\"\nname = \"part {i}\"\nsplit = \"{}\"\nfrom = {}.0\nto = {}.0\n",
+            if i == 2 { "test" } else { "train" }, 80 * i, 80 * i + 79))
+        .collect();
+    let mut files = files.replace("study.toml", "runs = \"runs.csv\"", "");
+    let text = files.0.get_mut("study.toml").unwrap();
+    // Tables of the study come after its runs.
+    let (head, tables) = text.split_once("[fit]").unwrap();
+    *text = format!("{head}{runs}[fit]{tables}");
+    let audit = files.audit();
+    let of = |fault: &str| -> Vec<&str> {
+        let told = audit.recordings.iter().filter(|a| a.issues.iter().any(|i| i.fault == fault));
+        told.map(|a| a.run.as_str()).collect()
+    };
+    assert_eq!(of("outlier"), ["part 0"]);
+    assert_eq!(of("unused"), ["part 0"]);
+    assert_eq!(doubts(&audit).len(), 1, "{:#?}", doubts(&audit));
+}
+
+#[test]
+fn what_the_audit_advises_mends_the_recording() {
+    let late = Files::sound().all(|t| t.late("delta", 5)).map("[columns]\ndelta = { delay = 10.0 }\n");
+    let filled = Files::sound().run(RUN, |t| t.each("x", |i, x| if i % 40 == 17 { -9999.0 } else { x }));
+    let filled = filled.map("blank = -9999\nbridge = 5.0\n");
+    let turned = Files::sound().all(|t| t.each("v", |_, v| -v)).map("[columns]\nv = { sign = -1 }\n");
+    for (name, files) in [("delay", late), ("blank", filled), ("sign", turned)] {
+        let found = doubts(&files.audit());
+        assert!(found.is_empty(), "{name}: {found:#?}");
+    }
+}
+
 /// Damaged samples, fill values, missing channels.
 fn samples() -> Vec<Case> {
     let one = |channel: &'static str, row: usize, change: fn(f64) -> f64| {
@@ -354,10 +456,10 @@ fn clocks() -> Vec<Case> {
     vec![
         case(
             "rudder 10 s late in one run",
-            Files::sound().run("ship_a_010", |t| t.late("delta", 5)),
+            Files::sound().run(RUN, |t| t.late("delta", 5)),
             "clock",
             Channel::Delta,
-            Where::Run("ship_a_010"),
+            here,
             "`delay = 1",
         ),
         case(

@@ -5,6 +5,7 @@ use super::issue::{Issue, Severity};
 use super::limits::{
     EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, SAME_LAG, SESSION_SHARE, SHARED_ROWS, SHARED_SHARE,
 };
+use super::pooled::{Odd, odd};
 use super::propeller::{advance, advance_ratio};
 use super::record::Responses;
 use super::response::Curve;
@@ -182,11 +183,36 @@ fn late(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
         let issue = lagging(pair, lag(curve)?, "", pair.motion);
         Some(Shared { runs: vec![run.run.clone()], issue })
     };
+    let among_others: Vec<Option<&Curve>> = runs.iter().map(|r| (pair.of)(&r.responses)).collect();
+    let pooled = odd(&among_others, |seconds| worth(seconds, 0.0) && all.is_none());
+    let told_by_others = |(run, odd): (&Evidence, Option<Odd>)| {
+        let issue = match odd? {
+            Odd::Turned => turned(pair),
+            Odd::Late(seconds) => lagging(pair, seconds, "", pair.motion),
+        };
+        Some(Shared { runs: vec![run.run.clone()], issue })
+    };
     let together = all.map(|seconds| Shared {
         runs: curves.iter().map(|(run, _)| run.run.clone()).collect(),
         issue: lagging(pair, seconds, "", pair.motion),
     });
-    together.into_iter().chain(curves.iter().filter_map(told)).collect()
+    let mut found: Vec<Shared> = together.into_iter().chain(curves.iter().filter_map(told)).collect();
+    for shared in runs.iter().zip(pooled).filter_map(told_by_others) {
+        if !found.iter().any(|f| f.runs == shared.runs) {
+            found.push(shared);
+        }
+    }
+    found
+}
+
+/// The doubt about an actuator of the wrong sign.
+fn turned(pair: &Pair) -> Issue {
+    let text = format!("acts on {} to the other side than in the other runs", pair.motion);
+    let next = format!(
+        "is its sign that of the other runs? set `sign = -1` for `{}` in a column map of this run",
+        pair.channel
+    );
+    Issue::new(Severity::Error, "sign_error", text, next).of(pair.channel)
 }
 
 /// The doubt about a lag \[s\]: `whose` begins the text, `than` is what it is compared with.

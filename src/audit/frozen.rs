@@ -2,7 +2,9 @@
 //! A receiver that holds its value and then catches up is in `receiver`, since its samples can be left out.
 
 use super::issue::{Issue, Severity};
-use super::limits::{FROZEN_CHANGES, FROZEN_DIFFERENCES, FROZEN_RANGE, FROZEN_ROWS, FROZEN_SELDOM, FROZEN_SPANS};
+use super::limits::{
+    FROZEN_CHANGES, FROZEN_DIFFERENCES, FROZEN_LEVEL, FROZEN_RANGE, FROZEN_ROWS, FROZEN_SELDOM, FROZEN_SPANS,
+};
 use super::series::Series;
 use crate::recording::{Channel, STATE_CHANNELS};
 use crate::statistics::{median, quantile};
@@ -45,6 +47,9 @@ fn still(series: &Series<'_>, channel: Channel, values: &[f64]) -> Vec<Range<usi
     let partner = if integrates { rate(series, channel) } else { derivative(series, channel) };
     let Some(partner) = partner else { return Vec::new() };
     let whole_range = range(&partner);
+    // Surge and sway are parts of one speed.
+    let along = if channel == Channel::V { series.get(Channel::U) } else { None };
+    let level = size(&partner).max(along.map_or(0.0, size));
     let long: Vec<(usize, &Range<usize>)> =
         stretches.iter().enumerate().filter(|(_, rows)| rows.len() >= least).collect();
     let stands = |(i, rows): &(usize, &Range<usize>)| {
@@ -55,7 +60,8 @@ fn still(series: &Series<'_>, channel: Channel, values: &[f64]) -> Vec<Range<usi
                 && moved.abs() > FROZEN_DIFFERENCES * usual_difference(series, values, &partner, rows.len(), &long)
         } else {
             let longer = t[rows.end - 1] - t[rows.start] > FROZEN_SPANS * series.span;
-            longer && range(&partner[Range::clone(rows)]) > FROZEN_RANGE * whole_range
+            let changes = range(&partner[Range::clone(rows)]);
+            longer && changes > FROZEN_RANGE * whole_range && changes > FROZEN_LEVEL * level
         }
     };
     long.iter().filter(|s| stands(s)).map(|(_, rows)| Range::clone(rows)).collect()
@@ -88,6 +94,12 @@ fn derivative(series: &Series<'_>, channel: Channel) -> Option<Vec<f64>> {
         if channel == Channel::U { dx[i] * c + dy[i] * s } else { dy[i] * c - dx[i] * s }
     };
     Some(all.map(at).collect())
+}
+
+/// Root mean square of the finite values.
+fn size(values: &[f64]) -> f64 {
+    let (sum, count) = values.iter().filter(|v| v.is_finite()).fold((0.0, 0.0), |(s, n), v| (s + v * v, n + 1.0));
+    (sum / f64::max(count, 1.0)).sqrt()
 }
 
 /// Largest less smallest finite value.

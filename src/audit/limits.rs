@@ -63,6 +63,8 @@ pub const FROZEN_SELDOM: f64 = 0.95;
 pub const FROZEN_SPANS: f64 = 3.0;
 /// while position and heading tell a velocity that changes by this share of its whole range.
 pub const FROZEN_RANGE: f64 = 0.3;
+/// and by this share of the speed, or of the yaw rate: on a straight course a velocity does hold.
+pub const FROZEN_LEVEL: f64 = 0.05;
 
 // --- Units, signs, axes ---
 
@@ -125,6 +127,15 @@ pub const LAG_SHARE: f64 = 0.25;
 pub const LAG_EVIDENCE: f64 = 10.0;
 /// The same for the sign of an actuator, whose effect must also explain the response.
 pub const SIGN_EVIDENCE: f64 = 8.0;
+/// A run in which an actuator acts to the other side, or later, than in the others: the squares that this explains, over those that
+/// the other runs' coefficients usually leave an independent sample.
+pub const POOLED_EVIDENCE: f64 = 15.0;
+/// Such a run is one of which the others' coefficients leave at least this many times what they usually leave.
+pub const POOLED_UNUSUAL: f64 = 2.5;
+/// Runs in which a channel is this many times as large, squared and by sample, as in the middle one do not count.
+pub const POOLED_SIZE: f64 = 5.0;
+/// Runs from which coefficients of others can be told.
+pub const POOLED_RUNS: usize = 6;
 /// A lag of all runs together is that of a single one if it differs by at most this share.
 pub const SAME_LAG: f64 = 0.5;
 /// With the lag the response is explained so much better that at most this share of the squares is left.

@@ -14,6 +14,7 @@ mod jumps;
 mod kinematics;
 mod limits;
 mod model;
+mod pooled;
 mod propeller;
 mod receiver;
 mod record;
@@ -30,7 +31,7 @@ pub use kinematics::Kinematics;
 pub use model::audit_model;
 pub use receiver::{Jump, jumps, piece, settled};
 pub use record::{Audit, ChannelSummary, Responses, Stretch, audit};
-pub use response::Curve;
+pub use response::{Curve, Sums};
 pub use runs::audit_runs;
 pub use study::{StudyAudit, audit_each, audit_study};
 

@@ -23,6 +23,32 @@ pub struct Curve {
     pub without: f64,
     /// Independent samples that the residuals are worth.
     pub samples: f64,
+    /// The sums of the regression at each lag, the mean taken out, for a comparison with other runs.
+    pub sums: Vec<Sums>,
+    /// Columns of the regression that belong to the channel: the first ones.
+    pub own: usize,
+}
+
+/// Sums of a regression: of products of columns, of columns with the response, and of its squares.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sums {
+    /// Row by row, without the constant.
+    pub columns: Vec<f64>,
+    /// With the response.
+    pub response: Vec<f64>,
+    /// Of the response.
+    pub squares: f64,
+}
+
+impl Sums {
+    /// Squares that coefficients of other runs leave.
+    pub fn left(&self, coefficients: &[f64]) -> f64 {
+        let n = coefficients.len();
+        let linear: f64 = coefficients.iter().zip(&self.response).map(|(c, b)| c * b).sum();
+        let of = |i: usize| -> f64 { (0..n).map(|j| self.columns[i * n + j] * coefficients[j]).sum() };
+        let square: f64 = (0..n).map(|i| coefficients[i] * of(i)).sum();
+        self.squares - 2.0 * linear + square
+    }
 }
 
 /// A regression at one lag: what is left, the sign of the effect.
@@ -30,6 +56,7 @@ struct Solved<const N: usize> {
     left: f64,
     sign: f64,
     coefficients: SVector<f64, N>,
+    sums: Sums,
 }
 
 impl Curve {
@@ -183,7 +210,8 @@ fn curve<const N: usize, const P: usize, const E: usize>(
     let correlation = if squares > 0.0 { (products / squares).clamp(0.0, 0.99) } else { 0.0 };
     let samples = starts.len() as f64 * (1.0 - correlation) / (1.0 + correlation);
     let (left, sign) = solved.iter().map(|s| (s.left, s.sign)).unzip();
-    Some(Curve { step: series.step, lags, left, sign, without, samples })
+    let sums = solved.into_iter().map(|s| s.sums).collect();
+    Some(Curve { step: series.step, lags, left, sign, without, samples, sums, own: P })
 }
 
 /// The regression at one lag, and what is left without the channel. `None` where nothing moves.
@@ -228,5 +256,18 @@ fn normal<const N: usize, const P: usize, const E: usize>(
     let coefficients = full.component_mul(&scale);
     let together = |j: usize| a[(j, 0)] - sums[j] * sums[0] / count;
     let sign = (0..P).map(|j| coefficients[j] * together(j)).sum::<f64>().signum();
-    Some((Solved { left, sign, coefficients }, without))
+    Some((Solved { left, sign, coefficients, sums: centred(&a, &b, squares) }, without))
+}
+
+/// The sums without the last column, the constant, and what it explains.
+fn centred<const N: usize>(a: &SMatrix<f64, N, N>, b: &SVector<f64, N>, squares: f64) -> Sums {
+    let constant = N - 1;
+    let own = a[(constant, constant)];
+    let share = |i: usize| if own > 0.0 { a[(i, constant)] / own } else { 0.0 };
+    let columns = (0..constant).flat_map(|i| (0..constant).map(move |j| a[(i, j)] - share(i) * a[(constant, j)]));
+    Sums {
+        columns: columns.collect(),
+        response: (0..constant).map(|i| b[i] - share(i) * b[constant]).collect(),
+        squares: squares - if own > 0.0 { b[constant] * b[constant] / own } else { 0.0 },
+    }
 }

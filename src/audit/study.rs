@@ -49,7 +49,10 @@ pub fn audit_study(study: &Study, ship: &Ship) -> StudyAudit {
         match &runs[..] {
             [one] => {
                 let Some(audit) = result.recordings.iter_mut().find(|a| a.run == *one) else { continue };
-                audit.issues.push(issue);
+                // The run alone may have told it.
+                if !audit.issues.iter().any(|i| (i.fault, i.channel) == (issue.fault, issue.channel)) {
+                    audit.issues.push(issue);
+                }
                 audit.issues.sort_by_key(|i| std::cmp::Reverse(i.severity));
             }
             _ => result.issues.push(issue),
