@@ -5,7 +5,7 @@ use crate::error::suggestion;
 use crate::files::intact;
 use crate::parameter::ParameterInfo;
 use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number, TermInfo};
-use crate::ship::{COEFFICIENTS, Ship, line_of};
+use crate::ship::{COEFFICIENTS, Ship, explain, line_of};
 use crate::state::Inputs;
 use crate::terms;
 use serde::{Deserialize, Serialize};
@@ -63,6 +63,16 @@ pub enum ModelError {
     /// A parameter that no term of the model has.
     #[error("unknown parameter `{name}`{suggestion}; `trimtab terms` lists the parameters of each term")]
     UnknownParameter {
+        /// The name found.
+        name: String,
+        /// A near name, as part of a sentence.
+        suggestion: String,
+    },
+    /// A parameter in the ship file that no term of the catalogue has.
+    #[error(
+        "the ship file sets `{name}`, which no term has{suggestion}; `trimtab terms` lists the parameters of each term"
+    )]
+    ShipParameter {
         /// The name found.
         name: String,
         /// A near name, as part of a sentence.
@@ -297,8 +307,10 @@ impl Model {
             // A ship file may give parameters of terms that this model does not use.
             if let Some(i) = model.index(name) {
                 model.parameters[i].value = *value;
-            } else if !model.catalogue.iter().any(|t| name.starts_with(&format!("{}.", t.info().name))) {
-                return Err(model.unknown(name));
+            } else if !model.catalogued().any(|known| known == *name) {
+                let known: Vec<String> = model.catalogued().collect();
+                let near = suggestion(name, known.iter().map(String::as_str));
+                return Err(ModelError::ShipParameter { name: name.clone(), suggestion: near });
             }
         }
         model.check_bounds()?;
@@ -371,7 +383,7 @@ impl Model {
         let file: ModelFile = toml::from_str(text).map_err(|e| ModelError::Parse {
             path: path.to_path_buf(),
             line: e.span().map_or(1, |s| line_of(text, s.start)),
-            message: e.message().trim_end().to_string(),
+            message: explain(e.message()),
         })?;
         Self::from_file(&file, ship).map_err(|e| {
             let (ModelError::UnknownTerm { name, .. }
@@ -430,7 +442,7 @@ impl Model {
                 };
                 return Err(ModelError::BadValue { name: name.clone(), value: prior.sd, expected: expected.into() });
             }
-            if !p.value.is_finite() || p.lower > p.upper {
+            if !p.value.is_finite() || p.lower.is_nan() || p.upper.is_nan() || p.lower > p.upper {
                 return Err(ModelError::BadValue {
                     name: name.clone(),
                     value: p.value,
@@ -441,6 +453,10 @@ impl Model {
         for (session, additions) in &file.sessions {
             let mut list = Vec::new();
             for (name, value) in additions {
+                if !value.is_finite() {
+                    let expected = format!("the addition in session `{session}` must be finite");
+                    return Err(ModelError::BadValue { name: name.clone(), value: *value, expected });
+                }
                 list.push((model.find(name)?, *value));
             }
             model.sessions.insert(session.clone(), list);
@@ -549,6 +565,19 @@ impl Model {
         self.index(name)
             .or_else(|| self.parameters.iter().position(|p| p.info.symbol == name && ELEVEN.contains(&p.name.as_str())))
             .ok_or_else(|| self.unknown(name))
+    }
+
+    /// Dotted names of the parameters of every term that there is.
+    fn catalogued(&self) -> impl Iterator<Item = String> + '_ {
+        let names =
+            |t: &TermInfo| -> Vec<String> { t.parameters.iter().map(|p| format!("{}.{}", t.name, p.name)).collect() };
+        self.catalogue.iter().flat_map(move |t| names(t.info()))
+    }
+
+    /// Whether the surge resistance is 0 at every speed: then a ship without other drag never stops.
+    pub fn without_resistance(&self) -> bool {
+        let mut curve = self.parameters.iter().filter(|p| p.name.starts_with("resistance."));
+        curve.all(|p| p.value == 0.0)
     }
 
     fn unknown(&self, name: &str) -> ModelError {

@@ -1,6 +1,7 @@
 //! A ship's fixed particulars, read from a TOML file and checked once, and the empirical hull coefficients they imply.
 //! It holds no fitted parameter: parameters belong to the terms that use them, and take their defaults from here.
 
+use crate::numerals::sig;
 use crate::units::GRAVITY;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -248,15 +249,20 @@ impl Ship {
 
     /// Checks every number and coefficient name; `source` places the messages.
     fn check(&self, source: &Source<'_>) -> Result<(), ShipError> {
-        self.check_positive(source)?;
-        self.check_mass(source)?;
-        for (key, w) in
-            [("propeller.wake", self.propeller.wake), ("propeller.thrust_deduction", self.propeller.thrust_deduction)]
-        {
-            if !(0.0..1.0).contains(&w) {
-                return source.value(key, w, "must lie in [0, 1)");
+        self.check_finite(source)?;
+        for range in self.ranges() {
+            let [low, high] = range.limits;
+            if !(low..=high).contains(&range.value) {
+                let within = if low == f64::MIN_POSITIVE {
+                    format!("positive and at most {}", sig(high, 4))
+                } else {
+                    format!("between {} and {}", sig(low, 4), sig(high, 4))
+                };
+                let expected = format!("must be {within}: {}", range.meaning);
+                return source.value(range.key, range.value, &expected);
             }
         }
+        self.check_mass(source)?;
         self.check_coefficient_names(source)?;
         let d = self.mass_determinant();
         if d.is_nan() || d <= 0.0 {
@@ -271,40 +277,116 @@ impl Ship {
         Ok(())
     }
 
-    fn check_positive(&self, source: &Source<'_>) -> Result<(), ShipError> {
-        let h = &self.hull;
-        let mut positive = vec![
-            ("hull.lpp", h.lpp),
-            ("hull.breadth", h.breadth),
-            ("hull.draught", h.draught),
-            ("hull.mass", h.mass),
-            ("hull.block_coefficient", h.block_coefficient),
-            ("hull.gyration", h.gyration),
-            ("hull.water_density", h.water_density),
-            ("propeller.diameter", self.propeller.diameter),
-            ("rudder.area", self.rudder.area),
-            ("rudder.span", self.rudder.span),
-        ];
-        if let Some(a) = &self.above_water {
-            positive.extend([
-                ("above_water.frontal_area", a.frontal_area),
-                ("above_water.lateral_area", a.lateral_area),
-                ("above_water.length_overall", a.length_overall),
-                ("above_water.air_density", a.air_density),
-            ]);
-        }
-        match positive.into_iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
-            Some((key, value)) => source.value(key, value, "must be a positive number in SI units"),
+    /// The tables of free numbers, and those that have no range: TOML has words for NaN and infinity.
+    fn check_finite(&self, source: &Source<'_>) -> Result<(), ShipError> {
+        let tables = [&self.coefficients, &self.coefficients_prime, &self.parameters];
+        let given = tables.into_iter().flatten().map(|(name, value)| (name.as_str(), *value));
+        let thrust = self.propeller.thrust_coefficients.iter().map(|k| ("propeller.thrust_coefficients", *k));
+        match given.chain(thrust).find(|(_, value)| !value.is_finite()) {
+            Some((key, value)) => {
+                source.value(key, value, "is no number to compute with; correct it, or leave the entry out")
+            }
             None => Ok(()),
         }
     }
 
-    /// The block coefficient, and the mass against the displacement rho L B d C_b: a factor of two is a wrong unit.
+    /// The range of every particular that a ship can have, wide enough for models, tugs and barges: what is outside is a wrong unit or
+    /// a wrong sign.
+    fn ranges(&self) -> Vec<Range> {
+        let (h, p, r) = (&self.hull, &self.propeller, &self.rudder);
+        let range = |key, value, low: f64, high: f64, meaning| Range { key, value, limits: [low, high], meaning };
+        let tiny = f64::MIN_POSITIVE;
+        let mut ranges = vec![
+            range("hull.lpp", h.lpp, tiny, 600.0, "the length between perpendiculars in m"),
+            range("hull.breadth", h.breadth, tiny, h.lpp, "the breadth in m, at most the length"),
+            range("hull.draught", h.draught, tiny, h.lpp, "the draught in m, at most the length"),
+            range("hull.mass", h.mass, tiny, 1e10, "the mass in kg"),
+            range("hull.block_coefficient", h.block_coefficient, 0.1, 1.0, "a share of L B d"),
+            range("hull.x_g", h.x_g, -0.25 * h.lpp, 0.25 * h.lpp, "in m forward of midship, within L / 4"),
+            range(
+                "hull.gyration",
+                h.gyration,
+                0.1,
+                0.5,
+                "the yaw radius of gyration as a share of L, about 0.25; divide a radius in m by L",
+            ),
+            range(
+                "hull.water_density",
+                h.water_density,
+                900.0,
+                1100.0,
+                "kg/m3, 1025 in the sea and 1000 in fresh water",
+            ),
+            range(
+                "propeller.diameter",
+                p.diameter,
+                0.02 * h.draught,
+                1.5 * h.draught,
+                "the diameter in m, at most one and a half draughts; is it in mm or cm?",
+            ),
+            range(
+                "propeller.x",
+                self.propeller_x(),
+                -0.7 * h.lpp,
+                0.0,
+                "in m forward of midship, so that aft is negative; about -0.48 L",
+            ),
+            range("propeller.wake", p.wake, -0.2, 0.95, "the wake fraction, a share of the ship's speed"),
+            range(
+                "propeller.thrust_deduction",
+                p.thrust_deduction,
+                -0.2,
+                0.95,
+                "the thrust deduction, a share of the thrust",
+            ),
+            range("propeller.astern", p.astern, 0.0, 2.0, "thrust astern over thrust ahead, about 0.74"),
+            range(
+                "rudder.area",
+                r.area,
+                1e-4 * h.lpp * h.draught,
+                0.25 * h.lpp * h.draught,
+                "the area in m2, about L d / 50",
+            ),
+            range("rudder.span", r.span, 0.02 * h.draught, 2.0 * h.draught, "the span in m, at most two draughts"),
+            range(
+                "rudder.x",
+                self.rudder_x(),
+                -0.7 * h.lpp,
+                0.0,
+                "in m forward of midship, so that aft is negative; about -0.5 L",
+            ),
+            range("rudder.straightening", r.straightening, 0.0, 2.0, "the flow straightening, about 0.45"),
+            range("rudder.lever", r.lever, -2.0, 0.0, "a share of L, negative aft; about -0.85"),
+            range("rudder.wake_ratio", r.wake_ratio, 0.1, 5.0, "the wake ratio, about 1.05"),
+            range("rudder.race", r.race, 0.0, 2.0, "the propeller race factor, about 0.5"),
+        ];
+        if let Some(a) = &self.above_water {
+            let lateral = h.lpp * (h.lpp + h.breadth);
+            ranges.extend([
+                range(
+                    "above_water.frontal_area",
+                    a.frontal_area,
+                    tiny,
+                    10.0 * h.breadth * h.lpp,
+                    "the frontal area in m2",
+                ),
+                range("above_water.lateral_area", a.lateral_area, tiny, lateral, "the lateral area in m2"),
+                range("above_water.length_overall", a.length_overall, 0.8 * h.lpp, 2.0 * h.lpp, "in m, about L"),
+                range("above_water.air_density", a.air_density, 0.5, 2.0, "kg/m3, about 1.225"),
+            ]);
+        }
+        if let Some(t) = &self.thruster {
+            ranges.extend([
+                range("thruster.thrust", t.thrust, 0.0, 1e8, "the thrust in N"),
+                range("thruster.x", t.x, -0.7 * h.lpp, 0.7 * h.lpp, "in m forward of midship, within the ship"),
+            ]);
+        }
+        ranges
+    }
+
+    /// The mass against the displacement rho L B d C_b: a factor of two is a wrong unit.
     fn check_mass(&self, source: &Source<'_>) -> Result<(), ShipError> {
         let h = &self.hull;
-        if h.block_coefficient > 1.0 {
-            return source.value("hull.block_coefficient", h.block_coefficient, "must be at most 1");
-        }
         let displaced = h.water_density * h.lpp * h.breadth * h.draught * h.block_coefficient;
         if (0.5..2.0).contains(&(h.mass / displaced)) {
             return Ok(());
@@ -406,6 +488,17 @@ impl Ship {
     }
 }
 
+/// A particular and the range it must be in.
+struct Range {
+    /// Dotted key.
+    key: &'static str,
+    value: f64,
+    /// Smallest and largest value.
+    limits: [f64; 2],
+    /// What it is, and in which unit.
+    meaning: &'static str,
+}
+
 /// The text of a ship file and its path: where a message points to.
 struct Source<'a> {
     text: &'a str,
@@ -413,11 +506,25 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The first line, counted from 1, that begins with the last part of a dotted key; 1 if there is none.
+    /// The line, counted from 1, that sets a key: that of a table (`hull.mass`), or a quoted one in a table of free names; that of
+    /// the table, or 1, where the file leaves it out.
     fn line(&self, key: &str) -> usize {
-        let last = key.rsplit('.').next().unwrap_or(key);
-        let begins = |line: &str| line.trim_start().trim_start_matches('"').starts_with(last);
-        self.text.lines().position(begins).map_or(1, |i| i + 1)
+        let (table, last) = key.split_once('.').unwrap_or(("", key));
+        let sets = |line: &str, name: &str| {
+            let rest = line.trim_start().trim_start_matches('"').strip_prefix(name);
+            rest.is_some_and(|rest| rest.trim_start_matches('"').trim_start().starts_with('='))
+        };
+        let heading = format!("[{table}]");
+        let start = self.text.lines().position(|l| l.trim() == heading);
+        let inside = |start: usize| {
+            let mut lines = self.text.lines().skip(start + 1).take_while(|l| !l.trim_start().starts_with('['));
+            start + 1 + lines.position(|l| sets(l, last)).map_or(0, |i| i + 1)
+        };
+        if let Some(quoted) = self.text.lines().position(|l| l.trim_start().starts_with('"') && sets(l, key)) {
+            return quoted + 1;
+        }
+        let whole = || self.text.lines().position(|l| sets(l, key) || sets(l, last)).map_or(1, |i| i + 1);
+        start.map_or_else(whole, inside)
     }
 
     /// The error of a value that no ship can have.
@@ -432,17 +539,61 @@ impl Source<'_> {
     }
 }
 
+/// The line, counted from 1, of a ship file that sets a parameter by its dotted name; 1 where it cannot be found.
+pub fn parameter_line(path: &Path, name: &str) -> usize {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    text.lines().position(|l| l.trim_start().starts_with(&format!("\"{name}\""))).map_or(1, |i| i + 1)
+}
+
 /// The line, counted from 1, of a byte offset in a text.
 pub(crate) fn line_of(text: &str, offset: usize) -> usize {
     text.as_bytes().iter().take(offset).filter(|b| **b == b'\n').count() + 1
 }
 
-/// Adds the next step to what the TOML reader says.
-fn explain(message: &str) -> String {
+/// Adds the next step to what the TOML reader says of a ship or model file.
+pub(crate) fn explain(message: &str) -> String {
     let message = message.trim_end();
-    if message.contains("missing field") {
-        format!("{message}; add it (all values in SI units)")
-    } else {
-        message.to_string()
+    // serde writes: unknown field `found`, expected one of `a`, `b`
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    match quoted.split_first() {
+        Some((found, known)) if message.starts_with("unknown ") => {
+            format!("{message}{}", crate::error::suggestion(found, known.iter().copied()))
+        }
+        _ if message.contains("missing field") => format!("{message}; add it, in SI units where it has one"),
+        _ => message.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHIP: &str = include_str!("demo/ship.toml");
+
+    fn message(from: &str, to: &str) -> Option<String> {
+        assert!(SHIP.contains(from), "{from}");
+        Ship::parse(&SHIP.replacen(from, to, 1), Path::new("ship.toml")).err().map(|e| e.to_string())
+    }
+
+    #[test]
+    fn what_no_ship_has_is_one_message_with_line_and_next_step() {
+        let cases = [
+            ("gyration = 0.25", "gyration = 21.25", ":12: hull.gyration", "divide a radius in m by L"),
+            ("lpp = 85.0", "lpp = nan", ":6: hull.lpp", "in m"),
+            ("mass = 3.359e6", "mass = inf", ":9: hull.mass", "in kg"),
+            ("x_g = 0.0", "x_g = nan", ":11: hull.x_g", "within L / 4"),
+            ("diameter = 2.85", "diameter = 285", ":16: propeller.diameter", "is it in mm or cm?"),
+            ("[0.3425,", "[nan,", ":20: propeller.thrust_coefficients", "correct it"),
+            ("span = 3.56", "span = 3.56\nx = 42.5", ":26: rudder.x", "aft is negative"),
+            ("wake = 0.28", "wake = 28", ":17: propeller.wake", "a share of the ship's speed"),
+            ("\"rudder.lift1\" = 0.864", "\"rudder.lift1\" = nan", ":39: rudder.lift1", "leave the entry out"),
+            ("wake = 0.28", "wakes = 0.28", ":17: unknown field", "did you mean `wake`?"),
+            ("area = 7.9", "", ":23: missing field `area`", "add it"),
+        ];
+        for (from, to, place, next) in cases {
+            let text = message(from, to).unwrap_or_else(|| panic!("{to}: no message"));
+            assert!(text.contains(place) && text.contains(next) && !text.contains('\n'), "{to}:\n{text}");
+        }
+        assert_eq!(message("lpp = 85.0", "lpp = 85.0"), None);
     }
 }

@@ -172,7 +172,7 @@ fn maps() -> Vec<Fault> {
         ),
         (
             "map leaves out the rudder",
-            "[columns]\nt = \"t\"\nn = \"n\"\n",
+            "leave_out = [\"delta\"]\n[columns]\nt = \"t\"\nn = \"n\"\n",
             "columns.toml:1: [columns] has no entry for channel `delta`",
             "every run needs",
         ),
@@ -197,13 +197,13 @@ fn maps() -> Vec<Fault> {
         ("no header, no indices", "header = false\n", "columns.toml:1: a file without a header", "`index`"),
         (
             "velocity derived without heading",
-            "derive = [\"u\"]\n[columns]\nt = \"t\"\nx = \"x\"\ny = \"y\"\nn = \"n\"\ndelta = \"delta\"\n",
+            "derive = [\"u\"]\nleave_out = [\"psi\", \"u\", \"v\"]\n",
             "run.csv:1: channel `psi` (heading) is needed to derive velocity",
             "`derive`",
         ),
         (
             "no velocity and no heading",
-            "[columns]\nt = \"t\"\nx = \"x\"\ny = \"y\"\nn = \"n\"\ndelta = \"delta\"\n",
+            "leave_out = [\"psi\", \"u\", \"v\"]\n",
             "run.csv:1: channel `u` (surge velocity) is needed to simulate",
             "derive",
         ),

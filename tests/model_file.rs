@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 use std::path::Path;
+use trimtab::Form;
 use trimtab::model::{Model, Prior};
 use trimtab::ship::{COEFFICIENTS, Ship};
 
@@ -179,4 +180,44 @@ fn a_written_model_is_read_with_the_ends_of_lines_of_another_system() {
     assert_eq!(model.eleven()[5], 2.5);
     let error = read(&text.replace("2.5", "2.6")).unwrap_err();
     assert!(error.contains("its checksum differs") && error.starts_with("model.toml:5: "), "{error}");
+}
+
+#[test]
+fn what_a_model_cannot_compute_with_is_refused_with_line_and_near_name() {
+    let cases = [
+        ("[parameters]\n\"rudder.lfit1\" = { value = 2.0 }\n", ":3", "did you mean `rudder.lift1`?"),
+        ("[parameters]\n\"rudder.lift1\" = { valeu = 2.0 }\n", ":3", "did you mean `value`?"),
+        ("[parameters]\n\"rudder.lift1\" = { value = nan }\n", ":3", "must be finite"),
+        ("[parameters]\n\"rudder.lift1\" = { lower = nan }\n", ":3", "lower (NaN)"),
+        ("[sessions.a]\n\"rudder.lift1\" = inf\n", ":3", "must be finite"),
+        ("trems = [\"wind\"]\n", ":2", "did you mean `terms`?"),
+    ];
+    for (text, line, words) in cases {
+        let error = read(&format!("name = \"m\"\n{text}")).unwrap_err();
+        assert!(error.contains(&format!("model.toml{line}")) && error.contains(words), "{text}{error}");
+    }
+}
+
+#[test]
+fn a_misspelt_parameter_of_the_ship_is_refused_with_the_nearest_name() {
+    for (name, near) in
+        [("rudder.lfit1", "rudder.lift1"), ("wnid.drag", "wind."), ("resistance.qubic", "resistance.cubic")]
+    {
+        let mut misspelt = ship();
+        misspelt.parameters.insert(name.into(), 1.0);
+        let error = Model::new(misspelt, "m", Form::default(), &[]).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains(&format!("did you mean `{near}")), "{error}");
+    }
+    // A parameter of a term that the model does not use is no mistake.
+    let mut other = ship();
+    other.parameters.insert("wind.side".into(), 0.8);
+    assert!(Model::new(other, "m", Form::default(), &[]).is_ok());
+}
+
+#[test]
+fn a_model_without_resistance_says_so() {
+    let mut bare = ship();
+    assert!(!Model::new(bare.clone(), "m", Form::default(), &[]).unwrap().without_resistance());
+    bare.parameters.clear();
+    assert!(Model::new(bare, "m", Form::default(), &[]).unwrap().without_resistance());
 }

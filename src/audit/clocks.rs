@@ -2,6 +2,7 @@
 //! Which channels are compared is decided by those that differentiate and smooth them.
 
 use super::issue::{Issue, Severity};
+use super::limits::LAG_STEPS;
 use crate::recording::Channel;
 
 /// Two series of one motion, of the longest stretch offered.
@@ -27,11 +28,13 @@ impl Pair {
 
     /// Says so, where it is more than a step and a half.
     pub fn tell(&self, lag: Option<f64>, channel: Channel, other: &str, issues: &mut Vec<Issue>) {
-        let Some(lag) = lag.filter(|l| l.abs() > 1.5 * self.step) else { return };
-        let severity = if lag.abs() > 5.0 * self.step { Severity::Warning } else { Severity::Note };
+        let [noted, doubtful] = LAG_STEPS;
+        let Some(lag) = lag.filter(|l| l.abs() > noted * self.step) else { return };
+        let severity = if lag.abs() > doubtful * self.step { Severity::Warning } else { Severity::Note };
         let order = if lag > 0.0 { "behind" } else { "ahead of" };
         let text = format!("runs {:.2} s {order} {other}", lag.abs());
-        let next = "shift one of the clocks, or ask the maker of the logger for its filter delay";
+        let next =
+            format!("`delay = {lag:.2}` for `{channel}` in a column map takes it back, if its clock is the late one");
         issues.push(Issue::new(severity, "clock", text, next).of(channel));
     }
 }

@@ -2,12 +2,13 @@
 //! A receiver that holds its value and then catches up is in `receiver`, since its samples can be left out.
 
 use super::issue::{Issue, Severity};
+use super::limits::{
+    FROZEN_CHANGES, FROZEN_DIFFERENCES, FROZEN_LEVEL, FROZEN_RANGE, FROZEN_ROWS, FROZEN_SELDOM, FROZEN_SPANS,
+};
 use super::series::Series;
 use crate::recording::{Channel, STATE_CHANNELS};
+use crate::statistics::{median, quantile};
 use std::ops::Range;
-
-/// Fewest rows of one value that are called frozen: of position and heading, which integrate, and of velocities.
-const FROZEN_ROWS: [usize; 2] = [10, 50];
 
 /// Channels that hold one value while their partners say they should not: position and heading against the integral of the rates,
 /// velocities against the derivative of position and heading.
@@ -25,7 +26,8 @@ pub fn frozen(series: &Series<'_>, issues: &mut Vec<Issue>) {
             values[longest.start],
         );
         let issue =
-            Issue::new(Severity::Warning, "frozen", text, "blank it, so that it counts as a dropout").of(channel);
+            Issue::new(Severity::Warning, "frozen", text, "leave the fields blank, so that it counts as a dropout")
+                .of(channel);
         issues.push(match series.lines(longest) {
             Some(lines) => issue.at(lines),
             None => issue,
@@ -45,18 +47,24 @@ fn still(series: &Series<'_>, channel: Channel, values: &[f64]) -> Vec<Range<usi
     let partner = if integrates { rate(series, channel) } else { derivative(series, channel) };
     let Some(partner) = partner else { return Vec::new() };
     let whole_range = range(&partner);
+    // Surge and sway are parts of one speed.
+    let along = if channel == Channel::V { series.get(Channel::U) } else { None };
+    let level = size(&partner).max(along.map_or(0.0, size));
+    let long: Vec<(usize, &Range<usize>)> =
+        stretches.iter().enumerate().filter(|(_, rows)| rows.len() >= least).collect();
     let stands = |(i, rows): &(usize, &Range<usize>)| {
         if integrates {
             // A channel that is only coarse also stands, but never longer than its neighbouring steps explain.
             let moved: f64 = Range::clone(rows).skip(1).map(|i| partner[i] * (t[i] - t[i - 1])).sum();
-            moved.abs() > 5.0 * usual_change(values, &stretches, *i)
+            moved.abs() > FROZEN_CHANGES * usual_change(values, &stretches, *i)
+                && moved.abs() > FROZEN_DIFFERENCES * usual_difference(series, values, &partner, rows.len(), &long)
         } else {
-            let longer = t[rows.end - 1] - t[rows.start] > 3.0 * series.span;
-            longer && range(&partner[Range::clone(rows)]) > 0.3 * whole_range
+            let longer = t[rows.end - 1] - t[rows.start] > FROZEN_SPANS * series.span;
+            let changes = range(&partner[Range::clone(rows)]);
+            longer && changes > FROZEN_RANGE * whole_range && changes > FROZEN_LEVEL * level
         }
     };
-    let long = stretches.iter().enumerate().filter(|(_, rows)| rows.len() >= least);
-    long.filter(stands).map(|(_, rows)| rows.clone()).collect()
+    long.iter().filter(|s| stands(s)).map(|(_, rows)| Range::clone(rows)).collect()
 }
 
 /// Rate at which position or heading should change, from the recorded rates.
@@ -88,19 +96,59 @@ fn derivative(series: &Series<'_>, channel: Channel) -> Option<Vec<f64>> {
     Some(all.map(at).collect())
 }
 
+/// Root mean square of the finite values.
+fn size(values: &[f64]) -> f64 {
+    let (sum, count) = values.iter().filter(|v| v.is_finite()).fold((0.0, 0.0), |(s, n), v| (s + v * v, n + 1.0));
+    (sum / f64::max(count, 1.0)).sqrt()
+}
+
 /// Largest less smallest finite value.
 fn range(values: &[f64]) -> f64 {
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     finite().fold(f64::MIN, f64::max) - finite().fold(f64::MAX, f64::min)
 }
 
-/// Median change of value from stretch to stretch around stretch `at`: motion in a row, or the resolution where that is coarser.
+/// Median change of value from stretch to stretch before or after stretch `at`, the larger one: motion in a row, or the resolution
+/// where that is coarser, which may change with the digits of the value.
 fn usual_change(values: &[f64], stretches: &[Range<usize>], at: usize) -> f64 {
-    let near = &stretches[at.saturating_sub(6)..(at + 7).min(stretches.len())];
-    let mut changes: Vec<f64> =
-        near.windows(2).map(|s| (values[s[1].start] - values[s[0].start]).abs()).filter(|d| *d > 0.0).collect();
-    changes.sort_by(f64::total_cmp);
-    changes.get(changes.len() / 2).copied().unwrap_or(0.0)
+    let changes = |near: &[Range<usize>]| {
+        let changes = near.windows(2).map(|s| (values[s[1].start] - values[s[0].start]).abs());
+        median(changes.filter(|d| *d > 0.0)).unwrap_or(0.0)
+    };
+    let (before, after) = (&stretches[at.saturating_sub(6)..=at], &stretches[at..(at + 7).min(stretches.len())]);
+    changes(before).max(changes(after))
+}
+
+/// Difference, over so many rows, of what a channel changes and what its rate says, that it seldom exceeds where the channel does not
+/// hold a value: noise, rounding, and the error of the rate. `long` are the stretches over which it does.
+fn usual_difference(
+    series: &Series<'_>,
+    values: &[f64],
+    rate: &[f64],
+    length: usize,
+    long: &[(usize, &Range<usize>)],
+) -> f64 {
+    let t = &series.t;
+    let mut differences = Vec::new();
+    for stretch in series.stretches.iter().filter(|s| s.len() > length) {
+        let mut said = vec![0.0];
+        for i in stretch.start + 1..stretch.end {
+            said.push(said[said.len() - 1] + rate[i] * (t[i] - t[i - 1]));
+        }
+        let mut held = 0;
+        for i in 0..stretch.len() - length + 1 {
+            let (from, to) = (stretch.start + i, stretch.start + i + length - 1);
+            while held < long.len() && long[held].1.end <= from {
+                held += 1;
+            }
+            if long.get(held).is_none_or(|(_, rows)| rows.start > to) {
+                differences.push((values[to] - values[from] - (said[i + length - 1] - said[i])).abs());
+            }
+        }
+    }
+    differences.retain(|d| d.is_finite());
+    differences.sort_by(f64::total_cmp);
+    quantile(&differences, FROZEN_SELDOM).unwrap_or(0.0)
 }
 
 /// Stretches of one value within `rows`.

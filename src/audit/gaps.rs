@@ -4,6 +4,7 @@
 use super::issue::{Issue, Severity};
 use crate::error::suggestion;
 use crate::recording::{CHANNELS, Channel, Recording, STATE_CHANNELS};
+use std::ops::Range;
 
 /// Everything that is not there, or not as one would expect it.
 pub fn completeness(recording: &Recording, issues: &mut Vec<Issue>) {
@@ -13,14 +14,24 @@ pub fn completeness(recording: &Recording, issues: &mut Vec<Issue>) {
     channels(recording, issues);
 }
 
-/// Rows in which a channel has no value.
+/// Rows in which a channel has no value, told once for each set of channels that is missing together.
 fn dropouts(recording: &Recording, issues: &mut Vec<Issue>) {
+    let mut told: Vec<(Vec<Channel>, Vec<Range<usize>>)> = Vec::new();
     for rows in recording.dropouts() {
         let missing = recording.missing_in(rows.clone());
+        match told.iter_mut().find(|(channels, _)| *channels == missing) {
+            Some((_, all)) => all.push(rows),
+            None => told.push((missing, vec![rows])),
+        }
+    }
+    for (missing, all) in told {
+        let Some(first) = all.first() else { continue };
         let names = missing.iter().map(|c| c.name()).collect::<Vec<_>>().join(", ");
-        let text = format!("{names}: no value in {} rows", rows.len());
+        let rows: usize = all.iter().map(Range::len).sum();
+        let places = if all.len() == 1 { String::new() } else { format!(" in {} places, the first here", all.len()) };
+        let text = format!("{names}: no value in {rows} rows{places}");
         let next = "with `gaps = \"split\"` the study cuts the run here; `bridge` in a column map fills short ones";
-        let lines = (recording.line(rows.start), recording.line(rows.end - 1));
+        let lines = (recording.line(first.start), recording.line(first.end - 1));
         let issue = Issue::new(Severity::Warning, "missing", text, next).at(lines);
         issues.push(if let [one] = missing[..] { issue.of(one) } else { issue });
     }
@@ -29,9 +40,13 @@ fn dropouts(recording: &Recording, issues: &mut Vec<Issue>) {
 /// Jumps in time, rows without one, and uneven steps.
 fn time(recording: &Recording, issues: &mut Vec<Issue>) {
     let step = recording.step();
-    for &row in &recording.gaps() {
-        let gap = recording.time()[row] - recording.time()[row - 1];
-        let text = format!("{gap:.3} s without a row, where the step is {step:.3} s");
+    let gaps = recording.gaps();
+    if let Some(&row) = gaps.first() {
+        let gap = |row: usize| recording.time()[row] - recording.time()[row - 1];
+        let longest = gaps.iter().map(|row| gap(*row)).fold(0.0, f64::max);
+        let more =
+            if gaps.len() == 1 { String::new() } else { format!(" in {} places, up to {longest:.3} s", gaps.len()) };
+        let text = format!("{:.3} s without a row, where the step is {step:.3} s{more}", gap(row));
         let lines = (recording.line(row - 1), recording.line(row));
         let next = "with `gaps = \"split\"` the study cuts the run here";
         issues.push(Issue::new(Severity::Warning, "gap", text, next).of(Channel::T).at(lines));
@@ -64,17 +79,45 @@ fn time(recording: &Recording, issues: &mut Vec<Issue>) {
     }
 }
 
-/// Columns that became no channel.
+/// Names of columns that hold geographic positions.
+const GEOGRAPHIC: [&str; 6] = ["lat", "latitude", "lon", "long", "lng", "longitude"];
+
+/// Columns that became no channel: those that may have been meant for an absent one, each; the others in one note.
 fn columns(recording: &Recording, issues: &mut Vec<Issue>) {
-    for column in recording.unused() {
-        let name = column.split(['[', '(']).next().unwrap_or_default().trim();
+    let name = |column: &str| column.split(['[', '(']).next().unwrap_or_default().trim().to_lowercase();
+    let (geographic, unused): (Vec<&String>, Vec<&String>) =
+        recording.unused().iter().partition(|column| GEOGRAPHIC.contains(&name(column).as_str()));
+    if let (Some(first), false) = (geographic.first(), recording.has(Channel::X)) {
+        let more = geographic.get(1).map_or(String::new(), |second| format!(" and `{second}`"));
+        let text = format!("the positions of columns `{first}`{more} are not used, and x and y are missing");
+        let next = "give x = 111120 (lat - lat0) and y = 111120 cos(lat0) (lon - lon0), degrees to m: `x = { column = \"lat\", unit = \"m\", scale = 111120, offset = ... }` in a column map";
+        issues.push(Issue::new(Severity::Warning, "not_used", text, next).of(Channel::X));
+    }
+    let mut others = Vec::new();
+    for column in unused {
         let absent = CHANNELS.iter().filter(|c| !recording.has(c.channel)).map(|c| c.name);
-        let near = if name.len() > 2 { suggestion(name, absent) } else { String::new() };
-        let severity = if near.is_empty() { Severity::Note } else { Severity::Warning };
+        let name = name(column);
+        let near = if name.len() > 2 { suggestion(&name, absent) } else { String::new() };
+        if near.is_empty() {
+            others.push(format!("`{column}`"));
+            continue;
+        }
         let text = format!("column `{column}` is not used{near}");
-        issues.push(Issue::new(severity, "unused", text, "rename it or name it in a column map, if it should be"));
+        let next = "rename it or name it in a column map, if it should be";
+        issues.push(Issue::new(Severity::Warning, "unused", text, next));
+    }
+    if !others.is_empty() {
+        let text = match &others[..] {
+            [one] => format!("column {one} is not used"),
+            all if all.len() <= NAMED => format!("{} columns are not used: {}", all.len(), all.join(", ")),
+            all => format!("{} columns are not used: {}, ...", all.len(), all[..NAMED].join(", ")),
+        };
+        issues.push(Issue::new(Severity::Note, "unused", text, "name those in a column map that should be"));
     }
 }
+
+/// Most columns that a note names.
+const NAMED: usize = 5;
 
 /// Channels whose values were bridged or derived, and those of the state that are not there.
 fn channels(recording: &Recording, issues: &mut Vec<Issue>) {
@@ -89,8 +132,18 @@ fn channels(recording: &Recording, issues: &mut Vec<Issue>) {
         let text = "derived from other channels, not recorded".to_owned();
         note("derived", *channel, text, "its agreement with them proves nothing");
     }
+    if recording.repaired() > 0 {
+        let text = format!("{} headings interpolated across north were put right", recording.repaired());
+        note("repaired", Channel::Psi, text, "as `wrap_repair` in the column map asks");
+    }
     for channel in STATE_CHANNELS.into_iter().filter(|c| !recording.has(*c)) {
         let text = format!("{} was not recorded", channel.info().words);
-        note("not_recorded", channel, text, "the cost carries no weight for it");
+        let next = match channel {
+            Channel::U | Channel::V | Channel::R => {
+                "the cost carries no weight for it; `derive` in a column map takes it from the others"
+            }
+            _ => "the cost carries no weight for it; name its column in a column map, if there is one",
+        };
+        issues.push(Issue::new(Severity::Warning, "not_recorded", text, next).of(channel));
     }
 }

@@ -1,54 +1,131 @@
-//! Jumps of single values: rows that lie far from their neighbours.
-//! Jumps of a position that last are in `receiver`, since a run is parted there.
+//! Damaged single values: rows that lie far from their neighbours, inside a run and at its ends, from which simulation starts.
+//! Positions that jump are in `fixes`; jumps that last are in `receiver`, since a run is parted there.
 
 use super::issue::{Issue, Severity};
-use super::series::Series;
-use crate::recording::STATE_CHANNELS;
+use super::limits::{END_WINDOWS, FAR, FAR_SHARE, FAR_SHARE_AT_ENDS, FEW, FEW_SHARE, MEDIAN_ROWS, OUTSIDE_SHARE, TAIL};
+use crate::recording::{Channel, Recording, STATE_CHANNELS};
+use crate::statistics::median;
 
-/// Half-width, in rows, of the running median outliers are measured from.
-const MEDIAN_ROWS: usize = 3;
+/// Channels that are set and not moved: they may change for one sample and change back.
+const SET: [Channel; 9] = [
+    Channel::N,
+    Channel::Delta,
+    Channel::Thruster,
+    Channel::NOrder,
+    Channel::DeltaOrder,
+    Channel::WindSpeed,
+    Channel::ApparentWindSpeed,
+    Channel::CurrentSpeed,
+    Channel::Depth,
+];
 
-/// Single rows far from the median of their neighbours (Hampel's test, at ten times the usual scatter).
-pub fn outliers(series: &Series<'_>, issues: &mut Vec<Issue>) {
-    for channel in STATE_CHANNELS {
-        let Some(values) = series.get(channel) else { continue };
-        let far = far(values);
+/// Single rows far from the median of their neighbours (Hampel's test), in every channel but those in `told`.
+pub fn outliers(recording: &Recording, told: &[Channel], issues: &mut Vec<Issue>) {
+    let moved = STATE_CHANNELS.into_iter().chain([Channel::UWater, Channel::VWater]).map(|c| (c, false));
+    for (channel, set) in moved.chain(SET.map(|c| (c, true))) {
+        let known = told.contains(&channel) || recording.derived().contains(&channel);
+        let Some(values) = recording.get(channel).filter(|_| !known) else { continue };
+        let far = far(recording.time(), values, set);
         let (Some(&first), Some(&last)) = (far.first(), far.last()) else { continue };
-        let line = |row: usize| series.lines(&(row..row + 1)).map_or(row, |(line, _)| line);
+        let line = |row: usize| recording.line(row);
+        let factor = channel.info().quantity.factor(recording.unit(channel)).unwrap_or(1.0);
+        let value = |row: usize| format!("{:.4} {}", values[row] / factor, recording.unit(channel));
         let lines: Vec<String> = far.iter().take(5).map(|&row| line(row).to_string()).collect();
         let more = if far.len() > 5 { ", ..." } else { "" };
         let text = match far.len() {
-            1 => format!("one value stands far from its neighbours (line {})", lines[0]),
-            n => format!("{n} values stand far from their neighbours (lines {}{more})", lines.join(", ")),
+            1 => format!("one value is far from its neighbours: {} (line {})", value(first), lines[0]),
+            n => format!("{n} values are far from their neighbours (lines {}{more})", lines.join(", ")),
         };
-        let next = "blank them, if they are no motion of the ship";
+        let next = format!(
+            "leave the fields blank, or use `blank = {{ outside = [...] }}` for `{channel}` in a column map, if they are no {}",
+            if set { "orders" } else { "motion of the ship" }
+        );
         issues.push(Issue::new(Severity::Warning, "outlier", text, next).of(channel).at((line(first), line(last))));
     }
 }
 
 /// The rows that lie far from their neighbours; none where they are so many that they are no single values.
-fn far(values: &[f64]) -> Vec<usize> {
-    let median = |v: &mut Vec<f64>| {
-        v.sort_by(f64::total_cmp);
-        v[v.len() / 2]
-    };
-    let finite: Vec<usize> = (0..values.len()).filter(|&i| values[i].is_finite()).collect();
+fn far(t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
+    let rows: Vec<usize> = (0..values.len()).filter(|&i| values[i].is_finite()).collect();
+    let finite: Vec<f64> = rows.iter().map(|&i| values[i]).collect();
     if finite.len() < 4 * MEDIAN_ROWS {
         return Vec::new();
     }
-    let from_median: Vec<f64> = (0..finite.len())
-        .map(|k| {
-            let near = k.saturating_sub(MEDIAN_ROWS)..(k + MEDIAN_ROWS + 1).min(finite.len());
-            (values[finite[k]] - median(&mut near.map(|j| values[finite[j]]).collect())).abs()
-        })
-        .collect();
-    // The usual scatter; beside it a tenth of the range, since data without noise have none.
-    let usual = 1.4826 * median(&mut from_median.clone());
-    let mut sorted: Vec<f64> = finite.iter().map(|&i| values[i]).collect();
+    let from_median: Vec<f64> = (0..finite.len()).map(|k| finite[k] - running_median(&finite, k)).collect();
+    let mut sorted = finite.clone();
     sorted.sort_by(f64::total_cmp);
-    let (low, high) = (sorted[sorted.len() / 50], sorted[sorted.len() - 1 - sorted.len() / 50]);
-    // Ends are left out: there the median is one-sided.
+    let tail = (TAIL * sorted.len() as f64).ceil() as usize;
+    let (low, high) = (sorted[tail], sorted[sorted.len() - 1 - tail]);
+    // The usual scatter; beside it a share of the range, since data without noise have none.
+    let least = |scatter: f64| (FAR * scatter).max(FAR_SHARE * (high - low));
+    let usual = least(deviation(from_median.iter().copied()));
+    let outside = OUTSIDE_SHARE * (high - low) + FAR_SHARE * low.abs().max(high.abs());
+    let possible = |k: usize| set && (low - outside..=high + outside).contains(&finite[k]);
     let inner = MEDIAN_ROWS..finite.len() - MEDIAN_ROWS;
-    let far: Vec<usize> = inner.filter(|&k| from_median[k] > (10.0 * usual).max(0.1 * (high - low))).collect();
-    if far.len() * 100 > finite.len() { Vec::new() } else { far.into_iter().map(|k| finite[k]).collect() }
+    let mut far: Vec<usize> = inner.filter(|&k| from_median[k].abs() > usual && !possible(k)).collect();
+    // A set channel may have been changed just before the end.
+    if !set {
+        let at_ends = |scatter: f64| (FAR * scatter).max(FAR_SHARE_AT_ENDS * (high - low));
+        far.extend(far_at_ends(t, &rows, &finite, at_ends));
+        far.sort_unstable();
+    }
+    let few = FEW.max((FEW_SHARE * finite.len() as f64) as usize);
+    if set && far.is_empty() {
+        far.extend(set_at_ends(&finite));
+    }
+    if far.len() > few { Vec::new() } else { far.into_iter().map(|k| rows[k]).collect() }
+}
+
+/// First and last value of a channel that is set, where all others are alike and it is several times as large as any of them.
+fn set_at_ends(values: &[f64]) -> Vec<usize> {
+    let last = values.len() - 1;
+    let largest = |rows: &[f64]| rows.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    let alone = |k: usize, rest: &[f64]| {
+        let most = largest(rest);
+        most > 0.0 && values[k].abs() > (2.0 + OUTSIDE_SHARE) * most
+    };
+    let mut far = Vec::new();
+    far.extend(alone(0, &values[1..]).then_some(0));
+    far.extend(alone(last, &values[..last]).then_some(last));
+    far
+}
+
+/// Rows at the ends that are far from the line through the other rows of their window, by what such rows are all along the run.
+fn far_at_ends(t: &[f64], rows: &[usize], values: &[f64], least: impl Fn(f64) -> f64) -> Vec<usize> {
+    const WINDOW: usize = 2 * MEDIAN_ROWS + 1;
+    let windows = values.len() + 1 - WINDOW;
+    let stride = windows.div_ceil(END_WINDOWS);
+    let off = |start: usize, j: usize| {
+        let others: Vec<usize> = (start..start + WINDOW).filter(|k| *k != start + j).collect();
+        let slope = |a: usize, b: usize| (values[b] - values[a]) / (t[rows[b]] - t[rows[a]]);
+        let slopes = others.iter().enumerate().flat_map(|(i, a)| others[i + 1..].iter().map(move |b| slope(*a, *b)));
+        let slope = median(slopes).unwrap_or(0.0);
+        let at = start + j;
+        let level = median(others.iter().map(|k| values[*k] - slope * (t[rows[*k]] - t[rows[at]]))).unwrap_or(0.0);
+        values[at] - level
+    };
+    let mut far = Vec::new();
+    for j in 0..MEDIAN_ROWS {
+        for (start, j) in [(0, j), (windows - 1, WINDOW - 1 - j)] {
+            let limit = least(deviation((0..windows).step_by(stride).map(|start| off(start, j))));
+            if off(start, j).abs() > limit {
+                far.push(start + j);
+            }
+        }
+    }
+    // A damaged row bends the line of the row beside it: of rows that are next to each other the first or last one is meant.
+    let ends = |k: &usize| *k == 0 || *k == values.len() - 1;
+    if far.iter().any(ends) { far.into_iter().filter(ends).collect() } else { far }
+}
+
+/// The median of a row and its neighbours.
+fn running_median(values: &[f64], k: usize) -> f64 {
+    let mut near = values[k.saturating_sub(MEDIAN_ROWS)..(k + MEDIAN_ROWS + 1).min(values.len())].to_vec();
+    near.sort_by(f64::total_cmp);
+    near[near.len() / 2]
+}
+
+/// Standard deviation of values around 0 by their median size, which single large ones do not change.
+fn deviation(values: impl Iterator<Item = f64>) -> f64 {
+    1.4826 * median(values.map(f64::abs).filter(|v| v.is_finite())).unwrap_or(0.0)
 }

@@ -3,27 +3,37 @@
 //!
 //! [`audit_study`] is what `trimtab check` shows; [`audit_runs`] and [`settled`] are asked before a fit and before a diagnosis.
 
+mod across;
 mod clocks;
+mod fill;
+mod fixes;
 mod frozen;
 mod gaps;
 mod issue;
 mod jumps;
 mod kinematics;
+mod limits;
+mod model;
+mod pooled;
 mod propeller;
 mod receiver;
 mod record;
+mod response;
 mod runs;
 mod series;
 mod signs;
 mod study;
 mod units;
 
+pub use across::{Evidence, Shared, across};
 pub use issue::{Issue, Severity};
 pub use kinematics::Kinematics;
+pub use model::audit_model;
 pub use receiver::{Jump, jumps, piece, settled};
-pub use record::{Audit, ChannelSummary, Stretch, audit};
+pub use record::{Audit, ChannelSummary, Responses, Stretch, audit};
+pub use response::{Curve, Sums};
 pub use runs::audit_runs;
-pub use study::{StudyAudit, audit_study};
+pub use study::{StudyAudit, audit_each, audit_study};
 
 #[cfg(test)]
 mod tests {
@@ -136,8 +146,8 @@ mod tests {
         for (factor, told) in [(1.0, None), (TAU, Some("rad/s")), (1.0 / 60.0, Some("rps"))] {
             let mut run = swing();
             values(&mut run, Channel::N).iter_mut().for_each(|n| *n *= factor);
-            let mut issues = Vec::new();
-            propeller::advance(&Recording::from_channels("run", run).unwrap(), &ship, &mut issues);
+            let ratio = propeller::advance_ratio(&Recording::from_channels("run", run).unwrap(), &ship);
+            let issues: Vec<Issue> = propeller::advance(&[ratio], &ship).into_iter().flatten().collect();
             assert_eq!(issues.len(), usize::from(told.is_some()), "{issues:?}");
             assert!(told.is_none_or(|t| issues[0].text.contains(&format!("the column is in {t} "))), "{issues:?}");
         }

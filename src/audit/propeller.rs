@@ -2,16 +2,12 @@
 //! What the propeller's thrust is, is the model's affair.
 
 use super::issue::{Issue, Severity};
+use super::limits::{RATIO_APART, RATIO_INSIDE, RATIO_SAMPLES, SAILED, UNDER_WAY};
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording};
 use crate::ship::Ship;
+use crate::statistics::median;
 use std::f64::consts::TAU;
-
-/// Advance ratios u / (n D) that ships under way have, from heavy towing to wind from astern. Open-water diagrams of the Wageningen B
-/// series reach zero thrust between 0.6 and 1.5, by pitch.
-const SAILED: [f64; 2] = [0.15, 1.6];
-/// Samples ahead under power that a ratio is told from.
-const FEWEST: usize = 20;
 
 /// Wrong units of a propeller rate, and by what factor they change it.
 const UNITS: [(f64, &str); 4] = [
@@ -21,24 +17,37 @@ const UNITS: [(f64, &str); 4] = [
     (1.0 / 60.0, "the column is in rps and was declared rpm"),
 ];
 
-/// Holds the propeller rate against the speed where the ship sails ahead under power.
-pub fn advance(recording: &Recording, ship: &Ship, issues: &mut Vec<Issue>) {
-    let Some((n, u)) = recording.get(Channel::N).zip(recording.get(Channel::U)) else { return };
+/// The median advance ratio where the ship sails ahead under power; `None` where it does too seldom.
+pub fn advance_ratio(recording: &Recording, ship: &Ship) -> Option<f64> {
+    let (n, u) = recording.get(Channel::N).zip(recording.get(Channel::U))?;
     let slow = ship.small_speed();
-    let ahead = n.iter().zip(u).filter(|(n, u)| **n > 0.0 && **u > 10.0 * slow);
-    let mut ratios: Vec<f64> = ahead.map(|(n, u)| u / (n * ship.propeller.diameter)).collect();
-    if ratios.len() < FEWEST {
-        return;
-    }
-    ratios.sort_by(f64::total_cmp);
-    let median = ratios[ratios.len() / 2];
+    let ahead = n.iter().zip(u).filter(|(n, u)| **n > 0.0 && **u > UNDER_WAY * slow);
+    let ratios: Vec<f64> = ahead.map(|(n, u)| u / (n * ship.propeller.diameter)).collect();
+    if ratios.len() < RATIO_SAMPLES { None } else { median(ratios) }
+}
+
+/// Holds the ratios of all runs against those that ships have, and each against the others: a berthing is no voyage, so that one run
+/// is in doubt with all others, or where it is far from them.
+pub fn advance(ratios: &[Option<f64>], ship: &Ship) -> Vec<Option<Issue>> {
     let [low, high] = SAILED;
-    if (low..=high).contains(&median) {
-        return;
-    }
-    let fits = |(factor, _): &&(f64, &str)| (2.0 * low..=0.8 * high).contains(&(median * factor));
+    let usual = median(ratios.iter().flatten().copied());
+    let alone = ratios.iter().flatten().count() == 1;
+    let doubtful = |ratio: f64| {
+        let others = usual.unwrap_or(ratio);
+        let apart = ratio > RATIO_APART * others || ratio < others / RATIO_APART;
+        let outside = |r: f64| !(low..=high).contains(&r);
+        if alone { outside(ratio) } else { outside(others) != apart }
+    };
+    let told = |ratio: &Option<f64>| ratio.filter(|r| doubtful(*r)).map(|r| doubt(r, ship));
+    ratios.iter().map(told).collect()
+}
+
+fn doubt(ratio: f64, ship: &Ship) -> Issue {
+    let [low, high] = SAILED;
+    let fits =
+        |(factor, _): &&(f64, &str)| (RATIO_INSIDE[0] * low..=RATIO_INSIDE[1] * high).contains(&(ratio * factor));
     let meaning = UNITS.iter().find(fits).map_or(String::new(), |(_, meaning)| format!(": {meaning}"));
-    let text = format!("the advance ratio u / (n D) is {} in the median{meaning}", sig(median, 2));
-    let next = format!("check the unit of n, and D = {} m in the ship file", ship.propeller.diameter);
-    issues.push(Issue::new(Severity::Warning, "advance_ratio", text, next).of(Channel::N));
+    let text = format!("the advance ratio u / (n D) is {} in the median{meaning}", sig(ratio, 2));
+    let next = format!("check `unit` of n in a column map, and D = {} m in the ship file", ship.propeller.diameter);
+    Issue::new(Severity::Warning, "advance_ratio", text, next).of(Channel::N)
 }

@@ -1,16 +1,19 @@
 //! The audit of one recording: every question put to it, and the ranges of its channels.
 //! Each question is in a file of its own; the study as a whole is in `study`.
 
+use super::fill::fills;
+use super::fixes::{fixes, headings};
 use super::frozen::frozen;
 use super::gaps::completeness;
 use super::issue::{Issue, Severity};
 use super::jumps::outliers;
 use super::kinematics::Kinematics;
+use super::response::{Curve, gyro, propeller, receiver, rudder};
 use super::series::Series;
-use super::signs::{Rudder, Track};
+use super::signs::{Actuators, Track};
 use super::units::{Turning, magnitudes};
 use crate::recording::{Channel, Recording};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// Range of a channel in a run, SI units.
@@ -79,13 +82,49 @@ impl Audit {
 
 /// Audits one recording.
 pub fn audit(recording: &Recording) -> Audit {
+    examined(recording).0
+}
+
+/// How the motion of a recording answers what is recorded.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Responses {
+    /// Yaw to rudder.
+    pub rudder: Option<Curve>,
+    /// Surge to propeller.
+    pub propeller: Option<Curve>,
+    /// Heading to yaw rate.
+    pub gyro: Option<Curve>,
+    /// Position to velocity and heading.
+    pub receiver: Option<Curve>,
+}
+
+impl Responses {
+    /// Those of some rows.
+    pub fn of(series: &Series<'_>) -> Self {
+        Self { rudder: rudder(series), propeller: propeller(series), gyro: gyro(series), receiver: receiver(series) }
+    }
+}
+
+/// Audits one recording, and gives what is compared with other recordings.
+pub(super) fn examined(recording: &Recording) -> (Audit, Responses) {
     let mut issues = Vec::new();
     completeness(recording, &mut issues);
+    // What was found so far would be found again and again in what follows.
+    let filled = fills(recording, &mut issues);
+    let recording = filled.as_ref().unwrap_or(recording);
+    let mut told = Vec::new();
+    if fixes(recording, &mut issues) {
+        told.extend([Channel::X, Channel::Y]);
+    }
+    let turned = headings(recording, &mut issues).then(|| recording.with_repaired_heading());
+    told.extend(turned.as_ref().map(|_| Channel::Psi));
+    let recording = turned.as_ref().unwrap_or(recording);
     magnitudes(recording, &mut issues);
     let series = Series::from(recording);
-    let kinematics = agreement([&series], &mut issues);
+    let responses = Responses::of(&series);
+    let kinematics = agreement([(&series, &responses)], &mut issues);
     frozen(&series, &mut issues);
-    outliers(&series, &mut issues);
+    outliers(recording, &told, &mut issues);
     issues.sort_by_key(|i| std::cmp::Reverse(i.severity));
     let t = recording.time();
     let stretch = |s: &std::ops::Range<usize>| Stretch {
@@ -94,7 +133,7 @@ pub fn audit(recording: &Recording) -> Audit {
         from: t[s.start],
         to: t[s.end - 1],
     };
-    Audit {
+    let audit = Audit {
         run: recording.name.clone(),
         path: recording.path.clone(),
         rows: recording.len(),
@@ -104,24 +143,31 @@ pub fn audit(recording: &Recording) -> Audit {
         channels: recording.channels().map(|(c, v)| summary(recording, c, v)).collect(),
         kinematics: Some(kinematics),
         issues,
-    }
+    };
+    (audit, responses)
 }
 
 /// Whether the channels tell the same motion, over all series together.
-pub fn agreement<'a>(series: impl IntoIterator<Item = &'a Series<'a>>, issues: &mut Vec<Issue>) -> Kinematics {
-    let (mut turning, mut track, mut rudder) = (Turning::default(), Track::default(), Rudder::default());
+pub fn agreement<'a>(
+    series: impl IntoIterator<Item = (&'a Series<'a>, &'a Responses)>,
+    issues: &mut Vec<Issue>,
+) -> Kinematics {
+    let (mut turning, mut track, mut actuators) = (Turning::default(), Track::default(), Actuators::default());
     let mut kinematics = Kinematics::default();
-    for one in series {
+    for (one, responses) in series {
         kinematics.span = kinematics.span.max(one.span);
         turning.add(one);
         track.add(one);
-        rudder.add(one);
+        actuators.add(one, responses.rudder.as_ref());
     }
     turning.tell(&mut kinematics, issues);
     track.tell(&mut kinematics, issues);
     // Where r itself has the wrong sign, what the rudder does to it says nothing.
-    if !issues.iter().any(|i| i.channel == Some(Channel::R) && i.fault == "sign_error") {
-        rudder.tell(issues);
+    let of = |issues: &[Issue], channels: &[Channel]| {
+        issues.iter().any(|i| i.fault == "sign_error" && i.channel.is_some_and(|c| channels.contains(&c)))
+    };
+    if !of(issues, &[Channel::R, Channel::U]) {
+        actuators.tell(issues);
     }
     kinematics
 }

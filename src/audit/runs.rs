@@ -3,7 +3,7 @@
 
 use super::frozen::frozen;
 use super::issue::Issue;
-use super::record::agreement;
+use super::record::{Responses, agreement};
 use super::series::Series;
 use crate::recording::Run;
 
@@ -12,7 +12,8 @@ use crate::recording::Run;
 pub fn audit_runs(runs: &[Run]) -> Vec<Issue> {
     let series: Vec<Series<'static>> = runs.iter().map(Series::from).collect();
     let mut issues = Vec::new();
-    agreement(&series, &mut issues);
+    let responses: Vec<Responses> = series.iter().map(Responses::of).collect();
+    agreement(series.iter().zip(&responses), &mut issues);
     issues.retain(Issue::blocking);
     for (run, series) in runs.iter().zip(&series) {
         let mut own = Vec::new();

@@ -4,10 +4,14 @@
 use super::clocks::Pair;
 use super::issue::{Issue, Severity};
 use super::kinematics::{Kinematics, Proportion};
+use super::limits::{
+    AGAINST, AGAINST_RUDDER, AGAINST_TURN, ASTERN_SHARE, ASTERN_SPEED, CALIBRATED, COHERENT, EXPLAINS, LEVER_SHARE,
+    MIRROR_LEAVES, MIRRORED, NOT_MIRRORED, SIGN_EVIDENCE, SWAY_COHERENCE, SWAY_LEAVES, TRACK_ANGLES, TURNED, UNTURNED,
+};
+use super::response::Curve;
 use super::series::Series;
-use super::units::{CALIBRATED, COHERENT, SPEED_GAINS, known_gain};
-use crate::recording::{Channel, local};
-use nalgebra::{Matrix3, Vector3};
+use super::units::{SPEED_GAINS, known_gain};
+use crate::recording::Channel;
 use std::ops::Range;
 
 /// Track against velocity: sums over rows of the track's velocity, the recorded one turned by the heading (along the earth's axes),
@@ -121,16 +125,16 @@ impl Track {
 
     /// Velocities along other axes than the ship's, or a mirror image.
     fn wrong_axes(&self, coherence: f64, size: f64) -> Option<Issue> {
-        if self.unturned / size > 0.97 && self.along / size < 0.9 {
+        if self.unturned / size > UNTURNED && self.along / size < TURNED {
             let text = "u and v follow the track along the earth's axes, not the ship's";
             let next = "set `velocity_frame = \"earth\"` in a column map";
             return Some(Issue::new(Severity::Error, "axes_error", text, next).of(Channel::U));
         }
         let mirrored = self.mirror_along.hypot(self.mirror_across) / size;
         // On a straight course a mirror image and a turned one are the same; heading must vary for the two to differ.
-        if mirrored > 0.95 && coherence < 0.98 && 1.0 - mirrored < 0.25 * (1.0 - coherence) {
+        if mirrored > MIRRORED && coherence < NOT_MIRRORED && 1.0 - mirrored < MIRROR_LEAVES * (1.0 - coherence) {
             let text = "the track is the mirror image of what heading and velocity say";
-            let next = "are x and y exchanged, y positive to port, or heading counted anticlockwise? correct it in a column map";
+            let next = "are x and y exchanged, y positive to port, or heading counted anticlockwise? exchange them, or set `sign = -1`, in a column map";
             return Some(Issue::new(Severity::Error, "axes_error", text, next).of(Channel::Psi));
         }
         None
@@ -141,27 +145,28 @@ impl Track {
         let mut push = |severity, fault, channel, text: String, next: &str| {
             issues.push(Issue::new(severity, fault, text, next).of(channel));
         };
-        if degrees.abs() > 170.0 {
+        let [backward, wrong, offset] = TRACK_ANGLES;
+        if degrees.abs() > backward {
             let text = "the ship moves against its recorded velocity".to_owned();
-            let next = "turn the sign of u and v, or the heading by 180 deg";
+            let next = "set `sign = -1` for u and v in a column map, or `offset` for psi by half a turn";
             push(Severity::Error, "sign_error", Channel::U, text, next);
             return true;
         }
         // Without v, a ship that drifts in turns seems to run beside its heading.
-        if degrees.abs() > 3.0 && self.sway.known() {
-            let severity = if degrees.abs() > 60.0 { Severity::Error } else { Severity::Warning };
+        if degrees.abs() > offset && self.sway.known() {
+            let severity = if degrees.abs() > wrong { Severity::Error } else { Severity::Warning };
             let text = format!("the track runs {degrees:.1} deg clockwise of heading and velocity");
             let next = "is the heading offset, or a current left out? `offset` in a column map corrects a heading";
             push(severity, "axes_error", Channel::Psi, text, next);
         }
         if let Some((fault, meaning)) = known_gain(gain, &SPEED_GAINS) {
             let text = format!("the track is {gain:.3} times as fast as the velocity: {meaning}");
-            push(Severity::Error, fault, Channel::U, text, "correct the unit of u and v, or of x and y");
+            push(Severity::Error, fault, Channel::U, text, "correct `unit` of u and v, or of x and y, in a column map");
             return true;
         }
         if (gain - 1.0).abs() > CALIBRATED {
             let text = format!("the track is {gain:.3} times as fast as the velocity");
-            let next = "check the log's scale, through-water against over-ground speed, and the units of x and y";
+            let next = "check the log (`scale` in a column map), through-water against over-ground speed, and the units of x and y";
             push(Severity::Warning, "calibration", Channel::U, text, next);
         }
         false
@@ -176,11 +181,11 @@ impl Track {
         if !self.sway.known() {
             return;
         }
-        if self.sway.rms_sum() < 0.3 * self.sway.rms() && self.sway.coherence() < -0.8 {
+        if self.sway.rms_sum() < SWAY_LEAVES * self.sway.rms() && self.sway.coherence() < SWAY_COHERENCE {
             let text = format!("sway of the track is {:.2} times the recorded v", self.sway.gain());
-            let next = "is v positive to port? set `sign = -1` in a column map";
+            let next = "is v positive to port? set `sign = -1` for `v` in a column map";
             issues.push(Issue::new(Severity::Error, "sign_error", text, next).of(Channel::V));
-        } else if self.lever.coherence().abs() > COHERENT && self.lever.rms_a() > 0.2 * self.sway.rms_b() {
+        } else if self.lever.coherence().abs() > COHERENT && self.lever.rms_a() > LEVER_SHARE * self.sway.rms_b() {
             let lever = self.lever.gain();
             let text = format!(
                 "in turns the track slides as if positions were taken {:.2} m {} of the point whose velocity is recorded",
@@ -193,44 +198,93 @@ impl Track {
     }
 }
 
-/// A rudder positive to port: fits Nomoto's `delta = (T/K) dr/dt + (1/K) r + delta_0` (1957) where the ship and its propeller go
-/// ahead; a stable ship has both coefficients positive, an unstable one the first.
+/// Rudder and propeller of the wrong sign: what they do to yaw and surge, run by run, and steady turns against the rudder.
 #[derive(Default)]
-pub struct Rudder {
-    normal: Matrix3<f64>,
-    right: Vector3<f64>,
-    squares: f64,
+pub struct Actuators {
+    rudder: Effect,
+    /// Runs ahead with the propeller astern, and all runs.
+    astern: [usize; 2],
+    /// Of rudder and yaw rate: products, squares.
+    held: [f64; 3],
+    /// Rows, and change of heading \[rad\].
+    rows: f64,
+    turned: f64,
 }
 
-impl Rudder {
-    /// Adds what some rows say.
-    pub fn add(&mut self, series: &Series<'_>) {
+/// The effect of an actuator over runs.
+#[derive(Default)]
+struct Effect {
+    /// Evidence that it acts to its own side, less evidence that it acts to the other.
+    evidence: f64,
+    /// Squares of the response that are left with it, and without.
+    left: f64,
+    without: f64,
+}
+
+impl Effect {
+    fn add(&mut self, curve: Option<&Curve>) {
+        let Some(curve) = curve else { return };
+        let zero = curve.zero();
+        // Where a lag with the right sign explains the response as well, the sign is not in doubt.
+        let late = (0..curve.left.len()).any(|i| curve.sign[i] > 0.0 && curve.left[i] < curve.left[zero]);
+        if curve.sign[zero] > 0.0 || !late {
+            self.evidence += curve.sign[zero] * curve.effect(zero);
+            self.left += curve.left[zero] / curve.without;
+            self.without += 1.0;
+        }
+    }
+
+    fn turned(&self) -> bool {
+        self.evidence < -SIGN_EVIDENCE && self.left < EXPLAINS * self.without
+    }
+}
+
+impl Actuators {
+    /// Adds what some rows say; `rudder` is the response to it.
+    pub fn add(&mut self, series: &Series<'_>, rudder: Option<&Curve>) {
+        self.rudder.add(rudder);
+        self.astern[0] += usize::from(ahead_with_propeller_astern(series));
+        self.astern[1] += 1;
         let (Some(delta), Some(r)) = (series.delta.as_deref(), series.get(Channel::R)) else { return };
         let (u, n) = (series.get(Channel::U), series.n.as_deref());
         let ahead = |values: Option<&[f64]>, row: usize| values.is_none_or(|v| v[row] > 0.0);
-        for s in &series.stretches {
-            for (i, c) in local(&series.t, r, Range::clone(s), series.span).into_iter().enumerate() {
-                let row = s.start + i;
-                if ahead(u, row) && ahead(n, row) && c.iter().all(|c| c.is_finite()) && delta[row].is_finite() {
-                    let basis = Vector3::new(c[1], c[0], 1.0);
-                    self.normal += basis * basis.transpose();
-                    self.right += basis * delta[row];
-                    self.squares += delta[row] * delta[row];
-                }
+        for row in series.stretches.iter().flat_map(Range::clone).filter(|row| ahead(u, *row) && ahead(n, *row)) {
+            let (delta, r) = (delta[row], r[row]);
+            if delta.is_finite() && r.is_finite() {
+                [delta * r, delta * delta, r * r].iter().zip(&mut self.held).for_each(|(new, sum)| *sum += new);
+                self.rows += 1.0;
+                self.turned += r * series.step;
             }
         }
     }
 
     /// What all rows say.
     pub fn tell(&self, issues: &mut Vec<Issue>) {
-        let Some(c) = self.normal.try_inverse().map(|inverse| inverse * self.right) else { return };
-        let mean = self.right[2] / self.normal[(2, 2)];
-        let total = self.squares - mean * self.right[2];
-        let left = self.squares - self.right.dot(&c);
-        if c[0] < 0.0 && c[1] < 0.0 && left < 0.5 * total {
-            let next = "is the rudder positive to port? set `sign = -1` in a column map";
+        let [both, delta, r] = self.held;
+        let steady = both < AGAINST * (delta * r).sqrt()
+            && self.turned.abs() > AGAINST_TURN
+            && delta > AGAINST_RUDDER * AGAINST_RUDDER * self.rows;
+        if self.rudder.turned() || steady {
+            let next = "is the rudder positive to port? set `sign = -1` for `delta` in a column map";
             let issue = Issue::new(Severity::Error, "sign_error", "the ship turns against its rudder", next);
             issues.push(issue.of(Channel::Delta));
         }
+        if self.astern[0] * 2 > self.astern[1] {
+            let next = "is the rate positive astern? set `sign = -1` for `n` in a column map";
+            let text = "the propeller turns astern and the ship sails on ahead";
+            issues.push(Issue::new(Severity::Error, "sign_error", text, next).of(Channel::N));
+        }
     }
+}
+
+/// Whether the propeller turns astern nearly all the time and the ship sails ahead and does not stop.
+fn ahead_with_propeller_astern(series: &Series<'_>) -> bool {
+    let Some((n, u)) = series.n.as_deref().zip(series.get(Channel::U)) else { return false };
+    let rows: Vec<usize> = (0..n.len()).filter(|i| n[*i].is_finite() && u[*i].is_finite()).collect();
+    let astern = rows.iter().filter(|i| n[**i] < 0.0 && u[**i] > 0.0).count();
+    let third = rows.len() / 3;
+    let mean = |rows: &[usize]| rows.iter().map(|i| u[*i]).sum::<f64>() / rows.len() as f64;
+    third > 0
+        && astern as f64 > ASTERN_SHARE * rows.len() as f64
+        && mean(&rows[rows.len() - third..]) > ASTERN_SPEED * mean(&rows[..third])
 }

@@ -1,15 +1,17 @@
 //! The audit of a study: every recording, what comes of cutting it, and what a diagnosis would leave out.
 //! It asks nothing of its own of a recording; the questions are in the files beside it.
 
+use super::across::{Evidence, Shared, across};
 use super::issue::{Issue, Severity};
-use super::propeller::advance;
 use super::receiver::settled;
-use super::record::{Audit, audit};
-use crate::recording::Split;
+use super::record::{Audit, examined};
+use crate::recording::{Recording, Split, WindowSettings};
 use crate::ship::Ship;
 use crate::study::{Listed, Study, StudyError};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::HashSet;
+use std::path::PathBuf;
 
 /// The audit of a study: every run, and what comes of cutting them.
 #[derive(Clone, Debug, Serialize)]
@@ -26,6 +28,9 @@ pub struct StudyAudit {
     pub test_windows: usize,
     /// Doubts about the study as a whole.
     pub issues: Vec<Issue>,
+    /// What is compared between runs, one entry a recording that could be read.
+    #[serde(skip)]
+    pub evidence: Vec<Evidence>,
 }
 
 impl StudyAudit {
@@ -36,8 +41,28 @@ impl StudyAudit {
     }
 }
 
-/// Audits every run of a study and cuts it as the study says, for a ship. All runs are audited, whatever is wrong with one.
+/// Audits every run of a study and cuts it as the study says, for a ship. All runs are audited, whatever is wrong with one, and then
+/// compared with each other.
 pub fn audit_study(study: &Study, ship: &Ship) -> StudyAudit {
+    let mut result = audit_each(study, ship);
+    for Shared { runs, issue } in across(&result.evidence, ship) {
+        match &runs[..] {
+            [one] => {
+                let Some(audit) = result.recordings.iter_mut().find(|a| a.run == *one) else { continue };
+                // The run alone may have told it.
+                if !audit.issues.iter().any(|i| (i.fault, i.channel) == (issue.fault, issue.channel)) {
+                    audit.issues.push(issue);
+                }
+                audit.issues.sort_by_key(|i| std::cmp::Reverse(i.severity));
+            }
+            _ => result.issues.push(issue),
+        }
+    }
+    result
+}
+
+/// As [`audit_study`], without comparing the runs with each other: for the part of a study that one of several processes audits.
+pub fn audit_each(study: &Study, ship: &Ship) -> StudyAudit {
     let mut result = StudyAudit {
         study: study.name.clone(),
         split: study.split_in_words(),
@@ -45,11 +70,19 @@ pub fn audit_study(study: &Study, ship: &Ship) -> StudyAudit {
         train_windows: 0,
         test_windows: 0,
         issues: sides(study),
+        evidence: Vec::new(),
     };
     let audited: Vec<Audited> = study.runs.par_iter().with_max_len(1).map(|run| audited(study, ship, run)).collect();
-    for Audited { audit, train, test } in audited {
+    let mut known: HashSet<(PathBuf, String)> = HashSet::new();
+    for Audited { mut audit, evidence, train, test } in audited {
         result.train_windows += train;
         result.test_windows += test;
+        result.evidence.extend(evidence);
+        // What is wrong with a file is wrong in every run that is cut from it, and told in the first.
+        let path = audit.path.clone();
+        audit
+            .issues
+            .retain(|i| known.insert((path.clone(), format!("{:?}{:?}{}{}", i.channel, i.lines, i.fault, i.text))));
         result.recordings.push(audit);
     }
     result
@@ -58,20 +91,23 @@ pub fn audit_study(study: &Study, ship: &Ship) -> StudyAudit {
 /// The audit of one run, and how many windows came of it.
 struct Audited {
     audit: Audit,
+    evidence: Option<Evidence>,
     train: usize,
     test: usize,
 }
 
-/// Reads, audits and cuts one run; nothing of its recording is kept.
+/// Reads, audits and cuts one run; nothing of its recording is kept. What the run leaves out is not audited.
 fn audited(study: &Study, ship: &Ship, run: &Listed) -> Audited {
     let recording = match study.recording(run) {
         Ok(recording) => recording,
-        Err(error) => return Audited { audit: unreadable(run, &error), train: 0, test: 0 },
+        Err(error) => return Audited { audit: unreadable(run, &error), evidence: None, train: 0, test: 0 },
     };
-    let mut audit = audit(&recording);
-    advance(&recording, ship, &mut audit.issues);
+    let settings = study.settings(run, ship.hull.draught);
+    let part = used(&recording, &settings);
+    let (mut audit, responses) = examined(part.as_ref().unwrap_or(&recording));
+    let evidence = Evidence::of(run, part.as_ref().unwrap_or(&recording), ship, responses);
     let (mut train, mut test) = (0, 0);
-    match recording.windows(&run.labels, &study.settings(run, ship.hull.draught)) {
+    match recording.windows(&run.labels, &settings) {
         Ok(windows) => {
             test = windows.windows.iter().filter(|w| w.split == Split::Test).count();
             train = windows.windows.len() - test;
@@ -84,7 +120,18 @@ fn audited(study: &Study, ship: &Ship, run: &Listed) -> Audited {
         }
         Err(error) => audit.issues.insert(0, failure(&error.into())),
     }
-    Audited { audit, train, test }
+    Audited { audit, evidence: Some(evidence), train, test }
+}
+
+/// The part of a recording that the study uses; `None` where that is all of it, or nothing.
+fn used(recording: &Recording, settings: &WindowSettings) -> Option<Recording> {
+    let (first, last) = (recording.time().first()?, recording.time().last()?);
+    let from = settings.from.unwrap_or(f64::MIN).max(first + settings.discard_start);
+    let to = settings.to.unwrap_or(f64::MAX).min(last - settings.discard_end);
+    if from <= *first && to >= *last {
+        return None;
+    }
+    Some(recording.part(Some(from), Some(to))).filter(|part| part.len() > 1)
 }
 
 /// Whether there are runs on both sides of the split.

@@ -4,25 +4,33 @@
 use super::clocks::Pair;
 use super::issue::{Issue, Severity};
 use super::kinematics::{Kinematics, Proportion};
+use super::limits::{CALIBRATED, COHERENT, SAME_GAIN, SMALL_RATE, SMALL_RUDDER, SMALL_RUDDER_TURNS};
 use super::series::Series;
 use crate::recording::{Channel, Recording};
 
 /// Actuators too small for their unit.
 pub fn magnitudes(recording: &Recording, issues: &mut Vec<Issue>) {
-    // A rudder that never leaves +-1.6 deg, or a shaft under 3 rpm, is more likely radians read as degrees or rps as rpm.
-    let least = [(Channel::Delta, 1.6_f64.to_radians(), "rad"), (Channel::N, 0.05, "rps")];
+    // Radians read as degrees, or rps as rpm.
+    let least = [(Channel::Delta, SMALL_RUDDER, "rad"), (Channel::N, SMALL_RATE, "rps")];
     for (channel, limit, unit) in least {
         let Some(values) = recording.get(channel) else { continue };
         let largest = values.iter().copied().filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
-        if largest > 0.0 && largest < limit && recording.unit(channel) != unit {
+        // A ship that is steered straight needs no more rudder than that.
+        let straight = channel == Channel::Delta && turned(recording).is_some_and(|t| t < SMALL_RUDDER_TURNS * largest);
+        if largest > 0.0 && largest < limit && recording.unit(channel) != unit && !straight {
             let factor = channel.info().quantity.factor(recording.unit(channel)).unwrap_or(1.0);
             let text =
                 format!("{} never exceeds {:.3} {}", channel.info().words, largest / factor, recording.unit(channel));
-            issues.push(
-                Issue::new(Severity::Warning, "unit_error", text, format!("is the column in {unit}?")).of(channel),
-            );
+            let next = format!("is the column in {unit}? set `unit` for `{channel}` in a column map");
+            issues.push(Issue::new(Severity::Warning, "unit_error", text, next).of(channel));
         }
     }
+}
+
+/// Largest less smallest heading of a run \[rad\]; `None` without a heading.
+fn turned(recording: &Recording) -> Option<f64> {
+    let finite = || recording.get(Channel::Psi).into_iter().flatten().copied().filter(|p| p.is_finite());
+    Some(finite().reduce(f64::max)? - finite().reduce(f64::min)?)
 }
 
 /// Known wrong units and signs by the gain they cause on a speed, and what each means.
@@ -50,9 +58,6 @@ pub const TURN_GAINS: [(f64, &str); 9] = [
     (-57.295_779_5, "the yaw rate is in rad/s, was declared deg/s, and its sign is turned"),
 ];
 
-/// How far a gain may be from a known one to be taken for it: noise in what is compared pulls gains towards zero.
-const SAME_GAIN: f64 = 0.12;
-
 /// The fault that a gain tells, and what it means; `None` for a gain that is none of the known ones.
 pub fn known_gain(gain: f64, known: &[(f64, &'static str)]) -> Option<(&'static str, &'static str)> {
     let off = |g: &f64| (gain / g - 1.0).abs();
@@ -60,11 +65,6 @@ pub fn known_gain(gain: f64, known: &[(f64, &'static str)]) -> Option<(&'static 
     let fault = if nearest.0 < 0.0 { "sign_error" } else { "unit_error" };
     (off(&nearest.0) < SAME_GAIN).then_some((fault, nearest.1))
 }
-
-/// Coherence above which two channels tell the same motion, so that their gain means something.
-pub const COHERENT: f64 = 0.9;
-/// Gains further than this from 1 are worth a look.
-pub const CALIBRATED: f64 = 0.1;
 
 /// Heading against yaw rate.
 #[derive(Default)]
@@ -99,12 +99,12 @@ impl Turning {
         if coherence.abs() > COHERENT {
             if let Some((fault, meaning)) = known_gain(gain, &TURN_GAINS) {
                 let text = format!("heading turns {gain:.4} times as fast as r says: {meaning}");
-                push(Severity::Error, fault, text, "correct the unit, or `sign` and `unit` in a column map");
+                push(Severity::Error, fault, text, "correct `unit` or `sign` of `r` or `psi` in a column map");
                 return;
             }
             if (gain - 1.0).abs() > CALIBRATED {
                 let text = format!("heading turns {gain:.3} times as fast as r says");
-                let next = "check unit and calibration of yaw rate and heading";
+                let next = "check unit and calibration of yaw rate and heading; `scale` in a column map corrects one";
                 push(Severity::Warning, "calibration", text, next);
             }
         } else if self.sums.rms() > self.sums.rms_a() && self.sums.rms_a() > 0.0 {

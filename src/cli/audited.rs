@@ -5,8 +5,9 @@ use super::error::CliError;
 use super::load::Loaded;
 use super::progress::progress;
 use serde::{Deserialize, Serialize};
-use trimtab::audit::{Issue, Severity, audit_study};
+use trimtab::audit::{Issue, Severity, across, audit_each, audit_model};
 use trimtab::error::suggestion;
+use trimtab::model::Model;
 use trimtab::ranks::Ranks;
 use trimtab::recording::Channel;
 
@@ -29,7 +30,7 @@ pub struct Doubt {
     /// What was found in the first of the runs.
     text: String,
     next_step: String,
-    /// The runs in which it was found.
+    /// The runs in which it was found; none where it is about the model.
     runs: Vec<String>,
     /// Whether the user accepts it.
     accepted: bool,
@@ -45,7 +46,8 @@ pub struct Audited {
 }
 
 /// Faults that can be accepted: the recordings can be read and say what they say.
-const CONTRADICTIONS: [&str; 3] = ["unit_error", "sign_error", "axes_error"];
+const CONTRADICTIONS: [&str; 6] =
+    ["unit_error", "sign_error", "axes_error", "fill_value", "heading_wrap", "shared_data"];
 
 /// Audits the recordings of a study for a command that computes with what they say.
 ///
@@ -90,19 +92,36 @@ fn examined_over(ranks: &Ranks, loaded: &Loaded, args: &AcceptArgs) -> Result<Au
     }
     let own = loaded.part(ranks, |_| true).study;
     let bar = progress(format!("auditing {} recordings", own.runs.len()));
-    let audit = audit_study(&own, &loaded.model.ship);
+    let audit = audit_each(&own, &loaded.model.ship);
     bar.finish_and_clear();
     let found = audit.recordings.iter().flat_map(|a| a.issues.iter().map(|i| (a.run.as_str(), i)));
-    let own: Vec<Doubt> = found.filter_map(|(run, issue)| told(run, issue)).collect();
-    let mut doubts = grouped(ranks.gather(&own).into_iter().flatten());
+    let own: Vec<Doubt> = found.filter_map(|(run, issue)| told(&[run.to_owned()], issue)).collect();
+    let evidence: Vec<_> = ranks.gather(&audit.evidence).into_iter().flatten().collect();
+    let compared = across(&evidence, &loaded.model.ship);
+    let (single, several): (Vec<_>, Vec<_>) = compared.iter().partition(|shared| shared.runs.len() == 1);
+    let single = single.iter().filter_map(|shared| told(&shared.runs, &shared.issue));
+    let mut doubts = grouped(ranks.gather(&own).into_iter().flatten().chain(single));
+    doubts.extend(several.iter().filter_map(|shared| told(&shared.runs, &shared.issue)));
+    doubts.extend(of_model(&loaded.model));
+    doubts.sort_by_key(|d| std::cmp::Reverse(d.severity));
     for doubt in &mut doubts {
         doubt.accepted = args.accept.contains(&doubt.fault);
     }
     Ok(Audited { runs: loaded.study.runs.len(), doubts })
 }
 
-/// The doubt that an issue of a run is; none that is only worth knowing, or that the command tells itself.
-fn told(run: &str, issue: &Issue) -> Option<Doubt> {
+/// The doubts about a model, for a command that uses no recording; `None` where there are none.
+pub fn model_alone(model: &Model) -> Option<Audited> {
+    let doubts = of_model(model);
+    (!doubts.is_empty()).then_some(Audited { runs: 0, doubts })
+}
+
+fn of_model(model: &Model) -> Vec<Doubt> {
+    audit_model(model).iter().filter_map(|issue| told(&[], issue)).collect()
+}
+
+/// The doubt that an issue of some runs is; none that is only worth knowing, or that the command tells itself.
+fn told(runs: &[String], issue: &Issue) -> Option<Doubt> {
     let told = match issue.severity {
         Severity::Note => false,
         Severity::Warning => true,
@@ -114,7 +133,7 @@ fn told(run: &str, issue: &Issue) -> Option<Doubt> {
         channel: issue.channel,
         text: issue.text.clone(),
         next_step: issue.next_step.clone(),
-        runs: vec![run.to_owned()],
+        runs: runs.to_vec(),
         accepted: false,
     })
 }
@@ -145,9 +164,12 @@ impl Audited {
     fn sentence(&self, doubt: &Doubt) -> String {
         let channel = doubt.channel.map_or(String::new(), |c| format!("{c}: "));
         let (first, count) = (doubt.runs.first().map_or("", String::as_str), doubt.runs.len());
-        let runs = if count == 1 { format!("run {first}") } else { format!("{count} of {} runs", self.runs) };
-        let told = if count == 1 { String::new() } else { format!(" (as in {first})") };
-        format!("{channel}{}{told}: {runs}; {}", doubt.text, doubt.next_step)
+        let (told, runs) = match count {
+            0 => (String::new(), String::new()),
+            1 => (String::new(), format!(": run {first}")),
+            _ => (format!(" (as in {first})"), format!(": {count} of {} runs", self.runs)),
+        };
+        format!("{channel}{}{told}{runs}; {}", doubt.text, doubt.next_step)
     }
 
     /// Whether there is an error that the user does not accept.
@@ -166,7 +188,7 @@ impl Audited {
             format!("{word}: {}\n", self.sentence(d))
         };
         let mut text: String = self.doubts.iter().map(line).collect();
-        if !text.is_empty() {
+        if self.runs > 0 && !text.is_empty() {
             text += "`trimtab check` lists all that was found in the recordings.\n\n";
         }
         text
@@ -189,7 +211,7 @@ mod tests {
         let found = [("a", warning("stands still for 3 s")), ("a", warning("stands still for 9 s")), ("b", error)];
         let more = [("b", warning("stands still for 5 s")), ("c", note)];
         let all: Vec<(&str, Issue)> = found.into_iter().chain(more).collect();
-        let audited = Audited { runs: 3, doubts: grouped(all.iter().filter_map(|(r, i)| told(r, i))) };
+        let audited = Audited { runs: 3, doubts: grouped(all.iter().filter_map(|(r, i)| told(&[(*r).to_owned()], i))) };
         let lines = audited.lines();
         let lines: Vec<&str> = lines.lines().collect();
         assert!(audited.refused());

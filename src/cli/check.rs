@@ -6,20 +6,37 @@ use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text};
 use super::progress::progress;
-use trimtab::audit::{Audit, Issue, Severity, StudyAudit, audit_study};
+use trimtab::audit::{Audit, Issue, Severity, StudyAudit, audit_model, audit_study};
 use trimtab::numerals::{fixed, sig};
 use trimtab::report::Table;
 
 const LONG: &str = "\
-Audits the recordings of a study before anything is concluded from them: units and signs, gaps and missing values, frozen \
-    channels, outliers, and whether position, velocity, heading and yaw rate agree with one another. Ship, model and settings \
-    are read and checked as well. Every run is looked at, whatever is wrong with one.
+Audits the recordings of a study before anything is concluded from them: units and signs, gaps and missing values, fill values, \
+    frozen channels, damaged samples, jumps of position, clocks, and whether position, velocity, heading and yaw rate agree with \
+    one another and with rudder and propeller. Runs are compared with each other: clocks of sessions, units, and the same data to \
+    train and to test on. Of a run that is cut with `from` and `to` that part is audited. Ship, model and settings are read and \
+    checked as well. Every run is looked at, whatever is wrong with one.
 
 Exit code 1 if anything is an error: a recording that cannot be used or contradicts itself. Warnings do not fail.";
 
 const AFTER: &str = "\
 Example:
   trimtab check study.toml
+
+What a message advises is done in a column map (`column_map = \"columns.toml\"` in the study, or of one run). A channel that it \
+    does not list is found under its own name, so that it needs to list only what differs:
+  blank = [-9999, 9.96921e36]            values of any column that stand for a missing one
+  bridge = 2.0                           longest dropout [s] to fill by straight lines
+  wrap_repair = true                     the heading was interpolated across north, through 180 deg
+  leave_out = [\"r\"]                      channels not to be read
+  derive = [\"u\", \"v\", \"r\"]             channels to derive where they were not recorded
+  velocity_frame = \"earth\"               u and v are along north and east
+  [columns]
+  delta = { sign = -1 }                  positive to port
+  n = { unit = \"rpm\", scale = 0.5 }      unit instead of the header's; factor
+  psi = { column = \"gyro\", offset = 1.5 } another column; added, in its unit
+  r = { delay = 0.8 }                    it tells 0.8 s late; in one session: delay = { \"day 2\" = 4.0 }
+  u = { blank = { outside = [-5, 25] } } values outside are missing
 
 With --out: check.json, channels.csv (range of every channel of every run), issues.csv.
 JSON: result.study, result.split, result.train_windows, result.test_windows, result.issues[], result.recordings[] with \
@@ -46,7 +63,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     loaded.diagnose_settings()?;
     loaded.maneuver_settings()?;
     let bar = progress(format!("auditing {} recordings", loaded.study.runs.len()));
-    let audit = audit_study(&loaded.study, &loaded.model.ship);
+    let mut audit = audit_study(&loaded.study, &loaded.model.ship);
+    audit.issues.extend(audit_model(&loaded.model));
     bar.finish_and_clear();
 
     let issues = rows(&audit);

@@ -14,7 +14,7 @@ use trimtab::model::{Model, ModelError};
 use trimtab::ranges::Limited;
 use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Split, Windows};
-use trimtab::ship::Ship;
+use trimtab::ship::{Ship, parameter_line};
 use trimtab::study::{Listed, Study};
 
 /// Arguments of every command on a study.
@@ -43,7 +43,7 @@ impl Loaded {
     pub fn new(args: &StudyArgs) -> Result<Self, CliError> {
         let study = Study::read(&args.study)?;
         let path = args.model.clone().unwrap_or_else(|| study.model.clone());
-        let model = read_model(&path, Ship::read(&study.ship)?)?;
+        let model = read_model(&path, Ship::read(&study.ship)?).map_err(|error| in_ship_file(error, &study.ship))?;
         Ok(Self { study, model, model_path: path })
     }
 
@@ -173,6 +173,17 @@ impl Loaded {
             message: outside.to_string(),
         })?;
         Ok(settings)
+    }
+}
+
+/// An error that a model raises over its ship, told of the ship file.
+fn in_ship_file(error: CliError, ship: &Path) -> CliError {
+    match error {
+        CliError::Model { error: ModelError::ShipParameter { name, suggestion }, .. } => {
+            let place = format!("{}:{}", ship.display(), parameter_line(ship, &name));
+            CliError::Model { path: Some(place.into()), error: ModelError::ShipParameter { name, suggestion } }
+        }
+        other => other,
     }
 }
 

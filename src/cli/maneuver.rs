@@ -2,6 +2,7 @@
 //! The library sails and measures the trials; this file prints, tabulates and draws them.
 
 use super::answer::Answer;
+use super::audited::model_alone;
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs};
@@ -198,6 +199,9 @@ fn finish<M>(
     table: &Table,
     figure: impl FnOnce() -> Figure,
 ) -> Result<(), CliError> {
+    if let Some(doubts) = model_alone(&p.model) {
+        output.recordings(doubts);
+    }
     if let Some((what, after)) = trials.iter().find_map(|t| match t.ended {
         Ended::Diverged { after } => Some((t.name.clone(), after)),
         Ended::Complete | Ended::TimeOut { .. } => None,

@@ -1,6 +1,7 @@
 //! From raw channels to the project's frames: range and time checks, unwrapped heading, body velocities at midship, derived channels.
 //! Nothing is smoothed here and nothing invented: a channel that is derived is derived because the column map asks for it.
 
+use super::blank::usual_fill;
 use super::channel::{CHANNELS, Channel};
 use super::error::RecordingError;
 use super::lines::LineNumbers;
@@ -8,6 +9,7 @@ use super::local::slope;
 use super::map::{ColumnMap, Derived, VelocityFrame};
 use super::record::{GAP_IN_STEPS, Recording};
 use super::unit::Quantity;
+use super::wrap::repair;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
@@ -47,12 +49,12 @@ impl Recording {
             recording.units[channel as usize] = Some(channel.info().quantity.si().to_owned());
             recording.data[channel as usize] = Some(values);
         }
-        recording.finish(&ColumnMap::default())?;
+        recording.finish(&ColumnMap::default(), "")?;
         Ok(recording)
     }
 
-    /// Checks raw channels and brings them to the project's frames.
-    pub(super) fn finish(&mut self, map: &ColumnMap) -> Result<(), RecordingError> {
+    /// Checks raw channels and brings them to the project's frames; `session` picks the delays of the map.
+    pub(super) fn finish(&mut self, map: &ColumnMap, session: &str) -> Result<(), RecordingError> {
         self.require(Channel::T, "for every run", "give a time column, or `dt` in a column map")?;
         for [a, b] in PAIRS {
             for (one, other) in [(a, b), (b, a)] {
@@ -66,9 +68,14 @@ impl Recording {
         if let Some(longest) = map.bridge {
             self.bridge(longest);
         }
+        let t = self.time().to_vec();
         if let Some(psi) = &mut self.data[Channel::Psi as usize] {
             unwrap(psi);
+            if map.wrap_repair {
+                self.repaired = repair(&t, psi);
+            }
         }
+        self.shift(&map.delays(session))?;
         let span = map.derive_span.unwrap_or(DERIVE_ROWS * self.step());
         if map.derive.contains(&Derived::R) {
             self.derive_yaw_rate(span)?;
@@ -107,9 +114,16 @@ impl Recording {
                 _ => format!("{count} rows of {}", values.len()),
             };
             let hint = match info.quantity.likelier_unit(unit, values[row], info.limits) {
+                // A usual fill value is none in another unit either, though one of the units may have room for it.
+                _ if usual_fill(values[row] / factor) => {
+                    format!(
+                        "take it for missing with `blank = {}` in a column map ({rows})",
+                        as_written(values[row] / factor)
+                    )
+                }
                 Some("deg") => format!("is the column in degrees? ({rows})"),
                 Some(unit) => format!("is the column in {unit}? ({rows})"),
-                None => format!("correct the value or leave the field blank ({rows})"),
+                None => format!("correct the value, or take it for missing with `blank` in a column map ({rows})"),
             };
             return Err(RecordingError::OutOfRange {
                 path: self.path.clone(),
@@ -166,6 +180,34 @@ impl Recording {
                 self.bridged.push((info.channel, filled));
             }
         }
+    }
+
+    /// Takes channels that tell late back to when it happened, by straight lines between rows, and drops the rows at either end for
+    /// which one of them has no value any more.
+    fn shift(&mut self, delays: &[(Channel, f64)]) -> Result<(), RecordingError> {
+        let t = self.time().to_vec();
+        let (Some(&first), Some(&last), false) = (t.first(), t.last(), delays.is_empty()) else { return Ok(()) };
+        let (mut from, mut to) = (first, last);
+        for &(channel, delay) in delays {
+            let slot = match channel {
+                Channel::U if !self.has(channel) => Channel::UWater,
+                Channel::V if !self.has(channel) => Channel::VWater,
+                _ => channel,
+            };
+            if let Some(values) = &mut self.data[slot as usize] {
+                *values = t.iter().map(|at| interpolated(&t, values, at + delay)).collect();
+                (from, to) = (from.max(first - delay), to.min(last - delay));
+            }
+        }
+        if to - from < 2.0 * self.step() {
+            let next = "correct `delay` in the column map";
+            let message =
+                format!("after the delays {:.2} s of {:.2} s are left; {next}", (to - from).max(0.0), last - first);
+            return Err(RecordingError::Setting { path: self.path.clone(), message });
+        }
+        let slack = 1e-9 * (last - first);
+        self.keep(|at| at >= from - slack && at <= to + slack);
+        Ok(())
     }
 
     /// Yaw rate as the slope of heading.
@@ -292,6 +334,28 @@ impl Recording {
     }
 }
 
+/// The value at a time between rows; NaN outside them and next to a missing one.
+fn interpolated(t: &[f64], values: &[f64], at: f64) -> f64 {
+    let after = t.partition_point(|t| *t < at);
+    match (after.checked_sub(1).map(|i| t[i]), t.get(after)) {
+        (_, Some(time)) if *time == at => values[after],
+        (Some(before), Some(time)) => {
+            let share = (at - before) / (time - before);
+            // Rounding of times must not ask for a neighbour that is missing.
+            if share < 1e-6 {
+                values[after - 1]
+            } else if share > 1.0 - 1e-6 {
+                values[after]
+            } else {
+                values[after - 1] + share * (values[after] - values[after - 1])
+            }
+        }
+        (Some(before), None) if at - before < 1e-6 => values[after - 1],
+        (None, Some(time)) if time - at < 1e-6 => values[after],
+        _ => f64::NAN,
+    }
+}
+
 /// A vector along (north, east) in (forward, starboard) components.
 pub(super) fn to_body(psi: f64, [north, east]: [f64; 2]) -> [f64; 2] {
     let (s, c) = psi.sin_cos();
@@ -310,7 +374,7 @@ fn nearest(change: f64) -> f64 {
 }
 
 /// Takes jumps of more than half a turn out of a heading; values that need no turn added stay as they are, bit for bit.
-fn unwrap(psi: &mut [f64]) {
+pub(super) fn unwrap(psi: &mut [f64]) {
     let mut turns = 0.0;
     let mut previous: Option<f64> = None;
     for value in psi.iter_mut().filter(|v| v.is_finite()) {
@@ -334,6 +398,11 @@ fn limits_text((low, high): (f64, f64), factor: f64) -> String {
 /// Four significant digits, for messages.
 fn round(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+/// A value without the digits that a change of unit leaves.
+fn as_written(value: f64) -> f64 {
+    format!("{value:.9e}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]

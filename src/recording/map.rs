@@ -1,6 +1,22 @@
 //! The column map: a small TOML file that says how a foreign layout becomes canonical channels.
 //! It describes the file only; reading by it is `read.rs`, and what the channels mean is `channel.rs`.
+//!
+//! A channel without an entry in `[columns]` is found under its own name, so that an entry is needed only for what differs:
+//!
+//! ```toml
+//! blank = [-9999, 9.96921e36]          # values of any column that stand for a missing one
+//! wrap_repair = true                   # the heading was interpolated across north, through 180 degrees
+//! leave_out = ["r"]                    # channels that are not to be read
+//!
+//! [columns]
+//! delta = { sign = -1 }                # positive to port
+//! n = { scale = 0.5, delay = 10.0 }    # \[s\] what the column shows happened 10 s earlier
+//! r = { delay = { "day 2" = 4.0 } }    # ... in the runs of that session only
+//! u = { blank = { outside = [-5, 25] } }
+//! psi = { column = "gyro", unit = "deg", offset = 1.5 }
+//! ```
 
+use super::blank::Blank;
 use super::channel::{CHANNELS, Channel};
 use super::error::{RecordingError, line_at, toml_problem};
 use crate::error::suggestion;
@@ -52,7 +68,16 @@ pub struct ColumnMap {
     /// Longest dropout \[s\] to bridge by straight lines; none when not given.
     #[serde(default)]
     pub bridge: Option<f64>,
-    /// Column of each channel. Without this table columns are found under the channels' own names.
+    /// Values of any column that stand for a missing one.
+    #[serde(default)]
+    pub blank: Blank,
+    /// Whether the heading was interpolated across north, through 180 degrees; such samples are put on the short way round.
+    #[serde(default)]
+    pub wrap_repair: bool,
+    /// Channels that are not to be read, though the file has a column of their name.
+    #[serde(default)]
+    pub leave_out: Vec<String>,
+    /// Column of each channel. A channel that is not in this table is found under its own name.
     #[serde(default)]
     pub columns: Option<BTreeMap<String, Column>>,
     /// The file it was read from.
@@ -143,7 +168,8 @@ pub enum Derived {
 
 /// Where a channel comes from: `psi = "psi_hat"`, or a table with the keys below.
 ///
-/// The channel is `sign * scale * value + offset` in the column's unit, then converted to SI.
+/// The channel is `sign * scale * value + offset` in the column's unit, then converted to SI. Without `column`, `index` and `value`
+/// it is the column of the channel's own name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Column {
     /// Name in the header, with or without the unit in brackets.
@@ -160,6 +186,41 @@ pub struct Column {
     pub sign: Option<f64>,
     /// Added, in the column's unit.
     pub offset: Option<f64>,
+    /// How late the column tells what happened.
+    pub delay: Option<Delay>,
+    /// Values of the column, as written, that stand for a missing one.
+    pub blank: Blank,
+}
+
+/// How late a column tells what happened \[s\]; negative where it tells it early. At most an hour.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub enum Delay {
+    /// In every run.
+    Always(f64),
+    /// By session; 0 in sessions that are not listed.
+    Sessions(BTreeMap<String, f64>),
+}
+
+/// Longest delay \[s\]: more is another run, or a unit that is not seconds.
+const LONGEST_DELAY: f64 = 3600.0;
+
+impl Delay {
+    /// The delay in the runs of a session \[s\].
+    pub fn within(&self, session: &str) -> f64 {
+        match self {
+            Self::Always(delay) => *delay,
+            Self::Sessions(delays) => delays.get(session).copied().unwrap_or(0.0),
+        }
+    }
+
+    fn possible(&self) -> bool {
+        let one = |delay: &f64| delay.abs() <= LONGEST_DELAY;
+        match self {
+            Self::Always(delay) => one(delay),
+            Self::Sessions(delays) => delays.values().all(one),
+        }
+    }
 }
 
 impl Column {
@@ -189,6 +250,9 @@ struct ColumnTable {
     scale: Option<f64>,
     sign: Option<f64>,
     offset: Option<f64>,
+    delay: Option<Delay>,
+    #[serde(default)]
+    blank: Blank,
 }
 
 impl<'de> Deserialize<'de> for Column {
@@ -207,8 +271,10 @@ impl<'de> Deserialize<'de> for Column {
                 let t = ColumnTable::deserialize(serde::de::value::MapAccessDeserializer::new(map))?;
                 let sources =
                     [t.column.is_some(), t.index.is_some(), t.value.is_some()].iter().filter(|given| **given).count();
-                if sources != 1 {
-                    return Err(M::Error::custom("give exactly one of `column`, `index` and `value`"));
+                if sources > 1 {
+                    return Err(M::Error::custom(
+                        "give exactly one of `column`, `index` and `value`, or none for the column of the channel's own name",
+                    ));
                 }
                 if t.index == Some(0) {
                     return Err(M::Error::custom("`index` counts from 1"));
@@ -219,6 +285,11 @@ impl<'de> Deserialize<'de> for Column {
                 if [t.value, t.scale, t.offset].into_iter().flatten().any(|v| !v.is_finite()) || t.scale == Some(0.0) {
                     return Err(M::Error::custom("`value`, `scale` and `offset` must be finite and `scale` not zero"));
                 }
+                if t.delay.as_ref().is_some_and(|delay| !delay.possible()) {
+                    return Err(M::Error::custom(format!(
+                        "`delay` is how many seconds late the column is, between -{LONGEST_DELAY} and {LONGEST_DELAY}"
+                    )));
+                }
                 Ok(Column {
                     name: t.column,
                     index: t.index,
@@ -227,6 +298,8 @@ impl<'de> Deserialize<'de> for Column {
                     scale: t.scale,
                     sign: t.sign,
                     offset: t.offset,
+                    delay: t.delay,
+                    blank: t.blank,
                 })
             }
         }
@@ -257,13 +330,12 @@ impl ColumnMap {
         })?;
         map.path = Some(path.to_owned());
         map.lines = channel_lines(text);
-        for name in map.columns.iter().flat_map(BTreeMap::keys) {
+        let listed = map.columns.iter().flat_map(BTreeMap::keys).map(|name| (name, map.line(name)));
+        let left_out = map.leave_out.iter().map(|name| (name, key_line(text, "leave_out")));
+        for (name, line) in listed.chain(left_out) {
             if Channel::from_name(name).is_none() {
                 let near = suggestion(name, CHANNELS.iter().map(|c| c.name));
-                return Err(fail(
-                    map.line(name),
-                    format!("unknown channel `{name}`{near}; `trimtab check --help` lists them"),
-                ));
+                return Err(fail(line, format!("unknown channel `{name}`{near}; `trimtab check --help` lists them")));
             }
         }
         let positive = [("dt", map.dt), ("derive_span", map.derive_span), ("bridge", map.bridge)];
@@ -277,6 +349,15 @@ impl ColumnMap {
             return Err(fail(1, "`reference_point`, `velocity_point` and `time_zero` must be finite".to_owned()));
         }
         Ok(map)
+    }
+
+    /// The delays of the channels in the runs of a session, those that are not 0 \[s\].
+    pub(crate) fn delays(&self, session: &str) -> Vec<(Channel, f64)> {
+        let delay = |(name, column): (&String, &Column)| {
+            let delay = column.delay.as_ref()?.within(session);
+            Some((Channel::from_name(name)?, delay)).filter(|(_, delay)| *delay != 0.0)
+        };
+        self.columns.iter().flatten().filter_map(delay).collect()
     }
 
     /// Line of a channel's entry in the map file, 1 when it was not read from one.
@@ -329,6 +410,13 @@ mod tests {
     }
 
     #[test]
+    fn a_delay_is_one_number_or_one_a_session() {
+        let map = parse("[columns]\nn = { delay = 3 }\nr = { delay = { \"day 2\" = -4.5 } }\n").unwrap();
+        assert_eq!(map.delays("day 2"), [(Channel::N, 3.0), (Channel::R, -4.5)]);
+        assert_eq!(map.delays("day 1"), [(Channel::N, 3.0)]);
+    }
+
+    #[test]
     fn mistakes_in_a_map_name_line_and_the_near_word() {
         let cases = [
             ("delimter = \"tab\"", "columns.toml:1:", "did you mean `delimiter`?"),
@@ -339,6 +427,14 @@ mod tests {
             ("[columns]\nn = { index = 1, value = 3.0 }", "columns.toml:2:", "exactly one"),
             ("skip_lines = 1\ndt = -0.1", "columns.toml:2:", "positive"),
             ("speed = \"over water\"", "columns.toml:1:", "did you mean"),
+            ("wrap_repiar = true", "columns.toml:1:", "did you mean `wrap_repair`?"),
+            ("leave_out = [\"psy\"]", "columns.toml:1:", "did you mean `psi`?"),
+            ("[columns]\nn = { dealy = 3.0 }", "columns.toml:2:", "did you mean `delay`?"),
+            ("[columns]\nn = { delay = 36000 }", "columns.toml:2:", "seconds late"),
+            ("[columns]\nn = { delay = { \"a\" = nan } }", "columns.toml:2:", "seconds late"),
+            ("blank = [nan]", "columns.toml:1:", "must be finite"),
+            ("\nblank = { outside = [3.0, 2.0] }", "columns.toml:2:", "the first below the second"),
+            ("[columns]\nn = { blank = { beyond = [0, 1] } }", "columns.toml:2:", "unknown field `beyond`"),
         ];
         for (text, place, hint) in cases {
             let message = parse(text).unwrap_err();

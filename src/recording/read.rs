@@ -1,7 +1,8 @@
 //! From the text of a file to raw channels in SI units: lines, fields, columns, units, missing values.
 //! What follows (time, frames, reference point, derived channels) is `convert.rs`.
 
-use super::channel::{CHANNELS, Channel};
+use super::blank::Blank;
+use super::channel::{CHANNELS, Channel, ChannelInfo};
 use super::error::RecordingError;
 use super::lines::LineNumbers;
 use super::map::{Column, ColumnMap, Decimal, Delimiter, SpeedReference};
@@ -36,6 +37,8 @@ struct Source {
     unit: String,
     scale: f64,
     offset: f64,
+    /// Values as written that stand for a missing one: those of the column, and those of the map.
+    blank: [Blank; 2],
 }
 
 impl Recording {
@@ -44,9 +47,17 @@ impl Recording {
     /// # Errors
     /// Any [`RecordingError`] about the file: unreadable, empty, columns, units, numbers, time, or nothing usable.
     pub fn read(path: &Path, map: &ColumnMap) -> Result<Self, RecordingError> {
+        Self::read_in(path, map, "")
+    }
+
+    /// As [`Recording::read`], with the delays that the map gives for a session.
+    ///
+    /// # Errors
+    /// As [`Recording::read`].
+    pub fn read_in(path: &Path, map: &ColumnMap, session: &str) -> Result<Self, RecordingError> {
         let fail = |source| RecordingError::Read { path: path.to_owned(), source };
         let file = std::fs::File::open(path).map_err(fail)?;
-        recording(Lines::new(BufReader::with_capacity(1 << 16, file)), path, map)
+        recording(Lines::new(BufReader::with_capacity(1 << 16, file)), path, map, session)
     }
 
     /// Reads a recording from the text of a file; `path` is used in messages and, without its ending, as the name.
@@ -54,7 +65,7 @@ impl Recording {
     /// # Errors
     /// As [`Recording::read`], but for a file that cannot be opened.
     pub fn parse(text: &str, path: &Path, map: &ColumnMap) -> Result<Self, RecordingError> {
-        recording(Lines::new(text.as_bytes()), path, map)
+        recording(Lines::new(text.as_bytes()), path, map, "")
     }
 }
 
@@ -95,7 +106,12 @@ struct Rows {
 }
 
 /// A recording from its lines: they are read one by one, and of each only the numbers are kept.
-fn recording<R: BufRead>(mut lines: Lines<R>, path: &Path, map: &ColumnMap) -> Result<Recording, RecordingError> {
+fn recording<R: BufRead>(
+    mut lines: Lines<R>,
+    path: &Path,
+    map: &ColumnMap,
+    session: &str,
+) -> Result<Recording, RecordingError> {
     let fail = |source| RecordingError::Read { path: path.to_owned(), source };
     let empty = |line, what: &str| RecordingError::Empty { path: path.to_owned(), line, what: what.to_owned() };
     for _ in 0..map.skip_lines {
@@ -146,7 +162,7 @@ fn recording<R: BufRead>(mut lines: Lines<R>, path: &Path, map: &ColumnMap) -> R
         recording.data[slot as usize] = Some(column);
         recording.units[slot as usize] = Some(source.unit);
     }
-    recording.finish(map)?;
+    recording.finish(map, session)?;
     Ok(recording)
 }
 
@@ -237,6 +253,9 @@ impl Source {
             Decimal::Comma => text.replace(',', ".").parse::<f64>(),
         };
         let value = parsed.ok()?;
+        if self.blank.iter().any(|blank| blank.takes(value)) {
+            return Some(f64::NAN);
+        }
         Some(if value.is_finite() { value * self.scale + self.offset } else { f64::NAN })
     }
 }
@@ -250,12 +269,17 @@ fn sources(
 ) -> Result<Vec<Source>, RecordingError> {
     let mut sources = Vec::new();
     for info in CHANNELS {
-        let listed = map.columns.as_ref().map(|columns| columns.get(info.name));
-        let own_name = Column { name: Some(info.name.to_owned()), ..Column::default() };
+        if map.leave_out.iter().any(|name| name == info.name) {
+            continue;
+        }
+        let own_name = Some(info.name.to_owned());
+        let listed = map.columns.as_ref().and_then(|columns| columns.get(info.name));
         let column = match listed {
-            Some(Some(column)) => column,
-            Some(None) => continue,
-            None if header.is_none() => {
+            Some(column) if column.name.is_none() && column.index.is_none() && column.value.is_none() => {
+                Column { name: own_name, ..column.clone() }
+            }
+            Some(column) => column.clone(),
+            None if header.is_none() && map.columns.is_none() => {
                 return Err(map_problem(
                     map,
                     path,
@@ -263,15 +287,18 @@ fn sources(
                     "a file without a header needs a [columns] table with `index` entries",
                 ));
             }
-            None if find(header, header_line, path, info.name)?.is_some() => &own_name,
+            None if by_own_name(info, header, header_line, path, map)? => {
+                Column { name: own_name, ..Column::default() }
+            }
             None => continue,
         };
-        sources.push(source(info.channel, column, header, header_line, path, map)?);
+        sources.push(source(info.channel, &column, header, header_line, path, map)?);
     }
     if map.dt.is_some() && !sources.iter().any(|s| s.channel == Channel::T) {
         let unit = "s".to_owned();
         let (channel, label) = (Channel::T, "t".to_owned());
-        sources.insert(0, Source { channel, field: None, constant: 0.0, label, unit, scale: 1.0, offset: 0.0 });
+        let blank = Default::default();
+        sources.insert(0, Source { channel, field: None, constant: 0.0, label, unit, scale: 1.0, offset: 0.0, blank });
     }
     for channel in REQUIRED {
         if sources.iter().any(|s| s.channel == channel) {
@@ -279,7 +306,7 @@ fn sources(
         }
         if map.columns.is_some() {
             let text = format!(
-                "[columns] has no entry for channel `{channel}` ({}), which every run needs",
+                "[columns] has no entry for channel `{channel}` ({}), which every run needs, and the file no column of that name and a fitting unit",
                 channel.info().words
             );
             return Err(map_problem(map, path, 1, &text));
@@ -287,6 +314,30 @@ fn sources(
         return Err(missing_column(header, header_line, path, channel.name(), channel));
     }
     Ok(sources)
+}
+
+/// Whether a channel that the map does not list is read from the column of its name. Beside a [columns] table, which is for foreign
+/// layouts, that column must have a unit of the channel's quantity and not serve another channel.
+fn by_own_name(
+    info: &ChannelInfo,
+    header: Option<&[HeaderColumn]>,
+    header_line: usize,
+    path: &Path,
+    map: &ColumnMap,
+) -> Result<bool, RecordingError> {
+    let Some(columns) = &map.columns else { return Ok(find(header, header_line, path, info.name)?.is_some()) };
+    // A name that is there twice is no column of that channel.
+    let Ok(Some(field)) = find(header, header_line, path, info.name) else { return Ok(false) };
+    let column = &header.unwrap_or_default()[field];
+    let taken = columns.values().any(|c| {
+        let named = c
+            .name
+            .as_deref()
+            .is_some_and(|name| matches!(find(header, header_line, path, name), Ok(Some(f)) if f == field));
+        named || c.index == Some(field + 1)
+    });
+    let fits = column.unit.as_deref().is_some_and(|unit| info.quantity.factor(unit).is_some());
+    Ok(fits && !taken)
 }
 
 /// Resolves one channel's column, unit and conversion.
@@ -343,7 +394,8 @@ fn source(
     let (scale, offset) = column.linear();
     let constant = column.value.map_or(f64::NAN, |v| (v * scale + offset) * factor);
     let label = field.and_then(|f| header.and_then(|h| h.get(f))).map_or_else(|| column.label(), |h| h.full.clone());
-    Ok(Source { channel, field, constant, label, unit, scale: scale * factor, offset: offset * factor })
+    let blank = [column.blank.clone(), map.blank.clone()];
+    Ok(Source { channel, field, constant, label, unit, scale: scale * factor, offset: offset * factor, blank })
 }
 
 /// The field of a header column by its full text, its name, or its name without regard to case.
@@ -478,6 +530,62 @@ mod tests {
         assert!((r.get(Channel::Delta).unwrap()[0] + 5_f64.to_radians()).abs() < 1e-12);
         assert_eq!(r.get(Channel::U).unwrap(), [2.0, 2.0]);
         assert_eq!(r.line(0), 4);
+    }
+
+    #[test]
+    fn a_map_of_one_channel_leaves_the_others_under_their_own_names() {
+        let plain = read(TABLE, "").unwrap();
+        let turned = read(TABLE, "[columns]\ndelta = { sign = -1 }\n").unwrap();
+        for (channel, values) in plain.channels() {
+            let sign = if channel == Channel::Delta { -1.0 } else { 1.0 };
+            let expected: Vec<f64> = values.iter().map(|v| sign * v).collect();
+            assert_eq!(turned.get(channel), Some(&expected[..]), "{channel}");
+        }
+        let less = read(TABLE, "leave_out = [\"r\"]\n[columns]\nu = { scale = 0.5 }\n").unwrap();
+        assert!(!less.has(Channel::R) && less.get(Channel::U).unwrap()[0] == 0.5 * plain.get(Channel::U).unwrap()[0]);
+        // A column that serves another channel, or has no fitting unit, is not taken for the channel of its name.
+        let foreign = "t [s],n [rps],rudder [deg],delta [m],u [kn]\n0,1,3,0,9\n1,1,3,0,9\n2,1,3,0,9\n";
+        let map =
+            "[columns]\ndelta = \"rudder\"\nwind_speed = \"u\"\nwind_direction = { value = 0.0, unit = \"deg\" }\n";
+        let r = read(foreign, map).unwrap();
+        assert!(!r.has(Channel::U) && r.has(Channel::WindSpeed) && r.unused() == ["delta [m]"]);
+    }
+
+    #[test]
+    fn what_a_map_blanks_is_missing() {
+        let rows: String = (0..12).map(|i| format!("{i},{},1,0\n", if i % 4 == 3 { -9999.0 } else { 2.0 })).collect();
+        let text = format!("t [s],u [kn],n [rps],delta [rad]\n{rows}");
+        for map in [
+            "blank = -9999",
+            "[columns]\nu = { blank = [1e20, -9999] }",
+            "[columns]\nu = { blank = { outside = [-40, 40] } }",
+        ] {
+            let r = read(&text, map).unwrap();
+            let missing: Vec<usize> = (0..12).filter(|i| r.get(Channel::U).unwrap()[*i].is_nan()).collect();
+            assert_eq!(missing, [3, 7, 11], "{map}");
+        }
+        let message = read(&text, "").unwrap_err().to_string();
+        assert!(message.contains("run.csv:5: ") && message.contains("`blank = -9999`"), "{message}");
+    }
+
+    #[test]
+    fn a_delay_of_a_channel_takes_it_back_to_when_it_happened() {
+        let late = 3.0;
+        let rows: String =
+            (0..40).map(|i| format!("{i},{},1,{}\n", 0.1 * f64::from(i), 0.01 * (f64::from(i) - late))).collect();
+        let text = format!("t [s],u [m/s],n [rps],delta [rad]\n{rows}");
+        let r = read(&text, "[columns]\ndelta = { delay = 3.0 }\nu = { delay = -0.5 }\n").unwrap();
+        let t = r.time();
+        assert_eq!((t[0], t[t.len() - 1], r.line(0)), (1.0, 36.0, 3));
+        for (row, t) in t.iter().enumerate() {
+            let found = [Channel::Delta, Channel::U].map(|c| r.get(c).unwrap()[row]);
+            assert!(
+                (found[0] - 0.01 * t).abs() < 1e-12 && (found[1] - 0.1 * (t - 0.5)).abs() < 1e-12,
+                "{t}: {found:?}"
+            );
+        }
+        let message = read(&text, "[columns]\ndelta = { delay = 300.0 }\n").unwrap_err().to_string();
+        assert!(message.contains("correct `delay`"), "{message}");
     }
 
     #[test]

@@ -4,6 +4,7 @@
 use super::channel::{CHANNELS, Channel};
 use super::error::RecordingError;
 use super::lines::LineNumbers;
+use super::wrap::repair;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -33,6 +34,8 @@ pub struct Recording {
     pub(super) unused: Vec<String>,
     /// Values filled in across short dropouts, by channel.
     pub(super) bridged: Vec<(Channel, usize)>,
+    /// Headings that lay on the wrong way round and were put right.
+    pub(super) repaired: usize,
 }
 
 /// Steps longer than this many usual steps are gaps.
@@ -52,6 +55,7 @@ impl Recording {
             without_time: Vec::new(),
             unused: Vec::new(),
             bridged: Vec::new(),
+            repaired: 0,
         }
     }
 
@@ -133,6 +137,53 @@ impl Recording {
     /// How many missing values were bridged, by channel.
     pub fn bridged(&self) -> &[(Channel, usize)] {
         &self.bridged
+    }
+
+    /// How many headings interpolated across north were put right, as the column map asks.
+    pub fn repaired(&self) -> usize {
+        self.repaired
+    }
+
+    /// Keeps the rows at whose time `wanted` says so.
+    pub(super) fn keep(&mut self, wanted: impl Fn(f64) -> bool) {
+        let kept: Vec<bool> = self.time().iter().map(|t| wanted(*t)).collect();
+        if kept.iter().all(|kept| *kept) {
+            return;
+        }
+        for values in self.data.iter_mut().flatten() {
+            let mut keep = kept.iter();
+            values.retain(|_| keep.next().is_some_and(|k| *k));
+        }
+        self.lines = self.lines.parted(|row| kept[row]).0;
+    }
+
+    /// The part between two times, ends included; lines are those of the file.
+    #[must_use]
+    pub fn part(&self, from: Option<f64>, to: Option<f64>) -> Self {
+        let mut part = self.clone();
+        part.keep(|t| from.is_none_or(|from| t >= from) && to.is_none_or(|to| t <= to));
+        part
+    }
+
+    /// The same with a channel's values missing in some rows.
+    #[must_use]
+    pub fn without(&self, channel: Channel, rows: &[usize]) -> Self {
+        let mut left = self.clone();
+        if let Some(values) = &mut left.data[channel as usize] {
+            rows.iter().for_each(|row| values[*row] = f64::NAN);
+        }
+        left
+    }
+
+    /// The same with headings that were interpolated across north put right.
+    #[must_use]
+    pub fn with_repaired_heading(&self) -> Self {
+        let mut right = self.clone();
+        let t = self.time().to_vec();
+        if let Some(psi) = &mut right.data[Channel::Psi as usize] {
+            right.repaired = repair(&t, psi);
+        }
+        right
     }
 
     /// The usual time step: the median \[s\].

@@ -51,7 +51,8 @@ pub const UNITS: &[Unit] = &[
     unit(Quantity::Time, &["h", "hour", "hours"], 3600.0),
     unit(Quantity::Length, &["m", "metre", "meter", "metres", "meters"], 1.0),
     unit(Quantity::Length, &["km"], 1000.0),
-    unit(Quantity::Length, &["nm", "nmi", "M"], 1852.0),
+    // Not `M`, the symbol of the nautical mile: headers in capitals write metres so.
+    unit(Quantity::Length, &["nm", "nmi"], 1852.0),
     unit(Quantity::Length, &["cm"], 0.01),
     unit(Quantity::Length, &["mm"], 0.001),
     unit(Quantity::Length, &["ft", "feet"], 0.3048),
@@ -131,6 +132,13 @@ mod tests {
         close(Quantity::Rotation.factor("rpm"), 1.0 / 60.0);
         close(Quantity::Rotation.factor("rad/s"), 1.0 / std::f64::consts::TAU);
         close(Quantity::Number.factor("%"), 0.01);
+    }
+
+    #[test]
+    fn a_capital_m_is_a_metre() {
+        for (spelling, factor) in [("M", 1.0), ("m", 1.0), ("NM", 1852.0), ("nmi", 1852.0)] {
+            assert_eq!(Quantity::Length.factor(spelling), Some(factor), "{spelling}");
+        }
     }
 
     #[test]

@@ -137,7 +137,7 @@ impl Study {
                 suggestion: near_file(&run.file),
             });
         }
-        let mut recording = Recording::read(&run.file, &self.column_map(run)?)?;
+        let mut recording = Recording::read_in(&run.file, &self.column_map(run)?, &run.labels.session)?;
         recording.name.clone_from(&run.labels.run);
         Ok(recording)
     }

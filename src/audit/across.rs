@@ -1,0 +1,303 @@
+//! What only a comparison of runs shows: clocks that differ, one run in another unit, the same data on both sides of the split.
+//! The evidence of each run is gathered where the run is audited; no recording is read here.
+
+use super::issue::{Issue, Severity};
+use super::limits::{
+    EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, SAME_LAG, SESSION_SHARE, SHARED_ROWS, SHARED_SHARE,
+};
+use super::pooled::{Odd, odd};
+use super::propeller::{advance, advance_ratio};
+use super::record::Responses;
+use super::response::Curve;
+use crate::numerals::sig;
+use crate::recording::{Channel, Recording, Split};
+use crate::ship::Ship;
+use crate::study::Listed;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// What of a run is compared with other runs.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Evidence {
+    run: String,
+    session: String,
+    split: Split,
+    /// Root mean square speed \[m/s\]; 0 where none was recorded.
+    speed: f64,
+    /// Median advance ratio.
+    ratio: Option<f64>,
+    responses: Responses,
+    /// Fingerprints of the rows in which the ship's motion changed.
+    rows: Vec<u64>,
+}
+
+/// A doubt about some runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shared {
+    /// The runs, by name.
+    pub runs: Vec<String>,
+    /// The doubt; its text names the runs where they are several.
+    pub issue: Issue,
+}
+
+impl Evidence {
+    /// That of a run, from the part of its recording that the study uses.
+    pub(super) fn of(run: &Listed, recording: &Recording, ship: &Ship, responses: Responses) -> Self {
+        let squares: Vec<f64> =
+            recording.get(Channel::U).into_iter().flatten().filter(|u| u.is_finite()).map(|u| u * u).collect();
+        Self {
+            run: run.labels.run.clone(),
+            session: run.labels.session.clone(),
+            split: run.labels.split,
+            speed: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
+            ratio: advance_ratio(recording, ship),
+            responses,
+            rows: fingerprints(recording),
+        }
+    }
+}
+
+/// A number for every row whose motion differs from the row before: of heading, velocities and actuators to the last bit, wherever
+/// the position is counted from and whatever the clock says.
+fn fingerprints(recording: &Recording) -> Vec<u64> {
+    const SEEN: [Channel; 6] = [Channel::Psi, Channel::U, Channel::V, Channel::R, Channel::N, Channel::Delta];
+    let columns: Vec<&[f64]> = SEEN.iter().filter_map(|c| recording.get(*c)).collect();
+    let moving =
+        |row: usize| columns.iter().any(|c| c[row] != c[row - 1]) && columns.iter().all(|c| c[row].is_finite());
+    let number = |row: usize| {
+        let mut hasher = DefaultHasher::new();
+        columns.iter().for_each(|c| c[row].to_bits().hash(&mut hasher));
+        hasher.finish()
+    };
+    if columns.len() < 4 { Vec::new() } else { (1..recording.len()).filter(|row| moving(*row)).map(number).collect() }
+}
+
+/// Everything that a comparison of the runs shows.
+pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
+    let mut found = Vec::new();
+    let ratios: Vec<Option<f64>> = runs.iter().map(|r| r.ratio).collect();
+    for (run, issue) in runs.iter().zip(advance(&ratios, ship)) {
+        found.extend(issue.map(|issue| Shared { runs: vec![run.run.clone()], issue }));
+    }
+    let sailing: Vec<f64> = runs.iter().map(|r| r.speed * r.speed).filter(|s| *s > 0.0).collect();
+    let speed = (sailing.iter().sum::<f64>() / sailing.len().max(1) as f64).sqrt();
+    let time = ship.hull.lpp / speed.max(ship.small_speed());
+    for pair in &PAIRS {
+        found.extend(late(runs, pair, time));
+        found.extend(sessions(runs, pair, time));
+    }
+    found.extend(both_sides(runs));
+    found
+}
+
+/// A channel and the motion that it is held against.
+struct Pair {
+    channel: Channel,
+    of: fn(&Responses) -> Option<&Curve>,
+    /// Whether the channel acts on the motion, and does not only tell of it.
+    acts: bool,
+    motion: &'static str,
+}
+
+const PAIRS: [Pair; 4] = [
+    Pair { channel: Channel::Delta, of: |r| r.rudder.as_ref(), acts: true, motion: "the yaw of the ship" },
+    Pair { channel: Channel::N, of: |r| r.propeller.as_ref(), acts: true, motion: "the surge of the ship" },
+    Pair { channel: Channel::R, of: |r| r.gyro.as_ref(), acts: false, motion: "the heading" },
+    Pair { channel: Channel::X, of: |r| r.receiver.as_ref(), acts: false, motion: "velocity and heading" },
+];
+
+/// Curves of several runs as one: twice the negative log-likelihood at the lags that all have.
+struct Sum {
+    step: f64,
+    lags: Vec<isize>,
+    total: Vec<f64>,
+}
+
+impl Sum {
+    /// Of those with the step of the first; `None` without any.
+    fn of<'c>(curves: impl Iterator<Item = &'c Curve> + Clone) -> Option<Self> {
+        let step = curves.clone().next()?.step;
+        let alike = |c: &&Curve| (c.step / step - 1.0).abs() < 0.01;
+        let shortest = curves.clone().filter(alike).map(|c| c.lags.last().copied().unwrap_or(0)).min()?;
+        let mut sum: Option<Self> = None;
+        for curve in curves.filter(alike) {
+            let inside = |lag: &isize| lag.abs() <= shortest;
+            let terms = curve.lags.iter().zip(&curve.left).filter(|(lag, _)| inside(lag));
+            let terms: Vec<f64> = terms.map(|(_, left)| curve.samples * left.ln()).collect();
+            match &mut sum {
+                None => {
+                    let lags = curve.lags.iter().copied().filter(inside).collect();
+                    sum = Some(Self { step, lags, total: terms });
+                }
+                Some(sum) => sum.total.iter_mut().zip(terms).for_each(|(total, term)| *total += term),
+            }
+        }
+        sum
+    }
+
+    fn best(&self) -> usize {
+        (0..self.total.len()).min_by(|i, j| self.total[*i].total_cmp(&self.total[*j])).unwrap_or(0)
+    }
+
+    /// Whether a place is at the end of the lags, so that a longer one might be better.
+    fn at_end(&self, place: usize) -> bool {
+        place == 0 || place + 1 == self.lags.len()
+    }
+
+    fn seconds(&self, place: usize) -> f64 {
+        self.lags[place] as f64 * self.step
+    }
+}
+
+/// Whether a curve tells of the motion at all, at its best lag and with the right sign.
+fn telling(curve: &Curve) -> bool {
+    let best = curve.best();
+    let explained = curve.left[best] <= EXPLAINS * curve.without && curve.effect(best) > LAG_EVIDENCE;
+    explained && curve.sign[best] > 0.0
+}
+
+/// Rudder or propeller later or earlier than the motion that they cause: in all runs together, and in those that differ from that. The
+/// lag of sensors is told run by run.
+fn late(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
+    if !pair.acts {
+        return Vec::new();
+    }
+    let worth = |seconds: f64, step: f64| seconds.abs() > (LAG_SHARE * time).max(LAG_STEPS[0] * step);
+    let curves: Vec<(&Evidence, &Curve)> =
+        runs.iter().filter_map(|r| Some((r, (pair.of)(&r.responses)?))).filter(|(_, c)| telling(c)).collect();
+    let all = Sum::of(curves.iter().map(|(_, c)| *c)).filter(|_| curves.len() > 1).and_then(|sum| {
+        let (best, zero) = (sum.best(), sum.lags.iter().position(|lag| *lag == 0)?);
+        let sure = sum.total[zero] - sum.total[best] > LAG_EVIDENCE && !sum.at_end(best);
+        (sure && worth(sum.seconds(best), sum.step)).then(|| sum.seconds(best))
+    });
+    let lag = |curve: &Curve| {
+        let (best, zero) = (curve.best(), curve.zero());
+        let seconds = curve.seconds(best);
+        let better = curve.evidence(best, zero) > LAG_EVIDENCE && curve.left[best] <= LAG_LEAVES * curve.left[zero];
+        let inside = best > 0 && best + 1 < curve.lags.len();
+        let known = all.is_some_and(|all| (seconds - all).abs() <= SAME_LAG * all.abs());
+        (worth(seconds, curve.step) && better && inside && !known).then_some(seconds)
+    };
+    let told = |(run, curve): &(&Evidence, &Curve)| {
+        let issue = lagging(pair, lag(curve)?, "", pair.motion);
+        Some(Shared { runs: vec![run.run.clone()], issue })
+    };
+    let among_others: Vec<Option<&Curve>> = runs.iter().map(|r| (pair.of)(&r.responses)).collect();
+    let pooled = odd(&among_others, |seconds| worth(seconds, 0.0) && all.is_none());
+    let told_by_others = |(run, odd): (&Evidence, Option<Odd>)| {
+        let issue = match odd? {
+            Odd::Turned => turned(pair),
+            Odd::Late(seconds) => lagging(pair, seconds, "", pair.motion),
+        };
+        Some(Shared { runs: vec![run.run.clone()], issue })
+    };
+    let together = all.map(|seconds| Shared {
+        runs: curves.iter().map(|(run, _)| run.run.clone()).collect(),
+        issue: lagging(pair, seconds, "", pair.motion),
+    });
+    let mut found: Vec<Shared> = together.into_iter().chain(curves.iter().filter_map(told)).collect();
+    for shared in runs.iter().zip(pooled).filter_map(told_by_others) {
+        if !found.iter().any(|f| f.runs == shared.runs) {
+            found.push(shared);
+        }
+    }
+    found
+}
+
+/// The doubt about an actuator of the wrong sign.
+fn turned(pair: &Pair) -> Issue {
+    let text = format!("acts on {} to the other side than in the other runs", pair.motion);
+    let next = format!(
+        "is its sign that of the other runs? set `sign = -1` for `{}` in a column map of this run",
+        pair.channel
+    );
+    Issue::new(Severity::Error, "sign_error", text, next).of(pair.channel)
+}
+
+/// The doubt about a lag \[s\]: `whose` begins the text, `than` is what it is compared with.
+fn lagging(pair: &Pair, seconds: f64, whose: &str, than: &str) -> Issue {
+    let order = if seconds > 0.0 { "behind" } else { "ahead of" };
+    let text = format!("{whose}runs about {} s {order} {than}", sig(seconds.abs(), 2));
+    let also = if pair.channel == Channel::X { " (and for `y`)" } else { "" };
+    let delay = format!("`delay = {}` for `{}`{also} in a column map", sig(seconds, 2), pair.channel);
+    let next = if whose.is_empty() {
+        format!("{delay} takes it back, if its clock is wrong")
+    } else {
+        format!("{delay} takes it back; `delay = {{ \"SESSION\" = ... }}` does so in one session")
+    };
+    Issue::new(Severity::Warning, "clock", text, next).of(pair.channel)
+}
+
+/// Sessions in which a channel has another lag than in all others.
+fn sessions(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
+    let mut names: Vec<&str> = Vec::new();
+    for run in runs {
+        if !names.contains(&run.session.as_str()) {
+            names.push(&run.session);
+        }
+    }
+    let curves = |inside: bool, name: &str| {
+        let name = name.to_owned();
+        let wanted = move |r: &&Evidence| (r.session == name) == inside;
+        runs.iter().filter(wanted).filter_map(|r| (pair.of)(&r.responses)).filter(|c| telling(c)).collect::<Vec<_>>()
+    };
+    let differing = |name: &&str| {
+        let (own, others) = (curves(true, name), curves(false, name));
+        // A session of one run is a run: whatever is wrong with it is told there.
+        if own.len() < 2 || others.len() < 2 {
+            return None;
+        }
+        let (own, others) = (Sum::of(own.into_iter())?, Sum::of(others.into_iter())?);
+        let (best, usual) = (own.best(), others.best());
+        let same = own.lags.iter().position(|lag| *lag == others.lags[usual])?;
+        let apart = own.seconds(best) - others.seconds(usual);
+        let worth = apart.abs() > (SESSION_SHARE * time).max(LAG_STEPS[0] * own.step);
+        let sure = own.total[same] - own.total[best] > LAG_EVIDENCE && !own.at_end(best);
+        (worth && sure && (own.step / others.step - 1.0).abs() < 0.01).then_some((name.to_string(), apart))
+    };
+    let found: Vec<(String, f64)> = names.iter().filter_map(differing).collect();
+    // With two sessions each differs from the other: one doubt, of the later one in the list.
+    let found = if names.len() == 2 { found.into_iter().skip(1).collect() } else { found };
+    let told = |(name, seconds): (String, f64)| {
+        let than = format!("{}, compared with the other sessions", pair.motion);
+        let issue = lagging(pair, seconds, &format!("in session `{name}` it "), &than);
+        let runs = runs.iter().filter(|r| r.session == name).map(|r| r.run.clone()).collect();
+        Shared { runs, issue }
+    };
+    found.into_iter().map(told).collect()
+}
+
+/// Runs to train on and to test on that share rows.
+fn both_sides(runs: &[Evidence]) -> Vec<Shared> {
+    let mut owners: HashMap<u64, usize> = HashMap::new();
+    for (i, run) in runs.iter().enumerate().filter(|(_, r)| r.split == Split::Test) {
+        run.rows.iter().for_each(|row| {
+            owners.insert(*row, i);
+        });
+    }
+    let mut found = Vec::new();
+    for run in runs.iter().filter(|r| r.split == Split::Train) {
+        let mut common: HashMap<usize, usize> = HashMap::new();
+        for owner in run.rows.iter().filter_map(|row| owners.get(row)) {
+            *common.entry(*owner).or_default() += 1;
+        }
+        let mut common: Vec<(usize, usize)> = common.into_iter().collect();
+        common.sort_unstable();
+        for (other, rows) in common {
+            let other = &runs[other];
+            let shorter = run.rows.len().min(other.rows.len());
+            if rows >= SHARED_ROWS && rows as f64 >= SHARED_SHARE * shorter as f64 {
+                let text = format!(
+                    "run {} to train on and run {} to test on share {rows} of {shorter} rows: the test proves nothing",
+                    run.run, other.run
+                );
+                let next =
+                    "keep both on one side of the split, or cut them with `from` and `to` so that they do not overlap";
+                let issue = Issue::new(Severity::Error, "shared_data", text, next);
+                found.push(Shared { runs: vec![run.run.clone(), other.run.clone()], issue });
+            }
+        }
+    }
+    found
+}

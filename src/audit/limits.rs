@@ -1,0 +1,167 @@
+//! Every number on which a decision of the audit turns, with what it means.
+//! It decides nothing itself; where a number follows from the run's own scatter, only the multiple of that scatter is here.
+
+// --- Single values ---
+
+/// Half-width, in rows, of the running median that a single value is compared with.
+pub const MEDIAN_ROWS: usize = 3;
+/// A value is far from its neighbours at this many standard deviations of how values differ from their neighbours in the run
+/// (Hampel's test)
+pub const FAR: f64 = 10.0;
+/// and at this share of the range of the channel's other values, since data without noise have no scatter.
+pub const FAR_SHARE: f64 = 0.1;
+/// At the ends of a run, where there are neighbours on one side only, and the ship may begin to turn: this share of the range.
+pub const FAR_SHARE_AT_ENDS: f64 = 0.4;
+/// A propeller, a rudder or a wind may change for one sample and change back: there a single value is damaged where it is outside the
+/// range of the others by this share of that range.
+pub const OUTSIDE_SHARE: f64 = 0.5;
+/// So many values may be far from their neighbours, or this share of all: where there are more they are no single values.
+pub const FEW: usize = 3;
+/// See [`FEW`].
+pub const FEW_SHARE: f64 = 0.01;
+/// Windows from which the scatter at the ends of a run is told; of longer runs every n-th is taken.
+pub const END_WINDOWS: usize = 2000;
+/// Share of the values on each side that does not count for the range of the others.
+pub const TAIL: f64 = 0.02;
+
+/// A fill value is separated from all other values of its channel by this many times their range,
+pub const FILL_APART: f64 = 3.0;
+/// and is there at least so often, unless it is one that programs are known to write.
+pub const FILL_ROWS: usize = 2;
+/// Different fill values that are looked for in one channel.
+pub const FILL_KINDS: usize = 4;
+
+// --- Fixes ---
+
+/// Between two fixes the ship would sail this many times as fast as it does at its fastest,
+pub const FIX_SPEED: f64 = 3.0;
+/// and the step differs from what velocity and heading say by this many standard deviations of how steps do in the run.
+pub const FIX_FAR: f64 = 10.0;
+/// A fix or a time stamp is off where the steps before and after miss what velocity and heading say by as much to either side: each by
+/// this share of what is sailed in a step at the ship's fastest.
+pub const FIX_SHARE: f64 = 0.25;
+/// As much to either side: the two together leave at most this share of the smaller one.
+pub const FIX_OPPOSITE: f64 = 0.5;
+/// Share of the recorded speeds that its fastest is above.
+pub const FASTEST: f64 = 0.95;
+/// Changes before and after, from which the resolution of positions is told: it may change with their digits.
+pub const RESOLUTION_CHANGES: usize = 12;
+/// Steps below this many resolutions are rounding.
+pub const RESOLUTIONS: f64 = 2.0;
+
+// --- Frozen channels ---
+
+/// Fewest rows of one value that are called frozen: of position and heading, which integrate, and of velocities.
+pub const FROZEN_ROWS: [usize; 2] = [10, 50];
+/// A frozen position or heading misses this many times what it changes from value to value around,
+pub const FROZEN_CHANGES: f64 = 5.0;
+/// and this many times what channel and integral differ by over as many rows elsewhere: a coarse compass differs by its steps.
+pub const FROZEN_DIFFERENCES: f64 = 2.0;
+/// Share of the stretches elsewhere that differ by less.
+pub const FROZEN_SELDOM: f64 = 0.95;
+/// A frozen velocity lasts this many spans of the local fits,
+pub const FROZEN_SPANS: f64 = 3.0;
+/// while position and heading tell a velocity that changes by this share of its whole range.
+pub const FROZEN_RANGE: f64 = 0.3;
+/// and by this share of the speed, or of the yaw rate: on a straight course a velocity does hold.
+pub const FROZEN_LEVEL: f64 = 0.05;
+
+// --- Units, signs, axes ---
+
+/// A rudder that stays below this angle \[rad\], 1.6 deg, may be in radians and read as degrees,
+pub const SMALL_RUDDER: f64 = 1.6 * std::f64::consts::PI / 180.0;
+/// if the heading changes by more than this many of its largest angles: a ship that is steered straight yaws by a few.
+pub const SMALL_RUDDER_TURNS: f64 = 30.0;
+/// A propeller below this rate \[1/s\], 3 rpm, may be in rps and read as rpm.
+pub const SMALL_RATE: f64 = 0.05;
+/// How far a gain may be from a known one to be taken for it: noise in what is compared pulls gains towards zero.
+pub const SAME_GAIN: f64 = 0.12;
+/// Coherence above which two channels tell the same motion, so that their gain means something.
+pub const COHERENT: f64 = 0.9;
+/// Gains further than this from 1 are worth a look.
+pub const CALIBRATED: f64 = 0.1;
+/// Track and velocity along the earth's axes: coherence of the velocity that is not turned by the heading at least this,
+pub const UNTURNED: f64 = 0.97;
+/// and of the one that is turned at most this.
+pub const TURNED: f64 = 0.9;
+/// A mirrored track: coherence with the mirror image at least this,
+pub const MIRRORED: f64 = 0.95;
+/// without mirroring at most this,
+pub const NOT_MIRRORED: f64 = 0.98;
+/// and what the mirror image leaves at most this share of what the track itself leaves.
+pub const MIRROR_LEAVES: f64 = 0.25;
+/// Angle between track and velocity \[deg\] from which the ship moves against its velocity, from which the axes are wrong, and from
+/// which a heading may be offset.
+pub const TRACK_ANGLES: [f64; 3] = [170.0, 60.0, 3.0];
+/// Sway of the wrong sign: with the sign turned it leaves less than this share of what is left without,
+pub const SWAY_LEAVES: f64 = 0.3;
+/// at a coherence below this.
+pub const SWAY_COHERENCE: f64 = -0.8;
+/// A lever arm between position and velocity: slide in turns at least this share of the sway.
+pub const LEVER_SHARE: f64 = 0.2;
+
+// --- Propeller and speed ---
+
+/// Advance ratios u / (n D) that ships under way have, from heavy towing to wind from astern. Open-water diagrams of the Wageningen B
+/// series reach zero thrust between 0.6 and 1.5, by pitch.
+pub const SAILED: [f64; 2] = [0.2, 1.6];
+/// Samples ahead under power that a ratio is told from.
+pub const RATIO_SAMPLES: usize = 20;
+/// A ship is under way at this many times the speed below which its dynamics are regularised.
+pub const UNDER_WAY: f64 = 10.0;
+/// A wrong unit brings the ratio back into this part of the range of [`SAILED`]: so many times its smallest, this share of its
+/// largest.
+pub const RATIO_INSIDE: [f64; 2] = [2.0, 0.8];
+/// One run in another unit: its ratio is this many times that of the other runs, or this share of it.
+pub const RATIO_APART: f64 = 3.5;
+
+// --- Clocks ---
+
+/// Steps from which a lag between two channels that tell one motion is worth a note, and a warning.
+pub const LAG_STEPS: [f64; 2] = [1.5, 5.0];
+/// A lag of a channel that tells of the motion, or of rudder and propeller, is worth a warning from this share of the time in which
+/// the ship sails its length; shorter ones are those of steering gear, engines and filters.
+pub const LAG_SHARE: f64 = 0.25;
+/// Twice the log-likelihood ratio over the residuals, in terms of independent samples, from which a lag is told: chance gives 10
+/// once in 600 runs, and then seldom a lag of the length above.
+pub const LAG_EVIDENCE: f64 = 10.0;
+/// The same for the sign of an actuator, whose effect must also explain the response.
+pub const SIGN_EVIDENCE: f64 = 8.0;
+/// A run in which an actuator acts to the other side, or later, than in the others: the squares that this explains, over those that
+/// the other runs' coefficients usually leave an independent sample.
+pub const POOLED_EVIDENCE: f64 = 15.0;
+/// Such a run is one of which the others' coefficients leave at least this many times what they usually leave.
+pub const POOLED_UNUSUAL: f64 = 2.5;
+/// Runs in which a channel is this many times as large, squared and by sample, as in the middle one do not count.
+pub const POOLED_SIZE: f64 = 5.0;
+/// Runs from which coefficients of others can be told.
+pub const POOLED_RUNS: usize = 6;
+/// A lag of all runs together is that of a single one if it differs by at most this share.
+pub const SAME_LAG: f64 = 0.5;
+/// With the lag the response is explained so much better that at most this share of the squares is left.
+pub const LAG_LEAVES: f64 = 0.7;
+/// What an actuator explains of the response at all: with it at most this share of the squares is left, else it tells nothing.
+pub const EXPLAINS: f64 = 0.6;
+/// Clocks of two sessions differ where the lag of a channel does by this share of the time in which the ship sails its length.
+pub const SESSION_SHARE: f64 = 0.1;
+/// Longest lag looked for, as a share of the run, and in seconds.
+pub const LAG_LONGEST: (f64, f64) = (0.125, 60.0);
+/// Steps of the window over which a response is integrated.
+pub const RESPONSE_STEPS: usize = 4;
+/// A propeller of the wrong sign: it turns astern in at least this share of the rows,
+pub const ASTERN_SHARE: f64 = 0.9;
+/// and in the last third of them the ship still sails ahead at this share of its speed in the first.
+pub const ASTERN_SPEED: f64 = 0.5;
+/// A steady turn against the rudder: cosine of rudder and yaw rate below this,
+pub const AGAINST: f64 = -0.8;
+/// over at least this change of heading \[rad\]
+pub const AGAINST_TURN: f64 = std::f64::consts::FRAC_PI_2;
+/// and with at least this rudder, root mean square \[rad\].
+pub const AGAINST_RUDDER: f64 = 0.05;
+
+// --- Train and test ---
+
+/// Rows that two runs share, bit by bit and in motion, from which they are one recording,
+pub const SHARED_ROWS: usize = 20;
+/// and share of the shorter one: simulated runs may have an approach in common.
+pub const SHARED_SHARE: f64 = 0.1;

@@ -1,0 +1,103 @@
+//! One run against all others: whether rudder and propeller act in it as they do in the other runs, or to the other side, or later.
+//! The coefficients are those of the other runs, so that a short run says more than its own regression would.
+
+use super::limits::{EXPLAINS, POOLED_EVIDENCE, POOLED_RUNS, POOLED_SIZE, POOLED_UNUSUAL};
+use super::response::{Curve, Sums};
+use crate::statistics::median;
+use nalgebra::{DMatrix, DVector};
+
+/// What explains a run better than the coefficients of the other runs as they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Odd {
+    /// The channel acts to the other side.
+    Turned,
+    /// The channel tells so much later than the motion \\[s\\].
+    Late(f64),
+}
+
+/// The sums of several runs at lag 0, added.
+fn total<'c>(curves: impl Iterator<Item = &'c Curve>) -> Option<Sums> {
+    let mut sum: Option<Sums> = None;
+    for curve in curves {
+        let one = &curve.sums[curve.zero()];
+        match &mut sum {
+            None => sum = Some(one.clone()),
+            Some(sum) => {
+                sum.columns.iter_mut().zip(&one.columns).for_each(|(s, o)| *s += o);
+                sum.response.iter_mut().zip(&one.response).for_each(|(s, o)| *s += o);
+            }
+        }
+    }
+    sum
+}
+
+/// Coefficients from sums; `less` is taken out of them.
+fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
+    let n = sum.response.len();
+    let of = |i: usize, all: &[f64], some: Option<&[f64]>| all[i] - some.map_or(0.0, |some| some[i]);
+    let a = DMatrix::from_fn(n, n, |i, j| of(i * n + j, &sum.columns, less.map(|l| &l.columns[..])));
+    let b = DVector::from_fn(n, |i, _| of(i, &sum.response, less.map(|l| &l.response[..])));
+    let scale = a.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
+    let scaled = DMatrix::from_fn(n, n, |i, j| a[(i, j)] * scale[i] * scale[j] + f64::from(u8::from(i == j)) * 1e-9);
+    let solved = scaled.cholesky()?.solve(&b.component_mul(&scale)).component_mul(&scale);
+    Some(solved.iter().copied().collect())
+}
+
+/// What is odd in each run, in their order. `worth` says which lags \\[s\\] matter.
+pub fn odd(curves: &[Option<&Curve>], worth: impl Fn(f64) -> bool) -> Vec<Option<Odd>> {
+    let Some(step) = curves.iter().flatten().map(|c| c.step).next() else { return vec![None; curves.len()] };
+    let alike = |c: &&Curve| (c.step / step - 1.0).abs() < 0.01;
+    // A run with a damaged sample would outweigh all others.
+    let size = |c: &Curve| c.sums[c.zero()].columns.first().copied().unwrap_or(0.0) / c.samples;
+    let Some(middle) = median(curves.iter().flatten().map(|c| size(c))) else { return vec![None; curves.len()] };
+    let usual_size = |c: &&Curve| size(c) <= POOLED_SIZE * middle;
+    let known: Vec<&Curve> = curves.iter().flatten().copied().filter(alike).filter(usual_size).collect();
+    let Some(sum) = total(known.iter().copied()).filter(|_| known.len() >= POOLED_RUNS) else {
+        return vec![None; curves.len()];
+    };
+    let others = |c: &Curve| coefficients(&sum, Some(&c.sums[c.zero()]));
+    // What the coefficients of the other runs leave, as a share of what is left without the channel.
+    let share = |c: &Curve| Some(c.sums[c.zero()].left(&others(c)?) / without(c, &others(c)?));
+    let Some(usual) = median(known.iter().filter_map(|c| share(c))) else { return vec![None; curves.len()] };
+    let judged = |curve: &Option<&Curve>| {
+        let curve = curve.filter(alike).filter(usual_size)?;
+        judged(curve, &others(curve)?, usual, &worth)
+    };
+    curves.iter().map(judged).collect()
+}
+
+/// Squares left without the channel.
+fn without(curve: &Curve, coefficients: &[f64]) -> f64 {
+    let mut rest = coefficients.to_vec();
+    rest[..curve.own].fill(0.0);
+    curve.sums[curve.zero()].left(&rest)
+}
+
+/// What is odd in a run, given the coefficients of the others and the share of the squares that these usually leave.
+fn judged(curve: &Curve, others: &[f64], usual: f64, worth: &impl Fn(f64) -> bool) -> Option<Odd> {
+    let mut turned = others.to_vec();
+    turned[..curve.own].iter_mut().for_each(|c| *c = -*c);
+    let zero = curve.zero();
+    let nothing = without(curve, others);
+    let as_others = curve.sums[zero].left(others);
+    let mut best: Option<(f64, Odd)> = None;
+    for (place, sums) in curve.sums.iter().enumerate() {
+        let seconds = curve.seconds(place);
+        let inside = place > 0 && place + 1 < curve.sums.len();
+        let candidates = [
+            (worth(seconds) && inside).then(|| (sums.left(others), Odd::Late(seconds))),
+            (place == zero).then(|| (sums.left(&turned), Odd::Turned)),
+        ];
+        for (left, what) in candidates.into_iter().flatten() {
+            if best.is_none_or(|(least, _)| left < least) {
+                best = Some((left, what));
+            }
+        }
+    }
+    let (left, what) = best?;
+    // Less than usual is luck.
+    let noise = left.max(usual * nothing);
+    let evidence = curve.samples * (as_others - left) / noise;
+    let unusual = as_others > POOLED_UNUSUAL * usual * nothing;
+    (unusual && left < EXPLAINS * nothing && evidence > POOLED_EVIDENCE).then_some(what)
+}

@@ -1,0 +1,273 @@
+//! Responses: how the motion answers what is recorded of rudder, propeller, gyro and receiver, with each of many lags between them.
+//! It gives evidence on lag and sign, run by run; what is told of it is decided in `signs` and `across`.
+
+use super::limits::{LAG_LONGEST, RESPONSE_STEPS};
+use super::series::Series;
+use crate::recording::Channel;
+use nalgebra::{SMatrix, SVector};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// What a channel leaves unexplained of the motion, by how late it is taken to be.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Curve {
+    /// Sample period \[s\].
+    pub step: f64,
+    /// Lags \[rows\], positive where the channel tells later than the motion.
+    pub lags: Vec<isize>,
+    /// Sum of squares left at each lag.
+    pub left: Vec<f64>,
+    /// Whether the motion answers to the side to which it must, at each lag: 1 or -1.
+    pub sign: Vec<f64>,
+    /// Sum of squares left without the channel.
+    pub without: f64,
+    /// Independent samples that the residuals are worth.
+    pub samples: f64,
+    /// The sums of the regression at each lag, the mean taken out, for a comparison with other runs.
+    pub sums: Vec<Sums>,
+    /// Columns of the regression that belong to the channel: the first ones.
+    pub own: usize,
+}
+
+/// Sums of a regression: of products of columns, of columns with the response, and of its squares.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sums {
+    /// Row by row, without the constant.
+    pub columns: Vec<f64>,
+    /// With the response.
+    pub response: Vec<f64>,
+    /// Of the response.
+    pub squares: f64,
+}
+
+impl Sums {
+    /// Squares that coefficients of other runs leave.
+    pub fn left(&self, coefficients: &[f64]) -> f64 {
+        let n = coefficients.len();
+        let linear: f64 = coefficients.iter().zip(&self.response).map(|(c, b)| c * b).sum();
+        let of = |i: usize| -> f64 { (0..n).map(|j| self.columns[i * n + j] * coefficients[j]).sum() };
+        let square: f64 = (0..n).map(|i| coefficients[i] * of(i)).sum();
+        self.squares - 2.0 * linear + square
+    }
+}
+
+/// A regression at one lag: what is left, the sign of the effect.
+struct Solved<const N: usize> {
+    left: f64,
+    sign: f64,
+    coefficients: SVector<f64, N>,
+    sums: Sums,
+}
+
+impl Curve {
+    /// Place of lag 0.
+    pub fn zero(&self) -> usize {
+        self.lags.iter().position(|lag| *lag == 0).unwrap_or(0)
+    }
+
+    /// Place of the lag that leaves least.
+    pub fn best(&self) -> usize {
+        (0..self.left.len()).min_by(|i, j| self.left[*i].total_cmp(&self.left[*j])).unwrap_or(0)
+    }
+
+    /// Twice the log-likelihood ratio of one lag over another.
+    pub fn evidence(&self, lag: usize, over: usize) -> f64 {
+        self.samples * (self.left[over] / self.left[lag]).ln()
+    }
+
+    /// Twice the log-likelihood ratio of the channel at a lag over its absence.
+    pub fn effect(&self, lag: usize) -> f64 {
+        self.samples * (self.without / self.left[lag]).ln()
+    }
+
+    /// A lag \[s\].
+    pub fn seconds(&self, lag: usize) -> f64 {
+        self.lags[lag] as f64 * self.step
+    }
+}
+
+/// Running integrals of a channel over time, by the trapezoidal rule.
+fn integral(t: &[f64], values: impl Fn(usize) -> f64) -> Vec<f64> {
+    let mut sum = 0.0;
+    let mut sums = Vec::with_capacity(t.len());
+    for row in 0..t.len() {
+        if row > 0 {
+            // A missing value ends its stretch; what follows it is not compared with what was before.
+            let area = 0.5 * (values(row) + values(row - 1)) * (t[row] - t[row - 1]);
+            sum += if area.is_finite() { area } else { 0.0 };
+        }
+        sums.push(sum);
+    }
+    sums
+}
+
+/// The lags that are tried: every one up to 6, then in steps of a quarter.
+fn lags(longest: usize) -> Vec<isize> {
+    let mut lags = vec![0];
+    let mut lag = 1;
+    while lag <= longest {
+        lags.extend([lag as isize, -(lag as isize)]);
+        lag += (lag / 5).max(1);
+    }
+    lags.sort_unstable();
+    lags
+}
+
+/// The rudder against the yaw: `dr/dt = a r + b r|r| + c v + d delta + e delta n|n| + f`, integrated over some steps.
+pub fn rudder(series: &Series<'_>) -> Option<Curve> {
+    let (delta, r) = (series.delta.as_deref()?, series.get(Channel::R)?);
+    let (t, v, n) = (&series.t, series.get(Channel::V), series.n.as_deref());
+    let of = |values: Option<&[f64]>, row: usize| values.map_or(0.0, |v| v[row]);
+    let turn = integral(t, |i| r[i]);
+    let square = integral(t, |i| r[i] * r[i].abs());
+    let sway = integral(t, |i| of(v, i));
+    let angle = integral(t, |i| delta[i]);
+    let force = integral(t, |i| delta[i] * of(n, i) * of(n, i).abs());
+    let late =
+        |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
+    curve::<6, 2, 1>(series, |i, k| {
+        let over = |of: &[f64]| late(of, i, 0);
+        [([late(&angle, i, k), late(&force, i, k), over(&turn), over(&square), over(&sway), over(t)], over(r))]
+    })
+}
+
+/// The propeller against the surge: `du/dt = a n|n| + b n + c u + d u|u| + e v r + f delta^2 + g`, integrated over some steps.
+pub fn propeller(series: &Series<'_>) -> Option<Curve> {
+    let (n, u) = (series.n.as_deref()?, series.get(Channel::U)?);
+    let t = &series.t;
+    let of = |values: Option<&[f64]>, row: usize| values.map_or(0.0, |v| v[row]);
+    let (v, r, delta) = (series.get(Channel::V), series.get(Channel::R), series.delta.as_deref());
+    let thrust = integral(t, |i| n[i] * n[i].abs());
+    let rate = integral(t, |i| n[i]);
+    let (speed, square) = (integral(t, |i| u[i]), integral(t, |i| u[i] * u[i].abs()));
+    let turning = integral(t, |i| of(v, i) * of(r, i));
+    let drag = integral(t, |i| of(delta, i) * of(delta, i));
+    let late =
+        |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
+    curve::<7, 2, 1>(series, |i, k| {
+        let over = |of: &[f64]| late(of, i, 0);
+        let fixed = [over(&speed), over(&square), over(&turning), over(&drag), over(t)];
+        [([late(&thrust, i, k), late(&rate, i, k), fixed[0], fixed[1], fixed[2], fixed[3], fixed[4]], over(u))]
+    })
+}
+
+/// The yaw rate against the heading: `d psi/dt = a r + b`.
+pub fn gyro(series: &Series<'_>) -> Option<Curve> {
+    let (psi, r, t) = (series.get(Channel::Psi)?, series.recorded(Channel::R)?, &series.t);
+    let turn = integral(t, |i| r[i]);
+    let late =
+        |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
+    curve::<2, 1, 1>(series, |i, k| [([late(&turn, i, k), late(t, i, 0)], late(psi, i, 0))])
+}
+
+/// The position against velocity and heading: `d(x, y)/dt = a (u, v turned by psi) + (b, c)`.
+pub fn receiver(series: &Series<'_>) -> Option<Curve> {
+    let [x, y, psi] = [Channel::X, Channel::Y, Channel::Psi].map(|c| series.get(c));
+    let (x, y, psi) = (x?, y?, psi?);
+    let (u, v) = (series.recorded(Channel::U)?, series.recorded(Channel::V)?);
+    let t = &series.t;
+    let north = integral(t, |i| u[i] * psi[i].cos() - v[i] * psi[i].sin());
+    let east = integral(t, |i| u[i] * psi[i].sin() + v[i] * psi[i].cos());
+    let late =
+        |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
+    curve::<3, 1, 2>(series, |i, k| {
+        let (h, n, e) = (late(t, i, 0), late(&north, i, 0), late(&east, i, 0));
+        [([n, h, 0.0], late(x, i, k)), ([e, 0.0, h], late(y, i, k))]
+    })
+}
+
+/// The curve of a regression on `N` columns, the first `P` of which belong to the channel, with `E` equations a row.
+fn curve<const N: usize, const P: usize, const E: usize>(
+    series: &Series<'_>,
+    equations: impl Fn(usize, isize) -> [([f64; N], f64); E],
+) -> Option<Curve> {
+    let rows: usize = series.stretches.iter().map(ExactSizeIterator::len).max()?;
+    let longest = ((LAG_LONGEST.0 * rows as f64) as usize).min((LAG_LONGEST.1 / series.step) as usize);
+    let lags = lags(longest);
+    let reach = lags.last().map_or(0, |lag| lag.unsigned_abs());
+    let inner = |s: &Range<usize>| s.start + reach..s.end.saturating_sub(reach + RESPONSE_STEPS);
+    let starts: Vec<usize> = series.stretches.iter().flat_map(|s| inner(s).step_by(RESPONSE_STEPS / 2)).collect();
+    if longest < 2 || starts.len() < 4 * N {
+        return None;
+    }
+    let solve = |lag: isize| normal::<N, P, E>(&starts, lag, &equations);
+    let solved: Vec<Solved<N>> = lags.iter().map(|lag| solve(*lag).map(|(s, _)| s)).collect::<Option<_>>()?;
+    let best = (0..lags.len()).min_by(|i, j| solved[*i].left.total_cmp(&solved[*j].left))?;
+    let (_, without) = solve(0)?;
+    // Successive residuals are alike: they are worth as many independent ones as their correlation leaves.
+    let residual = |i: usize, e: usize| {
+        let (columns, y) = equations(i, lags[best])[e];
+        y - SVector::from(columns).dot(&solved[best].coefficients)
+    };
+    let (mut squares, mut products) = (0.0, 0.0);
+    for pair in starts.windows(2).filter(|p| p[1] - p[0] == RESPONSE_STEPS / 2) {
+        for e in 0..E {
+            let (a, b) = (residual(pair[0], e), residual(pair[1], e));
+            squares += 0.5 * (a * a + b * b);
+            products += a * b;
+        }
+    }
+    let correlation = if squares > 0.0 { (products / squares).clamp(0.0, 0.99) } else { 0.0 };
+    let samples = starts.len() as f64 * (1.0 - correlation) / (1.0 + correlation);
+    let (left, sign) = solved.iter().map(|s| (s.left, s.sign)).unzip();
+    let sums = solved.into_iter().map(|s| s.sums).collect();
+    Some(Curve { step: series.step, lags, left, sign, without, samples, sums, own: P })
+}
+
+/// The regression at one lag, and what is left without the channel. `None` where nothing moves.
+fn normal<const N: usize, const P: usize, const E: usize>(
+    starts: &[usize],
+    lag: isize,
+    equations: &impl Fn(usize, isize) -> [([f64; N], f64); E],
+) -> Option<(Solved<N>, f64)> {
+    let (mut a, mut b, mut squares) = (SMatrix::<f64, N, N>::zeros(), SVector::<f64, N>::zeros(), 0.0);
+    let (mut sums, mut count) = (SVector::<f64, N>::zeros(), 0.0);
+    for &start in starts {
+        for (columns, y) in equations(start, lag) {
+            let columns = SVector::from(columns);
+            a += columns * columns.transpose();
+            b += columns * y;
+            sums += columns;
+            squares += y * y;
+            count += 1.0;
+        }
+    }
+    if !(squares > 0.0 && squares.is_finite()) {
+        return None;
+    }
+    // Columns of one size; a little is added to the diagonal, since columns may be alike (a propeller at one rate) or nothing.
+    let scale = a.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
+    let scaled =
+        SMatrix::<f64, N, N>::from_fn(|i, j| a[(i, j)] * scale[i] * scale[j] + f64::from(u8::from(i == j)) * 1e-9);
+    let right = b.component_mul(&scale);
+    let full = scaled.cholesky()?.solve(&right);
+    let rounding = 1e-12 * squares;
+    let left = (squares - full.dot(&right)).max(rounding);
+    let mut reduced = scaled;
+    let mut rest = right;
+    for p in 0..P {
+        rest[p] = 0.0;
+        for j in 0..N {
+            let own = f64::from(u8::from(p == j));
+            (reduced[(p, j)], reduced[(j, p)]) = (own, own);
+        }
+    }
+    let without = (squares - reduced.cholesky()?.solve(&rest).dot(&rest)).max(rounding);
+    let coefficients = full.component_mul(&scale);
+    let together = |j: usize| a[(j, 0)] - sums[j] * sums[0] / count;
+    let sign = (0..P).map(|j| coefficients[j] * together(j)).sum::<f64>().signum();
+    Some((Solved { left, sign, coefficients, sums: centred(&a, &b, squares) }, without))
+}
+
+/// The sums without the last column, the constant, and what it explains.
+fn centred<const N: usize>(a: &SMatrix<f64, N, N>, b: &SVector<f64, N>, squares: f64) -> Sums {
+    let constant = N - 1;
+    let own = a[(constant, constant)];
+    let share = |i: usize| if own > 0.0 { a[(i, constant)] / own } else { 0.0 };
+    let columns = (0..constant).flat_map(|i| (0..constant).map(move |j| a[(i, j)] - share(i) * a[(constant, j)]));
+    Sums {
+        columns: columns.collect(),
+        response: (0..constant).map(|i| b[i] - share(i) * b[constant]).collect(),
+        squares: squares - if own > 0.0 { b[constant] * b[constant] / own } else { 0.0 },
+    }
+}
