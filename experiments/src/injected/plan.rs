@@ -418,7 +418,7 @@ pub fn ci_slice(plan: &[Planned], campaign: u64) -> Vec<Planned> {
 /// Whether a diagnosis takes little time.
 fn is_short(c: &Configuration) -> bool {
     let steps = c.set.facts().steps;
-    c.runs.len() <= 9 && !c.freed && c.step >= steps[1]
+    c.runs.len() <= 9 && !c.freed && c.step >= steps[2]
 }
 
 #[cfg(test)]

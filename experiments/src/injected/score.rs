@@ -284,7 +284,7 @@ pub fn score(row: &Row, partner: Option<&Row>) -> Score {
                 score.same = Some(partner.verdict == row.verdict && sorted(partner) == sorted(row));
             }
         }
-        "again" => score.fixed = (row.again != "-").then(|| row.again.is_empty()),
+        "again" => score.fixed = (row.again != "-").then_some(row.again.is_empty()),
         "wind" => reading.directions(&mut score),
         "load" => score.right = Some(reading.findings.iter().any(|f| f.set.contains(&"wind"))),
         "mistake" => score.wrong = score.refused.map(|r| !r && reading.new_ones().any(|f| reading.is_wrong(f))),
