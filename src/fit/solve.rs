@@ -1,18 +1,18 @@
-//! From the start of a fit through Ipopt to the best point that was evaluated, with the priors weighed anew between solves.
+//! From the start of a fit to the best point that was evaluated, with the priors weighed anew between solves.
 //! It says where the fit ended and what stopped it; how sure the estimates are is the work of `covariance`.
 //!
-//! What keeps a solve from ending above its start:
+//! With the Gauss-Newton matrix a fit is solved by steps within its limits (see `steps`), which take the fewest evaluations. Ipopt
+//! solves what these do not: with another Hessian, and where they find no optimum. What keeps a solve from ending above its
+//! start:
 //!
-//! - Where hull coefficients are free, the barrier begins small beside the objective. Ipopt's own start (a barrier parameter of
+//! - A trial point that cannot be simulated, or whose mass matrix cannot be inverted, has no value: the solver steps back.
+//! - Where hull coefficients are free, Ipopt's barrier begins small beside the objective. Its own start (a barrier parameter of
 //!   1 against a cost of 0.02 a sample) lets the barrier of a one-sided limit, such as R >= 0, push the parameters away to
 //!   where no trajectory is followed; from there the way back is not found. The barrier parameter then only falls
 //!   (`monotone`), so that each step must lower the cost. Without hull coefficients Ipopt's adaptive barrier takes fewer
 //!   iterations.
-//! - A trial point that cannot be simulated, or whose mass matrix cannot be inverted, has no value: the solver steps back.
-//! - Without hull coefficients the first try leaves the constraint rows out (see [`Way::Inside`]): most fits end inside all of
-//!   them, a third of the iterations is enough, and each is cheaper. Else the solver starts again with all rows.
-//! - The best feasible point of all evaluations is kept; the solver starts again from it where it ended elsewhere.
-//! - Where hull coefficients are free, shorter pieces of the runs are fitted first (see `stages`).
+//! - The best feasible point of all of Ipopt's evaluations is kept; it starts again from it where it ended elsewhere.
+//! - Where hull coefficients are free, shorter pieces of the runs are fitted first; of many runs, a few (see `stages`).
 
 use super::constraints::Row;
 use super::cost::Cost;
@@ -20,7 +20,7 @@ use super::error::FitError;
 use super::evaluations::Evaluations;
 use super::problem::{Point, Priors, Problem, Progress};
 use super::settings::Hessian;
-use super::stages;
+use super::stages::{self, Sample};
 use super::steps::{Residual, Walk};
 use super::subspace::inverse;
 use super::task::{ActiveSet, Task};
@@ -155,22 +155,26 @@ impl Task<'_> {
         Ok(self.settle(end, priors, work, parts))
     }
 
-    /// The start of the last stage: the fit's own start, or what fits shorter pieces of the runs where that is better.
+    /// The start of the last stage: the fit's own start, or what fits shorter pieces or a few of the runs where that is better.
     fn approach(
         &self,
         work: &mut Work,
         progress: &mut dyn FnMut(&Progress) -> bool,
     ) -> Result<(usize, Vec<f64>), FitError> {
         let parts = stages::parts(self);
-        let mut p = self.start.clone();
-        if parts < 2 {
-            return if self.start_cost.is_finite() { Ok((parts, p)) } else { Err(self.diverged()) };
+        if parts < 2 && !self.start_cost.is_finite() {
+            return Err(self.diverged());
         }
+        let mut p = self.start.clone();
         let mut priors = Priors::of(self.model);
-        for parts in stages::falling(parts) {
-            let (pieces, weights) = stages::cut(self.runs, self.cost.weights(), parts)?;
-            let pieces = Runs::from(&pieces);
-            let cost = Cost::weighted(self.cost.ranks(), self.model, pieces, weights, self.cost_options())?;
+        for sample in Sample::stages(self, parts) {
+            let (runs, weights) = sample.draw(self.runs, self.cost.weights())?;
+            let runs = Runs::from(&runs);
+            let cost = match Cost::weighted(self.cost.ranks(), self.model, runs, weights, self.cost_options()) {
+                // None was drawn.
+                Err(FitError::NoRuns) => continue,
+                cost => cost?,
+            };
             let evaluations = Evaluations::of(&cost);
             let Some(value) = evaluations.value(&p) else { continue };
             priors.weight = self.weight(&cost, value);
@@ -180,18 +184,34 @@ impl Task<'_> {
                 max_iterations: self.settings.max_iterations.min(STAGE_ITERATIONS),
                 near: false,
             };
-            let descent = self.descend(&stage, &p, &priors, &mut Residual::unknown(p.len()), work, progress)?;
+            let mut own = Work::default();
+            let descent = self.descend(&stage, &p, &priors, &mut Residual::unknown(p.len()), &mut own, progress)?;
+            work.join(&own, cost.samples() as f64 / self.cost.samples() as f64);
             p = descent.p;
             if descent.status == Status::Stopped {
                 break;
             }
         }
+        Ok((parts, self.better_start(p, priors)?))
+    }
+
+    /// The better of where the stages ended and the fit's own start.
+    fn better_start(&self, p: Vec<f64>, mut priors: Priors) -> Result<Vec<f64>, FitError> {
+        if p == self.start {
+            return Ok(p);
+        }
         priors.weight = self.weight(self.cost, self.start_cost);
-        let total = |p: &[f64]| Some(self.evaluations.value(p)? + priors.value(p));
-        match (total(&p), total(&self.start)) {
-            (Some(staged), Some(start)) if staged <= start || !self.is_feasible(&self.start) => Ok((parts, p)),
-            (Some(_), None) => Ok((parts, p)),
-            (_, Some(_)) => Ok((parts, self.start.clone())),
+        // Where the steps begin at the end of the stages, they need the derivatives there.
+        let value = match self.settings.hessian {
+            Hessian::GaussNewton => self.evaluations.quadratic(&p).map(|quadratic| quadratic.value),
+            _ => self.evaluations.value(&p),
+        };
+        let staged = value.map(|value| value + priors.value(&p));
+        let start = Some(self.start_cost + priors.value(&self.start)).filter(|total| total.is_finite());
+        match (staged, start) {
+            (Some(staged), Some(start)) if staged <= start || !self.is_feasible(&self.start) => Ok(p),
+            (Some(_), None) => Ok(p),
+            (_, Some(_)) => Ok(self.start.clone()),
             (None, None) => Err(self.diverged()),
         }
     }
@@ -465,6 +485,18 @@ impl Task<'_> {
 }
 
 impl Work {
+    /// Adds the work of a stage, its evaluations by the share of all samples that each of them took.
+    fn join(&mut self, stage: &Self, share: f64) {
+        self.iterations += stage.iterations;
+        let part = |count: usize| (share.min(1.0) * count as f64).ceil() as usize;
+        let (sum, counts) = (&mut self.counts, &stage.counts);
+        sum.objective += part(counts.objective);
+        sum.gradient += part(counts.gradient);
+        sum.constraints += counts.constraints;
+        sum.jacobian += counts.jacobian;
+        sum.hessian += part(counts.hessian);
+    }
+
     fn walked(&mut self, walk: &Walk) {
         self.iterations += walk.steps;
         let counts = &mut self.counts;

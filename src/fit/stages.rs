@@ -1,6 +1,7 @@
-//! Stages of a fit: runs cut into shorter pieces, each started from its own measured state, before the whole runs are fitted.
-//! It cuts runs and says into how many parts; what is done with the pieces is the work of `solve`.
+//! Stages of a fit: what is fitted before all whole runs, so that the fit to these begins nearer. It cuts and draws runs; what is
+//! done with them is the work of `solve`.
 //!
+//! Where hull coefficients are free, runs are cut into shorter pieces, each started from its own measured state.
 //! The cost of a run simulated in open loop has one basin near the ship and many far from it: a hull coefficient that is wrong
 //! by a third turns the simulated ship out of step with the recorded one, and from there on its track says nothing of which way
 //! to go. Over a shorter piece the same error has not grown yet. So the shortest pieces over which errors grow no faster than
@@ -9,6 +10,7 @@
 
 use super::cost::Cost;
 use super::error::FitError;
+use super::settings::Hessian;
 use super::task::Task;
 use crate::recording::{Run, RunStore, Runs, or_nan};
 use crate::state::STATES;
@@ -22,6 +24,46 @@ const MAX_PARTS: usize = 8;
 /// Ratio of the costs of runs and of their halves up to which errors grow no faster than linearly: an error e = a t has a mean
 /// square over a time T of a^2 T^2/3, four times that over half the time.
 const LINEAR: f64 = 4.0;
+
+/// Runs from which on a few of them are fitted first, how many these are at least, and the share of all that they are at least.
+/// Most of the steps of a fit only bring it near, which a few runs do as well as all.
+const MANY_RUNS: usize = 96;
+const FEW_RUNS: usize = 24;
+const FEW_SHARE: usize = 16;
+
+/// What a stage fits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Sample {
+    /// All runs, each cut into so many pieces.
+    Pieces(usize),
+    /// About one of so many runs.
+    Few(usize),
+}
+
+impl Sample {
+    /// The stages before the fit to all whole runs, where the first cuts them into `parts`.
+    pub fn stages(task: &Task, parts: usize) -> Vec<Self> {
+        let runs = task.cost.runs();
+        if parts > 1 {
+            falling(parts).map(Self::Pieces).collect()
+        } else if runs >= MANY_RUNS && task.settings.hessian == Hessian::GaussNewton {
+            vec![Self::Few(runs / (runs / FEW_SHARE).max(FEW_RUNS))]
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// The runs of the stage with the weights of their whole run.
+    ///
+    /// # Errors
+    /// [`FitError::Unreadable`] where the runs of a file cannot be kept in another.
+    pub fn draw(self, runs: Runs, weights: &[[f64; STATES]]) -> Result<(RunStore, Vec<[f64; STATES]>), FitError> {
+        match self {
+            Self::Pieces(parts) => cut(runs, weights, parts),
+            Self::Few(of) => few(runs, weights, of),
+        }
+    }
+}
 
 /// Number of parts of the first stage of a fit, 1 for no stages: where hull coefficients are free, which decide whether the
 /// ship holds its course, the fewest parts over which the errors of the start grow no faster than linearly.
@@ -57,7 +99,7 @@ pub(super) fn frees_hull(task: &Task) -> bool {
 }
 
 /// The numbers of parts of the stages before the whole runs: `parts`, then half as many, down to 2.
-pub(super) fn falling(parts: usize) -> impl Iterator<Item = usize> {
+fn falling(parts: usize) -> impl Iterator<Item = usize> {
     std::iter::successors(Some(parts), |p| Some(p / 2)).take_while(|p| *p > 1)
 }
 
@@ -67,11 +109,7 @@ pub(super) fn falling(parts: usize) -> impl Iterator<Item = usize> {
 ///
 /// # Errors
 /// [`FitError::Unreadable`] where the pieces of runs in a file cannot be kept in another.
-pub(super) fn cut(
-    runs: Runs,
-    weights: &[[f64; STATES]],
-    parts: usize,
-) -> Result<(RunStore, Vec<[f64; STATES]>), FitError> {
+fn cut(runs: Runs, weights: &[[f64; STATES]], parts: usize) -> Result<(RunStore, Vec<[f64; STATES]>), FitError> {
     let mut pieces = RunStore::new(if runs.held() { usize::MAX } else { 0 });
     let mut kept = Vec::new();
     for (run, weights) in runs.iter().zip(weights) {
@@ -81,6 +119,27 @@ pub(super) fn cut(
         }
     }
     Ok((pieces, kept))
+}
+
+/// About one of `of` runs, drawn by its name: the same whatever rank has it, and from all kinds that take turns in a list.
+fn few(runs: Runs, weights: &[[f64; STATES]], of: usize) -> Result<(RunStore, Vec<[f64; STATES]>), FitError> {
+    let mut drawn = RunStore::new(if runs.held() { usize::MAX } else { 0 });
+    let mut kept = Vec::new();
+    for (run, weights) in runs.iter().zip(weights) {
+        if hash(&run.name).is_multiple_of(of as u64) {
+            drawn.push(run.into_owned()).map_err(|_| FitError::Unreadable)?;
+            kept.push(*weights);
+        }
+    }
+    Ok((drawn, kept))
+}
+
+/// Hash of a text by Fowler, Noll and Vo (FNV-1a, 64 bits), its high half folded into the low one.
+fn hash(text: &str) -> u64 {
+    let hash = text
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));
+    hash ^ (hash >> 32)
 }
 
 fn cut_run(run: &Run, parts: usize) -> Vec<Run> {
@@ -154,6 +213,23 @@ mod tests {
         let mut unmeasured = run(40);
         unmeasured.measured.iter_mut().for_each(|m| m[4] = None);
         assert_eq!(pieces(unmeasured).len(), 1);
+    }
+
+    #[test]
+    fn few_runs_are_drawn_by_their_names_whatever_their_order() {
+        let named = |i: usize| Run { recording: format!("run {i}"), name: format!("run {i} 0 s"), ..run(20) };
+        let runs: Vec<Run> = (0..400).map(named).collect();
+        let backwards: Vec<Run> = runs.iter().rev().cloned().collect();
+        let names = |runs: &[Run]| {
+            let (drawn, weights) = Sample::Few(10).draw(Runs::from(runs), &[[1.0; STATES]; 400]).unwrap();
+            let mut names: Vec<String> = Runs::from(&drawn).iter().map(|r| r.name.clone()).collect();
+            assert_eq!(names.len(), weights.len());
+            names.sort();
+            names
+        };
+        let drawn = names(&runs);
+        assert!((20..=60).contains(&drawn.len()), "{drawn:?}");
+        assert_eq!(drawn, names(&backwards));
     }
 
     #[test]
