@@ -88,6 +88,7 @@ pub mod parameter;
 pub mod physics;
 #[cfg(feature = "plot")]
 pub mod plot;
+pub mod progress;
 pub mod ranges;
 pub mod ranks;
 pub mod recording;

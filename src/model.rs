@@ -2,6 +2,7 @@
 //! It holds no recording and no cost: it only gives the accelerations of the ship.
 
 use crate::error::suggestion;
+use crate::files::intact;
 use crate::parameter::ParameterInfo;
 use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number, TermInfo};
 use crate::ship::{COEFFICIENTS, Ship, explain, line_of};
@@ -370,7 +371,15 @@ impl Model {
     }
 
     /// Reads the text of a model file; `path` is used in messages.
+    ///
+    /// # Errors
+    /// [`ModelError`]; for a file that trimtab wrote with its checksum ([`crate::files::seal`]) also where it was cut or changed.
     pub fn parse(text: &str, path: &Path, ship: Ship) -> Result<Self, ModelError> {
+        intact(text).map_err(|broken| ModelError::Parse {
+            path: path.to_path_buf(),
+            line: text.lines().count().max(1),
+            message: broken.to_string(),
+        })?;
         let file: ModelFile = toml::from_str(text).map_err(|e| ModelError::Parse {
             path: path.to_path_buf(),
             line: e.span().map_or(1, |s| line_of(text, s.start)),

@@ -51,19 +51,13 @@ fn does(folder: &Path, ranks: usize, threads: usize, arguments: &[&str]) -> Stri
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The files of a folder by name, without the lines that tell the time taken.
+/// The files of a folder by name, without the one that tells the time taken.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let timeless = |bytes: Vec<u8>| match String::from_utf8(bytes) {
-        Ok(text) => {
-            let lines = text.lines().filter(|l| !l.contains("\"seconds\"") && !l.starts_with("Work "));
-            lines.collect::<Vec<_>>().join("\n").into_bytes()
-        }
-        Err(binary) => binary.into_bytes(),
-    };
     let entries = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
+    let entries = entries.filter(|path| !path.ends_with(trimtab::files::TIMING));
     let named = |path: PathBuf| {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        (name, timeless(std::fs::read(path).unwrap()))
+        (name, std::fs::read(path).unwrap())
     };
     entries.map(named).collect()
 }

@@ -57,6 +57,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("check", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
+    output.reads(&loaded, true);
     loaded.fit_settings()?;
     loaded.evaluation_settings()?;
     loaded.diagnose_settings()?;
@@ -67,11 +68,9 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     bar.finish_and_clear();
 
     let issues = rows(&audit);
-    output.file("channels.csv", &channels(&audit)?)?;
-    output.file(
-        "issues.csv",
-        &csv_text(&["run", "severity", "channel", "lines", "issue", "next_step"], issues.clone())?,
-    )?;
+    output.file("channels.csv", &channels(&audit)?);
+    output
+        .file("issues.csv", &csv_text(&["run", "severity", "channel", "lines", "issue", "next_step"], issues.clone())?);
     output.finish(&text(&audit, &issues), &audit)?;
     Ok(if audit.worst() == Some(Severity::Error) { Answer::No } else { Answer::Yes })
 }

@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use trimtab::demo;
 use trimtab::evaluate::Evaluation;
-use trimtab::files::write_whole;
+use trimtab::files::{Origin, ResultFolder};
 use trimtab::fit::Fit;
 use trimtab::maneuver::{Side, turning_trial};
 use trimtab::model::Model;
@@ -54,10 +54,14 @@ struct Report<'a> {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let study = args.out.join("study.toml");
-    let written = write_study(&args.out)?;
     let results = OutputArgs { out: Some(args.out.join("results")), json: args.json };
     let mut output = Output::new("demo", &results)?;
+    let written = write_study(&args.out)?;
     let loaded = Loaded::new(&StudyArgs { study: study.clone(), model: None })?;
+    output.reads(&loaded, true);
+    output.reads_files(&[evaluate::baseline_path(&loaded, None)?]);
+    output.settings("fit", &loaded.fit_settings()?)?;
+    output.settings("evaluate", &loaded.evaluation_settings()?)?;
     let train = loaded.windows_of(Split::Train)?;
     let test = loaded.windows_of(Split::Test)?;
     let fit = fit::fit_windows(Ranks::one(), &loaded, &loaded.model, Runs::from(&train), None)?;
@@ -91,17 +95,13 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     Ok(if fit.converged { Answer::Yes } else { Answer::No })
 }
 
-/// Writes the example study; gives the number of files.
+/// Writes the example study, over one that nobody has edited; gives the number of files.
 fn write_study(folder: &Path) -> Result<usize, CliError> {
     let files = demo::files();
-    for (name, text) in &files {
-        let path = folder.join(name);
-        let fail = |source| CliError::Write { path: path.clone(), source };
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(fail)?;
-        }
-        write_whole(&path, text.as_bytes()).map_err(fail)?;
-    }
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let mut study = ResultFolder::open(folder, "demo", &names)?;
+    files.iter().try_for_each(|(name, text)| study.write(name, text.as_bytes()))?;
+    study.complete(Origin { arguments: vec!["demo".to_owned()], ..Origin::default() })?;
     Ok(files.len())
 }
 
@@ -112,7 +112,7 @@ fn turning_circles(output: &mut Output, loaded: &Loaded, model: &Model) -> Resul
     // With a poor fit no propeller rate may hold the speed: the demo then has no turning circles.
     let Ok(approach) = settings.approach(model, &theta) else { return Ok(String::new()) };
     let trials = Side::BOTH.map(|side| turning_trial(model, &theta, &approach, side, settings.turning_angle()));
-    output.figure("turning", || turning_figure(ship, &trials))?;
+    output.figure("turning", || turning_figure(ship, &trials));
     let table = turning_table(ship, &trials);
     Ok(format!("\n\n3. Turning circles of the fitted ship at {:.0} m/s\n\n{table}\n", approach.speed))
 }

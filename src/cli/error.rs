@@ -3,6 +3,7 @@
 
 use std::path::PathBuf;
 use trimtab::diagnose::DiagnoseError;
+use trimtab::files::FolderError;
 use trimtab::fit::FitError;
 use trimtab::maneuver::ManeuverError;
 use trimtab::model::ModelError;
@@ -102,6 +103,9 @@ pub enum CliError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// The folder of results cannot be used.
+    #[error("{0} (--out)")]
+    Folder(FolderError),
     /// An argument with an impossible value.
     #[error("{0}")]
     Argument(String),
@@ -119,9 +123,6 @@ pub enum CliError {
     /// Standard output could not be written.
     #[error("cannot write to standard output ({0}); is the disk full?")]
     Stdout(std::io::Error),
-    /// The reader of standard output closed it.
-    #[error("standard output was closed")]
-    Closed,
 }
 
 impl From<serde_json::Error> for CliError {

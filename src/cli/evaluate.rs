@@ -66,9 +66,13 @@ pub struct Args {
 pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
     let mut output = Output::of_rank(ranks, "evaluate", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
+    output.reads(&loaded, true);
+    output.reads_files(&[baseline_path(&loaded, args.baseline.as_ref())?]);
     output.recordings(audited_over(ranks, &loaded, &args.accept)?);
     let baseline = baseline(&loaded, args.baseline.as_ref())?;
     let judging = judging(&loaded)?;
+    output.settings("fit", &loaded.fit_settings()?)?;
+    output.settings("evaluate", &loaded.evaluation_settings()?)?;
     let mut proof = Proof::new(&baseline, &loaded.model, &judging);
     let blank = Proof::new(&baseline, &loaded.model, &judging);
     loaded.part(ranks, |_| true).each(
@@ -126,9 +130,14 @@ fn judging(loaded: &Loaded) -> Result<Judging, CliError> {
 
 /// The baseline: the file given, else that of the study, else the study's model.
 pub fn baseline(loaded: &Loaded, given: Option<&PathBuf>) -> Result<Model, CliError> {
+    loaded.other_model(&baseline_path(loaded, given)?)
+}
+
+/// The file of the baseline.
+pub fn baseline_path(loaded: &Loaded, given: Option<&PathBuf>) -> Result<PathBuf, CliError> {
     let folder = loaded.study.path.parent().map(PathBuf::from).unwrap_or_default();
     let listed = loaded.evaluation_settings()?.baseline.map(|b| folder.join(b));
-    loaded.other_model(&given.cloned().or(listed).unwrap_or_else(|| loaded.study.model.clone()))
+    Ok(given.cloned().or(listed).unwrap_or_else(|| loaded.study.model.clone()))
 }
 
 /// Judges a model with the settings of the study.
@@ -288,14 +297,15 @@ pub fn write(
     windows: &[Run],
     integration: Integration,
 ) -> Result<(), CliError> {
-    output.file("trajectories.csv", &trajectories(&evaluation.trajectories)?)?;
-    output.file("summary.csv", &summary(&evaluation.summaries)?)?;
+    output.file("trajectories.csv", &trajectories(&evaluation.trajectories)?);
+    output.file("summary.csv", &summary(&evaluation.summaries)?);
     let test: Vec<&Comparison> = evaluation.trajectories.iter().filter(|t| t.split == Split::Test).collect();
     if let Some(main) = evaluation.summaries.first() {
-        output.figure("improvement", || improvement(main))?;
+        output.figure("improvement", || improvement(main));
     }
-    output.figure("cvdm", || cvdm_figure(&test))?;
-    output.figure("tracks", || tracks(evaluation, models, windows, integration))
+    output.figure("cvdm", || cvdm_figure(&test));
+    output.figure("tracks", || tracks(evaluation, models, windows, integration));
+    Ok(())
 }
 
 fn trajectories(comparisons: &[Comparison]) -> Result<Vec<u8>, CliError> {

@@ -7,8 +7,8 @@ use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text};
 use super::progress::progress;
-use std::path::{Path, PathBuf};
-use trimtab::files::write_whole;
+use std::collections::BTreeMap;
+use trimtab::files::{Kept, seal};
 use trimtab::fit::{Fit, FitSettings, MultiStart, StartRow, fit_over, multi_start_over};
 use trimtab::model::Model;
 use trimtab::numerals::sig;
@@ -40,7 +40,8 @@ Example:
 
 With --out: fitted.toml (a model file with the estimates, which every command takes as --model), fit.json, fit.txt (the \
     report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end); with --starts also starts.csv (how each start \
-    ended). While the fit runs, best.toml is the model at the best point so far; it is removed at the end.
+    ended). While the fit runs, best.toml is the model at the best point so far; it is removed at the end. \
+    With --starts a fit that was killed goes on with the starts that are left when it is repeated on the same input.
 JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
     result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
     value, limit, sentence), result.residual_statistics (model_error, growth, growth_error, likeness), result.estimates[] \
@@ -49,7 +50,7 @@ JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, acce
     result.undetermined[] (words, standard_deviation), result.covariance_gauss_newton, result.covariance_sandwich, \
     result.correlations (rows of numbers in the order of the estimates, null where the data do not determine a parameter), \
     result.validity (share_outside of the samples; outside[] with term, quantity, range, share, met: where the data leave the \
-    range over which a term is valid), result.runs, result.recordings, result.residuals, result.iterations, result.counts, result.seconds, result.settings.
+    range over which a term is valid), result.runs, result.recordings, result.residuals, result.iterations, result.counts, result.settings.
 
 Exit code 1 if the fit did not converge; its result is written all the same.";
 
@@ -72,6 +73,8 @@ pub struct Args {
 pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
     let mut output = Output::of_rank(ranks, "fit", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
+    output.reads(&loaded, true);
+    output.settings("fit", &loaded.fit_settings()?)?;
     output.recordings(audited_over(ranks, &loaded, &args.accept)?);
     let (start, starts) = match args.starts {
         Some(count) => from_many(ranks, &loaded, count.into(), &mut output)?,
@@ -79,13 +82,13 @@ pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
     };
     let store = stored(ranks, &loaded)?;
     let windows = Runs::from(&store);
-    let fit = fit_windows(ranks, &loaded, &start, windows, output.path(BEST));
+    let fit = fit_windows(ranks, &loaded, &start, windows, output.kept(BEST));
     if let Some(source) = store.failure() {
         return Err(CliError::Write { path: std::env::temp_dir(), source });
     }
     let fit = fit?;
     write(&mut output, &start, &fit, speeds(ranks, windows))?;
-    let mut text = fit.report() + &starts;
+    let mut text = fit.report() + &format!("\nTime taken: {:.2} s\n", fit.seconds) + &starts;
     if !output.has_folder() {
         text += "\nGive --out DIR to keep the fitted model as a file.";
     }
@@ -123,24 +126,23 @@ pub fn fit_windows(
     loaded: &Loaded,
     start: &Model,
     windows: Runs,
-    kept: Option<PathBuf>,
+    kept: Option<Kept>,
 ) -> Result<Fit, CliError> {
     let settings: FitSettings = loaded.fit_settings()?;
     let bar = progress(format!("fitting to {} windows", windows.len()));
     let mut last: Vec<f64> = Vec::new();
     let result = fit_over(ranks, start, windows, &settings, &mut |p| {
         bar.set_message(format!("fitting: iteration {}, cost {:.5}", p.iteration, p.cost));
-        if let (Some(path), Some(best)) = (&kept, p.best.filter(|best| *best != last)) {
+        if let (Some(kept), Some(best)) = (&kept, p.best.filter(|best| *best != last)) {
             last = best.to_vec();
             // A fit does not end because a copy of its best point cannot be written.
-            let _ = keep(path, start, best);
+            let _ = keep(kept, start, best);
         }
         true
     });
     bar.finish_and_clear();
-    if let Some(path) = &kept {
-        // Without a better point than the start there is no such file.
-        let _ = std::fs::remove_file(path);
+    if let Some(kept) = &kept {
+        kept.remove();
     }
     let mut fit = result.map_err(|error| CliError::Fit { path: loaded.study.path.clone(), error })?;
     if !start.name.ends_with(FITTED_NAME) {
@@ -150,13 +152,12 @@ pub fn fit_windows(
 }
 
 /// Writes a model file with the free parameters at `best`, whole or not at all.
-fn keep(path: &Path, start: &Model, best: &[f64]) -> Result<(), CliError> {
-    let fail = |source| CliError::Write { path: path.to_owned(), source };
+fn keep(kept: &Kept, start: &Model, best: &[f64]) -> Result<(), CliError> {
     let mut model = start.clone();
     for (i, value) in start.free().into_iter().zip(best) {
         model.parameters[i].value = *value;
     }
-    write_whole(path, model_text(&model)?.as_bytes()).map_err(fail)
+    kept.write(model_text(&model)?.as_bytes()).map_err(|source| CliError::Write { path: BEST.into(), source })
 }
 
 /// Fits from many starts, dealt out to the ranks, and writes how each ended: the model at the best end, and what to say of it.
@@ -164,9 +165,22 @@ fn from_many(ranks: &Ranks, loaded: &Loaded, count: usize, output: &mut Output) 
     let windows = loaded.windows_of(Split::Train)?;
     let starts = MultiStart { count, ..MultiStart::default() };
     let bar = progress(format!("fitting from {count} starts"));
-    let each = |start| bar.set_message(format!("fitting from start {start} of {count}"));
-    let rows = multi_start_over(ranks, &loaded.model, &windows, &loaded.fit_settings()?, &starts, each);
+    let (mut log, known) = output.log::<(usize, StartRow)>("starts")?.unzip();
+    let known: BTreeMap<usize, StartRow> = known.into_iter().flatten().collect();
+    let mut done = known.len();
+    let ended = |start: usize, row: &StartRow| {
+        done += 1;
+        bar.part(format!("fitting from {count} starts: {done} done"), done, count);
+        if let Some(log) = &mut log {
+            // A fit does not end because its parts cannot be kept.
+            let _ = log.append(&(start, row));
+        }
+    };
+    let rows = multi_start_over(ranks, &loaded.model, &windows, &loaded.fit_settings()?, &starts, &known, ended);
     bar.finish_and_clear();
+    if let Some(log) = log {
+        output.done_with(log);
+    }
     let mut model = loaded.model.clone();
     let free = model.free();
     let names = free.iter().map(|i| model.parameters[*i].name.clone());
@@ -179,7 +193,7 @@ fn from_many(ranks: &Ranks, loaded: &Loaded, count: usize, output: &mut Output) 
         let ends = (0..free.len()).map(|j| row.end.get(j).map_or(String::new(), f64::to_string));
         first.into_iter().chain(row.start.iter().map(f64::to_string)).chain(ends).collect::<Vec<String>>()
     };
-    output.file("starts.csv", &csv_text(&header, rows.iter().enumerate().map(fields))?)?;
+    output.file("starts.csv", &csv_text(&header, rows.iter().enumerate().map(fields))?);
     let converged: Vec<&StartRow> = rows.iter().filter(|row| row.converged).collect();
     let best = converged.iter().min_by(|a, b| a.cost.unwrap_or(f64::NAN).total_cmp(&b.cost.unwrap_or(f64::NAN)));
     let Some((best, cost)) = best.and_then(|row| Some((row, row.cost?))) else {
@@ -211,8 +225,8 @@ pub fn speeds(ranks: &Ranks, windows: Runs) -> [f64; 2] {
 
 /// Writes the files of a fit.
 pub fn write(output: &mut Output, start: &Model, fit: &Fit, speeds: [f64; 2]) -> Result<(), CliError> {
-    output.file("fitted.toml", model_text(&fit.model)?.as_bytes())?;
-    output.file("fit.txt", fit.report().as_bytes())?;
+    output.file("fitted.toml", model_text(&fit.model)?.as_bytes());
+    output.file("fit.txt", fit.report().as_bytes());
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
     let rows = fit.estimates.iter().map(|e| {
         let [low, high] = e.interval.map_or([None, None], |i| i.map(Some));
@@ -229,15 +243,16 @@ pub fn write(output: &mut Output, start: &Model, fit: &Fit, speeds: [f64; 2]) ->
         ]
     });
     let header = ["parameter", "symbol", "unit", "start", "estimate", "standard_error", "low95", "high95", "at_bound"];
-    output.file("parameters.csv", &csv_text(&header, rows)?)?;
-    output.figure("curves", || curves(&[("start", GREY, start), ("fitted", FITTED, &fit.model)], speeds))
+    output.file("parameters.csv", &csv_text(&header, rows)?);
+    output.figure("curves", || curves(&[("start", GREY, start), ("fitted", FITTED, &fit.model)], speeds));
+    Ok(())
 }
 
-/// A model as the text of a model file.
+/// A model as the text of a model file, with a checksum at its end.
 pub fn model_text(model: &Model) -> Result<String, CliError> {
     let text =
         toml::to_string(&model.to_file()).map_err(|e| CliError::Format { format: "TOML", message: e.to_string() })?;
-    Ok(format!("# Written by trimtab {}; use it with --model.\n{text}", env!("CARGO_PKG_VERSION")))
+    Ok(seal("use it with --model.", &text))
 }
 
 /// R(u) over the recorded speeds, c_L and c_D over the angles of attack at which the curves hold.

@@ -34,6 +34,8 @@ pub struct Loaded {
     pub study: Study,
     /// The model, with its ship.
     pub model: Model,
+    /// The file that the model is from.
+    model_path: PathBuf,
 }
 
 impl Loaded {
@@ -42,7 +44,19 @@ impl Loaded {
         let study = Study::read(&args.study)?;
         let path = args.model.clone().unwrap_or_else(|| study.model.clone());
         let model = read_model(&path, Ship::read(&study.ship)?).map_err(|error| in_ship_file(error, &study.ship))?;
-        Ok(Self { study, model })
+        Ok(Self { study, model, model_path: path })
+    }
+
+    /// The files that were read, and those of the recordings that are to be read if `recordings` says so.
+    pub fn files(&self, recordings: bool) -> Vec<PathBuf> {
+        let mut files = self.study.files();
+        if recordings {
+            files.extend(self.study.runs.iter().flat_map(|run| run.column_map.iter().chain([&run.file]).cloned()));
+        }
+        files.push(self.model_path.clone());
+        files.sort();
+        files.dedup();
+        files
     }
 
     /// Another model of the same ship.
@@ -76,7 +90,7 @@ impl Loaded {
             |windows| work(windows.windows),
             |one| {
                 done += 1;
-                bar.set_message(format!("{doing}: {done} of {of} recordings"));
+                bar.part(format!("{doing}: {done} of {of} recordings"), done, of);
                 take(one)
             },
         );
@@ -99,7 +113,7 @@ impl Loaded {
         let mut study = self.study.clone();
         study.runs.retain(wanted);
         study.runs = study.runs[ranks.share(study.runs.len())].to_vec();
-        Self { study, model: self.model.clone() }
+        Self { study, model: self.model.clone(), model_path: self.model_path.clone() }
     }
 
     /// The error of a study without a run on one side of its split.

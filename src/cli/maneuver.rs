@@ -9,6 +9,7 @@ use super::output::{Output, OutputArgs};
 use super::progress::progress;
 use clap::Subcommand;
 use serde::Serialize;
+use trimtab::files::Names;
 use trimtab::maneuver::{Approach, Ended, ManeuverSettings, Side, Trial, stopping_trial, turning_trial, zigzag_trial};
 use trimtab::model::Model;
 use trimtab::numerals::sig;
@@ -114,12 +115,14 @@ struct Prepared {
 }
 
 impl Prepared {
-    fn new(args: &TrialArgs) -> Result<Self, CliError> {
+    fn new(args: &TrialArgs, output: &mut Output) -> Result<Self, CliError> {
         let loaded = Loaded::new(&args.study)?;
+        output.reads(&loaded, false);
         let mut settings = loaded.maneuver_settings()?;
         if args.speed.is_some() || args.rpm.is_some() {
             (settings.speed, settings.n_rpm) = (args.speed, args.rpm);
         }
+        output.settings("maneuver", &settings)?;
         let path = loaded.study.path.clone();
         let theta = loaded.model.values();
         let approach = settings.approach(&loaded.model, &theta).map_err(|error| CliError::Maneuver { path, error })?;
@@ -132,7 +135,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     match &args.trial {
         Kind::Turning(args) => {
             let mut output = Output::new("maneuver turning", &args.output)?;
-            let p = Prepared::new(args)?;
+            let p = Prepared::new(args, &mut output)?;
             let angle = p.settings.turning_angle();
             let bar = progress("turning");
             let trials = Side::BOTH.map(|side| turning_trial(&p.model, &p.theta, &p.approach, side, angle));
@@ -143,7 +146,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         }
         Kind::Zigzag(args) => {
             let mut output = Output::new("maneuver zigzag", &args.output)?;
-            let p = Prepared::new(args)?;
+            let p = Prepared::new(args, &mut output)?;
             let bar = progress("zigzag");
             let sail = |angles, side| zigzag_trial(&p.model, &p.theta, &p.approach, side, angles);
             let angles = p.settings.zigzag_angles();
@@ -155,7 +158,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         }
         Kind::Stopping(args) => {
             let mut output = Output::new("maneuver stopping", &args.output)?;
-            let p = Prepared::new(args)?;
+            let p = Prepared::new(args, &mut output)?;
             let trial = stopping_trial(&p.model, &p.theta, &p.approach);
             let table = stopping_table(&p.model.ship, &trial);
             let trials = [trial];
@@ -205,15 +208,16 @@ fn finish<M>(
     }) {
         return Err(CliError::Diverged { what: format!("{}: {what}", p.model.name), after });
     }
+    let mut names = Names::default();
     for trial in trials {
-        let name: String = trial.name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-        let name = name.replace("__", "_");
-        output.file(format!("tracks/{name}.csv"), track_csv(&trial.track).as_bytes())?;
+        let name = names.take(&trial.name.replace(", ", "_"));
+        output.file(format!("tracks/{name}.csv"), track_csv(&trial.track).as_bytes());
     }
     let rows = table.rows().iter().cloned();
     let header: Vec<&str> = table.header().iter().map(String::as_str).collect();
-    output.file(format!("{stem}_measures.csv"), &super::output::csv_text(&header, rows)?)?;
-    output.figure(stem, figure)
+    output.file(format!("{stem}_measures.csv"), &super::output::csv_text(&header, rows)?);
+    output.figure(stem, figure);
+    Ok(())
 }
 
 fn text<M>(p: &Prepared, trials: &[Trial<M>], table: &Table) -> String {

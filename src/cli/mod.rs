@@ -15,6 +15,7 @@ mod output;
 mod processor;
 mod progress;
 mod simulate;
+mod terminal;
 mod terms;
 
 use answer::Answer;
@@ -22,6 +23,7 @@ use clap::{Parser, Subcommand};
 use error::CliError;
 use processor::Build;
 use std::process::ExitCode;
+use terminal::{plain, tell};
 use trimtab::ranks::{Ranks, Traffic};
 
 const AFTER_HELP: &str = "\
@@ -74,28 +76,34 @@ pub fn run() -> ExitCode {
     match processor::build() {
         Build::Suits => {}
         Build::TooNew => {
-            eprintln!("trimtab: {TOO_NEW}");
+            tell(&format!("trimtab: {TOO_NEW}"));
             return ExitCode::from(2);
         }
-        Build::TooOld => eprintln!("warning: {TOO_OLD}"),
+        Build::TooOld => tell(&format!("warning: {TOO_OLD}")),
     }
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(wrong) if wrong.use_stderr() => {
+            tell(wrong.render().to_string().trim_end());
+            return ExitCode::from(2);
+        }
+        // Help, or the version.
+        Err(asked) => asked.exit(),
+    };
     let ranks = Ranks::join();
     let outcome = execute(&cli, &ranks);
     if let (Err(error), true) = (&outcome, ranks.size() > 1) {
-        ranks.fail(&error.to_string());
+        ranks.fail(&plain(&error.to_string()));
     }
     if ranks.is_first() && ranks.size() > 1 {
         let Traffic { exchanges, bytes } = ranks.traffic();
-        eprintln!("trimtab: {} ranks; each sent {bytes} bytes in {exchanges} exchanges", ranks.size());
+        tell(&format!("trimtab: {} ranks; each sent {bytes} bytes in {exchanges} exchanges", ranks.size()));
     }
     match outcome {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
         Ok(Answer::No) => ExitCode::from(1),
-        // The reader of standard output closed it, as in `trimtab terms | head`.
-        Err(CliError::Closed) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("trimtab: {error}");
+            tell(&format!("trimtab: {error}"));
             ExitCode::from(2)
         }
     }

@@ -3,18 +3,23 @@
 
 use super::audited::Audited;
 use super::error::CliError;
+use super::load::Loaded;
+use super::terminal::{Escaped, plain};
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use trimtab::files::{fill_whole, write_whole};
+use trimtab::files::{FolderError, Kept, Log, Origin, ResultFolder, plain_cell, sha256};
 use trimtab::plot::Figure;
 use trimtab::ranks::Ranks;
 
 /// Arguments that every command with results has.
 #[derive(Clone, Debug, clap::Args)]
 pub struct OutputArgs {
-    /// Folder for files: tables as CSV, figures as PNG with the CSV behind them, the result as JSON. Created if absent.
+    /// Folder for files: tables as CSV, figures as PNG with the CSV behind them, the result as JSON, and manifest.json, which says
+    /// how they came about. Created if absent; what the same command wrote there before is replaced.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print the result as one JSON object, and nothing else, to standard output.
@@ -27,18 +32,37 @@ pub struct Output {
     command: &'static str,
     json: bool,
     silent: bool,
-    folder: Option<PathBuf>,
-    files: Vec<PathBuf>,
+    folder: Option<ResultFolder>,
+    settings: BTreeMap<String, Value>,
     audited: Option<Audited>,
+    logs: Vec<Log>,
+    failure: Option<CliError>,
+}
+
+/// Files that a command writes whatever its input is.
+fn expected(command: &str) -> &'static [&'static str] {
+    match command {
+        "check" => &["check.json", "channels.csv", "issues.csv"],
+        "simulate" => &["simulate.json", "simulations.csv", "tracks.png", "tracks.csv"],
+        "fit" => &["fit.json", "fitted.toml", "fit.txt", "parameters.csv", "curves.png", "curves.csv", "best.toml"],
+        "evaluate" => &["evaluate.json", "trajectories.csv", "summary.csv", "improvement.png", "tracks.png"],
+        "diagnose" => &["diagnosis.json", "improved.toml", "base.toml", "report.html"],
+        "maneuver turning" => &["maneuver_turning.json", "turning.png", "turning.csv", "turning_measures.csv"],
+        "maneuver zigzag" => &["maneuver_zigzag.json", "zigzag.png", "zigzag.csv", "zigzag_measures.csv"],
+        "maneuver stopping" => &["maneuver_stopping.json", "stopping.png", "stopping.csv", "stopping_measures.csv"],
+        "terms" => &["terms.json", "parameters.csv"],
+        "demo" => &["demo.json", "fitted.toml", "fit.txt", "parameters.csv", "summary.csv", "tracks.png", "curves.png"],
+        _ => &[],
+    }
 }
 
 impl Output {
-    /// Opens the output of a command and makes its folder, so that a long computation does not fail at its end.
+    /// Opens the output of a command and makes its folder ready, so that a long computation does not fail at its end.
     pub fn new(command: &'static str, args: &OutputArgs) -> Result<Self, CliError> {
-        if let Some(folder) = &args.out {
-            std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
-        }
-        Ok(Self { command, json: args.json, silent: false, folder: args.out.clone(), files: Vec::new(), audited: None })
+        let open = |folder: &PathBuf| ResultFolder::open(folder, command, expected(command));
+        let folder = args.out.as_ref().map(open).transpose()?;
+        let (settings, audited, logs, failure) = (BTreeMap::new(), None, Vec::new(), None);
+        Ok(Self { command, json: args.json, silent: false, folder, settings, audited, logs, failure })
     }
 
     /// The output of one of several ranks: the first one's as [`Self::new`] has it, no output of the others.
@@ -46,12 +70,45 @@ impl Output {
         if ranks.is_first() {
             return Self::new(command, args);
         }
-        Ok(Self { command, json: false, silent: true, folder: None, files: Vec::new(), audited: None })
+        Ok(Self { silent: true, ..Self::new(command, &OutputArgs { out: None, json: false })? })
     }
 
-    /// The path of a file in the folder, if there is one.
-    pub fn path(&self, name: &str) -> Option<PathBuf> {
-        self.folder.as_ref().map(|folder| folder.join(name))
+    /// Notes the files of a study and their digests for the manifest; with its recordings, if the command reads them.
+    pub fn reads(&mut self, loaded: &Loaded, recordings: bool) {
+        self.reads_files(&loaded.files(recordings));
+    }
+
+    /// Notes further files that the command reads.
+    pub fn reads_files(&mut self, files: &[PathBuf]) {
+        if let Some(folder) = &mut self.folder {
+            folder.reads(files);
+        }
+    }
+
+    /// Notes settings for the manifest.
+    pub fn settings(&mut self, table: &str, settings: &impl Serialize) -> Result<(), CliError> {
+        self.settings.insert(table.to_owned(), without_nulls(serde_json::to_value(settings)?));
+        Ok(())
+    }
+
+    /// A file in the folder, if there is one, that can be seen while the command runs.
+    pub fn kept(&self, name: &str) -> Option<Kept> {
+        self.folder.as_ref().map(|folder| folder.kept(name))
+    }
+
+    /// The log of a long work in the folder, if there is one, and the parts of it that an earlier command on the same input and
+    /// settings has done; [`Self::done_with`] ends it.
+    pub fn log<T: DeserializeOwned>(&self, work: &str) -> Result<Option<(Log, Vec<T>)>, CliError> {
+        let Some(folder) = &self.folder else { return Ok(None) };
+        let path = folder.path().join(format!(".trimtab-{work}"));
+        let settings = serde_json::to_string(&self.settings)?;
+        let key = sha256(format!("{} {} {settings}", env!("CARGO_PKG_VERSION"), folder.inputs_digest()).as_bytes());
+        Log::open(&path, &key).map(Some).map_err(|source| CliError::Write { path, source })
+    }
+
+    /// Keeps a log until the files of the result are in their places.
+    pub fn done_with(&mut self, log: Log) {
+        self.logs.push(log);
     }
 
     /// Takes what is to be said of the recordings: before the answer, and as `recordings` in JSON.
@@ -64,25 +121,25 @@ impl Output {
         self.folder.is_some()
     }
 
-    /// Writes a file in the folder, if there is one; `name` may have folders of its own.
-    pub fn file(&mut self, name: impl AsRef<Path>, bytes: &[u8]) -> Result<(), CliError> {
-        let Some(folder) = &self.folder else { return Ok(()) };
-        let path = folder.join(name);
-        let fail = |source| CliError::Write { path: path.clone(), source };
-        if let Some(parent) = path.parent() {
-            std::fs::create_dir_all(parent).map_err(fail)?;
-        }
-        write_whole(&path, bytes).map_err(fail)?;
-        self.files.push(path);
-        Ok(())
+    /// Writes a file in the folder, if there is one; `name` may have folders of its own. What cannot be written is told when the
+    /// command ends, after its answer.
+    pub fn file(&mut self, name: impl AsRef<Path>, bytes: &[u8]) {
+        self.put(|folder| Ok(folder.write(name, bytes)?));
     }
 
-    /// Draws a figure into the folder, if there is one.
-    pub fn figure(&mut self, stem: &str, figure: impl FnOnce() -> Figure) -> Result<(), CliError> {
-        if let Some(folder) = &self.folder {
-            self.files.extend(figure().save(&folder.join(stem))?);
+    /// Draws a figure into the folder, if there is one; a failure is told as that of [`Self::file`].
+    pub fn figure(&mut self, stem: &str, figure: impl FnOnce() -> Figure) {
+        self.put(|folder| {
+            figure().save(&folder.staged(stem)?)?;
+            ["png", "csv"].iter().try_for_each(|end| Ok(folder.written(format!("{stem}.{end}"))?))
+        });
+    }
+
+    /// Writes into the folder, if there is one and nothing has failed.
+    fn put(&mut self, write: impl FnOnce(&mut ResultFolder) -> Result<(), CliError>) {
+        if let (Some(folder), None) = (&mut self.folder, &self.failure) {
+            self.failure = write(folder).err();
         }
-        Ok(())
     }
 
     /// Ends the command: prints `text`, or the result as JSON; writes the JSON into the folder too.
@@ -95,36 +152,103 @@ impl Output {
     /// As [`Self::finish`], with a result that is written piece by piece and has no member without a value; its members are in
     /// the order of their names.
     pub fn finish_long(mut self, text: &str, result: &impl Serialize) -> Result<(), CliError> {
-        if self.silent {
+        let (command, json, silent, audited) = (self.command, self.json, self.silent, self.audited.take());
+        if silent {
             return Ok(());
         }
-        let name = format!("{}.json", self.command.replace(' ', "_"));
-        if let Some(folder) = &self.folder {
-            let path = folder.join(name);
-            let document = Document::new(self.command, None, self.audited.as_ref(), result);
+        self.put(|folder| {
+            let document = Document::new(command, None, audited.as_ref(), result);
             let fill = |file: &mut dyn Write| {
                 serde_json::to_writer_pretty(&mut *file, &document)?;
                 file.write_all(b"\n")
             };
-            fill_whole(&path, fill).map_err(|source| CliError::Write { path: path.clone(), source })?;
-            self.files.push(path);
+            Ok(folder.fill(format!("{}.json", command.replace(' ', "_")), fill)?)
+        });
+        let written = self.close();
+        let told = if json {
+            print_json(&Document::new(command, written.files(), audited.as_ref(), result))
+        } else {
+            let doubts = audited.as_ref().map_or_else(String::new, Audited::lines);
+            print(&(doubts + text.trim_end() + "\n" + &written.line()))
+        };
+        written.ended(told)
+    }
+
+    /// Puts the files of the result into their places. What went wrong is told by [`Written::ended`], after the answer.
+    pub fn close(mut self) -> Written {
+        let Some(folder) = self.folder.take() else { return Written { files: Ok(None) } };
+        if let Some(failure) = self.failure {
+            return Written { files: Err(failure) };
         }
-        if self.json {
-            let document = Document::new(self.command, Some(&self.files), self.audited.as_ref(), result);
-            let mut stdout = BufWriter::new(std::io::stdout().lock());
-            return serde_json::to_writer_pretty(&mut stdout, &document)
-                .map_err(std::io::Error::from)
-                .and_then(|()| stdout.write_all(b"\n"))
-                .and_then(|()| stdout.flush())
-                .map_err(unprinted);
+        let path = folder.path().to_owned();
+        let origin = Origin {
+            arguments: arguments(std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned())),
+            settings: self.settings,
+        };
+        let files = folder.complete(origin).map(|files| Some((path, files))).map_err(CliError::from);
+        if files.is_ok() {
+            self.logs.into_iter().for_each(Log::remove);
         }
-        let doubts = self.audited.as_ref().map_or_else(String::new, Audited::lines);
-        let mut text = doubts + text.trim_end() + "\n";
-        if let Some(folder) = &self.folder {
-            let names = self.files.iter().map(|f| f.strip_prefix(folder).unwrap_or(f).display().to_string());
-            text += &format!("\nWritten to {}: {}\n", folder.display(), abridged(names.collect()));
+        Written { files }
+    }
+}
+
+/// What became of the files of a result: the folder and their paths, if files were wanted.
+pub struct Written {
+    files: Result<Option<(PathBuf, Vec<PathBuf>)>, CliError>,
+}
+
+impl Written {
+    /// The paths of the files; none where they are not in their places.
+    fn files(&self) -> Option<&[PathBuf]> {
+        match &self.files {
+            Ok(written) => Some(written.as_ref().map_or(&[], |(_, files)| files)),
+            Err(_) => None,
         }
-        print(&text)
+    }
+
+    /// Whether files were wanted, and are in their places.
+    pub fn is_there(&self) -> bool {
+        matches!(self.files, Ok(Some(_)))
+    }
+
+    /// What was written where, as the last lines of an answer; nothing without files.
+    pub fn line(&self) -> String {
+        let Ok(Some((folder, files))) = &self.files else { return String::new() };
+        let names = files.iter().map(|f| f.strip_prefix(folder).unwrap_or(f).display().to_string());
+        format!("\nWritten to {}: {}\n", folder.display(), abridged(names.collect()))
+    }
+
+    /// Ends the command after its answer was printed.
+    ///
+    /// # Errors
+    /// What went wrong with the files, or else with standard output.
+    pub fn ended(self, told: Result<(), CliError>) -> Result<(), CliError> {
+        self.files.and(told)
+    }
+}
+
+/// The arguments that a result depends on: all but the folder it goes to, how it is printed, and the number of threads.
+fn arguments(all: impl Iterator<Item = String>) -> Vec<String> {
+    let (mut kept, mut value_of_left) = (Vec::new(), false);
+    for argument in all {
+        let left = ["--out", "--threads", "--json"].iter().find(|name| argument == **name);
+        let joined = argument.starts_with("--out=") || argument.starts_with("--threads=");
+        if !value_of_left && left.is_none() && !joined {
+            kept.push(argument);
+            continue;
+        }
+        value_of_left = !value_of_left && left.is_some_and(|name| *name != "--json");
+    }
+    kept
+}
+
+impl From<FolderError> for CliError {
+    fn from(error: FolderError) -> Self {
+        match error {
+            FolderError::Write { path, source } => Self::Write { path, source },
+            other => Self::Folder(other),
+        }
     }
 }
 
@@ -189,30 +313,38 @@ fn without_nulls(value: Value) -> Value {
     }
 }
 
-/// Prints to standard output.
+/// Prints to standard output, without what would control a terminal. A reader that closed it early, as in `trimtab terms | head`,
+/// has what it wanted.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut stdout = std::io::stdout().lock();
-    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(unprinted)
+    printed(stdout.write_all(plain(text).as_bytes()).and_then(|()| stdout.flush()))
 }
 
-/// The error of standard output that takes no more.
-fn unprinted(error: std::io::Error) -> CliError {
-    match error.kind() {
-        ErrorKind::BrokenPipe => CliError::Closed,
-        _ => CliError::Stdout(error),
+/// Prints a value as JSON, as [`print`] does.
+pub fn print_json(value: &impl Serialize) -> Result<(), CliError> {
+    let mut stdout = BufWriter::new(Escaped(std::io::stdout().lock()));
+    let written = serde_json::to_writer_pretty(&mut stdout, value).map_err(std::io::Error::from);
+    printed(written.and_then(|()| stdout.write_all(b"\n")).and_then(|()| stdout.flush()))
+}
+
+fn printed(outcome: std::io::Result<()>) -> Result<(), CliError> {
+    match outcome {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        other => other.map_err(CliError::Stdout),
     }
 }
 
-/// CSV text of a header and rows of fields.
+/// CSV text of a header and rows of fields; a spreadsheet runs none of them.
 pub fn csv_text<R: IntoIterator<Item = String>>(
     header: &[&str],
     rows: impl IntoIterator<Item = R>,
 ) -> Result<Vec<u8>, CliError> {
     let fail = |message: String| CliError::Format { format: "CSV", message };
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header).map_err(|e| fail(e.to_string()))?;
+    writer.write_record(header.iter().map(|name| plain_cell(name).into_owned())).map_err(|e| fail(e.to_string()))?;
     for row in rows {
-        writer.write_record(row.into_iter().collect::<Vec<String>>()).map_err(|e| fail(e.to_string()))?;
+        let row: Vec<String> = row.into_iter().map(|cell| plain_cell(&cell).into_owned()).collect();
+        writer.write_record(row).map_err(|e| fail(e.to_string()))?;
     }
     writer.into_inner().map_err(|e| fail(e.to_string()))
 }
@@ -226,6 +358,20 @@ mod tests {
     fn members_without_a_value_are_left_out_and_array_entries_stay() {
         let value = json!({"a": null, "b": [1.0, null, {"c": null, "d": 2}], "e": f64::NAN});
         assert_eq!(without_nulls(value), json!({"b": [1.0, null, {"d": 2}]}));
+    }
+
+    #[test]
+    fn arguments_that_no_result_depends_on_are_left_out() {
+        let given = "fit study.toml --out r --threads 2 --starts 5 --json --model --out=x --threads=3 m.toml";
+        let kept = arguments(given.split(' ').map(str::to_owned));
+        assert_eq!(kept, ["fit", "study.toml", "--starts", "5", "--model", "m.toml"]);
+    }
+
+    #[test]
+    fn cells_of_a_table_are_run_by_no_spreadsheet() {
+        let rows = [["=HYPERLINK(1)", "-1.5", "-x, y"].map(str::to_owned)];
+        let text = String::from_utf8(csv_text(&["@a", "b", "c"], rows).unwrap_or_default()).unwrap_or_default();
+        assert_eq!(text, "'@a,b,c\n'=HYPERLINK(1),-1.5,\"'-x, y\"\n");
     }
 
     #[test]

@@ -9,6 +9,7 @@ use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
 use serde::Serialize;
 use std::sync::Arc;
 use trimtab::evaluate::{Outcome, outcome, predict_all};
+use trimtab::files::Names;
 use trimtab::fit::FitSettings;
 use trimtab::model::Model;
 use trimtab::numerals::sig;
@@ -30,8 +31,8 @@ Example:
 cVDM is the mean deviation over position, heading and velocities, each relative to the size of the motion, in percent \
     (`trimtab evaluate` compares two models by it).
 
-With --out: simulate.json, simulations.csv, tracks.png and .csv, and trajectories/RUN.csv, each in the layout of a \
-    recording, so that a simulation can be read like a measurement.
+With --out: simulate.json, simulations.csv, tracks.png and .csv, and trajectories/RUN.csv (see column `file` of \
+    simulations.csv), each in the layout of a recording, so that a simulation can be read like a measurement.
 JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
     result.model, result.runs[] with run, split, start_time [s], duration [s], steps, md (x, y [m], psi [rad], u, v [m/s], \
     r [rad/s]) and cvdm [%], or diverged_after [s]; result.validity (share_outside of the recorded samples; outside[] with term, \
@@ -84,7 +85,7 @@ const PANELS: usize = 12;
 struct Simulated<'a> {
     rows: Vec<Row>,
     validity: Count<'a>,
-    /// Name and text of each trajectory's file, where files are wanted.
+    /// Name and text of each trajectory, where files are wanted.
     files: Vec<(String, String)>,
     tracks: Vec<Track>,
 }
@@ -100,11 +101,14 @@ struct Track {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("simulate", &args.output)?;
     let loaded = Loaded::new(&args.study)?;
+    output.reads(&loaded, true);
+    output.settings("fit", &loaded.fit_settings()?)?;
     output.recordings(audited(&loaded, &args.accept)?);
     let settings = loaded.fit_settings()?;
     let model = &loaded.model;
     let written = output.has_folder();
     let (mut rows, mut tracks, mut validity) = (Vec::new(), Tracks::default(), Count::new(model));
+    let (mut names, mut files) = (Names::default(), Vec::new());
     loaded.each(
         "simulating",
         |_| true,
@@ -113,17 +117,21 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             rows.extend(one.rows);
             validity.join(&one.validity);
             tracks.add(one.tracks);
-            one.files
-                .iter()
-                .try_for_each(|(name, text)| output.file(format!("trajectories/{name}.csv"), text.as_bytes()))
+            for (name, text) in &one.files {
+                let file = format!("trajectories/{}.csv", names.take(name));
+                output.file(&file, text.as_bytes());
+                files.push(file);
+            }
+            Ok(())
         },
     )?;
     let header = table(&[]);
-    let header: Vec<&str> = header.header().iter().map(String::as_str).collect();
+    let header: Vec<&str> = header.header().iter().map(String::as_str).chain(["file"]).collect();
     if written {
-        output.file("simulations.csv", &csv_text(&header, rows.iter().map(cells))?)?;
+        let cells = rows.iter().zip(files).map(|(row, file)| cells(row).into_iter().chain([file]));
+        output.file("simulations.csv", &csv_text(&header, cells)?);
     }
-    output.figure("tracks", || figure(&model.name, rows.len(), tracks))?;
+    output.figure("tracks", || figure(&model.name, rows.len(), tracks));
     let validity = validity.coverage();
     let table = table(&rows[..rows.len().min(PRINTED)]);
     let more = match rows.len().saturating_sub(PRINTED) {
@@ -161,7 +169,7 @@ fn simulated<'a>(model: &'a Model, settings: &FitSettings, windows: Vec<Run>, wr
     validity.add(windows.iter().flat_map(validity::samples));
     let (mut files, mut tracks) = (Vec::new(), Vec::new());
     if written {
-        let name = |i: usize| file_name(&windows, i);
+        let name = |i: usize| name(&windows, i);
         files = windows.iter().zip(&trajectories).enumerate().map(|(i, (w, t))| (name(i), recording(w, t))).collect();
         let names: Vec<String> = (0..windows.len().min(PANELS)).map(name).collect();
         let all = windows.into_iter().zip(trajectories).zip(names);
@@ -230,12 +238,15 @@ fn cells(r: &Row) -> Vec<String> {
     cells
 }
 
-/// The name of a window's file: its run, with its start where the run has several. `windows` are those of one recording.
-fn file_name(windows: &[Run], i: usize) -> String {
+/// The name of a window: its run, with its start to the millisecond where the run has several. `windows` are those of one
+/// recording.
+fn name(windows: &[Run], i: usize) -> String {
     let w = &windows[i];
-    let safe: String =
-        w.recording.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
-    if windows.len() > 1 { format!("{safe}_{:.0}s", w.start_time()) } else { safe }
+    if windows.len() == 1 {
+        return w.recording.clone();
+    }
+    let start = format!("{:.3}", w.start_time());
+    format!("{}_{}s", w.recording, start.trim_end_matches('0').trim_end_matches('.'))
 }
 
 /// A trajectory in the layout of a recording.

@@ -52,6 +52,7 @@ struct Listing {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("terms", &args.output)?;
     let ship = args.ship.as_deref().map(Ship::read).transpose()?;
+    output.reads_files(args.ship.as_slice());
     let known = || CATALOGUE.iter().map(|t| t.info().name);
     if let Some(name) = args.names.iter().find(|n| !known().any(|k| k == **n)) {
         let near = suggestion(name, known());
@@ -64,7 +65,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     } else {
         terms.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
     };
-    output.file("parameters.csv", &parameters(&terms)?)?;
+    output.file("parameters.csv", &parameters(&terms)?);
     output.finish(&text, &Listing { terms })?;
     Ok(Answer::Yes)
 }

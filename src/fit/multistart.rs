@@ -10,6 +10,7 @@ use crate::recording::Run;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Starts drawn uniformly from a box around the model's values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,20 +72,27 @@ pub fn multi_start(
     from.iter().enumerate().map(outcome).collect()
 }
 
-/// As [`multi_start`], with the starts dealt out to the ranks, each of which has all `runs`: every rank gets every row.
+/// As [`multi_start`], with the starts dealt out to the ranks, each of which has all `runs`: every rank gets every row. A start
+/// whose row is in `known`, from a job that was stopped, is not fitted again; `ended` is told of each other one as it ends.
 pub fn multi_start_over(
     ranks: &Ranks,
     model: &Model,
     runs: &[Run],
     settings: &FitSettings,
     starts: &MultiStart,
-    mut progress: impl FnMut(usize),
+    known: &BTreeMap<usize, StartRow>,
+    mut ended: impl FnMut(usize, &StartRow),
 ) -> Vec<StartRow> {
     let from = drawn(model, starts);
     let own = from.iter().enumerate().filter(|(count, _)| ranks.takes(*count));
     let row = |(count, from): (usize, &Model)| {
-        progress(count);
-        (count, StartRow::of(free_values(from), fit(from, runs, settings, &mut |_| true)))
+        let values = free_values(from);
+        if let Some(row) = known.get(&count).filter(|row| row.start == values) {
+            return (count, row.clone());
+        }
+        let row = StartRow::of(values, fit(from, runs, settings, &mut |_| true));
+        ended(count, &row);
+        (count, row)
     };
     ranks.rows(own.map(row).collect())
 }

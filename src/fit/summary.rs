@@ -119,7 +119,8 @@ pub struct Fit {
     pub counts: Counts,
     /// How much of the data lies outside the ranges over which the terms are valid.
     pub validity: Coverage,
-    /// Time taken \[s\].
+    /// Time taken \[s\]; no part of the result as a file, so that equal fits are equal files.
+    #[serde(skip)]
     pub seconds: f64,
     /// The settings.
     pub settings: FitSettings,

@@ -6,13 +6,14 @@ use super::error::FigureError;
 use super::extent::lies;
 use super::figure::{Figure, Panel};
 use super::layer::{Layer, Mark};
+use crate::files::plain_cell;
 
 impl Figure {
     /// The data behind the figure, one row for each point: `panel,series,kind,x,y,z,lo,hi`.
     ///
     /// `x` and `y` are as on the axes, categories by their label; `z` is the value of a heat map cell and the heading
     /// (rad) of a hull; `lo` and `hi` are the ends of an interval, band or span. What is missing is an empty field.
-    /// An arrow is two rows, `arrow-from` and `arrow-to`; boxes are given by their samples.
+    /// A name that a spreadsheet would run has an apostrophe before it. An arrow is two rows, `arrow-from` and `arrow-to`; boxes are given by their samples.
     ///
     /// # Errors
     /// [`FigureError::Csv`] if the writer fails.
@@ -24,9 +25,8 @@ impl Figure {
             for layer in &panel.layers {
                 for row in rows(panel, layer) {
                     let values = row.values.map(|v| v.unwrap_or_default());
-                    writer.write_record(
-                        [&name, &layer.name, row.kind].into_iter().chain(values.iter().map(String::as_str)),
-                    )?;
+                    let cells = [&name, &layer.name, row.kind].into_iter().chain(values.iter().map(String::as_str));
+                    writer.write_record(cells.map(|cell| plain_cell(cell).into_owned()))?;
                 }
             }
         }

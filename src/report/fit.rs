@@ -73,7 +73,7 @@ impl Fit {
         };
         let (c, variance) = (&self.counts, number(self.residual_variance));
         let (residuals, parameters, rows) = (self.residuals, self.estimates.len(), self.constraints);
-        let (passes, seconds) = (self.iterations, self.seconds);
+        let passes = self.iterations;
         [
             self.headline.clone(),
             format!("Fit of {} to {} runs of {} recordings", self.model.name, self.runs, self.recordings),
@@ -82,7 +82,7 @@ impl Fit {
             format!("Size         {residuals} residuals, {parameters} parameters, {rows} constraint rows"),
             format!("Derivatives  {derivatives}; Hessian {hessian}"),
             format!(
-                "Work         {passes} iterations, {} cost, {} gradient and {} Hessian evaluations, {seconds:.2} s",
+                "Work         {passes} iterations, {} cost, {} gradient and {} Hessian evaluations",
                 c.objective, c.gradient, c.hessian
             ),
         ]

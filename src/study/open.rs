@@ -109,6 +109,13 @@ impl Study {
         })
     }
 
+    /// The files that say what the study is: its own, the table of runs, and the ship's; neither models nor recordings.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut files = vec![self.path.clone(), self.runs_path.clone(), self.ship.clone()];
+        files.dedup();
+        files
+    }
+
     /// The column map of a run.
     ///
     /// # Errors

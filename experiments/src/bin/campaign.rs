@@ -1,19 +1,21 @@
 //! Runs the campaign of concealed cases, one row of results a case, and summarises them against the aims.
 //! A case with a row in the results file is not run again, so that an interrupted campaign can be continued.
 
-use std::collections::{BTreeSet, HashMap};
-use std::fs::{File, OpenOptions};
-use std::io::Write;
+use std::collections::BTreeSet;
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use trimtab::files::{Lock, write_whole};
+use trimtab::progress::Teller;
 use trimtab::ranks::Ranks;
 use trimtab_experiments::conceal::campaign::figure::figure;
 use trimtab_experiments::conceal::campaign::plan::{Planned, SEED, ci_slice, plan};
+use trimtab_experiments::conceal::campaign::rows::{Rows, put_in_order, read, row};
 use trimtab_experiments::conceal::campaign::summary::{summary, table};
 use trimtab_experiments::conceal::error::ConcealError;
 use trimtab_experiments::conceal::judge::score::Score;
@@ -91,42 +93,41 @@ fn run(a: &Arguments, ranks: &Ranks) -> Result<(), ConcealError> {
         return Ok(());
     }
     let results = a.out.join("cases.csv");
+    let mut lock = None;
     if !a.summary {
         // What the first rank finds done counts: the others may see the file later.
-        let own = if ranks.is_first() { done(&a.out, &results)? } else { BTreeSet::new() };
+        let begun = if ranks.is_first() { Some(begin(&a.out, &results)?) } else { None };
+        let own = begun.as_ref().map_or_else(BTreeSet::new, |(_, _, done)| done.clone());
         let done = ranks.gather(&own).swap_remove(0);
         plan.retain(|c| !done.contains(&c.key));
         // The first case of every kind, then the second: an unfinished campaign is a fair sample of the whole.
         plan.sort_by_key(|c| c.key.rsplit('/').next().and_then(|i| i.parse::<usize>().ok()));
         plan.truncate(a.most.unwrap_or(usize::MAX));
         if !plan.is_empty() {
-            execute(a, ranks, &plan, &results)?;
+            execute(a, ranks, &plan, begun.as_ref().map(|(_, rows, _)| rows))?;
         }
+        lock = begun.map(|(lock, _, _)| lock);
     }
     if !ranks.is_first() {
         return Ok(());
     }
-    put_in_order(&results, &whole)?;
+    // While another campaign appends rows, they are counted and left in their order.
+    if lock.or_else(|| Lock::take(&a.out).ok()).is_some() {
+        put_in_order(&results, &whole)?;
+    }
     summarise(a, &read(&results)?)
 }
 
-/// The cases that have a row; makes the folder of the results.
-fn done(folder: &Path, results: &Path) -> Result<BTreeSet<String>, ConcealError> {
+/// Makes the folder of the results, which no other campaign may write into meanwhile, and finds the cases that have a row.
+fn begin(folder: &Path, results: &Path) -> Result<(Lock, Rows, BTreeSet<String>), ConcealError> {
     std::fs::create_dir_all(folder).map_err(|source| ConcealError::file(folder, source))?;
-    Ok(read(results)?.into_iter().map(|s| s.case).collect())
-}
-
-/// The rows of the results file; none without a file.
-fn read(path: &Path) -> Result<Vec<Score>, ConcealError> {
-    if !path.exists() {
-        return Ok(Vec::new());
-    }
-    let mut reader = csv::Reader::from_path(path).map_err(|e| ConcealError::content(path, &e))?;
-    reader.deserialize().collect::<Result<_, _>>().map_err(|e| ConcealError::content(path, &e))
+    let lock = Lock::take(folder).map_err(|e| ConcealError::content(folder, &e))?;
+    let (rows, done) = Rows::open(results)?;
+    Ok((lock, rows, done))
 }
 
 /// Runs the cases of `plan`, dealt out to the ranks; the first rank appends a row as each case ends, wherever it ran.
-fn execute(a: &Arguments, ranks: &Ranks, plan: &[Planned], results: &Path) -> Result<(), ConcealError> {
+fn execute(a: &Arguments, ranks: &Ranks, plan: &[Planned], rows: Option<&Rows>) -> Result<(), ConcealError> {
     let runner = Runner {
         tool: a.tool.clone(),
         limit: Duration::from_secs(a.limit),
@@ -136,38 +137,34 @@ fn execute(a: &Arguments, ranks: &Ranks, plan: &[Planned], results: &Path) -> Re
         sindy: a.sindy.clone(),
     };
     let own: Vec<Planned> = plan.iter().enumerate().filter(|(i, _)| ranks.takes(*i)).map(|(_, c)| c.clone()).collect();
-    if !ranks.is_first() {
+    let Some(rows) = rows else {
         runner.all(&own, a.workers, &|score| {
-            ranks.hand_in(&row(&score, false)?);
+            ranks.hand_in(&row(&score)?);
             Ok(())
         })?;
         ranks.hand_in("");
         return Ok(());
-    }
-    let rows = Rows::open(results)?;
-    let bar = ProgressBar::new(plan.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{pos}/{len} {wide_bar} {eta} {msg}") {
-        bar.set_style(style);
-    }
+    };
+    let bar = Bar::new(plan.len());
     let outcome = std::thread::scope(|scope| {
-        let others = scope.spawn(|| receive(ranks, &rows, &bar));
+        let others = scope.spawn(|| receive(ranks, rows, &bar));
         let own = runner.all(&own, a.workers, &|score| {
-            bar.set_message(score.case.clone());
-            bar.inc(1);
-            rows.append(&row(&score, false)?)
+            rows.append(&row(&score)?)?;
+            bar.ended(&score.case);
+            Ok(())
         });
         if let Err(error) = own {
             // The others are not waited for: their rows so far are in the file.
             return if ranks.size() > 1 { ranks.fail(&error.to_string()) } else { Err(error) };
         }
-        others.join().unwrap_or_else(|_| Err(ConcealError::content(results, &"the rows of other ranks were lost")))
+        others.join().unwrap_or_else(|_| Err(ConcealError::content(&a.out, &"the rows of other ranks were lost")))
     });
-    bar.finish_and_clear();
+    drop(bar);
     outcome
 }
 
 /// Appends the rows that other ranks hand in, until each of them has handed in an empty one.
-fn receive(ranks: &Ranks, rows: &Rows, bar: &ProgressBar) -> Result<(), ConcealError> {
+fn receive(ranks: &Ranks, rows: &Rows, bar: &Bar) -> Result<(), ConcealError> {
     let mut working = ranks.size() - 1;
     while working > 0 {
         match ranks.handed_in() {
@@ -175,80 +172,63 @@ fn receive(ranks: &Ranks, rows: &Rows, bar: &ProgressBar) -> Result<(), ConcealE
             Some(row) if row.is_empty() => working -= 1,
             Some(row) => {
                 rows.append(&row)?;
-                bar.inc(1);
+                bar.ended("");
             }
         }
     }
     Ok(())
 }
 
-/// The results file, open for further rows.
-struct Rows {
-    path: PathBuf,
-    file: Mutex<File>,
+/// How far the campaign is, on standard error: a bar on a terminal, a line a minute elsewhere.
+struct Bar {
+    bar: ProgressBar,
+    teller: Option<Teller>,
+    ended: AtomicUsize,
+    of: usize,
 }
 
-impl Rows {
-    fn open(path: &Path) -> Result<Self, ConcealError> {
-        let fail = |source| ConcealError::file(path, source);
-        let empty = std::fs::metadata(path).map_or(true, |m| m.len() == 0);
-        let file = OpenOptions::new().create(true).append(true).open(path).map_err(fail)?;
-        let rows = Self { path: path.to_owned(), file: Mutex::new(file) };
-        if empty {
-            let text = row(&Score::default(), true)?;
-            rows.append(text.split_inclusive('\n').next().unwrap_or_default())?;
+impl Bar {
+    fn new(of: usize) -> Self {
+        if !std::io::stderr().is_terminal() {
+            let teller = Some(Teller::new("campaign", &format!("0 of {of} cases")));
+            return Self { bar: ProgressBar::hidden(), teller, ended: AtomicUsize::new(0), of };
         }
-        Ok(rows)
+        let bar = ProgressBar::new(of as u64);
+        if let Ok(style) = ProgressStyle::with_template("{pos}/{len} {wide_bar} {eta} {msg}") {
+            bar.set_style(style);
+        }
+        Self { bar, teller: None, ended: AtomicUsize::new(0), of }
     }
 
-    fn append(&self, row: &str) -> Result<(), ConcealError> {
-        // A panic in another thread cannot leave half a row: a row is written whole.
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
-        file.write_all(row.as_bytes()).map_err(|source| ConcealError::file(&self.path, source))
+    /// A case has ended, and its row is written.
+    fn ended(&self, case: &str) {
+        let (ended, of) = (self.ended.fetch_add(1, Ordering::Relaxed) + 1, self.of);
+        self.bar.set_message(case.to_owned());
+        self.bar.inc(1);
+        if let Some(teller) = &self.teller {
+            teller.say(&format!("{ended} of {of} cases"));
+            teller.part(ended, of);
+        }
     }
 }
 
-/// A score as a row of the results file, below the header if that is wanted.
-fn row(score: &Score, header: bool) -> Result<String, ConcealError> {
-    let fail = |e: &dyn std::fmt::Display| ConcealError::content(Path::new(&score.case), &e.to_string());
-    let mut writer = csv::WriterBuilder::new().has_headers(header).from_writer(Vec::new());
-    writer.serialize(score).map_err(|e| fail(&e))?;
-    let bytes = writer.into_inner().map_err(|e| fail(&e))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
-}
-
-/// Puts the rows of the results file in the order of the plan: they end in another order each time.
-fn put_in_order(path: &Path, plan: &[Planned]) -> Result<(), ConcealError> {
-    if !path.exists() {
-        return Ok(());
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
     }
-    let fail = |e: &dyn std::fmt::Display| ConcealError::content(path, &e.to_string());
-    let mut reader = csv::Reader::from_path(path).map_err(|e| fail(&e))?;
-    let header = reader.headers().map_err(|e| fail(&e))?.clone();
-    let place: HashMap<&str, usize> = plan.iter().enumerate().map(|(i, c)| (c.key.as_str(), i)).collect();
-    let case = header.iter().position(|name| name == "case").unwrap_or(0);
-    let mut records: Vec<csv::StringRecord> = reader.records().collect::<Result<_, _>>().map_err(|e| fail(&e))?;
-    records.sort_by_key(|r| r.get(case).and_then(|key| place.get(key)).copied().unwrap_or(usize::MAX));
-    let written = path.with_extension("part");
-    let mut writer = csv::Writer::from_path(&written).map_err(|e| fail(&e))?;
-    writer.write_record(&header).map_err(|e| fail(&e))?;
-    for record in &records {
-        writer.write_record(record).map_err(|e| fail(&e))?;
-    }
-    writer.flush().map_err(|source| ConcealError::file(&written, source))?;
-    std::fs::rename(&written, path).map_err(|source| ConcealError::file(path, source))
 }
 
 fn summarise(a: &Arguments, scores: &[Score]) -> Result<(), ConcealError> {
     let table = table(&summary(scores));
     println!("{table}");
     let path = a.out.join("summary.csv");
-    let mut writer = csv::Writer::from_path(&path).map_err(|e| ConcealError::content(&path, &e))?;
+    let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(table.header()).map_err(|e| ConcealError::content(&path, &e))?;
     for row in table.rows() {
         writer.write_record(row).map_err(|e| ConcealError::content(&path, &e))?;
     }
-    writer.flush().map_err(|source| ConcealError::file(&path, source))?;
+    let text = writer.into_inner().map_err(|e| ConcealError::content(&path, &e))?;
+    write_whole(&path, &text).map_err(|source| ConcealError::file(&path, source))?;
     let stem = a.out.join("concealed");
     figure(scores).save(&stem).map_err(|e| ConcealError::content(&stem, &e))?;
     Ok(())

@@ -7,6 +7,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use trimtab::files::{file_name, write_whole};
+
 use super::baselines::{self, Wanted};
 use super::campaign::plan::Planned;
 use super::case::Case;
@@ -25,7 +27,7 @@ const SINDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peers/sindy.py");
 /// How cases are run.
 #[derive(Debug, Clone)]
 pub struct Runner {
-    /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json`.
+    /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json --once`.
     pub tool: PathBuf,
     /// Longest time for one diagnosis.
     pub limit: Duration,
@@ -81,7 +83,9 @@ impl Runner {
 
     /// One case from plan to score; a failure becomes the row's error.
     pub fn one(&self, planned: &Planned, meter: &dyn Meter) -> Score {
-        let folder = self.folder.join(planned.key.replace('/', "_"));
+        let folder = self.folder.join(file_name(&planned.key));
+        // What a campaign that was killed left there is of no use to this one.
+        let _ = std::fs::remove_dir_all(&folder);
         let outcome = self.attempt(planned, meter, &folder);
         if !self.keep {
             // A folder that cannot be removed is overwritten by the next call.
@@ -112,10 +116,10 @@ impl Runner {
         let answer = folder.join("diagnosis.json");
         let began = Instant::now();
         let mut command = Command::new(&self.tool);
-        command.arg("--threads").arg("1").arg("diagnose").arg(&study).arg("--json");
+        command.args(["--threads", "1", "diagnose"]).arg(&study).args(["--json", "--once"]);
         let said = finish(command, &self.tool, self.limit)?;
         let seconds = began.elapsed().as_secs_f64();
-        std::fs::write(&answer, said).map_err(|source| ConcealError::file(&answer, source))?;
+        write_whole(&answer, said.as_bytes()).map_err(|source| ConcealError::file(&answer, source))?;
         let diagnosis = Diagnosis::read(&answer)?;
         let manifest = seal::open(folder)?;
         let mut score = judge(&manifest, &diagnosis);
@@ -199,6 +203,14 @@ mod tests {
     fn a_program_that_does_not_end_is_stopped() {
         let e = finish(shell("exec sleep 60"), Path::new("sh"), Duration::ZERO).unwrap_err().to_string();
         assert!(e.contains("stopped after"), "{e}");
+    }
+
+    #[test]
+    fn every_case_of_the_plan_has_a_folder_of_its_own() {
+        let mut names = trimtab::files::Names::default();
+        for planned in crate::conceal::campaign::plan::plan(1) {
+            assert_eq!(names.take(&planned.key), file_name(&planned.key));
+        }
     }
 
     #[test]

@@ -4,4 +4,5 @@
 pub mod arms;
 pub mod figure;
 pub mod plan;
+pub mod rows;
 pub mod summary;

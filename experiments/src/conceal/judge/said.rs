@@ -150,3 +150,42 @@ impl Diagnosis {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conceal::judge::rules::judge;
+    use crate::conceal::{case::Case, design::Design, family::Family, spec::Spec, strength::ForceMeter};
+    use proptest::prelude::*;
+    use std::sync::LazyLock;
+
+    const SAID: &str = r#"{"verdict": "named", "findings": [{"mechanism": "current", "parameters": [{"name": "current.north",
+        "value": 0.2, "error": 0.01, "interval": [0.1, 0.3]}], "equations": {"X": 0.1, "Y": {"share": 0.7}, "N": 0.2},
+        "windows": [{"run": "a", "start": 0.0, "end": 1e3}], "set": ["current", {"mechanism": "wind"}]}],
+        "held_out": {"value": 1.0}, "absorbed": [{"name": "hull.Yv", "change": -1.5}]}"#;
+
+    static MANIFEST: LazyLock<crate::conceal::seal::Manifest> = LazyLock::new(|| {
+        let case =
+            Case::make(&Spec { design: Design::Few, ..Spec::null(Family::Hd, 7) }, &ForceMeter::default()).unwrap();
+        case.manifest(&case.study_files())
+    });
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+
+        #[test]
+        fn a_damaged_diagnosis_is_refused_or_judged(
+            damages in prop::collection::vec((0.0..1.0_f64, 0..12_usize, "[-0-9eE.\",:{}\\[\\] a-z]{0,6}|null|nan|1e999"), 1..4),
+        ) {
+            let mut bytes = SAID.as_bytes().to_vec();
+            for (place, length, text) in &damages {
+                let from = (place * bytes.len() as f64) as usize;
+                let to = (from + length).min(bytes.len());
+                drop(bytes.splice(from..to, text.bytes()));
+            }
+            if let Ok(said) = serde_json::from_slice::<Diagnosis>(&bytes) {
+                let _ = judge(&MANIFEST, &said);
+            }
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Files as the project writes them: whole or not at all, under safe names, with digests, in folders that say how they came about.
+//! What is in a file, and how its failure is told, is with those who write it.
+
+mod cell;
+mod date;
+mod digest;
+mod folder;
+mod lock;
+mod log;
+mod manifest;
+mod name;
+mod seal;
+mod whole;
+
+pub use cell::plain_cell;
+pub use date::utc;
+pub use digest::{sha256, sha256_of};
+pub use folder::{FolderError, Kept, Origin, ResultFolder};
+pub use lock::{Lock, LockError};
+pub use log::Log;
+pub use manifest::{Entry, Input, MANIFEST, Manifest, TIMING, Timing};
+pub use name::{Names, file_name};
+pub use seal::{Broken, intact, seal};
+pub use whole::{fill_whole, write_whole};
