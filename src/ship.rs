@@ -254,7 +254,7 @@ impl Ship {
             let [low, high] = range.limits;
             if !(low..=high).contains(&range.value) {
                 let within = if low == f64::MIN_POSITIVE {
-                    format!("positive and at most {}", sig(high, 4))
+                    format!("a positive number, at most {}", sig(high, 4))
                 } else {
                     format!("between {} and {}", sig(low, 4), sig(high, 4))
                 };
