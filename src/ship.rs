@@ -254,7 +254,7 @@ impl Ship {
             let [low, high] = range.limits;
             if !(low..=high).contains(&range.value) {
                 let within = if low == f64::MIN_POSITIVE {
-                    format!("positive and at most {}", sig(high, 4))
+                    format!("a positive number, at most {}", sig(high, 4))
                 } else {
                     format!("between {} and {}", sig(low, 4), sig(high, 4))
                 };
@@ -293,10 +293,13 @@ impl Ship {
     /// The range of every particular that a ship can have, wide enough for models, tugs and barges: what is outside is a wrong unit or
     /// a wrong sign.
     fn ranges(&self) -> Vec<Range> {
-        let (h, p, r) = (&self.hull, &self.propeller, &self.rudder);
-        let range = |key, value, low: f64, high: f64, meaning| Range { key, value, limits: [low, high], meaning };
+        [self.hull_ranges(), self.propulsion_ranges(), self.other_ranges()].concat()
+    }
+
+    fn hull_ranges(&self) -> Vec<Range> {
+        let h = &self.hull;
         let tiny = f64::MIN_POSITIVE;
-        let mut ranges = vec![
+        vec![
             range("hull.lpp", h.lpp, tiny, 600.0, "the length between perpendiculars in m"),
             range("hull.breadth", h.breadth, tiny, h.lpp, "the breadth in m, at most the length"),
             range("hull.draught", h.draught, tiny, h.lpp, "the draught in m, at most the length"),
@@ -317,6 +320,12 @@ impl Ship {
                 1100.0,
                 "kg/m3, 1025 in the sea and 1000 in fresh water",
             ),
+        ]
+    }
+
+    fn propulsion_ranges(&self) -> Vec<Range> {
+        let (h, p, r) = (&self.hull, &self.propeller, &self.rudder);
+        vec![
             range(
                 "propeller.diameter",
                 p.diameter,
@@ -359,7 +368,13 @@ impl Ship {
             range("rudder.lever", r.lever, -2.0, 0.0, "a share of L, negative aft; about -0.85"),
             range("rudder.wake_ratio", r.wake_ratio, 0.1, 5.0, "the wake ratio, about 1.05"),
             range("rudder.race", r.race, 0.0, 2.0, "the propeller race factor, about 0.5"),
-        ];
+        ]
+    }
+
+    fn other_ranges(&self) -> Vec<Range> {
+        let h = &self.hull;
+        let tiny = f64::MIN_POSITIVE;
+        let mut ranges = Vec::new();
         if let Some(a) = &self.above_water {
             let lateral = h.lpp * (h.lpp + h.breadth);
             ranges.extend([
@@ -489,6 +504,12 @@ impl Ship {
 }
 
 /// A particular and the range it must be in.
+fn range(key: &'static str, value: f64, low: f64, high: f64, meaning: &'static str) -> Range {
+    Range { key, value, limits: [low, high], meaning }
+}
+
+/// See [`range`].
+#[derive(Clone)]
 struct Range {
     /// Dotted key.
     key: &'static str,

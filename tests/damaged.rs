@@ -423,7 +423,7 @@ fn contradictions() -> Vec<Case> {
     ]
 }
 
-/// Clocks, fixes, headings, and the split.
+/// Clocks: of rudder and propeller in one run and in all, of a session.
 fn clocks() -> Vec<Case> {
     let here = Where::Run(RUN);
     let sessions = |files: Files| {
@@ -441,18 +441,6 @@ fn clocks() -> Vec<Case> {
         let runs: Vec<String> = sound.table_of_runs().into_iter().skip(20).collect();
         sessions(runs.iter().fold(sound, |files, run| files.run(run, |t| t.late(channel, rows))))
     };
-    let through_north = Files::sound().run(RUN, |t| {
-        // The run is turned so that it sails through north, and its compass read every sixth second only.
-        let (psi, r) = (t.get("psi"), t.get("r"));
-        let fastest = (0..r.len()).max_by(|i, j| r[*i].abs().total_cmp(&r[*j].abs())).unwrap() / 3 * 3 + 1;
-        let read = |i: usize| (psi[i] - psi[fastest]).to_degrees().rem_euclid(360.0);
-        let between = |i: usize| {
-            let (from, share) = (i / 3 * 3, (i % 3) as f64 / 3.0);
-            let to = (from + 3).min(psi.len() - 1);
-            (read(from) + share * (read(to) - read(from))).to_radians()
-        };
-        t.each("psi", |i, _| between(i));
-    });
     vec![
         case(
             "rudder 10 s late in one run",
@@ -503,6 +491,25 @@ fn clocks() -> Vec<Case> {
             Where::Study,
             "SESSION",
         ),
+    ]
+}
+
+/// Headings, fixes, and the split.
+fn places() -> Vec<Case> {
+    let here = Where::Run(RUN);
+    let through_north = Files::sound().run(RUN, |t| {
+        // The run is turned so that it sails through north, and its compass read every sixth second only.
+        let (psi, r) = (t.get("psi"), t.get("r"));
+        let fastest = (0..r.len()).max_by(|i, j| r[*i].abs().total_cmp(&r[*j].abs())).unwrap() / 3 * 3 + 1;
+        let read = |i: usize| (psi[i] - psi[fastest]).to_degrees().rem_euclid(360.0);
+        let between = |i: usize| {
+            let (from, share) = (i / 3 * 3, (i % 3) as f64 / 3.0);
+            let to = (from + 3).min(psi.len() - 1);
+            (read(from) + share * (read(to) - read(from))).to_radians()
+        };
+        t.each("psi", |i, _| between(i));
+    });
+    vec![
         case(
             "heading interpolated through 360",
             through_north,
@@ -580,7 +587,7 @@ impl Files {
 #[test]
 fn every_fault_is_told_with_its_run_its_channel_and_what_to_do() {
     let mut missed = Vec::new();
-    let cases: Vec<Case> = samples().into_iter().chain(contradictions()).chain(clocks()).collect();
+    let cases: Vec<Case> = samples().into_iter().chain(contradictions()).chain(clocks()).chain(places()).collect();
     assert!(cases.len() >= 30, "{}", cases.len());
     for Case { name, files, fault, channel, place, next } in cases {
         let found = doubts(&files.audit());

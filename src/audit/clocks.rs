@@ -2,7 +2,7 @@
 //! Which channels are compared is decided by those that differentiate and smooth them.
 
 use super::issue::{Issue, Severity};
-use super::limits::LAG_STEPS;
+use super::limits::{LAG_LONGEST, LAG_STEPS, PAIR_HALVES, PAIR_LEAVES, PAIR_STEPS};
 use crate::recording::Channel;
 
 /// Two series of one motion, of the longest stretch offered.
@@ -42,7 +42,7 @@ impl Pair {
 /// Time by which `b` lags behind `a` \[s\]: the shift that leaves the least difference, refined by a parabola through the least
 /// and its neighbours. `None` when no shift up to an eighth of the series is clearly the best, so that none can be told.
 fn lag(a: &[f64], b: &[f64], step: f64) -> Option<f64> {
-    let most = (a.len() / 8).min(100) as isize;
+    let most = ((LAG_LONGEST.0 * a.len() as f64) as usize).min(PAIR_STEPS) as isize;
     if most < 3 {
         return None;
     }
@@ -61,11 +61,11 @@ fn lag(a: &[f64], b: &[f64], step: f64) -> Option<f64> {
     let best = (0..table.len()).min_by(|i, j| table[*i].total_cmp(&table[*j]))?;
     let power = inner.clone().map(|i| a[i] * a[i]).sum::<f64>() / inner.len() as f64;
     let edge = best == 0 || best == table.len() - 1;
-    if edge || !table[best].is_finite() || table[best] > 0.2 * power {
+    if edge || !table[best].is_finite() || table[best] > PAIR_LEAVES * power {
         return None;
     }
     // Noise alone also has a least shift: one that does not halve the difference is no lag.
-    if best != margin && table[best] > 0.5 * table[margin] {
+    if best != margin && table[best] > PAIR_HALVES * table[margin] {
         return None;
     }
     let (before, least, after) = (table[best - 1], table[best], table[best + 1]);

@@ -1,5 +1,5 @@
 //! Every number on which a decision of the audit turns, with what it means.
-//! It decides nothing itself; where a number follows from the run's own scatter, only the multiple of that scatter is here.
+//! It decides nothing itself; what also serves to repair or to read a recording (headings across north, fill values) is there.
 
 // --- Single values ---
 
@@ -165,3 +165,31 @@ pub const AGAINST_RUDDER: f64 = 0.05;
 pub const SHARED_ROWS: usize = 20;
 /// and share of the shorter one: simulated runs may have an approach in common.
 pub const SHARED_SHARE: f64 = 0.1;
+
+// --- Jumps that last ---
+
+/// Samples on each side of a jump that tell it from motion.
+pub const SIDE: usize = 4;
+/// Samples from which the scatter of steps can be told.
+pub const ENOUGH: usize = 100;
+/// A jump is this many standard deviations of what noise and manoeuvres make of steps.
+pub const BEYOND_NOISE: f64 = 8.0;
+/// A jump would take this many times the acceleration of the ship's own turns, `U^2 / L`, within one sample period.
+pub const BEYOND_FORCE: f64 = 2.0;
+/// A receiver that held its value catches up by at least this share of what the ship sailed meanwhile.
+pub const CAUGHT_UP: f64 = 0.75;
+
+// --- Derivatives ---
+
+/// Steps in the shortest span of the local fits that differentiate a channel, their longest span \[s\], and the span as a share of the
+/// run.
+pub const SPAN: (f64, f64, f64) = (8.0, 60.0, 0.01);
+
+// --- Lags of two series of one motion ---
+
+/// Longest lag looked for, in steps.
+pub const PAIR_STEPS: usize = 100;
+/// At its best lag the difference is at most this share of the motion squared,
+pub const PAIR_LEAVES: f64 = 0.2;
+/// and, unless that lag is 0, at most this share of the difference without a lag: noise alone also has a least shift.
+pub const PAIR_HALVES: f64 = 0.5;

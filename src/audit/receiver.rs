@@ -2,6 +2,7 @@
 //! It judges recordings by themselves, before any model is asked; what a force could have done it leaves alone.
 
 use super::issue::{Issue, Severity};
+use super::limits::{BEYOND_FORCE, BEYOND_NOISE, CAUGHT_UP, ENOUGH, SIDE};
 use crate::numerals::sig;
 use crate::recording::{Channel, Run, or_nan};
 use crate::state::STATES;
@@ -9,17 +10,6 @@ use crate::statistics::median;
 use nalgebra::SMatrix;
 use std::borrow::Cow;
 use trimtab_ad::smooth::wrap_angle;
-
-/// Samples on each side of a jump that tell it from motion.
-const SIDE: usize = 4;
-/// Samples from which the scatter of steps can be told.
-const ENOUGH: usize = 100;
-/// A jump is this many standard deviations of what noise and manoeuvres make of steps.
-const BEYOND_NOISE: f64 = 8.0;
-/// A jump would take this many times the acceleration of the ship's own turns, `U^2 / L`, within one sample period.
-const BEYOND_FORCE: f64 = 2.0;
-/// A receiver that held its value catches up by at least this share of what the ship sailed meanwhile.
-const CAUGHT_UP: f64 = 0.75;
 
 /// Between two samples the position went where no force takes a ship, and stayed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! The motion that an audit reads, whether of a recording or of runs cut from one: columns by channel, NaN where a value is missing.
 //! It judges nothing; the questions are in the files beside it.
 
+use super::limits::SPAN;
 use crate::recording::{Channel, Recording, Run, STATE_CHANNELS, local, slope};
 use crate::state::STATES;
 use std::borrow::Cow;
@@ -25,13 +26,10 @@ pub struct Series<'a> {
     pub delta: Option<Cow<'a, [f64]>>,
 }
 
-/// Steps in the shortest span of the local fits, and their longest span \[s\].
-const SPAN: (f64, f64) = (8.0, 60.0);
-
 /// Length of the local fits for a motion of some duration and step \[s\].
 fn span(duration: f64, step: f64) -> f64 {
     let shortest = SPAN.0 * step;
-    (0.01 * duration).clamp(shortest, SPAN.1.max(shortest))
+    (SPAN.2 * duration).clamp(shortest, SPAN.1.max(shortest))
 }
 
 impl<'a> From<&'a Recording> for Series<'a> {

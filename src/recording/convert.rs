@@ -9,8 +9,8 @@ use super::local::slope;
 use super::map::{ColumnMap, Derived, VelocityFrame};
 use super::record::{GAP_IN_STEPS, Recording};
 use super::unit::Quantity;
-use super::wrap::repair;
-use std::f64::consts::{PI, TAU};
+use super::wrap::{repair, unwrap};
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Rows over which a channel is derived when the map gives no span.
@@ -371,22 +371,6 @@ pub(super) fn to_earth(psi: f64, [forward, starboard]: [f64; 2]) -> [f64; 2] {
 /// The change of an angle taken the short way round.
 fn nearest(change: f64) -> f64 {
     change - TAU * (change / TAU).round()
-}
-
-/// Takes jumps of more than half a turn out of a heading; values that need no turn added stay as they are, bit for bit.
-pub(super) fn unwrap(psi: &mut [f64]) {
-    let mut turns = 0.0;
-    let mut previous: Option<f64> = None;
-    for value in psi.iter_mut().filter(|v| v.is_finite()) {
-        let raw = *value;
-        if let Some(before) = previous.filter(|before| (raw - before).abs() > PI) {
-            turns -= ((raw - before) / TAU).round();
-        }
-        previous = Some(raw);
-        if turns != 0.0 {
-            *value = raw + turns * TAU;
-        }
-    }
 }
 
 /// A range in the declared unit: `+-1.6` or `0..30`.

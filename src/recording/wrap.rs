@@ -13,6 +13,22 @@ pub const LEAST_STEP: f64 = 0.15;
 /// How far a whole turn may be missed \[rad\], beside what the ship turns meanwhile.
 pub const MISSED: f64 = 0.35;
 
+/// Takes jumps of more than half a turn out of a heading; values that need no turn added stay as they are, bit for bit.
+pub(super) fn unwrap(psi: &mut [f64]) {
+    let mut turns = 0.0;
+    let mut previous: Option<f64> = None;
+    for value in psi.iter_mut().filter(|v| v.is_finite()) {
+        let raw = *value;
+        if let Some(before) = previous.filter(|before| (raw - before).abs() > PI) {
+            turns -= ((raw - before) / TAU).round();
+        }
+        previous = Some(raw);
+        if turns != 0.0 {
+            *value = raw + turns * TAU;
+        }
+    }
+}
+
 /// The rows strictly between two true headings that lie on the wrong way round, in an unwrapped heading \[rad\]: over them the
 /// heading runs through a whole turn in even steps that stand out from all others, or leaves and comes back (one row, across the
 /// wrap of the compass).
@@ -90,7 +106,6 @@ pub(super) fn repair(t: &[f64], psi: &mut [f64]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::convert::unwrap;
     use super::*;
 
     /// A turn of 1 degree a sample through north, read once in `every` samples and interpolated between, from -8 degrees on.
