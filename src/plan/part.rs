@@ -52,8 +52,11 @@ struct Search<'a> {
 type Distance = f64;
 
 impl Search<'_> {
-    /// Shares of information left of both, and the distance of a set of trials.
+    /// Shares of information left of both, and the distance of a set of trials; of none nothing is identifiable.
     fn at(&mut self, set: &[usize]) -> ([f64; 2], Distance) {
+        if set.is_empty() {
+            return ([0.0; 2], 2.0);
+        }
         let mut evidence = Evidence::default();
         set.iter().for_each(|i| evidence.add(self.information[*i].clone(), false));
         self.screen.base = base_of(&evidence, &self.found.model, &self.found.free);
@@ -73,7 +76,7 @@ impl Search<'_> {
     /// Adds trials until the pair is parted, or none brings it closer: the cheapest that parts it, else the one that brings most for
     /// its duration.
     fn grown(&mut self, mut set: Vec<usize>) -> (Vec<usize>, Distance) {
-        let mut distance = if set.is_empty() { 2.0 } else { self.at(&set).1 };
+        let mut distance = self.at(&set).1;
         while distance > TOLERANCE && set.len() < MOST {
             let mut best: Option<(f64, usize, Distance)> = None;
             for next in 0..self.trials.len() {

@@ -19,7 +19,7 @@ pub fn trials_table(plan: &Plan) -> Table {
         table.row([
             t.name.clone(),
             t.kind.word().into(),
-            sig(t.heading_deg, 4),
+            t.heading_deg.to_string(),
             sig(t.speed, 3),
             t.session.clone(),
             fixed(t.minutes, 1),
@@ -138,7 +138,7 @@ fn grouped(trials: &[Sailed]) -> Table {
     let mut table = Table::new(["trial", "courses [deg]", "sailed", "minutes in all"]);
     let stem = |t: &Sailed| t.name.split(", course").next().unwrap_or_default().to_owned();
     for group in trials.chunk_by(|a, b| stem(a) == stem(b)) {
-        let mut courses: Vec<String> = group.iter().map(|t| sig(t.heading_deg, 3)).collect();
+        let mut courses: Vec<String> = group.iter().map(|t| t.heading_deg.to_string()).collect();
         courses.dedup();
         let note = if group.iter().all(|t| t.complete) { "" } else { " (cut off)" };
         let minutes: f64 = group.iter().map(|t| t.minutes).sum();
@@ -172,6 +172,13 @@ fn parted(p: &Parting) -> String {
         return format!(
             "TO PART {a} and {b}: {minutes} minutes, {share} % of the gain is taken over (at most {limit} % allowed): {trials}. Chosen \
              one by one out of {} trials, what is not needed removed; a cheaper set is possible.",
+            p.of
+        );
+    }
+    if p.trials.is_empty() {
+        let hidden = p.unidentifiable.join(" and ");
+        return format!(
+            "TO PART {a} and {b}: none of {} trials adds to what is known of {hidden}, alone or together.",
             p.of
         );
     }
