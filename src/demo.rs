@@ -75,7 +75,7 @@ pub fn example() -> Result<Example, ExampleError> {
         let fields: Vec<&str> = row.split(',').collect();
         let [file, name, manoeuvre, split] = fields[..] else { continue };
         let split = if split == "test" { Split::Test } else { Split::Train };
-        let labels = Labels { run: name.into(), session: name.into(), manoeuvre: manoeuvre.into(), split };
+        let labels = Labels { run: name.into(), session: "unnamed".into(), manoeuvre: manoeuvre.into(), split };
         let recording = Recording::parse(text(file), Path::new(file), &ColumnMap::default())?;
         let side = if split == Split::Test { &mut test } else { &mut train };
         side.extend(recording.windows(&labels, &settings)?.windows);

@@ -86,6 +86,7 @@ pub mod model;
 pub mod numerals;
 pub mod parameter;
 pub mod physics;
+pub mod plan;
 #[cfg(feature = "plot")]
 pub mod plot;
 pub mod progress;

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Modules of the library from the bottom up: a module uses its own line and those before it.
-const LAYERS: [&[&str]; 13] = [
+const LAYERS: [&[&str]; 14] = [
     &["units", "error", "numerals", "ranks", "state", "ship", "parameter", "ranges", "files", "progress"],
     &["physics"],
     &["terms"],
@@ -27,6 +27,7 @@ const LAYERS: [&[&str]; 13] = [
     &["fit"],
     &["evaluate", "maneuver"],
     &["diagnose"],
+    &["plan"],
     &["plot", "report"],
     &["cli", "main"],
 ];

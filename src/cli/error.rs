@@ -7,6 +7,7 @@ use trimtab::files::FolderError;
 use trimtab::fit::FitError;
 use trimtab::maneuver::ManeuverError;
 use trimtab::model::ModelError;
+use trimtab::plan::PlanError;
 use trimtab::plot::FigureError;
 use trimtab::ship::ShipError;
 use trimtab::study::StudyError;
@@ -65,6 +66,14 @@ pub enum CliError {
         path: PathBuf,
         /// What the library says.
         error: DiagnoseError,
+    },
+    /// The plan.
+    #[error("{path}: {error}", path = path.display())]
+    Plan {
+        /// The study, or the ship where there is none.
+        path: PathBuf,
+        /// What the library says.
+        error: PlanError,
     },
     /// A trial.
     #[error("{path}: {error}", path = path.display())]

@@ -11,6 +11,7 @@ use trimtab::evaluate::EvaluationSettings;
 use trimtab::fit::FitSettings;
 use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::{Model, ModelError};
+use trimtab::plan::PlanSettings;
 use trimtab::ranges::Limited;
 use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Split, Windows};
@@ -57,6 +58,14 @@ impl Loaded {
         files.sort();
         files.dedup();
         files
+    }
+
+    /// Reads study, ship and model, not the list of recordings, which need not exist.
+    pub fn without_runs(args: &StudyArgs) -> Result<Self, CliError> {
+        let study = Study::read_without_runs(&args.study)?;
+        let path = args.model.clone().unwrap_or_else(|| study.model.clone());
+        let model = read_model(&path, Ship::read(&study.ship)?).map_err(|error| in_ship_file(error, &study.ship))?;
+        Ok(Self { study, model, model_path: path })
     }
 
     /// Another model of the same ship.
@@ -148,6 +157,11 @@ impl Loaded {
         self.table("maneuver", &self.study.maneuver)
     }
 
+    /// Table `[plan]`.
+    pub fn plan_settings(&self) -> Result<PlanSettings, CliError> {
+        self.table("plan", &self.study.plan)
+    }
+
     /// A table of the study as settings.
     fn table<T: DeserializeOwned + Limited>(&self, name: &'static str, table: &toml::Table) -> Result<T, CliError> {
         let settings: T = table.clone().try_into().map_err(|e: toml::de::Error| {
@@ -187,7 +201,7 @@ fn in_ship_file(error: CliError, ship: &Path) -> CliError {
     }
 }
 
-fn read_model(path: &Path, ship: Ship) -> Result<Model, CliError> {
+pub(super) fn read_model(path: &Path, ship: Ship) -> Result<Model, CliError> {
     Model::read(path, ship).map_err(|error| {
         // The texts of these two errors begin with the path.
         let named = matches!(error, ModelError::Read { .. } | ModelError::Parse { .. });

@@ -12,6 +12,7 @@ mod fit;
 mod load;
 mod maneuver;
 mod output;
+mod plan;
 mod processor;
 mod progress;
 mod simulate;
@@ -35,6 +36,7 @@ Begin with
                                      judge it on the test runs
   trimtab diagnose STUDY --out results
                                      what physics does the model lack?
+  trimtab plan STUDY                 before going to sea: what would these trials show?
 
 A STUDY is a TOML file that names ship, model and recordings; `trimtab demo` writes one with comments.
 
@@ -67,6 +69,7 @@ enum Command {
     Evaluate(evaluate::Args),
     Diagnose(diagnose::Args),
     Maneuver(maneuver::Args),
+    Plan(plan::Args),
     Terms(terms::Args),
     Demo(demo::Args),
 }
@@ -122,6 +125,7 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Simulate(args) => simulate::run(args),
         Command::Diagnose(args) => diagnose::run(args),
         Command::Maneuver(args) => maneuver::run(args),
+        Command::Plan(args) => plan::run(args),
         Command::Terms(args) => terms::run(args),
         Command::Demo(args) => demo::run(args),
     }

@@ -4,7 +4,6 @@
 use super::base::{AuditedRuns, BaseFit, Question};
 use super::conclude::conclude;
 use super::decide::{Decision, Unlisted, Verdict, decide};
-use super::describe::findings;
 use super::error::DiagnoseError;
 use super::estimate::Estimate;
 use super::event::{BaseTests, Opening};
@@ -15,7 +14,7 @@ use super::residual::{Kept, Residual};
 use super::select::Selection;
 use super::settings::Settings;
 use super::stability::{Brief, CHANGES, Change, Stability, Variant};
-use super::weigh::{Base, Weight, weakest, weigh, withdrawn};
+use super::weigh::{Base, Weight, findings, weakest, weigh, withdrawn};
 use crate::model::Model;
 use crate::recording::Run;
 use std::borrow::Cow;

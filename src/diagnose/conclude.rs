@@ -16,6 +16,8 @@ pub fn conclude(decided: Verdict, withdrawn: &[Grade], rejected: bool, base_hold
         Verdict::NothingMissing | Verdict::Random if rejected || withdrawn.contains(&Grade::Refuted) => {
             Verdict::NotInCatalogue
         }
+        // Something fixed on the earth or to one side, and no heading that tells which.
+        Verdict::NotInCatalogue if withdrawn.contains(&Grade::NotIsolated) => Verdict::Insufficient,
         _ => decided,
     }
 }
@@ -33,6 +35,7 @@ mod tests {
                 assert_eq!(conclude(quiet, &[grade], false, true), quiet);
             }
         }
+        assert_eq!(conclude(Verdict::NotInCatalogue, &[Grade::NotIsolated], false, true), Verdict::Insufficient);
         assert_eq!(conclude(Verdict::Named, &[Grade::Refuted], true, true), Verdict::Named);
         assert_eq!(conclude(Verdict::Insufficient, &[Grade::Refuted], false, true), Verdict::Insufficient);
     }

@@ -13,12 +13,10 @@ use super::grade::Grade;
 use super::locate::{EquationShare, Location};
 use super::push::Push;
 use super::region::RegionTest;
-use super::residual::Kept;
 use super::screen::Screen;
 use super::select::Selection;
 use super::settings::SCATTER_GROUPS;
 use super::wald::Wald;
-use super::weigh::Weight;
 use crate::audit::Issue;
 use crate::physics::Kind;
 use crate::recording::{Channel, Run};
@@ -29,23 +27,6 @@ pub fn kinds(runs: &[Run]) -> Vec<&str> {
     let manoeuvres: BTreeSet<&str> = runs.iter().map(|r| r.manoeuvre.as_str()).collect();
     let by_manoeuvre = manoeuvres.len() >= SCATTER_GROUPS;
     runs.iter().map(|r| if by_manoeuvre { r.manoeuvre.as_str() } else { r.recording.as_str() }).collect()
-}
-
-/// The findings, the strongest first: faults of sensors, mechanisms with their weights, a push.
-pub fn findings(kept: &Kept, weights: &[Weight]) -> Vec<Finding> {
-    let tests = &kept.selection.tests;
-    let mut out = if tests.is_blocked() { sensor_findings(&tests.fit.admission) } else { Vec::new() };
-    if let Some(left) = &kept.left {
-        let intervals = Intervals::new(&kept.selection.estimate, &tests.fit.runs, &left.screen);
-        out.extend(kept.selection.mechanisms.iter().zip(weights).map(|(m, weight)| Finding {
-            grade: weight.grade,
-            change: Some(weight.tests.change),
-            held_out: weight.proof.clone(),
-            ..mechanism_finding(m, &kept.selection, &intervals)
-        }));
-    }
-    out.extend(kept.push.as_ref().map(|p| push_finding(p, &tests.location)));
-    out
 }
 
 /// The uncertainty of every free parameter of an estimate: the ship's own forces may have another form, and manoeuvres of a kind
@@ -62,8 +43,8 @@ impl Intervals {
         Self { wald, scatter: s.evidence.scatter(&s.widened, &kinds(runs)) }
     }
 
-    /// Whether the interval of a candidate's size excludes zero: all of its parameters together, by the same variance as their single
-    /// intervals, against the F distribution ([`Scatter::f_limit`]).
+    /// Whether the interval of a candidate's size excludes zero: along the direction in which its parameters were estimated, by the same
+    /// variance as their single intervals.
     pub(super) fn excludes_zero(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> bool {
         let places = c.positions(&found.free, extent);
         let mut part = self.wald.part(&places);
@@ -72,8 +53,7 @@ impl Intervals {
             part.covariance.row_mut(i).scale_mut(factor);
             part.covariance.column_mut(i).scale_mut(factor);
         }
-        let k = places.len();
-        k > 0 && part.statistic() > k as f64 * self.scatter.f_limit(k)
+        part.statistic() > self.scatter.reach().powi(2)
     }
 
     /// A candidate's parameters with their intervals, session by session where each has its own.
@@ -177,7 +157,7 @@ fn title_of_fault(issue: &Issue) -> String {
 }
 
 /// What the audit of the recordings already shows to be wrong: a unit or a sign.
-fn sensor_findings(admission: &Admission) -> Vec<Finding> {
+pub(super) fn sensor_findings(admission: &Admission) -> Vec<Finding> {
     admission
         .issues
         .iter()
@@ -206,7 +186,7 @@ fn sensor_findings(admission: &Admission) -> Vec<Finding> {
 }
 
 /// A push with its windows; in few recordings one of two.
-fn push_finding(push: &Push, location: &Location) -> Finding {
+pub(super) fn push_finding(push: &Push, location: &Location) -> Finding {
     let names = [("push.x", "N"), ("push.y", "N"), ("push.n", "N m")];
     let mut confidence_set = vec![PUSH.to_owned()];
     let mut why = "the same force acts in windows of time and not outside them, and no smooth law of the ship's state explains it"

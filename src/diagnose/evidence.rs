@@ -4,7 +4,7 @@
 use super::algebra::{pick, pseudo_inverse};
 use super::settings::{IDENTIFIABLE_SHARE, SCATTER_GROUPS};
 pub use crate::statistics::chi_squared_p;
-use crate::statistics::{f_quantile, student_quantile};
+use crate::statistics::student_quantile;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::collections::BTreeMap;
 
@@ -232,12 +232,6 @@ impl Scatter {
     /// groups tell is itself uncertain (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
     pub fn reach(&self) -> f64 {
         student_quantile(0.975, self.degrees)
-    }
-
-    /// Squared length of `k` parameters over k, in units of their covariance, that 5 % exceed where all are zero: F with k and
-    /// [`Scatter::degrees`] degrees of freedom.
-    pub fn f_limit(&self, k: usize) -> f64 {
-        f_quantile(0.95, k as f64, self.degrees)
     }
 }
 

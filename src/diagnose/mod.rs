@@ -77,7 +77,7 @@ pub mod sides;
 pub mod signal;
 pub mod stability;
 mod step_map;
-mod summary;
+pub(crate) mod summary;
 pub mod unseen;
 mod wald;
 mod weigh;

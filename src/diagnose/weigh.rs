@@ -3,7 +3,7 @@
 
 use super::base::Question;
 use super::compete::Selected;
-use super::describe::{Intervals, mechanism_finding};
+use super::describe::{Intervals, mechanism_finding, push_finding, sensor_findings};
 use super::estimate::Estimate;
 use super::finding::{Amplitude, Finding};
 use super::grade::{FindingTests, Grade, grade};
@@ -104,6 +104,23 @@ pub fn withdrawn(kept: &Kept, left: &Left, index: usize, weight: &Weight) -> Fin
     let intervals = Intervals::new(found, &selection.tests.fit.runs, &left.screen);
     let finding = mechanism_finding(&selection.mechanisms[index], selection, &intervals);
     Finding { grade: weight.grade, held_out: weight.proof.clone(), change: Some(weight.tests.change), ..finding }
+}
+
+/// The findings, the strongest first: faults of sensors, mechanisms with their weights, a push.
+pub fn findings(kept: &Kept, weights: &[Weight]) -> Vec<Finding> {
+    let tests = &kept.selection.tests;
+    let mut out = if tests.is_blocked() { sensor_findings(&tests.fit.admission) } else { Vec::new() };
+    if let Some(left) = &kept.left {
+        let intervals = Intervals::new(&kept.selection.estimate, &tests.fit.runs, &left.screen);
+        out.extend(kept.selection.mechanisms.iter().zip(weights).map(|(m, weight)| Finding {
+            grade: weight.grade,
+            change: Some(weight.tests.change),
+            held_out: weight.proof.clone(),
+            ..mechanism_finding(m, &kept.selection, &intervals)
+        }));
+    }
+    out.extend(kept.push.as_ref().map(|p| push_finding(p, &tests.location)));
+    out
 }
 
 /// Whether the model that is kept, or else the base model, follows the recordings: most runs are simulated better than by steady

@@ -157,20 +157,26 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
                             gives them, or gusts act beside them."
             .into(),
         Verdict::Insufficient if !said.holds => not_followed(said.following),
-        Verdict::Insufficient => "These recordings cannot answer: too few runs.".into(),
+        Verdict::Insufficient => withdrawn(Grade::NotIsolated)
+            .map_or_else(|| "These recordings cannot answer: too few runs.".into(), not_isolated),
         Verdict::NothingMissing => nothing(said),
     }
+}
+
+/// That weather cannot be told from the ship itself.
+fn not_isolated(f: &Finding) -> String {
+    format!(
+        "These recordings cannot tell: {} is significant, but on the headings that were sailed the ship's own parameters (a side force, \
+         trim, resistance, the compass zero) can take over most of its effect; the same runs on opposite headings would part them.",
+        f.title
+    )
 }
 
 /// That nothing is named, and what was nearest to it.
 fn nothing(said: &Said) -> String {
     let withdrawn = |grade: Grade| said.withdrawn.iter().find(|f| f.grade == grade);
     if let Some(f) = withdrawn(Grade::NotIsolated) {
-        return format!(
-            "Nothing is missing that these data could name: {} is significant, but on the headings that were sailed the ship's own \
-             parameters can take over most of its effect; the same runs on opposite headings would tell.",
-            f.title
-        );
+        return format!("Nothing is missing that can be named. {}", not_isolated(f));
     }
     if let Some(f) = withdrawn(Grade::Immaterial) {
         return format!(

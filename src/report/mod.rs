@@ -1,4 +1,4 @@
-//! What a person reads: tables, self-contained HTML pages, and fits, trials, terms and diagnoses in words and figures.
+//! What a person reads: tables, self-contained HTML pages, and fits, trials, plans, terms and diagnoses in words and figures.
 //! It computes nothing beyond units, and no calculation imports it.
 
 pub mod diagnosis;
@@ -7,6 +7,7 @@ mod fit;
 #[cfg(feature = "plot")]
 mod html;
 pub mod maneuver;
+pub mod plan;
 mod table;
 pub mod terms;
 mod units;

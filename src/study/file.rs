@@ -31,7 +31,7 @@ pub(super) struct StudyFile {
     pub(super) initial_span: Option<f64>,
     #[serde(default)]
     pub(super) gaps: Gaps,
-    pub(super) runs: RunTable,
+    pub(super) runs: Option<RunTable>,
     pub(super) split: Option<SplitRule>,
     #[serde(default)]
     pub(super) fit: toml::Table,
@@ -41,6 +41,8 @@ pub(super) struct StudyFile {
     pub(super) diagnose: toml::Table,
     #[serde(default)]
     pub(super) maneuver: toml::Table,
+    #[serde(default)]
+    pub(super) plan: toml::Table,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]

@@ -9,6 +9,7 @@ use super::split::{SplitBy, SplitRule};
 use crate::error::suggestion;
 use crate::recording::{ColumnMap, Recording, Split, WindowSettings, Windows, key_line, line_at, toml_problem};
 use rayon::prelude::*;
+use std::mem::take;
 use std::path::{Path, PathBuf};
 
 /// Runs that are read for each thread before what became of them is taken in order.
@@ -39,6 +40,8 @@ pub struct Study {
     pub diagnose: toml::Table,
     /// Table `[maneuver]`.
     pub maneuver: toml::Table,
+    /// Table `[plan]`.
+    pub plan: toml::Table,
     /// The file that lists the runs.
     runs_path: PathBuf,
     text: String,
@@ -50,12 +53,15 @@ impl Study {
     /// # Errors
     /// [`StudyError`], with file and line.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
-        let text = std::fs::read_to_string(path).map_err(|source| StudyError::Read {
-            path: path.to_owned(),
-            what: "study",
-            source,
-        })?;
-        Self::parse(&text, path)
+        Self::parse(&text_of(path)?, path)
+    }
+
+    /// Reads a study file without its recordings, which need not exist: no run is listed.
+    ///
+    /// # Errors
+    /// [`StudyError`], with file and line.
+    pub fn read_without_runs(path: &Path) -> Result<Self, StudyError> {
+        Ok(Self::without_runs(&text_of(path)?, path)?.0)
     }
 
     /// Checks the text of a study file that stands, or would stand, at `path`.
@@ -64,49 +70,61 @@ impl Study {
     /// [`StudyError`], with file and line.
     pub fn parse(text: &str, path: &Path) -> Result<Self, StudyError> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        let fail = |line, message| StudyError::Parse { path: path.to_owned(), line, message };
-        let file: StudyFile = toml::from_str(text).map_err(|e| {
-            let (line, message) = toml_problem(text, &e);
-            fail(line, message)
-        })?;
-        let here = |key: &str| key_line(text, key);
-        let windows = window_settings(&file, text, path)?;
-        if let Some(rule) = file.split.filter(|r| !(0.0..1.0).contains(&r.test)) {
-            let text = format!("`test` = {} is not a share from 0 to 1; the paper's is 0.125", rule.test);
-            return Err(fail(here("test"), text));
-        }
+        let (study, file) = Self::without_runs(text, path)?;
         let data = data_folder(&file.data.0, folder).map_err(|tried| StudyError::NoData {
             path: path.to_owned(),
-            line: here("data"),
+            line: key_line(text, "data"),
             tried,
         })?;
         let (entries, runs_path) = match file.runs {
-            RunTable::Listed(entries) => {
+            None => {
+                let message = "missing field `runs`; add [[runs]] with `file`, or name a table of runs".to_owned();
+                return Err(StudyError::Parse { path: path.to_owned(), line: 1, message });
+            }
+            Some(RunTable::Listed(entries)) => {
                 let line = |e: &toml::Spanned<RunEntry>| line_at(text, e.span().start);
                 (entries.into_iter().map(|e| (line(&e), e.into_inner())).collect(), path.to_owned())
             }
-            RunTable::File(table) => {
+            Some(RunTable::File(table)) => {
                 let table = folder.join(table);
                 (read_table(&table)?, table)
             }
         };
         let shared_map = file.column_map.map(|m| folder.join(m));
         let (runs, split) = label(entries, file.split, &runs_path, &data, folder, shared_map.as_deref())?;
-        Ok(Self {
+        Ok(Self { runs, split, runs_path, ..study })
+    }
+
+    /// The study but for its runs, and what the file says of these.
+    fn without_runs(text: &str, path: &Path) -> Result<(Self, StudyFile), StudyError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let fail = |line, message| StudyError::Parse { path: path.to_owned(), line, message };
+        let mut file: StudyFile = toml::from_str(text).map_err(|e| {
+            let (line, message) = toml_problem(text, &e);
+            fail(line, message)
+        })?;
+        let windows = window_settings(&file, text, path)?;
+        if let Some(rule) = file.split.filter(|r| !(0.0..1.0).contains(&r.test)) {
+            let message = format!("`test` = {} is not a share from 0 to 1; the paper's is 0.125", rule.test);
+            return Err(fail(key_line(text, "test"), message));
+        }
+        let study = Self {
             path: path.to_owned(),
-            name: file.name,
-            ship: folder.join(file.ship),
-            model: folder.join(file.model),
-            runs,
-            split,
+            name: take(&mut file.name),
+            ship: folder.join(&file.ship),
+            model: folder.join(&file.model),
+            runs: Vec::new(),
+            split: None,
             windows,
-            fit: file.fit,
-            evaluate: file.evaluate,
-            diagnose: file.diagnose,
-            maneuver: file.maneuver,
-            runs_path,
+            fit: take(&mut file.fit),
+            evaluate: take(&mut file.evaluate),
+            diagnose: take(&mut file.diagnose),
+            maneuver: take(&mut file.maneuver),
+            plan: take(&mut file.plan),
+            runs_path: path.to_owned(),
             text: text.to_owned(),
-        })
+        };
+        Ok((study, file))
     }
 
     /// The files that say what the study is: its own, the table of runs, and the ship's; neither models nor recordings.
@@ -223,15 +241,27 @@ impl Study {
         }
     }
 
-    /// The line at which `key` of table `[table]` is set, for messages about it; the table's own line when it is not.
+    /// The line at which `key` of table `[table]`, or of a table inside it, is set, for messages about it; the first of their
+    /// headings when it is not.
     pub fn line_of(&self, table: &str, key: &str) -> usize {
-        let heading = format!("[{table}");
-        let start = self.text.lines().position(|l| l.trim_start().starts_with(&heading));
-        let Some(start) = start else { return 1 };
-        let inside = self.text.lines().skip(start + 1).take_while(|l| !l.starts_with('['));
+        let heading = |l: &str| l.trim_start().strip_prefix('[').map(|l| l.trim_start_matches('[').starts_with(table));
         let sets = |l: &str| l.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('='));
-        start + 1 + inside.enumerate().find(|(_, l)| sets(l)).map_or(0, |(i, _)| i + 1)
+        let (mut inside, mut first) = (false, None);
+        for (i, line) in self.text.lines().enumerate() {
+            if let Some(own) = heading(line) {
+                inside = own;
+                first = first.or(own.then_some(i + 1));
+            } else if inside && sets(line) {
+                return i + 1;
+            }
+        }
+        first.unwrap_or(1)
     }
+}
+
+fn text_of(path: &Path) -> Result<String, StudyError> {
+    let read = |source| StudyError::Read { path: path.to_owned(), what: "study", source };
+    std::fs::read_to_string(path).map_err(read)
 }
 
 /// The first of the candidate folders that exists; the study's own folder without candidates.

@@ -104,7 +104,7 @@ fn withdrawn(f: &Finding, units: Units) -> String {
              most of its effect; the same runs on opposite headings would part them"
         }
         Grade::Unstable => "most repetitions on the same recordings told otherwise do not find it",
-        Grade::Undetermined => "the interval of every parameter contains zero",
+        Grade::Undetermined => "the interval of its size contains zero",
         Grade::Confirmed | Grade::Suspected => "the model does not follow the recordings without it or with it",
     };
     let interval = |value: Option<f64>, ci95: Option<[f64; 2]>, of: &dyn Fn(f64) -> String| match (value, ci95) {
@@ -217,6 +217,8 @@ fn size_of(f: &Finding, session: Option<&str>, units: Units) -> Option<String> {
     if size <= 0.0 || !size.is_finite() {
         return None;
     }
+    // Standard errors that an interval reaches to either side.
+    let reach = if north.error > 0.0 { 0.5 * (north.ci95[1] - north.ci95[0]) / north.error } else { 0.0 };
     // To first order, and as if the components were uncorrelated.
     let error = (north.value * north.error).hypot(east.value * east.error) / size;
     let swing = ((east.value * north.error).hypot(north.value * east.error) / (size * size)).to_degrees();
@@ -235,12 +237,12 @@ fn size_of(f: &Finding, session: Option<&str>, units: Units) -> Option<String> {
         }
     };
     let direction = if swing < 60.0 {
-        format!("{direction} (+-{} deg)", fixed((1.96 * swing).max(1.0), 0))
+        format!("{direction} (+-{} deg)", fixed((reach * swing).max(1.0), 0))
     } else {
         "direction not determined".to_owned()
     };
-    let low = (magnitude - 1.96 * error).max(0.0);
-    Some(format!("{} {unit} ({} to {}) {direction}", sig(magnitude, 3), sig(low, 3), sig(magnitude + 1.96 * error, 3)))
+    let low = (magnitude - reach * error).max(0.0);
+    Some(format!("{} {unit} ({} to {}) {direction}", sig(magnitude, 3), sig(low, 3), sig(magnitude + reach * error, 3)))
 }
 
 #[cfg(test)]
