@@ -112,7 +112,7 @@ fn found(diagnosis: &Diagnosis) -> Result<String, Box<dyn Error>> {
     let (Some(before), Some(after), Some(share)) = (gain.before, gain.after, gain.improvement) else {
         return Err("a simulation of the runs kept aside diverged".into());
     };
-    let reach = interval(gain.ci95.map(|ends| ends.map(|share| 100.0 * share)));
+    let reach = interval(gain.improvement_ci95.map(|ends| ends.map(|share| 100.0 * share)));
     Ok(format!(
         "{}\n{size}, true {TRUE_LIFT_AREA}\n{} runs kept aside: cVDM {before:.1} % before, {after:.1} % after, improvement {:.0} %{reach}",
         finding.title,

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::Serialize;
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 /// Mean of the finite values; `None` of nothing.
 pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
@@ -61,6 +61,11 @@ pub fn normal_quantile(probability: f64) -> f64 {
 /// Value that Student's t stays below with a probability.
 pub fn student_quantile(probability: f64, degrees: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees).map_or_else(|_| normal_quantile(probability), |t| t.inverse_cdf(probability))
+}
+
+/// Value that F with these degrees of freedom stays below with a probability.
+pub fn f_quantile(probability: f64, numerator: f64, denominator: f64) -> f64 {
+    FisherSnedecor::new(numerator, denominator).map_or(f64::INFINITY, |f| f.inverse_cdf(probability))
 }
 
 /// A p-value once it is the least of so many that were looked at (Bonferroni).

@@ -4,6 +4,7 @@
 pub mod conceal;
 pub mod demo;
 pub mod folders;
+pub mod injected;
 pub mod paper;
 pub mod real;
 pub mod truth;

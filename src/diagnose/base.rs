@@ -7,10 +7,10 @@ use super::estimate::{Estimate, FreeParameter, estimate, log_posterior, passes};
 use super::filter::Column;
 use super::noise::NoisePrior;
 use super::noise_fit::guess;
-use super::settings::{EULER_HOPELESS, Effort, FIRST, LOSS_ROUNDS, REFIT, SETTLE, Settings};
+use super::settings::{EULER_EXACT, EULER_HOPELESS, Effort, FIRST, LOSS_ROUNDS, REFIT, SETTLE, Settings};
 use crate::audit::{Issue, settled};
 use crate::model::{Model, ModelError};
-use crate::recording::Run;
+use crate::recording::{Measured, Run};
 use crate::simulate::{Integration, Method};
 use std::borrow::Cow;
 
@@ -147,8 +147,12 @@ impl BaseFit {
         Self { estimate: base, prior, runs: kept, integration, admission }.read_as_euler()
     }
 
-    /// The base fit with explicit Euler steps of one sample period, where the recordings are far likelier so: simulated ones.
+    /// The base fit with explicit Euler steps of one sample period, where the recordings were made so: such steps reproduce them to
+    /// rounding. A late clock of noisy recordings looks alike and is no reason.
     fn read_as_euler(mut self) -> Self {
+        if !is_made_by_euler(&self.runs) {
+            return self;
+        }
         let coarse = Integration { method: Method::Euler, substeps: 1 };
         let Estimate { model, noise, free, log_posterior: fine } = &self.estimate;
         self.admission.euler_gain = log_posterior(model, coarse, &self.runs, free, noise) - fine;
@@ -166,6 +170,28 @@ impl BaseFit {
         }
         self
     }
+}
+
+/// Whether explicit Euler steps of one sample period, `x' - x = dt (u cos psi - v sin psi)` and alike for y, reproduce the recorded
+/// positions, and steps of second order do not.
+fn is_made_by_euler(runs: &[Run]) -> bool {
+    let (mut euler, mut trapezoid) = (0.0, 0.0);
+    for run in runs {
+        let rate = |m: &Measured| {
+            let (sin, cos) = m[2]?.sin_cos();
+            let (u, v) = (m[3]?, m[4]?);
+            Some([u * cos - v * sin, u * sin + v * cos])
+        };
+        for pair in run.measured.windows(2) {
+            let (Some(a), Some(b)) = (rate(&pair[0]), rate(&pair[1])) else { continue };
+            for c in 0..2 {
+                let (Some(from), Some(to)) = (pair[0][c], pair[1][c]) else { continue };
+                euler += (to - from - run.dt * a[c]).powi(2);
+                trapezoid += (to - from - 0.5 * run.dt * (a[c] + b[c])).powi(2);
+            }
+        }
+    }
+    euler < EULER_EXACT * EULER_EXACT * trapezoid
 }
 
 #[cfg(test)]
@@ -210,6 +236,15 @@ mod tests {
                 (0..6).for_each(|c| m[c] = m[c].map(|v| v + b[c] - a[c]));
             }
         }
+        // With the errors of sensors nobody can say so.
+        assert!(!is_made_by_euler(&runs));
+        for r in &mut runs {
+            let scenario = crate::simulate::Scenario { dt: r.dt, inputs: r.inputs.clone(), initial: r.initial };
+            let made = crate::simulate::simulate(&model, &model.values_in(&r.session), coarse, &scenario);
+            // As a file holds them, to a millimetre.
+            r.measured = made.states.iter().map(|s| s.map(|v| Some((v * 1e5).round() / 1e5))).collect();
+        }
+        assert!(is_made_by_euler(&runs));
         let base = BaseFit::new(&question(&model, &settings), AuditedRuns::new(runs, 85.0));
         assert!(is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
         assert_eq!((base.integration, base.admission.integration), (coarse, coarse));

@@ -34,6 +34,21 @@ pub struct Selected {
     pub why: String,
 }
 
+impl Selected {
+    /// Adds mechanisms whose effects are alike on these manoeuvres to the set, each with the share of the gain that it can take over.
+    pub fn widen(&mut self, class: Vec<(usize, f64)>, candidates: &[Candidate]) {
+        let new: Vec<(usize, f64)> = class.into_iter().filter(|(i, _)| !self.set.contains(i)).collect();
+        if new.is_empty() {
+            return;
+        }
+        let told = |(i, share): &(usize, f64)| format!("{} ({:.0} %)", candidates[*i].mechanism.title, 100.0 * share);
+        let told: Vec<String> = new.iter().map(told).collect();
+        self.why =
+            format!("{}; on these manoeuvres this takes over so much of its gain: {}", self.why, told.join(", "));
+        self.set.extend(new.iter().map(|(i, _)| *i));
+    }
+}
+
 /// A candidate's amplitudes in an estimate, its companions held: an amplitude that only counts times a coefficient is as
 /// uncertain as that coefficient and yet not zero.
 pub fn amplitudes(all: &Wald, found: &Estimate, c: &Candidate, extent: &Extent) -> Wald {

@@ -9,8 +9,8 @@ use super::estimate::Estimate;
 use super::evidence::Scatter;
 use super::finding::{Amplitude, Equations, Finding, GENERIC, PUSH, PUSH_TITLE};
 use super::forces::forces_of;
+use super::grade::Grade;
 use super::locate::{EquationShare, Location};
-use super::prove::HeldOut;
 use super::push::Push;
 use super::region::RegionTest;
 use super::residual::Kept;
@@ -18,6 +18,7 @@ use super::screen::Screen;
 use super::select::Selection;
 use super::settings::SCATTER_GROUPS;
 use super::wald::Wald;
+use super::weigh::Weight;
 use crate::audit::Issue;
 use crate::physics::Kind;
 use crate::recording::{Channel, Run};
@@ -30,37 +31,53 @@ pub fn kinds(runs: &[Run]) -> Vec<&str> {
     runs.iter().map(|r| if by_manoeuvre { r.manoeuvre.as_str() } else { r.recording.as_str() }).collect()
 }
 
-/// The findings, the strongest first: faults of sensors, mechanisms, a push; the first with the proof of all of them.
-pub fn findings(kept: &Kept, proof: Option<&HeldOut>) -> Vec<Finding> {
+/// The findings, the strongest first: faults of sensors, mechanisms with their weights, a push.
+pub fn findings(kept: &Kept, weights: &[Weight]) -> Vec<Finding> {
     let tests = &kept.selection.tests;
     let mut out = if tests.is_blocked() { sensor_findings(&tests.fit.admission) } else { Vec::new() };
     if let Some(left) = &kept.left {
         let intervals = Intervals::new(&kept.selection.estimate, &tests.fit.runs, &left.screen);
-        out.extend(kept.selection.mechanisms.iter().map(|m| mechanism_finding(m, &kept.selection, &intervals)));
+        out.extend(kept.selection.mechanisms.iter().zip(weights).map(|(m, weight)| Finding {
+            grade: weight.grade,
+            change: Some(weight.tests.change),
+            held_out: weight.proof.clone(),
+            ..mechanism_finding(m, &kept.selection, &intervals)
+        }));
     }
     out.extend(kept.push.as_ref().map(|p| push_finding(p, &tests.location)));
-    if let Some(f) = out.first_mut() {
-        f.held_out = proof.cloned();
-    }
     out
 }
 
 /// The uncertainty of every free parameter of an estimate: the ship's own forces may have another form, and manoeuvres of a kind
 /// may pull a parameter their way.
-struct Intervals {
+pub(super) struct Intervals {
     wald: Wald,
     scatter: Scatter,
 }
 
 impl Intervals {
-    fn new(found: &Estimate, runs: &[Run], s: &Screen) -> Self {
+    pub(super) fn new(found: &Estimate, runs: &[Run], s: &Screen) -> Self {
         let n = found.free.len();
         let wald = Wald::of(found, s.widened.inverse.view((0, 0), (n, n)).into_owned());
         Self { wald, scatter: s.evidence.scatter(&s.widened, &kinds(runs)) }
     }
 
+    /// Whether the interval of a candidate's size excludes zero: all of its parameters together, by the same variance as their single
+    /// intervals, against the F distribution ([`Scatter::f_limit`]).
+    pub(super) fn excludes_zero(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> bool {
+        let places = c.positions(&found.free, extent);
+        let mut part = self.wald.part(&places);
+        for (i, at) in places.iter().enumerate() {
+            let factor = self.scatter.factors[*at];
+            part.covariance.row_mut(i).scale_mut(factor);
+            part.covariance.column_mut(i).scale_mut(factor);
+        }
+        let k = places.len();
+        k > 0 && part.statistic() > k as f64 * self.scatter.f_limit(k)
+    }
+
     /// A candidate's parameters with their intervals, session by session where each has its own.
-    fn amplitudes(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> Vec<Amplitude> {
+    pub(super) fn amplitudes(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> Vec<Amplitude> {
         let places = c.positions(&found.free, extent);
         let Wald { value, covariance } = self.wald.part(&places);
         let k = c.columns.len();
@@ -72,18 +89,23 @@ impl Intervals {
             };
             let error = covariance[(i, i)].max(0.0).sqrt() * self.scatter.factors[places[i]] * col.scale;
             let unit = found.model.parameters[col.parameter].info.unit;
-            Amplitude::within(name, value[i] * col.scale, unit, error, self.scatter.reach)
+            Amplitude::within(name, value[i] * col.scale, unit, error, self.scatter.reach())
         };
         (0..value.len()).map(amplitude).collect()
     }
 }
 
-/// A mechanism with its parameters and what is said of it.
-fn mechanism_finding(a: &Selected, Selection { tests, estimate, .. }: &Selection, intervals: &Intervals) -> Finding {
+/// A mechanism with its parameters and what is said of it, not yet graded.
+pub(super) fn mechanism_finding(
+    a: &Selected,
+    Selection { tests, estimate, .. }: &Selection,
+    intervals: &Intervals,
+) -> Finding {
     let c = &tests.candidates[a.candidate];
     Finding {
         mechanism: c.mechanism.name.into(),
         title: c.mechanism.title.into(),
+        grade: Grade::Suspected,
         kind: c.mechanism.kind,
         confidence_set: a.set.iter().map(|i| tests.candidates[*i].mechanism.name.to_string()).collect(),
         why: a.why.clone(),
@@ -96,6 +118,7 @@ fn mechanism_finding(a: &Selected, Selection { tests, estimate, .. }: &Selection
         region: strongest_region(&tests.location.regions),
         signature: signature(c, &tests.screen),
         parameters: intervals.amplitudes(estimate, c, &a.extent),
+        change: None,
         held_out: None,
     }
 }
@@ -162,6 +185,8 @@ fn sensor_findings(admission: &Admission) -> Vec<Finding> {
         .map(|i| Finding {
             mechanism: i.fault.into(),
             title: title_of_fault(i),
+            // The channels of a recording contradict one another: no run could tell otherwise.
+            grade: Grade::Confirmed,
             kind: Kind::Sensor,
             confidence_set: vec![i.fault.into()],
             why: i.text.clone(),
@@ -174,6 +199,7 @@ fn sensor_findings(admission: &Admission) -> Vec<Finding> {
             region: None,
             signature: "no force: channels contradict each other by a factor that units or signs explain".into(),
             parameters: Vec::new(),
+            change: None,
             held_out: None,
         })
         .collect()
@@ -194,6 +220,8 @@ fn push_finding(push: &Push, location: &Location) -> Finding {
     Finding {
         mechanism: PUSH.into(),
         title: PUSH_TITLE.into(),
+        // Other recordings, in which it does not act, can say nothing of it.
+        grade: Grade::Suspected,
         kind: Kind::Environment,
         confidence_set,
         why,
@@ -208,6 +236,7 @@ fn push_finding(push: &Push, location: &Location) -> Finding {
         parameters: (0..3)
             .map(|e| Amplitude::new(names[e].0.into(), push.force[e], names[e].1, push.error[e]))
             .collect(),
+        change: None,
         held_out: None,
     }
 }

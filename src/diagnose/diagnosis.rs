@@ -2,14 +2,17 @@
 //! It holds and computes nothing; the steps that fill it are in other files.
 
 use super::admit::Admission;
+use super::calibrate::ErrorRates;
 use super::decide::Verdict;
 use super::finding::Finding;
 use super::generic::SurrogateTerm;
+use super::influence::Following;
 use super::locate::Location;
 use super::noise::Noise;
 use super::prove::HeldOut;
 use super::settings::Settings;
 use super::sides::Sides;
+use super::stability::Stability;
 use crate::model::Model;
 use crate::validity::Coverage;
 use serde::Serialize;
@@ -158,6 +161,20 @@ pub struct Diagnosis {
     pub headline: String,
     /// What was found, strongest first.
     pub findings: Vec<Finding>,
+    /// What was selected and is not named, with the grade that says why.
+    pub withdrawn: Vec<Finding>,
+    /// Whether the answer is the same on the same recordings told otherwise; absent where nothing was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stability: Option<Stability>,
+    /// The study's own error rates, by simulation; absent where they were not asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_rates: Option<ErrorRates>,
+    /// How the model follows the training runs.
+    pub following: Following,
+    /// Recordings that the diagnosis set aside for the proof, because the user marked none.
+    pub set_aside: usize,
+    /// Whether the improved model is the base model, refitted: nothing was found, or unseen runs are predicted worse with it.
+    pub improved_is_base: bool,
     /// Audit of recordings and numerics.
     pub admission: Admission,
     /// Noise under the base model.

@@ -4,7 +4,7 @@
 use super::algebra::{pick, pseudo_inverse};
 use super::settings::{IDENTIFIABLE_SHARE, SCATTER_GROUPS};
 pub use crate::statistics::chi_squared_p;
-use crate::statistics::student_quantile;
+use crate::statistics::{f_quantile, student_quantile};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::collections::BTreeMap;
 
@@ -125,9 +125,9 @@ impl Evidence {
             *sums.entry(group).or_insert_with(|| DVector::zeros(n)) += score;
         }
         let count = sums.len() as f64;
-        let reach = reach(sums.len());
+        let degrees = (sums.len().max(SCATTER_GROUPS) - 1) as f64;
         if sums.len() < 2 {
-            return Scatter { factors: vec![1.0; n], reach };
+            return Scatter { factors: vec![1.0; n], degrees };
         }
         let mean = sums.values().fold(DVector::zeros(n), |a: DVector<f64>, g| a + g) / count;
         let mut variances = DVector::zeros(n);
@@ -136,7 +136,7 @@ impl Evidence {
             variances += step.component_mul(&step) * (count / (count - 1.0));
         }
         let factor = |i: usize| (variances[i] / base.inverse[(i, i)]).sqrt();
-        Scatter { factors: (0..n).map(factor).map(|f| if f > 1.0 { f } else { 1.0 }).collect(), reach }
+        Scatter { factors: (0..n).map(factor).map(|f| if f > 1.0 { f } else { 1.0 }).collect(), degrees }
     }
 
     /// Tests a group of columns, common to all runs, the base profiled out.
@@ -223,8 +223,22 @@ pub fn are_references(sessions: usize, runs: usize) -> bool {
 pub struct Scatter {
     /// Factors on the standard errors, in the order of the base's columns.
     pub factors: Vec<f64>,
-    /// Standard errors, multiplied so, that a 95 % interval reaches to either side.
-    pub reach: f64,
+    /// Degrees of freedom of the scatter: one less than groups of runs, and no fewer than the least number of groups has.
+    pub degrees: f64,
+}
+
+impl Scatter {
+    /// Standard errors, multiplied by the factors, that a 95 % interval reaches to either side: Student's t, as an error that few
+    /// groups tell is itself uncertain (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
+    pub fn reach(&self) -> f64 {
+        student_quantile(0.975, self.degrees)
+    }
+
+    /// Squared length of `k` parameters over k, in units of their covariance, that 5 % exceed where all are zero: F with k and
+    /// [`Scatter::degrees`] degrees of freedom.
+    pub fn f_limit(&self, k: usize) -> f64 {
+        f_quantile(0.95, k as f64, self.degrees)
+    }
 }
 
 /// A block of columns that is always fitted along.
@@ -300,13 +314,6 @@ fn retained_share(reduced: &DMatrix<f64>, own: &DMatrix<f64>) -> f64 {
     SymmetricEigen::new(symmetric).eigenvalues.min().clamp(0.0, 1.0)
 }
 
-/// Standard errors that a 95 % interval reaches to either side, where scatter among so many groups of runs has widened them
-/// ([`Evidence::scatter`]): Student's t with one degree of freedom less than groups, as an error that few tell is itself uncertain
-/// (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
-fn reach(groups: usize) -> f64 {
-    student_quantile(0.975, (groups.max(SCATTER_GROUPS) - 1) as f64)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -370,6 +377,10 @@ mod tests {
 
     #[test]
     fn intervals_are_wider_the_fewer_groups_of_runs_there_are() {
+        let reach = |groups: usize| {
+            let degrees = (groups.max(SCATTER_GROUPS) - 1) as f64;
+            Scatter { factors: Vec::new(), degrees }.reach()
+        };
         assert!((reach(8) - 2.3646).abs() < 1e-4 && (reach(5) - 2.7764).abs() < 1e-4);
         assert_eq!((reach(2), reach(1)), (reach(5), reach(5)));
         assert!((reach(10_000) - 1.96).abs() < 1e-3);

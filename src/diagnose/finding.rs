@@ -1,9 +1,10 @@
 //! What a diagnosis names: a value with its interval, and a finding with everything that is said about it.
 //! It holds and computes nothing; how a finding is made and judged is in other files.
 
+use super::grade::Grade;
 use super::locate::EquationShare;
-use super::prove::HeldOut;
 use super::push::Window;
+use super::unseen::FindingProof;
 use crate::physics::Kind;
 use serde::Serialize;
 
@@ -61,6 +62,8 @@ pub struct Finding {
     pub mechanism: String,
     /// Plain words.
     pub title: String,
+    /// How well it is supported.
+    pub grade: Grade,
     /// What kind of thing it is.
     pub kind: Kind,
     /// Every mechanism that these data allow in its place, itself first.
@@ -85,8 +88,10 @@ pub struct Finding {
     pub signature: String,
     /// Its parameters.
     pub parameters: Vec<Amplitude>,
-    /// Before and after on held-out runs, for all findings together.
-    pub held_out: Option<HeldOut>,
+    /// How far it changes predictions of the training runs, as a share of the error there is without it.
+    pub change: Option<f64>,
+    /// Without and with it on unseen runs, everything else refitted.
+    pub held_out: Option<FindingProof>,
 }
 
 /// Name of a force for a limited time.

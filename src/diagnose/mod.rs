@@ -13,7 +13,12 @@
 //! | tests of what the selected mechanisms leave | `residual::Residual` |
 //! | table of tests | [`decide::TestTable`] |
 //! | decision, a pure function of the table | [`decide::Decision`] |
-//! | proof on held-out runs | [`prove::HeldOut`] |
+//! | every finding by itself: interval, size, unseen runs | `weigh::Weight` |
+//! | its grade, a pure function of these | [`grade::Grade`] |
+//! | verdict and what is named, withdrawn findings taken out | `answer::Answer` |
+//! | the same analysis on recordings told otherwise | [`stability::Stability`] |
+//! | the same analysis on simulated recordings | [`calibrate::ErrorRates`] |
+//! | proof of all findings on held-out runs | [`prove::HeldOut`] |
 //! | document | [`diagnosis::Diagnosis`] |
 //!
 //! One noise model (sensors, unknown force, initial states) is behind every step, and every number that can turn a verdict is in
@@ -21,11 +26,15 @@
 
 pub mod admit;
 mod algebra;
+mod alike;
+mod answer;
 pub mod base;
 pub mod baseline;
 mod blocks;
+pub mod calibrate;
 pub mod candidate;
 mod compete;
+mod conclude;
 pub mod covariance;
 pub mod decide;
 mod describe;
@@ -42,7 +51,9 @@ pub mod filter;
 pub mod finding;
 mod forces;
 pub mod generic;
+pub mod grade;
 mod improved;
+pub mod influence;
 pub mod locate;
 pub mod noise;
 pub mod noise_fit;
@@ -59,19 +70,24 @@ pub mod region;
 mod residual;
 pub mod screen;
 mod select;
+mod set_aside;
 pub mod settings;
 mod side_by_side;
 pub mod sides;
 pub mod signal;
+pub mod stability;
 mod step_map;
 mod summary;
+pub mod unseen;
 mod wald;
+mod weigh;
 mod words;
 
 pub use decide::Verdict;
 pub use diagnosis::Diagnosis;
 pub use error::DiagnoseError;
 pub use finding::Finding;
+pub use grade::Grade;
 pub use pipeline::diagnose;
 pub use settings::Settings;
 pub use signal::Signal;

@@ -1,21 +1,22 @@
 //! The diagnosis from end to end: each step a function from one named type to the next.
 //! It holds no arithmetic and no threshold; these are in the steps and in the settings.
 
-use super::base::{AuditedRuns, BaseFit, Question};
-use super::decide::{Decision, Unlisted, decide};
-use super::describe::{findings, kinds};
+use super::answer::Answer;
+use super::base::Question;
+use super::calibrate::ErrorRates;
+use super::decide::Unlisted;
+use super::describe::kinds;
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
-use super::event::{BaseTests, Opening};
 use super::generic::{corrected, surrogate};
 use super::improved::trimmed;
 use super::prove::{HeldOut, prove};
-use super::residual::{Kept, Residual};
-use super::select::Selection;
+use super::set_aside::Divided;
 use super::settings::Settings;
 use super::sides::sides;
+use super::stability::Stability;
 use super::summary::{absorbed, adequacy, budget, confusable, detectable, moves, ranking, traces};
-use super::words::{Missing, headline, next_trial};
+use super::words::{Missing, Said, headline, next_trial};
 use crate::model::Model;
 use crate::ranges::Limited;
 use crate::recording::Run;
@@ -24,8 +25,9 @@ use std::borrow::Cow;
 
 /// Diagnoses a model against recordings.
 ///
-/// `runs` are used to locate, name and model, and are not copied where they are given away; `held_out` only to prove. `progress` is told each step in words. The result is
-/// the same bits on any number of threads.
+/// `runs` are used to locate, name and model, and are not copied where they are given away; `held_out` only to prove. Without
+/// `held_out` a part of the recordings is set aside for the proof, where there are at least eight. `progress` is told each step in
+/// words. The result is the same bits on any number of threads.
 ///
 /// # Errors
 /// A setting outside its range, or a term of the catalogue that cannot be added to the model (a singular mass matrix, for
@@ -33,34 +35,31 @@ use std::borrow::Cow;
 pub fn diagnose<'r>(
     model: &Model,
     runs: impl Into<Cow<'r, [Run]>>,
-    held_out: &[Run],
+    held_out: &'r [Run],
     settings: &Settings,
     progress: &(dyn Fn(&str) + Sync),
 ) -> Result<Diagnosis, DiagnoseError> {
     settings.limits()?;
     let question = Question::new(model, settings, progress)?;
-    let audited = AuditedRuns::new(runs, question.full.ship.hull.lpp);
-    let base: BaseFit = BaseFit::new(&question, audited);
-    let tests: BaseTests = BaseTests::new(&question, base);
-    let opening: Opening = Opening::new(&question, tests);
-    let selection: Selection = Selection::new(&question, opening).refitted(&question);
-    let residual: Residual = Residual::new(&question, selection);
-    let decision: Decision = decide(&residual.table(&question));
-    let kept: Kept = residual.decided(&decision);
-    let proof: Option<HeldOut> = proof(&question, &kept, held_out);
-    Ok(report(&question, &kept, &decision, proof))
+    let Divided { training, held_out, set_aside } = Divided::new(runs.into(), held_out);
+    let answer: Answer = Answer::new(&question, training, &held_out);
+    let (answer, stability): (Answer, Option<Stability>) = answer.repeated(&question, &held_out)?;
+    let rates: Option<ErrorRates> =
+        ErrorRates::new(&question, &answer, &answer.recorded(), &held_out, settings.calibrate)?;
+    let proof: Option<HeldOut> = proof(&question, &answer, &held_out);
+    Ok(Diagnosis { set_aside, stability, error_rates: rates, ..report(&question, answer, proof) })
 }
 
 /// The base model against the model with the findings, and against a generic correction, on runs that no step before has used.
-fn proof(question: &Question, kept: &Kept, held_out: &[Run]) -> Option<HeldOut> {
+fn proof(question: &Question, answer: &Answer, held_out: &[Run]) -> Option<HeldOut> {
     if held_out.is_empty() {
         return None;
     }
     (question.progress)("proving on held-out runs");
-    let (tests, found) = (&kept.selection.tests, &kept.selection.estimate);
+    let tests = &answer.kept.selection.tests;
     let (base, screen) = (&tests.fit.estimate, &tests.screen);
     let generic = corrected(&screen.law, &screen.evidence, &screen.base, &base.model);
-    let (before, after) = ((&base.model, &base.noise), (&found.model, &base.noise));
+    let (before, after) = ((&base.model, &base.noise), (&answer.improved().model, &base.noise));
     Some(prove(before, after, Some(&generic), tests.fit.integration, held_out, &question.settings.judging))
 }
 
@@ -69,36 +68,46 @@ fn coverage(model: &Model, runs: &[Run]) -> Coverage {
     validity::outside(model, runs.iter().flat_map(validity::samples))
 }
 
-/// Everything that the diagnosis says.
-fn report(question: &Question, kept: &Kept, decision: &Decision, proof: Option<HeldOut>) -> Diagnosis {
-    let (tests, found) = (&kept.selection.tests, &kept.selection.estimate);
+/// Everything that the diagnosis says of one analysis.
+fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagnosis {
+    let (tests, found) = (&answer.kept.selection.tests, answer.improved());
     let (fit, first) = (&tests.fit, &tests.screen);
     let base = &fit.estimate;
-    let last = kept.left.as_ref().map(|l| &l.screen);
-    let missing = match (decision.unlisted, &kept.place) {
+    let last = answer.kept.left.as_ref().filter(|_| answer.base.holds).map(|l| &l.screen);
+    let missing = match (answer.unlisted(), &answer.kept.place) {
         (Some(Unlisted::Place), Some(place)) => Some(Missing::Place(place)),
         (Some(Unlisted::Law), _) => {
             Some(Missing::Law(surrogate(&first.law, &first.evidence, &first.base, &base.model)))
         }
         _ => None,
     };
-    let findings = findings(kept, proof.as_ref());
-    let verdict = decision.verdict;
-    let improved = trimmed(&found.model, question.model, &found.free);
+    // What predicts unseen runs worse than the base model is no improvement, however sure its parts are.
+    let worse = proof.as_ref().is_some_and(HeldOut::is_worse);
+    let written = if worse { base } else { found };
+    let improved = trimmed(&written.model, question.model, &written.free);
+    let verdict = answer.verdict;
+    let said = Said {
+        findings: &answer.findings,
+        withdrawn: &answer.withdrawn,
+        following: &answer.base.following,
+        holds: answer.base.holds,
+        form_holds: tests.search.form_holds,
+        missing: missing.as_ref(),
+    };
     Diagnosis {
-        schema: "trimtab-diagnosis/1",
+        schema: "trimtab-diagnosis/2",
         verdict,
-        headline: headline(verdict, &findings, missing.as_ref()),
+        headline: headline(verdict, &said),
         next_trial: missing
             .as_ref()
             .map(Missing::next_trial)
-            .or_else(|| next_trial(verdict, &findings, &tests.candidates)),
+            .or_else(|| next_trial(verdict, &answer.findings, &tests.candidates)),
         surrogate: missing.map(Missing::into_surrogate).unwrap_or_default(),
         admission: fit.admission.clone(),
         noise_before: base.noise,
         noise_after: found.noise,
         location: tests.location.clone(),
-        location_after: kept.left.as_ref().map(|l| l.location.clone()),
+        location_after: answer.kept.left.as_ref().map(|l| l.location.clone()),
         ranking: ranking(first, &tests.candidates),
         absorbed: absorbed(first, &tests.candidates),
         detectable: detectable(first, &tests.candidates, question.settings, &question.full),
@@ -109,12 +118,18 @@ fn report(question: &Question, kept: &Kept, decision: &Decision, proof: Option<H
         sides: sides(last.unwrap_or(first), found, base.free.len(), &kinds(&fit.runs)),
         hull_budget: budget(found),
         held_out: proof,
-        findings,
+        set_aside: 0,
+        stability: None,
+        error_rates: None,
+        following: answer.base.following.clone(),
+        improved_is_base: worse || answer.findings.is_empty(),
         settings: question.settings.clone(),
         traces: traces(&fit.runs, fit.integration, base, last.map(|_| found)),
         validity: coverage(&improved, &fit.runs),
         model: improved,
         base: trimmed(&base.model, question.model, &base.free),
+        findings: answer.findings,
+        withdrawn: answer.withdrawn,
     }
 }
 
@@ -123,6 +138,7 @@ mod tests {
     use super::*;
     use crate::diagnose::decide::Verdict;
     use crate::diagnose::example::{model, runs, with};
+    use crate::diagnose::grade::Grade;
     use std::sync::Mutex;
 
     #[test]
@@ -136,17 +152,52 @@ mod tests {
         assert_eq!(d.held_out.as_ref().map(|h| h.runs), Some(3));
         assert!(d.findings[0].held_out.is_some() && d.location_after.is_some() && d.surrogate.is_empty());
         let steps = steps.into_inner().unwrap();
-        let order = ["estimating", "auditing", "locating", "testing", "refitting", "checking", "proving"];
+        assert_eq!(d.findings[0].grade, Grade::Confirmed, "{:?} {:?}", d.findings[0].held_out, d.stability);
+        assert!(d.stability.as_ref().is_some_and(|s| s.same == s.of && s.further.is_empty()), "{:?}", d.stability);
+        let order = [
+            "estimating",
+            "auditing",
+            "locating",
+            "testing",
+            "refitting",
+            "checking",
+            "weighing",
+            "repeating",
+            "proving",
+        ];
         let place = |word: &str| steps.iter().position(|s| s.starts_with(word));
         assert!(order.windows(2).all(|w| place(w[0]) < place(w[1]) && place(w[0]).is_some()), "{steps:?}");
         Ok(())
     }
 
     #[test]
-    fn without_held_out_runs_there_is_no_proof() -> Result<(), DiagnoseError> {
-        let settings = Settings { nuisance: false, ..Settings::default() };
+    fn without_held_out_runs_a_part_of_the_recordings_proves_and_with_few_nothing_does() -> Result<(), DiagnoseError> {
+        let settings = Settings { nuisance: false, repeat: false, ..Settings::default() };
         let d = diagnose(&model(), runs(&model(), 6), &[], &settings, &|_| ())?;
-        assert!(d.held_out.is_none() && d.findings.is_empty());
+        assert!(d.held_out.is_none() && d.findings.is_empty() && d.set_aside == 0);
+        let truth = with(&[("current.north", 0.3)]);
+        let d = diagnose(&model(), runs(&truth, 16), &[], &settings, &|_| ())?;
+        assert_eq!((d.set_aside, d.held_out.as_ref().map(|h| h.runs)), (4, Some(4)));
+        assert_eq!((d.findings[0].mechanism.as_str(), d.findings[0].grade), ("current", Grade::Confirmed));
+        let d = diagnose(&model(), runs(&truth, 7), &[], &settings, &|_| ())?;
+        assert_eq!((d.findings[0].mechanism.as_str(), d.findings[0].grade), ("current", Grade::Suspected));
+        Ok(())
+    }
+
+    #[test]
+    fn a_name_that_unseen_runs_refute_is_withdrawn_and_not_written() -> Result<(), DiagnoseError> {
+        let settings = Settings { nuisance: false, repeat: false, ..Settings::default() };
+        // The current of the training runs turns before the others are sailed.
+        let (train, test) = (runs(&with(&[("current.north", 0.3)]), 12), runs(&with(&[("current.north", -0.3)]), 6));
+        let d = diagnose(&model(), train, &test, &settings, &|_| ())?;
+        assert_eq!((d.verdict, d.findings.len()), (Verdict::NotInCatalogue, 0), "{}", d.headline);
+        let tried = &d.withdrawn[0];
+        assert_eq!((tried.mechanism.as_str(), tried.grade), ("current", Grade::Refuted));
+        assert!(d.headline.contains("refute") && d.improved_is_base);
+        assert!(
+            !d.model.term_names().contains(&"current")
+                || d.model.parameters[d.model.find("current.north").unwrap()].value == 0.0
+        );
         Ok(())
     }
 

@@ -56,6 +56,13 @@ pub struct HeldOut {
     pub runs_after: Vec<RunScore>,
 }
 
+impl HeldOut {
+    /// Whether free simulation of the held-out runs is worse after than before.
+    pub fn is_worse(&self) -> bool {
+        self.improvement.is_some_and(|i| i < 0.0)
+    }
+}
+
 /// Log-likelihood of runs under a model, and the mean square of its standardised innovations without the outliers.
 pub fn likelihood(model: &Model, integration: Integration, noise: &Noise, runs: &[Run]) -> (f64, f64) {
     let filter = Filter::new(model, integration, &[]);

@@ -1,6 +1,7 @@
 //! What the model with the selected mechanisms leaves unexplained, and the table of every test that the verdict turns on.
 //! It tests and collects; the verdict on the table is made elsewhere.
 
+use super::alike::class;
 use super::base::Question;
 use super::compete::Selected;
 use super::decide::{Decision, MechanismTest, PlaceTest, PushTest, ResidualTests, TestTable};
@@ -31,7 +32,7 @@ pub struct Residual {
 
 impl Residual {
     /// Tests what the selected mechanisms leave, as the base model was tested.
-    pub fn new(question: &Question, selection: Selection) -> Self {
+    pub fn new(question: &Question, mut selection: Selection) -> Self {
         (question.progress)("checking what is left");
         let (tests, found) = (&selection.tests, &selection.estimate);
         let left = (!selection.mechanisms.is_empty()).then(|| {
@@ -40,6 +41,11 @@ impl Residual {
             location.push = tests.search.event(&location);
             Left { screen, location }
         });
+        let classes: Vec<_> =
+            selection.mechanisms.iter().map(|m| class(m, found, &tests.screen, &tests.candidates)).collect();
+        for (mechanism, class) in selection.mechanisms.iter_mut().zip(classes) {
+            mechanism.widen(class, &selection.tests.candidates);
+        }
         Self { selection, left }
     }
 
@@ -82,6 +88,16 @@ impl Residual {
         let fit = &selection.tests.fit;
         let push = push.map(|p| sharpened(&p, &selection.estimate, fit.integration, &fit.runs));
         Kept { selection, left, push, place }
+    }
+}
+
+impl Kept {
+    /// The selection without one of its mechanisms, at the estimate without it, tested anew.
+    pub fn without(self, question: &Question, index: usize, estimate: Estimate) -> Residual {
+        let Self { mut selection, .. } = self;
+        selection.mechanisms.remove(index);
+        selection.estimate = estimate;
+        Residual::new(question, selection)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The score test of every mechanism of the catalogue, with parameters, nuisance coefficients, initial states and noise profiled
 //! out. It ranks and corrects for multiplicity; it does not refit and does not conclude.
 
-use super::algebra::pick;
+use super::algebra::{pick, pseudo_inverse};
 use super::candidate::{Candidate, Extent, append};
 use super::estimate::{Estimate, Sums, base_of, restrictions};
 use super::evidence::{Base, Evidence, Test, are_references};
@@ -99,15 +99,29 @@ impl Screen {
         }
     }
 
+    /// Information of two groups of columns once the base is projected out.
+    fn reduced(&self, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
+        let (h, base) = (&self.evidence.total.information, &self.base.columns);
+        pick(h, rows, columns) - pick(h, rows, base) * &self.base.inverse * pick(h, base, columns)
+    }
+
+    /// Share of the gain of candidate `a` with these amplitudes, in units of its columns, that candidate `b` can take over, 0 to 1.
+    pub fn share_taken(&self, a: usize, amplitude: &DVector<f64>, b: usize) -> f64 {
+        let (ca, cb) = (self.columns(a), self.columns(b));
+        if amplitude.len() != ca.len() {
+            return 0.0;
+        }
+        let pull = self.reduced(cb, ca) * amplitude;
+        let taken = (pull.transpose() * pseudo_inverse(&self.reduced(cb, cb)) * &pull)[(0, 0)];
+        let own = (amplitude.transpose() * self.reduced(ca, ca) * amplitude)[(0, 0)];
+        if own > 0.0 && taken.is_finite() { (taken / own).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
     /// Cosine of the smallest principal angle between two candidates once the base is projected out: 1 when the data
     /// cannot tell them apart.
     pub fn likeness(&self, a: usize, b: usize) -> f64 {
         let (ca, cb) = (self.columns(a), self.columns(b));
-        let h = &self.evidence.total.information;
-        let reduced = |r: &[usize], c: &[usize]| {
-            pick(h, r, c) - pick(h, r, &self.base.columns) * &self.base.inverse * pick(h, &self.base.columns, c)
-        };
-        let (aa, bb, ab) = (reduced(ca, ca), reduced(cb, cb), reduced(ca, cb));
+        let (aa, bb, ab) = (self.reduced(ca, ca), self.reduced(cb, cb), self.reduced(ca, cb));
         let white = |m: &DMatrix<f64>| {
             let e = SymmetricEigen::new((m + m.transpose()) * 0.5);
             let top = e.eigenvalues.max();

@@ -24,6 +24,10 @@ pub struct Settings {
     pub substeps: usize,
     /// Seed of the bootstrap.
     pub seed: u64,
+    /// Whether the analysis is repeated with what is named, on the same recordings told otherwise, to see whether it is stable.
+    pub repeat: bool,
+    /// Simulated studies with nothing missing, and as many with what was found, that are analysed for the study's own error rates.
+    pub calibrate: usize,
     /// How the proof simulates and weighs the test runs. A study has it in the tables `[fit]` and `[evaluate]`, so that a
     /// diagnosis and an evaluation print the same numbers.
     #[serde(skip, default = "judging")]
@@ -52,6 +56,7 @@ impl Limited for Settings {
     fn limits(&self) -> Result<(), OutOfRange> {
         within("alpha", self.alpha, &(1e-12..=0.5), "the chance of naming anything when nothing is missing")?;
         counted("most", self.most, &(1..=20), "the largest number of mechanisms that are named")?;
+        counted("calibrate", self.calibrate, &(0..=10_000), "the number of simulated studies")?;
         self.integration().limits()
     }
 }
@@ -65,6 +70,8 @@ impl Default for Settings {
             nuisance: true,
             substeps: 1,
             seed: 20250226,
+            repeat: true,
+            calibrate: 0,
             judging: judging(),
         }
     }
@@ -177,6 +184,9 @@ numbers! {
     FEW_LOST_SHARE: f64 = 0.1, HULLS;
     /// Rounds in which stretches that the filter does not follow are looked for and left out before the base model is kept.
     LOSS_ROUNDS: usize = 4, COST;
+    /// Root mean square error of explicit Euler steps, as a share of that of steps of second order, below which they reproduce
+    /// recorded positions to rounding.
+    EULER_EXACT: f64 = 0.05, "rounding of recorded values; sensors are at least ten times as noisy";
     /// Gain in log-posterior above which recordings are read as explicit Euler steps of one sample period.
     EULER_GAIN: f64 = 15.0, SEEDS;
     /// Loss in log-posterior of an unfitted Euler reading beyond which it is not fitted.
@@ -318,6 +328,19 @@ numbers! {
     PUSH_FIRST: f64 = 2.0, SEEDS;
     /// Share of a push's statistic below which a mechanism leaves so little of it that its windows were the mechanism's traces.
     PUSH_EXPLAINED: f64 = 0.5, SEEDS;
+
+    /// Share of the error of predictions that a finding must change, in one channel at least, to matter.
+    MATERIAL_SHARE: f64 = 0.05, "the default share of the users' requirement; not tuned";
+    /// Sample periods that a clock or a lag must be off by to be resolved.
+    RESOLVED_SAMPLES: f64 = 0.5, "half a sample period: less is not resolved by the record";
+    /// Share of the runs that a model must simulate better than steady motion does, to be a base on which anything is named.
+    FOLLOWED_SHARE: f64 = 0.5, "by the meaning of a majority; not tuned";
+    /// Fewest recordings of which a part is set aside for the proof.
+    FEWEST_TO_DIVIDE: usize = 8, "five to train with and three for an interval";
+    /// Recordings that are set aside, at least: an interval over recordings needs three.
+    FEWEST_SET_ASIDE: usize = 3, "the fewest for a variance that means something";
+    /// One recording of so many is set aside.
+    SET_ASIDE_EVERY: usize = 4, CUSTOM;
 
     /// Parts into which the water sailed is divided each way.
     PLACE_PARTS: usize = 3, CUSTOM;

@@ -2,7 +2,7 @@
 //! parameters that are free in every estimate. It is reported beside the verdict and is no finding: no physics is missing for it.
 
 use super::estimate::{Estimate, FreeParameter};
-use super::evidence::{Scatter, chi_squared_p};
+use super::evidence::chi_squared_p;
 use super::finding::Amplitude;
 use super::screen::Screen;
 use super::wald::Wald;
@@ -47,7 +47,8 @@ pub fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -> Optio
     let (precision, pull): (Vec<f64>, Vec<f64>) = found.free.iter().enumerate().map(terms).unzip();
     let free = s.evidence.base(&(0..found.free.len()).collect::<Vec<_>>(), &precision, &pull);
     let step = free.step();
-    let Scatter { factors, reach } = s.evidence.scatter(&free, kinds);
+    let scatter = s.evidence.scatter(&free, kinds);
+    let (factors, reach) = (&scatter.factors, scatter.reach());
     let n = factors.len();
     let mut all = Wald::of(found, DMatrix::from_fn(n, n, |i, j| free.inverse[(i, j)] * factors[i] * factors[j]));
     all.value += step;

@@ -6,6 +6,8 @@ use super::decide::Verdict;
 use super::diagnosis::NextTrial;
 use super::finding::{Amplitude, Finding, GENERIC, PUSH};
 use super::generic::SurrogateTerm;
+use super::grade::Grade;
+use super::influence::Following;
 use super::place::Place;
 use super::push::Window;
 use crate::numerals::sig;
@@ -96,36 +98,133 @@ pub fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) ->
     }
 }
 
-/// The verdict in one sentence.
-pub fn headline(verdict: Verdict, findings: &[Finding], missing: Option<&Missing>) -> String {
-    let first = findings.first();
+/// What a headline is made of, beside the verdict.
+pub struct Said<'a> {
+    /// What is named.
+    pub findings: &'a [Finding],
+    /// What was tried and withdrawn.
+    pub withdrawn: &'a [Finding],
+    /// How the model follows the recordings.
+    pub following: &'a Following,
+    /// Whether it follows them well enough.
+    pub holds: bool,
+    /// Whether the ship's own forces have the form that the model gives them.
+    pub form_holds: bool,
+    /// What is missing and not in the catalogue.
+    pub missing: Option<&'a Missing<'a>>,
+}
+
+/// The verdict in a sentence or two.
+pub fn headline(verdict: Verdict, said: &Said) -> String {
+    let first = said.findings.first();
+    let withdrawn = |grade: Grade| said.withdrawn.iter().find(|f| f.grade == grade);
     match verdict {
         Verdict::Named => {
-            let all: Vec<String> = findings.iter().map(titled).collect();
-            format!("Missing physics: {}.", all.join("; and "))
+            let all: Vec<String> = said.findings.iter().map(titled).collect();
+            let confirmed = said.findings.iter().any(|f| f.grade == Grade::Confirmed);
+            let lead = if confirmed { "Missing physics" } else { "Missing physics, suspected and not confirmed" };
+            format!("{lead}: {}.", all.join("; and "))
         }
         Verdict::OneOf => first.map_or(String::new(), one_of),
         Verdict::Sensor => first.map_or(String::new(), |f| format!("A sensor, not the ship: {}.", titled(f))),
-        Verdict::NotInCatalogue => missing.map_or(String::new(), Missing::headline),
+        Verdict::NotInCatalogue => match (said.missing, withdrawn(Grade::Refuted)) {
+            (Some(missing), None) => missing.headline(),
+            (Some(missing), Some(tried)) => format!(
+                "{} {} was tried, and unseen runs refute it{}.",
+                missing.headline(),
+                sentence(&tried.title),
+                proof(tried)
+            ),
+            (None, Some(tried)) => format!(
+                "Something is missing, and no law of the catalogue is it: {} fits the training runs best, and unseen runs refute it{}.",
+                tried.title,
+                proof(tried)
+            ),
+            (None, None) => String::new(),
+        },
         Verdict::Numerics => {
-            "The integration step, not the ship: the recordings agree with explicit Euler steps of one sample period."
+            "The integration step, not the ship: explicit Euler steps of one sample period reproduce the recordings to rounding."
                 .into()
         }
-        Verdict::Random => "An unknown force acts, but nothing about it repeats: gusts.".into(),
+        Verdict::Random if said.form_holds => "An unknown force acts, but nothing about it repeats: gusts.".into(),
+        Verdict::Random => "An unknown force is left in which nothing repeats: the ship's own forces have another form than the model \
+                            gives them, or gusts act beside them."
+            .into(),
+        Verdict::Insufficient if !said.holds => not_followed(said.following),
         Verdict::Insufficient => "These recordings cannot answer: too few runs.".into(),
-        Verdict::NothingMissing => "Nothing is missing that these data could show.".into(),
+        Verdict::NothingMissing => withdrawn(Grade::Immaterial).map_or_else(
+            || "Nothing is missing that these data could show.".into(),
+            |f| {
+                format!(
+                    "Nothing is missing that matters: {} ({}) is measurable, and changes predictions by {} % of their error.",
+                    f.title,
+                    values(f),
+                    sig(100.0 * f.change.unwrap_or(0.0), 2)
+                )
+            },
+        ),
     }
 }
 
-/// A finding with its values.
+/// Words at the start of a sentence.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// That the model does not follow the recordings, and what to do.
+fn not_followed(f: &Following) -> String {
+    let cvdm = match (f.cvdm, f.steady) {
+        (Some(own), Some(steady)) => format!(" (mean cVDM {} % against {} %)", sig(own, 3), sig(steady, 3)),
+        _ => String::new(),
+    };
+    format!(
+        "These recordings cannot answer, because the model does not follow them: it simulates {} of {} runs better than motion that \
+         stays as it was at the start{cvdm}. Free the hull coefficients (hull = \"free\"), check units, signs and the inputs that act on \
+         the ship, or divide the recordings into shorter windows.",
+        f.better_than_steady, f.runs
+    )
+}
+
+/// A finding with its values, grade and proof.
 fn titled(f: &Finding) -> String {
-    if f.by_session {
-        return format!("{} (a different value in each of {} sessions)", f.title, f.sessions.len());
-    }
-    format!("{} ({})", f.title, values(f))
+    let size =
+        if f.by_session { format!("a different value in each of {} sessions", f.sessions.len()) } else { values(f) };
+    let grade = match f.grade {
+        Grade::Confirmed if f.held_out.is_none() => "shown by the recordings themselves",
+        Grade::Confirmed => "confirmed on unseen runs",
+        _ => "suspected",
+    };
+    format!("{} ({size}), {grade}{}", f.title, proof(f))
 }
 
+/// What a finding does on unseen runs, in brackets.
+fn proof(f: &Finding) -> String {
+    let Some(h) = &f.held_out else { return String::new() };
+    let mut parts = Vec::new();
+    if let Some([before, after]) = h.position {
+        parts.push(format!("position error {} m to {} m", sig(before, 3), sig(after, 3)));
+    }
+    if let (Some(before), Some(after)) = (h.before, h.after) {
+        parts.push(format!("cVDM {} % to {} %", sig(before, 3), sig(after, 3)));
+    }
+    parts.push(format!("{} unseen recordings", h.recordings));
+    format!(" ({})", parts.join(", "))
+}
+
+/// The parameters of a finding; a vector fixed on the earth by its size and direction.
 fn values(f: &Finding) -> String {
+    if let [north, east] = f.parameters.as_slice()
+        && north.name.ends_with(".north")
+        && east.name.ends_with(".east")
+    {
+        let towards = east.value.atan2(north.value).to_degrees().rem_euclid(360.0);
+        let (word, angle) = match f.mechanism.as_str() {
+            "mean_wind" | "wave_drift" => ("from", (towards + 180.0).rem_euclid(360.0)),
+            _ => ("toward", towards),
+        };
+        return format!("{} {} {word} {angle:03.0} deg", sig(north.value.hypot(east.value), 3), north.unit);
+    }
     let one = |p: &Amplitude| format!("{} = {} {}", p.name, sig(p.value, 3), p.unit);
     f.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
 }
@@ -133,7 +232,11 @@ fn values(f: &Finding) -> String {
 /// A finding that has rivals.
 fn one_of(f: &Finding) -> String {
     if f.mechanism != PUSH {
-        return format!("Something is missing, and these data cannot tell which of: {}.", f.confidence_set.join(", "));
+        return format!(
+            "Something is missing, and these data cannot tell which of: {}{}.",
+            f.confidence_set.join(", "),
+            proof(f)
+        );
     }
     let one = |w: &Window| format!("{} from {:.0} to {:.0} s", w.run, w.start, w.end);
     let windows: Vec<String> = f.windows.iter().map(one).collect();
@@ -167,6 +270,8 @@ mod tests {
             region: None,
             signature: String::new(),
             parameters: vec![Amplitude::new("current.north".into(), 0.1234, "m/s", 0.01)],
+            grade: Grade::Suspected,
+            change: None,
             held_out: None,
         }
     }
@@ -174,6 +279,21 @@ mod tests {
     #[test]
     fn every_verdict_has_a_sentence_with_the_values_it_names() {
         let current = || finding("current", "steady current", &["current"]);
+        let following = Following { runs: 4, better_than_steady: 1, cvdm: Some(40.0), steady: Some(21.0) };
+        let said = |verdict, findings: &[Finding], withdrawn: &[Finding], missing: Option<&Missing>| {
+            headline(
+                verdict,
+                &Said {
+                    findings,
+                    withdrawn,
+                    following: &following,
+                    holds: verdict != Verdict::Insufficient,
+                    form_holds: true,
+                    missing,
+                },
+            )
+        };
+        let headline = |verdict, findings: &[Finding], missing: Option<&Missing>| said(verdict, findings, &[], missing);
         let named = headline(Verdict::Named, &[current()], None);
         assert!(named.contains("steady current") && named.contains("0.123 m/s"), "{named}");
         let each = Finding { by_session: true, sessions: vec!["a".into(), "b".into()], ..current() };
@@ -183,6 +303,15 @@ mod tests {
         assert!(headline(Verdict::Sensor, &[current()], None).contains("sensor"));
         let law = Missing::Law(vec![SurrogateTerm { name: "asymmetric.N_0".into(), value: 1.0, error: 0.1 }]);
         assert!(headline(Verdict::NotInCatalogue, &[], Some(&law)).contains("asymmetric.N_0"));
+        let with = |grade| Finding { grade, change: Some(0.02), ..current() };
+        let refuted = said(Verdict::NotInCatalogue, &[], &[with(Grade::Refuted)], None);
+        assert!(refuted.contains("steady current") && refuted.contains("refute"), "{refuted}");
+        let small = said(Verdict::NothingMissing, &[], &[with(Grade::Immaterial)], None);
+        assert!(small.contains("steady current") && small.contains("2.0 % of their error"), "{small}");
+        let lost = headline(Verdict::Insufficient, &[], None);
+        assert!(lost.contains("1 of 4 runs") && lost.contains("40.0 %"), "{lost}");
+        let confirmed = headline(Verdict::Named, &[with(Grade::Confirmed)], None);
+        assert!(named.contains("suspected") && !confirmed.contains("suspected"), "{named} {confirmed}");
         for verdict in [Verdict::Numerics, Verdict::Random, Verdict::Insufficient, Verdict::NothingMissing] {
             assert!(headline(verdict, &[], None).ends_with('.'), "{verdict:?}");
         }

@@ -27,7 +27,7 @@ const SINDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peers/sindy.py");
 /// How cases are run.
 #[derive(Debug, Clone)]
 pub struct Runner {
-    /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json`.
+    /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json --once`.
     pub tool: PathBuf,
     /// Longest time for one diagnosis.
     pub limit: Duration,
@@ -116,7 +116,7 @@ impl Runner {
         let answer = folder.join("diagnosis.json");
         let began = Instant::now();
         let mut command = Command::new(&self.tool);
-        command.arg("--threads").arg("1").arg("diagnose").arg(&study).arg("--json");
+        command.args(["--threads", "1", "diagnose"]).arg(&study).args(["--json", "--once"]);
         let said = finish(command, &self.tool, self.limit)?;
         let seconds = began.elapsed().as_secs_f64();
         write_whole(&answer, said.as_bytes()).map_err(|source| ConcealError::file(&answer, source))?;

@@ -2,7 +2,7 @@
 //! It repeats the numbers of the proof and draws no conclusion beyond them.
 
 use super::phrases::percent;
-use crate::diagnose::Diagnosis;
+use crate::diagnose::{Diagnosis, Finding};
 use crate::numerals::{DASH, fixed, sig};
 
 /// A cVDM in words.
@@ -10,10 +10,38 @@ fn percentage(cvdm: Option<f64>) -> String {
     cvdm.map_or(DASH.to_owned(), |v| sig(v, 3))
 }
 
+/// What one finding by itself does on the test runs, everything else refitted without it.
+fn alone(f: &Finding) -> Option<String> {
+    let h = f.held_out.as_ref()?;
+    let interval = |ci: Option<[f64; 2]>, of: &dyn Fn(f64) -> String| {
+        ci.map_or(String::new(), |[low, high]| format!(" [{}, {}]", of(low), of(high)))
+    };
+    let mut parts = Vec::new();
+    if let Some(gain) = h.improvement {
+        parts.push(format!("cVDM better by {}{}", percent(gain), interval(h.improvement_ci95, &percent)));
+    }
+    let whole = |v: f64| fixed(v, 0);
+    parts.push(format!(
+        "log-likelihood by {}{}",
+        whole(h.log_likelihood_gain),
+        interval(h.log_likelihood_ci95, &whole)
+    ));
+    let distance = |pair: Option<[f64; 2]>, factor: f64, what: &str, unit: &str| {
+        pair.map(|[b, a]| format!("{what} {} to {} {unit}", sig(b * factor, 3), sig(a * factor, 3)))
+    };
+    parts.extend(distance(h.position, 1.0, "position error", "m"));
+    parts.extend(distance(h.heading, 1f64.to_degrees(), "heading error", "deg"));
+    parts.extend(distance(h.speed, 1.0, "speed error", "m/s"));
+    Some(format!("{} by itself, on {} recordings: {}", f.title, h.recordings, parts.join(", ")))
+}
+
 /// What the findings gain on the test runs.
 pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     let Some(h) = &d.held_out else {
-        return vec!["there are no test runs, so nothing is proven; mark some with `split = \"test\"`".to_owned()];
+        return vec![
+            "there are no test runs and too few recordings to set some aside, so nothing is confirmed; mark some with `split = \"test\"`"
+                .to_owned(),
+        ];
     };
     if d.findings.is_empty() {
         return vec![format!(
@@ -40,6 +68,12 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     if let (Some(run), Some(change)) = (&h.worst_run, h.worst_improvement) {
         let word = if change < 0.0 { "worse" } else { "better" };
         lines.push(format!("worst run: {run}, {} {word}", percent(change.abs())));
+    }
+    lines.extend(d.findings.iter().filter_map(alone));
+    if d.improved_is_base {
+        lines.push(
+            "improved.toml is the base model, refitted: with the findings unseen runs are simulated worse".to_owned(),
+        );
     }
     if let Some(g) = h.generic {
         lines.push(format!("with a generic force law in place of the findings: cVDM {} %", sig(g, 3)));

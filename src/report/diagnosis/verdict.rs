@@ -2,10 +2,12 @@
 //! Where the findings act and what proves them is in other parts.
 
 use super::names::title_of;
-use super::phrases::{amplitude, p_value};
+use super::phrases::{amplitude, p_value, percent};
 use crate::audit::Issue;
-use crate::diagnose::{Diagnosis, Finding, Verdict};
-use crate::numerals::{fixed, sig};
+use crate::diagnose::calibrate::ErrorRates;
+use crate::diagnose::stability::Stability;
+use crate::diagnose::{Diagnosis, Finding, Grade, Verdict};
+use crate::numerals::{DASH, fixed, sig};
 use crate::report::units::Units;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,7 +18,8 @@ const NOTES: usize = 2;
 #[must_use]
 pub fn subject(d: &Diagnosis, study: &str) -> String {
     let a = &d.admission;
-    let held_out = d.held_out.as_ref().map_or("none".to_owned(), |h| h.runs.to_string());
+    let aside = if d.set_aside > 0 { " (set aside here, as none are marked)" } else { "" };
+    let held_out = d.held_out.as_ref().map_or("none".to_owned(), |h| format!("{}{aside}", h.runs));
     format!(
         "{study} · {} runs in {} sessions ({} samples), {held_out} test runs · base model {} · {}, {} a sample",
         a.runs,
@@ -38,7 +41,7 @@ pub fn verdict_words(verdict: Verdict) -> &'static str {
         Verdict::NotInCatalogue => "MISSING PHYSICS, NOT IN THE CATALOGUE",
         Verdict::Sensor => "A SENSOR ERROR, NOT MISSING PHYSICS",
         Verdict::Numerics => "THE INTEGRATION STEP, NOT MISSING PHYSICS",
-        Verdict::Random => "RANDOM FORCES (GUSTS), NO REPEATED EFFECT",
+        Verdict::Random => "RANDOM FORCES, NO REPEATED EFFECT",
         Verdict::Insufficient => "THESE RECORDINGS GIVE NO ANSWER",
     }
 }
@@ -46,7 +49,12 @@ pub fn verdict_words(verdict: Verdict) -> &'static str {
 /// The verdict with its findings, and notes on the recordings.
 pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
     let units = Units::of(&d.base.ship);
-    let mut lines = vec![verdict_words(d.verdict).to_owned()];
+    let unconfirmed = !d.findings.is_empty() && d.findings.iter().all(|f| f.grade != Grade::Confirmed);
+    let mut lines = vec![match d.verdict {
+        Verdict::Named if unconfirmed => "MISSING PHYSICS, SUSPECTED".to_owned(),
+        Verdict::Sensor if unconfirmed => "A SENSOR ERROR, SUSPECTED".to_owned(),
+        verdict => verdict_words(verdict).to_owned(),
+    }];
     if d.findings.is_empty() {
         lines.push(d.headline.clone());
     }
@@ -54,7 +62,8 @@ pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
         let size = size(f, units);
         let sessions = sessions(d, f);
         lines.push(format!(
-            "{}{size}{sessions}: {} after correction for the number of mechanisms tested",
+            "{} {}{size}{sessions}: {} after correction for the number of mechanisms tested",
+            grade_words(f.grade),
             f.title,
             p_value(f.p)
         ));
@@ -68,8 +77,80 @@ pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
     if let (true, Some(r)) = (d.findings.is_empty(), d.ranking.first()) {
         lines.push(format!("strongest candidate, not named: {}, {} after correction", r.title, p_value(r.p)));
     }
+    lines.extend(d.withdrawn.iter().map(|f| withdrawn(f, units)));
+    lines.extend(d.stability.as_ref().map(stability));
+    lines.extend(d.error_rates.as_ref().map(error_rates));
     lines.extend(notes(&d.admission.issues));
     lines
+}
+
+/// How well a finding is supported, before its title.
+fn grade_words(grade: Grade) -> &'static str {
+    match grade {
+        Grade::Confirmed => "CONFIRMED:",
+        Grade::Suspected => "SUSPECTED:",
+        Grade::Refuted | Grade::Immaterial | Grade::Undetermined | Grade::Unstable => "not named:",
+    }
+}
+
+/// A mechanism that was tried and is not named, with the reason.
+fn withdrawn(f: &Finding, units: Units) -> String {
+    let reason = match f.grade {
+        Grade::Refuted => "unseen runs refute it",
+        Grade::Immaterial => "it is measurable, and too small to matter",
+        Grade::Unstable => "most repetitions on the same recordings told otherwise do not find it",
+        Grade::Undetermined => "the interval of every parameter contains zero",
+        Grade::Confirmed | Grade::Suspected => "the model does not follow the recordings without it or with it",
+    };
+    let interval = |value: Option<f64>, ci95: Option<[f64; 2]>, of: &dyn Fn(f64) -> String| match (value, ci95) {
+        (Some(value), Some([low, high])) => format!("{} [{}, {}]", of(value), of(low), of(high)),
+        (Some(value), None) => of(value),
+        (None, _) => DASH.to_owned(),
+    };
+    let proof = f.held_out.as_ref().map_or(String::new(), |h| {
+        format!(
+            "; on {} unseen recordings: improvement of cVDM {}, log-likelihood {}",
+            h.recordings,
+            interval(h.improvement, h.improvement_ci95, &percent),
+            interval(Some(h.log_likelihood_gain), h.log_likelihood_ci95, &|v| fixed(v, 0))
+        )
+    });
+    let change = f
+        .change
+        .filter(|c| c.is_finite())
+        .map_or(String::new(), |c| format!("; it changes predictions by {} of their error", percent(c)));
+    format!("tried and not named: {}{}: {reason}{change}{proof}", f.title, size(f, units))
+}
+
+/// How often such studies err, by simulation.
+fn error_rates(r: &ErrorRates) -> String {
+    let mut text = format!(
+        "in {} simulated studies of this kind with nothing missing, {} named something ({})",
+        r.false_alarms.of, r.false_alarms.hits, r.false_alarms
+    );
+    if let Some(found) = r.found_again {
+        text += &format!("; with what was found in them, it was found again in {found}");
+    }
+    if let Some(covered) = r.covered {
+        text += &format!(", and its 95 % intervals held the value in {covered}");
+    }
+    text
+}
+
+/// Whether the answer is the same on the same recordings told otherwise.
+fn stability(s: &Stability) -> String {
+    let differing = s.variants.iter().filter(|v| !v.same).map(|v| {
+        let found = if v.findings.is_empty() { "nothing named".to_owned() } else { v.findings.join(", ") };
+        format!("{} ({found})", v.name)
+    });
+    let differing: Vec<String> = differing.collect();
+    let but = if differing.is_empty() { String::new() } else { format!("; otherwise: {}", differing.join("; ")) };
+    let again = if s.further.is_empty() {
+        "the improved model diagnosed again lacks nothing further".to_owned()
+    } else {
+        format!("the improved model diagnosed again names further: {}", s.further.join(", "))
+    };
+    format!("same answer in {} of {} repetitions on recordings told otherwise{but}; {again}", s.same, s.of)
 }
 
 /// What is wrong with the recordings: whatever must be corrected first, and a few notes of each kind.

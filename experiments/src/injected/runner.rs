@@ -1,0 +1,124 @@
+//! Runs cases from plan to row: make and seal, diagnose in a process of its own, open the seal.
+//! What a row is worth is the summary's.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use super::error::InjectedError;
+use super::plan::{Kind, Planned};
+use super::process::{self, Ended};
+use super::row::Row;
+use super::said::Said;
+use super::seal;
+
+/// How cases are run.
+#[derive(Debug, Clone)]
+pub struct Runner {
+    /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json`.
+    pub tool: PathBuf,
+    /// Longest time for one diagnosis.
+    pub limit: Duration,
+    /// Folder for the cases while they run.
+    pub folder: PathBuf,
+    /// Keep them.
+    pub keep: bool,
+}
+
+impl Runner {
+    /// Runs cases, `workers` at a time, and hands out each row as it comes, in no fixed order.
+    ///
+    /// # Errors
+    /// No program, no recordings, or an error of `each`; a case that fails otherwise is a row with its error.
+    pub fn all(
+        &self,
+        cases: &[Planned],
+        workers: usize,
+        each: &(dyn Fn(Row) -> Result<(), InjectedError> + Sync),
+    ) -> Result<(), InjectedError> {
+        if !self.tool.is_file() {
+            let message =
+                "there is no such program; build it with `cargo build --release`, or give its path with --tool";
+            return Err(InjectedError::content(&self.tool, &message));
+        }
+        for case in cases {
+            case.configuration.set.folder()?;
+        }
+        let next = AtomicUsize::new(0);
+        let failed: Mutex<Option<InjectedError>> = Mutex::new(None);
+        let work = || -> Result<(), InjectedError> {
+            while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                each(self.one(case)?)?;
+            }
+            Ok(())
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..workers.max(1) {
+                scope.spawn(|| {
+                    if let Err(e) = work() {
+                        // The other workers stop too.
+                        next.store(cases.len(), Ordering::Relaxed);
+                        *failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(e);
+                    }
+                });
+            }
+        });
+        failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).map_or(Ok(()), Err)
+    }
+
+    /// One case from plan to row.
+    ///
+    /// # Errors
+    /// [`InjectedError`] if the case cannot be made, the program cannot be started, or the seal is broken.
+    pub fn one(&self, case: &Planned) -> Result<Row, InjectedError> {
+        let folder = self.folder.join(case.key.replace('/', "_"));
+        // What a killed call left there.
+        let _ = std::fs::remove_dir_all(&folder);
+        let study = case.make(&folder)?;
+        let mut row = Row::planned(case);
+        let improved = (case.kind == Kind::Again).then(|| folder.join("out"));
+        let said = row.add_answer(&self.diagnose(case, &study, improved.as_deref(), None)?);
+        if let (Some(said), Some(out)) = (said, improved) {
+            row.again = self.again(case, &study, &said, &out)?;
+        }
+        row.add_truth(&seal::open(&folder)?);
+        if !self.keep {
+            // A folder that cannot be removed is removed by the next call.
+            let _ = std::fs::remove_dir_all(&folder);
+        }
+        Ok(row)
+    }
+
+    fn diagnose(
+        &self,
+        case: &Planned,
+        study: &Path,
+        out: Option<&Path>,
+        model: Option<&Path>,
+    ) -> Result<Ended, InjectedError> {
+        let mut command = Command::new(&self.tool);
+        command.arg("--threads").arg(case.configuration.threads.to_string()).arg("diagnose").arg(study).arg("--json");
+        if let Some(out) = out {
+            command.arg("--out").arg(out);
+        }
+        if let Some(model) = model {
+            command.arg("--model").arg(model);
+        }
+        process::run(command, &self.tool, self.limit)
+    }
+
+    /// The names in the diagnosis of the improved model; blank if there are none, `-` if there is no improved model.
+    fn again(&self, case: &Planned, study: &Path, said: &Said, out: &Path) -> Result<String, InjectedError> {
+        let model = out.join("improved.toml");
+        if said.findings.is_empty() || !model.is_file() {
+            return Ok("-".to_owned());
+        }
+        let ended = self.diagnose(case, study, None, Some(&model))?;
+        Ok(match Said::read(&ended.output) {
+            Ok(said) => said.findings.iter().map(|f| f.mechanism.as_str()).collect::<Vec<_>>().join("+"),
+            Err(why) => format!("({why})").replace('+', " "),
+        })
+    }
+}

@@ -1,0 +1,131 @@
+//! How far a finding changes what is predicted, and whether a model follows the recordings better than steady motion would.
+//! It compares free simulations with each other and with what was measured; what follows from it is decided elsewhere.
+
+use crate::evaluate::outcome;
+use crate::model::Model;
+use crate::recording::Run;
+use crate::simulate::Trajectory;
+use crate::state::STATES;
+use serde::Serialize;
+use trimtab_ad::smooth::wrap_angle;
+
+/// Difference of two values of a channel, headings by the shorter way round.
+fn difference(channel: usize, a: f64, b: f64) -> f64 {
+    if channel == 2 { wrap_angle(a - b) } else { a - b }
+}
+
+/// Root mean square difference of two predictions over the root mean square error of the first, in the channel where this is
+/// largest; positions count together. Infinite where one of them diverges everywhere, or the first is exact.
+pub fn change(runs: &[Run], without: &[Trajectory], with: &[Trajectory]) -> f64 {
+    let (mut moved, mut error) = ([0.0; STATES], [0.0; STATES]);
+    let mut any = false;
+    for (run, (before, after)) in runs.iter().zip(without.iter().zip(with)) {
+        if before.diverged_at.is_some() || after.diverged_at.is_some() {
+            continue;
+        }
+        any = true;
+        for ((b, a), m) in before.states.iter().zip(&after.states).zip(&run.measured) {
+            for c in 0..STATES {
+                let Some(m) = m[c] else { continue };
+                moved[c] += difference(c, a[c], b[c]).powi(2);
+                error[c] += difference(c, m, b[c]).powi(2);
+            }
+        }
+    }
+    let share = |moved: f64, error: f64| if moved == 0.0 { 0.0 } else { (moved / error).sqrt() };
+    let position = share(moved[0] + moved[1], error[0] + error[1]);
+    let largest = (2..STATES).map(|c| share(moved[c], error[c])).fold(position, f64::max);
+    if any { largest } else { f64::INFINITY }
+}
+
+/// How a model follows recordings, beside steady motion: surge, sway and yaw rate kept as they were at the start of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Following {
+    /// Runs that a prediction can be judged on.
+    pub runs: usize,
+    /// Those of them that the model simulates with a smaller cVDM than steady motion.
+    pub better_than_steady: usize,
+    /// Mean cVDM of the model \[%\], over the runs on which it does not diverge.
+    pub cvdm: Option<f64>,
+    /// Mean cVDM of steady motion \[%\], over the same runs.
+    pub steady: Option<f64>,
+}
+
+impl Following {
+    /// Judges predictions of runs, one a run, by the cVDM that `trimtab evaluate` prints.
+    pub fn new(model: &Model, runs: &[Run], predicted: &[Trajectory], max_yaw_rate: f64) -> Self {
+        let mut pairs = Vec::new();
+        let (mut count, mut better) = (0, 0);
+        for (run, p) in runs.iter().zip(predicted) {
+            let judged = |t: &Trajectory| outcome(run, t, &model.ship, max_yaw_rate).deviation().map(|d| d.cvdm);
+            let Some(steady) = judged(&steady(run)) else { continue };
+            count += 1;
+            let Some(own) = judged(p) else { continue };
+            better += usize::from(own < steady);
+            pairs.push((own, steady));
+        }
+        let mean = |of: fn(&(f64, f64)) -> f64| crate::statistics::mean(pairs.iter().map(of));
+        Self { runs: count, better_than_steady: better, cvdm: mean(|p| p.0), steady: mean(|p| p.1) }
+    }
+
+    /// Share of the runs on which the model is better than steady motion; 1 of none.
+    pub fn share(&self) -> f64 {
+        if self.runs == 0 { 1.0 } else { self.better_than_steady as f64 / self.runs as f64 }
+    }
+}
+
+/// Steady motion from a run's first state: `x' = u cos psi - v sin psi`, `y' = u sin psi + v cos psi`, `psi' = r` with u, v and r kept.
+fn steady(run: &Run) -> Trajectory {
+    let mut state = run.initial;
+    let mut states = vec![state; run.measured.len()];
+    for next in states.iter_mut().skip(1) {
+        let [x, y, psi, u, v, r] = state;
+        // The heading in the middle of the step: exact to second order on a circle.
+        let (sin, cos) = (psi + 0.5 * r * run.dt).sin_cos();
+        state = [x + run.dt * (u * cos - v * sin), y + run.dt * (u * sin + v * cos), psi + run.dt * r, u, v, r];
+        *next = state;
+    }
+    Trajectory { dt: run.dt, states, diverged_at: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, model, runs, with};
+    use crate::evaluate::predict_all;
+
+    #[test]
+    fn a_change_is_measured_in_units_of_the_error_there_is() {
+        let truth = with(&[("current.north", 0.4)]);
+        let runs = runs(&truth, 6);
+        let of = |m: &Model| predict_all(m, &runs, RK4);
+        let (without, with) = (of(&model()), of(&truth));
+        let right = change(&runs, &without, &with);
+        assert!((0.9..1.1).contains(&right), "{right}");
+        let half = change(&runs, &without, &of(&super::tests::with(&[("current.north", 0.2)])));
+        assert!((0.4..0.6).contains(&half), "{half}");
+        assert_eq!(change(&runs, &without, &without), 0.0);
+        let lost: Vec<Trajectory> = without.iter().map(|t| Trajectory { diverged_at: Some(3), ..t.clone() }).collect();
+        assert_eq!(change(&runs, &without, &lost), f64::INFINITY);
+    }
+
+    #[test]
+    fn steady_motion_is_a_circle_that_closes() {
+        let mut run = runs(&model(), 1).remove(0);
+        let steps = run.measured.len() - 1;
+        run.initial = [10.0, -5.0, 0.3, 4.0, 1.0, std::f64::consts::TAU / (steps as f64 * run.dt)];
+        let end = steady(&run).states[steps];
+        assert!((end[0] - 10.0).abs() < 1e-9 && (end[1] + 5.0).abs() < 1e-9, "{end:?}");
+    }
+
+    #[test]
+    fn the_model_that_sailed_is_better_than_steady_motion_in_manoeuvres_and_a_wrong_one_is_not() {
+        let runs = runs(&model(), 6);
+        let following = |m: &Model| Following::new(m, &runs, &predict_all(m, &runs, RK4), 0.0314);
+        let right = following(&model());
+        assert_eq!((right.runs, right.better_than_steady, right.share()), (6, 6, 1.0));
+        // A ship whose rudder works the wrong way.
+        let wrong = following(&with(&[("rudder.lift1", -3.2)]));
+        assert!(wrong.share() < 0.5, "{wrong:?}");
+    }
+}

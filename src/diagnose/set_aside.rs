@@ -1,0 +1,71 @@
+//! Runs that only prove: those that the user marked, or a part of the recordings that is set aside where none is marked.
+//! It divides recordings and looks at no value in them.
+
+use super::settings::{FEWEST_SET_ASIDE, FEWEST_TO_DIVIDE, SET_ASIDE_EVERY};
+use crate::recording::Run;
+use std::borrow::Cow;
+
+/// Runs to find with, and runs to prove with.
+pub struct Divided<'r> {
+    /// To locate, name and model with.
+    pub training: Cow<'r, [Run]>,
+    /// To prove with.
+    pub held_out: Cow<'r, [Run]>,
+    /// Recordings that were set aside here; 0 where the user marked some.
+    pub set_aside: usize,
+}
+
+impl<'r> Divided<'r> {
+    /// Keeps the user's division; without held-out runs every fourth recording, and at least three, are set aside, where there are enough. Recordings stay
+    /// whole: runs of one share what is unknown.
+    pub fn new(training: Cow<'r, [Run]>, held_out: &'r [Run]) -> Self {
+        if !held_out.is_empty() {
+            return Self { training, held_out: Cow::Borrowed(held_out), set_aside: 0 };
+        }
+        let mut recordings: Vec<&str> = Vec::new();
+        for run in training.iter() {
+            if !recordings.contains(&run.recording.as_str()) {
+                recordings.push(&run.recording);
+            }
+        }
+        if recordings.len() < FEWEST_TO_DIVIDE {
+            return Self { training, held_out: Cow::Owned(Vec::new()), set_aside: 0 };
+        }
+        let count = FEWEST_SET_ASIDE.max(recordings.len() / SET_ASIDE_EVERY);
+        let aside: Vec<String> = (1..=count).map(|i| recordings[i * recordings.len() / count - 1].to_owned()).collect();
+        let (held_out, kept): (Vec<Run>, Vec<Run>) =
+            training.into_owned().into_iter().partition(|r| aside.contains(&r.recording));
+        Self { training: Cow::Owned(kept), held_out: Cow::Owned(held_out), set_aside: aside.len() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{model, runs};
+
+    #[test]
+    fn marked_runs_are_kept_and_else_every_fourth_recording_is_set_aside_whole() {
+        let mut all = runs(&model(), 16);
+        let marked = Divided::new(Cow::Borrowed(&all[..12]), &all[12..]);
+        assert_eq!((marked.training.len(), marked.held_out.len(), marked.set_aside), (12, 4, 0));
+        // Windows of one recording go together.
+        for (i, r) in all.iter_mut().enumerate() {
+            r.recording = format!("recording {}", i / 2);
+        }
+        let divided = Divided::new(Cow::Borrowed(&all), &[]);
+        assert_eq!((divided.training.len(), divided.held_out.len(), divided.set_aside), (10, 6, 3));
+        let of = |runs: &[Run]| -> Vec<String> { runs.iter().map(|r| r.recording.clone()).collect() };
+        assert_eq!(of(&divided.held_out)[0], "recording 1");
+        assert!(of(&divided.training).iter().all(|r| !of(&divided.held_out).contains(r)));
+    }
+
+    #[test]
+    fn few_recordings_all_train() {
+        let all = runs(&model(), 7);
+        let divided = Divided::new(Cow::Owned(all), &[]);
+        assert_eq!((divided.training.len(), divided.held_out.len(), divided.set_aside), (7, 0, 0));
+        let more = Divided::new(Cow::Owned(runs(&model(), 8)), &[]);
+        assert_eq!((more.training.len(), more.held_out.len(), more.set_aside), (5, 3, 3));
+    }
+}

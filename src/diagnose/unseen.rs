@@ -1,0 +1,158 @@
+//! One finding on runs that no earlier step has used: a model with it against the same model refitted without it.
+//! It computes gains and their intervals over recordings; what follows from them is decided elsewhere.
+
+use super::filter::{Filter, Wanted};
+use super::grade::GainTest;
+use super::noise::Noise;
+use super::settings::FEWEST_SET_ASIDE;
+use crate::audit::settled;
+use crate::evaluate::{self, Judging, summarise};
+use crate::model::Model;
+use crate::recording::Run;
+use crate::simulate::Integration;
+use crate::statistics::{mean, student_quantile, variance};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What unseen runs say of one finding: the model without it, refitted, (before) against the model with it (after).
+#[derive(Clone, Debug, Serialize)]
+pub struct FindingProof {
+    /// Recordings.
+    pub recordings: usize,
+    /// Their runs.
+    pub runs: usize,
+    /// Gain in log-likelihood over all of them.
+    pub log_likelihood_gain: f64,
+    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three.
+    pub log_likelihood_ci95: Option<[f64; 2]>,
+    /// Mean cVDM without the finding \[%\].
+    pub before: Option<f64>,
+    /// Mean cVDM with it \[%\].
+    pub after: Option<f64>,
+    /// Relative improvement of the mean cVDM, `1 - after/before`.
+    pub improvement: Option<f64>,
+    /// Its 95 % bootstrap interval over recordings; absent with fewer than three.
+    pub improvement_ci95: Option<[f64; 2]>,
+    /// Mean distance of the simulated from the measured position \[m\], without and with it; absent where none was measured.
+    pub position: Option<[f64; 2]>,
+    /// Mean difference of the heading \[rad\], without and with it.
+    pub heading: Option<[f64; 2]>,
+    /// Mean difference of the surge speed \[m/s\], without and with it.
+    pub speed: Option<[f64; 2]>,
+}
+
+impl FindingProof {
+    /// Compares `after` with `before` on held-out runs, both under the same noise.
+    pub fn new(
+        before: &Model,
+        after: &Model,
+        noise: &Noise,
+        integration: Integration,
+        runs: &[Run],
+        judging: &Judging,
+    ) -> Self {
+        let evaluation = evaluate::prove(before, after, runs, judging);
+        let all: Vec<_> = evaluation.trajectories.iter().collect();
+        let summary = summarise("held out".into(), &all, &judging.settings);
+        let (sound, _) = settled(runs, before.ship.hull.lpp);
+        let gains = by_recording(&sound, [before, after].map(|m| likelihoods(m, integration, noise, &sound)));
+        let of = |channel: usize| {
+            let both = [summary.md_baseline[channel], summary.md_fitted[channel]].map(|e| e.map(|e| e.value));
+            Some([both[0]?, both[1]?])
+        };
+        let position = of(0).zip(of(1)).map(|(x, y)| [x[0].hypot(y[0]), x[1].hypot(y[1])]);
+        Self {
+            recordings: gains.len(),
+            runs: runs.len(),
+            log_likelihood_gain: gains.iter().sum(),
+            log_likelihood_ci95: interval_of_sum(&gains),
+            before: summary.cvdm_baseline.map(|e| e.value),
+            after: summary.cvdm_fitted.map(|e| e.value),
+            improvement: summary.cvdm_improvement.map(|e| e.value),
+            improvement_ci95: summary.cvdm_improvement.and_then(|e| e.ci95),
+            position,
+            heading: of(2),
+            speed: of(3),
+        }
+    }
+
+    /// The gain in log-likelihood.
+    pub fn likelihood(&self) -> GainTest {
+        GainTest { gain: self.log_likelihood_gain, ci95: self.log_likelihood_ci95 }
+    }
+
+    /// The improvement of the free simulation.
+    pub fn prediction(&self) -> Option<GainTest> {
+        Some(GainTest { gain: self.improvement?, ci95: self.improvement_ci95 })
+    }
+}
+
+/// Log-likelihood of each run.
+fn likelihoods(model: &Model, integration: Integration, noise: &Noise, runs: &[Run]) -> Vec<f64> {
+    let mut out = Vec::with_capacity(runs.len());
+    let filter = Filter::new(model, integration, &[]);
+    filter.each(runs, noise, Wanted::default(), |_, pass| pass.log_likelihood, |l| out.push(l));
+    out
+}
+
+/// Gains summed over the runs of each recording.
+fn by_recording(runs: &[Run], [before, after]: [Vec<f64>; 2]) -> Vec<f64> {
+    let mut sums: BTreeMap<&str, f64> = BTreeMap::new();
+    for (run, (b, a)) in runs.iter().zip(before.iter().zip(&after)) {
+        *sums.entry(run.recording.as_str()).or_default() += a - b;
+    }
+    sums.into_values().collect()
+}
+
+/// The 95 % interval of a sum of independent values, by Student's t.
+fn interval_of_sum(values: &[f64]) -> Option<[f64; 2]> {
+    let count = values.len();
+    if count < FEWEST_SET_ASIDE {
+        return None;
+    }
+    let (mean, variance) = (mean(values.iter().copied())?, variance(values)?);
+    let half = student_quantile(0.975, (count - 1) as f64) * (variance / count as f64).sqrt();
+    Some([mean - half, mean + half].map(|v| v * count as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, model, noise, runs, with};
+    use crate::diagnose::settings::Settings;
+
+    #[test]
+    fn the_interval_of_a_sum_is_that_of_students_t() {
+        // Mean 2, standard deviation 1, three values: t = 4.3027.
+        let [low, high] = interval_of_sum(&[1.0, 2.0, 3.0]).unwrap();
+        let half = 4.302_652_73 * 3f64.sqrt();
+        assert!((low - (6.0 - half)).abs() < 1e-6 && (high - (6.0 + half)).abs() < 1e-6, "{low} {high}");
+        assert!(interval_of_sum(&[1.0, 2.0]).is_none());
+    }
+
+    #[test]
+    fn unseen_runs_of_a_current_gain_by_it_lose_by_its_mirror_image_and_by_a_model_against_itself_nothing() {
+        let truth = with(&[("current.north", 0.4)]);
+        let held_out = runs(&truth, 6);
+        let judging = Settings::default().judging;
+        let against = |after: &Model| FindingProof::new(&model(), after, &noise(), RK4, &held_out, &judging);
+        let right = against(&truth);
+        assert!(right.recordings == 6 && right.likelihood().ci95.is_some_and(|[low, _]| low > 0.0), "{right:?}");
+        assert!(right.prediction().is_some_and(|p| p.gain > 0.5));
+        assert!(right.position.is_some_and(|[b, a]| a < 0.5 * b) && right.heading.is_some() && right.speed.is_some());
+        let wrong = against(&with(&[("current.north", -0.4)]));
+        assert!(wrong.likelihood().ci95.is_some_and(|[_, high]| high < 0.0), "{wrong:?}");
+        let same = against(&model());
+        assert_eq!((same.log_likelihood_gain, same.improvement), (0.0, Some(0.0)));
+    }
+
+    #[test]
+    fn two_recordings_give_a_gain_and_no_interval() {
+        let truth = with(&[("current.north", 0.4)]);
+        let held_out = runs(&truth, 2);
+        let judging = Settings::default().judging;
+        let proof = FindingProof::new(&model(), &truth, &noise(), RK4, &held_out, &judging);
+        assert!(proof.log_likelihood_gain > 0.0 && proof.log_likelihood_ci95.is_none());
+        assert!(proof.improvement.is_some() && proof.improvement_ci95.is_none());
+    }
+}
