@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::effect::{Expected, Injection};
 use super::plan::Planned;
 use super::process::Ended;
-use super::said::{Finding, HeldOut, Said};
+use super::said::{Finding, HeldOut, Interval, Said};
 use super::seal::{Manifest, Witness};
 
 /// A row of the results. Lists within a cell are joined by `+`, the names of a set by `|`; numbers with names are JSON.
@@ -108,10 +108,8 @@ fn line(text: &str) -> String {
 }
 
 fn proof(h: &HeldOut) -> Proof {
-    let ([a, b], [c, d]) = (
-        h.log_likelihood_ci95.map_or([None; 2], |ci| ci.map(Some)),
-        h.improvement_ci95.map_or([None; 2], |ci| ci.map(Some)),
-    );
+    let ends = |interval: Interval| interval.unwrap_or([None; 2]);
+    let ([a, b], [c, d]) = (ends(h.log_likelihood_ci95), ends(h.improvement_ci95.or(h.ci95)));
     [h.log_likelihood_gain, a, b, h.improvement, c, d]
 }
 
@@ -168,7 +166,7 @@ impl Row {
         self.found_sessions = joined(&|f| f.sessions.join("|"));
         let parameters = said.findings.iter().flat_map(|f| &f.parameters);
         let found = |p: &super::said::Parameter| -> Found {
-            (p.name.clone(), p.value, p.ci95.map(|c| c[0]), p.ci95.map(|c| c[1]), p.unit.clone())
+            (p.name.clone(), p.value, p.ci95.and_then(|c| c[0]), p.ci95.and_then(|c| c[1]), p.unit.clone())
         };
         self.parameters = json(&parameters.map(found).collect::<Vec<_>>());
         let withdrawn = said.withdrawn.iter().map(|w| format!("{}:{}", w.mechanism, w.grade));

@@ -76,7 +76,7 @@ pub struct Parameter {
     /// Estimate.
     pub value: Option<f64>,
     /// Its 95 % interval.
-    pub ci95: Option<[f64; 2]>,
+    pub ci95: Interval,
     /// Unit.
     pub unit: String,
 }
@@ -98,13 +98,17 @@ pub struct HeldOut {
     /// Gain in log-likelihood.
     pub log_likelihood_gain: Option<f64>,
     /// Its 95 % interval.
-    pub log_likelihood_ci95: Option<[f64; 2]>,
+    pub log_likelihood_ci95: Interval,
     /// Relative improvement in free simulation.
     pub improvement: Option<f64>,
-    /// Its 95 % interval.
-    #[serde(alias = "ci95")]
-    pub improvement_ci95: Option<[f64; 2]>,
+    /// Its 95 % interval, in the proof of a finding.
+    pub improvement_ci95: Interval,
+    /// The same in the proof of all findings together.
+    pub ci95: Interval,
 }
+
+/// The ends of an interval; one that is not finite is absent.
+pub type Interval = Option<[Option<f64>; 2]>;
 
 /// How many repetitions of the analysis agree.
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
@@ -191,9 +195,9 @@ mod tests {
             "held_out": {"runs": 3, "improvement": 0.2, "ci95": [0.1, 0.3], "log_likelihood_gain": 12.0}, "moves": []}"#;
         let said = Said::read(old).unwrap();
         assert_eq!((said.findings[0].grade.as_str(), said.findings[0].set()), ("", vec!["current", "tide"]));
-        assert_eq!(said.held_out.unwrap().improvement_ci95, Some([0.1, 0.3]));
+        assert_eq!(said.held_out.unwrap().ci95, Some([Some(0.1), Some(0.3)]));
         let new = r#"{"verdict": "named", "findings": [{"mechanism": "current", "grade": "confirmed",
-            "held_out": {"recordings": 3, "log_likelihood_ci95": [2.0, 9.0], "improvement_ci95": [0.1, 0.3]}}],
+            "held_out": {"recordings": 3, "log_likelihood_ci95": [2.0, 9.0], "improvement_ci95": [0.1, null], "ci95": [0.1, 0.3]}}],
             "withdrawn": [{"mechanism": "tide", "grade": "refuted", "reason": "worse"}], "stability": {"same": 5, "of": 6},
             "admission": {"issues": [{"mechanism": "sign_error", "blocking": true}, {"mechanism": "held"}]},
             "recordings": {"doubts": [{"severity": "error", "fault": "unit_error"}, {"severity": "warning", "fault": "held"}]}}"#;
