@@ -50,6 +50,7 @@ fn expected(command: &str) -> &'static [&'static str] {
         "maneuver turning" => &["maneuver_turning.json", "turning.png", "turning.csv", "turning_measures.csv"],
         "maneuver zigzag" => &["maneuver_zigzag.json", "zigzag.png", "zigzag.csv", "zigzag_measures.csv"],
         "maneuver stopping" => &["maneuver_stopping.json", "stopping.png", "stopping.csv", "stopping_measures.csv"],
+        "plan" => &["plan.json", "trials.csv", "detectable.csv", "isolability.csv", "isolability_map.png"],
         "terms" => &["terms.json", "parameters.csv"],
         "demo" => &["demo.json", "fitted.toml", "fit.txt", "parameters.csv", "summary.csv", "tracks.png", "curves.png"],
         _ => &[],

@@ -109,6 +109,7 @@ struct Report<'a> {
 /// What a plan is made from.
 struct Prepared {
     path: PathBuf,
+    files: Vec<PathBuf>,
     model: Model,
     plan: PlanSettings,
     maneuver: ManeuverSettings,
@@ -121,6 +122,7 @@ impl Prepared {
             let loaded = Loaded::without_runs(&StudyArgs { study: study.clone(), model: args.model.clone() })?;
             return Ok(Self {
                 path: study.clone(),
+                files: loaded.files(false),
                 plan: loaded.plan_settings()?,
                 maneuver: loaded.maneuver_settings()?,
                 diagnose: loaded.diagnose_settings()?,
@@ -132,6 +134,7 @@ impl Prepared {
         };
         Ok(Self {
             path: ship.clone(),
+            files: vec![ship.clone(), model.clone()],
             model: read_model(model, Ship::read(ship)?)?,
             plan: PlanSettings::default(),
             maneuver: ManeuverSettings::default(),
@@ -149,6 +152,10 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         _ => return Err(CliError::Argument("--part takes two mechanisms, as in `--part current,mean_wind`".into())),
     };
     let p = Prepared::new(args)?;
+    output.reads_files(&p.files);
+    output.settings("plan", &p.plan)?;
+    output.settings("maneuver", &p.maneuver)?;
+    output.settings("diagnose", &p.diagnose)?;
     let question = Question { model: &p.model, plan: &p.plan, maneuver: &p.maneuver, diagnose: &p.diagnose };
     let bar = progress("planning");
     let planned = plan(&question, pair, &|step| bar.set_message(format!("planning: {step}")));
@@ -159,10 +166,10 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         ("detectable.csv", detectable_table(&planned)),
         ("isolability.csv", isolability_table(&planned)),
     ] {
-        output.file(name, &csv(&table)?)?;
+        output.file(name, &csv(&table)?);
     }
     if !planned.isolability.mechanisms.is_empty() {
-        output.figure("isolability_map", || isolability_figure(&planned))?;
+        output.figure("isolability_map", || isolability_figure(&planned));
     }
     let (ship, model) = (p.model.ship.name.as_str(), p.model.name.as_str());
     let text = format!("PLAN for {ship}, model {model}\n{}", summary(&planned));
