@@ -141,7 +141,7 @@ pub const SAME_LAG: f64 = 0.5;
 /// With the lag the response is explained so much better that at most this share of the squares is left.
 pub const LAG_LEAVES: f64 = 0.7;
 /// What an actuator explains of the response at all: with it at most this share of the squares is left, else it tells nothing.
-pub const EXPLAINS: f64 = 0.6;
+pub const EXPLAINS: f64 = 0.7;
 /// Clocks of two sessions differ where the lag of a channel does by this share of the time in which the ship sails its length.
 pub const SESSION_SHARE: f64 = 0.1;
 /// Longest lag looked for, as a share of the run, and in seconds.

@@ -12,6 +12,7 @@ use super::response::Curve;
 use super::series::Series;
 use super::units::{SPEED_GAINS, known_gain};
 use crate::recording::Channel;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Track against velocity: sums over rows of the track's velocity, the recorded one turned by the heading (along the earth's axes),
@@ -216,26 +217,31 @@ pub struct Actuators {
 struct Effect {
     /// Evidence that it acts to its own side, less evidence that it acts to the other.
     evidence: f64,
-    /// Squares of the response that are left with it, and without.
+    /// Shares of the squares of the response that are left with it, one a run.
     left: f64,
-    without: f64,
+    /// Runs.
+    runs: f64,
+    /// By lag, what is spared of these shares where it acts to its own side at that lag.
+    late: BTreeMap<isize, f64>,
 }
 
 impl Effect {
     fn add(&mut self, curve: Option<&Curve>) {
         let Some(curve) = curve else { return };
         let zero = curve.zero();
-        // Where a lag with the right sign explains the response as well, the sign is not in doubt.
-        let late = (0..curve.left.len()).any(|i| curve.sign[i] > 0.0 && curve.left[i] < curve.left[zero]);
-        if curve.sign[zero] > 0.0 || !late {
-            self.evidence += curve.sign[zero] * curve.effect(zero);
-            self.left += curve.left[zero] / curve.without;
-            self.without += 1.0;
+        self.evidence += curve.sign[zero] * curve.effect(zero);
+        self.left += curve.left[zero] / curve.without;
+        self.runs += 1.0;
+        for (i, lag) in curve.lags.iter().enumerate().filter(|(i, _)| curve.sign[*i] > 0.0) {
+            *self.late.entry(*lag).or_default() += 1.0 - curve.left[i] / curve.without;
         }
     }
 
+    /// Whether it acts to the other side in all runs together, and no lag that they share explains that as well: in one run a rudder that
+    /// swings to and fro is as good as turned when it is half a period late.
     fn turned(&self) -> bool {
-        self.evidence < -SIGN_EVIDENCE && self.left < EXPLAINS * self.without
+        let is_late = self.late.values().any(|spared| self.runs - spared < self.left);
+        self.evidence < -SIGN_EVIDENCE && self.left < EXPLAINS * self.runs && !is_late
     }
 }
 
