@@ -358,7 +358,7 @@ fn contradictions() -> Vec<Case> {
         case("t in ms", scaled("t", 1000.0), "unit_error", Channel::R, Where::Runs(30), "column map"),
         case(
             "n in rad/s read as rps",
-            scaled("n", 6.283_185),
+            scaled("n", std::f64::consts::TAU),
             "advance_ratio",
             Channel::N,
             Where::Runs(30),
@@ -366,7 +366,7 @@ fn contradictions() -> Vec<Case> {
         ),
         case(
             "n in rad/s in one run",
-            Files::sound().run(RUN, |t| t.each("n", |_, n| 6.283_185 * n)),
+            Files::sound().run(RUN, |t| t.each("n", |_, n| std::f64::consts::TAU * n)),
             "advance_ratio",
             Channel::N,
             here,

@@ -146,7 +146,7 @@ mod tests {
         let bytes = std::fs::read(&path).unwrap();
         let lines: Vec<usize> = (0..bytes.len()).filter(|i| bytes[*i] == b'\n').map(|i| i + 1).collect();
         assert_eq!(lines.len(), 4);
-        let near = |cut: &usize| cut % 97 == 0 || lines.iter().any(|end| end.abs_diff(*cut) < 2);
+        let near = |cut: &usize| cut.is_multiple_of(97) || lines.iter().any(|end| end.abs_diff(*cut) < 2);
         for cut in (0..=bytes.len()).filter(near) {
             std::fs::write(&path, &bytes[..cut]).unwrap();
             let results = Results::open(&path).unwrap();
