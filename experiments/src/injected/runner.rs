@@ -99,7 +99,13 @@ impl Runner {
         model: Option<&Path>,
     ) -> Result<Ended, InjectedError> {
         let mut command = Command::new(&self.tool);
-        command.arg("--threads").arg(case.configuration.threads.to_string()).arg("diagnose").arg(study).arg("--json");
+        // The repetitions would take seven times as long, and what is stable is asked by cases of its own.
+        command
+            .arg("--threads")
+            .arg(case.configuration.threads.to_string())
+            .arg("diagnose")
+            .arg(study)
+            .args(["--json", "--once"]);
         if let Some(out) = out {
             command.arg("--out").arg(out);
         }
