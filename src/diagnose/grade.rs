@@ -1,7 +1,7 @@
 //! The grade of a finding as a pure function of its tests: what the unseen runs, its interval and its size say of it.
 //! It estimates nothing and knows no runs; every number it compares with is in the settings.
 
-use super::settings::{ISOLATED_SHARE, MATERIAL_SHARE, RESOLVED_SAMPLES};
+use super::settings::{FORM_TOLERANCE, MATERIAL_SHARE, RESOLVED_SAMPLES};
 use serde::Serialize;
 
 /// How well a finding is supported.
@@ -18,7 +18,7 @@ pub enum Grade {
     Immaterial,
     /// The interval of its size does not exclude zero.
     Undetermined,
-    /// Weather most of whose effect the ship's own parameters can take over, on the headings that were sailed.
+    /// Weather nearly all of whose effect the ship's own parameters can take over, on the headings that were sailed.
     NotIsolated,
     /// Most repetitions on the same recordings told otherwise do not find it.
     Unstable,
@@ -84,7 +84,8 @@ pub fn grade(tests: &FindingTests) -> Grade {
         Grade::Refuted
     } else if !tests.excludes_zero {
         Grade::Undetermined
-    } else if tests.isolated < ISOLATED_SHARE {
+    } else if tests.isolated < FORM_TOLERANCE {
+        // What is left is no more than the form of the ship's own forces is known.
         Grade::NotIsolated
     } else if tests.change < MATERIAL_SHARE || tests.shift.is_some_and(|s| s < RESOLVED_SAMPLES) {
         Grade::Immaterial
@@ -150,7 +151,7 @@ mod tests {
     #[test]
     fn an_interval_through_zero_and_a_change_too_small_to_matter_are_not_named() {
         assert_eq!(grade(&FindingTests { excludes_zero: false, ..sound() }), Grade::Undetermined);
-        assert_eq!(grade(&FindingTests { isolated: 0.49, ..sound() }), Grade::NotIsolated);
+        assert_eq!(grade(&FindingTests { isolated: 0.09, ..sound() }), Grade::NotIsolated);
         assert_eq!(grade(&FindingTests { change: 0.049, ..sound() }), Grade::Immaterial);
         assert_eq!(grade(&FindingTests { change: 0.05, ..sound() }), Grade::Confirmed);
         // A clock that is off by less than half a sample.

@@ -331,9 +331,6 @@ numbers! {
 
     /// Share of the error of predictions that a finding must change, in one channel at least, to matter.
     MATERIAL_SHARE: f64 = 0.05, "the default share of the users' requirement; not tuned";
-    /// Share of the information of weather that must be left beside the ship's own parameters: headings all round leave 0.8 and more,
-    /// runs that all sail one way 0.01 to 0.3.
-    ISOLATED_SHARE: f64 = 0.5, "by the meaning of a majority; not tuned";
     /// Sample periods that a clock or a lag must be off by to be resolved.
     RESOLVED_SAMPLES: f64 = 0.5, "half a sample period: less is not resolved by the record";
     /// Share of the runs that a model must simulate better than steady motion does, to be a base on which anything is named.

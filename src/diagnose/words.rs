@@ -167,7 +167,7 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
 fn not_isolated(f: &Finding) -> String {
     format!(
         "These recordings cannot tell: {} is significant, but on the headings that were sailed the ship's own parameters (a side force, \
-         trim, resistance, the compass zero) can take over most of its effect; the same runs on opposite headings would part them.",
+         trim, resistance, the compass zero) can take over nearly all of its effect; the same runs on opposite headings would part them.",
         f.title
     )
 }

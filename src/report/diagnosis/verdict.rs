@@ -101,7 +101,7 @@ fn withdrawn(f: &Finding, units: Units) -> String {
         Grade::Immaterial => "it is measurable, and too small to matter",
         Grade::NotIsolated => {
             "on the headings that were sailed the ship's own parameters (a side force, trim, resistance, the compass zero) can take over \
-             most of its effect; the same runs on opposite headings would part them"
+             nearly all of its effect; the same runs on opposite headings would part them"
         }
         Grade::Unstable => "most repetitions on the same recordings told otherwise do not find it",
         Grade::Undetermined => "the interval of its size contains zero",
