@@ -197,8 +197,10 @@ impl Diagnosed {
 
     /// Sensor errors as diagnosed and by kinematics, the statistic of each question, and its value on the turning circles.
     pub fn figure(&self) -> Figure {
-        let amplitude =
-            |name: &str| self.cases[0].diagnosis.findings.iter().flat_map(|f| &f.parameters).find(|p| p.name == name);
+        // What is measured and too small to be named is shown too.
+        let first = &self.cases[0].diagnosis;
+        let found = first.findings.iter().chain(&first.withdrawn);
+        let amplitude = |name: &str| found.clone().flat_map(|f| &f.parameters).find(|p| p.name == name);
         let count = self.kinematics.len() as f64;
         let places = |values: &dyn Fn(&Agreement) -> f64| {
             self.kinematics.iter().enumerate().map(|(i, a)| (i as f64 + 1.0, values(a))).collect::<Vec<_>>()
