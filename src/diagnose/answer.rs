@@ -104,22 +104,26 @@ impl Answer {
         self.decision.unlisted.filter(|_| self.base.holds)
     }
 
-    /// Repeats the analysis with the recordings told otherwise and, once, with the improved model. A finding that one of the
+    /// Repeats the analysis with the recordings as they were given, told otherwise, and, once, with the improved model. A finding that one of the
     /// repetitions does not find is suspected at most; one that most of them do not find is withdrawn. Nothing is repeated where
     /// nothing was found or the user does not want it.
     ///
     /// # Errors
     /// When the catalogue's terms cannot be added to a changed model.
-    pub fn repeated(self, question: &Question, held_out: &[Run]) -> Result<(Self, Option<Stability>), DiagnoseError> {
+    pub fn repeated(
+        self,
+        question: &Question,
+        runs: &[Run],
+        held_out: &[Run],
+    ) -> Result<(Self, Option<Stability>), DiagnoseError> {
         if self.findings.is_empty() || !question.settings.repeat {
             return Ok((self, None));
         }
-        let runs = self.recorded();
         let own = Brief::new(self.verdict, &self.findings);
         let mut others = Vec::with_capacity(CHANGES.len());
         for (i, change) in CHANGES.iter().enumerate() {
             (question.progress)(&format!("repeating ({} of {}): {}", i + 1, CHANGES.len(), change.name));
-            others.push(brief(question.settings, change, question.model, &runs, held_out)?);
+            others.push(brief(question.settings, change, question.model, runs, held_out)?);
         }
         let found: Vec<usize> =
             (0..own.findings.len()).map(|f| others.iter().filter(|o| own.is_found_in(f, o)).count()).collect();
@@ -150,7 +154,7 @@ impl Answer {
             answer = answer.without_unstable(question, &unstable, held_out);
         }
         (question.progress)("diagnosing the improved model again");
-        let further = answer.lacking(question, &runs, held_out)?;
+        let further = answer.lacking(question, runs, held_out)?;
         let same = variants.iter().filter(|v| v.same).count();
         Ok((answer, Some(Stability { same, of: variants.len(), further, variants })))
     }
@@ -165,17 +169,6 @@ impl Answer {
         let as_they_are = Change { name: "", model: Model::clone, run: |r| vec![r.clone()] };
         let again = brief(question.settings, &as_they_are, &improved, runs, held_out)?;
         Ok(again.names().into_iter().filter(|n| n != PUSH).collect())
-    }
-
-    /// The training runs without the windows of a push that was found in them.
-    pub fn recorded(&self) -> Vec<Run> {
-        let mut runs = self.kept.selection.tests.fit.runs.clone();
-        for w in self.kept.push.iter().flat_map(|p| &p.windows) {
-            if let Some(run) = runs.get_mut(w.index) {
-                run.disturbed.retain(|d| *d != w.samples);
-            }
-        }
-        runs
     }
 }
 

@@ -42,10 +42,11 @@ pub fn diagnose<'r>(
     settings.limits()?;
     let question = Question::new(model, settings, progress)?;
     let Divided { training, held_out, set_aside } = Divided::new(runs.into(), held_out);
+    // What is repeated begins with the runs as they were given: what the analysis leaves out of them is a part of its answer.
+    let given: Vec<Run> = if settings.repeat || settings.calibrate > 0 { training.to_vec() } else { Vec::new() };
     let answer: Answer = Answer::new(&question, training, &held_out);
-    let (answer, stability): (Answer, Option<Stability>) = answer.repeated(&question, &held_out)?;
-    let rates: Option<ErrorRates> =
-        ErrorRates::new(&question, &answer, &answer.recorded(), &held_out, settings.calibrate)?;
+    let (answer, stability): (Answer, Option<Stability>) = answer.repeated(&question, &given, &held_out)?;
+    let rates: Option<ErrorRates> = ErrorRates::new(&question, &answer, &given, &held_out, settings.calibrate)?;
     let proof: Option<HeldOut> = proof(&question, &answer, &held_out);
     Ok(Diagnosis { set_aside, stability, error_rates: rates, ..report(&question, answer, proof) })
 }
