@@ -9,6 +9,7 @@ mod diagnose;
 mod error;
 mod evaluate;
 mod fit;
+mod import;
 mod load;
 mod maneuver;
 mod output;
@@ -16,6 +17,7 @@ mod plan;
 mod processor;
 mod progress;
 mod simulate;
+mod split;
 mod terminal;
 mod terms;
 
@@ -30,6 +32,7 @@ use trimtab::ranks::{Ranks, Traffic};
 const AFTER_HELP: &str = "\
 Begin with
   trimtab demo                       a complete example in seconds; leaves a study to copy
+  trimtab import LOG... --out STUDY  make a study of logs: CSV, NMEA 0183, Parquet
   trimtab check STUDY                are the recordings fit to be used?
   trimtab fit STUDY --out results    fit the model; writes results/fitted.toml
   trimtab evaluate STUDY --model results/fitted.toml
@@ -63,6 +66,8 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Import(import::Args),
+    Split(split::Args),
     Check(check::Args),
     Simulate(simulate::Args),
     Fit(fit::Args),
@@ -121,6 +126,8 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Evaluate(args) => evaluate::run(args, ranks),
         // The work of the others is not divided: one rank does it.
         _ if !ranks.is_first() => Ok(Answer::Yes),
+        Command::Import(args) => import::run(args),
+        Command::Split(args) => split::run(args),
         Command::Check(args) => check::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Diagnose(args) => diagnose::run(args),

@@ -119,6 +119,7 @@ const PHRASES: &[(&str, Meaning)] = &[
     ("rpm", Meaning::Channel(Channel::N)),
     ("rps", Meaning::Channel(Channel::N)),
     ("revs", Meaning::Channel(Channel::N)),
+    ("rev", Meaning::Channel(Channel::N)),
     ("revolutions", Meaning::Channel(Channel::N)),
     ("shaft speed", Meaning::Channel(Channel::N)),
     ("propeller rate", Meaning::Channel(Channel::N)),

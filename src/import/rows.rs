@@ -78,6 +78,11 @@ pub fn rows(signals: &Signals) -> Rows {
 }
 
 impl Rows {
+    /// Time from the first to the last row \[s\].
+    pub fn duration(&self) -> f64 {
+        self.t.last().zip(self.t.first()).map_or(0.0, |(last, first)| last - first)
+    }
+
     /// Cuts the rows where more than `longest` seconds pass, and at the times in `boundaries` where anything is missing.
     pub fn cut(&self, longest: f64, boundaries: &[f64]) -> Vec<Self> {
         let mut parts = Vec::new();

@@ -38,6 +38,8 @@ pub struct ImportedRecording {
     pub name: String,
     /// When it began, where the date is known.
     pub start: Option<String>,
+    /// The same on the clock of the files \[s\].
+    pub clock_start: f64,
     /// Its rows; times from its start, or those of its file where that has a clock of its own.
     pub rows: Rows,
 }
@@ -198,7 +200,7 @@ fn recording(mut rows: Rows, own: Option<(&Log, f64)>, logs: &[Log]) -> Imported
         _ => "recording".to_owned(),
     };
     let fit = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' };
-    ImportedRecording { name: name.chars().map(fit).collect(), start, rows }
+    ImportedRecording { name: name.chars().map(fit).collect(), start, clock_start: first, rows }
 }
 
 /// Numbers names that are there twice.
@@ -236,6 +238,33 @@ fn derived(signals: &Signals, recordings: &[ImportedRecording]) -> (Vec<&'static
 }
 
 impl Imported {
+    /// The session of each recording: those that follow one another without a long gap share one. With a date it is called by it.
+    pub fn sessions(&self, session_gap: Option<f64>) -> Vec<String> {
+        let longest = session_gap.unwrap_or(SESSION_GAP);
+        let mut groups: Vec<usize> = Vec::new();
+        let mut last: Option<f64> = None;
+        for recording in &self.recordings {
+            let group = groups.last().copied().unwrap_or(0);
+            let (begin, end) = (recording.clock_start, recording.clock_start + recording.rows.duration());
+            // Without a date nothing says that days differ.
+            let another = recording.start.is_some() && last.is_some_and(|last| begin - last > longest);
+            groups.push(group + usize::from(another));
+            last = Some(end);
+        }
+        let date = |i: usize| self.recordings[i].start.as_ref().and_then(|s| s.get(..10)).unwrap_or("").to_owned();
+        let dates: Vec<String> = (0..groups.len()).map(|i| groups.iter().position(|g| *g == groups[i]).map_or_else(String::new, date)).collect();
+        let name = |i: usize| {
+            let mut same: Vec<usize> = groups.iter().zip(&dates).filter(|(_, d)| **d == dates[i]).map(|(g, _)| *g).collect();
+            same.dedup();
+            match (dates[i].as_str(), same.len(), same.iter().position(|g| *g == groups[i])) {
+                ("", ..) => format!("session {}", groups[i] + 1),
+                (date, 1, _) => date.to_owned(),
+                (date, _, at) => format!("{date} part {}", at.unwrap_or(0) + 1),
+            }
+        };
+        (0..groups.len()).map(name).collect()
+    }
+
     fn blank_impossible(&mut self) {
         let mut found: BTreeMap<Channel, (usize, f64)> = BTreeMap::new();
         for recording in &mut self.recordings {

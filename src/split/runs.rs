@@ -92,13 +92,12 @@ pub fn split(parts: &[SplitPart<'_>], settings: &SplitSettings) -> Result<(Vec<S
     let scale = time_scale(&controls.iter().flatten().cloned().collect::<Vec<_>>());
     let longest = settings.longest.unwrap_or(LONGEST * scale);
     let (mut runs, mut skipped) = (Vec::new(), 0);
-    let mut numbers = Numbers::default();
-    for (part, segments) in parts.iter().zip(&controls) {
+    let mut numbers = Numbers { session: 1, ..Numbers::default() };
+    for (i, (part, segments)) in parts.iter().zip(&controls).enumerate() {
         let own = session_of(part, &settings.sessions)?;
         let mut last_end: Option<f64> = None;
-        if own.is_none() {
-            numbers.session += 1;
-        }
+        // Where nothing tells sessions apart, recordings share one.
+        numbers.session += usize::from(i > 0 && matches!(settings.sessions, Sessions::Gaps(_)));
         for c in segments {
             let (Some(first), Some(last)) = (c.t.first(), c.t.last()) else { continue };
             if let Sessions::Known | Sessions::Gaps(_) = settings.sessions {
