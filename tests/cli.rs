@@ -10,7 +10,9 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use study::{Study, at, contains_all, text};
 
-const COMMANDS: [&[&str]; 9] = [
+const COMMANDS: [&[&str]; 11] = [
+    &["import"],
+    &["split"],
     &["check"],
     &["simulate"],
     &["fit"],

@@ -162,7 +162,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     for one in &imported.recordings {
         let (file, text) = (format!("recordings/{}.csv", one.name), recording_csv(one));
         output.file(&file, text.as_bytes());
-        let recording = Recording::parse(&text, &args.out.join(&file), &map).map_err(trimtab::study::StudyError::from)?;
+        let recording =
+            Recording::parse(&text, &args.out.join(&file), &map).map_err(trimtab::study::StudyError::from)?;
         recordings.push((file, recording));
     }
     let (runs, skipped) = runs(args, &imported, &recordings)?;
@@ -204,7 +205,9 @@ fn settings(args: &Args) -> Result<ImportSettings, CliError> {
         all.iter().map(pair).collect::<Result<BTreeMap<String, String>, CliError>>()
     };
     if let Some(gap) = args.session_gap.filter(|g| !(g.is_finite() && *g > 0.0)) {
-        return Err(CliError::Argument(format!("--session-gap {gap}: give a positive number of seconds, such as 1800")));
+        return Err(CliError::Argument(format!(
+            "--session-gap {gap}: give a positive number of seconds, such as 1800"
+        )));
     }
     let choices = Choices { columns: pairs("--column", &args.column)?, units: pairs("--unit", &args.unit)? };
     Ok(ImportSettings { choices, session_gap: args.session_gap })
@@ -222,14 +225,19 @@ fn antenna(args: &Args) -> Result<Option<[f64; 2]>, CliError> {
 
 fn own_file(path: Option<&Path>) -> Result<Option<String>, CliError> {
     let read = |path: &Path| {
-        std::fs::read_to_string(path)
-            .map_err(|source| CliError::Argument(format!("{}: cannot read the file ({source}); check the path", path.display())))
+        std::fs::read_to_string(path).map_err(|source| {
+            CliError::Argument(format!("{}: cannot read the file ({source}); check the path", path.display()))
+        })
     };
     path.map(read).transpose()
 }
 
 /// The runs of all recordings.
-fn runs(args: &Args, imported: &Imported, recordings: &[(String, Recording)]) -> Result<(Vec<SplitRun>, usize), CliError> {
+fn runs(
+    args: &Args,
+    imported: &Imported,
+    recordings: &[(String, Recording)],
+) -> Result<(Vec<SplitRun>, usize), CliError> {
     if args.no_split {
         return Ok((Vec::new(), 0));
     }
@@ -285,7 +293,13 @@ fn text(args: &Args, imported: &Imported, runs: &[SplitRun], skipped: usize, kep
     for r in &imported.recordings {
         let channels: Vec<&str> = r.rows.channels.iter().map(|(c, _)| c.name()).collect();
         let start = r.start.clone().unwrap_or_default();
-        let cells = [r.name.clone(), start, r.rows.t.len().to_string(), sig(r.rows.step, 3), fixed(r.rows.duration() / 60.0, 1)];
+        let cells = [
+            r.name.clone(),
+            start,
+            r.rows.t.len().to_string(),
+            sig(r.rows.step, 3),
+            fixed(r.rows.duration() / 60.0, 1),
+        ];
         parts.row(cells.into_iter().chain([channels.join(" ")]));
     }
     text += &format!("\nRecordings\n{parts}\n");

@@ -58,7 +58,8 @@ pub struct SplitArgs {
 impl SplitArgs {
     /// The settings.
     pub fn settings(&self) -> Result<SplitSettings, CliError> {
-        let sessions = self.sessions.as_deref().map_or(Ok(Sessions::Known), Sessions::parse).map_err(CliError::Argument)?;
+        let sessions =
+            self.sessions.as_deref().map_or(Ok(Sessions::Known), Sessions::parse).map_err(CliError::Argument)?;
         let by = if self.by == "session" { TestBy::Session } else { TestBy::Block };
         Ok(SplitSettings { test: self.test, by, sessions, longest: self.longest })
     }
@@ -103,8 +104,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         .iter()
         .map(|p| SplitPart { file: p.file.clone(), session: p.session.clone(), recording: &p.recording })
         .collect();
-    let (runs, skipped) =
-        split(&borrowed, &settings).map_err(|error| CliError::Argument(format!("{}: {error}", args.input.display())))?;
+    let (runs, skipped) = split(&borrowed, &settings)
+        .map_err(|error| CliError::Argument(format!("{}: {error}", args.input.display())))?;
     output.file("runs.csv", runs_csv(&runs).as_bytes());
     let mut table = Table::new(["run", "session", "split", "from [s]", "to [s]", "seen"]);
     for run in &runs {
@@ -179,8 +180,10 @@ pub fn by_kind(runs: &[SplitRun], skipped: usize) -> String {
     let mut sessions: Vec<&str> = runs.iter().map(|r| r.session.as_str()).collect();
     sessions.sort_unstable();
     sessions.dedup();
-    let short = if skipped > 0 { format!("; {skipped} stretches between gaps are too short for a run") } else { String::new() };
+    let short =
+        if skipped > 0 { format!("; stretches between gaps too short for a run: {skipped}") } else { String::new() };
     let test = runs.iter().filter(|r| r.split == Split::Test).count();
-    let sides = format!("{} runs train, {test} test, in {} sessions{short}.", runs.len() - test, sessions.len());
+    let sides =
+        format!("Runs to train on: {}, to test on: {test}; sessions: {}{short}.", runs.len() - test, sessions.len());
     format!("{table}\n{sides}\n")
 }

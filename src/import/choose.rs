@@ -32,14 +32,18 @@ impl Choices {
             if !known().any(|k| k == name) {
                 let near = suggestion(name, known());
                 let list = known().collect::<Vec<_>>().join(", ");
-                return Err(ImportError::Choice(format!("{flag} {name}=...: there is no `{name}`{near}; there are {list}")));
+                return Err(ImportError::Choice(format!(
+                    "{flag} {name}=...: there is no `{name}`{near}; there are {list}"
+                )));
             }
         }
         for (name, unit) in &self.units {
             let Some(quantity) = Meaning::from_name(name).map(Meaning::quantity) else { continue };
             if quantity.factor(unit).is_none() {
                 let choices = quantity.choices();
-                return Err(ImportError::Choice(format!("--unit {name}={unit}: `{unit}` is none of {choices}; pass one of them")));
+                return Err(ImportError::Choice(format!(
+                    "--unit {name}={unit}: `{unit}` is none of {choices}; pass one of them"
+                )));
             }
         }
         Ok(())
@@ -71,7 +75,9 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec
             let names = distinct(all().map(|c| c.name.as_str()));
             let near = suggestion(column, names.iter().copied());
             let list = names.join(", ");
-            return Err(ImportError::Choice(format!("--column {name}={column}: no file has a column `{column}`{near}; there are {list}")));
+            return Err(ImportError::Choice(format!(
+                "--column {name}={column}: no file has a column `{column}`{near}; there are {list}"
+            )));
         };
         forced.insert(found.name.clone(), meaning);
     }
@@ -95,7 +101,11 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec
         // The first of the best.
         let Some(best) = names.iter().rev().copied().max_by_key(rank) else { continue };
         for name in names.iter().filter(|n| **n != best) {
-            let why = format!("`{best}` is taken for {}; the other with `--column {}={name}`", meaning.words(), meaning.name());
+            let why = format!(
+                "`{best}` is taken for {}; the other with `--column {}={name}`",
+                meaning.words(),
+                meaning.name()
+            );
             unused.push(Unused { column: (*name).to_owned(), why });
         }
         chosen.insert(meaning, all().filter(|c| c.name == best).collect());

@@ -66,7 +66,8 @@ fn reordered(text: &str, order: DateOrder) -> Option<String> {
 /// Whether dates with slashes have the day first; `None` where no date says.
 pub fn date_order<'a>(texts: impl Iterator<Item = &'a str>) -> Option<DateOrder> {
     for text in texts {
-        let numbers: Vec<u32> = text.split(|c: char| !c.is_ascii_digit()).take(2).filter_map(|n| n.parse().ok()).collect();
+        let numbers: Vec<u32> =
+            text.split(|c: char| !c.is_ascii_digit()).take(2).filter_map(|n| n.parse().ok()).collect();
         match numbers.as_slice() {
             [a, _] if (13..=31).contains(a) => return Some(DateOrder::DayFirst),
             [_, b] if (13..=31).contains(b) => return Some(DateOrder::MonthFirst),
@@ -177,7 +178,10 @@ pub fn spread(times: &mut [f64]) -> Option<usize> {
 /// A time as people and file names write it: `2024-05-01 10:00:03`.
 pub fn written(seconds: f64) -> String {
     let parts = Timestamp::UNIX_EPOCH.checked_add(SignedDuration::from_secs(seconds.floor() as i64));
-    parts.map_or_else(|_| format!("{seconds:.0} s"), |t| t.to_zoned(TimeZone::UTC).strftime("%Y-%m-%d %H:%M:%S").to_string())
+    parts.map_or_else(
+        |_| format!("{seconds:.0} s"),
+        |t| t.to_zoned(TimeZone::UTC).strftime("%Y-%m-%d %H:%M:%S").to_string(),
+    )
 }
 
 #[cfg(test)]

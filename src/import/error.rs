@@ -36,7 +36,7 @@ pub enum ImportError {
         message: String,
     },
     /// What the files do not tell: everything at once, each with the flag to pass.
-    #[error("the files do not tell everything that is needed:\n{}\nPass what is asked for and import again", lines(.0))]
+    #[error("the files do not tell everything that is needed: {}; pass what is asked for and import again", .0.join("; "))]
     Undecided(
         /// What is not known, and the flag that says it.
         Vec<String>,
@@ -47,8 +47,4 @@ pub enum ImportError {
         /// What is wrong and what to do.
         String,
     ),
-}
-
-fn lines(items: &[String]) -> String {
-    items.iter().map(|item| format!("  - {item}")).collect::<Vec<_>>().join("\n")
 }

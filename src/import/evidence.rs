@@ -98,7 +98,12 @@ fn largest(columns: &[&Column]) -> f64 {
 ///
 /// # Errors
 /// The question to ask.
-pub fn direction(meaning: Meaning, columns: &[&Column], given: Option<&Given>, known: &Known) -> Result<Verdict, String> {
+pub fn direction(
+    meaning: Meaning,
+    columns: &[&Column],
+    given: Option<&Given>,
+    known: &Known,
+) -> Result<Verdict, String> {
     let name = columns.first().map_or("", |c| c.name.as_str());
     let degree = Quantity::Angle.factor("deg").unwrap_or(1.0);
     let agreement = |factor: f64, sense: f64| {
@@ -126,7 +131,9 @@ pub fn direction(meaning: Meaning, columns: &[&Column], given: Option<&Given>, k
         given => by_data(unit, factor, why, given),
     };
     if matches!(meaning, Meaning::Channel(Channel::Psi)) && is_magnetic(name) {
-        verdict.doubt = Some("a magnetic heading: variation and deviation are not in it; `offset` in columns.toml adds them".to_owned());
+        verdict.doubt = Some(
+            "a magnetic heading: variation and deviation are not in it; `offset` in columns.toml adds them".to_owned(),
+        );
     }
     if let (Some([right, _]), Some([mirrored, turned])) = (agreement(factor, 1.0), agreement(factor, -1.0)) {
         let degrees = |angle: f64| sig(angle.to_degrees(), 3);
@@ -148,7 +155,13 @@ pub fn direction(meaning: Meaning, columns: &[&Column], given: Option<&Given>, k
 ///
 /// # Errors
 /// The question to ask.
-pub fn speed(meaning: Meaning, name: &str, size: &Signal, given: Option<&Given>, known: &Known) -> Result<Verdict, String> {
+pub fn speed(
+    meaning: Meaning,
+    name: &str,
+    size: &Signal,
+    given: Option<&Given>,
+    known: &Known,
+) -> Result<Verdict, String> {
     if let Some(given) = given.filter(|g| g.by_user) {
         return Ok(as_given(given, ""));
     }
@@ -171,7 +184,12 @@ pub fn speed(meaning: Meaning, name: &str, size: &Signal, given: Option<&Given>,
 ///
 /// # Errors
 /// The question to ask.
-pub fn yaw_rate(meaning: Meaning, columns: &[&Column], given: Option<&Given>, known: &Known) -> Result<Verdict, String> {
+pub fn yaw_rate(
+    meaning: Meaning,
+    columns: &[&Column],
+    given: Option<&Given>,
+    known: &Known,
+) -> Result<Verdict, String> {
     let name = columns.first().map_or("", |c| c.name.as_str());
     let given_by_user = given.filter(|g| g.by_user);
     let raw = Signal::new(columns, 1.0, 0.0, false).0;
@@ -179,7 +197,8 @@ pub fn yaw_rate(meaning: Meaning, columns: &[&Column], given: Option<&Given>, kn
         let span = psi.span().max(raw.span());
         ratio(&psi.rate(span).pairs(&raw.smooth(span))).filter(|r| r.coherence > COHERENT)
     });
-    let sense = |gain: f64| if gain < 0.0 { (-1.0, "anticlockwise positive, turned") } else { (1.0, "clockwise positive") };
+    let sense =
+        |gain: f64| if gain < 0.0 { (-1.0, "anticlockwise positive, turned") } else { (1.0, "clockwise positive") };
     match (found, given_by_user.or(given)) {
         (Some(ratio), given) => {
             let near = nearest_unit(Quantity::AngularRate, &["deg/min", "deg/s", "rad/s"], ratio.gain, NEAR);
@@ -191,7 +210,8 @@ pub fn yaw_rate(meaning: Meaning, columns: &[&Column], given: Option<&Given>, kn
                     Ok(verdict)
                 }
                 (Some((unit, factor)), given) => {
-                    let why = format!("heading turns as {name} says ({} rad/s a unit), {words}", sig(ratio.gain.abs(), 3));
+                    let why =
+                        format!("heading turns as {name} says ({} rad/s a unit), {words}", sig(ratio.gain.abs(), 3));
                     Ok(by_data(unit, sign * factor, why, given))
                 }
                 (None, Some(given)) => {

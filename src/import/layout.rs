@@ -48,7 +48,8 @@ fn bare(field: &str) -> &str {
 /// Text of a file, whatever its encoding: UTF-8, UTF-16 with a mark, or Latin-1.
 pub fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     let wide = |swap: bool| {
-        let units = bytes[2..].chunks_exact(2).map(|b| u16::from_le_bytes(if swap { [b[1], b[0]] } else { [b[0], b[1]] }));
+        let units =
+            bytes[2..].chunks_exact(2).map(|b| u16::from_le_bytes(if swap { [b[1], b[0]] } else { [b[0], b[1]] }));
         Cow::Owned(char::decode_utf16(units).map(|c| c.unwrap_or('\u{fffd}')).collect())
     };
     match bytes {

@@ -121,7 +121,8 @@ impl Meaning {
 
     /// Whether its values wrap round.
     pub fn wraps(self) -> bool {
-        self == Self::Longitude || (self.quantity() == Quantity::Angle && !matches!(self, Self::Latitude) && !self.is_rudder())
+        self == Self::Longitude
+            || (self.quantity() == Quantity::Angle && !matches!(self, Self::Latitude) && !self.is_rudder())
     }
 
     fn is_rudder(self) -> bool {

@@ -27,4 +27,4 @@ pub use read::read_bytes;
 pub use rows::Rows;
 pub use study::{Origins, recording_csv, study_files};
 pub use take::Taken;
-pub use whole::{Imported, ImportSettings, ImportedRecording, SESSION_GAP, import};
+pub use whole::{ImportSettings, Imported, ImportedRecording, SESSION_GAP, import};

@@ -187,7 +187,9 @@ mod tests {
         let t: Vec<f64> = (0..20).map(f64::from).chain((100..120).map(f64::from)).collect();
         let s = Signal { v: t.iter().map(|t| if *t < 50.0 { *t } else { -*t }).collect(), t, step: 1.0 };
         let rate = s.rate(8.0);
-        assert!(rate.v[..20].iter().all(|v| (v - 1.0).abs() < 1e-9) && rate.v[20..].iter().all(|v| (v + 1.0).abs() < 1e-9));
+        assert!(
+            rate.v[..20].iter().all(|v| (v - 1.0).abs() < 1e-9) && rate.v[20..].iter().all(|v| (v + 1.0).abs() < 1e-9)
+        );
         assert!(ratio(&rate.pairs(&s)).is_some());
     }
 }

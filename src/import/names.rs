@@ -148,7 +148,8 @@ const PHRASES: &[(&str, Meaning)] = &[
 ];
 
 /// Words that make a column an order rather than a measurement.
-const ORDERS: [&str; 9] = ["order", "ordered", "command", "commanded", "cmd", "setpoint", "demand", "desired", "target"];
+const ORDERS: [&str; 9] =
+    ["order", "ordered", "command", "commanded", "cmd", "setpoint", "demand", "desired", "target"];
 
 /// What a name says a column is; `None` where it says nothing that is used.
 pub fn meaning(name: &str) -> Option<Meaning> {

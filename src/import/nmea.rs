@@ -181,7 +181,9 @@ fn record(s: &Sentence<'_>) -> Record {
                 put("RMC course", s.number(7));
             }
             record.time = time_of_day(s.text(0));
-            if let Some([day, month, year]) = s.fields.get(8).and_then(|d| Some([d.get(..2)?, d.get(2..4)?, d.get(4..6)?])) {
+            if let Some([day, month, year]) =
+                s.fields.get(8).and_then(|d| Some([d.get(..2)?, d.get(2..4)?, d.get(4..6)?]))
+            {
                 record.date = midnight(&format!("20{year}"), month, day);
             }
         }
@@ -467,7 +469,11 @@ mod tests {
         let good = summed("GPRMC,100000.00,A,5412.000,N,01030.000,E,10.0,090.0,010524,,,A");
         let later = summed("GPRMC,100001.00,A,5412.000,N,01030.000,E,10.0,090.0,010524,,,A");
         let log = read(&format!("{good}{}{later}$GARBAGE\n", good.replace("5412", "5413")));
-        assert!(log.notes[0].starts_with("1 lines fail their checksum") && log.notes[0].ends_with("line 2"), "{:?}", log.notes);
+        assert!(
+            log.notes[0].starts_with("1 lines fail their checksum") && log.notes[0].ends_with("line 2"),
+            "{:?}",
+            log.notes
+        );
         assert!(log.notes[1].contains("broken"), "{:?}", log.notes);
         assert_eq!(log.columns[0].v.len(), 2);
     }

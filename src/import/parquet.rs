@@ -46,7 +46,9 @@ pub fn read_parquet(path: &Path, bytes: &[u8], time: Option<&str>) -> Result<Log
     let (mut cells, notes) = match read {
         Ok(Ok(read)) => read,
         Ok(Err(error)) => {
-            return Err(fail(format!("cannot be read as Parquet ({error}); write it again, with Snappy, Zstandard, gzip or no compression")));
+            return Err(fail(format!(
+                "cannot be read as Parquet ({error}); write it again, with Snappy, Zstandard, gzip or no compression"
+            )));
         }
         Err(_) => return Err(fail("is damaged and cannot be read as Parquet; write it again".to_owned())),
     };
@@ -57,7 +59,10 @@ pub fn read_parquet(path: &Path, bytes: &[u8], time: Option<&str>) -> Result<Log
     let clock_cells = cells.remove(at);
     let (clock, mut times, how) = times(&clock_cells);
     if times.iter().filter(|t| t.is_finite()).count() < 2 {
-        return Err(fail(format!("column `{}` is no time; name the time column with `--column t=NAME`", clock_cells.name)));
+        return Err(fail(format!(
+            "column `{}` is no time; name the time column with `--column t=NAME`",
+            clock_cells.name
+        )));
     }
     let shared = spread(&mut times);
     let spread = shared.map_or(String::new(), |k| format!(", rounded: {k} rows share a time and are spread over it"));
@@ -80,7 +85,8 @@ fn time_column(cells: &[Cells], wanted: Option<&str>) -> Option<usize> {
     if let Some(found) = wanted.and_then(|w| cells.iter().position(|c| c.name.eq_ignore_ascii_case(w))) {
         return Some(found);
     }
-    let dated = |c: &Cells| c.texts.iter().find(|t| !t.is_empty()).is_some_and(|t| date_time(t, DateOrder::DayFirst).is_some());
+    let dated =
+        |c: &Cells| c.texts.iter().find(|t| !t.is_empty()).is_some_and(|t| date_time(t, DateOrder::DayFirst).is_some());
     let rank = |i: &usize| (cells[*i].stamp.is_some() || dated(&cells[*i]), time_rank(&cells[*i].name));
     (0..cells.len()).rev().max_by_key(rank).filter(|i| rank(i) > (false, 0))
 }
@@ -152,9 +158,15 @@ fn fill(cell: &mut Cells, reader: ColumnReader, column: &ColumnDescriptor) -> Re
     let none = f64::NAN;
     let text = |bytes: &ByteArray| String::from_utf8_lossy(bytes.data()).into_owned();
     match reader {
-        ColumnReader::BoolColumnReader(r) => each(r, level, |v| cell.values.push(v.map_or(none, |v| f64::from(u8::from(*v))))),
-        ColumnReader::Int32ColumnReader(r) => each(r, level, |v| cell.values.push(v.map_or(none, |v| f64::from(*v) * scale))),
-        ColumnReader::Int64ColumnReader(r) => each(r, level, |v| cell.values.push(v.map_or(none, |v| *v as f64 * scale))),
+        ColumnReader::BoolColumnReader(r) => {
+            each(r, level, |v| cell.values.push(v.map_or(none, |v| f64::from(u8::from(*v)))))
+        }
+        ColumnReader::Int32ColumnReader(r) => {
+            each(r, level, |v| cell.values.push(v.map_or(none, |v| f64::from(*v) * scale)))
+        }
+        ColumnReader::Int64ColumnReader(r) => {
+            each(r, level, |v| cell.values.push(v.map_or(none, |v| *v as f64 * scale)))
+        }
         ColumnReader::Int96ColumnReader(r) => {
             each(r, level, |v| cell.values.push(v.map_or(none, |v| v.to_micros() as f64 * 1e-6)))
         }

@@ -144,7 +144,8 @@ mod tests {
 
     #[test]
     fn fast_samples_become_their_mean_over_a_step() {
-        let samples: Vec<(f64, f64)> = (0..40).map(|i| (0.1 * f64::from(i), 0.1 * f64::from(i) + f64::from(i % 2))).collect();
+        let samples: Vec<(f64, f64)> =
+            (0..40).map(|i| (0.1 * f64::from(i), 0.1 * f64::from(i) + f64::from(i % 2))).collect();
         let s = signal(&samples, false);
         assert!((s.at(2.0, 1.0) - 2.45).abs() < 0.01, "{}", s.at(2.0, 1.0));
     }

@@ -67,7 +67,8 @@ fn line(text: &str) -> String {
 }
 
 fn columns(imported: &Imported, origins: &Origins<'_>) -> String {
-    let mut text = String::from("# How the recordings are read. They are in SI units; this is what each column was taken for:\n");
+    let mut text =
+        String::from("# How the recordings are read. They are in SI units; this is what each column was taken for:\n");
     for taken in &imported.taken {
         let sentence = format!("{} is column `{}` in {}: {}", taken.quantity, taken.column, taken.unit, taken.evidence);
         let _ = writeln!(text, "#   {}", line(&sentence));
@@ -89,11 +90,18 @@ fn columns(imported: &Imported, origins: &Origins<'_>) -> String {
          reference_point = [{forward:?}, {starboard:?}]"
     );
     if !imported.derive.is_empty() {
-        let _ = writeln!(text, "# Channels that were not recorded and follow from position and heading.\nderive = {:?}", imported.derive);
+        let _ = writeln!(
+            text,
+            "# Channels that were not recorded and follow from position and heading.\nderive = {:?}",
+            imported.derive
+        );
     }
     if !imported.leave_out.is_empty() {
         let names: Vec<&str> = imported.leave_out.iter().map(|c| c.name()).collect();
-        let _ = writeln!(text, "# Channels that are in the recordings and not used; `trimtab import` said why.\nleave_out = {names:?}");
+        let _ = writeln!(
+            text,
+            "# Channels that are in the recordings and not used; `trimtab import` said why.\nleave_out = {names:?}"
+        );
     }
     text
 }

@@ -141,9 +141,20 @@ impl Signals {
         }
     }
 
-    fn tell(&mut self, meaning: Meaning, columns: &[&Column], signal: &Signal, tidied: Tidied, unit: &str, evidence: String) {
+    fn tell(
+        &mut self,
+        meaning: Meaning,
+        columns: &[&Column],
+        signal: &Signal,
+        tidied: Tidied,
+        unit: &str,
+        evidence: String,
+    ) {
         let name = columns.first().map_or("", |c| c.name.as_str());
-        for (count, what) in [(tidied.out_of_order, "come before an earlier one and are sorted"), (tidied.repeated, "have the time of another and are left out")] {
+        for (count, what) in [
+            (tidied.out_of_order, "come before an earlier one and are sorted"),
+            (tidied.repeated, "have the time of another and are left out"),
+        ] {
             if count > 0 {
                 self.notes.push(format!("{name}: {count} samples {what}"));
             }
@@ -180,12 +191,18 @@ impl Signals {
         let column = |k: usize| places.iter().map(|p| p[k]).collect::<Vec<f64>>();
         let Some(plane) = Plane::amid(&column(1), &column(2)) else { return Ok(()) };
         if nowhere > 0 {
-            self.notes.push(format!("{nowhere} positions are 0 N 0 E, which receivers write without a fix; taken as missing"));
+            self.notes.push(format!(
+                "{nowhere} positions are 0 N 0 E, which receivers write without a fix; taken as missing"
+            ));
         }
         let metres: Vec<[f64; 2]> = places.iter().map(|p| plane.metres(p[1], p[2])).collect();
         let far = metres.iter().map(|m| m[0].hypot(m[1])).fold(0.0, f64::max);
         if far > 100_000.0 {
-            let text = format!("positions reach {:.0} km from the point of the plane, where distances are {:.2} % short", far / 1e3, 100.0 * far * far / 8.1e13);
+            let text = format!(
+                "positions reach {:.0} km from the point of the plane, where distances are {:.2} % short",
+                far / 1e3,
+                100.0 * far * far / 8.1e13
+            );
             self.notes.push(text);
         }
         let form = if minutes { "deg and minutes (dddmm.mmm)" } else { "deg" };
@@ -209,7 +226,8 @@ impl Signals {
             [Meaning::Channel(Channel::UWater), Meaning::Channel(Channel::VWater)],
         ];
         for [first, second] in pairs {
-            let mut parts: Vec<(Meaning, &Vec<&Column>)> = [first, second].iter().filter_map(|m| Some((*m, chosen.get(m)?))).collect();
+            let mut parts: Vec<(Meaning, &Vec<&Column>)> =
+                [first, second].iter().filter_map(|m| Some((*m, chosen.get(m)?))).collect();
             parts.dedup_by_key(|(meaning, _)| *meaning);
             let Some((meaning, columns)) = parts.first() else { continue };
             let raw: Vec<Signal> = parts.iter().map(|(_, c)| Signal::new(c, 1.0, 0.0, false).0).collect();
@@ -248,7 +266,9 @@ fn degrees(both: &[&Vec<&Column>; 2]) -> Result<([Column; 2], bool), ImportError
         if let Some(wrong) = wrong.filter(|_| count > found[i].v.len() / 20) {
             let name = columns.first().map_or("", |c| c.name.as_str());
             let (words, channel) = (["latitude", "longitude"][i], ["x", "y"][i]);
-            let text = format!("column `{name}` holds {wrong}, which is no {words} in deg; is it metres? then pass `--column {channel}={name}`");
+            let text = format!(
+                "column `{name}` holds {wrong}, which is no {words} in deg; is it metres? then pass `--column {channel}={name}`"
+            );
             return Err(ImportError::Choice(text));
         }
     }

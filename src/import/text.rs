@@ -89,7 +89,9 @@ fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Table<'a> {
         notes.push(format!("{count} lines do not have {width} fields and are left out, the first is line {first}"));
     }
     if !named {
-        notes.push("there is no line of column names: columns are called by their number from 1 (`--column psi=4`)".to_owned());
+        notes.push(
+            "there is no line of column names: columns are called by their number from 1 (`--column psi=4`)".to_owned(),
+        );
     }
     Table { path, names, decimal_comma, rows, notes }
 }
@@ -107,7 +109,8 @@ fn times(table: &Table<'_>, wanted: Option<&str>) -> Result<(Clock, Vec<f64>, Ve
     let date_texts = || table.rows.iter().map(move |(_, fields)| fields[date.unwrap_or(field)]);
     let known = date_order(date_texts());
     let order = known.unwrap_or(DateOrder::DayFirst);
-    let share = |parse: &dyn Fn(&str) -> bool| texts().filter(|t| parse(t)).count() as f64 >= 0.5 * table.rows.len() as f64;
+    let share =
+        |parse: &dyn Fn(&str) -> bool| texts().filter(|t| parse(t)).count() as f64 >= 0.5 * table.rows.len() as f64;
     let name = &table.names[field].0;
     let unsure = if known.is_none() && date_texts().any(|t| t.contains('/') && t.find('/') < Some(4)) {
         ", day before month, which no date in it proves"
@@ -134,7 +137,8 @@ fn times(table: &Table<'_>, wanted: Option<&str>) -> Result<(Clock, Vec<f64>, Ve
     let timed = times.iter().filter(|t| t.is_finite()).count();
     if timed < 2 {
         let (line, fields) = &table.rows[0];
-        let message = format!("`{}` in column `{name}` is no time; name the time column with `--column t=NAME`", fields[field]);
+        let message =
+            format!("`{}` in column `{name}` is no time; name the time column with `--column t=NAME`", fields[field]);
         return Err(ImportError::At { path: table.path.to_owned(), line: *line, column: field + 1, message });
     }
     let shared = spread(&mut times);

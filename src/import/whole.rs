@@ -91,7 +91,10 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     for part in table.cut(longest, &starts) {
         let (Some(first), Some(last)) = (part.t.first().copied(), part.t.last().copied()) else { continue };
         if part.t.len() < FEWEST {
-            notes.push(format!("{} rows between longer gaps are too few for a recording and are left out", part.t.len()));
+            notes.push(format!(
+                "{} rows between longer gaps are too few for a recording and are left out",
+                part.t.len()
+            ));
             continue;
         }
         let own = ends.iter().position(|e| e[0] <= first + 1e-6 && last <= e[1] + 1e-6);
@@ -252,9 +255,12 @@ impl Imported {
             last = Some(end);
         }
         let date = |i: usize| self.recordings[i].start.as_ref().and_then(|s| s.get(..10)).unwrap_or("").to_owned();
-        let dates: Vec<String> = (0..groups.len()).map(|i| groups.iter().position(|g| *g == groups[i]).map_or_else(String::new, date)).collect();
+        let dates: Vec<String> = (0..groups.len())
+            .map(|i| groups.iter().position(|g| *g == groups[i]).map_or_else(String::new, date))
+            .collect();
         let name = |i: usize| {
-            let mut same: Vec<usize> = groups.iter().zip(&dates).filter(|(_, d)| **d == dates[i]).map(|(g, _)| *g).collect();
+            let mut same: Vec<usize> =
+                groups.iter().zip(&dates).filter(|(_, d)| **d == dates[i]).map(|(g, _)| *g).collect();
             same.dedup();
             match (dates[i].as_str(), same.len(), same.iter().position(|g| *g == groups[i])) {
                 ("", ..) => format!("session {}", groups[i] + 1),
@@ -274,25 +280,38 @@ impl Imported {
         }
         for (channel, (count, value)) in found {
             let (words, si) = (channel.info().words, channel.info().quantity.si());
-            self.notes.push(format!("{words}: {count} values no ship reaches, such as {value:.4} {si}, are taken as missing"));
+            self.notes.push(format!(
+                "{words}: {count} values no ship reaches, such as {value:.4} {si}, are taken as missing"
+            ));
         }
     }
 
     /// Leaves out channels that no simulation needs and that are mostly missing, or lack their partner.
     fn part_with_lonely(&mut self) {
         use Channel::*;
-        let pairs = [[WindSpeed, WindDirection], [ApparentWindSpeed, ApparentWindDirection], [CurrentSpeed, CurrentDirection], [WaveHeight, WaveDirection], [X, Y]];
+        let pairs = [
+            [WindSpeed, WindDirection],
+            [ApparentWindSpeed, ApparentWindDirection],
+            [CurrentSpeed, CurrentDirection],
+            [WaveHeight, WaveDirection],
+            [X, Y],
+        ];
         let core = [T, X, Y, Psi, U, V, R, N, Delta];
-        let all: BTreeSet<Channel> = self.recordings.iter().flat_map(|r| r.rows.channels.iter().map(|(c, _)| *c)).collect();
+        let all: BTreeSet<Channel> =
+            self.recordings.iter().flat_map(|r| r.rows.channels.iter().map(|(c, _)| *c)).collect();
         for channel in all {
-            let of = |r: &ImportedRecording, c: Channel| r.rows.channels.iter().find(|(other, _)| *other == c).map(|(_, v)| v.clone());
+            let of = |r: &ImportedRecording, c: Channel| {
+                r.rows.channels.iter().find(|(other, _)| *other == c).map(|(_, v)| v.clone())
+            };
             let partner = pairs.iter().find(|p| p.contains(&channel)).map(|[a, b]| if *a == channel { *b } else { *a });
-            let lonely = partner.is_some_and(|p| self.recordings.iter().any(|r| of(r, channel).is_some() != of(r, p).is_some()));
+            let lonely =
+                partner.is_some_and(|p| self.recordings.iter().any(|r| of(r, channel).is_some() != of(r, p).is_some()));
             let (mut rows, mut absent) = (0, 0);
             for r in &self.recordings {
                 let own = of(r, channel);
                 for i in 0..r.rows.t.len() {
-                    let complete = r.rows.channels.iter().filter(|(c, _)| core.contains(c)).all(|(_, v)| v[i].is_finite());
+                    let complete =
+                        r.rows.channels.iter().filter(|(c, _)| core.contains(c)).all(|(_, v)| v[i].is_finite());
                     rows += usize::from(complete);
                     absent += usize::from(complete && own.as_ref().is_none_or(|v| !v[i].is_finite()));
                 }
@@ -305,7 +324,8 @@ impl Imported {
                 } else {
                     format!("it is missing in {absent} of {rows} rows, each of which would end a run")
                 };
-                self.notes.push(format!("{channel} is in the recordings and not used: {why} (`leave_out` in columns.toml)"));
+                self.notes
+                    .push(format!("{channel} is in the recordings and not used: {why} (`leave_out` in columns.toml)"));
             }
         }
     }
@@ -317,14 +337,18 @@ impl Imported {
             let gaps: Vec<f64> = rows.t.windows(2).map(|t| t[1] - t[0]).filter(|g| *g > 1.5 * rows.step).collect();
             let longest = gaps.iter().copied().fold(0.0, f64::max);
             if !gaps.is_empty() {
-                notes.push(format!("{}: {} gaps in time, the longest {longest:.1} s; none is filled", recording.name, gaps.len()));
+                notes.push(format!(
+                    "{}: gaps in time: {}, the longest {longest:.1} s; none is filled",
+                    recording.name,
+                    gaps.len()
+                ));
             }
             let absent = rows.channels.iter().filter(|(c, _)| !self.leave_out.contains(c));
             let absent = absent.map(|(c, v)| (c, v.iter().filter(|v| !v.is_finite()).count())).filter(|(_, n)| *n > 0);
             let list: Vec<String> = absent.map(|(c, n)| format!("{c} {n}")).collect();
             if !list.is_empty() {
-                let name = &recording.name;
-                notes.push(format!("{name}: missing values in {} rows ({}); none is filled", rows.t.len(), list.join(", ")));
+                let (name, of) = (&recording.name, rows.t.len());
+                notes.push(format!("{name}: missing values in its {of} rows: {}; none is filled", list.join(", ")));
             }
         }
         self.notes.extend(notes);

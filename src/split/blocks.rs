@@ -182,7 +182,9 @@ fn amidships(c: &Controls, rows: Range<usize>) -> Stretch {
 fn merged(c: &Controls, stretches: Vec<Stretch>, scale: f64) -> Vec<Stretch> {
     let mut joined: Vec<Stretch> = Vec::new();
     for next in stretches {
-        let short = |s: &Stretch| lasts(c, &s.rows) < SHORTEST * scale && !matches!(s.kind, Kind::Turn | Kind::Zigzag | Kind::Stop);
+        let short = |s: &Stretch| {
+            lasts(c, &s.rows) < SHORTEST * scale && !matches!(s.kind, Kind::Turn | Kind::Zigzag | Kind::Stop)
+        };
         match joined.last_mut() {
             // What is too short by itself joins what came before it: the end of a manoeuvre, or irregular steering.
             Some(last) if short(&next) => last.rows.end = next.rows.end,

@@ -126,7 +126,8 @@ pub fn split(parts: &[SplitPart<'_>], settings: &SplitSettings) -> Result<(Vec<S
 }
 
 fn session_of(part: &SplitPart<'_>, sessions: &Sessions) -> Result<Option<String>, SplitError> {
-    let stem = std::path::Path::new(&part.file).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem =
+        std::path::Path::new(&part.file).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let told = sessions.of_file(&stem).map_err(SplitError)?;
     Ok(told.or_else(|| part.session.clone().filter(|_| *sessions == Sessions::Known)))
 }
@@ -141,7 +142,15 @@ struct Numbers {
 
 impl Numbers {
     /// Adds a stretch as one run, or as pieces.
-    fn add(&mut self, file: &str, session: &str, c: &Controls, stretch: &Stretch, longest: f64, runs: &mut Vec<SplitRun>) {
+    fn add(
+        &mut self,
+        file: &str,
+        session: &str,
+        c: &Controls,
+        stretch: &Stretch,
+        longest: f64,
+        runs: &mut Vec<SplitRun>,
+    ) {
         let number = self.kinds.entry(stretch.kind).or_default();
         *number += 1;
         self.block += 1;
@@ -220,12 +229,24 @@ fn last_tests(runs: &mut Vec<SplitRun>, share: f64) {
 pub fn runs_csv(runs: &[SplitRun]) -> String {
     let quoted = |text: &str| {
         let cell = plain_cell(text);
-        if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.into_owned() }
+        if cell.contains([',', '"', '\n', '\r']) {
+            format!("\"{}\"", cell.replace('"', "\"\""))
+        } else {
+            cell.into_owned()
+        }
     };
     let mut text = String::from("file,name,session,manoeuvre,split,from,to\n");
     for run in runs {
         let split = if run.split == Split::Test { "test" } else { "train" };
-        let cells = [quoted(&run.file), quoted(&run.name), quoted(&run.session), run.manoeuvre.word().to_owned(), split.to_owned(), run.from.to_string(), run.to.to_string()];
+        let cells = [
+            quoted(&run.file),
+            quoted(&run.name),
+            quoted(&run.session),
+            run.manoeuvre.word().to_owned(),
+            split.to_owned(),
+            run.from.to_string(),
+            run.to.to_string(),
+        ];
         text += &(cells.join(",") + "\n");
     }
     text

@@ -34,12 +34,16 @@ impl Sessions {
         }
         if let Some(seconds) = text.strip_prefix("gaps=") {
             let seconds: Option<f64> = seconds.parse().ok().filter(|s: &f64| s.is_finite() && *s > 0.0);
-            return seconds.map(Self::Gaps).ok_or_else(|| format!("--sessions {text}: give a positive number of seconds, as in gaps=600"));
+            return seconds
+                .map(Self::Gaps)
+                .ok_or_else(|| format!("--sessions {text}: give a positive number of seconds, as in gaps=600"));
         }
         if text.matches("{}").count() == 1 {
             return Ok(Self::Pattern(text.to_owned()));
         }
-        Err(format!("--sessions {text}: give gaps, gaps=SECONDS, dates, files, or a pattern of file names with one {{}} for the session, as in `trial_{{}}_*`"))
+        Err(format!(
+            "--sessions {text}: give gaps, gaps=SECONDS, dates, files, or a pattern of file names with one {{}} for the session, as in `trial_{{}}_*`"
+        ))
     }
 
     /// The session that the name of a file tells; `None` where names do not tell it.
@@ -75,7 +79,8 @@ pub fn date(stem: &str) -> Option<String> {
             (digits(0, 4)?, digits(4, 2)?, digits(6, 2)?)
         };
         let within = |text: &str, low: u32, high: u32| text.parse().is_ok_and(|v: u32| (low..=high).contains(&v));
-        (within(year, 1950, 2150) && within(month, 1, 12) && within(day, 1, 31)).then(|| format!("{year}-{month}-{day}"))
+        (within(year, 1950, 2150) && within(month, 1, 12) && within(day, 1, 31))
+            .then(|| format!("{year}-{month}-{day}"))
     })
 }
 

@@ -39,7 +39,8 @@ pub fn sides<K: Ord>(kinds: &[K], share: f64) -> Vec<Split> {
 
 /// So many of some blocks, evenly spread.
 fn spread(blocks: &[usize], wanted: usize) -> impl Iterator<Item = usize> {
-    (0..wanted).map(move |j| blocks[(((j as f64 + 0.6) * blocks.len() as f64 / wanted as f64) as usize).min(blocks.len() - 1)])
+    (0..wanted)
+        .map(move |j| blocks[(((j as f64 + 0.6) * blocks.len() as f64 / wanted as f64) as usize).min(blocks.len() - 1)])
 }
 
 #[cfg(test)]
