@@ -85,6 +85,7 @@ pub mod maneuver;
 pub mod model;
 pub mod numerals;
 pub mod parameter;
+pub mod particulars;
 pub mod physics;
 pub mod plan;
 #[cfg(feature = "plot")]
