@@ -102,6 +102,7 @@ pub mod state;
 pub mod statistics;
 pub mod study;
 pub mod terms;
+pub mod uncertainty;
 pub mod units;
 pub mod validity;
 
