@@ -6,5 +6,7 @@ pub mod demo;
 pub mod folders;
 pub mod injected;
 pub mod paper;
+pub mod process;
 pub mod real;
 pub mod truth;
+pub mod workers;
