@@ -18,7 +18,7 @@ use trimtab::numerals::{DASH, interval, sig};
 use trimtab::ranks::Ranks;
 use trimtab::recording::{Runs, Split};
 use trimtab::report::Table;
-use trimtab::report::maneuver::{turning_figure, turning_table};
+use trimtab::report::maneuver::{measures_table, turning_figure};
 
 const LONG: &str = "\
 Runs the whole job on a built-in example: forty recordings of a coastal container ship of 85 m (made by a simulator with \
@@ -113,7 +113,7 @@ fn turning_circles(output: &mut Output, loaded: &Loaded, model: &Model) -> Resul
     let Ok(approach) = settings.approach(model, &theta) else { return Ok(String::new()) };
     let trials = Side::BOTH.map(|side| turning_trial(model, &theta, &approach, side, settings.turning_angle()));
     output.figure("turning", || turning_figure(ship, &trials));
-    let table = turning_table(ship, &trials);
+    let table = measures_table(ship, &trials);
     Ok(format!("\n\n3. Turning circles of the fitted ship at {:.0} m/s\n\n{table}\n", approach.speed))
 }
 

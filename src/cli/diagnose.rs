@@ -4,7 +4,7 @@
 use super::answer::Answer;
 use super::audited::{AcceptArgs, examined};
 use super::error::CliError;
-use super::fit::model_text;
+use super::fit::{fitted_text, model_text};
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, print, print_json};
 use super::progress::progress;
@@ -109,7 +109,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     json["recordings"] = serde_json::to_value(&audited)?;
     if output.has_folder() {
         output.file("diagnosis.json", (serde_json::to_string_pretty(&json)? + "\n").as_bytes());
-        output.file("improved.toml", model_text(&diagnosis.model)?.as_bytes());
+        let improved = fitted_text(&diagnosis.model, diagnosis.uncertainty.clone())?;
+        output.file("improved.toml", improved.as_bytes());
         output.file("base.toml", model_text(&diagnosis.base)?.as_bytes());
         let pictures = pictures(&diagnosis)?;
         output.file("report.html", page(&diagnosis, name, &pictures).render().as_bytes());

@@ -11,6 +11,7 @@ mod evaluate;
 mod fit;
 mod load;
 mod maneuver;
+mod new;
 mod output;
 mod plan;
 mod processor;
@@ -30,6 +31,8 @@ use trimtab::ranks::{Ranks, Traffic};
 const AFTER_HELP: &str = "\
 Begin with
   trimtab demo                       a complete example in seconds; leaves a study to copy
+  trimtab new --lpp L --breadth B --draught D --type TYPE
+                                     a ship file; what is not known is estimated
   trimtab check STUDY                are the recordings fit to be used?
   trimtab fit STUDY --out results    fit the model; writes results/fitted.toml
   trimtab evaluate STUDY --model results/fitted.toml
@@ -63,6 +66,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    New(new::Args),
     Check(check::Args),
     Simulate(simulate::Args),
     Fit(fit::Args),
@@ -121,6 +125,7 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Evaluate(args) => evaluate::run(args, ranks),
         // The work of the others is not divided: one rank does it.
         _ if !ranks.is_first() => Ok(Answer::Yes),
+        Command::New(args) => new::run(args),
         Command::Check(args) => check::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Diagnose(args) => diagnose::run(args),
