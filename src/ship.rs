@@ -49,7 +49,7 @@ pub enum ShipError {
 /// A ship: its fixed particulars, in SI units.
 ///
 /// Axes: x forward from midship, y to starboard.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ship {
     /// Name, for headings.
@@ -82,7 +82,7 @@ pub struct Ship {
 }
 
 /// Hull particulars.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HullParticulars {
     /// Length between perpendiculars L \[m\].
@@ -114,7 +114,7 @@ fn default_density() -> f64 {
 }
 
 /// Propeller particulars of a single screw.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PropellerParticulars {
     /// Diameter D \[m\].
@@ -141,7 +141,7 @@ fn default_astern() -> f64 {
 }
 
 /// Rudder particulars of a single rudder behind the propeller.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RudderParticulars {
     /// Area A_R \[m2\].
@@ -179,7 +179,7 @@ fn default_race() -> f64 {
 }
 
 /// Above-water particulars.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AboveWater {
     /// Frontal (transverse) projected area A_F \[m2\].
@@ -198,7 +198,7 @@ fn default_air_density() -> f64 {
 }
 
 /// Bow thruster particulars.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ThrusterParticulars {
     /// Full thrust at rest \[N\].
