@@ -7,5 +7,7 @@ pub mod demo_concealed;
 pub mod folders;
 pub mod injected;
 pub mod paper;
+pub mod process;
 pub mod real;
 pub mod truth;
+pub mod workers;
