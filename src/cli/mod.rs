@@ -9,12 +9,14 @@ mod diagnose;
 mod error;
 mod evaluate;
 mod fit;
+mod help;
 mod load;
 mod maneuver;
 mod output;
 mod plan;
 mod processor;
 mod progress;
+mod shell;
 mod simulate;
 mod terminal;
 mod terms;
@@ -29,7 +31,8 @@ use trimtab::ranks::{Ranks, Traffic};
 
 const AFTER_HELP: &str = "\
 Begin with
-  trimtab demo                       a complete example in seconds; leaves a study to copy
+  trimtab demo                       the whole job on built-in trials; leaves a study to copy
+  trimtab help tutorial              from your own log to an answer
   trimtab check STUDY                are the recordings fit to be used?
   trimtab fit STUDY --out results    fit the model; writes results/fitted.toml
   trimtab evaluate STUDY --model results/fitted.toml
@@ -39,6 +42,7 @@ Begin with
   trimtab plan STUDY                 before going to sea: what would these trials show?
 
 A STUDY is a TOML file that names ship, model and recordings; `trimtab demo` writes one with comments.
+Topics of `trimtab help`: tutorial, study, columns, channels, ship, model, parameters, diagnosis, theory, faq, glossary.
 
 Exit codes
   0  done
@@ -52,7 +56,7 @@ const TOO_OLD: &str = "this program was built without AVX2, which this processor
 
 /// Fits an interpretable manoeuvring model to recordings of a ship, and finds the physics it lacks.
 #[derive(Debug, Parser)]
-#[command(name = "trimtab", version, after_help = AFTER_HELP, max_term_width = 100)]
+#[command(name = "trimtab", version, after_help = AFTER_HELP, max_term_width = 100, disable_help_subcommand = true)]
 struct Cli {
     /// Number of threads; the number of processors if not given. Results do not depend on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -72,6 +76,9 @@ enum Command {
     Plan(plan::Args),
     Terms(terms::Args),
     Demo(demo::Args),
+    Help(help::Args),
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
 }
 
 /// Runs the command that the process was given.
@@ -128,6 +135,9 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Plan(args) => plan::run(args),
         Command::Terms(args) => terms::run(args),
         Command::Demo(args) => demo::run(args),
+        Command::Help(args) => help::run(args),
+        Command::Completions(args) => shell::completions(args),
+        Command::Man(args) => shell::man(args),
     }
 }
 

@@ -74,7 +74,7 @@ pub struct ConstraintSettings {
     pub off: bool,
     /// Share of its own size by which each limit is moved outwards (a limit of 0 stays).
     pub tolerance: f64,
-    /// R(u) \[N\] over u \[m/s\].
+    /// Limits of R(u) \[N\] over u \[m/s\].
     pub resistance: Rule,
     /// dR/du \[N s/m\] over u \[m/s\].
     pub resistance_slope: Rule,

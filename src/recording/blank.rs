@@ -50,7 +50,7 @@ impl Blank {
     }
 }
 
-/// The table form of [`Blank`].
+/// Values that stand for a missing one: a value, a list of values, or this table.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct BlankTable {

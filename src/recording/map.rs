@@ -242,7 +242,7 @@ impl Column {
     }
 }
 
-/// The table form of a column; the string form is its `column` alone.
+/// Where the channel comes from: `sign * scale * value + offset` in the column's unit. A text in place of the table is its `column`.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ColumnTable {
@@ -358,7 +358,7 @@ impl ColumnMap {
         for (name, line) in listed.chain(left_out) {
             if Channel::from_name(name).is_none() {
                 let near = suggestion(name, CHANNELS.iter().map(|c| c.name));
-                return Err(fail(line, format!("unknown channel `{name}`{near}; `trimtab check --help` lists them")));
+                return Err(fail(line, format!("unknown channel `{name}`{near}; `trimtab help channels` lists them")));
             }
         }
         let positive = [("dt", map.dt), ("derive_span", map.derive_span), ("bridge", map.bridge)];
