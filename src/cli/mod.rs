@@ -22,7 +22,7 @@ mod terminal;
 mod terms;
 
 use answer::Answer;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use error::CliError;
 use processor::Build;
 use std::process::ExitCode;
@@ -135,19 +135,46 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Plan(args) => plan::run(args),
         Command::Terms(args) => terms::run(args),
         Command::Demo(args) => demo::run(args),
-        Command::Help(args) => help::run(args),
-        Command::Completions(args) => shell::completions(args),
-        Command::Man(args) => shell::man(args),
+        Command::Help(args) => help::run(args, &Cli::command()),
+        Command::Completions(args) => shell::completions(args, Cli::command()),
+        Command::Man(args) => shell::man(args, Cli::command()),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::Cli;
-    use clap::CommandFactory;
+    use clap::{CommandFactory, Parser};
+    use trimtab::guide::CHAPTERS;
 
     #[test]
     fn the_command_line_is_well_formed() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_in_the_guide_is_one_that_this_program_takes() {
+        for chapter in CHAPTERS {
+            let mut inside = false;
+            for line in chapter.text.lines() {
+                if let Some(language) = line.strip_prefix("```") {
+                    inside = language == "sh";
+                } else if inside && line.starts_with("trimtab ") {
+                    let parsed = Cli::try_parse_from(line.split_whitespace());
+                    assert!(
+                        parsed.is_ok(),
+                        "{}.md: {line}\n{}",
+                        chapter.name,
+                        parsed.err().map_or(String::new(), |e| e.to_string())
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_topic_has_the_name_of_a_command() {
+        let command = Cli::command();
+        assert!(CHAPTERS.iter().all(|c| command.find_subcommand(c.name).is_none()));
     }
 }

@@ -1,11 +1,10 @@
 //! `trimtab completions` and `trimtab man`: what a shell and a manual know of the command line, written from its definition.
 //! It installs nothing; the help says where the files belong.
 
-use super::Cli;
 use super::answer::Answer;
 use super::error::CliError;
 use super::output::{Output, OutputArgs, print};
-use clap::{Command, CommandFactory};
+use clap::Command;
 use clap_complete::Shell;
 use clap_mangen::Man;
 use std::path::PathBuf;
@@ -39,20 +38,19 @@ pub struct ManArgs {
     out: PathBuf,
 }
 
-/// Prints the script of a shell.
-pub fn completions(args: &CompletionsArgs) -> Result<Answer, CliError> {
+/// Prints the script of a shell; `program` defines the command line.
+pub fn completions(args: &CompletionsArgs, mut program: Command) -> Result<Answer, CliError> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "trimtab", &mut script);
+    clap_complete::generate(args.shell, &mut program, "trimtab", &mut script);
     print(&String::from_utf8_lossy(&script))?;
     Ok(Answer::Yes)
 }
 
-/// Writes the manual pages.
-pub fn man(args: &ManArgs) -> Result<Answer, CliError> {
+/// Writes the manual pages of `program`.
+pub fn man(args: &ManArgs, mut program: Command) -> Result<Answer, CliError> {
     let mut output = Output::new("man", &OutputArgs { out: Some(args.out.clone()), json: false })?;
-    let mut command = Cli::command();
-    command.build();
-    pages(&mut output, command, "trimtab")?;
+    program.build();
+    pages(&mut output, program, "trimtab")?;
     let written = output.close();
     let told = print(written.line().trim_start());
     written.ended(told)?;
@@ -66,7 +64,10 @@ fn pages(output: &mut Output, command: Command, name: &str) -> Result<(), CliErr
     }
     let mut page = Vec::new();
     // The manual has one name for a page, where the help has words.
-    let rendered = Man::new(command.display_name(name.to_owned())).title(name.to_uppercase()).render(&mut page);
+    let rendered = Man::new(command.display_name(name.to_owned()))
+        .title(name.to_uppercase())
+        .source(concat!("trimtab ", env!("CARGO_PKG_VERSION")))
+        .render(&mut page);
     rendered.map_err(|e| CliError::Format { format: "a manual page", message: e.to_string() })?;
     output.file(format!("{name}.1"), &page);
     Ok(())
