@@ -398,7 +398,7 @@ fn contradictions() -> Vec<Case> {
             scaled("delta", -1.0),
             "sign_error",
             Channel::Delta,
-            Where::Runs(20),
+            Where::Runs(10),
             "`sign = -1`",
         ),
         case("v turned in one run", turned("v"), "sign_error", Channel::V, here, "`sign = -1`"),

@@ -229,6 +229,12 @@ fn lagging(pair: &Pair, seconds: f64, whose: &str, than: &str) -> Issue {
     Issue::new(Severity::Warning, "clock", text, next).of(pair.channel)
 }
 
+/// Twice the log-likelihood ratio of a run for one lag over another; 0 where it does not have both.
+fn gain(curve: &Curve, from: isize, to: isize) -> f64 {
+    let at = |lag: isize| curve.lags.iter().position(|l| *l == lag);
+    at(from).zip(at(to)).map_or(0.0, |(from, to)| curve.evidence(to, from))
+}
+
 /// Sessions in which a channel has another lag than in all others.
 fn sessions(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
     let mut names: Vec<&str> = Vec::new();
@@ -253,7 +259,10 @@ fn sessions(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
         let same = own.lags.iter().position(|lag| *lag == others.lags[usual])?;
         let apart = own.seconds(best) - others.seconds(usual);
         let worth = apart.abs() > (SESSION_SHARE * time).max(LAG_STEPS[0] * own.step);
-        let sure = own.total[same] - own.total[best] > LAG_EVIDENCE && !own.at_end(best);
+        // Not by the one run that says so most.
+        let spoken = |c: &Curve| gain(c, own.lags[same], own.lags[best]);
+        let most = curves(true, name).into_iter().map(spoken).fold(0.0, f64::max);
+        let sure = own.total[same] - own.total[best] - most > LAG_EVIDENCE && !own.at_end(best);
         (worth && sure && (own.step / others.step - 1.0).abs() < 0.01).then_some((name.to_string(), apart))
     };
     let found: Vec<(String, f64)> = names.iter().filter_map(differing).collect();
