@@ -3,6 +3,7 @@
 
 pub mod conceal;
 pub mod demo;
+pub mod demo_concealed;
 pub mod folders;
 pub mod injected;
 pub mod mutated;
