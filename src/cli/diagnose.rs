@@ -111,12 +111,9 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         output.file("diagnosis.json", (serde_json::to_string_pretty(&json)? + "\n").as_bytes());
         output.file("improved.toml", model_text(&diagnosis.model)?.as_bytes());
         output.file("base.toml", model_text(&diagnosis.base)?.as_bytes());
-        let pictures = pictures(&diagnosis)?;
-        output.file("report.html", page(&diagnosis, name, &pictures).render().as_bytes());
-        for p in &pictures {
-            output.file(format!("figures/{}.png", p.stem), &p.png);
-            output.file(format!("figures/{}.csv", p.stem), p.csv.as_bytes());
-        }
+        let (pictures, from) = (pictures(&diagnosis), output.provenance());
+        output.file("report.html", page(&diagnosis, name, &pictures, &from)?.render().as_bytes());
+        output.figures(pictures.into_iter().map(|p| (format!("figures/{}", p.stem), p.figure)).collect());
     }
     let written = output.close();
     let told = if args.output.json {

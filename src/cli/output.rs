@@ -5,15 +5,18 @@ use super::audited::Audited;
 use super::error::CliError;
 use super::load::Loaded;
 use super::terminal::{Escaped, plain};
+use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use trimtab::files::{FolderError, Kept, Log, Origin, ResultFolder, plain_cell, sha256};
-use trimtab::plot::Figure;
+use std::time::SystemTime;
+use trimtab::files::{FolderError, Kept, Log, Origin, ResultFolder, plain_cell, sha256, utc};
+use trimtab::plot::{Figure, FigureError};
 use trimtab::ranks::Ranks;
+use trimtab::report::diagnosis::{Provenance, SourceFile};
 
 /// Arguments that every command with results has.
 #[derive(Clone, Debug, clap::Args)]
@@ -92,6 +95,18 @@ impl Output {
         Ok(())
     }
 
+    /// The command line and the files that were noted, for a report that names them.
+    pub fn provenance(&self) -> Provenance {
+        let file = |(path, sha256, changed): (&Path, Option<&str>, Option<SystemTime>)| SourceFile {
+            path: path.display().to_string(),
+            changed: changed.map(utc),
+            sha256: sha256.map(str::to_owned),
+        };
+        let files = self.folder.iter().flat_map(ResultFolder::inputs).map(file).collect();
+        let given = arguments(std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()));
+        Provenance { command: format!("trimtab {}", given.join(" ")), files }
+    }
+
     /// A file in the folder, if there is one, that can be seen while the command runs.
     pub fn kept(&self, name: &str) -> Option<Kept> {
         self.folder.as_ref().map(|folder| folder.kept(name))
@@ -130,9 +145,21 @@ impl Output {
 
     /// Draws a figure into the folder, if there is one; a failure is told as that of [`Self::file`].
     pub fn figure(&mut self, stem: &str, figure: impl FnOnce() -> Figure) {
+        if self.folder.is_some() {
+            self.figures(vec![(stem.to_owned(), figure())]);
+        }
+    }
+
+    /// Draws figures into the folder, if there is one, as many at a time as there are threads.
+    pub fn figures(&mut self, figures: Vec<(String, Figure)>) {
         self.put(|folder| {
-            figure().save(&folder.staged(stem)?)?;
-            ["png", "csv"].iter().try_for_each(|end| Ok(folder.written(format!("{stem}.{end}"))?))
+            let draw = |(stem, figure): (String, Figure)| Ok((stem, figure.png()?, figure.csv()?));
+            let drawn: Vec<(String, Vec<u8>, String)> =
+                figures.into_par_iter().map(draw).collect::<Result<_, FigureError>>()?;
+            drawn.iter().try_for_each(|(stem, png, csv)| {
+                folder.write(format!("{stem}.png"), png)?;
+                Ok(folder.write(format!("{stem}.csv"), csv.as_bytes())?)
+            })
         });
     }
 

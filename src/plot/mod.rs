@@ -5,6 +5,7 @@ mod axes;
 mod axis;
 mod canvas;
 mod csv;
+mod data;
 mod error;
 mod extent;
 mod figure;

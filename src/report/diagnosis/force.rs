@@ -1,7 +1,7 @@
 //! Figures of the unknown force along the most telling runs: on their tracks, and over time.
 //! Its mean against state and inputs is in `pattern`.
 
-use super::picture::Sketch;
+use super::picture::Picture;
 use super::stages::{Series, stages, to_earth};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::diagnosis::Trace;
@@ -14,7 +14,7 @@ use crate::report::units::Units;
 const RESOLVED: f64 = 5.99;
 
 /// Tracks with the unknown force as arrows, a row for each stage.
-pub(super) fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Option<Sketch> {
+pub(super) fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Option<Picture> {
     if runs.is_empty() {
         return None;
     }
@@ -45,11 +45,11 @@ pub(super) fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Option<Sketch> {
             );
         }
     }
-    Some(Sketch {
+    Some(Picture {
         stem: "tracks",
         part: "WHERE",
         caption: "Tracks of the most telling runs with the force that the model does not explain. Grey arrows are smaller than the \
-                  filter resolves.",
+                  filter resolves.".to_owned(),
         figure,
     })
 }
@@ -89,7 +89,7 @@ fn arrows(t: &Trace, force: Series, metres: f64) -> (Vec<Arrow>, Vec<Arrow>) {
 }
 
 /// The unknown force over time, a row for each equation.
-pub(super) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Sketch> {
+pub(super) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Picture> {
     if runs.is_empty() {
         return None;
     }
@@ -119,11 +119,11 @@ pub(super) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Sketch> {
             figure = figure.with(panel);
         }
     }
-    Some(Sketch {
+    Some(Picture {
         stem: "forces",
         part: "WHERE",
         caption: "The unknown force over time in the same runs, as the filter estimates it, with its 95 % band under the base \
-                  model. With a complete model it is about zero.",
+                  model. With a complete model it is about zero.".to_owned(),
         figure,
     })
 }

@@ -1,7 +1,7 @@
 //! Figures of the mean unknown force: against state and inputs, by heading, and by region.
 //! Means are over the samples of a bin in each run, then over runs, whose scatter gives the intervals.
 
-use super::picture::Sketch;
+use super::picture::Picture;
 use super::stages::{Series, stages, to_earth};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::diagnosis::Trace;
@@ -57,7 +57,7 @@ fn heading(t: &Trace, k: usize) -> Option<f64> {
 }
 
 /// Mean unknown force against heading, propeller, rudder and drift, a row for each equation.
-pub(super) fn pattern(d: &Diagnosis) -> Option<Sketch> {
+pub(super) fn pattern(d: &Diagnosis) -> Option<Picture> {
     if d.traces.is_empty() {
         return None;
     }
@@ -92,11 +92,13 @@ pub(super) fn pattern(d: &Diagnosis) -> Option<Sketch> {
             figure = figure.with(panel);
         }
     }
-    Some(Sketch {
+    Some(Picture {
         stem: "pattern",
         part: "WHERE",
-        caption: "Mean unknown force against heading, propeller, rudder and drift, with 95 % intervals from the scatter \
-                  between runs. A sine in heading is fixed on the earth; a slope in the others moves with the ship.",
+        caption:
+            "Mean unknown force against heading, propeller, rudder and drift, with 95 % intervals from the scatter \
+                  between runs. A sine in heading is fixed on the earth; a slope in the others moves with the ship."
+                .to_owned(),
         figure,
     })
 }
@@ -109,7 +111,7 @@ fn tenth(d: &Diagnosis, of: Abscissa<'_>) -> f64 {
 }
 
 /// Mean horizontal force by heading of the ship, as arrows in earth axes.
-pub(super) fn compass(d: &Diagnosis) -> Option<Sketch> {
+pub(super) fn compass(d: &Diagnosis) -> Option<Picture> {
     if d.traces.is_empty() {
         return None;
     }
@@ -132,11 +134,11 @@ pub(super) fn compass(d: &Diagnosis) -> Option<Sketch> {
         });
         figure = figure.with(rose(stage, color, arrows));
     }
-    Some(Sketch {
+    Some(Picture {
         stem: "compass",
         part: "WHERE",
         caption: "Mean horizontal force by heading of the ship, in earth axes. Arrows that all point the same way are fixed on \
-                  the earth; arrows that turn with the position on the circle move with the ship.",
+                  the earth; arrows that turn with the position on the circle move with the ship.".to_owned(),
         figure,
     })
 }
@@ -155,7 +157,7 @@ fn rose(stage: &str, color: Color, arrows: impl Iterator<Item = [(f64, f64); 2]>
 }
 
 /// Mean unexplained force in each region of state and inputs.
-pub(super) fn regions(d: &Diagnosis) -> Option<Sketch> {
+pub(super) fn regions(d: &Diagnosis) -> Option<Picture> {
     if d.location.regions.is_empty() {
         return None;
     }
@@ -174,10 +176,12 @@ pub(super) fn regions(d: &Diagnosis) -> Option<Sketch> {
                 .with(Layer::bars_with_intervals("mean force", BASELINE.faded(0.7), bars)),
         );
     }
-    Some(Sketch {
+    Some(Picture {
         stem: "regions",
         part: "WHERE",
-        caption: "Constant force that each region of state and inputs would need beyond the base model, with 95 % intervals.",
+        caption:
+            "Constant force that each region of state and inputs would need beyond the base model, with 95 % intervals."
+                .to_owned(),
         figure,
     })
 }
