@@ -4,7 +4,7 @@
 use super::axis::{Axis, Scale, drawable, limits};
 use super::extent::extents;
 use super::figure::{Figure, Legend, Panel};
-use super::heatmap::cell_colors;
+use super::heatmap::{cell_colors, cell_words};
 use super::layer::{Layer, Mark, Marker, Stroke};
 use super::palette::Color;
 use serde_json::{Value, json};
@@ -141,8 +141,9 @@ fn mark(m: &Mark) -> Value {
             let fills: Vec<Vec<String>> = colors.iter().map(|row| row.iter().map(|c| hex(*c)).collect()).collect();
             let dark: Vec<Vec<bool>> =
                 colors.iter().map(|row| row.iter().map(|c| c.luminance() <= 0.35).collect()).collect();
+            let words = cell_words(values, *range);
             let values: Vec<_> = values.iter().map(|row| numbers(row.iter().copied())).collect();
-            json!({ "k": "heat", "p": values, "f": fills, "b": dark })
+            json!({ "k": "heat", "p": values, "f": fills, "b": dark, "t": words })
         }
         Mark::Text((x, y)) => json!({ "k": "text", "v": [short(*x), short(*y)] }),
     }

@@ -50,6 +50,12 @@ pub(super) fn cell_colors(values: &[Vec<f64>], range: Option<(f64, f64)>) -> Vec
     values.iter().map(|row| row.iter().map(of).collect()).collect()
 }
 
+/// The value of every cell in words.
+pub(super) fn cell_words(values: &[Vec<f64>], range: Option<(f64, f64)>) -> Vec<Vec<String>> {
+    let range = color_range(values, range);
+    values.iter().map(|row| row.iter().map(|&v| cell_text(v, range)).collect()).collect()
+}
+
 /// A cell's value with as many decimals as give the largest of the map two digits.
 fn cell_text(v: f64, (lo, hi): (f64, f64)) -> String {
     let largest = lo.abs().max(hi.abs());

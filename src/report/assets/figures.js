@@ -64,6 +64,8 @@
       }
       if (at.length >= 3) return { at: at.filter((_, i) => i % Math.ceil((at.length * room) / length) === 0), power: 0 };
     }
+    // An axis with a tick step beyond its range is to have no ticks.
+    if (axis.e > hi - lo) return { at: [], power: 0 };
     let step = axis.e && (hi - lo) / axis.e < 40 && (hi - lo) / axis.e >= 2 ? axis.e : nice(((hi - lo) * room) / length);
     const values = (by) => {
       const first = Math.ceil(lo / by - 1e-9);
@@ -197,7 +199,10 @@
       const power = (p) => (p ? ` (10${String(p).replace(/./g, (c) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[c] || '⁻')})` : '');
       if (spec.x.l) {
         const all = lines(spec.x.l + power(x.power), inner + left - 8);
-        all.forEach((words, i) => text(Math.max(left + inner / 2, width(words) / 2 + 2), top + height + 33 + 14 * i, words, 'middle'));
+        all.forEach((words, i) => {
+          const half = width(words) / 2 + 2;
+          text(Math.min(Math.max(left + inner / 2, half), this.W - half), top + height + 33 + 14 * i, words, 'middle');
+        });
         if (all.length > 1) {
           const H = +svg.getAttribute('height') + 14 * (all.length - 1);
           svg.setAttribute('height', H);
@@ -319,7 +324,7 @@
               if (v === null) return;
               const [x, y, h] = [this.X(j), this.Y(i), height / l.p.length];
               add(g, 'rect', { x: x - cell / 2, y: y - h / 2, width: cell, height: h, style: `fill:${l.f[i][j]}` });
-              if (cell > 34) add(g, 'text', { x, y: y + 4, 'text-anchor': 'middle', 'font-size': SMALL, style: `fill:${l.b[i][j] ? '#fff' : '#111'}` }, number(v));
+              if (cell > 34) add(g, 'text', { x, y: y + 4, 'text-anchor': 'middle', 'font-size': SMALL, style: `fill:${l.b[i][j] ? '#fff' : '#111'}` }, l.t[i][j]);
             })
           );
           break;
@@ -507,10 +512,17 @@
     fit(given) {
       const all = given || this.host.clientWidth;
       const wide = this.spec.panels.some((p) => p.y.k === 'cat' || p.x.k === 'cat');
-      const columns = Math.max(1, Math.min(this.spec.columns, Math.floor((all + 18) / (wide ? 440 : 280))));
+      // As many as fit, so that rows of the figure stay together where they can.
+      let columns = Math.max(1, Math.min(this.spec.columns, Math.floor((all + 18) / (wide ? 440 : 280))));
+      if (columns > 2 && this.spec.columns % columns) columns = 2;
       this.grid.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
       const each = Math.floor((all - 19.2 * (columns - 1)) / columns);
-      this.panels.forEach((p) => p.draw(Math.min(each, wide ? 760 : 620)));
+      this.panels.forEach((p) => {
+        // The panel to be seen first takes four places where there is room.
+        const large = p.spec.large && columns > 2;
+        p.host.style.gridArea = large ? 'span 2 / span 2' : '';
+        p.draw(large ? 2 * each + 19 : Math.min(each, wide ? 760 : 620));
+      });
     }
   }
 
@@ -529,7 +541,7 @@
     const scaled = (values, k) => values.map((v) => (v === null ? null : v * k));
     const axis = (l, r, e) => ({ l, k: 'lin', r, e });
     const track = {
-      t: '', q: true,
+      t: '', q: true, large: true,
       x: axis('east y [m]', range(series.map((s) => s.z[1]), 0.06)),
       y: axis('north x [m]', range(series.map((s) => s.z[0]), 0.06)),
       s: [

@@ -1,7 +1,7 @@
 //! Figures of what the findings change: test runs before and after, parameters that moved, coefficients far from their priors.
 //! They show the numbers of the diagnosis in order of size.
 
-use super::picture::Picture;
+use super::picture::{Picture, shown};
 use crate::diagnose::Diagnosis;
 use crate::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Legend, Marker, Panel};
 
@@ -16,6 +16,7 @@ pub(super) fn held_out(d: &Diagnosis) -> Option<Picture> {
     let both = h.runs_before.iter().zip(&h.runs_after);
     let mut pairs: Vec<(&str, f64, f64)> = both.map(|(b, a)| (b.run.as_str(), cvdm(b.cvdm), cvdm(a.cvdm))).collect();
     pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let all = pairs.len();
     pairs.truncate(RUNS);
     if pairs.is_empty() || d.findings.is_empty() {
         return None;
@@ -33,7 +34,9 @@ pub(super) fn held_out(d: &Diagnosis) -> Option<Picture> {
     Some(Picture {
         stem: "held_out",
         part: "PROOF",
-        caption: "Each test run, simulated freely by the base model, refitted, and by the improved model.".to_owned(),
+        caption: "Test runs, simulated freely by the base model, refitted, and by the improved model, the largest error of the base model first."
+            .to_owned()
+            + &shown(pairs.len(), all, "test runs, those with the largest errors of the base model,"),
         figure: Figure::new("Test runs, before and after (dotted: means)")
             .panel_size(1240, 150 + 40 * pairs.len() as u32)
             .with(dots),
@@ -58,6 +61,7 @@ pub(super) fn moves(d: &Diagnosis) -> Option<Picture> {
 pub(super) fn hull_budget(d: &Diagnosis) -> Option<Picture> {
     let mut budget: Vec<(&str, f64)> = d.hull_budget.iter().map(|b| (b.name.as_str(), b.used)).collect();
     budget.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let all = budget.len();
     budget.truncate(COEFFICIENTS);
     if budget.is_empty() {
         return None;
@@ -65,10 +69,9 @@ pub(super) fn hull_budget(d: &Diagnosis) -> Option<Picture> {
     Some(Picture {
         stem: "hull_budget",
         part: "STILL OPEN",
-        caption:
-            "Distance of the ship's own coefficients from their priors, the twenty furthest. They are an error budget, \
-                  not findings."
-                .to_owned(),
+        caption: "Distance of the ship's own coefficients from their priors, the furthest first. They are an error budget, not findings."
+            .to_owned()
+            + &shown(budget.len(), all, "coefficients, those furthest from their priors,"),
         figure: levels("Hull error budget", "distance from the prior value [prior standard deviations]", budget),
     })
 }

@@ -23,7 +23,7 @@ pub(super) fn section(d: &Diagnosis, i: usize) -> Option<Section> {
     let units = Units::of(&d.base.ship);
     let (words, class) = grade_label(f.grade);
     let mut section = Section::new(capitalised(&f.title)).badge(words, class).markup(html! {
-        p { (capitalised(&f.title)) (size(f, units)) ": " (grade_sentence(f)) "." }
+        p { (capitalised(&f.title)) (size(f, units)) " is " (grade_sentence(f)) "." }
     });
     section = section.markup(parameters(d, f, i, units));
     section = section.markup(html! { h3 { "Where it acts" } }).list(places(d, f, units));

@@ -1,7 +1,7 @@
 //! Figures of the unknown force along the most telling runs: on their tracks, and over time.
 //! Its mean against state and inputs is in `pattern`.
 
-use super::picture::Picture;
+use super::picture::{Picture, shown};
 use super::stages::{Series, stages, to_earth};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::diagnosis::Trace;
@@ -49,7 +49,8 @@ pub(super) fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Option<Picture> {
         stem: "tracks",
         part: "WHERE",
         caption: "Tracks of the most telling runs with the force that the model does not explain. Grey arrows are smaller than the \
-                  filter resolves.".to_owned(),
+                  filter resolves.".to_owned()
+            + &shown(runs.len(), d.traces.len(), "training runs, those on which the force is largest in standard deviations,"),
         figure,
     })
 }
@@ -114,7 +115,8 @@ pub(super) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Picture> {
             ));
             for (stage, color, force) in stages(d) {
                 let points = t.time.iter().zip(force(t)).map(|(time, f)| (*time, f[e] * factor));
-                panel = panel.with(Layer::line(stage, color, points).width(2.5));
+                let line = Layer::line(stage, color, points).width(2.5);
+                panel = panel.with(if color == BASELINE { line.dashed() } else { line });
             }
             figure = figure.with(panel);
         }
@@ -123,7 +125,8 @@ pub(super) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Picture> {
         stem: "forces",
         part: "WHERE",
         caption: "The unknown force over time in the same runs, as the filter estimates it, with its 95 % band under the base \
-                  model. With a complete model it is about zero.".to_owned(),
+                  model. With a complete model it is about zero.".to_owned()
+            + &shown(runs.len(), d.traces.len(), "training runs, those on which the force is largest in standard deviations,"),
         figure,
     })
 }

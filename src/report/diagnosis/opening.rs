@@ -62,7 +62,7 @@ fn nearer(d: &Diagnosis, i: usize, f: &Finding) -> Option<Number> {
         |k: usize, v: f64| quantity(&format!("findings[{i}].held_out.{name}[{k}]"), v, factor, &sig(v * factor, 3));
     let title = title_of(&d.model, &f.mechanism);
     Some(Number {
-        value: html! { (part(0, before)) " → " (part(1, after)) " " (unit) },
+        value: html! { (part(0, before)) " → " (part(1, after)) "\u{a0}" (unit) },
         meaning: html! {
             (words) " on " (count(&format!("findings[{i}].held_out.recordings"), h.recordings))
             " unseen recordings, without and with " (title)
@@ -78,17 +78,17 @@ fn cvdm(d: &Diagnosis) -> Option<Number> {
     let before = h.before?;
     let (Some(after), Some(gain), false) = (h.after, h.improvement, d.findings.is_empty()) else {
         return Some(Number {
-            value: html! { (mean("before", before)) " %" },
+            value: html! { (mean("before", before)) "\u{a0}%" },
             meaning: html! { "error (cVDM) of the base model, refitted, on " (count("held_out.runs", h.runs)) " test runs" },
         });
     };
     Some(Number {
-        value: html! { (percent("improvement", gain)) " %" },
+        value: html! { (percent("improvement", gain)) "\u{a0}%" },
         meaning: html! {
-            "smaller error (cVDM " (mean("before", before)) " % → " (mean("after", after)) " %) on "
+            "smaller error (cVDM " (mean("before", before)) "\u{a0}% → " (mean("after", after)) "\u{a0}%) on "
             (count("held_out.runs", h.runs)) " test runs"
             @if let Some([low, high]) = h.ci95 {
-                "; 95 % interval " (percent("ci95[0]", low)) " % to " (percent("ci95[1]", high)) " %"
+                "; 95 % interval " (percent("ci95[0]", low)) "\u{a0}% to " (percent("ci95[1]", high)) "\u{a0}%"
             }
         },
     })

@@ -6,7 +6,7 @@ use super::stages::{Series, stages, to_earth};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::diagnosis::Trace;
 use crate::numerals::sig;
-use crate::plot::{Axis, BASELINE, Color, Figure, GREY, Layer, Legend, Panel, nice_step};
+use crate::plot::{Axis, BASELINE, Color, Figure, GREY, Layer, Legend, Marker, Panel, nice_step};
 use crate::report::units::Units;
 use crate::units::GRAVITY;
 use std::collections::BTreeMap;
@@ -84,10 +84,14 @@ pub(super) fn pattern(d: &Diagnosis) -> Option<Picture> {
             for (i, (stage, color, force)) in stages(d).into_iter().enumerate() {
                 // Side by side, so that intervals do not cover each other.
                 let aside = (i as f64 - 0.5) * 0.12 * width;
+                let shape = if i == 0 { Marker::Circle } else { Marker::Diamond };
                 let points = binned(d, force, of, &|_, _, f| f[e] * factor, *width);
                 panel = panel
                     .with(Layer::line(stage, color, points.iter().map(|p| (p[0] + aside, p[1]))).unlisted().width(1.5))
-                    .with(Layer::errors(stage, color, points.iter().map(|p| (p[0] + aside, p[1], p[2], p[3]))));
+                    .with(
+                        Layer::errors(stage, color, points.iter().map(|p| (p[0] + aside, p[1], p[2], p[3])))
+                            .marker(shape),
+                    );
             }
             figure = figure.with(panel);
         }

@@ -15,3 +15,8 @@ pub struct Picture {
     /// The figure.
     pub figure: Figure,
 }
+
+/// That not everything is shown; nothing where it is.
+pub(super) fn shown(count: usize, of: usize, what: &str) -> String {
+    if count < of { format!(" {count} of {of} {what} are shown.") } else { String::new() }
+}
