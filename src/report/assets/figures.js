@@ -513,7 +513,7 @@
       const all = given || this.host.clientWidth;
       const wide = this.spec.panels.some((p) => p.y.k === 'cat' || p.x.k === 'cat');
       // As many as fit, so that rows of the figure stay together where they can.
-      let columns = Math.max(1, Math.min(this.spec.columns, Math.floor((all + 18) / (wide ? 440 : 280))));
+      let columns = Math.max(1, Math.min(this.spec.columns, Math.floor((all + 18) / (given ? (wide ? 320 : 215) : wide ? 440 : 280))));
       if (columns > 2 && this.spec.columns % columns) columns = 2;
       this.grid.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
       const each = Math.floor((all - 19.2 * (columns - 1)) / columns);
@@ -541,7 +541,7 @@
     const scaled = (values, k) => values.map((v) => (v === null ? null : v * k));
     const axis = (l, r, e) => ({ l, k: 'lin', r, e });
     const track = {
-      t: '', q: true, large: true,
+      t: run.name, q: true, large: true,
       x: axis('east y [m]', range(series.map((s) => s.z[1]), 0.06)),
       y: axis('north x [m]', range(series.map((s) => s.z[0]), 0.06)),
       s: [
