@@ -4,6 +4,7 @@
 use super::answer::Answer;
 use super::audited::{AcceptArgs, examined};
 use super::error::CliError;
+use super::figures::FigureArgs;
 use super::fit::model_text;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, print, print_json};
@@ -48,7 +49,8 @@ Example:
 
 With --out: report.html (everything on one page, readable offline), diagnosis.json,
 improved.toml (a model file with the mechanisms found, which every command takes as --model),
-base.toml (the study's model, refitted alike), figures/*.png with the CSV behind each.
+base.toml (the study's model, refitted alike), figures/ with the CSV behind each and
+figures.md with their captions.
 
 Exit code 0 if any verdict was reached; 1 if the recordings cannot answer (verdict
 `insufficient`, or a fault in them that must be mended first or accepted); 2 if it could not run.
@@ -79,12 +81,14 @@ pub struct Args {
     #[command(flatten)]
     accept: AcceptArgs,
     #[command(flatten)]
+    figures: FigureArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
-    let mut output = Output::new("diagnose", &args.output)?;
+    let mut output = Output::new("diagnose", &args.output)?.drawn_as(&args.figures);
     let loaded = Loaded::new(&args.study)?;
     output.reads(&loaded, true);
     let mut settings = settings(args, loaded.diagnose_settings()?)?;
@@ -113,7 +117,9 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         output.file("base.toml", model_text(&diagnosis.base)?.as_bytes());
         let (pictures, from) = (pictures(&diagnosis), output.provenance());
         output.file("report.html", page(&diagnosis, name, &pictures, &from)?.render().as_bytes());
-        output.figures(pictures.into_iter().map(|p| (format!("figures/{}", p.stem), p.figure)).collect());
+        output.figures(
+            pictures.into_iter().map(|p| (format!("figures/{}", p.stem), p.figure.caption(p.caption))).collect(),
+        );
     }
     let written = output.close();
     let told = if args.output.json {

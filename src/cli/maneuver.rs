@@ -4,6 +4,7 @@
 use super::answer::Answer;
 use super::audited::model_alone;
 use super::error::CliError;
+use super::figures::FigureArgs;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs};
 use super::progress::progress;
@@ -93,6 +94,8 @@ struct TrialArgs {
     #[arg(long, value_name = "RPM", allow_negative_numbers = true)]
     rpm: Option<f64>,
     #[command(flatten)]
+    figures: FigureArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
@@ -134,7 +137,7 @@ impl Prepared {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     match &args.trial {
         Kind::Turning(args) => {
-            let mut output = Output::new("maneuver turning", &args.output)?;
+            let mut output = Output::new("maneuver turning", &args.output)?.drawn_as(&args.figures);
             let p = Prepared::new(args, &mut output)?;
             let angle = p.settings.turning_angle();
             let bar = progress("turning");
@@ -145,7 +148,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             output.finish(&text(&p, &trials, &table), &report(&p, &trials))
         }
         Kind::Zigzag(args) => {
-            let mut output = Output::new("maneuver zigzag", &args.output)?;
+            let mut output = Output::new("maneuver zigzag", &args.output)?.drawn_as(&args.figures);
             let p = Prepared::new(args, &mut output)?;
             let bar = progress("zigzag");
             let sail = |angles, side| zigzag_trial(&p.model, &p.theta, &p.approach, side, angles);
@@ -157,7 +160,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             output.finish(&text(&p, &trials, &table), &report(&p, &trials))
         }
         Kind::Stopping(args) => {
-            let mut output = Output::new("maneuver stopping", &args.output)?;
+            let mut output = Output::new("maneuver stopping", &args.output)?.drawn_as(&args.figures);
             let p = Prepared::new(args, &mut output)?;
             let trial = stopping_trial(&p.model, &p.theta, &p.approach);
             let table = stopping_table(&p.model.ship, &trial);
