@@ -8,6 +8,7 @@ mod demo;
 mod diagnose;
 mod error;
 mod evaluate;
+mod figures;
 mod fit;
 mod help;
 mod load;
