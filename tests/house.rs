@@ -15,8 +15,20 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Modules of the library from the bottom up: a module uses its own line and those before it.
-const LAYERS: [&[&str]; 15] = [
-    &["units", "error", "numerals", "ranks", "state", "ship", "parameter", "ranges", "files", "progress"],
+const LAYERS: [&[&str]; 16] = [
+    &[
+        "units",
+        "error",
+        "numerals",
+        "ranks",
+        "state",
+        "ship",
+        "particulars",
+        "parameter",
+        "ranges",
+        "files",
+        "progress",
+    ],
     &["physics"],
     &["terms"],
     &["model", "dynamics"],
@@ -30,6 +42,7 @@ const LAYERS: [&[&str]; 15] = [
     &["diagnose"],
     &["plan"],
     &["plot", "report"],
+    &["guide"],
     &["cli", "main"],
 ];
 

@@ -552,8 +552,8 @@ fn mistakes_are_mended_from_the_message() {
     let study = Study::new();
     contains_all(&study.refuses(&["import", "none.csv", "--out", "own"]), &["none.csv: cannot read the file"]);
     // A unit that nothing tells: a propeller that turns at fifteen of something.
-    let odd = log
-        .replace("Shaft RPM", "propeller")
+    let renamed = log.replace("Shaft RPM", "propeller");
+    let odd = renamed
         .lines()
         .enumerate()
         .map(|(i, l)| if i == 0 { format!("{l}\n") } else { format!("{};15,0\n", l.rsplit_once(';').unwrap().0) });
