@@ -10,6 +10,7 @@ mod error;
 mod evaluate;
 mod fit;
 mod help;
+mod lines;
 mod load;
 mod maneuver;
 mod output;
