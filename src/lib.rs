@@ -87,6 +87,7 @@ pub mod maneuver;
 pub mod model;
 pub mod numerals;
 pub mod parameter;
+pub mod particulars;
 pub mod physics;
 pub mod plan;
 #[cfg(feature = "plot")]
@@ -103,6 +104,7 @@ pub mod state;
 pub mod statistics;
 pub mod study;
 pub mod terms;
+pub mod uncertainty;
 pub mod units;
 pub mod validity;
 

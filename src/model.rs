@@ -8,6 +8,7 @@ use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number, TermInfo
 use crate::ship::{COEFFICIENTS, Ship, explain, line_of};
 use crate::state::Inputs;
 use crate::terms;
+use crate::uncertainty::Uncertainty;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -90,6 +91,9 @@ pub enum ModelError {
         /// What it should be.
         expected: String,
     },
+    /// A covariance that does not belong to the model.
+    #[error("{0}; fit the model again, or remove the table")]
+    Covariance(String),
     /// The sway-yaw mass matrix cannot be inverted.
     #[error(
         "the sway-yaw mass matrix is singular or negative (determinant {determinant:.3e}); check hull.mass, hull.inertia, hull.x_g and the added masses hull.Yvdot, hull.Yrdot, hull.Nvdot, hull.Nrdot (negative values)"
@@ -195,6 +199,9 @@ pub struct ModelFile {
     /// Additions by session and dotted parameter name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub sessions: BTreeMap<String, BTreeMap<String, f64>>,
+    /// Covariance of the estimates, as a fit writes it; a model that is changed has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub covariance: Option<Uncertainty>,
 }
 
 /// What a model file may say of one parameter; a key left out takes the term's value.
@@ -474,9 +481,27 @@ impl Model {
             }
             model.sessions.insert(session.clone(), list);
         }
+        if let Some(fault) = file.covariance.as_ref().and_then(|c| c.fault(|name| model.index(name).is_some())) {
+            return Err(ModelError::Covariance(fault));
+        }
         model.check_bounds()?;
         model.check()?;
         Ok(model)
+    }
+
+    /// The covariance in a model file, if it has one.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is no model file.
+    pub fn read_uncertainty(path: &Path) -> Result<Option<Uncertainty>, ModelError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| ModelError::Read { path: path.to_path_buf(), source })?;
+        let file: ModelFile = toml::from_str(&text).map_err(|e| ModelError::Parse {
+            path: path.to_path_buf(),
+            line: e.span().map_or(1, |s| line_of(&text, s.start)),
+            message: explain(e.message()),
+        })?;
+        Ok(file.covariance)
     }
 
     /// Frees every hydrodynamic coefficient of the hull with its default prior: what `hull = "free"` in a model file does.
@@ -546,6 +571,7 @@ impl Model {
             terms: self.term_names().iter().filter(|t| !BASE.contains(t)).map(ToString::to_string).collect(),
             parameters,
             sessions: self.sessions.iter().map(|(s, list)| (s.clone(), list.iter().map(name_of).collect())).collect(),
+            covariance: None,
         }
     }
 

@@ -296,7 +296,10 @@ fn faults_of_the_ship_file_are_named() {
     }
     let study = Study::new();
     study.edit("ship.toml", "mass = 3.359e6\n", "");
-    contains_all(&study.refuses(&["fit", "study.toml"]), &["ship.toml:", "missing field `mass`", "SI units"]);
+    contains_all(
+        &study.refuses(&["fit", "study.toml"]),
+        &["ship.toml: a value is missing", "hull.mass [kg]", "trimtab new --from"],
+    );
 }
 
 #[test]

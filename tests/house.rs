@@ -16,7 +16,19 @@ use std::path::{Path, PathBuf};
 
 /// Modules of the library from the bottom up: a module uses its own line and those before it.
 const LAYERS: [&[&str]; 15] = [
-    &["units", "error", "numerals", "ranks", "state", "ship", "parameter", "ranges", "files", "progress"],
+    &[
+        "units",
+        "error",
+        "numerals",
+        "ranks",
+        "state",
+        "ship",
+        "particulars",
+        "parameter",
+        "ranges",
+        "files",
+        "progress",
+    ],
     &["physics"],
     &["terms"],
     &["model", "dynamics"],

@@ -4,7 +4,8 @@
 use super::answer::Answer;
 use super::audited::{AcceptArgs, examined};
 use super::error::CliError;
-use super::fit::model_text;
+use super::figures::FigureArgs;
+use super::fit::{fitted_text, model_text};
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, print, print_json};
 use super::progress::progress;
@@ -49,7 +50,8 @@ Example:
 
 With --out: report.html (everything on one page, readable offline), diagnosis.json,
 improved.toml (a model file with the mechanisms found, which every command takes as --model),
-base.toml (the study's model, refitted alike), figures/*.png with the CSV behind each.
+base.toml (the study's model, refitted alike), figures/ with the CSV behind each and
+figures.md with their captions.
 
 Exit code 0 if any verdict was reached; 1 if the recordings cannot answer (verdict
 `insufficient`, or a fault in them that must be mended first or accepted); 2 if it could not run.
@@ -80,12 +82,14 @@ pub struct Args {
     #[command(flatten)]
     accept: AcceptArgs,
     #[command(flatten)]
+    figures: FigureArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
-    let mut output = Output::new("diagnose", &args.output)?;
+    let mut output = Output::new("diagnose", &args.output)?.drawn_as(&args.figures);
     let loaded = Loaded::new(&args.study)?;
     output.reads(&loaded, true);
     let settings = prepared(&loaded, settings(args, loaded.diagnose_settings()?)?)?;
@@ -144,14 +148,14 @@ pub fn write_diagnosis(output: &mut Output, diagnosis: &Diagnosis, name: &str) -
 fn write_files(output: &mut Output, diagnosis: &Diagnosis, name: &str, json: &Value) -> Result<(), CliError> {
     if output.has_folder() {
         output.file("diagnosis.json", (serde_json::to_string_pretty(json)? + "\n").as_bytes());
-        output.file("improved.toml", model_text(&diagnosis.model)?.as_bytes());
+        let improved = fitted_text(&diagnosis.model, diagnosis.uncertainty.clone())?;
+        output.file("improved.toml", improved.as_bytes());
         output.file("base.toml", model_text(&diagnosis.base)?.as_bytes());
-        let pictures = pictures(diagnosis)?;
-        output.file("report.html", page(diagnosis, name, &pictures).render().as_bytes());
-        for p in &pictures {
-            output.file(format!("figures/{}.png", p.stem), &p.png);
-            output.file(format!("figures/{}.csv", p.stem), p.csv.as_bytes());
-        }
+        let (pictures, from) = (pictures(diagnosis), output.provenance());
+        output.file("report.html", page(diagnosis, name, &pictures, &from)?.render().as_bytes());
+        output.figures(
+            pictures.into_iter().map(|p| (format!("figures/{}", p.stem), p.figure.caption(p.caption))).collect(),
+        );
     }
     Ok(())
 }

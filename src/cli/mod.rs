@@ -8,11 +8,13 @@ mod demo;
 mod diagnose;
 mod error;
 mod evaluate;
+mod figures;
 mod fit;
 mod help;
 mod lines;
 mod load;
 mod maneuver;
+mod new;
 mod output;
 mod plan;
 mod processor;
@@ -34,6 +36,8 @@ const AFTER_HELP: &str = "\
 Begin with
   trimtab demo                       the whole job on built-in trials; leaves a study to copy
   trimtab help tutorial              from your own log to an answer
+  trimtab new --lpp L --breadth B --draught D --type TYPE
+                                     a ship file; what is not known is estimated
   trimtab check STUDY                are the recordings fit to be used?
   trimtab fit STUDY --out results    fit the model; writes results/fitted.toml
   trimtab evaluate STUDY --model results/fitted.toml
@@ -68,6 +72,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    New(new::Args),
     Check(check::Args),
     Simulate(simulate::Args),
     Fit(fit::Args),
@@ -129,6 +134,7 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Evaluate(args) => evaluate::run(args, ranks),
         // The work of the others is not divided: one rank does it.
         _ if !ranks.is_first() => Ok(Answer::Yes),
+        Command::New(args) => new::run(args),
         Command::Check(args) => check::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Diagnose(args) => diagnose::run(args),

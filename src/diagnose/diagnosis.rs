@@ -10,10 +10,12 @@ use super::influence::Following;
 use super::locate::Location;
 use super::noise::Noise;
 use super::prove::HeldOut;
+use super::sailed::Sailed;
 use super::settings::Settings;
 use super::sides::Sides;
 use super::stability::Stability;
 use crate::model::Model;
+use crate::uncertainty::Uncertainty;
 use crate::validity::Coverage;
 use serde::Serialize;
 
@@ -217,9 +219,15 @@ pub struct Diagnosis {
     /// The unknown force along every run, before and after, for pictures.
     #[serde(skip)]
     pub traces: Vec<Trace>,
+    /// The test runs, or without any the training runs, recorded and simulated, for pictures.
+    #[serde(skip)]
+    pub sailed: Vec<Sailed>,
     /// The improved model, as a model file.
     #[serde(skip)]
     pub model: Model,
+    /// Covariance of the improved model's parameters, hull coefficients included; absent where the data do not determine them.
+    #[serde(skip)]
+    pub uncertainty: Option<Uncertainty>,
     /// The base model, refitted.
     #[serde(skip)]
     pub base: Model,

@@ -34,9 +34,9 @@ fn list<'v>(of: &'v Value, key: &str) -> impl Iterator<Item = &'v Value> {
 }
 
 impl Answer {
-    /// Reads the answer of a command from its JSON file, and what it told from its text.
-    pub fn new(command: &str, json: &Value, text: &str) -> Self {
-        let mut answer = Self { told: told(text), ..Self::default() };
+    /// Reads the numbers and words of a command's answer from its JSON.
+    pub fn new(command: &str, json: &Value) -> Self {
+        let mut answer = Self::default();
         let result = &json["result"];
         match command {
             "fit" => list(result, "estimates").for_each(|e| {
@@ -98,11 +98,12 @@ mod tests {
             { "name": "a", "value": a, "standard_error": 0.5 }, { "name": "held", "value": 1.0, "standard_error": null }
         ] } })
         };
-        let sound = Answer::new("fit", &fit(1.0), "Converged\n");
-        let moved = Answer::new("fit", &fit(2.0), "warning: r01\nConverged, but IN DOUBT: ...\n");
+        let said = |answer: Answer, text: &str| Answer { told: told(text), ..answer };
+        let sound = said(Answer::new("fit", &fit(1.0)), "Converged\n");
+        let moved = said(Answer::new("fit", &fit(2.0)), "warning: r01\nConverged, but IN DOUBT: ...\n");
         assert_eq!((moved.moved(&sound), sound.moved(&sound)), (2.0, 0.0));
         assert!(moved.tells(&sound) && !sound.tells(&moved) && moved.told.len() == 2);
-        let verdict = |name: &str| Answer::new("diagnose", &json!({ "verdict": name, "findings": [] }), "");
+        let verdict = |name: &str| Answer::new("diagnose", &json!({ "verdict": name, "findings": [] }));
         assert!(verdict("named").moved(&verdict("nothing_missing")).is_infinite());
         assert_eq!(verdict("named").moved(&verdict("named")), 0.0);
         let late = "\n".repeat(30) + &"a line\n".repeat(10) + "warning: too late\n";

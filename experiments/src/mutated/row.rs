@@ -113,6 +113,7 @@ fn right(class: Class, outcome: Outcome) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mutated::answer::told;
     use crate::mutated::plan::plan;
     use serde_json::json;
 
@@ -121,7 +122,7 @@ mod tests {
         let planned = |class: Class| plan(60, 1).into_iter().find(|p| p.class == class).unwrap();
         let answer = |advance: f64, text: &str| {
             let json = json!({ "result": { "trials": [{ "name": "a", "measures": { "advance": advance } }] } });
-            Answer::new("maneuver", &json, text)
+            Answer { told: told(text), ..Answer::new("maneuver", &json) }
         };
         let ended = |code: Option<i32>, messages: &str, stopped: bool| Ended {
             code,

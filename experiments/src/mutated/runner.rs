@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use super::answer::Answer;
+use super::answer::{Answer, told};
 use super::files::{Files, sound, write};
 use super::plan::Planned;
 use super::row::Row;
@@ -16,14 +16,8 @@ use crate::conceal::error::ConcealError;
 use crate::process::{self, Ended};
 use crate::workers;
 
-/// The commands, and the JSON file of each.
-const COMMANDS: [(&str, &str); 5] = [
-    ("simulate", "simulate.json"),
-    ("fit", "fit.json"),
-    ("evaluate", "evaluate.json"),
-    ("maneuver", "maneuver_turning.json"),
-    ("diagnose", "diagnosis.json"),
-];
+/// The commands; the last one takes longest.
+const COMMANDS: [&str; 5] = ["simulate", "fit", "evaluate", "maneuver", "diagnose"];
 
 /// Seed of the sound study.
 const STUDY: u64 = 7;
@@ -53,22 +47,22 @@ impl Runner {
         let study = runner.folder.join("sound");
         let io = |source| ConcealError::file(&study, source);
         write(&runner.sound, &study).map_err(io)?;
-        let mut answers = BTreeMap::new();
         // The fitted model belongs to the study: evaluate and maneuver read it.
-        for (command, file) in [1, 0, 2, 3, 4].map(|i| COMMANDS[i]) {
-            let (ended, answer) = runner.ask(&study, command, file)?;
+        let mut fit = runner.command(&study, "fit");
+        fit.arg("--out").arg(study.join("fit"));
+        process::run(fit, limit).map_err(|source| ConcealError::file(&runner.tool, source))?;
+        let fitted = std::fs::read(study.join("fit/fitted.toml")).map_err(io)?;
+        runner.sound.insert("fitted.toml".to_owned(), fitted);
+        write(&runner.sound, &study).map_err(io)?;
+        for command in COMMANDS {
+            let (ended, answer) = runner.ask(&study, command)?;
             let Some(answer) = answer else {
                 let message = format!("{command} refuses the sound study: {}", ended.messages.trim());
                 return Err(ConcealError::content(&study, &message));
             };
-            answers.insert(command, answer);
-            if command == "fit" {
-                let fitted = std::fs::read(study.join("fit/fitted.toml")).map_err(io)?;
-                runner.sound.insert("fitted.toml".to_owned(), fitted);
-                write(&runner.sound, &study).map_err(io)?;
-            }
+            runner.answers.insert(command, answer);
         }
-        Ok(Self { answers, ..runner })
+        Ok(runner)
     }
 
     /// Runs cases, `workers` at a time, and hands out the rows of each as they come, in no fixed order.
@@ -92,9 +86,9 @@ impl Runner {
         let folder = self.folder.join(planned.case.to_string());
         let (files, what) = planned.changed(&self.sound);
         write(&files, &folder).map_err(|source| ConcealError::file(&folder, source))?;
-        let asked = COMMANDS.iter().filter(|(command, _)| planned.diagnosed || *command != "diagnose");
-        let rows = asked.map(|(command, file)| {
-            let (ended, answer) = self.ask(&folder, command, file)?;
+        let asked = COMMANDS.iter().filter(|command| planned.diagnosed || **command != "diagnose");
+        let rows = asked.map(|command| {
+            let (ended, answer) = self.ask(&folder, command)?;
             Ok(Row::new(planned, &what, command, &ended, answer.as_ref(), &self.answers[command]))
         });
         let rows = rows.collect();
@@ -103,8 +97,8 @@ impl Runner {
         rows
     }
 
-    /// A command on the study in a folder, and what it answered, if it did.
-    fn ask(&self, folder: &Path, command: &str, file: &str) -> Result<(Ended, Option<Answer>), ConcealError> {
+    /// A command on the study in a folder.
+    fn command(&self, folder: &Path, command: &str) -> Command {
         let mut asked = Command::new(&self.tool);
         asked.args(["--threads", "1", command]);
         if command == "maneuver" {
@@ -117,14 +111,22 @@ impl Runner {
             "diagnose" => drop(asked.arg("--once")),
             _ => {}
         }
-        let out = folder.join(command);
-        asked.arg("--out").arg(&out);
-        let ended = process::run(asked, self.limit).map_err(|source| ConcealError::file(&self.tool, source))?;
-        let json = std::fs::read(out.join(file)).ok().and_then(|bytes| serde_json::from_slice::<Value>(&bytes).ok());
-        let answer = json.filter(|_| matches!(ended.code, Some(0 | 1))).map(|json| {
-            let text = format!("{}{}", ended.messages, ended.output);
-            Answer::new(command, &json, &text)
-        });
-        Ok((ended, answer))
+        asked
+    }
+
+    /// What became of a command on the study in a folder, and what it answered, if it did: the numbers from its JSON, and where they
+    /// differ from the sound answer what its text tells.
+    fn ask(&self, folder: &Path, command: &'static str) -> Result<(Ended, Option<Answer>), ConcealError> {
+        let run = |command| process::run(command, self.limit).map_err(|source| ConcealError::file(&self.tool, source));
+        let mut asked = self.command(folder, command);
+        asked.arg("--json");
+        let ended = run(asked)?;
+        let json = serde_json::from_str::<Value>(&ended.output).ok().filter(|_| matches!(ended.code, Some(0 | 1)));
+        let Some(mut answer) = json.map(|json| Answer::new(command, &json)) else { return Ok((ended, None)) };
+        if self.answers.get(command).is_none_or(|sound| answer.moved(sound) > 0.0) {
+            let said = run(self.command(folder, command))?;
+            answer.told = told(&format!("{}{}", said.messages, said.output));
+        }
+        Ok((ended, Some(answer)))
     }
 }
