@@ -103,6 +103,8 @@ pub mod simulate;
 pub mod state;
 pub mod statistics;
 pub mod study;
+#[cfg(feature = "ipopt")]
+pub mod sweep;
 pub mod terms;
 pub mod uncertainty;
 pub mod units;

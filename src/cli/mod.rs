@@ -4,6 +4,7 @@
 mod answer;
 mod audited;
 mod check;
+mod compare;
 mod demo;
 mod diagnose;
 mod error;
@@ -20,6 +21,7 @@ mod processor;
 mod progress;
 mod shell;
 mod simulate;
+mod sweep;
 mod terminal;
 mod terms;
 
@@ -79,6 +81,8 @@ enum Command {
     Diagnose(diagnose::Args),
     Maneuver(maneuver::Args),
     Plan(plan::Args),
+    Sweep(sweep::Args),
+    Compare(compare::Args),
     Terms(terms::Args),
     Demo(demo::Args),
     Help(help::Args),
@@ -139,6 +143,8 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Diagnose(args) => diagnose::run(args),
         Command::Maneuver(args) => maneuver::run(args),
         Command::Plan(args) => plan::run(args),
+        Command::Sweep(args) => sweep::run(args),
+        Command::Compare(args) => compare::run(args),
         Command::Terms(args) => terms::run(args),
         Command::Demo(args) => demo::run(args),
         Command::Help(args) => help::run(args, &Cli::command()),

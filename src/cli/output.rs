@@ -57,6 +57,10 @@ fn expected(command: &str) -> &'static [&'static str] {
         "maneuver zigzag" => &["maneuver_zigzag.json", "zigzag.png", "zigzag.csv", "zigzag_measures.csv"],
         "maneuver stopping" => &["maneuver_stopping.json", "stopping.png", "stopping.csv", "stopping_measures.csv"],
         "plan" => &["plan.json", "trials.csv", "detectable.csv", "isolability.csv", "isolability_map.png"],
+        "sweep" => {
+            &["sweep.json", "profiles.csv", "intervals.csv", "sensitivities.csv", "pairs.csv", "profile_curves.csv"]
+        }
+        "compare" => &["compare.json", "compare.csv", "compare.png"],
         "terms" => &["terms.json", "parameters.csv"],
         "man" => &["trimtab.1"],
         "demo" => {

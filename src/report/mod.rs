@@ -9,6 +9,8 @@ mod html;
 pub mod maneuver;
 mod paragraph;
 pub mod plan;
+#[cfg(feature = "ipopt")]
+pub mod sweep;
 mod table;
 pub mod terms;
 mod units;
