@@ -17,6 +17,7 @@ mod plan;
 mod processor;
 mod progress;
 mod simulate;
+mod style;
 mod terminal;
 mod terms;
 
@@ -27,6 +28,7 @@ use processor::Build;
 use std::process::ExitCode;
 use terminal::{plain, tell};
 use trimtab::ranks::{Ranks, Traffic};
+use trimtab::report::{USUAL, set_width};
 
 const AFTER_HELP: &str = "\
 Begin with
@@ -97,6 +99,7 @@ pub fn run() -> ExitCode {
         // Help, or the version.
         Err(asked) => asked.exit(),
     };
+    set_width(style::columns().unwrap_or(USUAL));
     let ranks = Ranks::join();
     let outcome = execute(&cli, &ranks);
     if let (Err(error), true) = (&outcome, ranks.size() > 1) {

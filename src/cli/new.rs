@@ -216,7 +216,7 @@ fn summary(estimated: &Estimated, args: &Args) -> String {
         estimated.kind,
         sig(estimated.speed, 3),
         given.join(", "),
-        table.wrapped(100),
+        table,
         files.join(", ")
     )
 }

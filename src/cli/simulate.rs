@@ -12,7 +12,7 @@ use trimtab::evaluate::{Outcome, outcome, predict_all};
 use trimtab::files::Names;
 use trimtab::fit::FitSettings;
 use trimtab::model::Model;
-use trimtab::numerals::sig;
+use trimtab::numerals::{sig, sig_above};
 use trimtab::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
@@ -129,7 +129,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let header: Vec<&str> = header.header().iter().map(String::as_str).chain(["file"]).collect();
     if written {
         let cells = rows.iter().zip(files).map(|(row, file)| cells(row).into_iter().chain([file]));
-        output.file("simulations.csv", &csv_text(&header, cells)?);
+        output.table("simulations.csv", &csv_text(&header, cells)?);
     }
     output.figure("tracks", || figure(&model.name, rows.len(), tracks));
     let validity = validity.coverage();
@@ -226,9 +226,12 @@ fn cells(r: &Row) -> Vec<String> {
     match &r.outcome {
         Outcome::Simulated(d) => {
             let degrees = |i: usize| if i == 2 || i == 5 { 180.0 / std::f64::consts::PI } else { 1.0 };
-            let md = d.md.iter().enumerate().map(|(i, v)| v.map_or_else(|| "–".into(), |v| sig(v * degrees(i), 3)));
+            let md =
+                d.md.iter()
+                    .enumerate()
+                    .map(|(i, v)| v.map_or_else(|| "–".into(), |v| sig_above(v * degrees(i), 3, 1e-6)));
             cells.extend(md);
-            cells.push(sig(d.cvdm, 3));
+            cells.push(sig_above(d.cvdm, 3, 1e-6));
         }
         Outcome::Diverged { diverged_after } => {
             cells.extend(std::iter::repeat_n("–".to_owned(), 6));
