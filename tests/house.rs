@@ -34,7 +34,7 @@ const LAYERS: [&[&str]; 14] = [
     &["model", "dynamics"],
     &["simulate"],
     &["sensitivity"],
-    &["statistics", "recording", "study", "audit", "check", "validity", "demo"],
+    &["statistics", "recording", "study", "audit", "check", "validity", "demo", "export"],
     &["ipopt"],
     &["fit"],
     &["evaluate", "maneuver"],

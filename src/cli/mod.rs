@@ -8,6 +8,7 @@ mod demo;
 mod diagnose;
 mod error;
 mod evaluate;
+mod export;
 mod fit;
 mod load;
 mod maneuver;
@@ -76,6 +77,7 @@ enum Command {
     Diagnose(diagnose::Args),
     Maneuver(maneuver::Args),
     Plan(plan::Args),
+    Export(export::Args),
     Terms(terms::Args),
     Demo(demo::Args),
 }
@@ -134,6 +136,7 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Diagnose(args) => diagnose::run(args),
         Command::Maneuver(args) => maneuver::run(args),
         Command::Plan(args) => plan::run(args),
+        Command::Export(args) => export::run(args),
         Command::Terms(args) => terms::run(args),
         Command::Demo(args) => demo::run(args),
     }

@@ -350,6 +350,12 @@ pub fn print(text: &str) -> Result<(), CliError> {
     printed(stdout.write_all(shown(&plain(text)).as_bytes()).and_then(|()| stdout.flush()))
 }
 
+/// Prints the content of a file to standard output as it is, neither wrapped nor coloured.
+pub fn print_file(text: &str) -> Result<(), CliError> {
+    let mut stdout = std::io::stdout().lock();
+    printed(stdout.write_all(plain(text).as_bytes()).and_then(|()| stdout.flush()))
+}
+
 /// Prints a value as JSON, as [`print`] does.
 pub fn print_json(value: &impl Serialize) -> Result<(), CliError> {
     let mut stdout = BufWriter::new(Escaped(std::io::stdout().lock()));

@@ -12,7 +12,7 @@ use trimtab::evaluate::{Outcome, outcome, predict_all};
 use trimtab::files::Names;
 use trimtab::fit::FitSettings;
 use trimtab::model::Model;
-use trimtab::numerals::{sig, sig_above};
+use trimtab::numerals::{DASH, sig, sig_above};
 use trimtab::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
@@ -126,9 +126,9 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         },
     )?;
     let header = table(&[]);
-    let header: Vec<&str> = header.header().iter().map(String::as_str).chain(["file"]).collect();
+    let header: Vec<&str> = header.header().iter().map(String::as_str).chain(["diverged_after [s]", "file"]).collect();
     if written {
-        let cells = rows.iter().zip(files).map(|(row, file)| cells(row).into_iter().chain([file]));
+        let cells = rows.iter().zip(files).map(|(row, file)| tidy(row).into_iter().chain([file]));
         output.table("simulations.csv", &csv_text(&header, cells)?);
     }
     output.figure("tracks", || figure(&model.name, rows.len(), tracks));
@@ -239,6 +239,22 @@ fn cells(r: &Row) -> Vec<String> {
         }
     }
     cells
+}
+
+/// The cells of a window's row in a file: what has no value is empty, and the time of a divergence has its own column.
+fn tidy(r: &Row) -> Vec<String> {
+    let diverged = match &r.outcome {
+        Outcome::Simulated(_) => None,
+        Outcome::Diverged { diverged_after } => Some(diverged_after.to_string()),
+    };
+    let mut cells = cells(r);
+    if diverged.is_some() {
+        // The words that stand in the place of cVDM in a terminal.
+        cells.pop();
+        cells.push(String::new());
+    }
+    let empty = |cell: String| if cell == DASH { String::new() } else { cell };
+    cells.into_iter().map(empty).chain([diverged.unwrap_or_default()]).collect()
 }
 
 /// The name of a window: its run, with its start to the millisecond where the run has several. `windows` are those of one
