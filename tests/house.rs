@@ -25,6 +25,7 @@ const LAYERS: [&[&str]; 14] = [
         "ship",
         "particulars",
         "parameter",
+        "uncertainty",
         "ranges",
         "files",
         "progress",

@@ -138,8 +138,13 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         0 => String::new(),
         more => format!("\nand {more} windows more (in --out and --json)\n"),
     };
-    let text =
-        format!("{} simulated with `{}`:\n\n{table}\n{more}\n{}", loaded.study.name, model.name, validity.line());
+    let text = format!(
+        "{} simulated with `{}`:\n\n{table}\n{more}{}\n{}",
+        loaded.study.name,
+        model.name,
+        divergences(&rows),
+        validity.line()
+    );
     let report = Report { model: &model.name, runs: Each(&rows), validity: Pruned(&validity) };
     output.finish_long(&text, &report)?;
     let diverged = rows.iter().find_map(|r| match r.outcome {
@@ -149,6 +154,20 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     match diverged {
         Some((run, after)) => Err(CliError::Diverged { what: format!("run `{run}`"), after }),
         None => Ok(Answer::Yes),
+    }
+}
+
+/// Which windows diverged, and when, as a line; nothing where none did.
+fn divergences(rows: &[Row]) -> String {
+    let after = |r: &Row| match r.outcome {
+        Outcome::Diverged { diverged_after } => Some(format!("{} diverged after {diverged_after:.0} s", r.run)),
+        Outcome::Simulated(_) => None,
+    };
+    let told: Vec<String> = rows.iter().filter_map(after).collect();
+    match told.len() {
+        0 => String::new(),
+        n if n > 5 => format!("{}, and {} windows more\n", told[..5].join(", "), n - 5),
+        _ => format!("{}\n", told.join(", ")),
     }
 }
 
@@ -233,9 +252,9 @@ fn cells(r: &Row) -> Vec<String> {
             cells.extend(md);
             cells.push(sig_above(d.cvdm, 3, 1e-6));
         }
-        Outcome::Diverged { diverged_after } => {
+        Outcome::Diverged { .. } => {
             cells.extend(std::iter::repeat_n("–".to_owned(), 6));
-            cells.push(format!("diverged after {diverged_after:.0} s"));
+            cells.push("diverged".to_owned());
         }
     }
     cells

@@ -15,7 +15,7 @@ impl Export {
             text += &format!("%  Terms of the model that are not exported: {}\n", self.left_out.join(", "));
         }
         text += &format!("ship.name = '{}';\n", plain(&self.ship).replace('\'', "''"));
-        for p in self.particulars.iter().filter(|p| p.name != "mass") {
+        for p in &self.particulars {
             text += &format!("ship.{} = {:e}; % [{}] {}\n", p.name, p.value, p.unit, p.about);
         }
         text += "\n% HD coefficients in SI units, and their primes\n";

@@ -5,7 +5,7 @@ mod matlab;
 
 use crate::model::{BASE, Model};
 use crate::physics::Form;
-use crate::ship::COEFFICIENTS;
+use crate::ship::{COEFFICIENTS, Ship};
 use serde::Serialize;
 
 /// A coefficient with its definition.
@@ -111,7 +111,6 @@ fn equations(form: Form) -> [&'static str; 4] {
 pub fn export(model: &Model) -> Export {
     let ship = &model.ship;
     let h = &ship.hull;
-    let value = |name: &str| model.index(name).map_or(0.0, |i| model.parameters[i].value);
     let unit = |power: i32| 0.5 * h.water_density * h.lpp.powi(power) * h.draught;
     let mut hull = Vec::new();
     for p in model.parameters.iter().filter(|p| p.name.starts_with("hull.")) {
@@ -139,8 +138,27 @@ pub fn export(model: &Model) -> Export {
         prime: None,
         about: p.info.about.to_owned(),
     });
+    Export {
+        schema: "trimtab-export/1",
+        ship: ship.name.clone(),
+        model: model.name.clone(),
+        frame: FRAME,
+        equations: equations(model.form),
+        normalisation: NORMALISATION,
+        mmg_note: MMG_NOTE,
+        left_out: model.term_names().iter().filter(|t| !BASE.contains(t)).map(ToString::to_string).collect(),
+        particulars: particulars(ship),
+        mmg,
+        others: others.collect(),
+        hull,
+    }
+}
+
+/// What the coefficients need of the ship.
+fn particulars(ship: &Ship) -> Vec<Particular> {
+    let h = &ship.hull;
     let particular = |name, value, unit, about| Particular { name, value, unit, about };
-    let particulars = vec![
+    vec![
         particular("L", h.lpp, "m", "length between perpendiculars"),
         particular("B", h.breadth, "m", "breadth"),
         particular("d", h.draught, "m", "draught"),
@@ -157,22 +175,7 @@ pub fn export(model: &Model) -> Export {
             "m/s",
             "in |u|, |v|, U = sqrt(... + small^2) and |r| = sqrt(r^2 + (small/L)^2), so that they are smooth at rest",
         ),
-        particular("mass", value("hull.mass"), "kg", "mass m"),
-    ];
-    Export {
-        schema: "trimtab-export/1",
-        ship: ship.name.clone(),
-        model: model.name.clone(),
-        frame: FRAME,
-        equations: equations(model.form),
-        normalisation: NORMALISATION,
-        mmg_note: MMG_NOTE,
-        left_out: model.term_names().iter().filter(|t| !BASE.contains(t)).map(ToString::to_string).collect(),
-        particulars,
-        mmg,
-        others: others.collect(),
-        hull,
-    }
+    ]
 }
 
 /// The MMG primes from those of the HD form.

@@ -88,6 +88,9 @@ impl fmt::Display for Table {
         }
         // Trailing blanks would make copied tables and golden files noisy.
         let lines: Vec<String> = table.lines().map(|line| line.trim_end().to_owned()).collect();
+        if lines.iter().any(|line| line.chars().count() > width) {
+            return f.write_str(&self.blocks(width));
+        }
         f.write_str(&lines.join("\n"))
     }
 }
