@@ -38,6 +38,7 @@
 //!
 //! | to | see |
 //! |---|---|
+//! | learn it: tutorial, every key of every file, theory, glossary | [`guide`] |
 //! | fit recordings of your own | [`recording`], [`study`], `examples/fit_csv.rs` |
 //! | write a physical effect of your own | [`physics`], [`terms`], `examples/own_term.rs` |
 //! | choose how derivatives are taken | [`fit::Derivatives`], `examples/gradients.rs` |
@@ -81,6 +82,7 @@ pub mod evaluate;
 pub mod export;
 pub mod files;
 pub mod fit;
+pub mod guide;
 pub mod ipopt;
 pub mod maneuver;
 pub mod model;

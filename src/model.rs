@@ -9,7 +9,9 @@ use crate::ship::{COEFFICIENTS, Ship, explain, line_of};
 use crate::state::Inputs;
 use crate::terms;
 use crate::uncertainty::Uncertainty;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -103,7 +105,7 @@ pub enum ModelError {
 }
 
 /// A prior on a parameter: what is known of it before the data.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, PartialEq, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Prior {
     /// Mean \[unit of the parameter\].
@@ -176,7 +178,7 @@ impl std::fmt::Debug for Model {
 }
 
 /// A model file: terms and parameter settings; every other value comes from the terms and the ship.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModelFile {
     /// Name, for headings.
@@ -203,7 +205,7 @@ pub struct ModelFile {
 }
 
 /// What a model file may say of one parameter; a key left out takes the term's value.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Setting {
     /// Value, and start of a fit.
@@ -224,7 +226,7 @@ pub struct Setting {
 }
 
 /// What a model file may say of the hull as a whole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum HullSetting {
     /// Every hydrodynamic coefficient is free, with its default prior.
@@ -247,6 +249,17 @@ impl Serialize for PriorSetting {
             Self::Default => serializer.serialize_str("default"),
             Self::Given(prior) => prior.serialize(serializer),
         }
+    }
+}
+
+impl JsonSchema for PriorSetting {
+    fn schema_name() -> Cow<'static, str> {
+        "PriorSetting".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let table = Prior::json_schema(generator);
+        json_schema!({ "anyOf": [{ "const": "default" }, table] })
     }
 }
 

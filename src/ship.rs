@@ -64,7 +64,7 @@ pub enum ShipError {
 /// A ship: its fixed particulars, in SI units.
 ///
 /// Axes: x forward from midship, y to starboard.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ship {
     /// Name, for headings.
@@ -97,7 +97,7 @@ pub struct Ship {
 }
 
 /// Hull particulars.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HullParticulars {
     /// Length between perpendiculars L \[m\].
@@ -129,7 +129,7 @@ fn default_density() -> f64 {
 }
 
 /// Propeller particulars of a single screw.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PropellerParticulars {
     /// Diameter D \[m\].
@@ -156,7 +156,7 @@ fn default_astern() -> f64 {
 }
 
 /// Rudder particulars of a single rudder behind the propeller.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RudderParticulars {
     /// Area A_R \[m2\].
@@ -194,7 +194,7 @@ fn default_race() -> f64 {
 }
 
 /// Above-water particulars.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AboveWater {
     /// Frontal (transverse) projected area A_F \[m2\].
@@ -213,7 +213,7 @@ fn default_air_density() -> f64 {
 }
 
 /// Bow thruster particulars.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ThrusterParticulars {
     /// Full thrust at rest \[N\].

@@ -7,11 +7,10 @@ mod support;
 
 use serde_json::Value;
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::LazyLock;
-use support::{model, runs, truth_noise};
+use support::written::write_study;
 use trimtab::report::diagnosis::keys;
 
 /// Runs the command in a folder.
@@ -21,34 +20,6 @@ fn trimtab(folder: &Path, arguments: &[&str]) -> Output {
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
-}
-
-/// Writes a study of `count` runs, every fourth a test run, of a ship in a current \[m/s\] that its model file does not contain.
-fn write_study(folder: &Path, count: usize, [north, east]: [f64; 2]) {
-    let base = model();
-    let mut truth = base.clone();
-    truth.add_term("current").unwrap();
-    for (name, value) in [("current.north", north), ("current.east", east)] {
-        let i = truth.find(name).unwrap();
-        truth.parameters[i].value = value;
-    }
-    let mut table = "file,name,session,split\n".to_owned();
-    for (i, run) in runs(&truth, &truth_noise(), count, 1).iter().enumerate() {
-        let mut rows = "t [s],x [m],y [m],psi [rad],u [m/s],v [m/s],r [rad/s],n [rps],delta [rad]\n".to_owned();
-        for (m, input) in run.measured.iter().zip(&run.inputs) {
-            let [x, y, psi, u, v, r] = m.map(Option::unwrap);
-            writeln!(rows, "{},{x},{y},{psi},{u},{v},{r},{},{}", input.t, input.n, input.delta).unwrap();
-        }
-        std::fs::write(folder.join(format!("{i}.csv")), rows).unwrap();
-        let split = if i % 4 == 3 { "test" } else { "train" };
-        writeln!(table, "{i}.csv,{},{},{split}", run.name, run.session).unwrap();
-    }
-    std::fs::write(folder.join("runs.csv"), table).unwrap();
-    let ship = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/ships/a.toml");
-    std::fs::copy(ship, folder.join("ship.toml")).unwrap();
-    std::fs::write(folder.join("model.toml"), toml::to_string(&base.to_file()).unwrap()).unwrap();
-    let study = "name = \"Concealed current\"\nship = \"ship.toml\"\nmodel = \"model.toml\"\ndata = \".\"\nruns = \"runs.csv\"\n\n[diagnose]\nseed = 7\n";
-    std::fs::write(folder.join("study.toml"), study).unwrap();
 }
 
 /// The study and the output of `diagnose --out results`, computed once for all tests.
@@ -214,17 +185,7 @@ fn a_diagnosis_and_an_evaluation_give_the_same_proof_to_the_last_digit() {
 }
 
 #[test]
-fn the_report_is_one_file_that_needs_nothing_else() {
-    let page = std::fs::read_to_string(CASE.folder.join("results/report.html")).unwrap();
-    for heading in ["Verdict", "Where", "Model", "Proof", "Still open", "Limits", "Next trial"] {
-        assert!(page.contains(&format!(">{heading}</h2>")), "{heading}");
-    }
-    let mut pieces = page.split("src=\"data:image/png;base64,");
-    let mut words = pieces.next().unwrap().to_owned();
-    let pictures: Vec<&str> = pieces.map(|p| p.split_once('"').unwrap().1).collect();
-    assert!(pictures.len() >= 6);
-    words.extend(pictures);
-    assert!(!words.contains("src=") && !words.contains("http") && !words.contains("<script") && !words.contains("NaN"));
+fn every_figure_is_a_file_with_its_numbers() {
     for stem in ["ranking", "tracks", "forces", "pattern", "compass", "regions", "moves", "held_out", "hull_budget"] {
         for extension in ["png", "csv"] {
             let file = CASE.folder.join(format!("results/figures/{stem}.{extension}"));

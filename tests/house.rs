@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Modules of the library from the bottom up: a module uses its own line and those before it.
-const LAYERS: [&[&str]; 14] = [
+const LAYERS: [&[&str]; 15] = [
     &[
         "units",
         "error",
@@ -42,6 +42,7 @@ const LAYERS: [&[&str]; 14] = [
     &["diagnose"],
     &["plan"],
     &["plot", "report"],
+    &["guide"],
     &["cli", "main"],
 ];
 

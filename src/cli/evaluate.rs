@@ -4,6 +4,7 @@
 use super::answer::Answer;
 use super::audited::{AcceptArgs, audited_over};
 use super::error::CliError;
+use super::figures::FigureArgs;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
 use super::progress::progress;
@@ -59,12 +60,14 @@ pub struct Args {
     #[command(flatten)]
     accept: AcceptArgs,
     #[command(flatten)]
+    figures: FigureArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
 /// Runs the command.
 pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
-    let mut output = Output::of_rank(ranks, "evaluate", &args.output)?;
+    let mut output = Output::of_rank(ranks, "evaluate", &args.output)?.drawn_as(&args.figures);
     let loaded = Loaded::new(&args.study)?;
     output.reads(&loaded, true);
     output.reads_files(&[baseline_path(&loaded, args.baseline.as_ref())?]);
@@ -395,7 +398,9 @@ fn improvement(s: &Summary) -> Figure {
     });
     let axis = Axis::categories("", names);
     let title = format!("Improvement on the baseline, {} runs (95 % intervals)", s.group);
-    Figure::new(title).panel_size(1200, 620).legend(trimtab::plot::Legend::Off).with(
+    let caption = "Relative improvement on the baseline of the mean deviation (MD) of each dimension, of cVDM, of their mean over \
+                   dimensions (mARI) and of the variance of cVDM (consistency), with 95 % bootstrap intervals over runs.";
+    Figure::new(title).panel_size(1200, 620).caption(caption).legend(trimtab::plot::Legend::Off).with(
         Panel::new("", axis, Axis::new("improvement [%]").including(0.0))
             .with(Layer::bars_with_intervals("improvement", FITTED, bars))
             .with(Layer::h_line("none", GREY, 0.0)),
@@ -412,7 +417,12 @@ fn cvdm_figure(test: &[&Comparison]) -> Figure {
         Axis::new("cVDM of the baseline [%]").range(0.0, largest),
         Axis::new("cVDM of the fitted model [%]").range(0.0, largest),
     );
-    Figure::new("cVDM of each test trajectory").panel_size(900, 860).with(
+    let caption = format!(
+        "{} of {} test trajectories, those that both models simulate to their end. Below the line the fitted model is better.",
+        pairs.len(),
+        test.len()
+    );
+    Figure::new("cVDM of each test trajectory").panel_size(900, 860).caption(caption).with(
         panel.with(Layer::line("equal", GREY, [(0.0, 0.0), (largest, largest)]).dashed()).with(Layer::scatter(
             "trajectory (below the line: better)",
             FITTED,
@@ -455,7 +465,14 @@ fn recorded(loaded: &Loaded, shown: &[(&str, &Comparison)]) -> Result<Vec<Run>, 
 
 /// Tracks of the trajectories that are [`shown`], recorded and under both models.
 fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Run], integration: Integration) -> Figure {
-    let mut figure = Figure::new("Test runs: recorded, baseline and fitted").columns(3).panel_size(680, 600);
+    let all = evaluation.trajectories.iter().filter(|t| t.split == Split::Test).count();
+    let drawn = shown(evaluation).len();
+    let caption = format!(
+        "{drawn} of {all} test trajectories: those with the smallest, the median and the largest cVDM of the fitted model. Tracks with ship \
+         outlines above, heading below; both models begin at the first recorded state."
+    );
+    let mut figure =
+        Figure::new("Test runs: recorded, baseline and fitted").columns(3).panel_size(680, 600).caption(caption);
     let ship = &models[0].ship;
     let mut below = Vec::new();
     for (word, trajectory) in shown(evaluation) {
@@ -470,11 +487,13 @@ fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Run], integra
         for (name, color, states) in shown {
             let stride = (states.len() / 6).max(1);
             let poses = states.iter().step_by(stride).map(|s| [s[0], s[1], s[2]]).collect::<Vec<_>>();
+            // Told apart without colours too.
+            let styled = |line: Layer| if name == "baseline" { line.dashed() } else { line };
             track = track
-                .with(Layer::line(name, color, states.iter().map(|s| east_north(s[0], s[1]))))
+                .with(styled(Layer::line(name, color, states.iter().map(|s| east_north(s[0], s[1])))))
                 .with(Layer::hulls(name, color, poses, ship.hull.lpp, ship.hull.breadth).unlisted().width(1.5));
             let psi = states.iter().enumerate().map(|(k, s)| (k as f64 * w.dt, s[2].to_degrees()));
-            heading = heading.with(Layer::line(name, color, psi));
+            heading = heading.with(styled(Layer::line(name, color, psi)));
         }
         figure = figure.with(track);
         below.push(heading);

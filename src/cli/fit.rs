@@ -4,6 +4,7 @@
 use super::answer::Answer;
 use super::audited::{AcceptArgs, audited_over};
 use super::error::CliError;
+use super::figures::FigureArgs;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text};
 use super::progress::progress;
@@ -68,12 +69,14 @@ pub struct Args {
     #[command(flatten)]
     accept: AcceptArgs,
     #[command(flatten)]
+    figures: FigureArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
 /// Runs the command.
 pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
-    let mut output = Output::of_rank(ranks, "fit", &args.output)?;
+    let mut output = Output::of_rank(ranks, "fit", &args.output)?.drawn_as(&args.figures);
     let loaded = Loaded::new(&args.study)?;
     output.reads(&loaded, true);
     output.settings("fit", &loaded.fit_settings()?)?;
@@ -267,7 +270,11 @@ pub fn fitted_text(model: &Model, covariance: Option<Uncertainty>) -> Result<Str
 pub fn curves(models: &[(&str, Color, &Model)], [low, high]: [f64; 2]) -> Figure {
     let over = |from: f64, to: f64| (0..=120).map(move |i| from + (to - from) * f64::from(i) / 120.0);
     let layers = |f: &dyn Fn(&Model) -> Vec<(f64, f64)>| {
-        models.iter().map(|(name, color, model)| Layer::line(*name, *color, f(model))).collect::<Vec<_>>()
+        let line = |(name, color, model): &(&str, Color, &Model)| {
+            let line = Layer::line(*name, *color, f(model));
+            if *color == FITTED { line } else { line.dashed() }
+        };
+        models.iter().map(line).collect::<Vec<_>>()
     };
     let resistance = |m: &Model| {
         let theta = m.values();
@@ -283,6 +290,10 @@ pub fn curves(models: &[(&str, Color, &Model)], [low, high]: [f64; 2]) -> Figure
     Figure::new("Curves of the model")
         .columns(3)
         .panel_size(720, 560)
+        .caption(
+            "Resistance R(u) over the recorded speeds, and lift and drag coefficients c_L and c_D of the rudder over the angles of attack \
+             at which the curves hold; dotted: the limits that the fit keeps to.",
+        )
         .with(panel("surge velocity u [m/s]", "resistance R [kN]").with_all(layers(&resistance)))
         .with(
             panel("angle of attack [deg]", "lift coefficient c_L [-]")

@@ -4,6 +4,7 @@
 use super::answer::Answer;
 use super::audited::model_alone;
 use super::error::CliError;
+use super::figures::FigureArgs;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs};
 use super::progress::progress;
@@ -112,6 +113,8 @@ struct TrialArgs {
     /// Seed of the draws.
     #[arg(long, value_name = "N", default_value_t = SEED)]
     seed: u64,
+    #[command(flatten)]
+    figures: FigureArgs,
     #[command(flatten)]
     output: OutputArgs,
 }
@@ -237,7 +240,7 @@ impl Prepared {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     match &args.trial {
         Kind::Turning(args) => {
-            let mut output = Output::new("maneuver turning", &args.output)?;
+            let mut output = Output::new("maneuver turning", &args.output)?.drawn_as(&args.figures);
             let p = Prepared::new(args, &mut output)?;
             let angle = p.settings.turning_angle();
             let sail = |approach: &Approach, theta: &[f64]| {
@@ -248,7 +251,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             output.finish(&text(&p, &trials), &report(&p, &trials))
         }
         Kind::Zigzag(args) => {
-            let mut output = Output::new("maneuver zigzag", &args.output)?;
+            let mut output = Output::new("maneuver zigzag", &args.output)?.drawn_as(&args.figures);
             let p = Prepared::new(args, &mut output)?;
             let angles = p.settings.zigzag_angles();
             let sail = |approach: &Approach, theta: &[f64]| {
@@ -260,7 +263,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             output.finish(&text(&p, &trials), &report(&p, &trials))
         }
         Kind::Stopping(args) => {
-            let mut output = Output::new("maneuver stopping", &args.output)?;
+            let mut output = Output::new("maneuver stopping", &args.output)?.drawn_as(&args.figures);
             let p = Prepared::new(args, &mut output)?;
             let sail = |approach: &Approach, theta: &[f64]| vec![stopping_trial(&p.model, theta, approach)];
             let trials = sailed(&p, "stopping", &sail);

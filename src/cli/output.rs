@@ -3,24 +3,28 @@
 
 use super::audited::Audited;
 use super::error::CliError;
+use super::figures::{Captions, Drawing, FigureArgs};
 use super::load::Loaded;
 use super::style::shown;
 use super::terminal::{Escaped, plain};
+use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use trimtab::files::{FolderError, Kept, Log, Origin, ResultFolder, plain_cell, sha256};
-use trimtab::plot::Figure;
+use std::time::SystemTime;
+use trimtab::files::{FolderError, Kept, Log, Origin, ResultFolder, plain_cell, sha256, utc};
+use trimtab::plot::{Figure, FigureError};
 use trimtab::ranks::Ranks;
 use trimtab::report::Table;
+use trimtab::report::diagnosis::{Provenance, SourceFile};
 
 /// Arguments that every command with results has.
 #[derive(Clone, Debug, clap::Args)]
 pub struct OutputArgs {
-    /// Folder for files: tables as CSV, figures as PNG with the CSV behind them, the result as JSON, and manifest.json, which says
+    /// Folder for files: tables as CSV, figures with the CSV behind them and their captions, the result as JSON, and manifest.json, which says
     /// how they came about. Created if absent; what the same command wrote there before is replaced.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -51,6 +55,8 @@ pub struct Output {
     settings: BTreeMap<String, Value>,
     audited: Option<Audited>,
     logs: Vec<Log>,
+    drawing: Drawing,
+    captions: Captions,
     failure: Option<CliError>,
 }
 
@@ -67,7 +73,10 @@ fn expected(command: &str) -> &'static [&'static str] {
         "maneuver stopping" => &["maneuver_stopping.json", "stopping.png", "stopping.csv", "stopping_measures.csv"],
         "plan" => &["plan.json", "trials.csv", "detectable.csv", "isolability.csv", "isolability_map.png"],
         "terms" => &["terms.json", "parameters.csv"],
-        "demo" => &["demo.json", "fitted.toml", "fit.txt", "parameters.csv", "summary.csv", "tracks.png", "curves.png"],
+        "man" => &["trimtab.1"],
+        "demo" => {
+            &["demo.json", "fitted.toml", "fit.txt", "summary.csv", "tracks.png", "report.html", "diagnosis.json"]
+        }
         _ => &[],
     }
 }
@@ -78,8 +87,25 @@ impl Output {
         let open = |folder: &PathBuf| ResultFolder::open(folder, command, expected(command));
         let folder = args.out.as_ref().map(open).transpose()?;
         let (settings, audited, logs, failure) = (BTreeMap::new(), None, Vec::new(), None);
-        let tables = args.tables.clone();
-        Ok(Self { command, json: args.json, silent: false, tables, folder, settings, audited, logs, failure })
+        let (drawing, captions) = (Drawing::default(), Captions::default());
+        Ok(Self {
+            command,
+            json: args.json,
+            silent: false,
+            tables: args.tables.clone(),
+            folder,
+            settings,
+            audited,
+            logs,
+            drawing,
+            captions,
+            failure,
+        })
+    }
+
+    /// The same output with its figures drawn as they were asked for.
+    pub fn drawn_as(self, args: &FigureArgs) -> Self {
+        Self { drawing: args.into(), ..self }
     }
 
     /// The output of one of several ranks: the first one's as [`Self::new`] has it, no output of the others.
@@ -106,6 +132,18 @@ impl Output {
     pub fn settings(&mut self, table: &str, settings: &impl Serialize) -> Result<(), CliError> {
         self.settings.insert(table.to_owned(), without_nulls(serde_json::to_value(settings)?));
         Ok(())
+    }
+
+    /// The command line and the files that were noted, for a report that names them.
+    pub fn provenance(&self) -> Provenance {
+        let file = |(path, sha256, changed): (&Path, Option<&str>, Option<SystemTime>)| SourceFile {
+            path: path.display().to_string(),
+            changed: changed.map(utc),
+            sha256: sha256.map(str::to_owned),
+        };
+        let files = self.folder.iter().flat_map(ResultFolder::inputs).map(file).collect();
+        let given = arguments(std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()));
+        Provenance { command: format!("trimtab {}", given.join(" ")), files }
     }
 
     /// A file in the folder, if there is one, that can be seen while the command runs.
@@ -159,9 +197,26 @@ impl Output {
 
     /// Draws a figure into the folder, if there is one; a failure is told as that of [`Self::file`].
     pub fn figure(&mut self, stem: &str, figure: impl FnOnce() -> Figure) {
+        if self.folder.is_some() {
+            self.figures(vec![(stem.to_owned(), figure())]);
+        }
+    }
+
+    /// Draws figures into the folder, if there is one, as many at a time as there are threads.
+    pub fn figures(&mut self, figures: Vec<(String, Figure)>) {
+        let Drawing { formats, .. } = &self.drawing;
+        let laid_out = |(stem, figure): (String, Figure)| (stem, self.drawing.laid_out(figure));
+        let figures: Vec<(String, Figure)> = figures.into_iter().map(laid_out).collect();
+        figures.iter().for_each(|(stem, figure)| self.captions.add(stem, figure, formats));
+        let formats = formats.clone();
         self.put(|folder| {
-            figure().save(&folder.staged(stem)?)?;
-            ["png", "csv"].iter().try_for_each(|end| Ok(folder.written(format!("{stem}.{end}"))?))
+            let draw = |(stem, figure): &(String, Figure)| {
+                let images = formats.iter().map(|f| Ok((format!("{stem}.{}", f.extension()), figure.image(*f)?)));
+                images.chain([figure.csv().map(|csv| (format!("{stem}.csv"), csv.into_bytes()))]).collect()
+            };
+            let drawn: Vec<Vec<(String, Vec<u8>)>> =
+                figures.par_iter().map(draw).collect::<Result<_, FigureError>>()?;
+            Ok(drawn.iter().flatten().try_for_each(|(name, bytes)| folder.write(name, bytes))?)
         });
     }
 
@@ -206,6 +261,9 @@ impl Output {
 
     /// Puts the files of the result into their places. What went wrong is told by [`Written::ended`], after the answer.
     pub fn close(mut self) -> Written {
+        for (name, text) in self.captions.files(self.command) {
+            self.file(name, text.as_bytes());
+        }
         let Some(folder) = self.folder.take() else { return Written { files: Ok(None) } };
         if let Some(failure) = self.failure {
             return Written { files: Err(failure) };

@@ -3,6 +3,7 @@
 
 use super::answer::Answer;
 use super::error::CliError;
+use super::figures::FigureArgs;
 use super::load::{Loaded, StudyArgs, read_model};
 use super::output::{Output, OutputArgs, csv_text};
 use super::progress::progress;
@@ -96,6 +97,8 @@ pub struct Args {
     #[arg(long, value_name = "A,B", value_delimiter = ',', num_args = 1)]
     part: Vec<String>,
     #[command(flatten)]
+    figures: FigureArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
@@ -145,7 +148,7 @@ impl Prepared {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
-    let mut output = Output::new("plan", &args.output)?;
+    let mut output = Output::new("plan", &args.output)?.drawn_as(&args.figures);
     let pair = match args.part.as_slice() {
         [] => None,
         [a, b] => Some([a.trim(), b.trim()]),

@@ -4,6 +4,7 @@
 use super::answer::Answer;
 use super::audited::{AcceptArgs, audited};
 use super::error::CliError;
+use super::figures::FigureArgs;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
 use serde::Serialize;
@@ -48,6 +49,8 @@ pub struct Args {
     study: StudyArgs,
     #[command(flatten)]
     accept: AcceptArgs,
+    #[command(flatten)]
+    figures: FigureArgs,
     #[command(flatten)]
     output: OutputArgs,
 }
@@ -99,7 +102,7 @@ struct Track {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
-    let mut output = Output::new("simulate", &args.output)?;
+    let mut output = Output::new("simulate", &args.output)?.drawn_as(&args.figures);
     let loaded = Loaded::new(&args.study)?;
     output.reads(&loaded, true);
     output.settings("fit", &loaded.fit_settings()?)?;
@@ -314,8 +317,15 @@ fn figure(model: &str, windows: usize, tracks: Tracks) -> Figure {
             [start],
         ))
     });
+    let panels: Vec<Panel> = panels.collect();
+    let caption = format!(
+        "{} of {windows} windows, the first in the order of the study, test before training: the recorded track, and the track simulated \
+         from its first state.",
+        panels.len()
+    );
     Figure::new(format!("Recorded and simulated with {model}"))
+        .caption(caption)
         .columns(4.min(windows.max(1)))
         .panel_size(560, 520)
-        .with_all(panels.collect::<Vec<_>>())
+        .with_all(panels)
 }

@@ -10,6 +10,7 @@ use super::influence::Following;
 use super::locate::Location;
 use super::noise::Noise;
 use super::prove::HeldOut;
+use super::sailed::Sailed;
 use super::settings::Settings;
 use super::sides::Sides;
 use super::stability::Stability;
@@ -218,6 +219,9 @@ pub struct Diagnosis {
     /// The unknown force along every run, before and after, for pictures.
     #[serde(skip)]
     pub traces: Vec<Trace>,
+    /// The test runs, or without any the training runs, recorded and simulated, for pictures.
+    #[serde(skip)]
+    pub sailed: Vec<Sailed>,
     /// The improved model, as a model file.
     #[serde(skip)]
     pub model: Model,

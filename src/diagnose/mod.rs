@@ -68,6 +68,7 @@ pub mod push;
 pub mod refit;
 pub mod region;
 mod residual;
+pub mod sailed;
 pub mod screen;
 mod select;
 mod set_aside;

@@ -11,6 +11,7 @@ use super::error::DiagnoseError;
 use super::generic::{corrected, surrogate};
 use super::improved::{trimmed, uncertainty};
 use super::prove::{HeldOut, prove};
+use super::sailed::{Sailed, sailed};
 use super::set_aside::Divided;
 use super::settings::Settings;
 use super::sides::sides;
@@ -48,7 +49,16 @@ pub fn diagnose<'r>(
     let (answer, stability): (Answer, Option<Stability>) = answer.repeated(&question, &given, &held_out)?;
     let rates: Option<ErrorRates> = ErrorRates::new(&question, &answer, &given, &held_out, settings.calibrate)?;
     let proof: Option<HeldOut> = proof(&question, &answer, &held_out);
-    Ok(Diagnosis { set_aside, stability, error_rates: rates, ..report(&question, answer, proof) })
+    let sailed: Vec<Sailed> = pictured(&question, &answer, &held_out);
+    Ok(Diagnosis { set_aside, stability, error_rates: rates, sailed, ..report(&question, answer, proof) })
+}
+
+/// The runs that a report shows with their simulations: those of the proof, or else those of the training.
+fn pictured(question: &Question, answer: &Answer, held_out: &[Run]) -> Vec<Sailed> {
+    let fit = &answer.kept.selection.tests.fit;
+    let runs = if held_out.is_empty() { &fit.runs[..] } else { held_out };
+    let found = (!answer.findings.is_empty()).then(|| &answer.improved().model);
+    sailed(runs, &fit.estimate.model, found, question.settings.judging.integration)
 }
 
 /// The base model against the model with the findings, and against a generic correction, on runs that no step before has used.
@@ -126,6 +136,7 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
         following: answer.base.following.clone(),
         improved_is_base: worse || answer.findings.is_empty(),
         settings: question.settings.clone(),
+        sailed: Vec::new(),
         traces: traces(&fit.runs, fit.integration, base, last.map(|_| found)),
         validity: coverage(&improved, &fit.runs),
         uncertainty: uncertainty(written, &improved, fit.integration, &fit.runs),

@@ -202,6 +202,13 @@ impl ResultFolder {
         self.inputs.par_extend(files.par_iter().map(seen));
     }
 
+    /// The inputs that were noted: path, digest, and the time of the last change.
+    pub fn inputs(&self) -> impl Iterator<Item = (&Path, Option<&str>, Option<SystemTime>)> {
+        self.inputs
+            .iter()
+            .map(|seen| (seen.path.as_path(), seen.sha256.as_deref(), seen.stamp.map(|(_, changed)| changed)))
+    }
+
     /// One digest of all inputs that were noted, whatever they are called.
     pub fn inputs_digest(&self) -> String {
         let mut digests: Vec<&str> = self.inputs.iter().map(|seen| seen.sha256.as_deref().unwrap_or("none")).collect();

@@ -67,9 +67,20 @@ fn columns(plot: Rect, labels: &[String]) -> Columns {
 /// Category labels along y: their lines, and every how many are shown.
 fn row_labels(plot: Rect, labels: &[String], cell_w: f32) -> (Vec<Vec<String>>, usize) {
     let slot = plot.height() / labels.len().max(1) as f32;
-    let lines = (slot / (TICK * LEADING)).floor().clamp(1.0, 3.0) as usize;
+    let lines = (slot / (TICK * LEADING)).floor().clamp(1.0, NAME_LINES as f32) as usize;
     let stride = (TICK * 1.15 / slot).ceil().max(1.0) as usize;
-    (labels.iter().map(|l| fit_lines(l, TICK, false, 0.36 * cell_w, lines).0).collect(), stride)
+    (labels.iter().map(|l| fit_lines(l, TICK, false, NAMES * cell_w, lines).0).collect(), stride)
+}
+
+/// Share of a cell that names along y may take, and the lines of each at most.
+const NAMES: f32 = 0.36;
+const NAME_LINES: usize = 4;
+
+/// The height that a plot needs so that every name along its y axis is whole, px.
+pub(super) fn least_height(panel: &Panel, cell_w: f32) -> f32 {
+    let lines = |label: &String| fit_lines(label, TICK, false, NAMES * cell_w, NAME_LINES).0.len();
+    let most = |labels: &[String]| labels.iter().map(lines).max().unwrap_or(1);
+    panel.y.labels().map_or(0.0, |labels| labels.len() as f32 * (most(labels) as f32 * TICK * LEADING + 1.0))
 }
 
 fn widest<'a>(texts: impl Iterator<Item = &'a String>) -> f32 {

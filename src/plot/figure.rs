@@ -3,6 +3,7 @@
 
 use super::axis::Axis;
 use super::layer::Layer;
+use super::style::EDGE;
 
 /// A position in the earth frame (x m north, y m east) as a point of a track panel: (east, north).
 #[must_use]
@@ -50,7 +51,7 @@ impl Panel {
     }
 }
 
-/// Where the names of the series stand. A legend never covers data.
+/// Where the names of the series are. A legend never covers data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Legend {
     /// One strip under the title of the figure; a series that is in several panels is named once.
@@ -61,6 +62,37 @@ pub enum Legend {
     /// None.
     Off,
 }
+
+/// The width of a figure on a printed page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// One column of text: 89 mm.
+    One,
+    /// Two columns of text: 183 mm.
+    Two,
+}
+
+impl Width {
+    /// Millimetres.
+    #[must_use]
+    pub const fn millimetres(self) -> u32 {
+        match self {
+            Self::One => 89,
+            Self::Two => 183,
+        }
+    }
+
+    /// Px of the PNG, of which 192 are an inch.
+    const fn pixels(self) -> u32 {
+        (self.millimetres() * 1920 + 127) / 254
+    }
+}
+
+/// Least width of a panel, and of one with names along an axis, px.
+const PANEL: u32 = 400;
+const NAMED_PANEL: u32 = 600;
+/// Least height of a panel that is made lower, px.
+const LOWEST: u32 = 320;
 
 /// A figure: panels in rows, a title and a legend.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,8 +108,10 @@ pub struct Figure {
     pub panel_width: u32,
     /// Height of a panel with its axis labels, px of the PNG.
     pub panel_height: u32,
-    /// Where the names of the series stand.
+    /// Where the names of the series are.
     pub legend: Legend,
+    /// What is to be seen, in a sentence or two, for a text beside the figure; it is not drawn.
+    pub caption: String,
 }
 
 impl Figure {
@@ -90,6 +124,7 @@ impl Figure {
             panel_width: 900,
             panel_height: 600,
             legend: Legend::Shared,
+            caption: String::new(),
         }
     }
 
@@ -106,6 +141,29 @@ impl Figure {
     /// The same figure with its legend elsewhere.
     pub fn legend(self, legend: Legend) -> Self {
         Self { legend, ..self }
+    }
+
+    /// The same figure with words on what is to be seen.
+    pub fn caption(self, words: impl Into<String>) -> Self {
+        Self { caption: words.into(), ..self }
+    }
+
+    /// The same figure laid out anew for a page: as wide as one or two columns of text, its letters as large as before, with as many
+    /// panels in a row as have room.
+    pub fn to_width(mut self, width: Width) -> Self {
+        let room = width.pixels() - 2 * EDGE as u32;
+        let named = self.panels.iter().any(|p| p.x.labels().is_some() || p.y.labels().is_some());
+        let least = if named { NAMED_PANEL } else { PANEL };
+        let asked = self.columns.clamp(1, self.panels.len().max(1));
+        let most = ((room / least).max(1) as usize).min(asked);
+        // Rows of the figure stay together where they can.
+        let columns = (1..=most).rev().find(|n| asked.is_multiple_of(*n)).unwrap_or(1);
+        let panel = room / columns as u32;
+        let lower = self.panel_height * panel / self.panel_width.max(1);
+        if !self.panels.iter().any(|p| p.y.labels().is_some()) {
+            self.panel_height = lower.clamp(LOWEST.min(self.panel_height), self.panel_height);
+        }
+        Self { columns, panel_width: panel, ..self }
     }
 
     /// The same figure with one more panel.

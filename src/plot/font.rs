@@ -24,14 +24,16 @@ pub(super) fn font(bold: bool) -> Result<&'static FontRef<'static>, FigureError>
     };
     FONTS
         .get_or_init(|| {
-            Some(Fonts {
-                regular: load(FontStyle::Normal, dejavu::sans::regular())?,
-                bold: load(FontStyle::Bold, dejavu::sans::bold())?,
-            })
+            Some(Fonts { regular: load(FontStyle::Normal, bytes(false))?, bold: load(FontStyle::Bold, bytes(true))? })
         })
         .as_ref()
         .map(|fonts| if bold { &fonts.bold } else { &fonts.regular })
         .ok_or(FigureError::Font)
+}
+
+/// The file of the embedded font.
+pub(super) fn bytes(bold: bool) -> &'static [u8] {
+    if bold { dejavu::sans::bold() } else { dejavu::sans::regular() }
 }
 
 /// Width of a text in px.

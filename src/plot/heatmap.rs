@@ -13,6 +13,9 @@ use super::style::{FRAME, INK, NOTE, TICK, cut, ink};
 use super::ticks::ruler;
 use crate::numerals::{fixed, sig};
 
+/// The colour of a cell without a value.
+const EMPTY: Color = Color::rgb(235, 235, 235);
+
 /// The heat map of a panel, if it has one: the name and the range of its colours.
 pub(super) fn heatmap(panel: &Panel) -> Option<(&str, (f64, f64))> {
     panel.layers.iter().find_map(|layer| match &layer.mark {
@@ -38,6 +41,19 @@ fn color_range(values: &[Vec<f64>], fixed: Option<(f64, f64)>) -> (f64, f64) {
 fn cell_color(v: f64, (lo, hi): (f64, f64)) -> Color {
     let t = (v - lo) / (hi - lo);
     if lo < 0.0 && hi > 0.0 { palette::diverging(t) } else { palette::sequential(t) }
+}
+
+/// The colour of every cell; those without a value are grey.
+pub(super) fn cell_colors(values: &[Vec<f64>], range: Option<(f64, f64)>) -> Vec<Vec<Color>> {
+    let range = color_range(values, range);
+    let of = |&v: &f64| if drawable(v) { cell_color(v, range) } else { EMPTY };
+    values.iter().map(|row| row.iter().map(of).collect()).collect()
+}
+
+/// The value of every cell in words.
+pub(super) fn cell_words(values: &[Vec<f64>], range: Option<(f64, f64)>) -> Vec<Vec<String>> {
+    let range = color_range(values, range);
+    values.iter().map(|row| row.iter().map(|&v| cell_text(v, range)).collect()).collect()
 }
 
 /// A cell's value with as many decimals as give the largest of the map two digits.
@@ -67,7 +83,7 @@ pub(super) fn cells(
                 continue;
             };
             let rect = between(a, b);
-            let color = if drawable(v) { cell_color(v, range) } else { Color::rgb(235, 235, 235) };
+            let color = if drawable(v) { cell_color(v, range) } else { EMPTY };
             canvas.fill_rect(rect, color);
             canvas.stroke_rect(rect, 1.5, Color::rgb(255, 255, 255));
             // A value that does not fit its cell is left to the colour bar and the CSV.

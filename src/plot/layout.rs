@@ -1,7 +1,7 @@
 //! Lays a figure out: margins that align its panels, titles, legends, and the order in which a panel is drawn.
 //! It decides nothing about the data: ranges and ticks come from `frame`, layers from `marks`, pixels from `canvas`.
 
-use super::axes::{Margins, grid, margins, title_lines, x_axis, y_axis};
+use super::axes::{Margins, grid, least_height, margins, title_lines, x_axis, y_axis};
 use super::canvas::{Anchor, Canvas, Run, Type};
 use super::extent::{has_data, is_grouped, is_span};
 use super::figure::{Figure, Legend, Panel};
@@ -10,10 +10,7 @@ use super::geometry::{Px, Rect};
 use super::heatmap::{color_bar, heatmap};
 use super::legend::Strip;
 use super::marks::{draw_layer, draw_remarks};
-use super::style::{FRAME, HEADING, LEADING, TITLE, bold, fit_lines, ink};
-
-/// Around the figure, px.
-const EDGE: f32 = 24.0;
+use super::style::{EDGE, FRAME, HEADING, LEADING, TITLE, bold, fit_lines, ink};
 
 /// The sheet of a figure.
 pub(super) fn draw(figure: &Figure) -> Canvas {
@@ -81,6 +78,11 @@ fn lay_out(figure: &Figure, columns: usize, (cell_w, cell_h): (f32, f32)) -> Vec
             }
         }
         align(&mut all, columns);
+    }
+    // Names along y that need more lines than a row has make the panels higher.
+    for row in &mut rows {
+        let missing = row.cells.iter().map(|c| least_height(c.panel, cell_w) - c.plot.height()).fold(0.0, f32::max);
+        row.height += missing.ceil();
     }
     place(&mut rows, &all);
     rows
@@ -176,6 +178,112 @@ mod tests {
     use super::*;
     use crate::plot::axis::Axis;
     use crate::plot::canvas::Shape;
+    use crate::plot::figure::Width;
+    use crate::plot::font::text_width;
+    use crate::plot::layer::Layer;
+    use crate::plot::palette::{BASELINE, FITTED};
+
+    /// Figures of the kinds that the commands draw.
+    fn figures() -> Vec<Figure> {
+        let names =
+            ["steady current", "another loading condition (mass, trim) in the sessions of both days", "rudder lag"];
+        let bars = |v: &[f64]| Layer::bars_with_intervals("force", FITTED, v.iter().map(|v| (*v, v - 1.0, v + 1.0)));
+        let lying = Panel::new("", Axis::new("evidence [standard errors]"), Axis::categories("", names))
+            .with(bars(&[3.0, 1.0, 0.2]));
+        let standing =
+            Panel::new("", Axis::categories("", names), Axis::new("improvement [%]")).with(bars(&[30.0, -1.0, 2.0]));
+        let wave = |k: f64| {
+            Layer::line(format!("run {k}"), BASELINE, (0..90).map(move |i| (f64::from(i), (k * f64::from(i)).sin())))
+        };
+        let track = Panel::track("best: ship_a_030, cVDM 4.1 %").with(Layer::line(
+            "recorded",
+            FITTED,
+            [(-9e4, 10.0), (4e5, 2e4)],
+        ));
+        let time = Panel::new("", Axis::new("time [s]"), Axis::new("heading psi [deg]").every(90.0))
+            .with(wave(0.1))
+            .with(wave(0.3));
+        let log = Panel::new("", Axis::new("SNR").log(), Axis::new("cost").log()).with(Layer::line(
+            "cost",
+            FITTED,
+            [(2.0, 3e-9), (7.5, 2e4)],
+        ));
+        vec![
+            Figure::new("Which mechanism explains the data?").panel_size(1240, 280).with(lying),
+            Figure::new("Improvement on the baseline").panel_size(1200, 620).with(standing),
+            Figure::new("Tracks").columns(3).panel_size(680, 600).with_all([track, time.clone(), log.clone()]),
+            Figure::new("Unknown force over time").columns(4).panel_size(520, 400).with_all([
+                time.clone(),
+                log,
+                time.clone(),
+                time,
+            ]),
+        ]
+    }
+
+    /// All figures as they are, and at both widths of a page.
+    fn at_all_widths() -> Vec<Figure> {
+        let widths = [Width::One, Width::Two];
+        figures().into_iter().flat_map(|f| widths.map(|w| f.clone().to_width(w)).into_iter().chain([f])).collect()
+    }
+
+    #[test]
+    fn every_text_is_whole_and_inside_the_sheet_at_every_width() {
+        for figure in at_all_widths() {
+            let sheet = draw(&figure);
+            let (width, height) = (sheet.width as f32, sheet.height as f32);
+            for shape in &sheet.shapes {
+                let Shape::Text { text, at, anchor, run, style } = shape else { continue };
+                assert!(!text.ends_with('…'), "{}: cut to {text}", figure.title);
+                let long = text_width(text, style.size, style.bold);
+                let before = match anchor {
+                    Anchor::Start => 0.0,
+                    Anchor::Middle => 0.5 * long,
+                    Anchor::End => long,
+                };
+                let (from, to, limit) = match run {
+                    Run::Across => (at.0 - before, at.0 - before + long, width),
+                    Run::Up => (at.1 + before - long, at.1 + before, height),
+                };
+                assert!(from >= 0.0 && to <= limit, "{} at {}: {text} from {from} to {to}", figure.title, sheet.width);
+            }
+        }
+    }
+
+    #[test]
+    fn every_axis_of_numbers_has_three_ticks_at_every_width() {
+        for figure in at_all_widths() {
+            let columns = figure.columns;
+            let cell = (figure.panel_width as f32, figure.panel_height as f32);
+            for cell in lay_out(&figure, columns, cell).iter().flat_map(|row| &row.cells) {
+                let frame = Frame::new(cell.panel, cell.plot);
+                for (axis, ruler) in [(&cell.panel.x, &frame.x), (&cell.panel.y, &frame.y)] {
+                    let seen = ruler
+                        .ticks
+                        .iter()
+                        .filter(|(v, _)| ruler.fraction(*v).is_some_and(|f| (-1e-6..=1.0 + 1e-6).contains(&f)));
+                    assert!(
+                        axis.labels().is_some() || seen.count() >= 3,
+                        "{} {}: {:?}",
+                        figure.title,
+                        axis.label,
+                        ruler.ticks
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_figure_for_a_page_is_as_wide_as_its_columns_of_text() {
+        for figure in figures() {
+            for width in [Width::One, Width::Two] {
+                let sheet = draw(&figure.clone().to_width(width));
+                let millimetres = sheet.width as f32 / 192.0 * 25.4;
+                assert!((millimetres - width.millimetres() as f32).abs() < 1.0, "{} {millimetres}", figure.title);
+            }
+        }
+    }
 
     #[test]
     fn labels_of_categories_are_cut_to_the_same_width_in_every_column() {

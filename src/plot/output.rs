@@ -4,11 +4,54 @@
 use super::error::FigureError;
 use super::figure::Figure;
 use super::layout::draw;
-use super::{raster, svg};
+use super::{pdf, raster, svg};
 use crate::files::write_whole;
 use std::path::{Path, PathBuf};
 
+/// A kind of image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Pixels, 192 to an inch.
+    Png,
+    /// Vectors for the web.
+    Svg,
+    /// Vectors for print, its letters embedded.
+    Pdf,
+}
+
+impl Format {
+    /// How file names end.
+    #[must_use]
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Svg => "svg",
+            Self::Pdf => "pdf",
+        }
+    }
+}
+
 impl Figure {
+    /// The figure as the bytes of a file.
+    ///
+    /// # Errors
+    /// As [`Self::png`], [`Self::svg`] and [`Self::pdf`].
+    pub fn image(&self, format: Format) -> Result<Vec<u8>, FigureError> {
+        match format {
+            Format::Png => self.png(),
+            Format::Svg => self.svg().map(String::into_bytes),
+            Format::Pdf => self.pdf(),
+        }
+    }
+
+    /// The figure as a PDF of one page of its size, without a date.
+    ///
+    /// # Errors
+    /// [`FigureError::Font`] if the program is damaged.
+    pub fn pdf(&self) -> Result<Vec<u8>, FigureError> {
+        pdf::pdf(&draw(self))
+    }
+
     /// The figure as PNG, meant to be shown at half its size in px.
     ///
     /// # Errors
@@ -31,7 +74,16 @@ impl Figure {
     /// # Errors
     /// [`FigureError::Io`] if a file cannot be written, and as [`Self::png`] and [`Self::csv`].
     pub fn save(&self, stem: &Path) -> Result<Vec<PathBuf>, FigureError> {
-        Ok(vec![write(stem, "png", &self.png()?)?, write(stem, "csv", self.csv()?.as_bytes())?])
+        self.save_as(stem, &[Format::Png])
+    }
+
+    /// Writes the figure in some formats and `stem.csv`, as [`Self::save`].
+    ///
+    /// # Errors
+    /// As [`Self::save`] and [`Self::image`].
+    pub fn save_as(&self, stem: &Path, formats: &[Format]) -> Result<Vec<PathBuf>, FigureError> {
+        let images = formats.iter().map(|f| write(stem, f.extension(), &self.image(*f)?));
+        images.chain([self.csv().and_then(|csv| write(stem, "csv", csv.as_bytes()))]).collect()
     }
 }
 
@@ -127,6 +179,7 @@ mod tests {
             }
             let figure = Figure::new("all").with(Panel::default().with_all(every_layer(&values)));
             assert!(figure.png().unwrap().starts_with(b"\x89PNG"));
+            assert!(figure.pdf().unwrap().starts_with(b"%PDF"));
         }
     }
 
@@ -161,6 +214,7 @@ mod tests {
         let figure = Figure::new("ψ").with(Panel::default().with_all(every_layer(&samples()[0])));
         assert_eq!(figure.png().unwrap(), figure.png().unwrap());
         assert_eq!(figure.svg().unwrap(), figure.svg().unwrap());
+        assert_eq!(figure.pdf().unwrap(), figure.pdf().unwrap());
     }
 
     #[test]

@@ -15,6 +15,8 @@ pub(super) const LABEL: f32 = 24.0;
 pub(super) const TICK: f32 = 22.0;
 /// Remarks in a plot, px.
 pub(super) const NOTE: f32 = 20.0;
+/// Around the figure, px.
+pub(super) const EDGE: f32 = 24.0;
 /// From one line of text to the next, over the font size.
 pub(super) const LEADING: f32 = 1.3;
 /// Colour of text.

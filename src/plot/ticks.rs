@@ -41,6 +41,11 @@ impl Ruler {
     }
 }
 
+/// Fewest ticks of an axis of numbers.
+const FEWEST: usize = 3;
+/// Of the room around a label, what it can do without, px.
+const SPARE: f64 = 18.0;
+
 /// Decides the ticks of an axis `length` px long whose labels need `room(label)` px each.
 pub(super) fn ruler(
     axis: &Axis,
@@ -73,6 +78,20 @@ pub(super) fn ruler(
                     break;
                 }
                 step = nice_step(step * 1.01);
+            }
+            // Two ticks hardly tell a scale: finer again, if the labels then do not touch. A step beyond the range asks for no ticks.
+            let asked = !axis.every.is_some_and(|every| every > hi - lo);
+            for _ in 0..4 {
+                if ruler.ticks.len() >= FEWEST || !asked {
+                    break;
+                }
+                step = nice_step(step * 0.39);
+                let (ticks, factor) = linear_ticks(lo, hi, step);
+                let widest = ticks.iter().map(|(_, label)| room(label)).fold(0.0, f64::max);
+                if widest - SPARE > step / (hi - lo) * length {
+                    break;
+                }
+                (ruler.ticks, ruler.factor) = (ticks, factor);
             }
         }
     }
@@ -158,10 +177,16 @@ fn log_ticks(lo: f64, hi: f64, length: f64, room: &impl Fn(&str) -> f64) -> (Vec
     let powers = at(&[1.0]);
     let widest = powers.iter().map(|&v| room(&label(v))).fold(1.0, f64::max);
     let stride = (widest * decades / length).ceil().max(1.0) as i32;
-    let ticks =
+    let ticks: Vec<(f64, String)> =
         powers.iter().filter(|v| (v.log10().round() as i32).rem_euclid(stride) == 0).map(|&v| (v, label(v))).collect();
     let minor = if decades < 6.0 { at(&[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]) } else { vec![] };
-    (ticks, minor)
+    if ticks.len() >= FEWEST {
+        return (ticks, minor);
+    }
+    // Powers of ten alone are too few: with steps between them, the coarsest that give three.
+    let finer = [&[1.0, 3.0][..], &[1.0, 2.0, 5.0], &[1.0, 2.0, 3.0, 5.0, 7.0]].map(&at);
+    let some = finer.into_iter().find(|values| values.len() >= FEWEST);
+    (some.map_or(ticks, |values| values.into_iter().map(|v| (v, label(v))).collect()), minor)
 }
 
 #[cfg(test)]
@@ -202,6 +227,20 @@ mod tests {
         assert_eq!(labels(&Axis::new("cost").log(), (1e-8, 1e2)).first().map(String::as_str), Some("10⁻⁸"));
         assert_eq!(labels(&Axis::new("cost").log(), (1.0, 1e3)), ["1", "10", "100", "1000"]);
         assert_eq!(labels(&Axis::new("cost").log(), (1.0, 30.0)), ["1", "2", "5", "10", "20"]);
+    }
+
+    #[test]
+    fn a_short_axis_has_three_ticks_and_one_that_asks_for_none_has_none() {
+        let count = |axis: &Axis, range, length| {
+            ruler(axis, range, length, 110.0, false, |l| 13.0 * l.len() as f64 + 26.0).ticks.len()
+        };
+        for range in [(0.0, 1.0), (-83.0, 91.0), (0.0, 1190.0), (-0.031, 0.033), (3.2, 3.9)] {
+            assert!(count(&Axis::new("t"), range, 260.0) >= 3, "{range:?}");
+        }
+        for range in [(2.0, 7.5), (1.5, 40.0), (0.4, 11.0), (0.2, 90.0)] {
+            assert!(count(&Axis::new("t").log(), range, 500.0) >= 3, "{range:?}");
+        }
+        assert_eq!(count(&Axis::new("east").every(10.0), (-1.4, 1.4), 500.0), 1, "zero alone");
     }
 
     #[test]

@@ -1,45 +1,38 @@
-//! One HTML page that carries everything it shows: headings, paragraphs, tables, and figures as embedded images.
-//! No scripts and nothing from outside the file, so that it reads the same offline, printed, and years later.
+//! One HTML page that carries everything it shows: headings, paragraphs, tables, and figures drawn from numbers in the page.
+//! Nothing comes from outside the file, so that it reads the same offline, printed, and years later.
 
 use super::table::Table;
-use crate::plot::{Figure, FigureError};
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
+use crate::plot::Figure;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde_json::{Map, Value};
 
-const STYLE: &str = "
-:root { color-scheme: light; }
-body { font: 16px/1.5 'DejaVu Sans', Verdana, sans-serif; color: #1e1e1e; background: #fff; margin: 0 auto; padding: 2rem 1.25rem 4rem; max-width: 62rem; }
-h1 { font-size: 1.7rem; line-height: 1.25; margin: 0 0 .5rem; }
-h2 { font-size: 1.25rem; line-height: 1.3; margin: 2.5rem 0 .6rem; padding-top: .8rem; border-top: 1px solid #ccc; }
-p { margin: .5rem 0; max-width: 48rem; }
-.lede { font-size: 1.1rem; }
-nav { font-size: .9rem; margin: 1rem 0; }
-nav a { color: #005a8f; margin-right: 1rem; white-space: nowrap; }
-.scroll { overflow-x: auto; margin: 1rem 0; }
-table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums; }
-caption, figcaption { text-align: left; font-size: .9rem; color: #444; padding: .3rem 0; }
-th, td { padding: .3rem .8rem; text-align: left; vertical-align: top; border-bottom: 1px solid #ddd; }
-thead th { border-bottom: 2px solid #444; }
-.number { text-align: right; white-space: nowrap; }
-figure { margin: 1.2rem 0; }
-figure img { max-width: 100%; height: auto; }
-footer { margin-top: 3rem; font-size: .8rem; color: #555; border-top: 1px solid #ccc; padding-top: .6rem; }
-@media print { body { max-width: none; padding: 0; font-size: 10pt; } nav { display: none; } figure, tr { break-inside: avoid; } h2 { break-after: avoid; } }
-";
+const STYLE: &str = include_str!("assets/page.css");
+/// What draws the figures, with hover and zoom.
+const SCRIPT: &str = include_str!("assets/figures.js");
+/// What a reader sees in place of a figure where no script runs.
+const NO_SCRIPT: &str =
+    "This figure needs a browser that runs the script in this page; the same figure is in the folder `figures`.";
 
 /// A part of a page under one heading.
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct Section {
     heading: String,
+    /// Words beside the heading, and their class.
+    badge: Option<(String, &'static str)>,
     blocks: Vec<Markup>,
+    figures: Vec<(String, Value)>,
 }
 
 impl Section {
     /// An empty section.
     pub fn new(heading: impl Into<String>) -> Self {
-        Self { heading: heading.into(), blocks: vec![] }
+        Self { heading: heading.into(), badge: None, blocks: vec![], figures: vec![] }
+    }
+
+    /// The same section with words beside its heading, in the style of a class.
+    pub fn badge(self, words: impl Into<String>, class: &'static str) -> Self {
+        Self { badge: Some((words.into(), class)), ..self }
     }
 
     /// The same section with one more paragraph.
@@ -68,23 +61,13 @@ impl Section {
         })
     }
 
-    /// The same section with a figure as an embedded PNG, shown at half its size in px.
-    ///
-    /// # Errors
-    /// As [`Figure::png`].
-    pub fn figure(self, figure: &Figure, caption: &str) -> Result<Self, FigureError> {
-        Ok(self.png(&figure.png()?, &figure.title, caption))
-    }
-
-    /// The same section with a figure that is drawn already, as [`Self::figure`].
-    pub fn png(self, png: &[u8], title: &str, caption: &str) -> Self {
-        // The width is in the PNG header, big-endian at byte 16.
-        let width = png.get(16..20).and_then(|b| b.try_into().ok()).map(|b| u32::from_be_bytes(b) / 2);
-        let source = format!("data:image/png;base64,{}", STANDARD.encode(png));
-        let says = if title.is_empty() { caption } else { title };
+    /// The same section with a figure: its numbers go into the page, and are drawn where it is read.
+    pub fn figure(mut self, stem: &str, figure: &Figure, caption: &str) -> Self {
+        self.figures.push((stem.to_owned(), figure.data()));
         self.markup(html! {
             figure {
-                img src=(source) alt=(says) width=[width];
+                @if !figure.title.is_empty() { h3 { (figure.title) } }
+                div data-figure=(stem) { noscript { (NO_SCRIPT) } }
                 @if !caption.is_empty() { figcaption { (caption) } }
             }
         })
@@ -102,20 +85,21 @@ impl Section {
 #[must_use]
 pub struct Page {
     title: String,
-    lede: Vec<String>,
+    opening: Vec<Markup>,
     sections: Vec<Section>,
     footer: String,
+    numbers: Map<String, Value>,
 }
 
 impl Page {
     /// An empty page.
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), lede: vec![], sections: vec![], footer: String::new() }
+        Self { title: title.into(), opening: vec![], sections: vec![], footer: String::new(), numbers: Map::new() }
     }
 
-    /// The same page with one more opening paragraph: what was found, before any heading.
-    pub fn lede(mut self, paragraph: impl Into<String>) -> Self {
-        self.lede.push(paragraph.into());
+    /// The same page with more before its first section: what a reader must see first.
+    pub fn opening(mut self, block: Markup) -> Self {
+        self.opening.push(block);
         self
     }
 
@@ -130,9 +114,16 @@ impl Page {
         Self { footer: text.into(), ..self }
     }
 
+    /// The same page with numbers that its script draws, under a name that the script knows.
+    pub fn numbers(mut self, name: &str, numbers: Value) -> Self {
+        self.numbers.insert(name.to_owned(), numbers);
+        self
+    }
+
     /// The page as one HTML document.
     #[must_use]
     pub fn render(&self) -> String {
+        let numbers = self.script_numbers();
         html! {
             (DOCTYPE)
             html lang="en" {
@@ -144,21 +135,39 @@ impl Page {
                 }
                 body {
                     h1 { (self.title) }
-                    @for paragraph in &self.lede { p.lede { (paragraph) } }
+                    @for block in &self.opening { (block) }
                     @if self.sections.len() > 2 {
                         nav { @for (i, s) in self.sections.iter().enumerate() { a href={ "#s" (i + 1) } { (s.heading) } " " } }
                     }
                     @for (i, section) in self.sections.iter().enumerate() {
                         section id={ "s" (i + 1) } {
-                            h2 { (section.heading) }
+                            h2 {
+                                (section.heading)
+                                @if let Some((words, class)) = &section.badge { " " span class={ "grade " (class) } { (words) } }
+                            }
                             @for block in &section.blocks { (block) }
                         }
                     }
                     @if !self.footer.is_empty() { footer { (self.footer) } }
+                    @if let Some(numbers) = numbers {
+                        script type="application/json" id="figures" { (PreEscaped(numbers)) }
+                        script { (PreEscaped(SCRIPT)) }
+                    }
                 }
             }
         }
         .into_string()
+    }
+
+    /// The numbers of all figures as JSON that can be in a script element; nothing on a page without figures.
+    fn script_numbers(&self) -> Option<String> {
+        let figures: Map<String, Value> = self.sections.iter().flat_map(|s| s.figures.iter().cloned()).collect();
+        let mut all = self.numbers.clone();
+        (!figures.is_empty() || !all.is_empty()).then(|| {
+            all.insert("figures".into(), Value::Object(figures));
+            // No text in it can end the element.
+            Value::Object(all).to_string().replace('<', "\\u003c")
+        })
     }
 }
 
@@ -178,9 +187,9 @@ mod tests {
         let mut table = Table::new(["mechanism", "size"]);
         table.row(["<current> & drift", "0.31"]);
         Page::new("Diagnosis of \"Esso <Osaka>\"")
-            .lede("A steady force was found.")
+            .opening(html! { p { "A steady force was found." } })
             .section(Section::new("Where").text("a < b").table(&table, "Findings").list(["one", "two"]))
-            .section(Section::new("Proof").figure(&figure, "caption").unwrap())
+            .section(Section::new("Proof").badge("confirmed", "confirmed").figure("proof", &figure, "caption"))
             .section(Section::new("Open"))
             .footer("seed 1")
             .render()
@@ -190,10 +199,20 @@ mod tests {
     fn a_page_needs_nothing_from_outside_itself() {
         let page = page();
         assert!(page.starts_with("<!DOCTYPE html>"));
-        for outside in ["http:", "https:", "<script", "<link", "url(", "src=\"/"] {
+        for outside in ["http:", "https:", "<link", "src=", "@import", "fetch(", "XMLHttpRequest"] {
             assert!(!page.contains(outside), "{outside}");
         }
-        assert!(page.contains("data:image/png;base64,iVBORw0KGgo"));
+        assert!(page.contains("<div data-figure=\"proof\">") && page.contains("<h3>R(u) &lt; 80 kN</h3>"));
+    }
+
+    #[test]
+    fn the_numbers_of_a_figure_are_json_that_no_name_in_it_can_end() {
+        let figure = Figure::new("").with(Panel::new("</script><b>", Axis::new("x"), Axis::new("y")));
+        let page = Page::new("").section(Section::new("a").figure("f", &figure, "")).render();
+        let (_, rest) = page.split_once("id=\"figures\">").unwrap();
+        let (json, _) = rest.split_once("</script>").unwrap();
+        let value: Value = serde_json::from_str(json).unwrap();
+        assert_eq!(value["figures"]["f"]["panels"][0]["t"], "</script><b>");
     }
 
     #[test]

@@ -209,5 +209,9 @@ pub fn isolability_figure(plan: &Plan) -> Figure {
     let side = 54 * i.mechanisms.len().max(4) as u32;
     Figure::new("Share of the gain of a mechanism that another takes over")
         .panel_size(420 + side, 280 + side)
+        .caption(
+            "Share of the gain in log-likelihood of the mechanism of a row that the mechanism of a column takes over on these trials: 1 for \
+             two that they cannot tell apart.",
+        )
         .with(Panel::new("", axis(), axis()).with(Layer::new("share taken over", RECORDED, map)))
 }

@@ -3,6 +3,8 @@
 
 #![allow(dead_code)]
 
+pub mod written;
+
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

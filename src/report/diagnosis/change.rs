@@ -1,7 +1,7 @@
 //! Figures of what the findings change: test runs before and after, parameters that moved, coefficients far from their priors.
 //! They show the numbers of the diagnosis in order of size.
 
-use super::picture::Sketch;
+use super::picture::{Picture, shown};
 use crate::diagnose::Diagnosis;
 use crate::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Legend, Marker, Panel};
 
@@ -10,12 +10,13 @@ const RUNS: usize = 40;
 const COEFFICIENTS: usize = 20;
 
 /// cVDM of each test run before and after, the worst before first.
-pub(super) fn held_out(d: &Diagnosis) -> Option<Sketch> {
+pub(super) fn held_out(d: &Diagnosis) -> Option<Picture> {
     let h = d.held_out.as_ref()?;
     let cvdm = |v: Option<f64>| v.unwrap_or(f64::NAN);
     let both = h.runs_before.iter().zip(&h.runs_after);
     let mut pairs: Vec<(&str, f64, f64)> = both.map(|(b, a)| (b.run.as_str(), cvdm(b.cvdm), cvdm(a.cvdm))).collect();
     pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let all = pairs.len();
     pairs.truncate(RUNS);
     if pairs.is_empty() || d.findings.is_empty() {
         return None;
@@ -30,10 +31,12 @@ pub(super) fn held_out(d: &Diagnosis) -> Option<Sketch> {
         .with(Layer::v_line("mean, base", BASELINE, h.before.unwrap_or(f64::NAN)).dotted().unlisted())
         .with(Layer::v_line("mean, improved", FITTED, h.after.unwrap_or(f64::NAN)).dotted().unlisted())
         .with_all(h.generic.map(|g| Layer::v_line("mean with a generic force law", GREY, g).dashed()));
-    Some(Sketch {
+    Some(Picture {
         stem: "held_out",
         part: "PROOF",
-        caption: "Each test run, simulated freely by the base model, refitted, and by the improved model.",
+        caption: "Test runs, simulated freely by the base model, refitted, and by the improved model, the largest error of the base model first."
+            .to_owned()
+            + &shown(pairs.len(), all, "test runs, those with the largest errors of the base model,"),
         figure: Figure::new("Test runs, before and after (dotted: means)")
             .panel_size(1240, 150 + 40 * pairs.len() as u32)
             .with(dots),
@@ -41,32 +44,34 @@ pub(super) fn held_out(d: &Diagnosis) -> Option<Sketch> {
 }
 
 /// How far the model's own parameters moved when the findings were added.
-pub(super) fn moves(d: &Diagnosis) -> Option<Sketch> {
+pub(super) fn moves(d: &Diagnosis) -> Option<Picture> {
     if d.moves.is_empty() || d.findings.is_empty() {
         return None;
     }
     let rows = d.moves.iter().map(|m| (m.name.as_str(), m.moved));
-    Some(Sketch {
+    Some(Picture {
         stem: "moves",
         part: "MODEL",
-        caption: "How far the model's own parameters moved when the findings were added: those beyond 2 had absorbed part of the effect.",
+        caption: "How far the model's own parameters moved when the findings were added: those beyond 2 had absorbed part of the effect.".to_owned(),
         figure: levels("Moves of the model's own parameters", "moved [standard errors]", rows),
     })
 }
 
 /// The hull coefficients furthest from their priors.
-pub(super) fn hull_budget(d: &Diagnosis) -> Option<Sketch> {
+pub(super) fn hull_budget(d: &Diagnosis) -> Option<Picture> {
     let mut budget: Vec<(&str, f64)> = d.hull_budget.iter().map(|b| (b.name.as_str(), b.used)).collect();
     budget.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let all = budget.len();
     budget.truncate(COEFFICIENTS);
     if budget.is_empty() {
         return None;
     }
-    Some(Sketch {
+    Some(Picture {
         stem: "hull_budget",
         part: "STILL OPEN",
-        caption: "Distance of the ship's own coefficients from their priors, the twenty furthest. They are an error budget, \
-                  not findings.",
+        caption: "Distance of the ship's own coefficients from their priors, the furthest first. They are an error budget, not findings."
+            .to_owned()
+            + &shown(budget.len(), all, "coefficients, those furthest from their priors,"),
         figure: levels("Hull error budget", "distance from the prior value [prior standard deviations]", budget),
     })
 }

@@ -2,7 +2,7 @@
 //! The statistics are the diagnosis's own.
 
 use super::names::title_of;
-use super::picture::Sketch;
+use super::picture::{Picture, shown};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::diagnosis::Ranked;
 use crate::plot::{Axis, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, Mark, ORANGE, PURPLE, Panel, RECORDED, SKY};
@@ -50,7 +50,7 @@ fn outcome(d: &Diagnosis, r: &Ranked) -> usize {
 }
 
 /// Evidence for each mechanism, the strongest first.
-pub(super) fn ranking(d: &Diagnosis) -> Option<Sketch> {
+pub(super) fn ranking(d: &Diagnosis) -> Option<Picture> {
     if d.ranking.is_empty() {
         return None;
     }
@@ -79,11 +79,13 @@ pub(super) fn ranking(d: &Diagnosis) -> Option<Sketch> {
     }
     let threshold = Normal::new(0.0, 1.0).map_or(1.96, |n| -n.inverse_cdf(0.5 * d.settings.alpha));
     let limit = format!("can be named (alpha {})", d.settings.alpha);
-    Some(Sketch {
+    Some(Picture {
         stem: "ranking",
         part: "VERDICT",
-        caption: "Evidence for each mechanism, tested one at a time in the base model and corrected for how many were tested. \
-                  Only a mechanism beyond the dashed line can be named.",
+        caption: "Evidence for each mechanism, tested one at a time in the base model and corrected for how many were tested. Only a \
+                  mechanism beyond the dashed line can be named."
+            .to_owned()
+            + &shown(rows.len(), d.ranking.len(), "mechanisms, those with the strongest evidence,"),
         figure: Figure::new("Which mechanism explains the data?")
             .panel_size(1240, 150 + 42 * rows.len() as u32)
             .with(panel.with(Layer::v_line(limit, LIMIT, threshold).dashed())),
@@ -91,12 +93,13 @@ pub(super) fn ranking(d: &Diagnosis) -> Option<Sketch> {
 }
 
 /// Similarity of the mechanisms with the strongest evidence, as far as they are in a pair at all.
-pub(super) fn confusability(d: &Diagnosis) -> Option<Sketch> {
+pub(super) fn confusability(d: &Diagnosis) -> Option<Picture> {
     if d.confusable.is_empty() {
         return None;
     }
     let paired = |m: &str| d.confusable.iter().any(|c| c.a == m || c.b == m);
     let mut names: Vec<&str> = d.ranking.iter().map(|r| r.mechanism.as_str()).filter(|m| paired(m)).collect();
+    let all = names.len();
     names.truncate(COMPARED);
     let between = |a: &str, b: &str| {
         if a == b {
@@ -110,10 +113,12 @@ pub(super) fn confusability(d: &Diagnosis) -> Option<Sketch> {
     let short = Axis::categories("", names.iter().copied());
     let long = Axis::categories("", names.iter().map(|m| title_of(&d.model, m)));
     let side = 60 * names.len() as u32;
-    Some(Sketch {
+    Some(Picture {
         stem: "confusability",
         part: "VERDICT",
-        caption: "Mechanisms with similar effects on these data: those at 1 cannot be distinguished, those below 0.7 (blank) easily.",
+        caption: "Mechanisms with similar effects on these data: those at 1 cannot be distinguished, those below 0.7 (blank) easily."
+            .to_owned()
+            + &shown(names.len(), all, "mechanisms that are similar to another, those with the strongest evidence,"),
         figure: Figure::new("Similarity of mechanisms on these data")
             .panel_size(560 + side, 260 + side)
             .with(Panel::new("", short, long).with(Layer::new("similarity (cosine)", RECORDED, map))),

@@ -1,7 +1,7 @@
 //! Figures of the unknown force along the most telling runs: on their tracks, and over time.
 //! Its mean against state and inputs is in `pattern`.
 
-use super::picture::Sketch;
+use super::picture::{Picture, shown};
 use super::stages::{Series, stages, to_earth};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::diagnosis::Trace;
@@ -14,7 +14,7 @@ use crate::report::units::Units;
 const RESOLVED: f64 = 5.99;
 
 /// Tracks with the unknown force as arrows, a row for each stage.
-pub(super) fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Option<Sketch> {
+pub(super) fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Option<Picture> {
     if runs.is_empty() {
         return None;
     }
@@ -45,11 +45,12 @@ pub(super) fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Option<Sketch> {
             );
         }
     }
-    Some(Sketch {
+    Some(Picture {
         stem: "tracks",
         part: "WHERE",
         caption: "Tracks of the most telling runs with the force that the model does not explain. Grey arrows are smaller than the \
-                  filter resolves.",
+                  filter resolves.".to_owned()
+            + &shown(runs.len(), d.traces.len(), "training runs, those on which the force is largest in standard deviations,"),
         figure,
     })
 }
@@ -89,7 +90,7 @@ fn arrows(t: &Trace, force: Series, metres: f64) -> (Vec<Arrow>, Vec<Arrow>) {
 }
 
 /// The unknown force over time, a row for each equation.
-pub(super) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Sketch> {
+pub(super) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Picture> {
     if runs.is_empty() {
         return None;
     }
@@ -114,16 +115,18 @@ pub(super) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Sketch> {
             ));
             for (stage, color, force) in stages(d) {
                 let points = t.time.iter().zip(force(t)).map(|(time, f)| (*time, f[e] * factor));
-                panel = panel.with(Layer::line(stage, color, points).width(2.5));
+                let line = Layer::line(stage, color, points).width(2.5);
+                panel = panel.with(if color == BASELINE { line.dashed() } else { line });
             }
             figure = figure.with(panel);
         }
     }
-    Some(Sketch {
+    Some(Picture {
         stem: "forces",
         part: "WHERE",
         caption: "The unknown force over time in the same runs, as the filter estimates it, with its 95 % band under the base \
-                  model. With a complete model it is about zero.",
+                  model. With a complete model it is about zero.".to_owned()
+            + &shown(runs.len(), d.traces.len(), "training runs, those on which the force is largest in standard deviations,"),
         figure,
     })
 }

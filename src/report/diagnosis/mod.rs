@@ -3,16 +3,22 @@
 //! use (kN, degrees).
 
 #[cfg(feature = "plot")]
+mod appendix;
+#[cfg(feature = "plot")]
 mod change;
 mod document;
 #[cfg(feature = "plot")]
 mod evidence;
+#[cfg(feature = "plot")]
+mod finding;
 mod findings;
 #[cfg(feature = "plot")]
 mod force;
 mod limits;
 mod location;
 mod names;
+#[cfg(feature = "plot")]
+mod opening;
 #[cfg(feature = "plot")]
 mod page;
 mod parts;
@@ -25,10 +31,16 @@ mod picture;
 mod pictures;
 mod proof;
 #[cfg(feature = "plot")]
+mod quantity;
+#[cfg(feature = "plot")]
+mod runs;
+#[cfg(feature = "plot")]
 mod stages;
 mod summary;
 mod verdict;
 
+#[cfg(feature = "plot")]
+pub use appendix::{Provenance, SourceFile};
 pub use document::{document, keys, keys_listing};
 pub use names::mechanism_names;
 #[cfg(feature = "plot")]

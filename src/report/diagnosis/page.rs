@@ -1,46 +1,104 @@
-//! A diagnosis as one HTML page with its figures.
-//! What it says is in `parts`.
+//! A diagnosis as one HTML page to forward: verdict, numbers and picture first, then a section a finding, and what it rests on.
+//! The order is decided here; what each part says is in its own file.
 
-use super::parts::parts;
+use super::appendix::{Provenance, command, data, glossary, ship};
+use super::finding::{section, withdrawn_section};
+use super::findings::model;
+use super::limits::{limits, next_trial, still_open};
+use super::location::location;
+use super::opening::opening;
 use super::picture::Picture;
-use super::verdict::subject;
+use super::proof::proof;
+use super::runs::{numbers, picture};
+use super::verdict::{error_rates, notes, stability};
 use crate::diagnose::Diagnosis;
 use crate::numerals::{fixed, sig};
+use crate::plot::FigureError;
 use crate::report::html::{Page, Section};
 use crate::report::table::Table;
+use crate::report::units::Units;
 
 /// The diagnosis as one page that carries its figures.
-pub fn page(d: &Diagnosis, study: &str, pictures: &[Picture]) -> Page {
-    let mut page = Page::new(format!("Diagnosis: {study}")).lede(d.headline.clone()).lede(subject(d, study));
-    for part in parts(d) {
-        let mut section = Section::new(sentence_case(part.heading)).list(&part.lines);
-        for p in pictures.iter().filter(|p| p.part == part.heading) {
-            section = section.png(&p.png, &p.title, p.caption);
-        }
-        if part.heading == "MODEL" && !d.moves.is_empty() {
-            section =
-                section.table(&moves_table(d), "The model's own parameters without and with the findings (SI units).");
-        }
-        page = page.section(section);
+///
+/// # Errors
+/// When the first picture cannot be drawn.
+pub fn page(d: &Diagnosis, study: &str, pictures: &[Picture], from: &Provenance) -> Result<Page, FigureError> {
+    let runs = d.held_out.as_ref().map_or(d.traces.len(), |h| h.runs);
+    let mut page = Page::new(format!("Diagnosis: {study}")).opening(opening(d, study));
+    if let Some(first) = picture(d, runs)? {
+        page = page.opening(first);
     }
-    let footer = format!(
-        "trimtab {} · alpha {} · at most {} mechanisms · seed {}{}",
-        env!("CARGO_PKG_VERSION"),
-        d.settings.alpha,
-        d.settings.most,
-        d.settings.seed,
-        if d.settings.withhold.is_empty() {
-            String::new()
-        } else {
-            format!(" · withheld: {}", d.settings.withhold.join(", "))
-        }
-    );
-    page.footer(footer)
+    if let Some(numbers) = numbers(d) {
+        page = page.numbers("runs", numbers);
+    }
+    let mut sections: Vec<Section> = (0..d.findings.len()).filter_map(|i| section(d, i)).collect();
+    sections.extend(withdrawn_section(d));
+    sections.extend(body(d, pictures));
+    sections.extend([glossary(), ship(d), data(d, from), command(d, from)]);
+    let page = sections.into_iter().fold(page, Page::section);
+    Ok(page.footer(format!("trimtab {}. This page needs nothing outside itself.", env!("CARGO_PKG_VERSION"))))
 }
 
-fn sentence_case(heading: &str) -> String {
-    let mut letters = heading.chars();
-    letters.next().map_or(String::new(), |first| first.to_string() + &letters.as_str().to_lowercase())
+/// The sections on all findings together, each with its figures.
+fn body(d: &Diagnosis, pictures: &[Picture]) -> Vec<Section> {
+    let with = |section: Section, part: &str| {
+        pictures.iter().filter(|p| p.part == part).fold(section, |s, p| s.figure(p.stem, &p.figure, &p.caption))
+    };
+    let mut changed = with(Section::new("What changed in the model").list(model(d)), "MODEL");
+    if !d.moves.is_empty() {
+        changed =
+            changed.table(&moves_table(d), "The model's own parameters without and with the findings (SI units).");
+    }
+    let open = with(Section::new("What is still unexplained").list(still_open(d)), "STILL OPEN");
+    let mut out = vec![
+        with(Section::new("Where the unexplained force acts").list(location(d)), "WHERE"),
+        with(Section::new("Evidence for each mechanism").list(evidence(d)), "VERDICT"),
+        changed,
+        with(Section::new("Proof on test runs").list(proof(d)), "PROOF"),
+        open,
+        cannot_show(d),
+        Section::new("Trial to sail next").list(next_trial(d)),
+    ];
+    out.extend(reliability(d));
+    out
+}
+
+/// What the figures of evidence are read with.
+fn evidence(d: &Diagnosis) -> Vec<String> {
+    let strongest = d.ranking.first().filter(|_| d.findings.is_empty());
+    let mut lines = vec![format!("{} mechanisms were tested one at a time in the base model", d.ranking.len())];
+    lines.extend(strongest.map(|r| {
+        format!("strongest candidate, not named: {}, {} after correction", r.title, super::phrases::p_value(r.p))
+    }));
+    lines
+}
+
+/// What these data could not have shown, and from which size on they would have shown the rest.
+fn cannot_show(d: &Diagnosis) -> Section {
+    let units = Units::of(&d.base.ship);
+    let hidden: Vec<String> = limits(d).into_iter().filter(|line| !line.starts_with("detected with")).collect();
+    let section = Section::new("What these data cannot show").list(hidden);
+    let mut table = Table::new(["mechanism", "detected from", "unit"]);
+    for s in d.detectable.iter().filter(|s| s.size.is_finite()) {
+        let (factor, unit) = units.human(&s.unit);
+        table.row([
+            super::names::title_of(&d.model, &s.mechanism).to_owned(),
+            sig(s.size * factor, 3),
+            unit.to_owned(),
+        ]);
+    }
+    if table.rows().is_empty() {
+        return section;
+    }
+    section.table(&table, "Smallest sizes that are detected with a probability of 80 % in such recordings.")
+}
+
+/// Repetitions, error rates and notes on the recordings; nothing where there are none.
+fn reliability(d: &Diagnosis) -> Option<Section> {
+    let mut lines: Vec<String> = d.stability.as_ref().map(stability).into_iter().collect();
+    lines.extend(d.error_rates.as_ref().map(error_rates));
+    lines.extend(notes(&d.admission.issues));
+    (!lines.is_empty()).then(|| Section::new("How far to trust it").list(lines))
 }
 
 fn moves_table(d: &Diagnosis) -> Table {

@@ -1,12 +1,12 @@
 //! Figures of the mean unknown force: against state and inputs, by heading, and by region.
 //! Means are over the samples of a bin in each run, then over runs, whose scatter gives the intervals.
 
-use super::picture::Sketch;
+use super::picture::Picture;
 use super::stages::{Series, stages, to_earth};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::diagnosis::Trace;
 use crate::numerals::sig;
-use crate::plot::{Axis, BASELINE, Color, Figure, GREY, Layer, Legend, Panel, nice_step};
+use crate::plot::{Axis, BASELINE, Color, Figure, GREY, Layer, Legend, Marker, Panel, nice_step};
 use crate::report::units::Units;
 use crate::units::GRAVITY;
 use std::collections::BTreeMap;
@@ -57,7 +57,7 @@ fn heading(t: &Trace, k: usize) -> Option<f64> {
 }
 
 /// Mean unknown force against heading, propeller, rudder and drift, a row for each equation.
-pub(super) fn pattern(d: &Diagnosis) -> Option<Sketch> {
+pub(super) fn pattern(d: &Diagnosis) -> Option<Picture> {
     if d.traces.is_empty() {
         return None;
     }
@@ -84,19 +84,25 @@ pub(super) fn pattern(d: &Diagnosis) -> Option<Sketch> {
             for (i, (stage, color, force)) in stages(d).into_iter().enumerate() {
                 // Side by side, so that intervals do not cover each other.
                 let aside = (i as f64 - 0.5) * 0.12 * width;
+                let shape = if i == 0 { Marker::Circle } else { Marker::Diamond };
                 let points = binned(d, force, of, &|_, _, f| f[e] * factor, *width);
                 panel = panel
                     .with(Layer::line(stage, color, points.iter().map(|p| (p[0] + aside, p[1]))).unlisted().width(1.5))
-                    .with(Layer::errors(stage, color, points.iter().map(|p| (p[0] + aside, p[1], p[2], p[3]))));
+                    .with(
+                        Layer::errors(stage, color, points.iter().map(|p| (p[0] + aside, p[1], p[2], p[3])))
+                            .marker(shape),
+                    );
             }
             figure = figure.with(panel);
         }
     }
-    Some(Sketch {
+    Some(Picture {
         stem: "pattern",
         part: "WHERE",
-        caption: "Mean unknown force against heading, propeller, rudder and drift, with 95 % intervals from the scatter \
-                  between runs. A sine in heading is fixed on the earth; a slope in the others moves with the ship.",
+        caption:
+            "Mean unknown force against heading, propeller, rudder and drift, with 95 % intervals from the scatter \
+                  between runs. A sine in heading is fixed on the earth; a slope in the others moves with the ship."
+                .to_owned(),
         figure,
     })
 }
@@ -109,7 +115,7 @@ fn tenth(d: &Diagnosis, of: Abscissa<'_>) -> f64 {
 }
 
 /// Mean horizontal force by heading of the ship, as arrows in earth axes.
-pub(super) fn compass(d: &Diagnosis) -> Option<Sketch> {
+pub(super) fn compass(d: &Diagnosis) -> Option<Picture> {
     if d.traces.is_empty() {
         return None;
     }
@@ -132,11 +138,11 @@ pub(super) fn compass(d: &Diagnosis) -> Option<Sketch> {
         });
         figure = figure.with(rose(stage, color, arrows));
     }
-    Some(Sketch {
+    Some(Picture {
         stem: "compass",
         part: "WHERE",
         caption: "Mean horizontal force by heading of the ship, in earth axes. Arrows that all point the same way are fixed on \
-                  the earth; arrows that turn with the position on the circle move with the ship.",
+                  the earth; arrows that turn with the position on the circle move with the ship.".to_owned(),
         figure,
     })
 }
@@ -155,7 +161,7 @@ fn rose(stage: &str, color: Color, arrows: impl Iterator<Item = [(f64, f64); 2]>
 }
 
 /// Mean unexplained force in each region of state and inputs.
-pub(super) fn regions(d: &Diagnosis) -> Option<Sketch> {
+pub(super) fn regions(d: &Diagnosis) -> Option<Picture> {
     if d.location.regions.is_empty() {
         return None;
     }
@@ -174,10 +180,12 @@ pub(super) fn regions(d: &Diagnosis) -> Option<Sketch> {
                 .with(Layer::bars_with_intervals("mean force", BASELINE.faded(0.7), bars)),
         );
     }
-    Some(Sketch {
+    Some(Picture {
         stem: "regions",
         part: "WHERE",
-        caption: "Constant force that each region of state and inputs would need beyond the base model, with 95 % intervals.",
+        caption:
+            "Constant force that each region of state and inputs would need beyond the base model, with 95 % intervals."
+                .to_owned(),
         figure,
     })
 }

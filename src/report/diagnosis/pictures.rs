@@ -1,5 +1,5 @@
 //! The figures of a diagnosis in the order of its parts.
-//! What each shows is in the file that draws it; nothing is computed beyond means in bins.
+//! What each shows is in the file that makes it; nothing is computed beyond means in bins.
 
 use super::change::{held_out, hull_budget, moves};
 use super::evidence::{confusability, ranking};
@@ -8,16 +8,12 @@ use super::pattern::{compass, pattern, regions};
 use super::picture::Picture;
 use super::stages::telling;
 use crate::diagnose::Diagnosis;
-use crate::plot::FigureError;
-use rayon::prelude::*;
 
 /// Every picture that the diagnosis gives cause to.
-///
-/// # Errors
-/// When a figure cannot be drawn.
-pub fn pictures(d: &Diagnosis) -> Result<Vec<Picture>, FigureError> {
+#[must_use]
+pub fn pictures(d: &Diagnosis) -> Vec<Picture> {
     let runs = telling(d);
-    let sketches = [
+    let all = [
         ranking(d),
         confusability(d),
         tracks(d, &runs),
@@ -29,5 +25,5 @@ pub fn pictures(d: &Diagnosis) -> Result<Vec<Picture>, FigureError> {
         held_out(d),
         hull_budget(d),
     ];
-    sketches.into_par_iter().flatten().map(|sketch| sketch.drawn()).collect()
+    all.into_iter().flatten().collect()
 }

@@ -94,9 +94,21 @@ fn grade_words(grade: Grade) -> &'static str {
     }
 }
 
-/// A mechanism that was tried and is not named, with the reason.
-fn withdrawn(f: &Finding, units: Units) -> String {
-    let reason = match f.grade {
+/// A grade as a word, and the class of its style.
+#[cfg(feature = "plot")]
+pub(super) fn grade_label(grade: Grade) -> (&'static str, &'static str) {
+    match grade {
+        Grade::Confirmed => ("confirmed", "confirmed"),
+        Grade::Suspected => ("suspected", "suspected"),
+        Grade::Refuted | Grade::Immaterial | Grade::Undetermined | Grade::NotIsolated | Grade::Unstable => {
+            ("not named", "withdrawn")
+        }
+    }
+}
+
+/// Why a mechanism of this grade is not named.
+fn withdrawn_because(grade: Grade) -> &'static str {
+    match grade {
         Grade::Refuted => "unseen runs refute it",
         Grade::Immaterial => "it is measurable, and too small to matter",
         Grade::NotIsolated => {
@@ -106,7 +118,12 @@ fn withdrawn(f: &Finding, units: Units) -> String {
         Grade::Unstable => "most repetitions on the same recordings told otherwise do not find it",
         Grade::Undetermined => "the interval of its size contains zero",
         Grade::Confirmed | Grade::Suspected => "the model does not follow the recordings without it or with it",
-    };
+    }
+}
+
+/// A mechanism that was tried and is not named, with the reason.
+pub(super) fn withdrawn(f: &Finding, units: Units) -> String {
+    let reason = withdrawn_because(f.grade);
     let interval = |value: Option<f64>, ci95: Option<[f64; 2]>, of: &dyn Fn(f64) -> String| match (value, ci95) {
         (Some(value), Some([low, high])) => format!("{} [{}, {}]", of(value), of(low), of(high)),
         (Some(value), None) => of(value),
@@ -128,7 +145,7 @@ fn withdrawn(f: &Finding, units: Units) -> String {
 }
 
 /// How often such studies err, by simulation.
-fn error_rates(r: &ErrorRates) -> String {
+pub(super) fn error_rates(r: &ErrorRates) -> String {
     let mut text = format!(
         "in {} simulated studies of this kind with nothing missing, {} named something ({})",
         r.false_alarms.of, r.false_alarms.hits, r.false_alarms
@@ -143,7 +160,7 @@ fn error_rates(r: &ErrorRates) -> String {
 }
 
 /// Whether the answer is the same on the same recordings told otherwise.
-fn stability(s: &Stability) -> String {
+pub(super) fn stability(s: &Stability) -> String {
     let differing = s.variants.iter().filter(|v| !v.same).map(|v| {
         let found = if v.findings.is_empty() { "nothing named".to_owned() } else { v.findings.join(", ") };
         format!("{} ({found})", v.name)
@@ -159,7 +176,7 @@ fn stability(s: &Stability) -> String {
 }
 
 /// What is wrong with the recordings: whatever must be corrected first, and a few notes of each kind.
-fn notes(issues: &[Issue]) -> Vec<String> {
+pub(super) fn notes(issues: &[Issue]) -> Vec<String> {
     let mut lines = Vec::new();
     let mut noted: BTreeMap<&str, usize> = BTreeMap::new();
     for i in issues {
@@ -176,7 +193,7 @@ fn notes(issues: &[Issue]) -> Vec<String> {
 }
 
 /// The size of a finding, session by session where each has its own; nothing for a mechanism without one.
-fn size(f: &Finding, units: Units) -> String {
+pub(super) fn size(f: &Finding, units: Units) -> String {
     if !f.by_session {
         return size_of(f, None, units).map_or(String::new(), |s| format!(", {s}"));
     }

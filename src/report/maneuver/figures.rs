@@ -1,7 +1,9 @@
 //! Figures of trials: the track with ship outlines, and rudder, heading and speed over time.
 //! Nothing is computed here beyond units; measures are in `tables`.
 
+use super::annotate::{circle, overshoots};
 use crate::maneuver::{Side, Stopping, Track, Trial, Turning, Zigzag};
+use crate::numerals::sig;
 use crate::plot::{Axis, BLUE, Color, Figure, GREY, Layer, Legend, Panel, VERMILLION, east_north};
 use crate::ship::Ship;
 
@@ -10,6 +12,14 @@ fn color(side: Side) -> Color {
     match side {
         Side::Starboard => BLUE,
         Side::Port => VERMILLION,
+    }
+}
+
+/// A line of a side: port is dashed, so that the sides are told apart without colours too.
+fn styled(side: Side, line: Layer) -> Layer {
+    match side {
+        Side::Starboard => line,
+        Side::Port => line.dashed(),
     }
 }
 
@@ -29,7 +39,7 @@ fn track_panel<'a, M: 'a>(title: &str, ship: &Ship, trials: impl Iterator<Item =
     for trial in trials {
         let (track, color) = (&trial.track, color(trial.side));
         let points = thinned(track).map(|k| east_north(track.states[k][0], track.states[k][1]));
-        panel = panel.with(Layer::line(&trial.name, color, points));
+        panel = panel.with(styled(trial.side, Layer::line(&trial.name, color, points)));
         let poses = outlines(track, ship.hull.lpp);
         panel =
             panel.with(Layer::hulls(&trial.name, color, poses, ship.hull.lpp, ship.hull.breadth).unlisted().width(2.0));
@@ -61,16 +71,23 @@ fn over_time<M>(trial: &Trial<M>, value: impl Fn(&Track, usize) -> f64) -> Vec<(
 }
 
 fn time_panel<M>(label: &str, trials: &[Trial<M>], value: impl Fn(&Track, usize) -> f64) -> Panel {
-    let layers = trials.iter().map(|t| Layer::line(&t.name, color(t.side), over_time(t, &value)));
+    let layers = trials.iter().map(|t| styled(t.side, Layer::line(&t.name, color(t.side), over_time(t, &value))));
     Panel::new("", Axis::new("time [s]"), Axis::new(label).including(0.0)).with_all(layers)
 }
 
 /// Turning circles to both sides: tracks, heading, rudder, speed and yaw rate.
 pub fn turning_figure(ship: &Ship, trials: &[Trial<Turning>]) -> Figure {
+    let measured = trials.iter().flat_map(|t| circle(t, ship.hull.lpp));
+    let caption = format!(
+        "Turning circles to both sides; L = {} m. Advance: distance ahead at 90 deg of change of heading; transfer and tactical diameter: \
+         distance abeam at 90 and 180 deg, all of the midship point from where the rudder begins to move.",
+        sig(ship.hull.lpp, 4)
+    );
     Figure::new(format!("{}: turning circles", ship.name))
         .columns(2)
-        .panel_size(900, 640)
-        .with(track_panel("", ship, trials.iter()))
+        .panel_size(900, 760)
+        .caption(caption)
+        .with(track_panel("", ship, trials.iter()).with_all(measured))
         .with(time_panel("heading psi [deg]", trials, |t, k| t.states[k][2].to_degrees()))
         .with(time_panel("rudder delta [deg]", trials, |t, k| t.delta[k].to_degrees()))
         .with(time_panel("speed U [m/s]", trials, Track::speed))
@@ -81,7 +98,9 @@ pub fn turning_figure(ship: &Ship, trials: &[Trial<Turning>]) -> Figure {
 /// Zigzags, a row for each pair of angles: heading and rudder over time with either side first, and both tracks.
 pub fn zigzag_figure(ship: &Ship, trials: &[Trial<Zigzag>]) -> Figure {
     let same = |a: &Trial<Zigzag>, b: &Trial<Zigzag>| a.measures.heading == b.measures.heading;
-    let mut figure = Figure::new(format!("{}: zigzags", ship.name)).columns(3).panel_size(720, 520);
+    let caption =
+        "Zigzags to both sides first: heading and rudder, the overshoot angle at each peak of heading, and the tracks.";
+    let mut figure = Figure::new(format!("{}: zigzags", ship.name)).columns(3).panel_size(720, 520).caption(caption);
     for row in trials.chunk_by(same) {
         for trial in row {
             let heading = over_time(trial, |t, k| t.states[k][2].to_degrees());
@@ -93,7 +112,8 @@ pub fn zigzag_figure(ship: &Ship, trials: &[Trial<Zigzag>]) -> Figure {
                     .with(Layer::h_line("heading of execute", GREY, limit).dotted())
                     .with(Layer::h_line("heading of execute", GREY, -limit).dotted().unlisted())
                     .with(Layer::line("rudder", GREY, rudder).dashed())
-                    .with(Layer::line(first, color(trial.side), heading)),
+                    .with(Layer::line(first, color(trial.side), heading))
+                    .with_all(overshoots(trial, color(trial.side))),
             );
         }
         let mut tracks = track_panel("tracks", ship, row.iter());
@@ -109,6 +129,7 @@ pub fn stopping_figure(ship: &Ship, trial: &Trial<Stopping>) -> Figure {
     Figure::new(format!("{}: {}", ship.name, trial.name))
         .columns(2)
         .panel_size(900, 560)
+        .caption("Crash stop from the instant the propeller is reversed: track with ship outlines, speed, propeller rate and heading.")
         .legend(Legend::Off)
         .with(track_panel("", ship, one.iter()))
         .with(time_panel("surge velocity u [m/s]", one, |t, k| t.states[k][3]))

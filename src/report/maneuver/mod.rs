@@ -2,6 +2,8 @@
 //! The trials and their measures are [`crate::maneuver`]'s.
 
 #[cfg(feature = "plot")]
+mod annotate;
+#[cfg(feature = "plot")]
 mod figures;
 mod tables;
 
