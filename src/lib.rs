@@ -79,6 +79,7 @@ pub mod diagnose;
 pub mod dynamics;
 pub mod error;
 pub mod evaluate;
+pub mod export;
 pub mod files;
 pub mod fit;
 pub mod guide;

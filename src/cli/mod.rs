@@ -9,6 +9,7 @@ mod demo;
 mod diagnose;
 mod error;
 mod evaluate;
+mod export;
 mod figures;
 mod fit;
 mod help;
@@ -21,6 +22,7 @@ mod processor;
 mod progress;
 mod shell;
 mod simulate;
+mod style;
 mod sweep;
 mod terminal;
 mod terms;
@@ -32,6 +34,7 @@ use processor::Build;
 use std::process::ExitCode;
 use terminal::{plain, tell};
 use trimtab::ranks::{Ranks, Traffic};
+use trimtab::report::{USUAL, set_width};
 
 const AFTER_HELP: &str = "\
 Begin with
@@ -83,6 +86,7 @@ enum Command {
     Plan(plan::Args),
     Sweep(sweep::Args),
     Compare(compare::Args),
+    Export(export::Args),
     Terms(terms::Args),
     Demo(demo::Args),
     Help(help::Args),
@@ -109,6 +113,7 @@ pub fn run() -> ExitCode {
         // Help, or the version.
         Err(asked) => asked.exit(),
     };
+    set_width(style::columns().unwrap_or(USUAL));
     let ranks = Ranks::join();
     let outcome = execute(&cli, &ranks);
     if let (Err(error), true) = (&outcome, ranks.size() > 1) {
@@ -145,6 +150,7 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Plan(args) => plan::run(args),
         Command::Sweep(args) => sweep::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Export(args) => export::run(args),
         Command::Terms(args) => terms::run(args),
         Command::Demo(args) => demo::run(args),
         Command::Help(args) => help::run(args, &Cli::command()),
