@@ -578,10 +578,6 @@
   };
 
   const figures = [];
-  for (const host of document.querySelectorAll('[data-figure]')) {
-    const spec = data.figures[host.dataset.figure];
-    if (spec) figures.push(new Figure(host, spec));
-  }
   const host = document.getElementById('run-picture');
   if (host && data.runs && data.runs.runs.length) {
     const runs = data.runs.runs;
@@ -599,6 +595,18 @@
       figure.show(runFigure(runs[+select.value]));
       note.textContent = runs[+select.value].note;
     });
+  }
+  for (const place of document.querySelectorAll('[data-figure]')) {
+    const spec = data.figures[place.dataset.figure];
+    if (!spec) continue;
+    try {
+      figures.push(new Figure(place, spec));
+    } catch (error) {
+      // The others are drawn all the same; the console has the error.
+      setTimeout(() => {
+        throw error;
+      });
+    }
   }
   let last = document.documentElement.clientWidth;
   addEventListener('resize', () => {
