@@ -1,9 +1,11 @@
-//! The example study that `trimtab demo` works on, embedded: ship, models, runs and forty recordings.
-//! The data are not made here: the binary `demo_data` of the experiments wrote them, and a test there compares them with its output.
+//! Two embedded studies of one ship, forty recordings each: an example for the library, and the trials that `trimtab demo` diagnoses.
+//! The data are not made here: the binary `demo_data` of the experiments wrote them, and tests there compare them with its output.
 
 use crate::model::{Model, ModelError};
 use crate::recording::{ColumnMap, Labels, Recording, RecordingError, Run, Split, WindowSettings};
 use crate::ship::{Ship, ShipError};
+use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Study, ship, models and table of runs, by file name.
@@ -18,10 +20,57 @@ const FILES: [(&str, &str); 5] = [
 /// All recordings in one file: the name of the run, then the columns of a recording.
 const RECORDINGS: &str = include_str!("demo/recordings.csv");
 
+/// What differs in the trials: ship and models are those of the example.
+const TRIALS: [(&str, &str); 5] = [
+    ("study.toml", include_str!("demo/trials/study.toml")),
+    FILES[1],
+    FILES[2],
+    FILES[3],
+    ("runs.csv", include_str!("demo/trials/runs.csv")),
+];
+
+/// The recordings of the trials, as [`RECORDINGS`].
+const TRIAL_RECORDINGS: &str = include_str!("demo/trials/recordings.csv");
+
+/// What the trials conceal. No file of the study repeats it.
+const CONCEALED: &str = include_str!("demo/trials/concealed.toml");
+
 /// Every file of the example study, by path relative to its folder, with its content.
 pub fn files() -> Vec<(String, String)> {
-    let mut files: Vec<(String, String)> = FILES.iter().map(|(n, t)| ((*n).to_owned(), (*t).to_owned())).collect();
-    let mut lines = RECORDINGS.lines().filter_map(|line| line.split_once(','));
+    study(&FILES, RECORDINGS)
+}
+
+/// Every file of the study that `trimtab demo` diagnoses: trials with sensor noise under an effect that no file of it names.
+pub fn trials() -> Vec<(String, String)> {
+    study(&TRIALS, TRIAL_RECORDINGS)
+}
+
+/// The effect under which the trials were made: to be read when the diagnosis is done.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Concealed {
+    /// Its name in the generator's catalogue.
+    pub effect: String,
+    /// Mechanisms of a diagnosis that are right.
+    pub accepted: Vec<String>,
+    /// The effect and its size in words.
+    pub words: String,
+    /// True values of parameters of a finding, by dotted name \[SI unit of the parameter\].
+    pub sizes: BTreeMap<String, f64>,
+}
+
+/// What the trials conceal.
+///
+/// # Errors
+/// The embedded file is not of the shape of [`Concealed`], which a test excludes.
+pub fn concealed() -> Result<Concealed, toml::de::Error> {
+    toml::from_str(CONCEALED)
+}
+
+/// The files of a study and its recordings, which come in one table.
+fn study(files: &[(&str, &str)], recordings: &str) -> Vec<(String, String)> {
+    let mut files: Vec<(String, String)> = files.iter().map(|(n, t)| ((*n).to_owned(), (*t).to_owned())).collect();
+    let mut lines = recordings.lines().filter_map(|line| line.split_once(','));
     let header = lines.next().map_or("", |(_, columns)| columns);
     for (run, row) in lines {
         let name = format!("recordings/{run}.csv");
@@ -85,7 +134,7 @@ pub fn example() -> Result<Example, ExampleError> {
 
 #[cfg(test)]
 mod tests {
-    use super::{example, files};
+    use super::{concealed, example, files, trials};
     use crate::recording::Split;
     use crate::study::Study;
 
@@ -109,6 +158,32 @@ mod tests {
                 assert_eq!((&memory.inputs, &memory.measured), (&disk.inputs, &disk.measured));
             }
         }
+    }
+
+    #[test]
+    fn no_file_of_the_trials_names_what_they_conceal() {
+        let concealed = concealed().unwrap();
+        let files = trials();
+        assert_eq!(files.iter().filter(|(name, _)| name.starts_with("recordings/")).count(), 40);
+        for (name, text) in &files {
+            for word in concealed.accepted.iter().chain([&concealed.effect]) {
+                assert!(!text.contains(word.as_str()), "{name} names `{word}`");
+            }
+        }
+        assert!(!concealed.sizes.is_empty() && concealed.accepted.contains(&concealed.effect));
+    }
+
+    #[test]
+    fn the_trials_are_a_study_of_30_runs_to_train_on_and_10_to_test_on_in_four_sessions() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("recordings")).unwrap();
+        for (name, text) in trials() {
+            std::fs::write(folder.path().join(name), text).unwrap();
+        }
+        let study = Study::read(&folder.path().join("study.toml")).unwrap();
+        let test = study.runs.iter().filter(|r| r.labels.split == Split::Test).count();
+        let sessions: std::collections::BTreeSet<&str> = study.runs.iter().map(|r| r.labels.session.as_str()).collect();
+        assert_eq!((study.runs.len(), test, sessions.len()), (40, 10, 4));
     }
 
     #[test]

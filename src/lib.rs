@@ -38,6 +38,7 @@
 //!
 //! | to | see |
 //! |---|---|
+//! | learn it: tutorial, every key of every file, theory, glossary | [`guide`] |
 //! | fit recordings of your own | [`recording`], [`study`], `examples/fit_csv.rs` |
 //! | write a physical effect of your own | [`physics`], [`terms`], `examples/own_term.rs` |
 //! | choose how derivatives are taken | [`fit::Derivatives`], `examples/gradients.rs` |
@@ -80,11 +81,13 @@ pub mod error;
 pub mod evaluate;
 pub mod files;
 pub mod fit;
+pub mod guide;
 pub mod ipopt;
 pub mod maneuver;
 pub mod model;
 pub mod numerals;
 pub mod parameter;
+pub mod particulars;
 pub mod physics;
 pub mod plan;
 #[cfg(feature = "plot")]
@@ -101,6 +104,7 @@ pub mod state;
 pub mod statistics;
 pub mod study;
 pub mod terms;
+pub mod uncertainty;
 pub mod units;
 pub mod validity;
 

@@ -8,7 +8,10 @@ use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number, TermInfo
 use crate::ship::{COEFFICIENTS, Ship, explain, line_of};
 use crate::state::Inputs;
 use crate::terms;
+use crate::uncertainty::Uncertainty;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -88,6 +91,9 @@ pub enum ModelError {
         /// What it should be.
         expected: String,
     },
+    /// A covariance that does not belong to the model.
+    #[error("{0}; fit the model again, or remove the table")]
+    Covariance(String),
     /// The sway-yaw mass matrix cannot be inverted.
     #[error(
         "the sway-yaw mass matrix is singular or negative (determinant {determinant:.3e}); check hull.mass, hull.inertia, hull.x_g and the added masses hull.Yvdot, hull.Yrdot, hull.Nvdot, hull.Nrdot (negative values)"
@@ -99,7 +105,7 @@ pub enum ModelError {
 }
 
 /// A prior on a parameter: what is known of it before the data.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, PartialEq, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Prior {
     /// Mean \[unit of the parameter\].
@@ -172,7 +178,7 @@ impl std::fmt::Debug for Model {
 }
 
 /// A model file: terms and parameter settings; every other value comes from the terms and the ship.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModelFile {
     /// Name, for headings.
@@ -193,10 +199,13 @@ pub struct ModelFile {
     /// Additions by session and dotted parameter name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub sessions: BTreeMap<String, BTreeMap<String, f64>>,
+    /// Covariance of the estimates, as a fit writes it; a model that is changed has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub covariance: Option<Uncertainty>,
 }
 
 /// What a model file may say of one parameter; a key left out takes the term's value.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Setting {
     /// Value, and start of a fit.
@@ -217,7 +226,7 @@ pub struct Setting {
 }
 
 /// What a model file may say of the hull as a whole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum HullSetting {
     /// Every hydrodynamic coefficient is free, with its default prior.
@@ -240,6 +249,17 @@ impl Serialize for PriorSetting {
             Self::Default => serializer.serialize_str("default"),
             Self::Given(prior) => prior.serialize(serializer),
         }
+    }
+}
+
+impl JsonSchema for PriorSetting {
+    fn schema_name() -> Cow<'static, str> {
+        "PriorSetting".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let table = Prior::json_schema(generator);
+        json_schema!({ "anyOf": [{ "const": "default" }, table] })
     }
 }
 
@@ -461,9 +481,27 @@ impl Model {
             }
             model.sessions.insert(session.clone(), list);
         }
+        if let Some(fault) = file.covariance.as_ref().and_then(|c| c.fault(|name| model.index(name).is_some())) {
+            return Err(ModelError::Covariance(fault));
+        }
         model.check_bounds()?;
         model.check()?;
         Ok(model)
+    }
+
+    /// The covariance in a model file, if it has one.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is no model file.
+    pub fn read_uncertainty(path: &Path) -> Result<Option<Uncertainty>, ModelError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| ModelError::Read { path: path.to_path_buf(), source })?;
+        let file: ModelFile = toml::from_str(&text).map_err(|e| ModelError::Parse {
+            path: path.to_path_buf(),
+            line: e.span().map_or(1, |s| line_of(&text, s.start)),
+            message: explain(e.message()),
+        })?;
+        Ok(file.covariance)
     }
 
     /// Frees every hydrodynamic coefficient of the hull with its default prior: what `hull = "free"` in a model file does.
@@ -533,6 +571,7 @@ impl Model {
             terms: self.term_names().iter().filter(|t| !BASE.contains(t)).map(ToString::to_string).collect(),
             parameters,
             sessions: self.sessions.iter().map(|(s, list)| (s.clone(), list.iter().map(name_of).collect())).collect(),
+            covariance: None,
         }
     }
 

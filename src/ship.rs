@@ -30,6 +30,21 @@ pub enum ShipError {
         /// What is wrong and what is expected.
         message: String,
     },
+    /// Values that the file does not have.
+    #[error(
+        "{path}: {} missing: {}; add {}, or have {} estimated: {}",
+        if missing.len() == 1 { "a value is".to_owned() } else { format!("{} values are", missing.len()) },
+        missing.join(", "),
+        if missing.len() == 1 { "it" } else { "them" },
+        if missing.len() == 1 { "it" } else { "them" },
+        completion(path, missing)
+    )]
+    Missing {
+        /// The file.
+        path: PathBuf,
+        /// Dotted keys, with their units.
+        missing: Vec<&'static str>,
+    },
     /// A value that no ship can have.
     #[error("{path}:{line}: {key} = {found} {expected}")]
     Value {
@@ -49,7 +64,7 @@ pub enum ShipError {
 /// A ship: its fixed particulars, in SI units.
 ///
 /// Axes: x forward from midship, y to starboard.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ship {
     /// Name, for headings.
@@ -82,7 +97,7 @@ pub struct Ship {
 }
 
 /// Hull particulars.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HullParticulars {
     /// Length between perpendiculars L \[m\].
@@ -114,7 +129,7 @@ fn default_density() -> f64 {
 }
 
 /// Propeller particulars of a single screw.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PropellerParticulars {
     /// Diameter D \[m\].
@@ -141,7 +156,7 @@ fn default_astern() -> f64 {
 }
 
 /// Rudder particulars of a single rudder behind the propeller.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RudderParticulars {
     /// Area A_R \[m2\].
@@ -179,7 +194,7 @@ fn default_race() -> f64 {
 }
 
 /// Above-water particulars.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AboveWater {
     /// Frontal (transverse) projected area A_F \[m2\].
@@ -198,7 +213,7 @@ fn default_air_density() -> f64 {
 }
 
 /// Bow thruster particulars.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ThrusterParticulars {
     /// Full thrust at rest \[N\].
@@ -238,10 +253,15 @@ impl Ship {
 
     /// Reads and checks the text of a ship file; `path` is used in messages.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ShipError> {
-        let ship: Self = toml::from_str(text).map_err(|e| ShipError::Parse {
-            path: path.to_path_buf(),
-            line: e.span().map_or(1, |s| line_of(text, s.start)),
-            message: explain(e.message()),
+        let ship: Self = toml::from_str(text).map_err(|e| match missing(text) {
+            missing if e.message().contains("missing field") && !missing.is_empty() => {
+                ShipError::Missing { path: path.to_path_buf(), missing }
+            }
+            _ => ShipError::Parse {
+                path: path.to_path_buf(),
+                line: e.span().map_or(1, |s| line_of(text, s.start)),
+                message: explain(e.message()),
+            },
         })?;
         ship.check(&Source { text, path })?;
         Ok(ship)
@@ -560,6 +580,46 @@ impl Source<'_> {
     }
 }
 
+/// What every ship file has: table, key and unit.
+const REQUIRED: [[&str; 3]; 12] = [
+    ["", "name", "name"],
+    ["hull", "lpp", "hull.lpp [m]"],
+    ["hull", "breadth", "hull.breadth [m]"],
+    ["hull", "draught", "hull.draught [m]"],
+    ["hull", "mass", "hull.mass [kg]"],
+    ["hull", "block_coefficient", "hull.block_coefficient [-]"],
+    ["propeller", "diameter", "propeller.diameter [m]"],
+    ["propeller", "wake", "propeller.wake [-]"],
+    ["propeller", "thrust_deduction", "propeller.thrust_deduction [-]"],
+    ["propeller", "thrust_coefficients", "propeller.thrust_coefficients [-]"],
+    ["rudder", "area", "rudder.area [m2]"],
+    ["rudder", "span", "rudder.span [m]"],
+];
+
+/// Which of the required values the text of a ship file does not have.
+fn missing(text: &str) -> Vec<&'static str> {
+    let Ok(file) = text.parse::<toml::Table>() else { return Vec::new() };
+    let has = |table: &str, key: &str| match table {
+        "" => file.contains_key(key),
+        _ => file.get(table).and_then(toml::Value::as_table).is_some_and(|t| t.contains_key(key)),
+    };
+    REQUIRED.iter().filter(|[table, key, _]| !has(table, key)).map(|[_, _, named]| *named).collect()
+}
+
+/// The command that completes a ship file.
+fn completion(path: &Path, missing: &[&str]) -> String {
+    let lengths = [("hull.lpp [m]", "--lpp"), ("hull.breadth [m]", "--breadth"), ("hull.draught [m]", "--draught")];
+    let asked: String =
+        lengths.iter().filter(|(key, _)| missing.contains(key)).map(|(_, o)| format!(" {o} METRES")).collect();
+    let stem = path.file_stem().map_or("ship".into(), |s| s.to_string_lossy());
+    let out = path.with_file_name(format!("{stem}_complete.toml"));
+    format!(
+        "`trimtab new --from {}{asked} --type TYPE --out {}` (`trimtab new --help` lists the types)",
+        path.display(),
+        out.display()
+    )
+}
+
 /// The line, counted from 1, of a ship file that sets a parameter by its dotted name; 1 where it cannot be found.
 pub fn parameter_line(path: &Path, name: &str) -> usize {
     let text = std::fs::read_to_string(path).unwrap_or_default();
@@ -609,12 +669,29 @@ mod tests {
             ("wake = 0.28", "wake = 28", ":17: propeller.wake", "a share of the ship's speed"),
             ("\"rudder.lift1\" = 0.864", "\"rudder.lift1\" = nan", ":39: rudder.lift1", "leave the entry out"),
             ("wake = 0.28", "wakes = 0.28", ":17: unknown field", "did you mean `wake`?"),
-            ("area = 7.9", "", ":23: missing field `area`", "add it"),
+            (
+                "area = 7.9",
+                "",
+                "ship.toml: a value is missing: rudder.area [m2]",
+                "trimtab new --from ship.toml --type",
+            ),
         ];
         for (from, to, place, next) in cases {
             let text = message(from, to).unwrap_or_else(|| panic!("{to}: no message"));
             assert!(text.contains(place) && text.contains(next) && !text.contains('\n'), "{to}:\n{text}");
         }
         assert_eq!(message("lpp = 85.0", "lpp = 85.0"), None);
+    }
+
+    #[test]
+    fn everything_that_is_missing_is_one_message_with_the_command_that_fills_it() {
+        let text = "[hull]\nlpp = 85.0\ndraught = 4.2\n[rudder]\narea = 7.9\n";
+        let said = Ship::parse(text, Path::new("a/my.toml")).unwrap_err().to_string();
+        for [table, key, named] in REQUIRED {
+            let given = [("hull", "lpp"), ("hull", "draught"), ("rudder", "area")].contains(&(table, key));
+            assert_eq!(said.contains(named), !given, "{named}: {said}");
+        }
+        let command = "trimtab new --from a/my.toml --breadth METRES --type TYPE --out a/my_complete.toml";
+        assert!(said.contains("9 values are missing") && said.contains(command), "{said}");
     }
 }

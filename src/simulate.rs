@@ -12,7 +12,7 @@ use std::borrow::Cow;
 use trimtab_ad::Scalar;
 
 /// How a step is integrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
     /// Explicit Euler, as in the paper: order 1.
@@ -23,7 +23,7 @@ pub enum Method {
 }
 
 /// Integration settings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Integration {
     /// Method.

@@ -305,7 +305,7 @@ fn a_closed_standard_output_changes_no_exit_code() {
     let study = Study::new();
     study.append("recordings/ship_a_002.csv", "80,1,1,1,1,1,1,1,1\n");
     for (arguments, code) in
-        [(&["check", "study.toml"][..], 1), (&["check", "study.toml", "--json"], 1), (&["terms"], 0)]
+        [(&["check", "study.toml"][..], 1), (&["check", "study.toml", "--json"], 1), (&["terms", "--json"], 0)]
     {
         let mut child = Command::new(TRIMTAB)
             .args(arguments)

@@ -398,7 +398,7 @@ fn contradictions() -> Vec<Case> {
             scaled("delta", -1.0),
             "sign_error",
             Channel::Delta,
-            Where::Runs(20),
+            Where::Runs(10),
             "`sign = -1`",
         ),
         case("v turned in one run", turned("v"), "sign_error", Channel::V, here, "`sign = -1`"),
@@ -542,8 +542,30 @@ fn places() -> Vec<Case> {
             here,
             "time stamp",
         ),
-        case("the same recording on both sides", copied(0, 121), "shared_data", None, Where::Study, "one side"),
-        case("a part of a recording on both sides", copied(60, 121), "shared_data", None, Where::Study, "one side"),
+        case(
+            "the same recording on both sides",
+            copied("ship_a_001", 0, 121),
+            "shared_data",
+            None,
+            Where::Study,
+            "one side",
+        ),
+        case(
+            "a recording under two names",
+            copied("ship_a_003", 0, 121),
+            "shared_data",
+            None,
+            Where::Study,
+            "leave one",
+        ),
+        case(
+            "a part of a recording on both sides",
+            copied("ship_a_001", 60, 121),
+            "shared_data",
+            None,
+            Where::Study,
+            "one side",
+        ),
         case(
             "a frozen heading",
             Files::sound().run(RUN, |t| {
@@ -564,11 +586,11 @@ fn sessions_positions(second_day: &impl Fn(&'static str, usize) -> Files) -> Fil
     runs.iter().fold(second_day("x", 3), |files, run| files.run(run, |t| t.late("y", 3)))
 }
 
-/// Rows of a test run, with another clock and another origin, in a run to train on.
-fn copied(from: usize, to: usize) -> Files {
-    let test = Files::sound().table("ship_a_001");
+/// Rows of another run, with another clock and another origin, in a run to train on.
+fn copied(other: &str, from: usize, to: usize) -> Files {
+    let other = Files::sound().table(other);
     Files::sound().run("ship_a_002", |t| {
-        let mut rows = test.rows[from..to].to_vec();
+        let mut rows = other.rows[from..to].to_vec();
         rows.iter_mut().for_each(|r| {
             r[0] += 1000.0;
             r[1] -= 50.0;

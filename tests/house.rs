@@ -15,8 +15,20 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Modules of the library from the bottom up: a module uses its own line and those before it.
-const LAYERS: [&[&str]; 14] = [
-    &["units", "error", "numerals", "ranks", "state", "ship", "parameter", "ranges", "files", "progress"],
+const LAYERS: [&[&str]; 15] = [
+    &[
+        "units",
+        "error",
+        "numerals",
+        "ranks",
+        "state",
+        "ship",
+        "particulars",
+        "parameter",
+        "ranges",
+        "files",
+        "progress",
+    ],
     &["physics"],
     &["terms"],
     &["model", "dynamics"],
@@ -29,6 +41,7 @@ const LAYERS: [&[&str]; 14] = [
     &["diagnose"],
     &["plan"],
     &["plot", "report"],
+    &["guide"],
     &["cli", "main"],
 ];
 

@@ -3,8 +3,13 @@
 
 pub mod conceal;
 pub mod demo;
+pub mod demo_concealed;
 pub mod folders;
 pub mod injected;
+pub mod mutated;
 pub mod paper;
+pub mod process;
 pub mod real;
+pub mod rows;
 pub mod truth;
+pub mod workers;

@@ -4,11 +4,12 @@
 // Helpers of tests may unwrap.
 #![allow(clippy::unwrap_used)]
 
-use std::path::PathBuf;
-use std::process::Command;
+mod support;
+
 use std::sync::Mutex;
 use std::time::Duration;
 
+use support::program;
 use trimtab_experiments::conceal::campaign::plan::{SEED, ci_slice, plan};
 use trimtab_experiments::conceal::judge::score::Score;
 use trimtab_experiments::conceal::runner::Runner;
@@ -25,26 +26,6 @@ const FEWEST_IN_SET: usize = 11;
 const MOST_WRONG: usize = 1;
 /// Pairs and triples, of 3, with at least one right name and none wrong.
 const FEWEST_COMPOUND: usize = 2;
-
-/// The program, built if it is missing.
-fn program() -> PathBuf {
-    // target/release/deps/concealed-...: two up.
-    let test = std::env::current_exe().unwrap();
-    let folder = test.ancestors().nth(2).unwrap();
-    let program = folder.join(format!("trimtab{}", std::env::consts::EXE_SUFFIX));
-    if !program.is_file() {
-        let release: &[&str] = if folder.ends_with("debug") { &[] } else { &["--release"] };
-        let built = Command::new(env!("CARGO"))
-            .args(["build", "--package", "trimtab", "--bin", "trimtab", "--target-dir"])
-            .arg(folder.parent().unwrap())
-            .args(release)
-            .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
-            .status()
-            .unwrap();
-        assert!(built.success(), "the program could not be built: {built}");
-    }
-    program
-}
 
 /// The number of cases with the answer yes, and the keys of those with the answer no.
 fn count(scores: &[Score], of: impl Fn(&Score) -> Option<bool>) -> (usize, Vec<String>) {

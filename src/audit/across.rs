@@ -14,7 +14,8 @@ use crate::recording::{Channel, Recording, Split};
 use crate::ship::Ship;
 use crate::study::Listed;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// What of a run is compared with other runs.
@@ -87,7 +88,7 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
         found.extend(late(runs, pair, time));
         found.extend(sessions(runs, pair, time));
     }
-    found.extend(both_sides(runs));
+    found.extend(shared_rows(runs));
     found
 }
 
@@ -229,6 +230,12 @@ fn lagging(pair: &Pair, seconds: f64, whose: &str, than: &str) -> Issue {
     Issue::new(Severity::Warning, "clock", text, next).of(pair.channel)
 }
 
+/// Twice the log-likelihood ratio of a run for one lag over another; 0 where it does not have both.
+fn gain(curve: &Curve, from: isize, to: isize) -> f64 {
+    let at = |lag: isize| curve.lags.iter().position(|l| *l == lag);
+    at(from).zip(at(to)).map_or(0.0, |(from, to)| curve.evidence(to, from))
+}
+
 /// Sessions in which a channel has another lag than in all others.
 fn sessions(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
     let mut names: Vec<&str> = Vec::new();
@@ -253,7 +260,10 @@ fn sessions(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
         let same = own.lags.iter().position(|lag| *lag == others.lags[usual])?;
         let apart = own.seconds(best) - others.seconds(usual);
         let worth = apart.abs() > (SESSION_SHARE * time).max(LAG_STEPS[0] * own.step);
-        let sure = own.total[same] - own.total[best] > LAG_EVIDENCE && !own.at_end(best);
+        // Not by the one run that says so most.
+        let spoken = |c: &Curve| gain(c, own.lags[same], own.lags[best]);
+        let most = curves(true, name).into_iter().map(spoken).fold(0.0, f64::max);
+        let sure = own.total[same] - own.total[best] - most > LAG_EVIDENCE && !own.at_end(best);
         (worth && sure && (own.step / others.step - 1.0).abs() < 0.01).then_some((name.to_string(), apart))
     };
     let found: Vec<(String, f64)> = names.iter().filter_map(differing).collect();
@@ -268,36 +278,39 @@ fn sessions(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
     found.into_iter().map(told).collect()
 }
 
-/// Runs to train on and to test on that share rows.
-fn both_sides(runs: &[Evidence]) -> Vec<Shared> {
+/// Runs that share rows: on both sides of the split they prove nothing, on one side they count twice.
+fn shared_rows(runs: &[Evidence]) -> Vec<Shared> {
     let mut owners: HashMap<u64, usize> = HashMap::new();
-    for (i, run) in runs.iter().enumerate().filter(|(_, r)| r.split == Split::Test) {
-        run.rows.iter().for_each(|row| {
-            owners.insert(*row, i);
-        });
-    }
     let mut found = Vec::new();
-    for run in runs.iter().filter(|r| r.split == Split::Train) {
-        let mut common: HashMap<usize, usize> = HashMap::new();
-        for owner in run.rows.iter().filter_map(|row| owners.get(row)) {
-            *common.entry(*owner).or_default() += 1;
+    for (i, run) in runs.iter().enumerate() {
+        let mut common: BTreeMap<usize, usize> = BTreeMap::new();
+        for row in &run.rows {
+            match owners.entry(*row) {
+                Entry::Occupied(owner) if *owner.get() != i => *common.entry(*owner.get()).or_default() += 1,
+                Entry::Occupied(_) => {}
+                Entry::Vacant(free) => drop(free.insert(i)),
+            }
         }
-        let mut common: Vec<(usize, usize)> = common.into_iter().collect();
-        common.sort_unstable();
         for (other, rows) in common {
             let other = &runs[other];
             let shorter = run.rows.len().min(other.rows.len());
             if rows >= SHARED_ROWS && rows as f64 >= SHARED_SHARE * shorter as f64 {
-                let text = format!(
-                    "run {} to train on and run {} to test on share {rows} of {shorter} rows: the test proves nothing",
-                    run.run, other.run
-                );
-                let next =
-                    "keep both on one side of the split, or cut them with `from` and `to` so that they do not overlap";
-                let issue = Issue::new(Severity::Error, "shared_data", text, next);
-                found.push(Shared { runs: vec![run.run.clone(), other.run.clone()], issue });
+                let issue = sharing(run, other, &format!("share {rows} of {shorter} rows"));
+                found.push(Shared { runs: vec![other.run.clone(), run.run.clone()], issue });
             }
         }
     }
     found
+}
+
+fn sharing(run: &Evidence, other: &Evidence, rows: &str) -> Issue {
+    if run.split == other.split {
+        let text = format!("runs {} and {} {rows}: these count twice", other.run, run.run);
+        let next = "leave one of them out, or cut them with `from` and `to` so that they do not overlap";
+        return Issue::new(Severity::Warning, "shared_data", text, next);
+    }
+    let (train, test) = if run.split == Split::Train { (run, other) } else { (other, run) };
+    let text = format!("run {} to train on and run {} to test on {rows}: the test proves nothing", train.run, test.run);
+    let next = "keep both on one side of the split, or cut them with `from` and `to` so that they do not overlap";
+    Issue::new(Severity::Error, "shared_data", text, next)
 }

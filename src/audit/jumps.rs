@@ -51,7 +51,7 @@ fn far(t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
     if finite.len() < 4 * MEDIAN_ROWS {
         return Vec::new();
     }
-    let from_median: Vec<f64> = (0..finite.len()).map(|k| finite[k] - running_median(&finite, k)).collect();
+    let from_median: Vec<f64> = (0..finite.len()).map(|k| finite[k] - neighbours(&finite, k)).collect();
     let mut sorted = finite.clone();
     sorted.sort_by(f64::total_cmp);
     let tail = (TAIL * sorted.len() as f64).ceil() as usize;
@@ -118,11 +118,10 @@ fn far_at_ends(t: &[f64], rows: &[usize], values: &[f64], least: impl Fn(f64) ->
     if far.iter().any(ends) { far.into_iter().filter(ends).collect() } else { far }
 }
 
-/// The median of a row and its neighbours.
-fn running_median(values: &[f64], k: usize) -> f64 {
-    let mut near = values[k.saturating_sub(MEDIAN_ROWS)..(k + MEDIAN_ROWS + 1).min(values.len())].to_vec();
-    near.sort_by(f64::total_cmp);
-    near[near.len() / 2]
+/// The median of a row's neighbours. The row itself does not count: where a value rises it would be the median, and the scatter 0.
+fn neighbours(values: &[f64], k: usize) -> f64 {
+    let (before, after) = (k.saturating_sub(MEDIAN_ROWS)..k, k + 1..(k + 1 + MEDIAN_ROWS).min(values.len()));
+    median(before.chain(after).map(|i| values[i])).unwrap_or(values[k])
 }
 
 /// Standard deviation of values around 0 by their median size, which single large ones do not change.

@@ -61,6 +61,14 @@ impl Proportion {
         self.ab / self.bb
     }
 
+    /// Whether the gain differs from 1 by more than a share, whichever of the two has the noise: noise in `b` pulls `sum a b / sum b^2`
+    /// towards zero, noise in `a` pulls `sum a^2 / sum a b` away from it, and the gain lies between the two (Frisch's bounds; positive
+    /// gains).
+    pub fn is_off(&self, share: f64) -> bool {
+        let (low, high) = (self.ab / self.bb, self.aa / self.ab);
+        low > 1.0 + share || high < 1.0 - share
+    }
+
     /// Cosine of similarity, -1 to 1.
     pub fn coherence(&self) -> f64 {
         self.ab / (self.aa * self.bb).sqrt()
@@ -84,5 +92,26 @@ impl Proportion {
     /// Root mean square of `a + b`.
     pub fn rms_sum(&self) -> f64 {
         ((self.aa + 2.0 * self.ab + self.bb).max(0.0) / self.count).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_in_one_of_two_equal_series_is_no_gain_and_a_gain_is_told_through_it() {
+        let motion: Vec<f64> = (0..400).map(|i| (0.05 * f64::from(i)).sin()).collect();
+        let noise = |i: usize| if i.is_multiple_of(2) { 0.3 } else { -0.3 };
+        let noisy: Vec<f64> = motion.iter().enumerate().map(|(i, m)| m + noise(i)).collect();
+        let of = |a: &[f64], b: &[f64]| {
+            let mut p = Proportion::default();
+            p.add(a, b);
+            p
+        };
+        assert!(of(&motion, &noisy).gain() < 0.9 && !of(&motion, &noisy).is_off(0.1));
+        assert!(of(&noisy, &motion).aa / of(&noisy, &motion).ab > 1.1 && !of(&noisy, &motion).is_off(0.1));
+        let twice: Vec<f64> = noisy.iter().map(|m| 1.3 * m).collect();
+        assert!(of(&twice, &motion).is_off(0.1) && of(&motion, &twice).is_off(0.1));
     }
 }

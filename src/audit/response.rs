@@ -113,7 +113,8 @@ fn lags(longest: usize) -> Vec<isize> {
     lags
 }
 
-/// The rudder against the yaw: `dr/dt = a r + b r|r| + c v + d delta + e delta n|n| + f`, integrated over some steps.
+/// The rudder against the yaw: `dr/dt = a r + b r|r| + c v + d delta + e delta n|n| + f`, integrated over some steps in which the ship
+/// sails ahead with its propeller ahead: a rudder in a flow from astern acts to the other side, or not at all.
 pub fn rudder(series: &Series<'_>) -> Option<Curve> {
     let (delta, r) = (series.delta.as_deref()?, series.get(Channel::R)?);
     let (t, v, n) = (&series.t, series.get(Channel::V), series.n.as_deref());
@@ -125,7 +126,10 @@ pub fn rudder(series: &Series<'_>) -> Option<Curve> {
     let force = integral(t, |i| delta[i] * of(n, i) * of(n, i).abs());
     let late =
         |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
-    curve::<6, 2, 1>(series, |i, k| {
+    let u = series.get(Channel::U);
+    let ahead = |row: usize| u.is_none_or(|u| u[row] > 0.0) && n.is_none_or(|n| n[row] >= 0.0);
+    let usable = |start: usize| (start..=start + RESPONSE_STEPS).all(ahead);
+    curve::<6, 2, 1>(series, usable, |i, k| {
         let over = |of: &[f64]| late(of, i, 0);
         [([late(&angle, i, k), late(&force, i, k), over(&turn), over(&square), over(&sway), over(t)], over(r))]
     })
@@ -144,11 +148,15 @@ pub fn propeller(series: &Series<'_>) -> Option<Curve> {
     let drag = integral(t, |i| of(delta, i) * of(delta, i));
     let late =
         |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
-    curve::<7, 2, 1>(series, |i, k| {
-        let over = |of: &[f64]| late(of, i, 0);
-        let fixed = [over(&speed), over(&square), over(&turning), over(&drag), over(t)];
-        [([late(&thrust, i, k), late(&rate, i, k), fixed[0], fixed[1], fixed[2], fixed[3], fixed[4]], over(u))]
-    })
+    curve::<7, 2, 1>(
+        series,
+        |_| true,
+        |i, k| {
+            let over = |of: &[f64]| late(of, i, 0);
+            let fixed = [over(&speed), over(&square), over(&turning), over(&drag), over(t)];
+            [([late(&thrust, i, k), late(&rate, i, k), fixed[0], fixed[1], fixed[2], fixed[3], fixed[4]], over(u))]
+        },
+    )
 }
 
 /// The yaw rate against the heading: `d psi/dt = a r + b`.
@@ -157,7 +165,7 @@ pub fn gyro(series: &Series<'_>) -> Option<Curve> {
     let turn = integral(t, |i| r[i]);
     let late =
         |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
-    curve::<2, 1, 1>(series, |i, k| [([late(&turn, i, k), late(t, i, 0)], late(psi, i, 0))])
+    curve::<2, 1, 1>(series, |_| true, |i, k| [([late(&turn, i, k), late(t, i, 0)], late(psi, i, 0))])
 }
 
 /// The position against velocity and heading: `d(x, y)/dt = a (u, v turned by psi) + (b, c)`.
@@ -170,15 +178,21 @@ pub fn receiver(series: &Series<'_>) -> Option<Curve> {
     let east = integral(t, |i| u[i] * psi[i].sin() + v[i] * psi[i].cos());
     let late =
         |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
-    curve::<3, 1, 2>(series, |i, k| {
-        let (h, n, e) = (late(t, i, 0), late(&north, i, 0), late(&east, i, 0));
-        [([n, h, 0.0], late(x, i, k)), ([e, 0.0, h], late(y, i, k))]
-    })
+    curve::<3, 1, 2>(
+        series,
+        |_| true,
+        |i, k| {
+            let (h, n, e) = (late(t, i, 0), late(&north, i, 0), late(&east, i, 0));
+            [([n, h, 0.0], late(x, i, k)), ([e, 0.0, h], late(y, i, k))]
+        },
+    )
 }
 
-/// The curve of a regression on `N` columns, the first `P` of which belong to the channel, with `E` equations a row.
+/// The curve of a regression on `N` columns, the first `P` of which belong to the channel, with `E` equations a row, over the windows
+/// that are `usable` by their first row.
 fn curve<const N: usize, const P: usize, const E: usize>(
     series: &Series<'_>,
+    usable: impl Fn(usize) -> bool,
     equations: impl Fn(usize, isize) -> [([f64; N], f64); E],
 ) -> Option<Curve> {
     let rows: usize = series.stretches.iter().map(ExactSizeIterator::len).max()?;
@@ -186,7 +200,8 @@ fn curve<const N: usize, const P: usize, const E: usize>(
     let lags = lags(longest);
     let reach = lags.last().map_or(0, |lag| lag.unsigned_abs());
     let inner = |s: &Range<usize>| s.start + reach..s.end.saturating_sub(reach + RESPONSE_STEPS);
-    let starts: Vec<usize> = series.stretches.iter().flat_map(|s| inner(s).step_by(RESPONSE_STEPS / 2)).collect();
+    let every = series.stretches.iter().flat_map(|s| inner(s).step_by(RESPONSE_STEPS / 2));
+    let starts: Vec<usize> = every.filter(|start| usable(*start)).collect();
     if longest < 2 || starts.len() < 4 * N {
         return None;
     }

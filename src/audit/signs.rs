@@ -165,7 +165,9 @@ impl Track {
             push(Severity::Error, fault, Channel::U, text, "correct `unit` of u and v, or of x and y, in a column map");
             return true;
         }
-        if (gain - 1.0).abs() > CALIBRATED {
+        // Noise in either pulls the gain the one way or the other: it lies between the two bounds of Frisch.
+        let most = self.track / self.along.hypot(self.across);
+        if gain > 1.0 + CALIBRATED || most < 1.0 - CALIBRATED {
             let text = format!("the track is {gain:.3} times as fast as the velocity");
             let next = "check the log (`scale` in a column map), through-water against over-ground speed, and the units of x and y";
             push(Severity::Warning, "calibration", Channel::U, text, next);

@@ -167,6 +167,8 @@ fn unreadable(run: &Listed, error: &StudyError) -> Audit {
 /// An error as an issue; its text already says what to do.
 fn failure(error: &StudyError) -> Issue {
     let text = error.to_string();
-    let (text, next_step) = text.rsplit_once("; ").unwrap_or((&text, "see the message"));
+    let (text, next_step) = text
+        .rsplit_once("; ")
+        .unwrap_or((&text, "correct the file, or say in a column map how to read it (`trimtab help columns`)"));
     Issue::new(Severity::Error, "unreadable", text, next_step)
 }

@@ -4,7 +4,7 @@
 use super::clocks::Pair;
 use super::issue::{Issue, Severity};
 use super::kinematics::{Kinematics, Proportion};
-use super::limits::{CALIBRATED, COHERENT, SAME_GAIN, SMALL_RATE, SMALL_RUDDER, SMALL_RUDDER_TURNS};
+use super::limits::{APART, CALIBRATED, COHERENT, SAME_GAIN, SMALL_RATE, SMALL_RUDDER, SMALL_RUDDER_TURNS};
 use super::series::Series;
 use crate::recording::{Channel, Recording};
 
@@ -66,11 +66,46 @@ pub fn known_gain(gain: f64, known: &[(f64, &'static str)]) -> Option<(&'static 
     (off(&nearest.0) < SAME_GAIN).then_some((fault, nearest.1))
 }
 
+/// Root mean square differences of a heading and the integral of a yaw rate \[rad\].
+#[derive(Clone, Copy, Default)]
+struct Apart {
+    /// Less an unknown first heading.
+    all: f64,
+    /// Less also what drifts evenly: a zero offset of the gyro.
+    but_drift: f64,
+}
+
+impl Apart {
+    fn new(t: &[f64], psi: &[f64], r: &[f64]) -> Self {
+        let (mut turned, mut last): (f64, Option<(f64, f64)>) = (0.0, None);
+        let mut points: Vec<[f64; 2]> = Vec::with_capacity(t.len());
+        for ((&t, &psi), &r) in t.iter().zip(psi).zip(r).filter(|((_, psi), r)| psi.is_finite() && r.is_finite()) {
+            if let Some((before, rate)) = last {
+                turned += 0.5 * (rate + r) * (t - before);
+            }
+            last = Some((t, r));
+            points.push([t, psi - turned]);
+        }
+        let count = points.len().max(1) as f64;
+        let mean = [0, 1].map(|i: usize| points.iter().map(|p| p[i]).sum::<f64>() / count);
+        let of = |i: usize, j: usize| points.iter().map(|p| (p[i] - mean[i]) * (p[j] - mean[j])).sum::<f64>();
+        let (times, drift, squares) = (of(0, 0), of(0, 1), of(1, 1));
+        let line = if times > 0.0 { drift * drift / times } else { 0.0 };
+        Self { all: (squares / count).sqrt(), but_drift: ((squares - line).max(0.0) / count).sqrt() }
+    }
+
+    fn larger(self, other: Self) -> Self {
+        Self { all: self.all.max(other.all), but_drift: self.but_drift.max(other.but_drift) }
+    }
+}
+
 /// Heading against yaw rate.
 #[derive(Default)]
 pub struct Turning {
     sums: Proportion,
     longest: Pair,
+    /// Of the stretches that differ most.
+    apart: Apart,
 }
 
 impl Turning {
@@ -82,6 +117,8 @@ impl Turning {
             let (turning, smooth) = (series.slope(psi, stretch), series.smooth(r, stretch));
             self.sums.add(&turning, &smooth);
             self.longest.offer(turning, smooth, series.step);
+            let [t, psi, r] = [&series.t, psi, r].map(|all| &all[stretch.clone()]);
+            self.apart = self.apart.larger(Apart::new(t, psi, r));
         }
     }
 
@@ -102,12 +139,12 @@ impl Turning {
                 push(Severity::Error, fault, text, "correct `unit` or `sign` of `r` or `psi` in a column map");
                 return;
             }
-            if (gain - 1.0).abs() > CALIBRATED {
+            if self.sums.is_off(CALIBRATED) && self.apart.all > APART {
                 let text = format!("heading turns {gain:.3} times as fast as r says");
                 let next = "check unit and calibration of yaw rate and heading; `scale` in a column map corrects one";
                 push(Severity::Warning, "calibration", text, next);
             }
-        } else if self.sums.rms() > self.sums.rms_a() && self.sums.rms_a() > 0.0 {
+        } else if self.sums.rms() > self.sums.rms_a() && self.apart.but_drift > APART {
             let text = format!("heading and r do not move together (coherence {coherence:.2})");
             push(Severity::Warning, "disagreement", text, "check that both columns are what the map says");
         }

@@ -23,20 +23,8 @@ const AFTER: &str = "\
 Example:
   trimtab check study.toml
 
-What a message advises is done in a column map (`column_map = \"columns.toml\"` in the study, or of one run). A channel that it \
-    does not list is found under its own name, so that it needs to list only what differs:
-  blank = [-9999, 9.96921e36]            values of any column that stand for a missing one
-  bridge = 2.0                           longest dropout [s] to fill by straight lines
-  wrap_repair = true                     the heading was interpolated across north, through 180 deg
-  leave_out = [\"r\"]                      channels not to be read
-  derive = [\"u\", \"v\", \"r\"]             channels to derive where they were not recorded
-  velocity_frame = \"earth\"               u and v are along north and east
-  [columns]
-  delta = { sign = -1 }                  positive to port
-  n = { unit = \"rpm\", scale = 0.5 }      unit instead of the header's; factor
-  psi = { column = \"gyro\", offset = 1.5 } another column; added, in its unit
-  r = { delay = 0.8 }                    it tells 0.8 s late; in one session: delay = { \"day 2\" = 4.0 }
-  u = { blank = { outside = [-5, 25] } } values outside are missing
+What a message advises is done in a column map (`column_map = \"columns.toml\"` in the study, or of one run): `trimtab help columns` \
+    shows one with every key.
 
 With --out: check.json, channels.csv (range of every channel of every run), issues.csv.
 JSON: result.study, result.split, result.train_windows, result.test_windows, result.issues[], result.recordings[] with \

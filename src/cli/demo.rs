@@ -1,38 +1,44 @@
-//! `trimtab demo`: a complete study, from recordings to a fitted model, in seconds and without any file of the user's.
+//! `trimtab demo`: the whole mission on an embedded case, from recordings to the physics that the model lacks.
 //! It calls the other commands' functions, and writes the study so that a user can repeat each command on it.
 
 use super::answer::Answer;
+use super::diagnose::{prepared, write_diagnosis};
 use super::error::CliError;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs};
+use super::progress::progress;
 use super::{evaluate, fit};
 use serde::Serialize;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
-use trimtab::demo;
-use trimtab::evaluate::Evaluation;
+use trimtab::audit::{Severity, audit_study};
+use trimtab::demo::{self, Concealed};
+use trimtab::diagnose::{Diagnosis, Grade, diagnose};
+use trimtab::evaluate::{Estimate, Evaluation};
 use trimtab::files::{Origin, ResultFolder};
 use trimtab::fit::Fit;
-use trimtab::maneuver::{Side, turning_trial};
-use trimtab::model::Model;
-use trimtab::numerals::{DASH, interval, sig};
+use trimtab::numerals::{DASH, sig};
 use trimtab::ranks::Ranks;
-use trimtab::recording::{Runs, Split};
-use trimtab::report::Table;
-use trimtab::report::maneuver::{turning_figure, turning_table};
+use trimtab::recording::{Run, Runs, Split};
 
 const LONG: &str = "\
-Runs the whole job on a built-in example: forty recordings of a coastal container ship of 85 m (made by a simulator with \
-    more physics than the model has), a model with eleven unknown parameters, a fit to 32 of the runs, and an evaluation on \
-    the other 8 against a published baseline. The study is written to the folder, ready to be copied.";
+Runs the whole job on a built-in case: forty recordings of a coastal container ship of 85 m, with the noise of ordinary \
+    sensors, made by another simulator (MMG) under an effect that no file of the study names. The demo checks the recordings, fits \
+    eleven parameters to 30 of the runs, judges the fit on the other 10, diagnoses which physics the model lacks, and then says what \
+    was concealed and whether it was found. Study and results are written to the folder, ready to be copied.";
 
 const AFTER: &str = "\
 Example:
   trimtab demo --out tour
-  trimtab maneuver zigzag tour/study.toml --model tour/results/fitted.toml --out tour/zigzag
+  trimtab maneuver turning tour/study.toml --model tour/results/improved.toml --out tour/turning
 
-JSON: result.folder, result.fit (as of `trimtab fit`), result.evaluation (as of `trimtab evaluate`).";
+The study is written again only where its files are as trimtab wrote them. Exit code 1: the concealed effect was not found.
 
-/// Runs the whole job on a built-in example
+JSON: result.folder, result.check (runs, errors, warnings), result.fit (as of `trimtab fit`), result.evaluation (as of \
+    `trimtab evaluate`), result.diagnosis (as of `trimtab diagnose`), result.concealed (effect, words, found, confirmed, and \
+    sizes[] with parameter, concealed, estimate, ci95).";
+
+/// Runs the whole job on a built-in case with a concealed effect
 #[derive(Debug, clap::Args)]
 #[command(long_about = LONG, after_long_help = AFTER)]
 pub struct Args {
@@ -47,8 +53,37 @@ pub struct Args {
 #[derive(Serialize)]
 struct Report<'a> {
     folder: &'a PathBuf,
+    check: &'a Checked,
     fit: &'a Fit,
     evaluation: &'a Evaluation,
+    diagnosis: &'a Value,
+    concealed: &'a Revealed,
+}
+
+/// What the audit of the recordings counted.
+#[derive(Serialize)]
+struct Checked {
+    runs: usize,
+    errors: usize,
+    warnings: usize,
+}
+
+/// The concealed effect beside what the diagnosis names.
+#[derive(Serialize)]
+struct Revealed {
+    effect: String,
+    words: String,
+    found: bool,
+    confirmed: bool,
+    sizes: Vec<Size>,
+}
+
+#[derive(Serialize)]
+struct Size {
+    parameter: String,
+    concealed: f64,
+    estimate: Option<f64>,
+    ci95: Option<[f64; 2]>,
 }
 
 /// Runs the command.
@@ -56,48 +91,49 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let study = args.out.join("study.toml");
     let results = OutputArgs { out: Some(args.out.join("results")), json: args.json };
     let mut output = Output::new("demo", &results)?;
-    let written = write_study(&args.out)?;
+    let files = write_study(&args.out)?;
     let loaded = Loaded::new(&StudyArgs { study: study.clone(), model: None })?;
     output.reads(&loaded, true);
+    let baseline = evaluate::baseline(&loaded, None)?;
     output.reads_files(&[evaluate::baseline_path(&loaded, None)?]);
     output.settings("fit", &loaded.fit_settings()?)?;
     output.settings("evaluate", &loaded.evaluation_settings()?)?;
-    let train = loaded.windows_of(Split::Train)?;
-    let test = loaded.windows_of(Split::Test)?;
+
+    let checked = check(&loaded);
+    let (train, test) = (loaded.windows_of(Split::Train)?, loaded.windows_of(Split::Test)?);
     let fit = fit::fit_windows(Ranks::one(), &loaded, &loaded.model, Runs::from(&train), None)?;
     fit::write(&mut output, &loaded.model, &fit, fit::speeds(Ranks::one(), Runs::from(&train)))?;
-    let baseline = evaluate::baseline(&loaded, None)?;
     let evaluation = evaluate::judge(&loaded, &baseline, &fit.model, &test)?;
     let integration = loaded.fit_settings()?.integration;
     evaluate::write(&mut output, &evaluation, [&baseline, &fit.model], &test, integration)?;
 
-    let turns = turning_circles(&mut output, &loaded, &fit.model)?;
-    let (dir, model) = (args.out.display(), args.out.join("results/fitted.toml"));
-    let (study, model) = (study.display(), model.display());
-    let text = format!(
-        "Wrote an example study to {dir} ({written} files): {} and 40 recordings of 4 minutes.\n\n\
-         1. Fitted the model to {} runs, from the paper's initial guess\n\n{}\n\n{}\n\n\
-         2. Judged it on the {} test runs\n\n{}{turns}\n\
-         Look at {dir}/results: tracks.png, curves.png, improvement.png, turning.png, fit.txt\n\
-         Try next:\n  \
-         trimtab check {study}\n  \
-         trimtab maneuver zigzag {study} --model {model} --out {dir}/zigzag\n  \
-         trimtab terms\n\
-         For your own ship copy {dir} and replace ship.toml, runs.csv and the recordings.",
-        fit.model.ship.name,
-        train.len(),
-        fit.brief(),
-        parameters(&fit),
-        test.len(),
-        evaluate::text(&loaded.study.name, &evaluation),
-    );
-    output.finish(&text, &Report { folder: &args.out, fit: &fit, evaluation: &evaluation })?;
-    Ok(if fit.converged { Answer::Yes } else { Answer::No })
+    let diagnosis = diagnosed(&mut output, &loaded, train, &test)?;
+    let document = write_diagnosis(&mut output, &diagnosis, &loaded.study.name)?;
+    let revealed = reveal(demo::concealed()?, &diagnosis);
+    let text = [
+        format!("Wrote a study of {} recordings to {} ({files} files).", checked.runs, args.out.display()),
+        section(1, "Checked the recordings", &checked.sentence()),
+        section(2, "Fitted the eleven parameters", &fit.brief()),
+        section(3, "Judged the fit on runs it has not seen", &judged(&evaluation)),
+        section(4, "Diagnosed what the model lacks", &diagnosis.headline),
+        section(5, "Opened what was concealed", &revealed.sentence(&diagnosis)),
+        next(&args.out),
+    ];
+    let report = Report {
+        folder: &args.out,
+        check: &checked,
+        fit: &fit,
+        evaluation: &evaluation,
+        diagnosis: &document,
+        concealed: &revealed,
+    };
+    output.finish(&text.join("\n\n"), &report)?;
+    Ok(if fit.converged && revealed.found { Answer::Yes } else { Answer::No })
 }
 
-/// Writes the example study, over one that nobody has edited; gives the number of files.
+/// Writes the study, over one that nobody has edited; gives the number of files.
 fn write_study(folder: &Path) -> Result<usize, CliError> {
-    let files = demo::files();
+    let files = demo::trials();
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     let mut study = ResultFolder::open(folder, "demo", &names)?;
     files.iter().try_for_each(|(name, text)| study.write(name, text.as_bytes()))?;
@@ -105,29 +141,102 @@ fn write_study(folder: &Path) -> Result<usize, CliError> {
     Ok(files.len())
 }
 
-/// The turning circles of the fitted ship as a section of the report, and their figure.
-fn turning_circles(output: &mut Output, loaded: &Loaded, model: &Model) -> Result<String, CliError> {
-    let settings = loaded.maneuver_settings()?;
-    let (theta, ship) = (model.values(), &model.ship);
-    // With a poor fit no propeller rate may hold the speed: the demo then has no turning circles.
-    let Ok(approach) = settings.approach(model, &theta) else { return Ok(String::new()) };
-    let trials = Side::BOTH.map(|side| turning_trial(model, &theta, &approach, side, settings.turning_angle()));
-    output.figure("turning", || turning_figure(ship, &trials));
-    let table = turning_table(ship, &trials);
-    Ok(format!("\n\n3. Turning circles of the fitted ship at {:.0} m/s\n\n{table}\n", approach.speed))
+fn check(loaded: &Loaded) -> Checked {
+    let bar = progress(format!("auditing {} recordings", loaded.study.runs.len()));
+    let audit = audit_study(&loaded.study, &loaded.model.ship);
+    bar.finish_and_clear();
+    let issues = || audit.issues.iter().chain(audit.recordings.iter().flat_map(|a| &a.issues));
+    let count = |severity: Severity| issues().filter(|i| i.severity == severity).count();
+    Checked { runs: audit.recordings.len(), errors: count(Severity::Error), warnings: count(Severity::Warning) }
 }
 
-/// The estimates as a short table; the whole report is in `fit.txt`.
-fn parameters(fit: &Fit) -> Table {
-    let mut table = Table::new(["parameter", "symbol", "unit", "start", "estimate", "95 % interval"]);
-    for e in &fit.estimates {
-        let range = match (e.interval, e.standard_error) {
-            (_, Some(0.0)) => "held by constraints".into(),
-            (Some([low, high]), _) => interval(low, high, 3),
-            (None, _) => DASH.into(),
-        };
-        let row = [e.name.clone(), e.symbol.into(), e.unit.into(), sig(e.start, 4), sig(e.value, 4), range];
-        table.row(row);
+/// The diagnosis of the study's own model, as `trimtab diagnose` makes it.
+fn diagnosed(output: &mut Output, loaded: &Loaded, train: Vec<Run>, test: &[Run]) -> Result<Diagnosis, CliError> {
+    let settings = prepared(loaded, loaded.diagnose_settings()?)?;
+    output.settings("diagnose", &settings)?;
+    let bar = progress("diagnosing");
+    let diagnosis =
+        diagnose(&loaded.model, train, test, &settings, &|step| bar.set_message(format!("diagnosing: {step}")));
+    bar.finish_and_clear();
+    diagnosis.map_err(|error| CliError::Diagnose { path: loaded.study.path.clone(), error })
+}
+
+/// Sets the concealed effect beside the findings.
+fn reveal(concealed: Concealed, diagnosis: &Diagnosis) -> Revealed {
+    let finding = diagnosis.findings.iter().find(|f| concealed.accepted.contains(&f.mechanism));
+    let size = |(parameter, value): (String, f64)| {
+        let estimate = finding.and_then(|f| f.parameters.iter().find(|p| p.name == parameter));
+        Size { parameter, concealed: value, estimate: estimate.map(|p| p.value), ci95: estimate.map(|p| p.ci95) }
+    };
+    Revealed {
+        effect: concealed.effect,
+        words: concealed.words,
+        found: finding.is_some(),
+        confirmed: finding.is_some_and(|f| f.grade == Grade::Confirmed),
+        sizes: concealed.sizes.into_iter().map(size).collect(),
     }
-    table
+}
+
+impl Checked {
+    fn sentence(&self) -> String {
+        let Self { runs, errors, warnings } = self;
+        format!("{runs} recordings: {errors} errors, {warnings} warnings; `trimtab check` lists them.")
+    }
+}
+
+impl Revealed {
+    /// What was hidden, whether it was found, and how near its size is.
+    fn sentence(&self, diagnosis: &Diagnosis) -> String {
+        let hidden = format!("The recordings were made under {}, which no file of the study names.", self.words);
+        let others = diagnosis.findings.len() - usize::from(self.found);
+        let verdict = match (self.found, self.confirmed) {
+            (true, true) => "The diagnosis found it, and unseen runs confirm it",
+            (true, false) => "The diagnosis found it, but only suspects it",
+            (false, _) => "The diagnosis did not find it",
+        };
+        let others =
+            if others > 0 { format!("; it names {others} more, which nobody concealed") } else { String::new() };
+        let sizes = self.sizes.iter().map(|s| match (s.estimate, s.ci95) {
+            (Some(estimate), Some([low, high])) => format!(
+                "\n  {}: {} concealed, {} found ({} to {})",
+                s.parameter,
+                sig(s.concealed, 3),
+                sig(estimate, 3),
+                sig(low, 3),
+                sig(high, 3)
+            ),
+            _ => format!("\n  {}: {} concealed, not estimated", s.parameter, sig(s.concealed, 3)),
+        });
+        format!("{hidden}\n{verdict}{others}.{}", sizes.collect::<String>())
+    }
+}
+
+fn section(number: usize, title: &str, text: &str) -> String {
+    format!("{number}. {title}\n\n{text}")
+}
+
+fn judged(evaluation: &Evaluation) -> String {
+    let Some(test) = evaluation.summary("test") else { return "There is no test run.".to_owned() };
+    let percent = |cvdm: Option<Estimate>| cvdm.map_or_else(|| DASH.to_owned(), |e| sig(e.value, 3));
+    format!(
+        "cVDM (mean deviation from the recording, in % of the motion) on {} test runs: {} % with the published parameters, {} % \
+         fitted; better on {}, worse on {}.",
+        test.runs,
+        percent(test.cvdm_baseline),
+        percent(test.cvdm_fitted),
+        test.runs_better,
+        test.runs_worse
+    )
+}
+
+fn next(folder: &Path) -> String {
+    let dir = folder.display();
+    format!(
+        "Read {dir}/results/report.html first: the diagnosis on one page.\nTry next:\n  \
+         trimtab check {dir}/study.toml\n  \
+         trimtab diagnose {dir}/study.toml\n  \
+         trimtab maneuver turning {dir}/study.toml --model {dir}/results/improved.toml\n  \
+         trimtab help tutorial\n\
+         For your own ship copy {dir} and replace ship.toml, runs.csv and the recordings."
+    )
 }

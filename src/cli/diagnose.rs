@@ -5,12 +5,13 @@ use super::answer::Answer;
 use super::audited::{AcceptArgs, examined};
 use super::error::CliError;
 use super::figures::FigureArgs;
-use super::fit::model_text;
+use super::fit::{fitted_text, model_text};
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, print, print_json};
 use super::progress::progress;
+use serde_json::Value;
 use trimtab::audit::Issue;
-use trimtab::diagnose::{Settings, Verdict, diagnose};
+use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::error::suggestion;
 use trimtab::evaluate::Judging;
 use trimtab::recording::{Run, Split};
@@ -91,9 +92,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("diagnose", &args.output)?.drawn_as(&args.figures);
     let loaded = Loaded::new(&args.study)?;
     output.reads(&loaded, true);
-    let mut settings = settings(args, loaded.diagnose_settings()?)?;
+    let settings = prepared(&loaded, settings(args, loaded.diagnose_settings()?)?)?;
     let audited = examined(&loaded, &args.accept)?;
-    settings.judging = Judging::new(&loaded.fit_settings()?, loaded.evaluation_settings()?);
     output.settings("fit", &loaded.fit_settings()?)?;
     output.settings("evaluate", &loaded.evaluation_settings()?)?;
     output.settings("diagnose", &settings)?;
@@ -111,16 +111,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let name = &loaded.study.name;
     let mut json = document(&diagnosis, name)?;
     json["recordings"] = serde_json::to_value(&audited)?;
-    if output.has_folder() {
-        output.file("diagnosis.json", (serde_json::to_string_pretty(&json)? + "\n").as_bytes());
-        output.file("improved.toml", model_text(&diagnosis.model)?.as_bytes());
-        output.file("base.toml", model_text(&diagnosis.base)?.as_bytes());
-        let (pictures, from) = (pictures(&diagnosis), output.provenance());
-        output.file("report.html", page(&diagnosis, name, &pictures, &from)?.render().as_bytes());
-        output.figures(
-            pictures.into_iter().map(|p| (format!("figures/{}", p.stem), p.figure.caption(p.caption))).collect(),
-        );
-    }
+    write_files(&mut output, &diagnosis, name, &json)?;
     let written = output.close();
     let told = if args.output.json {
         print_json(&json)
@@ -140,6 +131,33 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         || audited.refused()
         || diagnosis.admission.issues.iter().any(Issue::blocking);
     Ok(if unanswered { Answer::No } else { Answer::Yes })
+}
+
+/// Settings whose proof judges as the study's tables `[fit]` and `[evaluate]` say.
+pub fn prepared(loaded: &Loaded, settings: Settings) -> Result<Settings, CliError> {
+    Ok(Settings { judging: Judging::new(&loaded.fit_settings()?, loaded.evaluation_settings()?), ..settings })
+}
+
+/// Writes the files of a diagnosis, as this command has them, for another command; gives its document.
+pub fn write_diagnosis(output: &mut Output, diagnosis: &Diagnosis, name: &str) -> Result<Value, CliError> {
+    let json = document(diagnosis, name)?;
+    write_files(output, diagnosis, name, &json)?;
+    Ok(json)
+}
+
+fn write_files(output: &mut Output, diagnosis: &Diagnosis, name: &str, json: &Value) -> Result<(), CliError> {
+    if output.has_folder() {
+        output.file("diagnosis.json", (serde_json::to_string_pretty(json)? + "\n").as_bytes());
+        let improved = fitted_text(&diagnosis.model, diagnosis.uncertainty.clone())?;
+        output.file("improved.toml", improved.as_bytes());
+        output.file("base.toml", model_text(&diagnosis.base)?.as_bytes());
+        let (pictures, from) = (pictures(diagnosis), output.provenance());
+        output.file("report.html", page(diagnosis, name, &pictures, &from)?.render().as_bytes());
+        output.figures(
+            pictures.into_iter().map(|p| (format!("figures/{}", p.stem), p.figure.caption(p.caption))).collect(),
+        );
+    }
+    Ok(())
 }
 
 /// The study's settings, changed by the arguments, with every withheld name checked.

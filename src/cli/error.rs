@@ -134,6 +134,12 @@ pub enum CliError {
     Stdout(std::io::Error),
 }
 
+impl From<toml::de::Error> for CliError {
+    fn from(error: toml::de::Error) -> Self {
+        Self::Format { format: "TOML", message: error.to_string() }
+    }
+}
+
 impl From<serde_json::Error> for CliError {
     fn from(error: serde_json::Error) -> Self {
         Self::Format { format: "JSON", message: error.to_string() }

@@ -11,13 +11,14 @@ use super::progress::progress;
 use std::collections::BTreeMap;
 use trimtab::files::{Kept, seal};
 use trimtab::fit::{Fit, FitSettings, MultiStart, StartRow, fit_over, multi_start_over};
-use trimtab::model::Model;
+use trimtab::model::{Model, ModelFile};
 use trimtab::numerals::sig;
 use trimtab::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
 use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, RunStore, Runs, Split};
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
+use trimtab::uncertainty::Uncertainty;
 
 const LONG: &str = "\
 Fits the free parameters of the model to the training runs of the study: weighted nonlinear least squares through the \
@@ -39,7 +40,7 @@ Example:
   trimtab fit study.toml --out results
   trimtab evaluate study.toml --model results/fitted.toml
 
-With --out: fitted.toml (a model file with the estimates, which every command takes as --model), fit.json, fit.txt (the \
+With --out: fitted.toml (a model file with the estimates and their covariance, which every command takes as --model), fit.json, fit.txt (the \
     report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end); with --starts also starts.csv (how each start \
     ended). While the fit runs, best.toml is the model at the best point so far; it is removed at the end. \
     With --starts a fit that was killed goes on with the starts that are left when it is repeated on the same input.
@@ -48,8 +49,8 @@ JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, acce
     value, limit, sentence), result.residual_statistics (model_error, growth, growth_error, likeness), result.estimates[] \
     (name, symbol, unit, start, value, standard_error, interval, at_bound), result.start_cost, result.start_prior_cost, \
     result.cost, result.prior_cost, result.first_stage_parts, result.residual_variance, result.active[] (sentence, rule), \
-    result.undetermined[] (words, standard_deviation), result.covariance_gauss_newton, result.covariance_sandwich, \
-    result.correlations (rows of numbers in the order of the estimates, null where the data do not determine a parameter), \
+    result.undetermined[] (words, standard_deviation), result.covariance (that of the standard errors), result.freedom (its degrees of freedom), \
+    result.covariance_gauss_newton, result.covariance_sandwich, result.correlations (rows of numbers in the order of the estimates, null where the data do not determine a parameter), \
     result.validity (share_outside of the samples; outside[] with term, quantity, range, share, met: where the data leave the \
     range over which a term is valid), result.runs, result.recordings, result.residuals, result.iterations, result.counts, result.settings.
 
@@ -228,7 +229,7 @@ pub fn speeds(ranks: &Ranks, windows: Runs) -> [f64; 2] {
 
 /// Writes the files of a fit.
 pub fn write(output: &mut Output, start: &Model, fit: &Fit, speeds: [f64; 2]) -> Result<(), CliError> {
-    output.file("fitted.toml", model_text(&fit.model)?.as_bytes());
+    output.file("fitted.toml", fitted_text(&fit.model, fit.uncertainty())?.as_bytes());
     output.file("fit.txt", fit.report().as_bytes());
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
     let rows = fit.estimates.iter().map(|e| {
@@ -253,8 +254,13 @@ pub fn write(output: &mut Output, start: &Model, fit: &Fit, speeds: [f64; 2]) ->
 
 /// A model as the text of a model file, with a checksum at its end.
 pub fn model_text(model: &Model) -> Result<String, CliError> {
-    let text =
-        toml::to_string(&model.to_file()).map_err(|e| CliError::Format { format: "TOML", message: e.to_string() })?;
+    fitted_text(model, None)
+}
+
+/// As [`model_text`], with the covariance of the estimates.
+pub fn fitted_text(model: &Model, covariance: Option<Uncertainty>) -> Result<String, CliError> {
+    let file = ModelFile { covariance, ..model.to_file() };
+    let text = toml::to_string(&file).map_err(|e| CliError::Format { format: "TOML", message: e.to_string() })?;
     Ok(seal("use it with --model.", &text))
 }
 

@@ -17,6 +17,7 @@ use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Split, Windows};
 use trimtab::ship::{Ship, parameter_line};
 use trimtab::study::{Listed, Study};
+use trimtab::uncertainty::Uncertainty;
 
 /// Arguments of every command on a study.
 #[derive(Clone, Debug, clap::Args)]
@@ -66,6 +67,13 @@ impl Loaded {
         let path = args.model.clone().unwrap_or_else(|| study.model.clone());
         let model = read_model(&path, Ship::read(&study.ship)?).map_err(|error| in_ship_file(error, &study.ship))?;
         Ok(Self { study, model, model_path: path })
+    }
+
+    /// The covariance of the model's parameters, where its file has one, and that file.
+    pub fn uncertainty(&self) -> Result<(&Path, Option<Uncertainty>), CliError> {
+        let path = self.model_path.as_path();
+        let read = Model::read_uncertainty(path).map_err(|error| CliError::Model { path: None, error })?;
+        Ok((path, read))
     }
 
     /// Another model of the same ship.

@@ -10,17 +10,21 @@ use super::output::{Output, OutputArgs};
 use super::progress::progress;
 use clap::Subcommand;
 use serde::Serialize;
+use std::path::PathBuf;
 use trimtab::files::Names;
-use trimtab::maneuver::{Approach, Ended, ManeuverSettings, Side, Trial, stopping_trial, turning_trial, zigzag_trial};
+use trimtab::maneuver::{
+    Approach, DRAWS, Ended, ManeuverSettings, Measured, SEED, Side, Trial, calm_water, drawn, set_intervals,
+    stopping_trial, turning_trial, zigzag_trial,
+};
 use trimtab::model::Model;
 use trimtab::numerals::sig;
 use trimtab::plot::Figure;
-use trimtab::report::Table;
 use trimtab::report::maneuver::{
-    criteria_note, criteria_table, ended_note, stopping_figure, stopping_table, track_csv, turning_figure,
-    turning_table, zigzag_figure, zigzag_table,
+    Listed, criteria_note, criteria_table, ended_note, measures_csv, measures_table, stopping_figure, track_csv,
+    turning_figure, zigzag_figure,
 };
 use trimtab::state::Inputs;
+use trimtab::uncertainty::Uncertainty;
 use trimtab::units::GRAVITY;
 use trimtab::validity::{self, Coverage};
 
@@ -28,6 +32,12 @@ const LONG: &str = "\
 Simulates a standard manoeuvring trial to both sides with the model of a study, or another given with --model, and measures \
     it as on a real ship: distances of the midship point in ship lengths L, from the instant the rudder begins to move. The \
     criteria of IMO MSC.137(76) are printed beside the measures.
+
+The trials are sailed in calm water: what the model has of wind, waves, current, bottom, banks, pushes and sensors is left \
+    out, and the answer says which. --as-found keeps it.
+
+A model file of `trimtab fit` or `trimtab diagnose` holds the covariance of its parameters. The measures then have 95 % \
+    intervals: 2.97 [2.85, 3.09] are the value with the estimates and the quantiles of the trials with drawn parameters.
 
 The approach is straight ahead at a speed that the propeller holds: give --speed or --rpm, or set them in [maneuver] of \
     the study with rudder rate, engine rate and angles; without either the approach is at Froude number 0.15.";
@@ -57,9 +67,10 @@ const TURNING: &str = "\
 Example:
   trimtab maneuver turning study.toml --model results/fitted.toml --speed 6 --out turning
 
-With --out: maneuver_turning.json, turning.png and .csv, the track of each trial as CSV.
-JSON: result.ship, result.length [m], result.approach (speed [m/s], n [rps], balanced, rudder_rate [rad/s], step [s]), \
-    result.trials[] with name, side, ended, measures (advance, transfer, tactical_diameter [m], time_90, time_180 [s], \
+With --out: maneuver_turning.json, turning.png and .csv, turning_measures.csv (a row a trial and a measure: value, low95, high95), the track of each trial as CSV.
+JSON: result.ship, result.length [m], result.left_out[] (terms), result.draws (count, seed, covariance, undetermined[]; where there are \
+    intervals), result.approach (speed [m/s], n [rps], balanced, rudder_rate [rad/s], step [s]), \
+    result.trials[] with name, side, ended, intervals (by measure: low and high, in the units of the measures), measures (advance, transfer, tactical_diameter [m], time_90, time_180 [s], \
     steady.diameter [m], .speed [m/s], .speed_loss [-], .drift [rad], .yaw_rate [rad/s]; absent: not reached), and criteria[] \
     with name, measured, limit, unit, verdict (met, not_met, not_applicable), binding (L >= 100 m); result.validity \
     (share_outside of the samples sailed; outside[] with term, quantity, range, share, met).";
@@ -68,7 +79,7 @@ const ZIGZAG: &str = "\
 Example:
   trimtab maneuver zigzag study.toml --model results/fitted.toml --out zigzag
 
-With --out: maneuver_zigzag.json, zigzag.png and .csv, the track of each trial as CSV.
+With --out: maneuver_zigzag.json, zigzag.png and .csv, zigzag_measures.csv, the track of each trial as CSV.
 JSON: as for turning, with measures rudder, heading, overshoots[] [rad], executes[] [s], initial_turning [m], \
     initial_turning_time, reach, period [s]; absent: not reached.";
 
@@ -79,7 +90,7 @@ Example:
 The propeller is reversed to `astern_rpm` at `engine_rate_rpm_s` of [maneuver]; by default to minus the approach rate while \
     sailing two ship lengths.
 
-With --out: maneuver_stopping.json, stopping.png and .csv, the track as CSV.
+With --out: maneuver_stopping.json, stopping.png and .csv, stopping_measures.csv, the track as CSV.
 JSON: as for turning, with measures track_reach, head_reach, lateral_deviation [m], heading_change [rad], time [s]; \
     absent: not reached.";
 
@@ -93,6 +104,15 @@ struct TrialArgs {
     /// Propeller rate of the approach [rpm]; instead of `n_rpm` in [maneuver].
     #[arg(long, value_name = "RPM", allow_negative_numbers = true)]
     rpm: Option<f64>,
+    /// Keep the environment and sensor terms of the model.
+    #[arg(long)]
+    as_found: bool,
+    /// Draws of the covariance for the 95 % intervals; 0 for none.
+    #[arg(long, value_name = "N", default_value_t = DRAWS)]
+    draws: usize,
+    /// Seed of the draws.
+    #[arg(long, value_name = "N", default_value_t = SEED)]
+    seed: u64,
     #[command(flatten)]
     figures: FigureArgs,
     #[command(flatten)]
@@ -104,9 +124,21 @@ struct Report<'a, M> {
     ship: &'a str,
     model: &'a str,
     length: f64,
+    left_out: &'a [&'static str],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    draws: Option<Draws<'a>>,
     approach: Approach,
     trials: &'a [Trial<M>],
     validity: Coverage,
+}
+
+/// How intervals came about.
+#[derive(Serialize)]
+struct Draws<'a> {
+    count: usize,
+    seed: u64,
+    covariance: &'a str,
+    undetermined: &'a [String],
 }
 
 /// What every trial needs.
@@ -115,6 +147,17 @@ struct Prepared {
     theta: Vec<f64>,
     settings: ManeuverSettings,
     approach: Approach,
+    /// Terms that were left out.
+    left_out: Vec<&'static str>,
+    /// Environment and sensor terms that were kept.
+    kept: Vec<&'static str>,
+    /// Sessions whose additions are left out.
+    sessions: usize,
+    model_path: PathBuf,
+    uncertainty: Option<Uncertainty>,
+    /// Parameter vectors drawn from it.
+    drawn: Vec<Vec<f64>>,
+    seed: u64,
 }
 
 impl Prepared {
@@ -127,9 +170,69 @@ impl Prepared {
         }
         output.settings("maneuver", &settings)?;
         let path = loaded.study.path.clone();
-        let theta = loaded.model.values();
-        let approach = settings.approach(&loaded.model, &theta).map_err(|error| CliError::Maneuver { path, error })?;
-        Ok(Self { model: loaded.model, theta, settings, approach })
+        let (calm, around) = calm_water(&loaded.model);
+        let (model, left_out, kept) =
+            if args.as_found { (loaded.model.clone(), Vec::new(), around) } else { (calm, around, Vec::new()) };
+        let theta = model.values();
+        let approach = settings.approach(&model, &theta).map_err(|error| CliError::Maneuver { path, error })?;
+        let (model_path, uncertainty) = loaded.uncertainty()?;
+        let drawn = uncertainty.as_ref().map_or_else(Vec::new, |u| drawn(&model, u, args.draws, args.seed));
+        let (model_path, sessions, seed) = (model_path.to_owned(), model.sessions.len(), args.seed);
+        Ok(Self { model, theta, settings, approach, left_out, kept, sessions, model_path, uncertainty, drawn, seed })
+    }
+
+    /// Sets the intervals of trials, which `sail` sails for an approach and a parameter vector.
+    fn intervals<M: Measured + Send>(
+        &self,
+        trials: &mut [Trial<M>],
+        sail: impl Fn(&Approach, &[f64]) -> Vec<Trial<M>> + Sync,
+    ) {
+        // The approach of a draw holds the speed with the thrust and the resistance of that draw.
+        set_intervals(trials, &self.drawn, |theta| {
+            Some(sail(&self.settings.approach(&self.model, theta).ok()?, theta))
+        });
+    }
+
+    fn draws(&self) -> Option<Draws<'_>> {
+        let u = self.uncertainty.as_ref().filter(|_| !self.drawn.is_empty())?;
+        Some(Draws { count: self.drawn.len(), seed: self.seed, covariance: &u.kind, undetermined: &u.undetermined })
+    }
+
+    /// What water the trials are sailed in, and where intervals are from.
+    fn notes(&self) -> String {
+        let mut notes = Vec::new();
+        if !self.left_out.is_empty() {
+            notes.push(format!("Calm water: {} left out (`--as-found` keeps them).", self.left_out.join(", ")));
+        }
+        if !self.kept.is_empty() {
+            notes.push(format!("As found, not in calm water: {} kept.", self.kept.join(", ")));
+        }
+        if self.sessions > 0 {
+            notes.push(format!("What the model adds in its {} sessions is left out.", self.sessions));
+        }
+        match self.draws() {
+            Some(d) => {
+                notes.push(format!(
+                    "95 % intervals in brackets: {} draws of the covariance in {} ({}), seed {}.",
+                    d.count,
+                    self.model_path.display(),
+                    d.covariance,
+                    d.seed
+                ));
+                if !d.undetermined.is_empty() {
+                    notes.push(format!(
+                        "Held at their values, as the data do not determine them: {}.",
+                        d.undetermined.join(", ")
+                    ));
+                }
+            }
+            None if self.uncertainty.is_none() => notes.push(format!(
+                "No intervals: {} has no covariance; fitted.toml of `trimtab fit --out` has one.",
+                self.model_path.display()
+            )),
+            None => {}
+        }
+        notes.join("\n")
     }
 }
 
@@ -140,36 +243,48 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             let mut output = Output::new("maneuver turning", &args.output)?.drawn_as(&args.figures);
             let p = Prepared::new(args, &mut output)?;
             let angle = p.settings.turning_angle();
-            let bar = progress("turning");
-            let trials = Side::BOTH.map(|side| turning_trial(&p.model, &p.theta, &p.approach, side, angle));
-            bar.finish_and_clear();
-            let table = turning_table(&p.model.ship, &trials);
-            finish(&mut output, &p, &trials, "turning", &table, || turning_figure(&p.model.ship, &trials))?;
-            output.finish(&text(&p, &trials, &table), &report(&p, &trials))
+            let sail = |approach: &Approach, theta: &[f64]| {
+                Side::BOTH.map(|side| turning_trial(&p.model, theta, approach, side, angle)).to_vec()
+            };
+            let trials = sailed(&p, "turning", &sail);
+            finish(&mut output, &p, &trials, "turning", || turning_figure(&p.model.ship, &trials))?;
+            output.finish(&text(&p, &trials), &report(&p, &trials))
         }
         Kind::Zigzag(args) => {
             let mut output = Output::new("maneuver zigzag", &args.output)?.drawn_as(&args.figures);
             let p = Prepared::new(args, &mut output)?;
-            let bar = progress("zigzag");
-            let sail = |angles, side| zigzag_trial(&p.model, &p.theta, &p.approach, side, angles);
             let angles = p.settings.zigzag_angles();
-            let trials: Vec<_> = angles.iter().flat_map(|a| Side::BOTH.map(|side| sail(*a, side))).collect();
-            bar.finish_and_clear();
-            let table = zigzag_table(&p.model.ship, &trials);
-            finish(&mut output, &p, &trials, "zigzag", &table, || zigzag_figure(&p.model.ship, &trials))?;
-            output.finish(&text(&p, &trials, &table), &report(&p, &trials))
+            let sail = |approach: &Approach, theta: &[f64]| {
+                let both = |a: &[f64; 2]| Side::BOTH.map(|side| zigzag_trial(&p.model, theta, approach, side, *a));
+                angles.iter().flat_map(both).collect()
+            };
+            let trials = sailed(&p, "zigzag", &sail);
+            finish(&mut output, &p, &trials, "zigzag", || zigzag_figure(&p.model.ship, &trials))?;
+            output.finish(&text(&p, &trials), &report(&p, &trials))
         }
         Kind::Stopping(args) => {
             let mut output = Output::new("maneuver stopping", &args.output)?.drawn_as(&args.figures);
             let p = Prepared::new(args, &mut output)?;
-            let trial = stopping_trial(&p.model, &p.theta, &p.approach);
-            let table = stopping_table(&p.model.ship, &trial);
-            let trials = [trial];
-            finish(&mut output, &p, &trials, "stopping", &table, || stopping_figure(&p.model.ship, &trials[0]))?;
-            output.finish(&text(&p, &trials, &table), &report(&p, &trials))
+            let sail = |approach: &Approach, theta: &[f64]| vec![stopping_trial(&p.model, theta, approach)];
+            let trials = sailed(&p, "stopping", &sail);
+            finish(&mut output, &p, &trials, "stopping", || stopping_figure(&p.model.ship, &trials[0]))?;
+            output.finish(&text(&p, &trials), &report(&p, &trials))
         }
     }?;
     Ok(Answer::Yes)
+}
+
+/// The trials with the model's parameters, and their intervals.
+fn sailed<M: Measured + Send>(
+    p: &Prepared,
+    doing: &str,
+    sail: &(impl Fn(&Approach, &[f64]) -> Vec<Trial<M>> + Sync),
+) -> Vec<Trial<M>> {
+    let bar = progress(doing.to_owned());
+    let mut trials = sail(&p.approach, &p.theta);
+    p.intervals(&mut trials, sail);
+    bar.finish_and_clear();
+    trials
 }
 
 fn report<'a, M>(p: &'a Prepared, trials: &'a [Trial<M>]) -> Report<'a, M> {
@@ -177,6 +292,8 @@ fn report<'a, M>(p: &'a Prepared, trials: &'a [Trial<M>]) -> Report<'a, M> {
         ship: &p.model.ship.name,
         model: &p.model.name,
         length: p.model.ship.hull.lpp,
+        left_out: &p.left_out,
+        draws: p.draws(),
         approach: p.approach,
         trials,
         validity: validity_of(p, trials),
@@ -194,12 +311,11 @@ fn validity_of<M>(p: &Prepared, trials: &[Trial<M>]) -> Coverage {
 }
 
 /// Writes the files; refuses a trial that diverged, which has no measures.
-fn finish<M>(
+fn finish<M: Listed>(
     output: &mut Output,
     p: &Prepared,
     trials: &[Trial<M>],
     stem: &str,
-    table: &Table,
     figure: impl FnOnce() -> Figure,
 ) -> Result<(), CliError> {
     if let Some(doubts) = model_alone(&p.model) {
@@ -216,6 +332,7 @@ fn finish<M>(
         let name = names.take(&trial.name.replace(", ", "_"));
         output.file(format!("tracks/{name}.csv"), track_csv(&trial.track).as_bytes());
     }
+    let table = measures_csv(trials);
     let rows = table.rows().iter().cloned();
     let header: Vec<&str> = table.header().iter().map(String::as_str).collect();
     output.file(format!("{stem}_measures.csv"), &super::output::csv_text(&header, rows)?);
@@ -223,12 +340,12 @@ fn finish<M>(
     Ok(())
 }
 
-fn text<M>(p: &Prepared, trials: &[Trial<M>], table: &Table) -> String {
+fn text<M: Listed>(p: &Prepared, trials: &[Trial<M>]) -> String {
     let ship = &p.model.ship;
     let a = &p.approach;
     let held = if a.balanced { "in balance" } else { "not in balance" };
     let mut text = format!(
-        "{}, model {}: L = {} m, approach {} m/s (Froude number {}) at {} rpm, {held}; rudder rate {} deg/s\n\n{table}\n\n{}",
+        "{}, model {}: L = {} m, approach {} m/s (Froude number {}) at {} rpm, {held}; rudder rate {} deg/s\n{}\n\n{}\n\n{}",
         ship.name,
         p.model.name,
         sig(ship.hull.lpp, 4),
@@ -236,6 +353,8 @@ fn text<M>(p: &Prepared, trials: &[Trial<M>], table: &Table) -> String {
         sig(a.speed / (GRAVITY * ship.hull.lpp).sqrt(), 2),
         sig(a.n * 60.0, 4),
         sig(a.rudder_rate.to_degrees(), 3),
+        p.notes(),
+        measures_table(ship, trials),
         criteria_table(trials.iter().map(|t| (t.name.as_str(), t.criteria.as_slice()))),
     );
     let notes = trials.iter().filter_map(ended_note).chain(criteria_note(ship));

@@ -10,18 +10,21 @@ mod error;
 mod evaluate;
 mod figures;
 mod fit;
+mod help;
 mod load;
 mod maneuver;
+mod new;
 mod output;
 mod plan;
 mod processor;
 mod progress;
+mod shell;
 mod simulate;
 mod terminal;
 mod terms;
 
 use answer::Answer;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use error::CliError;
 use processor::Build;
 use std::process::ExitCode;
@@ -30,7 +33,10 @@ use trimtab::ranks::{Ranks, Traffic};
 
 const AFTER_HELP: &str = "\
 Begin with
-  trimtab demo                       a complete example in seconds; leaves a study to copy
+  trimtab demo                       the whole job on built-in trials; leaves a study to copy
+  trimtab help tutorial              from your own log to an answer
+  trimtab new --lpp L --breadth B --draught D --type TYPE
+                                     a ship file; what is not known is estimated
   trimtab check STUDY                are the recordings fit to be used?
   trimtab fit STUDY --out results    fit the model; writes results/fitted.toml
   trimtab evaluate STUDY --model results/fitted.toml
@@ -40,6 +46,7 @@ Begin with
   trimtab plan STUDY                 before going to sea: what would these trials show?
 
 A STUDY is a TOML file that names ship, model and recordings; `trimtab demo` writes one with comments.
+Topics of `trimtab help`: tutorial, study, columns, channels, ship, model, parameters, diagnosis, theory, faq, glossary.
 
 Exit codes
   0  done
@@ -53,7 +60,7 @@ const TOO_OLD: &str = "this program was built without AVX2, which this processor
 
 /// Fits an interpretable manoeuvring model to recordings of a ship, and finds the physics it lacks.
 #[derive(Debug, Parser)]
-#[command(name = "trimtab", version, after_help = AFTER_HELP, max_term_width = 100)]
+#[command(name = "trimtab", version, after_help = AFTER_HELP, max_term_width = 100, disable_help_subcommand = true)]
 struct Cli {
     /// Number of threads; the number of processors if not given. Results do not depend on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -64,6 +71,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    New(new::Args),
     Check(check::Args),
     Simulate(simulate::Args),
     Fit(fit::Args),
@@ -73,6 +81,9 @@ enum Command {
     Plan(plan::Args),
     Terms(terms::Args),
     Demo(demo::Args),
+    Help(help::Args),
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
 }
 
 /// Runs the command that the process was given.
@@ -122,6 +133,7 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Evaluate(args) => evaluate::run(args, ranks),
         // The work of the others is not divided: one rank does it.
         _ if !ranks.is_first() => Ok(Answer::Yes),
+        Command::New(args) => new::run(args),
         Command::Check(args) => check::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Diagnose(args) => diagnose::run(args),
@@ -129,16 +141,46 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Plan(args) => plan::run(args),
         Command::Terms(args) => terms::run(args),
         Command::Demo(args) => demo::run(args),
+        Command::Help(args) => help::run(args, &Cli::command()),
+        Command::Completions(args) => shell::completions(args, Cli::command()),
+        Command::Man(args) => shell::man(args, Cli::command()),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::Cli;
-    use clap::CommandFactory;
+    use clap::{CommandFactory, Parser};
+    use trimtab::guide::CHAPTERS;
 
     #[test]
     fn the_command_line_is_well_formed() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_in_the_guide_is_one_that_this_program_takes() {
+        for chapter in CHAPTERS {
+            let mut inside = false;
+            for line in chapter.text.lines() {
+                if let Some(language) = line.strip_prefix("```") {
+                    inside = language == "sh";
+                } else if inside && line.starts_with("trimtab ") {
+                    let parsed = Cli::try_parse_from(line.split_whitespace());
+                    assert!(
+                        parsed.is_ok(),
+                        "{}.md: {line}\n{}",
+                        chapter.name,
+                        parsed.err().map_or(String::new(), |e| e.to_string())
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_topic_has_the_name_of_a_command() {
+        let command = Cli::command();
+        assert!(CHAPTERS.iter().all(|c| command.find_subcommand(c.name).is_none()));
     }
 }

@@ -58,7 +58,10 @@ fn expected(command: &str) -> &'static [&'static str] {
         "maneuver stopping" => &["maneuver_stopping.json", "stopping.png", "stopping.csv", "stopping_measures.csv"],
         "plan" => &["plan.json", "trials.csv", "detectable.csv", "isolability.csv", "isolability_map.png"],
         "terms" => &["terms.json", "parameters.csv"],
-        "demo" => &["demo.json", "fitted.toml", "fit.txt", "parameters.csv", "summary.csv", "tracks.png", "curves.png"],
+        "man" => &["trimtab.1"],
+        "demo" => {
+            &["demo.json", "fitted.toml", "fit.txt", "summary.csv", "tracks.png", "report.html", "diagnosis.json"]
+        }
         _ => &[],
     }
 }

@@ -8,13 +8,13 @@ use super::error::DiagnoseError;
 use super::estimate::Estimate;
 use super::event::{BaseTests, Opening};
 use super::finding::{Finding, PUSH};
-use super::grade::{Grade, is_unstable};
+use super::grade::Grade;
 use super::improved::trimmed;
 use super::residual::{Kept, Residual};
 use super::select::Selection;
 use super::settings::Settings;
-use super::stability::{Brief, CHANGES, Change, Stability, Variant};
-use super::weigh::{Base, Weight, findings, weakest, weigh, withdrawn};
+use super::stability::{Brief, CHANGES, Change, Doubts, Stability, Variant};
+use super::weigh::{Base, findings, weakest, weigh, withdrawn};
 use crate::model::Model;
 use crate::recording::Run;
 use std::borrow::Cow;
@@ -32,7 +32,6 @@ pub struct Answer {
     /// Whether the model follows the recordings.
     pub base: Base,
     decision: Decision,
-    weights: Vec<Weight>,
 }
 
 impl Answer {
@@ -44,15 +43,28 @@ impl Answer {
         let tests: BaseTests = BaseTests::new(question, base);
         let opening: Opening = Opening::new(question, tests);
         let selection: Selection = Selection::new(question, opening).refitted(question);
-        Self::settled(question, Residual::new(question, selection), Vec::new(), held_out)
+        Self::settled(question, Residual::new(question, selection), Vec::new(), &[], held_out)
     }
 
-    /// Takes out what is not named, one mechanism after the other, and decides on what is left; `tried` holds what was withdrawn before.
-    fn settled(question: &Question, mut residual: Residual, mut tried: Vec<Finding>, held_out: &[Run]) -> Self {
+    /// Takes out what is not named, one mechanism after the other, and decides on what is left; `tried` holds what was withdrawn before,
+    /// `unstable` the names that most repetitions do not find.
+    fn settled(
+        question: &Question,
+        mut residual: Residual,
+        mut tried: Vec<Finding>,
+        unstable: &[String],
+        held_out: &[Run],
+    ) -> Self {
         let (kept, decision, weights) = loop {
             let decision: Decision = decide(&residual.table(question));
             let kept: Kept = residual.decided(&decision);
             let mut weights = weigh(question, &kept, held_out);
+            for (mechanism, weight) in kept.selection.mechanisms.iter().zip(&mut weights) {
+                let name = kept.selection.tests.candidates[mechanism.candidate].mechanism.name;
+                if unstable.iter().any(|u| u == name) {
+                    weight.grade = Grade::Unstable;
+                }
+            }
             match (weakest(&weights), &kept.left) {
                 (Some(i), Some(left)) => {
                     let weight = weights.swap_remove(i);
@@ -70,28 +82,7 @@ impl Answer {
         if !base.holds {
             tried.append(&mut findings);
         }
-        Self { verdict, findings, withdrawn: tried, kept, base, decision, weights }
-    }
-
-    /// The answer without the mechanisms of these names, which the repetitions do not find.
-    fn without_unstable(self, question: &Question, names: &[String], held_out: &[Run]) -> Self {
-        let Self { mut kept, mut weights, withdrawn: mut tried, .. } = self;
-        let name = |kept: &Kept, i: usize| {
-            let selection = &kept.selection;
-            selection.tests.candidates[selection.mechanisms[i].candidate].mechanism.name.to_owned()
-        };
-        loop {
-            let next = (0..kept.selection.mechanisms.len()).find(|i| names.contains(&name(&kept, *i)));
-            let (Some(i), Some(left)) = (next, &kept.left) else { break };
-            let weight = Weight { grade: Grade::Unstable, ..weights.remove(i) };
-            tried.push(withdrawn(&kept, left, i, &weight));
-            let residual = kept.without(question, i, weight.without);
-            let decision = decide(&residual.table(question));
-            kept = residual.decided(&decision);
-            weights = weigh(question, &kept, held_out);
-        }
-        let Kept { selection, left, .. } = kept;
-        Self::settled(question, Residual { selection, left }, tried, held_out)
+        Self { verdict, findings, withdrawn: tried, kept, base, decision }
     }
 
     /// The estimate with what is named; that of the base model where nothing is.
@@ -104,9 +95,9 @@ impl Answer {
         self.decision.unlisted.filter(|_| self.base.holds)
     }
 
-    /// Repeats the analysis with the recordings as they were given, told otherwise, and, once, with the improved model. A finding that one of the
-    /// repetitions does not find is suspected at most; one that most of them do not find is withdrawn. Nothing is repeated where
-    /// nothing was found or the user does not want it.
+    /// Repeats the analysis with the recordings as they were given, told otherwise, and, once, with the improved model. A finding that
+    /// one of the repetitions does not find is suspected at most; one that most of them do not find is withdrawn. Nothing is repeated
+    /// where nothing was found or the user does not want it.
     ///
     /// # Errors
     /// When the catalogue's terms cannot be added to a changed model.
@@ -125,21 +116,7 @@ impl Answer {
             (question.progress)(&format!("repeating ({} of {}): {}", i + 1, CHANGES.len(), change.name));
             others.push(brief(question.settings, change, question.model, runs, held_out)?);
         }
-        let found: Vec<usize> =
-            (0..own.findings.len()).map(|f| others.iter().filter(|o| own.is_found_in(f, o)).count()).collect();
-        let unstable: Vec<String> = own
-            .names()
-            .into_iter()
-            .zip(&found)
-            .filter(|(_, n)| is_unstable(**n, others.len()))
-            .map(|(n, _)| n)
-            .collect();
-        let mut answer = self;
-        for (finding, n) in answer.findings.iter_mut().zip(&found) {
-            if *n < others.len() && finding.grade == Grade::Confirmed {
-                finding.grade = Grade::Suspected;
-            }
-        }
+        let doubts = own.doubts(&others);
         let variants: Vec<Variant> = CHANGES
             .iter()
             .zip(&others)
@@ -150,13 +127,27 @@ impl Answer {
                 same: own.is_same(o),
             })
             .collect();
-        if !unstable.is_empty() {
-            answer = answer.without_unstable(question, &unstable, held_out);
-        }
+        let answer = self.doubted(question, &doubts, held_out);
         (question.progress)("diagnosing the improved model again");
         let further = answer.lacking(question, runs, held_out)?;
         let same = variants.iter().filter(|v| v.same).count();
         Ok((answer, Some(Stability { same, of: variants.len(), further, variants })))
+    }
+
+    /// The answer once repetitions differ: what most of them do not find is withdrawn, the rest decided anew, and what one of them does
+    /// not find is suspected at most.
+    fn doubted(self, question: &Question, doubts: &Doubts, held_out: &[Run]) -> Self {
+        let mut answer = self;
+        if !doubts.unstable.is_empty() {
+            let Self { kept: Kept { selection, left, .. }, withdrawn, .. } = answer;
+            answer = Self::settled(question, Residual { selection, left }, withdrawn, &doubts.unstable, held_out);
+        }
+        for finding in answer.findings.iter_mut().filter(|f| doubts.doubtful.contains(&f.mechanism)) {
+            if finding.grade == Grade::Confirmed {
+                finding.grade = Grade::Suspected;
+            }
+        }
+        answer
     }
 
     /// What the improved model still lacks when it is diagnosed on the same recordings, but for pushes.
@@ -185,4 +176,58 @@ fn brief(
     let [runs, held_out] = [runs, held_out].map(|all| all.iter().flat_map(change.run).collect::<Vec<Run>>());
     let answer = Answer::new(&question, runs, &held_out);
     Ok(Brief::new(answer.verdict, &answer.findings))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{model, runs, with};
+
+    fn without_repetitions() -> Settings {
+        Settings { nuisance: false, repeat: false, ..Settings::default() }
+    }
+
+    #[test]
+    fn clocks_that_differ_by_session_are_named_with_one_delay_for_each() {
+        let (model, settings) = (model(), without_repetitions());
+        let mut all = runs(&model, 12);
+        for run in &mut all {
+            // Positions a row of 3 s late in session a, a row early in session b.
+            let (inner, shift) = (1..run.measured.len() - 1, if run.session == "a" { -1 } else { 1 });
+            let from = |row: usize, channel: usize| run.measured[row.wrapping_add_signed(shift)][channel];
+            let measured = inner.clone().map(|row| {
+                let [_, _, psi, u, v, r] = run.measured[row];
+                [from(row, 0), from(row, 1), psi, u, v, r]
+            });
+            run.measured = measured.collect();
+            run.inputs = run.inputs[inner].to_vec();
+            run.initial = run.measured[0].map(Option::unwrap);
+        }
+        let question = Question::new(&model, &settings, &|_| ()).unwrap();
+        let answer = Answer::new(&question, all, &[]);
+        let found = answer.findings.iter().find(|f| f.mechanism == "time_skew").unwrap();
+        let delay = |name: &str| found.parameters.iter().find(|a| a.name == name).unwrap();
+        for (name, truth) in [("time_skew.position [a]", 3.0), ("time_skew.position [b]", -3.0)] {
+            let [lower, upper] = delay(name).ci95;
+            assert!(lower < truth && truth < upper && upper - lower < 1.0, "{name}: {lower} to {upper}");
+        }
+    }
+
+    #[test]
+    fn what_most_repetitions_do_not_find_is_withdrawn_and_what_one_does_not_find_is_suspected() {
+        let (model, settings) = (model(), without_repetitions());
+        let question = Question::new(&model, &settings, &|_| ()).unwrap();
+        let all = runs(&with(&[("current.north", 0.4), ("current.east", -0.2), ("rudder_lag.time", 6.0)]), 12);
+        let (train, unseen) = all.split_at(9);
+        let answer = Answer::new(&question, train, unseen);
+        let grade = |answer: &Answer, name: &str| answer.findings.iter().find(|f| f.mechanism == name).map(|f| f.grade);
+        assert_eq!(grade(&answer, "current"), Some(Grade::Confirmed));
+        assert!(grade(&answer, "rudder_lag").is_some());
+        let [current, lag] = ["current", "rudder_lag"].map(str::to_owned);
+        let doubts = Doubts { unstable: vec![lag.clone()], doubtful: vec![current, lag.clone()] };
+        let doubted = answer.doubted(&question, &doubts, unseen);
+        assert!(doubted.withdrawn.iter().any(|f| f.mechanism == lag && f.grade == Grade::Unstable));
+        assert_eq!(grade(&doubted, &lag), None);
+        assert_eq!(grade(&doubted, "current"), Some(Grade::Suspected));
+    }
 }

@@ -79,10 +79,10 @@ impl Hypothesis {
     }
 
     /// A look-alike in the leader's place: where a law bends, its slope at zero promises less than it holds, so that it is tried
-    /// in the leader's sessions whatever its own test says. A coefficient does not change from day to day.
+    /// in the leader's sessions whatever its own test says. A coefficient of the ship does not change from session to session.
     fn in_place_of(row: &Row, leader: &Row, s: &Screen, candidates: &[Candidate]) -> Option<Self> {
-        let by_day = matches!(leader.extent, Extent::Each(_));
-        if row.extent == leader.extent || (by_day && !candidates[row.candidate].mechanism.is_weather()) {
+        let by_session = matches!(leader.extent, Extent::Each(_));
+        if row.extent == leader.extent || (by_session && !candidates[row.candidate].mechanism.may_differ_by_session()) {
             return Some(Self::of(row));
         }
         let test = s.test(row.candidate, &leader.extent);

@@ -15,6 +15,7 @@ use super::settings::Settings;
 use super::sides::Sides;
 use super::stability::Stability;
 use crate::model::Model;
+use crate::uncertainty::Uncertainty;
 use crate::validity::Coverage;
 use serde::Serialize;
 
@@ -224,6 +225,9 @@ pub struct Diagnosis {
     /// The improved model, as a model file.
     #[serde(skip)]
     pub model: Model,
+    /// Covariance of the improved model's parameters, hull coefficients included; absent where the data do not determine them.
+    #[serde(skip)]
+    pub uncertainty: Option<Uncertainty>,
     /// The base model, refitted.
     #[serde(skip)]
     pub base: Model,

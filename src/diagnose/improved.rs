@@ -1,8 +1,13 @@
 //! The model as a file should hold it: the user's terms and those of the mechanisms that act, without neutral ones.
 //! It takes values from an estimate and changes none.
 
-use super::estimate::FreeParameter;
+use super::algebra::pseudo_inverse;
+use super::estimate::{Estimate, FreeParameter, Sums};
+use super::filter::{Column, Filter};
 use crate::model::Model;
+use crate::recording::Run;
+use crate::simulate::Integration;
+use crate::uncertainty::Uncertainty;
 use std::collections::BTreeMap;
 
 /// The model as a file should hold it: the user's terms and those that were found to act, nothing that is neutral.
@@ -40,6 +45,32 @@ pub fn trimmed(found: &Model, user: &Model, free: &[FreeParameter]) -> Model {
         }
     }
     model
+}
+
+/// The covariance of the parameters of `improved`, from the filter's information and the priors at an estimate. Additions in single
+/// sessions are profiled out.
+pub fn uncertainty(found: &Estimate, improved: &Model, integration: Integration, runs: &[Run]) -> Option<Uncertainty> {
+    let columns: Vec<Column> = found.free.iter().map(|f| f.column.clone()).collect();
+    let sessions: Vec<_> = found.free.iter().map(|f| f.sessions.clone()).collect();
+    let filter = Filter::new(&found.model, integration, &columns);
+    let mut information = Sums::of(&filter, runs, &found.noise, &sessions, false).evidence.total.information;
+    for (i, free) in found.free.iter().enumerate() {
+        information[(i, i)] += free.prior_terms(&found.model).0;
+    }
+    let covariance = pseudo_inverse(&information);
+    let name = |f: &FreeParameter| found.model.parameters[f.column.parameter].name.clone();
+    let kept: Vec<usize> = (0..found.free.len())
+        .filter(|i| found.free[*i].sessions.is_none() && improved.index(&name(&found.free[*i])).is_some())
+        .collect();
+    // What the data and the priors say nothing of has a variance of 0 in a pseudo-inverse.
+    let known = |i: usize| covariance[(i, i)] > 0.0;
+    let entry = |i: &usize, j: &usize| {
+        let scale = found.free[*i].column.scale * found.free[*j].column.scale;
+        (known(*i) && known(*j)).then(|| covariance[(*i, *j)] * scale)
+    };
+    let names: Vec<String> = kept.iter().map(|i| name(&found.free[*i])).collect();
+    let table: Vec<Vec<Option<f64>>> = kept.iter().map(|i| kept.iter().map(|j| entry(i, j)).collect()).collect();
+    Uncertainty::new("information of the filter and priors", None, &names, &table)
 }
 
 #[cfg(test)]

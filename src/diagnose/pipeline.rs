@@ -9,7 +9,7 @@ use super::describe::kinds;
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
 use super::generic::{corrected, surrogate};
-use super::improved::trimmed;
+use super::improved::{trimmed, uncertainty};
 use super::prove::{HeldOut, prove};
 use super::sailed::{Sailed, sailed};
 use super::set_aside::Divided;
@@ -139,6 +139,7 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
         sailed: Vec::new(),
         traces: traces(&fit.runs, fit.integration, base, last.map(|_| found)),
         validity: coverage(&improved, &fit.runs),
+        uncertainty: uncertainty(written, &improved, fit.integration, &fit.runs),
         model: improved,
         base: trimmed(&base.model, question.model, &base.free),
         findings: answer.findings,

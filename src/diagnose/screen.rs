@@ -229,7 +229,11 @@ impl CandidateTests<'_> {
         let amplitude: Vec<f64> = test.amplitude.iter().copied().collect();
         Row {
             candidate: index,
-            p: if visible { corrected(test.p, &extent, count, mechanism.is_weather(), divisions) } else { 1.0 },
+            p: if visible {
+                corrected(test.p, &extent, count, mechanism.may_differ_by_session(), divisions)
+            } else {
+                1.0
+            },
             size: self.candidate.size(&amplitude),
             admissible: possible,
             visible: visible && (extent != Extent::All || !mechanism.needs_reference),
@@ -255,7 +259,7 @@ impl CandidateTests<'_> {
         }
         let Some(contrast) = self.evidence.contrast(self.base, self.columns) else { return out };
         out.extend(self.best_group(&contrast));
-        if mechanism.is_weather() {
+        if mechanism.may_differ_by_session() {
             let opinion = self.evidence.test_each(self.widened, self.columns).p;
             let test = self.evidence.test_each(self.base, self.columns);
             out.push(self.tested(Extent::Each(self.sessions.to_vec()), test, opinion));
@@ -300,10 +304,10 @@ fn divisions(sessions: usize) -> f64 {
 
 /// A p-value corrected for the extents that were tested; a group of sessions was chosen to look best, and pays for every way to
 /// divide them.
-fn corrected(p: f64, extent: &Extent, options: usize, weather: bool, divisions: f64) -> f64 {
+fn corrected(p: f64, extent: &Extent, options: usize, by_session: bool, divisions: f64) -> f64 {
     let kinds = match options {
         0 | 1 => 1.0,
-        _ if weather => 3.0,
+        _ if by_session => 3.0,
         _ => 2.0,
     };
     (p * kinds * if matches!(extent, Extent::In(_)) { divisions } else { 1.0 }).min(1.0)

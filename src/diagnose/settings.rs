@@ -9,7 +9,7 @@ use crate::simulate::{Integration, Method};
 use serde::{Deserialize, Serialize};
 
 /// Settings of a diagnosis, the `[diagnose]` table of a study.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
     /// Chance of naming anything when nothing is missing.

@@ -3,6 +3,7 @@
 
 use super::decide::Verdict;
 use super::finding::Finding;
+use super::grade::is_unstable;
 use crate::audit::piece;
 use crate::model::Model;
 use crate::parameter::Parity;
@@ -67,10 +68,29 @@ impl Brief {
         self.findings.len() == other.findings.len() && covers(self, other) && covers(other, self)
     }
 
+    /// Which of its findings the other answers do not find.
+    pub fn doubts(&self, others: &[Self]) -> Doubts {
+        let found: Vec<usize> =
+            (0..self.findings.len()).map(|f| others.iter().filter(|o| self.is_found_in(f, o)).count()).collect();
+        let named = |is: &dyn Fn(usize) -> bool| -> Vec<String> {
+            self.names().into_iter().zip(&found).filter(|(_, n)| is(**n)).map(|(name, _)| name).collect()
+        };
+        Doubts { unstable: named(&|n| is_unstable(n, others.len())), doubtful: named(&|n| n < others.len()) }
+    }
+
     /// The names of what was found.
     pub fn names(&self) -> Vec<String> {
         self.findings.iter().map(|(name, _)| name.clone()).collect()
     }
+}
+
+/// Findings that not every repetition finds, by name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubts {
+    /// Those that most repetitions do not find.
+    pub unstable: Vec<String>,
+    /// Those that at least one does not find.
+    pub doubtful: Vec<String>,
 }
 
 /// What is changed in recordings and model.
@@ -255,6 +275,20 @@ mod tests {
         let low = started_low(&model());
         let i = low.find("rudder.lift1").unwrap();
         assert!((low.parameters[i].value / model().parameters[i].value - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_finding_is_unstable_if_most_repetitions_miss_it_and_doubtful_if_one_does() {
+        let brief = |names: &[&str]| Brief {
+            verdict: Verdict::Named,
+            findings: names.iter().map(|n| ((*n).to_owned(), vec![(*n).to_owned()])).collect(),
+        };
+        let own = brief(&["current", "drag", "lag"]);
+        let others =
+            [brief(&["current", "drag"]), brief(&["current", "drag"]), brief(&["current"]), brief(&["current"])];
+        let doubts = own.doubts(&others);
+        assert!(doubts.unstable.contains(&"lag".to_owned()) && !doubts.unstable.contains(&"current".to_owned()));
+        assert_eq!(doubts.doubtful, ["drag", "lag"]);
     }
 
     #[test]

@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 use trimtab_ad::{Dual, Scalar, VectorFunction, jacobian};
 
 /// Which limits the rules default to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Limits {
     /// For any ship: no upper limit on resistance, which depends on the ship's size.
@@ -41,7 +41,7 @@ pub enum Limits {
 }
 
 /// What a study may say of one rule; what is left out keeps its default.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rule {
     /// Whether the rule is imposed (default: yes).
@@ -65,7 +65,7 @@ pub struct Rule {
 }
 
 /// Section `[fit.constraints]` of a study.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ConstraintSettings {
     /// Which limits the rules default to.
@@ -74,7 +74,7 @@ pub struct ConstraintSettings {
     pub off: bool,
     /// Share of its own size by which each limit is moved outwards (a limit of 0 stays).
     pub tolerance: f64,
-    /// R(u) \[N\] over u \[m/s\].
+    /// Limits of R(u) \[N\] over u \[m/s\].
     pub resistance: Rule,
     /// dR/du \[N s/m\] over u \[m/s\].
     pub resistance_slope: Rule,

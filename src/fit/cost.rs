@@ -44,7 +44,7 @@ pub fn weights(ship: &Ship, run: &Run, max_yaw_rate: f64) -> [f64; STATES] {
 }
 
 /// Where the derivatives of the trajectories come from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Derivatives {
     /// Exact: dual numbers over SIMD lanes, four runs side by side.

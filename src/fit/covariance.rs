@@ -38,6 +38,17 @@ pub enum CovarianceKind {
     Sandwich,
 }
 
+impl CovarianceKind {
+    /// What it takes residuals for, in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::GaussNewton => "residuals taken as independent",
+            Self::Correlated => "successive residuals taken as one, by their autocorrelation",
+            Self::Sandwich => "recordings taken as independent",
+        }
+    }
+}
+
 /// Covariance of the estimates, in the parameters' units and the order of the estimates.
 ///
 /// An entry is absent where the data do not determine one of the two parameters.
@@ -116,7 +127,8 @@ impl Covariances {
         }
     }
 
-    fn chosen(&self) -> &DMatrix<f64> {
+    /// The one that standard errors come from.
+    pub fn chosen(&self) -> &DMatrix<f64> {
         match self.kind {
             CovarianceKind::Sandwich => &self.sandwich,
             CovarianceKind::Correlated => &self.correlated,

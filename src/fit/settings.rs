@@ -9,7 +9,7 @@ use crate::simulate::Integration;
 use serde::{Deserialize, Serialize};
 
 /// Where the solver's second derivatives come from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Hessian {
     /// From the first derivatives of the residuals: `2/M sum J^T W J`.
@@ -22,7 +22,7 @@ pub enum Hessian {
 }
 
 /// Section `[fit]` of a study.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FitSettings {
     /// Where first derivatives come from.

@@ -15,6 +15,7 @@ use crate::model::Model;
 use crate::ranges::Limited;
 use crate::ranks::Ranks;
 use crate::recording::Runs;
+use crate::uncertainty::Uncertainty;
 use crate::validity::{self, Count, Coverage};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -79,6 +80,10 @@ pub struct Fit {
     pub estimates: Vec<Estimate>,
     /// Which covariance `covariance`, `correlations` and the standard errors are.
     pub covariance_kind: CovarianceKind,
+    /// The covariance that the standard errors come from.
+    pub covariance: Covariance,
+    /// Degrees of freedom of the variance behind it: those of the Student-t quantile of the intervals.
+    pub freedom: usize,
     /// Covariance with residuals taken as independent.
     pub covariance_gauss_newton: Covariance,
     /// Covariance with recordings taken as independent; absent with fewer than two.
@@ -124,6 +129,14 @@ pub struct Fit {
     pub seconds: f64,
     /// The settings.
     pub settings: FitSettings,
+}
+
+impl Fit {
+    /// The covariance as a model file keeps it; nothing where the data determine no parameter.
+    pub fn uncertainty(&self) -> Option<Uncertainty> {
+        let names: Vec<String> = self.estimates.iter().map(|e| e.name.clone()).collect();
+        Uncertainty::new(self.covariance_kind.words(), Some(self.freedom), &names, &self.covariance)
+    }
 }
 
 fn serialize_counts<S: serde::Serializer>(counts: &Counts, serializer: S) -> Result<S::Ok, S::Error> {
@@ -198,6 +211,8 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
         status: end.words.clone(),
         estimates: estimates(task, &end, &covariances),
         covariance_kind: covariances.kind,
+        covariance: covariances.table(task, covariances.chosen()),
+        freedom: covariances.freedom,
         covariance_gauss_newton: covariances.table(task, &covariances.independent),
         covariance_sandwich: (covariances.clusters > 1).then(|| covariances.table(task, &covariances.sandwich)),
         correlations: covariances.correlations(task),

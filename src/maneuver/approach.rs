@@ -10,7 +10,7 @@ use crate::units::GRAVITY;
 use serde::{Deserialize, Serialize};
 
 /// Settings of the trials, the table `[maneuver]` of a study. A setting left out is derived from the ship.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ManeuverSettings {
     /// Approach speed \[m/s\]; Froude number 0.15 when neither `speed` nor `n_rpm` is given.

@@ -96,3 +96,51 @@ pub struct Stopping {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
 }
+
+/// A measure of a kind of trial: its name, and how it is read.
+pub type Quantity<M> = (&'static str, fn(&M) -> Option<f64>);
+
+/// Measures that can be listed: those that get intervals and columns of tables.
+pub trait Measured: Sized + 'static {
+    /// The measures, in SI units and radians.
+    const QUANTITIES: &'static [Quantity<Self>];
+
+    /// The measure of that name, if it was reached.
+    fn quantity(&self, name: &str) -> Option<f64> {
+        Self::QUANTITIES.iter().find(|(n, _)| *n == name).and_then(|(_, read)| read(self))
+    }
+}
+
+impl Measured for Turning {
+    const QUANTITIES: &'static [Quantity<Self>] = &[
+        ("advance", |m| m.advance),
+        ("transfer", |m| m.transfer),
+        ("tactical_diameter", |m| m.tactical_diameter),
+        ("steady_diameter", |m| m.steady.map(|s| s.diameter)),
+        ("speed_loss", |m| m.steady.map(|s| s.speed_loss)),
+        ("drift", |m| m.steady.map(|s| s.drift)),
+        ("time_90", |m| m.time_90),
+        ("time_180", |m| m.time_180),
+    ];
+}
+
+impl Measured for Zigzag {
+    const QUANTITIES: &'static [Quantity<Self>] = &[
+        ("overshoot_1", |m| m.overshoots.first().copied()),
+        ("overshoot_2", |m| m.overshoots.get(1).copied()),
+        ("overshoot_3", |m| m.overshoots.get(2).copied()),
+        ("initial_turning", |m| m.initial_turning),
+        ("reach", |m| m.reach),
+        ("period", |m| m.period),
+    ];
+}
+
+impl Measured for Stopping {
+    const QUANTITIES: &'static [Quantity<Self>] = &[
+        ("track_reach", |m| m.track_reach),
+        ("head_reach", |m| m.head_reach),
+        ("lateral_deviation", |m| m.lateral_deviation),
+        ("heading_change", |m| m.heading_change),
+        ("time", |m| m.time),
+    ];
+}

@@ -2,8 +2,10 @@
 //! It neither fits nor judges a model: a poor model gives poor numbers, and only the IMO criteria are compared with them.
 
 mod approach;
+mod calm;
 mod error;
 pub mod imo;
+mod interval;
 mod measures;
 mod sail;
 mod stopping;
@@ -13,11 +15,13 @@ mod turning;
 mod zigzag;
 
 pub use approach::{Approach, ManeuverSettings};
+pub use calm::calm_water;
 pub use error::ManeuverError;
-pub use measures::{Steady, Stopping, Turning, Zigzag};
+pub use interval::{DRAWS, SEED, drawn, set_intervals};
+pub use measures::{Measured, Quantity, Steady, Stopping, Turning, Zigzag};
 pub use stopping::{stopping, stopping_trial};
 pub use track::Track;
-pub use trial::{Ended, Side, Trial};
+pub use trial::{Ended, Intervals, Side, Trial};
 pub use turning::{turning, turning_execute, turning_trial};
 pub use zigzag::{zigzag, zigzag_executes, zigzag_trial};
 

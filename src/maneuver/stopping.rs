@@ -6,7 +6,7 @@ use super::imo;
 use super::measures::Stopping;
 use super::sail::{Orders, sail};
 use super::track::Track;
-use super::trial::{Side, Trial};
+use super::trial::{Intervals, Side, Trial};
 use crate::model::Model;
 
 /// Measures a stop on a track whose engine was ordered astern at sample `order`.
@@ -47,6 +47,7 @@ pub fn stopping_trial(model: &Model, theta: &[f64], approach: &Approach) -> Tria
         ended,
         measures,
         criteria: imo::stopping(&model.ship, &measures),
+        intervals: Intervals::new(),
         track,
     }
 }

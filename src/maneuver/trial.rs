@@ -5,6 +5,7 @@ use super::approach::Approach;
 use super::imo::Criterion;
 use super::track::Track;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Which way a trial begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -60,6 +61,9 @@ pub enum Ended {
     },
 }
 
+/// 95 % intervals of measures, by name.
+pub type Intervals = BTreeMap<&'static str, [f64; 2]>;
+
 /// One trial: approach, track, and measures.
 #[derive(Clone, Debug, Serialize)]
 pub struct Trial<M> {
@@ -73,6 +77,9 @@ pub struct Trial<M> {
     pub ended: Ended,
     /// The measures; one that was not reached is absent.
     pub measures: M,
+    /// 95 % intervals of the measures, in their units, where the model's covariance is known; see [`super::Measured`].
+    #[serde(skip_serializing_if = "Intervals::is_empty")]
+    pub intervals: Intervals,
     /// IMO criteria that apply.
     pub criteria: Vec<Criterion>,
     /// The simulated track.

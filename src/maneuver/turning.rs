@@ -6,7 +6,7 @@ use super::imo;
 use super::measures::{Steady, Turning};
 use super::sail::{Orders, sail};
 use super::track::Track;
-use super::trial::{Side, Trial};
+use super::trial::{Intervals, Side, Trial};
 use crate::model::Model;
 use std::f64::consts::PI;
 
@@ -91,6 +91,7 @@ pub fn turning_trial(model: &Model, theta: &[f64], approach: &Approach, side: Si
         ended,
         measures,
         criteria: imo::turning(&model.ship, &measures),
+        intervals: Intervals::new(),
         track,
     }
 }

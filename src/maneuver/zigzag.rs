@@ -6,7 +6,7 @@ use super::imo;
 use super::measures::Zigzag;
 use super::sail::{Orders, sail};
 use super::track::Track;
-use super::trial::{Side, Trial};
+use super::trial::{Intervals, Side, Trial};
 use crate::model::Model;
 
 /// Measures a zigzag of `heading` \[rad\] on a track whose rudder was put over at the samples `executes`.
@@ -97,6 +97,7 @@ pub fn zigzag_trial(model: &Model, theta: &[f64], approach: &Approach, side: Sid
         ended,
         criteria: imo::zigzag(&model.ship, &measures),
         measures,
+        intervals: Intervals::new(),
         track,
     }
 }

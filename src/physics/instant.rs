@@ -6,7 +6,7 @@ use crate::state::{Inputs, State};
 use trimtab_ad::Scalar;
 
 /// How the low-speed and astern behaviour of hull and resistance is written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Form {
     /// As printed: terms scaled with U >= 0, resistance an even-odd mix in u.

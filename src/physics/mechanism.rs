@@ -65,4 +65,10 @@ impl Mechanism {
     pub fn is_weather(&self) -> bool {
         self.parameters == ["north", "east"]
     }
+
+    /// Whether its amplitudes may differ from session to session: weather is new every day, and clocks, zeros and scales of sensors
+    /// are set when they are started. Coefficients of the ship stay.
+    pub fn may_differ_by_session(&self) -> bool {
+        self.is_weather() || self.kind == Kind::Sensor
+    }
 }

@@ -5,7 +5,7 @@ use crate::ranges::{Limited, OutOfRange, counted, within};
 use serde::{Deserialize, Serialize};
 
 /// Planned trials and sensors, the table `[plan]` of a study.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PlanSettings {
     /// Trials in the order in which they are sailed; where none is listed, turning circles of 35 deg and zigzags 10/10 and 20/20 to
@@ -16,7 +16,7 @@ pub struct PlanSettings {
 }
 
 /// Kind of a trial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// The rudder is put over and held, through 720 deg of heading.
@@ -49,7 +49,7 @@ impl Kind {
 }
 
 /// A planned trial, an entry `[[plan.trials]]`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlannedTrial {
     /// Kind of trial.
@@ -76,7 +76,7 @@ pub struct PlannedTrial {
 }
 
 /// One course or several \[deg\].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(untagged, expecting = "`heading_deg` must be a course in degrees, or a list of courses")]
 pub enum Headings {
     /// One course.
@@ -206,7 +206,7 @@ impl Limited for PlannedTrial {
 }
 
 /// A sensor, or a group of two that are alike.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Sensor {
     /// North and east.
@@ -221,7 +221,7 @@ pub enum Sensor {
 
 /// Planned sensors, the table `[plan.sensors]`: standard deviations of their white noise. What is left out is that of a survey ship,
 /// and for models below 20 m that of a basin.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SensorSettings {
     /// Position, north and east \[m\]; 0.5, in a basin 0.005.

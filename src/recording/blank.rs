@@ -1,7 +1,9 @@
 //! Values that stand for a missing one: fill values such as -9999, and everything outside a range.
 //! It decides on single values as they are written in the file, before any unit; what is suspicious is said by the audit.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
+use std::borrow::Cow;
 
 /// Relative difference below which a value is a fill value: files round 9.969209968386869e36 as they like.
 const SAME_FILL: f64 = 1e-4;
@@ -48,13 +50,27 @@ impl Blank {
     }
 }
 
-/// The table form of [`Blank`].
-#[derive(Deserialize)]
+/// Values that stand for a missing one: a value, a list of values, or this table.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct BlankTable {
+    /// Fill values.
     #[serde(default)]
     equal: Vec<f64>,
+    /// Smallest and largest value that is kept.
     outside: Option<[f64; 2]>,
+}
+
+impl JsonSchema for Blank {
+    fn schema_name() -> Cow<'static, str> {
+        "Blank".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let table = BlankTable::json_schema(generator);
+        let list = Vec::<f64>::json_schema(generator);
+        json_schema!({ "anyOf": [{ "type": "number" }, list, table] })
+    }
 }
 
 impl<'de> Deserialize<'de> for Blank {

@@ -20,13 +20,15 @@ use super::blank::Blank;
 use super::channel::{CHANNELS, Channel};
 use super::error::{RecordingError, line_at, toml_problem};
 use crate::error::suggestion;
-use serde::Deserialize;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// How the columns of a file become channels. The default is the canonical layout: one header line, commas, columns
 /// named after the channels with the unit in brackets.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ColumnMap {
     /// What separates fields.
@@ -40,6 +42,7 @@ pub struct ColumnMap {
     pub skip_lines: usize,
     /// Whether a line of column names comes before the data.
     #[serde(default)]
+    #[schemars(with = "bool")]
     pub header: Header,
     /// Axes in which the columns `u` and `v` (and `u_water`, `v_water`) are given.
     #[serde(default)]
@@ -89,7 +92,7 @@ pub struct ColumnMap {
 }
 
 /// What separates fields.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Delimiter {
     /// `,`
@@ -104,7 +107,7 @@ pub enum Delimiter {
 }
 
 /// What separates whole from fraction.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Decimal {
     /// `1.5`
@@ -115,7 +118,7 @@ pub enum Decimal {
 }
 
 /// Whether there is a line of names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "bool")]
 pub struct Header(pub bool);
 
@@ -132,7 +135,7 @@ impl From<bool> for Header {
 }
 
 /// Axes of recorded velocities.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum VelocityFrame {
     /// Forward and to starboard.
@@ -143,7 +146,7 @@ pub enum VelocityFrame {
 }
 
 /// What recorded velocities are relative to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum SpeedReference {
     /// The earth.
     #[default]
@@ -155,7 +158,7 @@ pub enum SpeedReference {
 }
 
 /// A channel that can be derived from others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Derived {
     /// Surge velocity over ground, from position and heading.
@@ -193,7 +196,7 @@ pub struct Column {
 }
 
 /// How late a column tells what happened \[s\]; negative where it tells it early. At most an hour.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Delay {
     /// In every run.
@@ -239,20 +242,40 @@ impl Column {
     }
 }
 
-/// The table form of a column; the string form is its `column` alone.
-#[derive(Deserialize)]
+/// Where the channel comes from: `sign * scale * value + offset` in the column's unit. A text in place of the table is its `column`.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ColumnTable {
+    /// Name in the header, with or without the unit in brackets; the channel's own name when neither `index` nor `value` is given.
     column: Option<String>,
+    /// Position in the row, counted from 1, instead of a name.
     index: Option<usize>,
+    /// A constant, where there is no column.
     value: Option<f64>,
+    /// Unit; the header's when left out, the SI unit when the header has none.
     unit: Option<String>,
+    /// Factor on the value.
     scale: Option<f64>,
+    /// 1 or -1: the sense in which the column is positive (-1 for a rudder positive to port).
     sign: Option<f64>,
+    /// Added, in the column's unit.
     offset: Option<f64>,
+    /// How late the column tells what happened \[s\]: a number, or a table of numbers by session.
     delay: Option<Delay>,
+    /// Values of the column, as written, that stand for a missing one.
     #[serde(default)]
     blank: Blank,
+}
+
+impl JsonSchema for Column {
+    fn schema_name() -> Cow<'static, str> {
+        "Column".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let table = ColumnTable::json_schema(generator);
+        json_schema!({ "anyOf": [{ "type": "string", "description": "Name in the header." }, table] })
+    }
 }
 
 impl<'de> Deserialize<'de> for Column {
@@ -335,7 +358,7 @@ impl ColumnMap {
         for (name, line) in listed.chain(left_out) {
             if Channel::from_name(name).is_none() {
                 let near = suggestion(name, CHANNELS.iter().map(|c| c.name));
-                return Err(fail(line, format!("unknown channel `{name}`{near}; `trimtab check --help` lists them")));
+                return Err(fail(line, format!("unknown channel `{name}`{near}; `trimtab help channels` lists them")));
             }
         }
         let positive = [("dt", map.dt), ("derive_span", map.derive_span), ("bridge", map.bridge)];

@@ -5,7 +5,7 @@ use crate::state::{Inputs, STATES};
 use serde::{Deserialize, Serialize};
 
 /// On which side of the split a run is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Split {
     /// Parameters are fitted to it.

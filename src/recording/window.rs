@@ -25,7 +25,7 @@ pub struct Labels {
 }
 
 /// What to do with a run that has missing values or jumps in time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Gaps {
     /// Refuse it with one error that names the lines.

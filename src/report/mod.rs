@@ -7,6 +7,7 @@ mod fit;
 #[cfg(feature = "plot")]
 mod html;
 pub mod maneuver;
+mod paragraph;
 pub mod plan;
 mod table;
 pub mod terms;

@@ -5,6 +5,7 @@ use crate::numerals::{DASH, fixed, sig};
 use crate::plan::{Outlook, Parting, Plan, Sailed};
 #[cfg(feature = "plot")]
 use crate::plot::{Axis, Figure, Layer, Mark, Panel, RECORDED};
+use crate::report::paragraph::wrapped;
 use crate::report::table::Table;
 
 /// Width of the terminal summary \[characters\].
@@ -67,7 +68,7 @@ pub fn isolability_table(plan: &Plan) -> Table {
 /// The plan for a terminal.
 #[must_use]
 pub fn summary(plan: &Plan) -> String {
-    let mut text = wrapped(&programme(plan)) + &wrapped(&sensors(plan)) + "\n" + &grouped(&plan.trials).to_string();
+    let mut text = line(&programme(plan)) + &line(&sensors(plan)) + "\n" + &grouped(&plan.trials).to_string();
     text += "\n\nSMALLEST SIZES, seen in 80 % of such programmes\n";
     let mut sizes = Table::new(["mechanism", "smallest size", "unit", "share left", "title"]);
     for m in plan.mechanisms.iter().filter(|m| m.identifiable) {
@@ -86,11 +87,11 @@ pub fn summary(plan: &Plan) -> String {
     for reason in reasons(&hidden) {
         let names: Vec<&str> =
             hidden.iter().filter(|m| m.absorbed_by.as_deref() == Some(reason)).map(|m| m.mechanism.as_str()).collect();
-        text += &wrapped(&format!("NOT IDENTIFIABLE, absorbed by {reason}: {}.", names.join(", ")));
+        text += &line(&format!("NOT IDENTIFIABLE, absorbed by {reason}: {}.", names.join(", ")));
     }
-    text += &wrapped(&inseparable(plan));
+    text += &line(&inseparable(plan));
     if let Some(parting) = &plan.parting {
-        text += &wrapped(&parted(parting));
+        text += &line(&parted(parting));
     }
     text
 }
@@ -193,23 +194,9 @@ fn parted(p: &Parting) -> String {
     )
 }
 
-/// A paragraph within the width of a terminal.
-fn wrapped(paragraph: &str) -> String {
-    let (mut text, mut column) = (String::new(), 0);
-    for word in paragraph.split(' ') {
-        let length = word.chars().count();
-        if column > 0 && column + 1 + length > usize::from(WIDTH) {
-            text += "\n  ";
-            column = 2;
-        } else if column > 0 {
-            text.push(' ');
-            column += 1;
-        }
-        text += word;
-        column += length;
-    }
-    text.push('\n');
-    text
+/// A paragraph of the plan.
+fn line(paragraph: &str) -> String {
+    wrapped("", 0, WIDTH.into(), paragraph)
 }
 
 /// The isolability matrix as a heat map.

@@ -5,51 +5,112 @@ use super::error::StudyError;
 use super::split::SplitRule;
 use crate::error::suggestion;
 use crate::recording::{Gaps, Split};
-use serde::Deserialize;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The study file as written.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StudyFile {
+    /// Name of the study, for headings.
     pub(super) name: String,
+    /// Ship file, relative to the study.
     pub(super) ship: PathBuf,
+    /// Model file, relative to the study.
     pub(super) model: PathBuf,
+    /// Folder of the recordings, relative to the study, or several of which the first that exists is used; `$NAME/...` begins with an
+    /// environment variable. The study's own folder when left out.
     #[serde(default)]
+    #[schemars(with = "OneOrMore")]
     pub(super) data: Candidates,
+    /// Column map of all recordings that have none of their own; the canonical layout when left out.
     pub(super) column_map: Option<PathBuf>,
+    /// Time step to which recordings are brought \[s\]; each recording's own when left out.
     pub(super) step: Option<f64>,
+    /// Length of the windows into which runs are cut \[s\], each simulated from its own start; whole runs when left out.
     pub(super) window: Option<f64>,
+    /// Time by which a window overlaps the one before \[s\].
     #[serde(default)]
     pub(super) window_overlap: f64,
+    /// Time left out at the start of each run \[s\].
     #[serde(default)]
     pub(super) discard_start: f64,
+    /// Time left out at the end of each run \[s\].
     #[serde(default)]
     pub(super) discard_end: f64,
+    /// Where the initial state of a window comes from.
     #[serde(default)]
     pub(super) initial_state: InitialKind,
+    /// Time over which a smoothed initial state is estimated \[s\]; needed with `initial_state = "smoothed"`.
     pub(super) initial_span: Option<f64>,
+    /// What becomes of a run with missing values or jumps in time.
     #[serde(default)]
     pub(super) gaps: Gaps,
+    /// The name of a CSV table of runs, or entries `[[runs]]`. Every study needs one of the two.
+    #[schemars(with = "Option<TableOrEntries>")]
     pub(super) runs: Option<RunTable>,
+    /// How runs are divided into train and test where no run has a `split`.
     pub(super) split: Option<SplitRule>,
+    /// Settings of `trimtab fit`.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, bool>")]
     pub(super) fit: toml::Table,
+    /// Settings of `trimtab evaluate`.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, bool>")]
     pub(super) evaluate: toml::Table,
+    /// Settings of `trimtab diagnose`.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, bool>")]
     pub(super) diagnose: toml::Table,
+    /// Settings of `trimtab maneuver`.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, bool>")]
     pub(super) maneuver: toml::Table,
+    /// Settings of `trimtab plan`.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, bool>")]
     pub(super) plan: toml::Table,
 }
 
-#[derive(Clone, Copy, Default, Deserialize)]
+/// The keys of a study file and of an entry `[[runs]]` as a JSON schema. The tables that commands read are open in it: their keys are
+/// those of the settings of each command.
+pub fn study_schema(generator: &mut SchemaGenerator) -> Schema {
+    StudyFile::json_schema(generator)
+}
+
+/// `data` as it may be written.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[allow(dead_code)] // a shape for the schema; `Candidates` is what is read
+enum OneOrMore {
+    /// One folder.
+    One(String),
+    /// Several.
+    More(Vec<String>),
+}
+
+/// `runs` as it may be written.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[allow(dead_code)] // a shape for the schema; `RunTable` is what is read
+enum TableOrEntries {
+    /// A CSV table.
+    Table(String),
+    /// `[[runs]]`.
+    Entries(Vec<RunEntry>),
+}
+
+/// Where the initial state of a window comes from.
+#[derive(Clone, Copy, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum InitialKind {
+    /// The first row as recorded.
     #[default]
     First,
+    /// A uniformly accelerated motion fitted to the first `initial_span` seconds.
     Smoothed,
 }
 
@@ -110,16 +171,24 @@ impl<'de> Deserialize<'de> for RunTable {
 }
 
 /// A run as listed, in the study or in a table beside it.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RunEntry {
+    /// The recording, relative to `data`.
     pub(super) file: PathBuf,
+    /// Name of the run; the file's name without its ending when left out.
     pub(super) name: Option<String>,
+    /// What shares a hidden condition (a day, a loading): runs of one session have the same weather for a diagnosis.
     pub(super) session: Option<String>,
+    /// Kind of manoeuvre, for tables.
     pub(super) manoeuvre: Option<String>,
+    /// Side of the split; give it to every run or to none.
     pub(super) split: Option<Split>,
+    /// First time used \[s\], on the recording's clock.
     pub(super) from: Option<f64>,
+    /// Last time used \[s\].
     pub(super) to: Option<f64>,
+    /// Column map of this run, relative to the study, instead of the study's.
     pub(super) column_map: Option<PathBuf>,
 }
 

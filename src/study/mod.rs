@@ -9,6 +9,7 @@ mod settings;
 mod split;
 
 pub use error::StudyError;
+pub use file::study_schema;
 pub use listed::Listed;
 pub use open::Study;
 pub use split::{SplitBy, SplitRule};

@@ -11,7 +11,7 @@ use std::collections::HashSet;
 pub(super) const UNNAMED: &str = "unnamed";
 
 /// How runs are divided where the table of runs does not say.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SplitRule {
     /// What stays together.
@@ -23,7 +23,7 @@ pub struct SplitRule {
 }
 
 /// What stays together on one side of the split.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum SplitBy {
     /// Each run on its own.

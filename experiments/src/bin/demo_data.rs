@@ -12,8 +12,9 @@ struct Arguments {}
 fn main() -> std::io::Result<()> {
     Arguments::parse();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/demo");
-    std::fs::create_dir_all(&folder)?;
-    for (name, text) in trimtab_experiments::demo::files() {
+    std::fs::create_dir_all(folder.join("trials"))?;
+    let concealed = trimtab_experiments::demo_concealed::files().into_iter().flatten();
+    for (name, text) in trimtab_experiments::demo::files().into_iter().chain(concealed) {
         std::fs::write(folder.join(name), &text)?;
         println!("{name}: {} bytes", text.len());
     }

@@ -13,7 +13,7 @@ use trimtab_experiments::folders::exit;
 use trimtab_experiments::injected::error::InjectedError;
 use trimtab_experiments::injected::figure::figure;
 use trimtab_experiments::injected::plan::{Planned, SEED, ci_slice, plan, sample};
-use trimtab_experiments::injected::results::{Results, in_order};
+use trimtab_experiments::injected::results::{Results, in_order, missing};
 use trimtab_experiments::injected::row::Row;
 use trimtab_experiments::injected::runner::Runner;
 use trimtab_experiments::injected::summary::{by_strength, scored, summary, table};
@@ -90,11 +90,11 @@ fn run(a: &Arguments) -> Result<(), InjectedError> {
     let path = a.out.join("cases.csv");
     if !a.summary {
         let results = Results::open(&path)?;
-        let mut missing = results.missing(&cases)?;
-        eprintln!("seed {}: {} cases, {} of them without a row", a.seed, cases.len(), missing.len());
+        let mut left = missing(&results, &cases)?;
+        eprintln!("seed {}: {} cases, {} of them without a row", a.seed, cases.len(), left.len());
         // Drawn order: an unfinished campaign is a fair sample of the whole.
-        missing.sort_by_key(|c| c.seed);
-        execute(a, &missing, &results)?;
+        left.sort_by_key(|c| c.seed);
+        execute(a, &left, &results)?;
     }
     summarise(&a.out, &in_order(&path, &whole)?)
 }
@@ -135,7 +135,7 @@ fn execute(a: &Arguments, cases: &[Planned], results: &Results) -> Result<(), In
     let outcome = runner.all(cases, a.workers, &|row| {
         bar.set_message(row.case.clone());
         bar.inc(1);
-        results.append(&row)
+        Ok(results.append(&row)?)
     });
     bar.finish_and_clear();
     outcome

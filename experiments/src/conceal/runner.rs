@@ -2,10 +2,8 @@
 //! The plan lists the cases and the summary counts the scores; neither is here.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
+use std::process::Command;
+use std::time::Duration;
 
 use trimtab::files::{file_name, write_whole};
 
@@ -20,6 +18,8 @@ use super::meter::DiagnosisMeter;
 use super::seal;
 use super::spec::Strength;
 use super::strength::Meter;
+use crate::process::{self, Ended};
+use crate::workers;
 
 /// The script of sparse regression.
 const SINDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peers/sindy.py");
@@ -57,28 +57,11 @@ impl Runner {
                 "there is no such program; build it with `cargo build --release`, or give its path with --tool";
             return Err(ConcealError::content(&self.tool, &message));
         }
-        let next = AtomicUsize::new(0);
-        let failed: Mutex<Option<ConcealError>> = Mutex::new(None);
-        let work = || -> Result<(), ConcealError> {
-            while let Some(planned) = plan.get(next.fetch_add(1, Ordering::Relaxed)) {
-                // A meter of its own: a meter keeps its last fit, which two cases at a time would overwrite.
-                let meter = DiagnosisMeter::new(planned.spec.family)?;
-                each(self.one(planned, &meter))?;
-            }
-            Ok(())
-        };
-        std::thread::scope(|scope| {
-            for _ in 0..workers.max(1) {
-                scope.spawn(|| {
-                    if let Err(e) = work() {
-                        // The other workers stop too.
-                        next.store(plan.len(), Ordering::Relaxed);
-                        *failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(e);
-                    }
-                });
-            }
-        });
-        failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).map_or(Ok(()), Err)
+        workers::each(plan, workers, &|planned| {
+            // A meter of its own: a meter keeps its last fit, which two cases at a time would overwrite.
+            let meter = DiagnosisMeter::new(planned.spec.family)?;
+            each(self.one(planned, &meter))
+        })
     }
 
     /// One case from plan to score; a failure becomes the row's error.
@@ -114,12 +97,10 @@ impl Runner {
         // Sealed before the diagnosis begins, opened after it has ended.
         let study = Case::make(&planned.spec, meter)?.write(folder)?;
         let answer = folder.join("diagnosis.json");
-        let began = Instant::now();
         let mut command = Command::new(&self.tool);
         command.args(["--threads", "1", "diagnose"]).arg(&study).args(["--json", "--once"]);
-        let said = finish(command, &self.tool, self.limit)?;
-        let seconds = began.elapsed().as_secs_f64();
-        write_whole(&answer, said.as_bytes()).map_err(|source| ConcealError::file(&answer, source))?;
+        let Ended { output, seconds, .. } = finish(command, &self.tool, self.limit)?;
+        write_whole(&answer, output.as_bytes()).map_err(|source| ConcealError::file(&answer, source))?;
         let diagnosis = Diagnosis::read(&answer)?;
         let manifest = seal::open(folder)?;
         let mut score = judge(&manifest, &diagnosis);
@@ -132,7 +113,7 @@ impl Runner {
             // Otherwise numerical libraries start one thread a processor for each worker.
             let mut command = Command::new(python);
             command.arg(SINDY).arg(folder).env("OMP_NUM_THREADS", "1").env("OPENBLAS_NUM_THREADS", "1");
-            let said = finish(command, python, self.limit)?;
+            let said = finish(command, python, self.limit)?.output;
             score.sindy_named = said.lines().last().unwrap_or_default().trim().to_owned();
             score.sindy_right = Some(baseline_right(&manifest, &score.sindy_named));
         }
@@ -140,45 +121,16 @@ impl Runner {
     }
 }
 
-/// Runs a command to its end, at most `limit`, and gives its output. Exit code 1 is an answer, not a failure.
-fn finish(mut command: Command, program: &Path, limit: Duration) -> Result<String, ConcealError> {
-    let file = |source| ConcealError::file(program, source);
-    let fail = |message: String| ConcealError::content(program, &message);
-    // Output goes through files: a full pipe without a reader would stop the program.
-    let temporary = || tempfile::tempfile().map_err(file);
-    let (mut out, mut err) = (temporary()?, temporary()?);
-    let copy = |f: &std::fs::File| f.try_clone().map(Stdio::from).map_err(file);
-    // A program that is started from a rank is no rank itself.
-    for (name, _) in std::env::vars_os() {
-        if ["OMPI_", "PMIX_", "PMI_"].iter().any(|launcher| name.to_string_lossy().starts_with(launcher)) {
-            command.env_remove(name);
-        }
-    }
-    let mut child = command.stdin(Stdio::null()).stdout(copy(&out)?).stderr(copy(&err)?).spawn().map_err(file)?;
-    let began = Instant::now();
-    let status = loop {
-        if let Some(status) = child.try_wait().map_err(file)? {
-            break status;
-        }
-        if began.elapsed() > limit {
-            child.kill().map_err(file)?;
-            child.wait().map_err(file)?;
-            return Err(fail(format!("stopped after {} s", limit.as_secs())));
-        }
-        std::thread::sleep(Duration::from_millis(10));
+/// Runs a command to its end, at most `limit`, and gives what it leaves. Exit code 1 is an answer, not a failure.
+fn finish(command: Command, program: &Path, limit: Duration) -> Result<Ended, ConcealError> {
+    let ended = process::run(command, limit).map_err(|source| ConcealError::file(program, source))?;
+    let message = match ended.code {
+        _ if ended.stopped => format!("stopped after {} s", limit.as_secs()),
+        Some(0 | 1) => return Ok(ended),
+        Some(code) => format!("exit status {code}: {}", ended.messages.lines().last().unwrap_or_default()),
+        None => "ended by a signal".to_owned(),
     };
-    let text = |f: &mut std::fs::File| -> Result<String, ConcealError> {
-        use std::io::{Read, Seek, SeekFrom};
-        let mut text = String::new();
-        f.seek(SeekFrom::Start(0)).map_err(file)?;
-        f.read_to_string(&mut text).map_err(file)?;
-        Ok(text)
-    };
-    if matches!(status.code(), Some(0 | 1)) {
-        return text(&mut out);
-    }
-    let last = text(&mut err)?;
-    Err(fail(format!("{status}: {}", last.lines().last().unwrap_or_default())))
+    Err(ConcealError::content(program, &message))
 }
 
 #[cfg(test)]
@@ -194,9 +146,9 @@ mod tests {
     #[test]
     fn exit_code_1_is_an_answer_and_exit_code_2_an_error_with_its_message() {
         let of = |script: &str| finish(shell(script), Path::new("sh"), Duration::from_secs(20));
-        assert_eq!(of("echo no; exit 1").unwrap(), "no\n");
+        assert_eq!(of("echo no; exit 1").unwrap().output, "no\n");
         let e = of("echo first >&2; echo last >&2; exit 2").unwrap_err().to_string();
-        assert!(e.contains("exit status: 2") && e.ends_with("last"), "{e}");
+        assert!(e.contains("exit status 2") && e.ends_with("last"), "{e}");
     }
 
     #[test]

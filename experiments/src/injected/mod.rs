@@ -13,7 +13,6 @@ pub mod error;
 pub mod figure;
 pub mod operation;
 pub mod plan;
-pub mod process;
 pub mod record;
 pub mod results;
 pub mod row;

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::effect::{Expected, Injection};
 use super::plan::Planned;
-use super::process::Ended;
 use super::said::{Finding, HeldOut, Interval, Said};
 use super::seal::{Manifest, Witness};
+use crate::process::Ended;
 
 /// A row of the results. Lists within a cell are joined by `+`, the names of a set by `|`; numbers with names are JSON.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

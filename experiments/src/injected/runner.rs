@@ -3,16 +3,16 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::error::InjectedError;
 use super::plan::{Kind, Planned};
-use super::process::{self, Ended};
 use super::row::Row;
 use super::said::Said;
 use super::seal;
+use crate::process::{self, Ended};
+use crate::workers;
+use trimtab::files::file_name;
 
 /// How cases are run.
 #[derive(Debug, Clone)]
@@ -46,26 +46,7 @@ impl Runner {
         for case in cases {
             case.configuration.set.folder()?;
         }
-        let next = AtomicUsize::new(0);
-        let failed: Mutex<Option<InjectedError>> = Mutex::new(None);
-        let work = || -> Result<(), InjectedError> {
-            while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                each(self.one(case)?)?;
-            }
-            Ok(())
-        };
-        std::thread::scope(|scope| {
-            for _ in 0..workers.max(1) {
-                scope.spawn(|| {
-                    if let Err(e) = work() {
-                        // The other workers stop too.
-                        next.store(cases.len(), Ordering::Relaxed);
-                        *failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(e);
-                    }
-                });
-            }
-        });
-        failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).map_or(Ok(()), Err)
+        workers::each(cases, workers, &|case| each(self.one(case)?))
     }
 
     /// One case from plan to row.
@@ -73,7 +54,7 @@ impl Runner {
     /// # Errors
     /// [`InjectedError`] if the case cannot be made, the program cannot be started, or the seal is broken.
     pub fn one(&self, case: &Planned) -> Result<Row, InjectedError> {
-        let folder = self.folder.join(case.key.replace('/', "_"));
+        let folder = self.folder.join(file_name(&case.key));
         // What a killed call left there.
         let _ = std::fs::remove_dir_all(&folder);
         let study = case.make(&folder)?;
@@ -112,7 +93,7 @@ impl Runner {
         if let Some(model) = model {
             command.arg("--model").arg(model);
         }
-        process::run(command, &self.tool, self.limit)
+        process::run(command, self.limit).map_err(|source| InjectedError::file(&self.tool, source))
     }
 
     /// The names in the diagnosis of the improved model; blank if there are none, `-` if there is no improved model.

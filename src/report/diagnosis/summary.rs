@@ -4,6 +4,7 @@
 use super::parts::parts;
 use super::verdict::subject;
 use crate::diagnose::Diagnosis;
+use crate::report::paragraph::wrapped;
 
 /// Width of the terminal summary \[characters\].
 const WIDTH: usize = 100;
@@ -13,32 +14,12 @@ const MARGIN: usize = 16;
 /// The diagnosis for a terminal.
 #[must_use]
 pub fn summary(d: &Diagnosis, study: &str) -> String {
-    let mut text = wrapped(&format!("{:<MARGIN$}", "DIAGNOSIS"), &subject(d, study));
+    let mut text = wrapped(&format!("{:<MARGIN$}", "DIAGNOSIS"), MARGIN, WIDTH, &subject(d, study));
     for (i, part) in parts(d).iter().enumerate() {
         for (j, line) in part.lines.iter().enumerate() {
             let lead = if j == 0 { format!(" {} {:<13}", i + 1, part.heading) } else { " ".repeat(MARGIN) };
-            text += &wrapped(&lead, line);
+            text += &wrapped(&lead, MARGIN, WIDTH, line);
         }
     }
-    text
-}
-
-/// A paragraph with a hanging margin.
-fn wrapped(lead: &str, paragraph: &str) -> String {
-    let mut text = lead.to_owned();
-    let mut column = MARGIN;
-    for word in paragraph.split(' ') {
-        let length = word.chars().count();
-        if column > MARGIN && column + 1 + length > WIDTH {
-            text += &format!("\n{}", " ".repeat(MARGIN + 2));
-            column = MARGIN + 2;
-        } else if column > MARGIN {
-            text.push(' ');
-            column += 1;
-        }
-        text += word;
-        column += length;
-    }
-    text.push('\n');
     text
 }

@@ -9,4 +9,4 @@ mod tables;
 
 #[cfg(feature = "plot")]
 pub use figures::{stopping_figure, turning_figure, zigzag_figure};
-pub use tables::{criteria_note, criteria_table, ended_note, stopping_table, track_csv, turning_table, zigzag_table};
+pub use tables::{Listed, criteria_note, criteria_table, ended_note, measures_csv, measures_table, track_csv};

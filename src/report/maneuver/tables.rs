@@ -2,75 +2,111 @@
 //! It converts units and computes nothing else.
 
 use crate::maneuver::imo::{Criterion, SHORTEST};
-use crate::maneuver::{Ended, Stopping, Track, Trial, Turning, Zigzag};
+use crate::maneuver::{Ended, Measured, Stopping, Track, Trial, Turning, Zigzag};
 use crate::numerals::{DASH, fixed, sig};
 use crate::report::table::Table;
 use crate::ship::Ship;
 
-/// Tables of measures are this wide in a terminal.
-const WIDTH: u16 = 110;
-
-fn optional(x: Option<f64>, scale: f64, decimals: usize) -> String {
-    x.map_or_else(|| "not reached".into(), |x| fixed(x * scale, decimals))
+/// In what a measure is told.
+#[derive(Clone, Copy)]
+pub enum Told {
+    /// Ship lengths.
+    Lengths,
+    /// Per cent.
+    Percent,
+    /// Degrees.
+    Degrees,
+    /// Seconds.
+    Seconds,
 }
 
-/// A column of a table of measures: its heading, and its cell from the measures and the reciprocal ship length \[1/m\].
-type Column<M> = (&'static str, fn(&M, f64) -> String);
-
-/// Measures of trials, a row a trial.
-fn measures<M>(ship: &Ship, trials: &[Trial<M>], columns: &[Column<M>]) -> Table {
-    let per_length = 1.0 / ship.hull.lpp;
-    let mut table = Table::new(["trial"].into_iter().chain(columns.iter().map(|c| c.0)));
-    for t in trials {
-        let cells = columns.iter().map(|(_, cell)| cell(&t.measures, per_length));
-        table.row([t.name.clone()].into_iter().chain(cells));
+impl Told {
+    /// Unit, factor from SI for a ship of that length \[m\], and decimals.
+    fn scale(self, length: f64) -> (&'static str, f64, usize) {
+        match self {
+            Self::Lengths => ("L", 1.0 / length, 2),
+            Self::Percent => ("%", 100.0, 0),
+            Self::Degrees => ("deg", 1f64.to_degrees(), 1),
+            Self::Seconds => ("s", 1.0, 1),
+        }
     }
-    table.wrapped(WIDTH)
 }
 
-/// Turning circles, a row a trial.
-pub fn turning_table(ship: &Ship, trials: &[Trial<Turning>]) -> Table {
-    let columns: [Column<Turning>; 8] = [
-        ("advance [L]", |m, l| optional(m.advance, l, 2)),
-        ("transfer [L]", |m, l| optional(m.transfer, l, 2)),
-        ("tactical diameter [L]", |m, l| optional(m.tactical_diameter, l, 2)),
-        ("steady diameter [L]", |m, l| optional(m.steady.map(|s| s.diameter), l, 2)),
-        ("speed loss [%]", |m, _| optional(m.steady.map(|s| s.speed_loss), 100.0, 0)),
-        ("drift [deg]", |m, _| optional(m.steady.map(|s| s.drift.to_degrees()), 1.0, 1)),
-        ("time to 90 [s]", |m, _| optional(m.time_90, 1.0, 1)),
-        ("time to 180 [s]", |m, _| optional(m.time_180, 1.0, 1)),
+/// Trials whose measures make a table.
+pub trait Listed: Measured {
+    /// Name of each measure, in words, and in what it is told, in the order of [`Measured::QUANTITIES`].
+    const ROWS: &'static [(&'static str, &'static str, Told)];
+}
+
+impl Listed for Turning {
+    const ROWS: &'static [(&'static str, &'static str, Told)] = &[
+        ("advance", "advance", Told::Lengths),
+        ("transfer", "transfer", Told::Lengths),
+        ("tactical_diameter", "tactical diameter", Told::Lengths),
+        ("steady_diameter", "steady diameter", Told::Lengths),
+        ("speed_loss", "speed loss", Told::Percent),
+        ("drift", "drift", Told::Degrees),
+        ("time_90", "time to 90 deg", Told::Seconds),
+        ("time_180", "time to 180 deg", Told::Seconds),
     ];
-    measures(ship, trials, &columns)
 }
 
-/// The `i`-th overshoot of a zigzag \[deg\].
-fn overshoot(m: &Zigzag, i: usize) -> String {
-    optional(m.overshoots.get(i).map(|o| o.to_degrees()), 1.0, 1)
-}
-
-/// Zigzags, a row a trial.
-pub fn zigzag_table(ship: &Ship, trials: &[Trial<Zigzag>]) -> Table {
-    let columns: [Column<Zigzag>; 6] = [
-        ("overshoot 1 [deg]", |m, _| overshoot(m, 0)),
-        ("overshoot 2 [deg]", |m, _| overshoot(m, 1)),
-        ("overshoot 3 [deg]", |m, _| overshoot(m, 2)),
-        ("initial turning [L]", |m, l| optional(m.initial_turning, l, 2)),
-        ("reach [s]", |m, _| optional(m.reach, 1.0, 1)),
-        ("period [s]", |m, _| optional(m.period, 1.0, 1)),
+impl Listed for Zigzag {
+    const ROWS: &'static [(&'static str, &'static str, Told)] = &[
+        ("overshoot_1", "overshoot 1", Told::Degrees),
+        ("overshoot_2", "overshoot 2", Told::Degrees),
+        ("overshoot_3", "overshoot 3", Told::Degrees),
+        ("initial_turning", "initial turning", Told::Lengths),
+        ("reach", "reach", Told::Seconds),
+        ("period", "period", Told::Seconds),
     ];
-    measures(ship, trials, &columns)
 }
 
-/// A crash stop as a table of one row.
-pub fn stopping_table(ship: &Ship, trial: &Trial<Stopping>) -> Table {
-    let columns: [Column<Stopping>; 5] = [
-        ("track reach [L]", |m, l| optional(m.track_reach, l, 2)),
-        ("head reach [L]", |m, l| optional(m.head_reach, l, 2)),
-        ("lateral deviation [L]", |m, l| optional(m.lateral_deviation, l, 2)),
-        ("heading change [deg]", |m, _| optional(m.heading_change.map(f64::to_degrees), 1.0, 1)),
-        ("time [s]", |m, _| optional(m.time, 1.0, 1)),
+impl Listed for Stopping {
+    const ROWS: &'static [(&'static str, &'static str, Told)] = &[
+        ("track_reach", "track reach", Told::Lengths),
+        ("head_reach", "head reach", Told::Lengths),
+        ("lateral_deviation", "lateral deviation", Told::Lengths),
+        ("heading_change", "heading change", Told::Degrees),
+        ("time", "time", Told::Seconds),
     ];
-    measures(ship, std::slice::from_ref(trial), &columns)
+}
+
+/// The measures, a row a measure and a column a trial, each with its 95 % interval where it has one: `2.97 [2.85, 3.09]`.
+pub fn measures_table<M: Listed>(ship: &Ship, trials: &[Trial<M>]) -> Table {
+    let mut table = Table::new(["measure".to_owned()].into_iter().chain(trials.iter().map(|t| t.name.clone())));
+    for (key, words, told) in M::ROWS {
+        let (unit, factor, decimals) = told.scale(ship.hull.lpp);
+        let told = |x: f64| fixed(x * factor, decimals);
+        let cell = |t: &Trial<M>| match (t.measures.quantity(key), t.intervals.get(key)) {
+            (None, _) => "not reached".to_owned(),
+            (Some(x), None) => told(x),
+            (Some(x), Some([low, high])) => format!("{} [{}, {}]", told(x), told(*low), told(*high)),
+        };
+        table.row([format!("{words} [{unit}]")].into_iter().chain(trials.iter().map(cell)));
+    }
+    table
+}
+
+/// The measures as a tidy table, a row a trial and a measure, in SI units and radians; a cell without a value is empty.
+pub fn measures_csv<M: Listed>(trials: &[Trial<M>]) -> Table {
+    let mut table = Table::new(["trial", "side", "measure", "unit", "value", "low95", "high95"]);
+    let number = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or(String::new(), |x| x.to_string());
+    for t in trials {
+        for (key, _, told) in M::ROWS {
+            let unit = match told {
+                Told::Lengths => "m",
+                Told::Percent => "-",
+                Told::Degrees => "rad",
+                Told::Seconds => "s",
+            };
+            let [low, high] = t.intervals.get(key).map_or([None, None], |ends| ends.map(Some));
+            let value = number(t.measures.quantity(key));
+            let cells = [&t.name, t.side.word(), key, unit, &value, &number(low), &number(high)];
+            table.row(cells);
+        }
+    }
+    table
 }
 
 /// The IMO criteria beside the measures, a row a criterion.

@@ -1,12 +1,10 @@
-//! Runs the program that diagnoses, each time as a process of its own with a time limit.
+//! Runs a program, each time as a process of its own with a time limit.
 //! It reads nothing of what the program says.
 
-use std::io::{Read, Seek, SeekFrom};
-use std::path::Path;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-
-use super::error::InjectedError;
 
 /// What a process left.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,39 +24,39 @@ pub struct Ended {
 /// Runs a command to its end, at most `limit`.
 ///
 /// # Errors
-/// [`InjectedError::Case`] if it cannot be started or its output cannot be read.
-pub fn run(mut command: Command, program: &Path, limit: Duration) -> Result<Ended, InjectedError> {
-    let fail = |source| InjectedError::file(program, source);
+/// If it cannot be started or its output cannot be read.
+pub fn run(mut command: Command, limit: Duration) -> io::Result<Ended> {
     // Output goes through files: a full pipe without a reader would stop the program.
-    let (mut out, mut err) = (tempfile::tempfile().map_err(fail)?, tempfile::tempfile().map_err(fail)?);
-    let copy = |file: &std::fs::File| file.try_clone().map(Stdio::from).map_err(fail);
+    let (mut out, mut err) = (tempfile::tempfile()?, tempfile::tempfile()?);
+    // A program that is started from a rank is no rank itself.
+    for (name, _) in std::env::vars_os() {
+        if ["OMPI_", "PMIX_", "PMI_"].iter().any(|launcher| name.to_string_lossy().starts_with(launcher)) {
+            command.env_remove(name);
+        }
+    }
     let began = Instant::now();
-    let mut child = command.stdin(Stdio::null()).stdout(copy(&out)?).stderr(copy(&err)?).spawn().map_err(fail)?;
+    let mut child = command.stdin(Stdio::null()).stdout(out.try_clone()?).stderr(err.try_clone()?).spawn()?;
     let mut stopped = false;
     let status = loop {
-        if let Some(status) = child.try_wait().map_err(fail)? {
+        if let Some(status) = child.try_wait()? {
             break status;
         }
         if began.elapsed() > limit {
             stopped = true;
-            child.kill().map_err(fail)?;
-            break child.wait().map_err(fail)?;
+            child.kill()?;
+            break child.wait()?;
         }
         std::thread::sleep(Duration::from_millis(10));
     };
-    let text = |file: &mut std::fs::File| -> Result<String, InjectedError> {
-        let mut bytes = Vec::new();
-        file.seek(SeekFrom::Start(0)).map_err(fail)?;
-        file.read_to_end(&mut bytes).map_err(fail)?;
-        Ok(String::from_utf8_lossy(&bytes).into_owned())
-    };
-    Ok(Ended {
-        code: status.code(),
-        stopped,
-        output: text(&mut out)?,
-        messages: text(&mut err)?,
-        seconds: began.elapsed().as_secs_f64(),
-    })
+    let seconds = began.elapsed().as_secs_f64();
+    Ok(Ended { code: status.code(), stopped, output: text(&mut out)?, messages: text(&mut err)?, seconds })
+}
+
+fn text(file: &mut File) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    file.seek(SeekFrom::Start(0))?;
+    file.read_to_end(&mut bytes)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 #[cfg(test)]
@@ -68,7 +66,7 @@ mod tests {
     fn shell(script: &str, limit: Duration) -> Ended {
         let mut command = Command::new("sh");
         command.arg("-c").arg(script);
-        run(command, Path::new("sh"), limit).unwrap()
+        run(command, limit).unwrap()
     }
 
     #[test]
@@ -82,7 +80,7 @@ mod tests {
     fn a_process_that_does_not_end_is_stopped_and_one_that_cannot_start_is_an_error() {
         let ended = shell("exec sleep 60", Duration::ZERO);
         assert!(ended.stopped && ended.code.is_none() && ended.seconds < 20.0);
-        let missing = run(Command::new("no-such-program"), Path::new("no-such-program"), Duration::ZERO);
+        let missing = run(Command::new("no-such-program"), Duration::ZERO);
         assert!(missing.is_err());
     }
 }
