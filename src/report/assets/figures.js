@@ -65,7 +65,7 @@
       if (at.length >= 3) return { at: at.filter((_, i) => i % Math.ceil((at.length * room) / length) === 0), power: 0 };
     }
     // An axis with a tick step beyond its range is to have no ticks.
-    if (axis.e > hi - lo) return { at: [], power: 0 };
+    if (axis.e > axis.r[1] - axis.r[0]) return { at: [], power: 0 };
     let step = axis.e && (hi - lo) / axis.e < 40 && (hi - lo) / axis.e >= 2 ? axis.e : nice(((hi - lo) * room) / length);
     const values = (by) => {
       const first = Math.ceil(lo / by - 1e-9);
