@@ -13,6 +13,7 @@ mod export;
 mod figures;
 mod fit;
 mod help;
+mod lines;
 mod load;
 mod maneuver;
 mod new;
