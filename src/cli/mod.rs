@@ -13,6 +13,7 @@ mod export;
 mod figures;
 mod fit;
 mod help;
+mod import;
 mod lines;
 mod load;
 mod maneuver;
@@ -23,6 +24,7 @@ mod processor;
 mod progress;
 mod shell;
 mod simulate;
+mod split;
 mod style;
 mod sweep;
 mod terminal;
@@ -43,6 +45,7 @@ Begin with
   trimtab help tutorial              from your own log to an answer
   trimtab new --lpp L --breadth B --draught D --type TYPE
                                      a ship file; what is not known is estimated
+  trimtab import LOG... --out STUDY  make a study of logs: CSV, NMEA 0183, Parquet
   trimtab check STUDY                are the recordings fit to be used?
   trimtab fit STUDY --out results    fit the model; writes results/fitted.toml
   trimtab evaluate STUDY --model results/fitted.toml
@@ -78,6 +81,8 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     New(new::Args),
+    Import(import::Args),
+    Split(split::Args),
     Check(check::Args),
     Simulate(simulate::Args),
     Fit(fit::Args),
@@ -144,6 +149,8 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         // The work of the others is not divided: one rank does it.
         _ if !ranks.is_first() => Ok(Answer::Yes),
         Command::New(args) => new::run(args),
+        Command::Import(args) => import::run(args),
+        Command::Split(args) => split::run(args),
         Command::Check(args) => check::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Diagnose(args) => diagnose::run(args),

@@ -63,6 +63,8 @@ pub struct Output {
 /// Files that a command writes whatever its input is.
 fn expected(command: &str) -> &'static [&'static str] {
     match command {
+        "import" => &["import.json", "study.toml", "columns.toml", "runs.csv"],
+        "split" => &["split.json", "runs.csv"],
         "check" => &["check.json", "channels.csv", "issues.csv"],
         "simulate" => &["simulate.json", "simulations.csv", "tracks.png", "tracks.csv"],
         "fit" => &["fit.json", "fitted.toml", "fit.txt", "parameters.csv", "curves.png", "curves.csv", "best.toml"],
