@@ -32,6 +32,7 @@ static INFO: TermInfo = TermInfo {
         companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
+        by_session: false,
         floor: 0.05,
         stand_in: false,
         look_alikes: &["wind"],

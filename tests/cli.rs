@@ -9,7 +9,9 @@ use serde_json::Value;
 use std::process::Command;
 use study::{Study, at, contains_all, text};
 
-const COMMANDS: [&[&str]; 9] = [
+const COMMANDS: [&[&str]; 11] = [
+    &["import"],
+    &["split"],
     &["check"],
     &["simulate"],
     &["fit"],

@@ -12,9 +12,11 @@ use std::thread::ThreadId;
 use std::time::{Duration, Instant};
 use trimtab::audit::audit_study;
 use trimtab::files::Manifest;
+use trimtab::import::{ImportSettings, import, recording_csv};
 use trimtab::model::Model;
 use trimtab::recording::{ColumnMap, Gaps, Labels, Recording, Split, WindowSettings};
 use trimtab::ship::Ship;
+use trimtab::split::{SplitPart, SplitSettings, split};
 use trimtab::study::Study;
 
 /// What files of users have in wrong places.
@@ -279,6 +281,11 @@ proptest! {
     }
 
     #[test]
+    fn a_damaged_log_neither_panics_nor_hangs(damages in prop::collection::vec(damage(), 1..5), which in 0..LOGS.len()) {
+        ends(damaged(&log(which), &damages), move |bytes| log_is_imported(LOGS[which], &bytes))?;
+    }
+
+    #[test]
     fn a_damaged_manifest_neither_panics_nor_hangs(damages in prop::collection::vec(damage(), 1..4)) {
         let whole = "{\"results\": {\"fit\": {\"version\": \"0.1.0\", \"arguments\": [\"fit\"], \"settings\": {\"fit\": {\"step\": 0.1}}, \
                      \"inputs\": [{\"path\": \"a\", \"sha256\": \"00\"}], \"files\": {\"fit.json\": \"00\"}, \"replaced\": {\"a\": \"b\"}}}}";
@@ -291,9 +298,33 @@ proptest! {
     }
 }
 
+/// Logs that loggers and other programs wrote: NMEA 0183, Parquet of two programs, and the example as text.
+const LOGS: [&str; 4] = ["logger.nmea", "pyarrow.parquet", "polars.parquet", "log.csv"];
+
+fn log(which: usize) -> Vec<u8> {
+    let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(LOGS[which]);
+    std::fs::read(fixture).unwrap_or_else(|_| example("recordings/ship_a_001.csv"))
+}
+
+/// Imports a log, and splits what comes of it.
+fn log_is_imported(name: &str, bytes: &[u8]) -> bool {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    let Ok(imported) = import(&[path], &ImportSettings::default()) else { return false };
+    for recording in &imported.recordings {
+        let text = recording_csv(recording);
+        let Ok(recording) = Recording::parse(&text, Path::new("log.csv"), &ColumnMap::default()) else { continue };
+        let part = SplitPart { file: "log.csv".into(), session: None, recording: &recording };
+        let _ = split(&[part], &SplitSettings::default());
+    }
+    true
+}
+
 /// The example is read as it is: the damage is what makes the readers refuse.
 #[test]
 fn the_undamaged_files_are_read() {
+    (0..LOGS.len()).for_each(|which| assert!(log_is_imported(LOGS[which], &log(which)), "{}", LOGS[which]));
     recording(&example("recordings/ship_a_001.csv"), &ColumnMap::default());
     ColumnMap::parse(MAP, Path::new("columns.toml")).unwrap();
     let model = String::from_utf8(example("model.toml")).unwrap();

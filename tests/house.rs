@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Modules of the library from the bottom up: a module uses its own line and those before it.
-const LAYERS: [&[&str]; 15] = [
+const LAYERS: [&[&str]; 16] = [
     &[
         "units",
         "error",
@@ -25,6 +25,7 @@ const LAYERS: [&[&str]; 15] = [
         "ship",
         "particulars",
         "parameter",
+        "uncertainty",
         "ranges",
         "files",
         "progress",
@@ -34,12 +35,13 @@ const LAYERS: [&[&str]; 15] = [
     &["model", "dynamics"],
     &["simulate"],
     &["sensitivity"],
-    &["statistics", "recording", "study", "audit", "check", "validity", "demo"],
+    &["statistics", "recording", "study", "audit", "check", "validity", "demo", "export"],
+    &["import", "split"],
     &["ipopt"],
     &["fit"],
     &["evaluate", "maneuver"],
     &["diagnose"],
-    &["plan"],
+    &["plan", "sweep"],
     &["plot", "report"],
     &["guide"],
     &["cli", "main"],

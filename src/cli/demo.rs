@@ -90,7 +90,7 @@ struct Size {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let study = args.out.join("study.toml");
-    let results = OutputArgs { out: Some(args.out.join("results")), json: args.json };
+    let results = OutputArgs { out: Some(args.out.join("results")), json: args.json, tables: Vec::new() };
     let mut output = Output::new("demo", &results)?;
     let files = write_study(&args.out)?;
     let loaded = Loaded::new(&StudyArgs { study: study.clone(), model: None })?;

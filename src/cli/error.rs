@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use trimtab::diagnose::DiagnoseError;
 use trimtab::files::FolderError;
 use trimtab::fit::FitError;
+use trimtab::import::ImportError;
 use trimtab::maneuver::ManeuverError;
 use trimtab::model::ModelError;
 use trimtab::plan::PlanError;
@@ -39,6 +40,9 @@ pub enum CliError {
         /// The fault's name.
         fault: String,
     },
+    /// Files that could not be imported.
+    #[error(transparent)]
+    Import(#[from] ImportError),
     /// A table of the study.
     #[error("{path}:{line}: [{table}] {message}", path = path.display())]
     Table {

@@ -82,7 +82,7 @@ impl Hypothesis {
     /// in the leader's sessions whatever its own test says. A coefficient of the ship does not change from session to session.
     fn in_place_of(row: &Row, leader: &Row, s: &Screen, candidates: &[Candidate]) -> Option<Self> {
         let by_session = matches!(leader.extent, Extent::Each(_));
-        if row.extent == leader.extent || (by_session && !candidates[row.candidate].mechanism.may_differ_by_session()) {
+        if row.extent == leader.extent || (by_session && !candidates[row.candidate].mechanism.by_session) {
             return Some(Self::of(row));
         }
         let test = s.test(row.candidate, &leader.extent);

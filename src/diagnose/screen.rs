@@ -229,11 +229,7 @@ impl CandidateTests<'_> {
         let amplitude: Vec<f64> = test.amplitude.iter().copied().collect();
         Row {
             candidate: index,
-            p: if visible {
-                corrected(test.p, &extent, count, mechanism.may_differ_by_session(), divisions)
-            } else {
-                1.0
-            },
+            p: if visible { corrected(test.p, &extent, count, mechanism.by_session, divisions) } else { 1.0 },
             size: self.candidate.size(&amplitude),
             admissible: possible,
             visible: visible && (extent != Extent::All || !mechanism.needs_reference),
@@ -259,7 +255,7 @@ impl CandidateTests<'_> {
         }
         let Some(contrast) = self.evidence.contrast(self.base, self.columns) else { return out };
         out.extend(self.best_group(&contrast));
-        if mechanism.may_differ_by_session() {
+        if mechanism.by_session {
             let opinion = self.evidence.test_each(self.widened, self.columns).p;
             let test = self.evidence.test_each(self.base, self.columns);
             out.push(self.tested(Extent::Each(self.sessions.to_vec()), test, opinion));

@@ -45,6 +45,9 @@ pub struct Mechanism {
     pub probe: Probe,
     /// True when unknown hull, propeller and rudder coefficients can mimic it, so that only a reference session shows it.
     pub needs_reference: bool,
+    /// Whether its amplitudes may differ from session to session, as those of weather, which is new every day, and of clocks, which are set
+    /// when a logger starts. Coefficients of the ship and what is mounted on it stay.
+    pub by_session: bool,
     /// Smallest amplitude worth naming, in units of the parameters' scales.
     pub floor: f64,
     /// True for a force without a cause, which stands in for physics of some other form: named when no cause comes near.
@@ -64,11 +67,5 @@ impl Mechanism {
     /// Whether it is a vector over the ground, which the weather makes anew every day; the others are coefficients, which stay.
     pub fn is_weather(&self) -> bool {
         self.parameters == ["north", "east"]
-    }
-
-    /// Whether its amplitudes may differ from session to session: weather is new every day, and clocks, zeros and scales of sensors
-    /// are set when they are started. Coefficients of the ship stay.
-    pub fn may_differ_by_session(&self) -> bool {
-        self.is_weather() || self.kind == Kind::Sensor
     }
 }

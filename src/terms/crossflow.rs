@@ -54,6 +54,7 @@ static INFO: TermInfo = TermInfo {
         companions: &["turn_force", "turn_moment"],
         probe: Probe::Tangent,
         needs_reference: true,
+        by_session: false,
         floor: 0.05,
         stand_in: false,
         look_alikes: &["shallow", "hull_nonlinear"],

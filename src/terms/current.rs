@@ -31,6 +31,7 @@ static INFO: TermInfo = TermInfo {
         companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
+        by_session: true,
         floor: 0.02,
         stand_in: false,
         look_alikes: &["tide", "mean_wind", "earth_force", "log_scale", "water_log"],

@@ -30,6 +30,7 @@ static INFO: TermInfo = TermInfo {
         companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
+        by_session: true,
         floor: 0.02,
         stand_in: true,
         look_alikes: &["mean_wind", "wave_drift", "current"],

@@ -31,6 +31,7 @@ static INFO: TermInfo = TermInfo {
         companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
+        by_session: false,
         floor: 0.03,
         stand_in: false,
         look_alikes: &["loading", "thrust_loss"],

@@ -30,6 +30,7 @@ static INFO: TermInfo = TermInfo {
         companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
+        by_session: false,
         floor: 0.125,
         stand_in: false,
         look_alikes: &["munk", "fouling", "engine_lag"],

@@ -36,6 +36,7 @@ static INFO: TermInfo = TermInfo {
         companions: &["drag", "side", "yaw"],
         probe: Probe::Odd,
         needs_reference: false,
+        by_session: true,
         floor: 0.01,
         stand_in: false,
         look_alikes: &["earth_force", "wave_drift", "current"],

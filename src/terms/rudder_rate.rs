@@ -30,6 +30,7 @@ static INFO: TermInfo = TermInfo {
         companions: &[],
         probe: Probe::Forward,
         needs_reference: false,
+        by_session: false,
         floor: 0.03,
         stand_in: false,
         look_alikes: &["rudder_lag"],

@@ -45,6 +45,7 @@ static INFO: TermInfo = TermInfo {
         companions: &[],
         probe: Probe::Tangent,
         needs_reference: true,
+        by_session: false,
         floor: 0.025,
         stand_in: false,
         look_alikes: &["crossflow", "munk", "loading"],

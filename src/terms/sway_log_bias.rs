@@ -29,6 +29,7 @@ static INFO: TermInfo = TermInfo {
         companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
+        by_session: false,
         floor: 0.01,
         stand_in: false,
         look_alikes: &["heading_bias", "current"],

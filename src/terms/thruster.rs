@@ -35,6 +35,7 @@ static INFO: TermInfo = TermInfo {
         companions: &["half_speed", "moment_half_speed"],
         probe: Probe::Tangent,
         needs_reference: false,
+        by_session: false,
         floor: 0.01,
         stand_in: false,
         look_alikes: &["push"],

@@ -35,6 +35,7 @@ static INFO: TermInfo = TermInfo {
         companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
+        by_session: false,
         floor: 0.02,
         stand_in: false,
         look_alikes: &["current"],

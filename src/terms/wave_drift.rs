@@ -37,6 +37,7 @@ static INFO: TermInfo = TermInfo {
         companions: &["ahead", "abeam", "yaw"],
         probe: Probe::Tangent,
         needs_reference: false,
+        by_session: true,
         floor: 0.02,
         stand_in: false,
         look_alikes: &["mean_wind", "earth_force", "current"],

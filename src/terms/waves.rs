@@ -43,6 +43,7 @@ static INFO: TermInfo = TermInfo {
         companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
+        by_session: false,
         floor: 0.01,
         stand_in: false,
         look_alikes: &["wave_drift", "wind"],

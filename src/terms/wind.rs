@@ -69,6 +69,7 @@ static INFO: TermInfo = TermInfo {
         companions: &[],
         probe: Probe::Tangent,
         needs_reference: false,
+        by_session: false,
         floor: 0.01,
         stand_in: false,
         look_alikes: &["mean_wind", "earth_force", "wave_drift"],

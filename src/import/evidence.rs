@@ -1,0 +1,316 @@
+//! Units, signs and senses from what the columns say of one another: heading against the track and the yaw rate, speed against the
+//! track, rudder against the turn. What the data do not tell is asked for, with the flag to pass.
+
+use super::log::{Column, Meaning};
+use super::motion::{Track, ratio, rudder_effect};
+use super::names::is_magnetic;
+use super::signal::{Signal, size_below};
+use crate::numerals::sig;
+use crate::recording::{Channel, Quantity};
+use std::f64::consts::FRAC_PI_2;
+
+/// What a column was taken for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// The unit.
+    pub unit: String,
+    /// SI value of one, with the sign.
+    pub factor: f64,
+    /// Added, SI.
+    pub offset: f64,
+    /// Why.
+    pub evidence: String,
+    /// What contradicts it, to be told as a warning.
+    pub doubt: Option<String>,
+}
+
+/// A unit that is given, and by whom.
+#[derive(Clone, Debug)]
+pub struct Given {
+    /// As written.
+    pub unit: String,
+    /// SI value of one.
+    pub factor: f64,
+    /// Whether it is the user who gives it.
+    pub by_user: bool,
+}
+
+/// What is known when a column is looked at.
+#[derive(Default)]
+pub struct Known {
+    /// The track.
+    pub track: Option<Track>,
+    /// Heading \[rad\].
+    pub psi: Option<Signal>,
+    /// Yaw rate \[rad/s\]: the recorded one, or that of the heading.
+    pub r: Option<Signal>,
+}
+
+/// Ratios may differ from those of the units by this share.
+const NEAR: f64 = 0.15;
+/// The same for speeds through water, which a current changes.
+const NEAR_IN_WATER: f64 = 0.3;
+/// Coherence from which a ratio means something.
+const COHERENT: f64 = 0.6;
+/// Directions agree.
+const AGREE: f64 = 0.8;
+/// t value of the rudder's effect from which its sign is told.
+const RUDDER_T: f64 = 5.0;
+/// Any heading or course above this is no radian.
+const MOST_RADIANS: f64 = 7.0;
+/// Any rudder angle above this is no radian.
+const MOST_RUDDER: f64 = 1.6;
+/// A rate above the first is rpm, one below the second rps.
+const RPM_ABOVE: f64 = 25.0;
+const RPS_BELOW: f64 = 6.0;
+
+/// The words of the question for a unit that nothing tells.
+pub fn ask(meaning: Meaning, column: &str, choices: &str) -> String {
+    format!("the unit of column `{column}` ({}): pass `--unit {}={choices}`", meaning.words(), meaning.name())
+}
+
+/// The verdict of a given unit.
+fn as_given(given: &Given, evidence: &str) -> Verdict {
+    let by = if given.by_user { "as passed with --unit" } else { "unit as the file gives it" };
+    let evidence = if evidence.is_empty() { by.to_owned() } else { format!("{by}; {evidence}") };
+    Verdict { unit: given.unit.clone(), factor: given.factor, offset: 0.0, evidence, doubt: None }
+}
+
+/// A verdict by the data, with a doubt where the file says otherwise.
+fn by_data(unit: &str, factor: f64, evidence: String, given: Option<&Given>) -> Verdict {
+    let told = given.filter(|g| (g.factor / factor.abs()).ln().abs() > 0.05);
+    let doubt = told.map(|g| format!("the file says {}, the data {unit}; taken as {unit}", g.unit));
+    Verdict { unit: unit.to_owned(), factor, offset: 0.0, evidence, doubt }
+}
+
+/// The unit whose factor, up to the sign, is nearest to a ratio; `None` where none is near.
+fn nearest_unit(quantity: Quantity, units: &[&'static str], gain: f64, near: f64) -> Option<(&'static str, f64)> {
+    let all = units.iter().filter_map(|unit| Some((*unit, quantity.factor(unit)?)));
+    let off = |factor: f64| (gain.abs() / factor).ln().abs();
+    all.min_by(|a, b| off(a.1).total_cmp(&off(b.1))).filter(|(_, factor)| off(*factor) < near)
+}
+
+fn largest(columns: &[&Column]) -> f64 {
+    columns.iter().flat_map(|c| &c.v).fold(0.0, |m: f64, v| m.max(v.abs()))
+}
+
+/// A heading or a course: degrees or radians, clockwise or not.
+///
+/// # Errors
+/// The question to ask.
+pub fn direction(
+    meaning: Meaning,
+    columns: &[&Column],
+    given: Option<&Given>,
+    known: &Known,
+) -> Result<Verdict, String> {
+    let name = columns.first().map_or("", |c| c.name.as_str());
+    let degree = Quantity::Angle.factor("deg").unwrap_or(1.0);
+    let agreement = |factor: f64, sense: f64| {
+        let signal = Signal::new(columns, factor, 0.0, true).0;
+        known.track.as_ref().and_then(|track| track.agreement(&signal, sense))
+    };
+    let top = largest(columns);
+    let (unit, factor, why) = match given {
+        Some(given) if given.by_user || top <= MOST_RADIANS => (given.unit.as_str(), given.factor, String::new()),
+        _ if top > MOST_RADIANS => ("deg", degree, format!("values up to {}", sig(top, 4))),
+        _ => {
+            let length = |factor| agreement(factor, 1.0).map_or(0.0, |a| a[0]);
+            let (deg, rad) = (length(degree), length(1.0));
+            let says = |unit| format!("values up to {}; the track goes that way in {unit}", sig(top, 3));
+            match () {
+                () if deg > AGREE && deg > rad + 0.1 => ("deg", degree, says("degrees")),
+                () if rad > AGREE && rad > deg + 0.1 => ("rad", 1.0, says("radians")),
+                () => return Err(ask(meaning, name, "deg or rad")),
+            }
+        }
+    };
+    let told = given.is_some_and(|g| g.by_user || (g.factor / factor - 1.0).abs() < 1e-6);
+    let mut verdict = match given {
+        Some(given) if told => as_given(given, &why),
+        given => by_data(unit, factor, why, given),
+    };
+    if matches!(meaning, Meaning::Channel(Channel::Psi)) && is_magnetic(name) {
+        verdict.doubt = Some(
+            "a magnetic heading: variation and deviation are not in it; `offset` in columns.toml adds them".to_owned(),
+        );
+    }
+    if let (Some([right, _]), Some([mirrored, turned])) = (agreement(factor, 1.0), agreement(factor, -1.0)) {
+        let degrees = |angle: f64| sig(angle.to_degrees(), 3);
+        if mirrored > AGREE && mirrored > right + 0.3 {
+            let quarter = (turned / FRAC_PI_2).round() * FRAC_PI_2;
+            (verdict.factor, verdict.offset) = (-factor, quarter);
+            verdict.evidence += &format!(
+                "; turns against the track: counted anticlockwise, from {} deg clockwise of north",
+                degrees(quarter)
+            );
+        } else if right > AGREE {
+            verdict.evidence += "; turns as the track does: clockwise from north";
+        }
+    }
+    Ok(verdict)
+}
+
+/// Speeds over ground or through water, by the speed of the track. `size` is the speed that the columns give, in their own unit.
+///
+/// # Errors
+/// The question to ask.
+pub fn speed(
+    meaning: Meaning,
+    name: &str,
+    size: &Signal,
+    given: Option<&Given>,
+    known: &Known,
+) -> Result<Verdict, String> {
+    if let Some(given) = given.filter(|g| g.by_user) {
+        return Ok(as_given(given, ""));
+    }
+    let in_water = matches!(meaning, Meaning::Channel(Channel::UWater | Channel::VWater));
+    let near = if in_water { NEAR_IN_WATER } else { NEAR };
+    let found = known.track.as_ref().and_then(|track| {
+        let pairs: Vec<[f64; 2]> = track.speed.pairs(size).into_iter().filter(|p| p[0] > 0.3 * track.fast).collect();
+        let ratio = ratio(&pairs).filter(|r| r.coherence > COHERENT)?;
+        let (unit, factor) = nearest_unit(Quantity::Speed, &["m/s", "kn", "km/h"], ratio.gain, near)?;
+        Some((unit, factor, format!("speed of the track / {name} = {}", sig(ratio.gain, 3))))
+    });
+    match (found, given) {
+        (Some((unit, factor, why)), given) => Ok(by_data(unit, factor, why, given)),
+        (None, Some(given)) => Ok(as_given(given, "")),
+        (None, None) => Err(ask(meaning, name, "kn or m/s")),
+    }
+}
+
+/// A yaw rate, by the rate of the heading.
+///
+/// # Errors
+/// The question to ask.
+pub fn yaw_rate(
+    meaning: Meaning,
+    columns: &[&Column],
+    given: Option<&Given>,
+    known: &Known,
+) -> Result<Verdict, String> {
+    let name = columns.first().map_or("", |c| c.name.as_str());
+    let given_by_user = given.filter(|g| g.by_user);
+    let raw = Signal::new(columns, 1.0, 0.0, false).0;
+    let found = known.psi.as_ref().and_then(|psi| {
+        let span = psi.span().max(raw.span());
+        ratio(&psi.rate(span).pairs(&raw.smooth(span))).filter(|r| r.coherence > COHERENT)
+    });
+    let sense =
+        |gain: f64| if gain < 0.0 { (-1.0, "anticlockwise positive, turned") } else { (1.0, "clockwise positive") };
+    match (found, given_by_user.or(given)) {
+        (Some(ratio), given) => {
+            let near = nearest_unit(Quantity::AngularRate, &["deg/min", "deg/s", "rad/s"], ratio.gain, NEAR);
+            let (sign, words) = sense(ratio.gain);
+            match (near, given) {
+                (_, Some(given)) if given.by_user => {
+                    let mut verdict = as_given(given, words);
+                    verdict.factor *= sign;
+                    Ok(verdict)
+                }
+                (Some((unit, factor)), given) => {
+                    let why =
+                        format!("heading turns as {name} says ({} rad/s a unit), {words}", sig(ratio.gain.abs(), 3));
+                    Ok(by_data(unit, sign * factor, why, given))
+                }
+                (None, Some(given)) => {
+                    let mut verdict = as_given(given, words);
+                    verdict.factor *= sign;
+                    let times = ratio.gain.abs() / given.factor;
+                    verdict.doubt = Some(format!("heading turns {} times as fast as {name} says", sig(times, 3)));
+                    Ok(verdict)
+                }
+                (None, None) => Err(ask(meaning, name, "deg/min, deg/s or rad/s")),
+            }
+        }
+        (None, Some(given)) => Ok(as_given(given, "")),
+        (None, None) => Err(ask(meaning, name, "deg/min, deg/s or rad/s")),
+    }
+}
+
+/// A rudder angle: degrees or radians, and which sign turns the ship to starboard.
+///
+/// # Errors
+/// The question to ask.
+pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, known: &Known) -> Result<Verdict, String> {
+    let name = columns.first().map_or("", |c| c.name.as_str());
+    let top = columns.iter().map(|c| size_below(&c.v, 0.999)).fold(0.0, f64::max);
+    let degree = Quantity::Angle.factor("deg").unwrap_or(1.0);
+    let turned = known.psi.as_ref().map_or(0.0, |psi| {
+        let (low, high) = psi.v.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
+        high - low
+    });
+    let mut verdict = match given {
+        Some(given) if given.by_user || given.factor < 0.5 || top <= MOST_RUDDER => as_given(given, ""),
+        given if top > MOST_RUDDER => by_data("deg", degree, format!("angles up to {}", sig(top, 3)), given),
+        // A ship that turns half round with less than a degree and a half of rudder does not use degrees.
+        given if turned > 3.0 => {
+            let why = format!("angles up to {} turn the ship through {} deg", sig(top, 3), sig(turned.to_degrees(), 3));
+            by_data("rad", 1.0, why, given)
+        }
+        _ => return Err(ask(meaning, name, "deg or rad")),
+    };
+    let signal = Signal::new(columns, verdict.factor, 0.0, false).0;
+    let effect = known.r.as_ref().and_then(|r| rudder_effect(&r.smooth(r.span()), &signal));
+    match effect {
+        Some(t) if t < -RUDDER_T => {
+            verdict.factor = -verdict.factor;
+            verdict.evidence += &format!("; the ship turns against it (t = {}): positive to port, turned", sig(t, 3));
+        }
+        Some(t) if t > RUDDER_T => {
+            verdict.evidence += &format!("; the ship turns with it (t = {}): positive turns to starboard", sig(t, 3));
+        }
+        _ => {
+            verdict.doubt =
+                Some("the recordings do not tell its sign: positive must turn the ship to starboard".to_owned());
+        }
+    }
+    Ok(verdict)
+}
+
+/// A propeller rate.
+///
+/// # Errors
+/// The question to ask.
+pub fn rotation(meaning: Meaning, columns: &[&Column], given: Option<&Given>) -> Result<Verdict, String> {
+    let name = columns.first().map_or("", |c| c.name.as_str());
+    let top = columns.iter().map(|c| size_below(&c.v, 0.999)).fold(0.0, f64::max);
+    let per_minute = Quantity::Rotation.factor("rpm").unwrap_or(1.0);
+    let why = format!("rates up to {}", sig(top, 3));
+    let mut verdict = match given {
+        Some(given) => as_given(given, &why),
+        None if top > RPM_ABOVE => by_data("rpm", per_minute, why, None),
+        None if top > 0.0 && top < RPS_BELOW => by_data("rps", 1.0, why, None),
+        None => return Err(ask(meaning, name, "rpm or rps")),
+    };
+    if top * verdict.factor > 7.0 && top * verdict.factor < 60.0 {
+        let rpm = sig(top * verdict.factor * 60.0, 3);
+        verdict.doubt = Some(format!(
+            "{rpm} rpm is much for a ship's propeller: if it is the engine's, add `n = {{ scale = 0.2 }}` (1 / gear ratio) to [columns] of columns.toml"
+        ));
+    }
+    Ok(verdict)
+}
+
+/// Any other channel: its unit as given, degrees by size, or a plain number.
+///
+/// # Errors
+/// Why it is left out.
+pub fn other(meaning: Meaning, columns: &[&Column], given: Option<&Given>) -> Result<Verdict, String> {
+    let name = columns.first().map_or("", |c| c.name.as_str());
+    if let Some(given) = given {
+        return Ok(as_given(given, ""));
+    }
+    let quantity = meaning.quantity();
+    let top = largest(columns);
+    match quantity {
+        Quantity::Angle if top > MOST_RADIANS => {
+            Ok(by_data("deg", quantity.factor("deg").unwrap_or(1.0), format!("values up to {}", sig(top, 3)), None))
+        }
+        Quantity::Length => Ok(by_data("m", 1.0, "no unit is given: metres".to_owned(), None)),
+        Quantity::Number if top <= 1.01 => Ok(by_data("-", 1.0, format!("values up to {}", sig(top, 3)), None)),
+        Quantity::Number if top <= 101.0 => Ok(by_data("%", 0.01, format!("values up to {}", sig(top, 3)), None)),
+        _ => Err(ask(meaning, name, &quantity.choices().replace(", ", " or "))),
+    }
+}

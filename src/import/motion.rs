@@ -1,0 +1,195 @@
+//! Rates of signals and how two of them compare: the evidence from which units, signs and senses are told.
+//! It knows no unit; what a ratio means is decided where it is asked for.
+
+use super::signal::{GAP_IN_STEPS, Signal, size_below};
+use crate::recording::local;
+use std::ops::Range;
+
+/// Steps over which a rate is taken.
+const SPAN_STEPS: f64 = 8.0;
+
+impl Signal {
+    /// Stretches of samples without a gap.
+    pub fn stretches(&self) -> Vec<Range<usize>> {
+        let longest = GAP_IN_STEPS * self.step + 1e-6;
+        let mut stretches = Vec::new();
+        let mut start = 0;
+        for i in 1..=self.t.len() {
+            if i == self.t.len() || self.t[i] - self.t[i - 1] > longest {
+                stretches.push(start..i);
+                start = i;
+            }
+        }
+        stretches
+    }
+
+    /// Length of the local fits that differentiate it \[s\].
+    pub fn span(&self) -> f64 {
+        SPAN_STEPS * self.step
+    }
+
+    /// Value (0) or rate (1) from local quadratic fits over `span` seconds, within unbroken stretches of five samples and more.
+    fn fitted(&self, span: f64, which: usize) -> Self {
+        let mut fitted = Self { step: self.step, ..Self::default() };
+        for stretch in self.stretches().into_iter().filter(|s| s.len() >= 5) {
+            let values = local(&self.t, &self.v, stretch.clone(), span);
+            for (row, value) in stretch.zip(values).filter(|(_, value)| value[which].is_finite()) {
+                fitted.t.push(self.t[row]);
+                fitted.v.push(value[which]);
+            }
+        }
+        fitted
+    }
+
+    /// Its rate of change.
+    pub fn rate(&self, span: f64) -> Self {
+        self.fitted(span, 1)
+    }
+
+    /// The same without what is faster than the span.
+    pub fn smooth(&self, span: f64) -> Self {
+        self.fitted(span, 0)
+    }
+
+    /// Pairs of its values with those of another at its times.
+    pub fn pairs(&self, other: &Self) -> Vec<[f64; 2]> {
+        let both = self.t.iter().zip(&self.v).map(|(t, v)| [*v, other.at(*t, self.step)]);
+        both.filter(|pair| pair[1].is_finite()).collect()
+    }
+}
+
+/// How one series is proportional to another.
+#[derive(Clone, Copy, Debug)]
+pub struct Ratio {
+    /// The first as a multiple of the second, with its sign.
+    pub gain: f64,
+    /// Cosine of similarity, 0 to 1.
+    pub coherence: f64,
+}
+
+/// The first of pairs as a multiple of the second: the ratio of their sizes with the sign of their product; `None` of fewer than ten,
+/// or of noughts.
+pub fn ratio(pairs: &[[f64; 2]]) -> Option<Ratio> {
+    let sum = |f: &dyn Fn(&[f64; 2]) -> f64| pairs.iter().map(f).sum::<f64>();
+    let (aa, ab, bb) = (sum(&|p| p[0] * p[0]), sum(&|p| p[0] * p[1]), sum(&|p| p[1] * p[1]));
+    let known = pairs.len() >= 10 && aa > 0.0 && bb > 0.0 && ab != 0.0;
+    known.then(|| Ratio { gain: (aa / bb).sqrt().copysign(ab), coherence: ab.abs() / (aa * bb).sqrt() })
+}
+
+/// The track of a ship: its velocity to the north and east.
+pub struct Track {
+    /// North velocity \[m/s\].
+    pub north: Signal,
+    /// East velocity \[m/s\].
+    pub east: Signal,
+    /// Speed \[m/s\].
+    pub speed: Signal,
+    /// Speed that is not exceeded in nineteen of twenty samples \[m/s\].
+    pub fast: f64,
+}
+
+impl Track {
+    /// From positions \[m\] with the same times.
+    pub fn of(x: &Signal, y: &Signal) -> Option<Self> {
+        let (north, east) = (x.rate(x.span()), y.rate(y.span()));
+        if north.t.len() < 10 || north.t.len() != east.t.len() {
+            return None;
+        }
+        let speed = Signal { v: north.v.iter().zip(&east.v).map(|(n, e)| n.hypot(*e)).collect(), ..north.clone() };
+        let fast = size_below(&speed.v, 0.95);
+        (fast > 0.0).then_some(Self { north, east, speed, fast })
+    }
+
+    /// How directions \[rad\] agree with that of the track where the ship is under way: length and angle \[rad\] of the mean of
+    /// `exp(i (course - sense * direction))`; sense is 1 or -1.
+    pub fn agreement(&self, direction: &Signal, sense: f64) -> Option<[f64; 2]> {
+        let (mut cos, mut sin, mut count) = (0.0, 0.0, 0.0);
+        for i in (0..self.speed.t.len()).filter(|i| self.speed.v[*i] > 0.4 * self.fast) {
+            let at = direction.at(self.speed.t[i], self.speed.step);
+            if at.is_finite() {
+                let apart = self.east.v[i].atan2(self.north.v[i]) - sense * at;
+                cos += apart.cos();
+                sin += apart.sin();
+                count += 1.0;
+            }
+        }
+        (count >= 10.0).then(|| [sin.hypot(cos) / count, sin.atan2(cos)])
+    }
+}
+
+/// Which way a ship turns when its rudder is put over: the coefficient b of
+/// `r(t + h) - r(t) = a r(t) + b mean(delta over t to t + h) + c`, over its standard error; `None` where it cannot be told.
+pub fn rudder_effect(r: &Signal, delta: &Signal) -> Option<f64> {
+    let fast = size_below(&r.v, 0.95);
+    if fast <= 0.0 {
+        return None;
+    }
+    // The time in which the ship turns ten degrees.
+    let h = (0.17 / fast).clamp(4.0 * r.step, 40.0 * r.step.max(1.0));
+    let hop = (0.5 * h / r.step).ceil().max(1.0) as usize;
+    let mut rows: Vec<[f64; 4]> = Vec::new();
+    for i in (0..r.t.len()).step_by(hop) {
+        let later = r.at(r.t[i] + h, r.step);
+        let held = (0..5).map(|k| delta.at(r.t[i] + h * f64::from(k) / 4.0, r.step)).sum::<f64>() / 5.0;
+        if later.is_finite() && held.is_finite() {
+            rows.push([r.v[i], held, 1.0, later - r.v[i]]);
+        }
+    }
+    if rows.len() < 12 {
+        return None;
+    }
+    let mut normal = nalgebra::Matrix3::<f64>::zeros();
+    let mut right = nalgebra::Vector3::<f64>::zeros();
+    for row in &rows {
+        let x = nalgebra::Vector3::new(row[0], row[1], row[2]);
+        normal += x * x.transpose();
+        right += x * row[3];
+    }
+    let inverse = normal.try_inverse()?;
+    let c = inverse * right;
+    let left: f64 = rows.iter().map(|row| (row[3] - c[0] * row[0] - c[1] * row[1] - c[2]).powi(2)).sum();
+    let error = (left / (rows.len() - 3) as f64 * inverse[(1, 1)]).sqrt();
+    Some(c[1] / error).filter(|t| t.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A zigzag of a first-order ship that turns with the sign of its rudder.
+    fn zigzag(sign: f64) -> (Signal, Signal) {
+        let (mut r, mut psi, mut side) = (0.0, 0.0_f64, 1.0);
+        let mut signals = (Signal { step: 1.0, ..Signal::default() }, Signal { step: 1.0, ..Signal::default() });
+        for i in 0..600 {
+            if psi * side > 0.35 {
+                side = -side;
+            }
+            r += (0.05 * 0.35 * side - r) / 12.0;
+            psi += r;
+            for (signal, v) in [(&mut signals.0, r), (&mut signals.1, sign * 0.35 * side)] {
+                signal.t.push(f64::from(i));
+                signal.v.push(v);
+            }
+        }
+        signals
+    }
+
+    #[test]
+    fn a_zigzag_tells_the_sign_of_its_rudder() {
+        let (r, delta) = zigzag(1.0);
+        assert!(rudder_effect(&r, &delta).unwrap() > 10.0);
+        let (r, delta) = zigzag(-1.0);
+        assert!(rudder_effect(&r, &delta).unwrap() < -10.0);
+    }
+
+    #[test]
+    fn rates_do_not_reach_across_gaps() {
+        let t: Vec<f64> = (0..20).map(f64::from).chain((100..120).map(f64::from)).collect();
+        let s = Signal { v: t.iter().map(|t| if *t < 50.0 { *t } else { -*t }).collect(), t, step: 1.0 };
+        let rate = s.rate(8.0);
+        assert!(
+            rate.v[..20].iter().all(|v| (v - 1.0).abs() < 1e-9) && rate.v[20..].iter().all(|v| (v + 1.0).abs() < 1e-9)
+        );
+        assert!(ratio(&rate.pairs(&s)).is_some());
+    }
+}

@@ -1,0 +1,168 @@
+//! The files of a study made from what was imported: recordings, column map, ship, model and the study itself.
+//! The table of runs is made by `split`; nothing is written here.
+
+use super::whole::{Imported, ImportedRecording};
+use crate::recording::{Channel, Quantity};
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+
+/// Where the parts of a study come from that no log tells.
+#[derive(Clone, Debug)]
+pub struct Origins<'a> {
+    /// Name of the study.
+    pub name: &'a str,
+    /// Text of the ship file; a form to fill in when not given.
+    pub ship: Option<&'a str>,
+    /// Text of the model file; the base terms when not given.
+    pub model: Option<&'a str>,
+    /// Position of the antenna, metres forward and to starboard of midship.
+    pub antenna: [f64; 2],
+    /// Whether the antenna's place was given.
+    pub antenna_given: bool,
+}
+
+/// A recording as CSV in SI units: times to a microsecond, positions to a tenth of a millimetre, the rest to eight digits.
+pub fn recording_csv(recording: &ImportedRecording) -> String {
+    let rows = &recording.rows;
+    let mut text = String::from("t [s]");
+    for (channel, _) in &rows.channels {
+        let _ = write!(text, ",{} [{}]", channel.name(), channel.info().quantity.si());
+    }
+    text.push('\n');
+    for (i, t) in rows.t.iter().enumerate() {
+        let _ = write!(text, "{t}");
+        for (channel, values) in &rows.channels {
+            text.push(',');
+            if values[i].is_finite() {
+                let _ = write!(text, "{}", rounded(*channel, values[i]));
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn rounded(channel: Channel, value: f64) -> f64 {
+    // A heading counts turns no further than the reader does.
+    let value = if channel == Channel::Psi { (value + PI).rem_euclid(TAU) - PI } else { value };
+    match channel.info().quantity {
+        Quantity::Length => (value * 1e4).round() / 1e4,
+        _ => format!("{value:.7e}").parse().unwrap_or(value),
+    }
+}
+
+/// The files of the study beside recordings and runs: name and text.
+pub fn study_files(imported: &Imported, origins: &Origins<'_>) -> Vec<(&'static str, String)> {
+    vec![
+        ("columns.toml", columns(imported, origins)),
+        ("ship.toml", origins.ship.map_or_else(|| ship_form(origins.name), str::to_owned)),
+        ("model.toml", origins.model.map_or_else(|| model(origins.name), str::to_owned)),
+        ("study.toml", study(imported, origins)),
+    ]
+}
+
+/// One line for a comment.
+fn line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+fn columns(imported: &Imported, origins: &Origins<'_>) -> String {
+    let mut text =
+        String::from("# How the recordings are read. They are in SI units; this is what each column was taken for:\n");
+    for taken in &imported.taken {
+        let sentence = format!("{} is column `{}` in {}: {}", taken.quantity, taken.column, taken.unit, taken.evidence);
+        let _ = writeln!(text, "#   {}", line(&sentence));
+    }
+    let _ = writeln!(text, "# {}.", imported.velocity);
+    if let Some([latitude, longitude]) = imported.origin {
+        let _ = writeln!(text, "# x = 0, y = 0 is at latitude {latitude}, longitude {longitude} (deg, WGS84).");
+    }
+    for recording in &imported.recordings {
+        if let Some(start) = &recording.start {
+            let _ = writeln!(text, "# t = 0 of {} is {start} UTC.", recording.name);
+        }
+    }
+    let [forward, starboard] = origins.antenna;
+    let given = if origins.antenna_given { "" } else { " Midship is assumed." };
+    let _ = writeln!(
+        text,
+        "\n# The point whose position and velocity are recorded, the antenna: metres [forward, starboard] of midship.{given}\n\
+         reference_point = [{forward:?}, {starboard:?}]"
+    );
+    if !imported.derive.is_empty() {
+        let _ = writeln!(
+            text,
+            "# Channels that were not recorded and follow from position and heading.\nderive = {:?}",
+            imported.derive
+        );
+    }
+    if !imported.leave_out.is_empty() {
+        let names: Vec<&str> = imported.leave_out.iter().map(|c| c.name()).collect();
+        let _ = writeln!(
+            text,
+            "# Channels that are in the recordings and not used; `trimtab import` said why.\nleave_out = {names:?}"
+        );
+    }
+    text
+}
+
+/// A ship file to be filled in: what has to be given is there as a comment, so that the next command says what is missing.
+fn ship_form(name: &str) -> String {
+    format!(
+        "# The ship, in SI units. Lines that begin with `# ?` have to be filled in: take away the `# ?` and add the value.\n\
+         # `trimtab new` writes such a file from length, breadth and draught alone, every other value estimated.\n\
+         name = {name:?}\n\
+         source = \"\"\n\
+         \n\
+         [hull]\n\
+         # ? lpp =                   # length between perpendiculars L [m]\n\
+         # ? breadth =               # breadth B [m]\n\
+         # ? draught =               # mean draught d [m]\n\
+         # ? mass =                  # mass m [kg], about 1025 L B d C_b in the sea\n\
+         # ? block_coefficient =     # C_b, a share of L B d\n\
+         x_g = 0.0                 # centre of gravity forward of midship [m]\n\
+         gyration = 0.25           # yaw radius of gyration over L\n\
+         water_density = 1025.0    # [kg/m3]\n\
+         \n\
+         [propeller]\n\
+         # ? diameter =              # D [m]\n\
+         # ? wake =                  # effective wake fraction w, 0.2 to 0.4\n\
+         # ? thrust_deduction =      # t, 0.1 to 0.25\n\
+         # ? thrust_coefficients =   # [k0, k1, k2] of K_T = k0 + k1 J + k2 J^2, such as [0.3425, -0.2424, -0.1897]\n\
+         \n\
+         [rudder]\n\
+         # ? area =                  # A_R [m2], about L d / 50\n\
+         # ? span =                  # H_R [m]\n"
+    )
+}
+
+fn model(name: &str) -> String {
+    format!(
+        "# The model to be fitted: the base terms (hull, resistance, propeller, rudder), their parameters at the values of the\n\
+         # ship file or of the terms. `trimtab terms` lists the terms that can be added.\n\
+         name = {name:?}\n\
+         form = \"regular\"\n"
+    )
+}
+
+/// Length of the motion fitted to the start of each window \[s\]: ten steps.
+fn initial_span(imported: &Imported) -> f64 {
+    let step = imported.recordings.iter().map(|r| r.rows.step).fold(0.0, f64::max);
+    (10.0 * step * 1e3).round() / 1e3
+}
+
+fn study(imported: &Imported, origins: &Origins<'_>) -> String {
+    let span = initial_span(imported);
+    format!(
+        "# Made by `trimtab import`. Paths are relative to this file.\n\
+         name = {:?}\n\
+         ship = \"ship.toml\"              # particulars, in SI units\n\
+         model = \"model.toml\"            # terms and parameters; the values are the start of a fit\n\
+         column_map = \"columns.toml\"     # antenna, derived channels; says what each column was taken for\n\
+         runs = \"runs.csv\"               # file, session, manoeuvre, split and times of each run, by `trimtab split`\n\
+         gaps = \"split\"                  # no run reaches across a gap or a missing value\n\
+         initial_state = \"smoothed\"      # measured states are noisy: each start is fitted over\n\
+         initial_span = {span:?}            # [s]\n",
+        origins.name
+    )
+}

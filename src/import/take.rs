@@ -1,0 +1,276 @@
+//! From the columns taken to signals in SI units: each quantity's unit and sign decided with its evidence, positions in metres.
+//! Rows are made elsewhere; here each quantity keeps its own times.
+
+use super::choose::{Choices, Chosen, Unused};
+use super::error::ImportError;
+use super::evidence::{Given, Known, Verdict, direction, other, rotation, rudder, speed, yaw_rate};
+use super::geodesy::{Plane, from_minutes};
+use super::log::{Column, Meaning};
+use super::motion::Track;
+use super::signal::{Signal, Tidied, size_below};
+use crate::recording::Channel;
+use std::collections::BTreeMap;
+
+/// What a column was taken for.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Taken {
+    /// The quantity: a channel, or `lat`, `lon`, `cog`, `sog`.
+    pub quantity: String,
+    /// The column.
+    pub column: String,
+    /// Its unit.
+    pub unit: String,
+    /// Why it is taken so.
+    pub evidence: String,
+    /// Samples.
+    pub samples: usize,
+    /// Usual step \[s\].
+    pub step: f64,
+}
+
+/// Signals in SI units by quantity, and what is to be told of them.
+#[derive(Default)]
+pub struct Signals {
+    /// By quantity; positions as the channels x and y.
+    pub by: BTreeMap<Meaning, Signal>,
+    /// What each column was taken for.
+    pub taken: Vec<Taken>,
+    /// Columns that are not used.
+    pub unused: Vec<Unused>,
+    /// Warnings and what was put in order.
+    pub notes: Vec<String>,
+    /// Point of the tangent plane \[deg\].
+    pub origin: Option<[f64; 2]>,
+    /// Questions that the data do not answer.
+    asked: Vec<String>,
+}
+
+/// Decides units and signs and makes the signals.
+///
+/// # Errors
+/// [`ImportError::Undecided`] with every question at once, [`ImportError::Choice`] where files contradict each other.
+pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportError> {
+    let mut signals = Signals::default();
+    let mut known = Known::default();
+    let given = |meaning: Meaning| given(meaning, chosen.get(&meaning).map_or(&[], Vec::as_slice), choices);
+    signals.positions(chosen)?;
+    for channel in [Channel::X, Channel::Y] {
+        let meaning = Meaning::Channel(channel);
+        if let Some(columns) = chosen.get(&meaning).filter(|_| !signals.by.contains_key(&meaning)) {
+            let verdict = other(meaning, columns, given(meaning)?.as_ref());
+            signals.put(meaning, columns, verdict);
+        }
+    }
+    let get = |signals: &Signals, channel| signals.by.get(&Meaning::Channel(channel)).cloned();
+    if let (Some(x), Some(y)) = (get(&signals, Channel::X), get(&signals, Channel::Y)) {
+        known.track = Track::of(&x, &y);
+    }
+    for meaning in [Meaning::Channel(Channel::Psi), Meaning::Course] {
+        if let Some(columns) = chosen.get(&meaning) {
+            let verdict = direction(meaning, columns, given(meaning)?.as_ref(), &known);
+            signals.put(meaning, columns, verdict);
+        }
+    }
+    known.psi = get(&signals, Channel::Psi);
+    signals.speeds(chosen, &known, choices)?;
+    let r = Meaning::Channel(Channel::R);
+    if let Some(columns) = chosen.get(&r) {
+        let verdict = yaw_rate(r, columns, given(r)?.as_ref(), &known);
+        signals.put(r, columns, verdict);
+    }
+    known.r = get(&signals, Channel::R).or_else(|| known.psi.as_ref().map(|psi| psi.rate(psi.span())));
+    for (meaning, columns) in chosen {
+        let Meaning::Channel(channel) = *meaning else { continue };
+        let verdict = match channel {
+            Channel::Delta | Channel::DeltaOrder => rudder(*meaning, columns, given(*meaning)?.as_ref(), &known),
+            Channel::N | Channel::NOrder => rotation(*meaning, columns, given(*meaning)?.as_ref()),
+            _ if signals.by.contains_key(meaning) || signals.is_told(*meaning) => continue,
+            _ => other(*meaning, columns, given(*meaning)?.as_ref()),
+        };
+        signals.put(*meaning, columns, verdict);
+    }
+    if signals.asked.is_empty() { Ok(signals) } else { Err(ImportError::Undecided(signals.asked)) }
+}
+
+/// The unit that the user or the files give.
+fn given(meaning: Meaning, columns: &[&Column], choices: &Choices) -> Result<Option<Given>, ImportError> {
+    let quantity = meaning.quantity();
+    if let Some(unit) = choices.units.get(meaning.name()) {
+        return Ok(quantity.factor(unit).map(|factor| Given { unit: unit.clone(), factor, by_user: true }));
+    }
+    let mut units: Vec<&String> = columns.iter().filter_map(|c| c.unit.as_ref()).collect();
+    units.dedup();
+    if let [first, second, ..] = units.as_slice() {
+        let name = columns.first().map_or("", |c| c.name.as_str());
+        return Err(ImportError::Choice(format!(
+            "column `{name}` is in {first} in one file and in {second} in another; import them apart, or rename one of the columns"
+        )));
+    }
+    let unit = units.first().map(|u| (*u).clone());
+    Ok(unit.and_then(|unit| quantity.factor(&unit).map(|factor| Given { unit, factor, by_user: false })))
+}
+
+/// Channels without which nothing can be simulated, or which measure the motion: their unit must be known.
+fn needed(meaning: Meaning) -> bool {
+    use Channel::{Delta, N, Psi, R, U, V, X, Y};
+    match meaning {
+        Meaning::Channel(channel) => [X, Y, Psi, U, V, R, N, Delta].contains(&channel),
+        _ => true,
+    }
+}
+
+impl Signals {
+    fn is_told(&self, meaning: Meaning) -> bool {
+        self.asked.iter().any(|a| a.contains(&format!("--unit {}=", meaning.name())))
+    }
+
+    /// Takes columns as the verdict says, or keeps the question.
+    fn put(&mut self, meaning: Meaning, columns: &[&Column], verdict: Result<Verdict, String>) {
+        let name = columns.first().map_or("", |c| c.name.as_str());
+        match verdict {
+            Ok(verdict) => {
+                if let Some(doubt) = &verdict.doubt {
+                    self.notes.push(format!("{name}: {doubt}"));
+                }
+                let (signal, tidied) = Signal::new(columns, verdict.factor, verdict.offset, meaning.wraps());
+                self.tell(meaning, columns, &signal, tidied, &verdict.unit, verdict.evidence);
+                self.by.insert(meaning, signal);
+            }
+            Err(question) if needed(meaning) => self.asked.push(question),
+            Err(question) => self.unused.push(Unused { column: name.to_owned(), why: question }),
+        }
+    }
+
+    fn tell(
+        &mut self,
+        meaning: Meaning,
+        columns: &[&Column],
+        signal: &Signal,
+        tidied: Tidied,
+        unit: &str,
+        evidence: String,
+    ) {
+        let name = columns.first().map_or("", |c| c.name.as_str());
+        for (count, what) in [
+            (tidied.out_of_order, "come before an earlier one and are sorted"),
+            (tidied.repeated, "have the time of another and are left out"),
+        ] {
+            if count > 0 {
+                self.notes.push(format!("{name}: {count} samples {what}"));
+            }
+        }
+        self.taken.push(Taken {
+            quantity: meaning.name().to_owned(),
+            column: name.to_owned(),
+            unit: unit.to_owned(),
+            evidence,
+            samples: signal.t.len(),
+            step: signal.step,
+        });
+    }
+
+    /// Latitude and longitude as metres.
+    fn positions(&mut self, chosen: &Chosen<'_>) -> Result<(), ImportError> {
+        let (Some(lat), Some(lon)) = (chosen.get(&Meaning::Latitude), chosen.get(&Meaning::Longitude)) else {
+            return Ok(());
+        };
+        let (columns, minutes) = degrees(&[lat, lon])?;
+        let [latitudes, longitudes] = columns;
+        let (lat_signal, tidied) = Signal::new(&[&latitudes], 1.0, 0.0, false);
+        let (lon_signal, _) = Signal::new(&[&longitudes], 1f64.to_radians(), 0.0, true);
+        let mut places: Vec<[f64; 3]> = Vec::new();
+        let mut nowhere = 0;
+        for (t, latitude) in lat_signal.t.iter().zip(&lat_signal.v) {
+            let longitude = lon_signal.at(*t, lat_signal.step).to_degrees();
+            if latitude.abs() < 1e-9 && longitude.abs() < 1e-9 {
+                nowhere += 1;
+            } else if longitude.is_finite() {
+                places.push([*t, *latitude, longitude]);
+            }
+        }
+        let column = |k: usize| places.iter().map(|p| p[k]).collect::<Vec<f64>>();
+        let Some(plane) = Plane::amid(&column(1), &column(2)) else { return Ok(()) };
+        if nowhere > 0 {
+            self.notes.push(format!(
+                "{nowhere} positions are 0 N 0 E, which receivers write without a fix; taken as missing"
+            ));
+        }
+        let metres: Vec<[f64; 2]> = places.iter().map(|p| plane.metres(p[1], p[2])).collect();
+        let far = metres.iter().map(|m| m[0].hypot(m[1])).fold(0.0, f64::max);
+        if far > 100_000.0 {
+            let text = format!(
+                "positions reach {:.0} km from the point of the plane, where distances are {:.2} % short",
+                far / 1e3,
+                100.0 * far * far / 8.1e13
+            );
+            self.notes.push(text);
+        }
+        let form = if minutes { "deg and minutes (dddmm.mmm)" } else { "deg" };
+        let why = format!("plane tangent to WGS84 at {} N {} E", plane.origin[0], plane.origin[1]);
+        self.tell(Meaning::Latitude, lat, &lat_signal, tidied, form, why.clone());
+        self.tell(Meaning::Longitude, lon, &lon_signal, Tidied::default(), form, why);
+        for (axis, channel) in [Channel::X, Channel::Y].into_iter().enumerate() {
+            let signal = Signal { t: column(0), v: metres.iter().map(|m| m[axis]).collect(), step: lat_signal.step };
+            self.by.insert(Meaning::Channel(channel), signal);
+        }
+        self.origin = Some(plane.origin);
+        Ok(())
+    }
+
+    /// Speeds: over ground alone or in parts, and through water.
+    fn speeds(&mut self, chosen: &Chosen<'_>, known: &Known, choices: &Choices) -> Result<(), ImportError> {
+        let pairs = [
+            [Meaning::GroundSpeed, Meaning::GroundSpeed],
+            [Meaning::VelocityNorth, Meaning::VelocityEast],
+            [Meaning::Channel(Channel::U), Meaning::Channel(Channel::V)],
+            [Meaning::Channel(Channel::UWater), Meaning::Channel(Channel::VWater)],
+        ];
+        for [first, second] in pairs {
+            let mut parts: Vec<(Meaning, &Vec<&Column>)> =
+                [first, second].iter().filter_map(|m| Some((*m, chosen.get(m)?))).collect();
+            parts.dedup_by_key(|(meaning, _)| *meaning);
+            let Some((meaning, columns)) = parts.first() else { continue };
+            let raw: Vec<Signal> = parts.iter().map(|(_, c)| Signal::new(c, 1.0, 0.0, false).0).collect();
+            let mut size = raw[0].clone();
+            if let Some(other) = raw.get(1) {
+                let step = size.step;
+                size.v = size.t.iter().zip(&size.v).map(|(t, v)| v.hypot(other.at(*t, step))).collect();
+            }
+            size.v.iter_mut().for_each(|v| *v = v.abs());
+            let name = columns.first().map_or("", |c| c.name.as_str());
+            let verdict = speed(*meaning, name, &size, given(*meaning, columns, choices)?.as_ref(), known);
+            for (meaning, columns) in parts {
+                self.put(meaning, columns, verdict.clone());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Latitudes and longitudes in degrees, and whether they were written as degrees and minutes. Single values that are none are left out.
+fn degrees(both: &[&Vec<&Column>; 2]) -> Result<([Column; 2], bool), ImportError> {
+    let usual = |columns: &Vec<&Column>| columns.iter().map(|c| size_below(&c.v, 0.5)).fold(0.0, f64::max);
+    let in_minutes = usual(both[0]) > 90.0;
+    let mut found = [Column::default(), Column::default()];
+    for (i, columns) in both.iter().enumerate() {
+        let most = [90.0, 360.0][i];
+        let (mut wrong, mut count) = (None, 0);
+        for (t, v) in columns.iter().flat_map(|c| c.t.iter().zip(&c.v)) {
+            let degrees = if in_minutes { from_minutes(*v).unwrap_or(f64::NAN) } else { *v };
+            if degrees.abs() <= most {
+                found[i].push(*t, degrees);
+            } else {
+                (wrong, count) = (Some(*v), count + 1);
+            }
+        }
+        if let Some(wrong) = wrong.filter(|_| count > found[i].v.len() / 20) {
+            let name = columns.first().map_or("", |c| c.name.as_str());
+            let (words, channel) = (["latitude", "longitude"][i], ["x", "y"][i]);
+            let text = format!(
+                "column `{name}` holds {wrong}, which is no {words} in deg; is it metres? then pass `--column {channel}={name}`"
+            );
+            return Err(ImportError::Choice(text));
+        }
+    }
+    Ok((found, in_minutes))
+}
