@@ -79,6 +79,7 @@ pub mod diagnose;
 pub mod dynamics;
 pub mod error;
 pub mod evaluate;
+pub mod export;
 pub mod files;
 pub mod fit;
 pub mod guide;
@@ -105,6 +106,8 @@ pub mod split;
 pub mod state;
 pub mod statistics;
 pub mod study;
+#[cfg(feature = "ipopt")]
+pub mod sweep;
 pub mod terms;
 pub mod uncertainty;
 pub mod units;

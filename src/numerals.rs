@@ -32,6 +32,12 @@ pub fn sig(x: f64, digits: usize) -> String {
     }
 }
 
+/// As [`sig`], with 0 for what is smaller than `floor`: what rounding leaves of nothing.
+#[must_use]
+pub fn sig_above(x: f64, digits: usize, floor: f64) -> String {
+    sig(if x.abs() < floor { 0.0 } else { x }, digits)
+}
+
 /// `x` with `decimals` digits after the point; a dash when it is not finite, and no minus sign on zero.
 #[must_use]
 pub fn fixed(x: f64, decimals: usize) -> String {

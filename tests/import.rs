@@ -188,8 +188,9 @@ fn assert_as_sailed(imported: &Imported, tolerances: [f64; 6]) {
     }
 }
 
-/// Tolerances of files written with four decimals; a plane and a sphere of radii of curvature part by decimetres over kilometres.
-const ROUNDED: [f64; 6] = [1.0, 2e-6, 1e-4, 1e-6, 2e-6, 1e-5];
+/// Tolerances of files written with four decimals. The plane of the import touches the earth two kilometres from that of the truth,
+/// and north is not the same at both: over the track that makes metres.
+const ROUNDED: [f64; 6] = [3.0, 2e-6, 1e-4, 1e-6, 2e-6, 1e-5];
 
 #[test]
 fn a_log_with_semicolons_and_decimal_commas_comes_back_as_sailed() {
@@ -287,7 +288,7 @@ fn sentences_of_nmea_come_back_as_sailed() {
     let text = nmea().replacen("$HEHDT", "$HEHDX", 1);
     let imported = imported("log.txt", text.as_bytes(), &ImportSettings::default()).unwrap();
     // Rudder and propeller move between their samples.
-    assert_as_sailed(&imported, [1.0, 2e-5, 2e-3, 1e-6, 0.027, 0.16]);
+    assert_as_sailed(&imported, [3.0, 2e-5, 2e-3, 1e-6, 0.027, 0.16]);
     assert!(
         imported.notes.iter().any(|n| n.contains("1 lines fail their checksum") && n.ends_with("line 2")),
         "{:?}",
@@ -341,7 +342,7 @@ fn a_parquet_file_comes_back_as_sailed() {
     let path = folder.path().join("log.parquet");
     parquet(&path);
     let imported = import(&[path], &ImportSettings::default()).unwrap();
-    assert_as_sailed(&imported, [1.0, 1e-9, 1e-9, 1e-9, 1e-9, 1e-9]);
+    assert_as_sailed(&imported, [3.0, 1e-9, 1e-9, 1e-9, 1e-9, 1e-9]);
     assert!(channel(&imported, 0, Channel::X)[3].is_nan() && channel(&imported, 0, Channel::U)[3].is_finite());
 }
 
@@ -473,14 +474,17 @@ fn from_a_noisy_log_to_a_fit_without_editing() {
     assert!(runs.contains(",test,") && runs.contains(",train,") && runs.contains(",2024-05-01,"));
 
     study.does(&["check", "own/study.toml"]);
-    study.append("own/study.toml", "\n[fit.constraints]\nlimits = \"paper\"\n");
     let fit = study.json(&["fit", "own/study.toml"]);
     assert_eq!(at(&fit, "result.converged"), true);
-    for (name, truth, share) in [("rudder.lift1", 0.864, 0.15), ("resistance.quadratic", -1900.0, 0.6)] {
-        let estimates = at(&fit, "result.estimates").as_array().unwrap();
-        let value = estimates.iter().find(|e| e["name"] == name).unwrap()["value"].as_f64().unwrap();
-        assert!((value / truth - 1.0).abs() < share, "{name}: {value}, sailed with {truth}");
-    }
+    let estimates = at(&fit, "result.estimates").as_array().unwrap();
+    let value = |name: &str| estimates.iter().find(|e| e["name"] == name).unwrap()["value"].as_f64().unwrap();
+    let lift = value("rudder.lift1");
+    assert!((lift / 0.864 - 1.0).abs() < 0.15, "{lift}");
+    // The parameters of the resistance are not determined one by one; the resistance at the speed that was sailed is [N].
+    let resistance = |p: [f64; 3], u: f64| p[0] * u + p[1] * u * u + p[2] * u.powi(3);
+    let fitted = ["linear", "quadratic", "cubic"].map(|p| value(&format!("resistance.{p}")));
+    let ratio = resistance(fitted, 6.0) / resistance([10_500.0, -1900.0, 346.0], 6.0);
+    assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
 }
 
 #[test]

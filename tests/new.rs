@@ -149,7 +149,7 @@ fn a_new_ship_and_its_model_are_taken_by_a_study() {
     let dimensions = ["new", "--lpp", "85", "--breadth", "13.5", "--draught", "4.2", "--type"];
     let files = ["--out", "new.toml", "--model", "priors.toml"];
     let said = study.does(&[&dimensions[..], &["coaster"], &files].concat());
-    contains_all(&said, &["Given: hull.lpp, hull.breadth, hull.draught", "rudder.area", "Det Norske Veritas"]);
+    contains_all(&said, &["Given: hull.lpp, hull.breadth, hull.draught", "rudder.area", "Veritas"]);
     study.edit("study.toml", "ship = \"ship.toml\"", "ship = \"new.toml\"");
     study.edit("study.toml", "model = \"model.toml\"", "model = \"priors.toml\"");
     contains_all(&study.does(&["maneuver", "zigzag", "study.toml"]), &["overshoot"]);

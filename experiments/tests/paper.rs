@@ -7,10 +7,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use trimtab::fit::constraints;
 use trimtab::physics::Form;
+use trimtab::plot::{Axis, Figure, Format, Panel, Width};
 use trimtab::simulate::Integration;
 use trimtab_experiments::paper::case::{Case, Setup, initial_model};
 use trimtab_experiments::paper::list::ARTEFACTS;
 use trimtab_experiments::paper::published::published;
+use trimtab_experiments::paper::target::Target;
 use trimtab_experiments::truth::dataset::{Run, dataset};
 use trimtab_experiments::truth::ships::ShipId;
 
@@ -35,7 +37,10 @@ fn tables_and_figures_repeat_bit_by_bit_on_one_and_on_two_threads() {
         let text: Vec<String> = pool.install(|| {
             let cases = [small_case(&runs)];
             // The last two make many fits and share their code with these.
-            ARTEFACTS[..6].iter().map(|artefact| (artefact.make)(&cases, folder.path()).unwrap()).collect()
+            ARTEFACTS[..6]
+                .iter()
+                .map(|artefact| (artefact.make)(&cases, &Target::new(folder.path())).unwrap())
+                .collect()
         });
         (text, files(folder.path()))
     };
@@ -72,4 +77,16 @@ fn a_fit_from_the_infeasible_guess_converges_keeps_the_constraints_and_gains_on_
     let evaluation = case.evaluate(&case.published_baseline);
     let gain = evaluation.summary("test").unwrap().cvdm_improvement.unwrap().value;
     assert!(gain > published(ShipId::A).cvdm_improvement, "{gain}");
+}
+
+#[test]
+fn figures_are_drawn_in_the_formats_that_are_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let target =
+        Target { formats: vec![Format::Pdf, Format::Svg], width: Some(Width::Two), ..Target::new(folder.path()) };
+    let figure = Figure::new("R(u)").with(Panel::new("", Axis::new("u [m/s]"), Axis::new("R [kN]")));
+    target.figure("figure2", figure).unwrap();
+    let made = files(folder.path());
+    assert_eq!(made.keys().collect::<Vec<_>>(), ["figure2.csv", "figure2.pdf", "figure2.svg"]);
+    assert!(made["figure2.pdf"].starts_with(b"%PDF") && made["figure2.svg"].starts_with(b"<svg"));
 }

@@ -56,9 +56,11 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     bar.finish_and_clear();
 
     let issues = rows(&audit);
-    output.file("channels.csv", &channels(&audit)?);
-    output
-        .file("issues.csv", &csv_text(&["run", "severity", "channel", "lines", "issue", "next_step"], issues.clone())?);
+    output.table("channels.csv", &channels(&audit)?);
+    output.table(
+        "issues.csv",
+        &csv_text(&["run", "severity", "channel", "lines", "issue", "next_step"], issues.clone())?,
+    );
     output.finish(&text(&audit, &issues), &audit)?;
     Ok(if audit.worst() == Some(Severity::Error) { Answer::No } else { Answer::Yes })
 }

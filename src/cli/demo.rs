@@ -4,6 +4,7 @@
 use super::answer::Answer;
 use super::diagnose::{prepared, write_diagnosis};
 use super::error::CliError;
+use super::lines::filled;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs};
 use super::progress::progress;
@@ -89,7 +90,7 @@ struct Size {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let study = args.out.join("study.toml");
-    let results = OutputArgs { out: Some(args.out.join("results")), json: args.json };
+    let results = OutputArgs { out: Some(args.out.join("results")), json: args.json, tables: Vec::new() };
     let mut output = Output::new("demo", &results)?;
     let files = write_study(&args.out)?;
     let loaded = Loaded::new(&StudyArgs { study: study.clone(), model: None })?;
@@ -180,7 +181,12 @@ fn reveal(concealed: Concealed, diagnosis: &Diagnosis) -> Revealed {
 impl Checked {
     fn sentence(&self) -> String {
         let Self { runs, errors, warnings } = self;
-        format!("{runs} recordings: {errors} errors, {warnings} warnings; `trimtab check` lists them.")
+        let count = |n: &usize, what: &str| match n {
+            0 => format!("no {what}"),
+            1 => format!("1 {what}"),
+            n => format!("{n} {what}s"),
+        };
+        format!("{runs} recordings: {}, {} (`trimtab check`).", count(errors, "error"), count(warnings, "warning"))
     }
 }
 
@@ -212,7 +218,9 @@ impl Revealed {
 }
 
 fn section(number: usize, title: &str, text: &str) -> String {
-    format!("{number}. {title}\n\n{text}")
+    let lines: String =
+        text.lines().map(|line| if line.starts_with(' ') { format!("{line}\n") } else { filled(line, 0) }).collect();
+    format!("{number}. {title}\n\n{}", lines.trim_end())
 }
 
 fn judged(evaluation: &Evaluation) -> String {

@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Proof, Summary, predict, prove};
 use trimtab::model::Model;
-use trimtab::numerals::{DASH, sig};
+use trimtab::numerals::{DASH, sig, sig_above};
 use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
 use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Split, or_nan};
@@ -152,14 +152,21 @@ pub fn judge(loaded: &Loaded, baseline: &Model, model: &Model, windows: &[Run]) 
     Ok(evaluation)
 }
 
+/// Below this a deviation (in m, deg, m/s, deg/s or %) is rounding, and is told as 0.
+const ROUNDING: f64 = 1e-6;
+
+fn ends(x: f64) -> String {
+    sig_above(x, 3, ROUNDING)
+}
+
 fn number(e: Option<Estimate>, scale: f64) -> String {
-    e.map_or_else(|| DASH.into(), |e| sig(e.value * scale, 3))
+    e.map_or_else(|| DASH.into(), |e| sig_above(e.value * scale, 3, ROUNDING))
 }
 
 fn with_interval(e: Option<Estimate>, scale: f64) -> String {
     let interval = e
         .and_then(|e| e.ci95)
-        .map_or(String::new(), |[lo, hi]| format!(" [{}, {}]", sig(lo * scale, 3), sig(hi * scale, 3)));
+        .map_or(String::new(), |[lo, hi]| format!(" [{}, {}]", ends(lo * scale), ends(hi * scale)));
     number(e, scale) + &interval
 }
 
@@ -250,7 +257,7 @@ fn deviations(study: &str, fitted: &str, main: &Summary) -> String {
 
 fn interval(e: Option<Estimate>, scale: f64) -> String {
     e.and_then(|e| e.ci95)
-        .map_or_else(|| DASH.into(), |[lo, hi]| format!("[{}, {}]", sig(lo * scale, 3), sig(hi * scale, 3)))
+        .map_or_else(|| DASH.into(), |[lo, hi]| format!("[{}, {}]", ends(lo * scale), ends(hi * scale)))
 }
 
 fn cvdm(outcome: &Outcome) -> String {
@@ -300,8 +307,8 @@ pub fn write(
     windows: &[Run],
     integration: Integration,
 ) -> Result<(), CliError> {
-    output.file("trajectories.csv", &trajectories(&evaluation.trajectories)?);
-    output.file("summary.csv", &summary(&evaluation.summaries)?);
+    output.table("trajectories.csv", &trajectories(&evaluation.trajectories)?);
+    output.table("summary.csv", &summary(&evaluation.summaries)?);
     let test: Vec<&Comparison> = evaluation.trajectories.iter().filter(|t| t.split == Split::Test).collect();
     if let Some(main) = evaluation.summaries.first() {
         output.figure("improvement", || improvement(main));
@@ -313,29 +320,43 @@ pub fn write(
 
 fn trajectories(comparisons: &[Comparison]) -> Result<Vec<u8>, CliError> {
     let mut header: Vec<String> =
-        ["run", "session", "manoeuvre", "split", "start_time", "duration", "model", "cvdm"].map(str::to_owned).to_vec();
-    header.extend(STATE_NAMES.iter().map(|n| format!("md_{n}")));
-    header.push("diverged_after".into());
-    let rows = comparisons.iter().flat_map(|c| {
-        [("baseline", &c.baseline), ("fitted", &c.fitted)].map(|(which, outcome)| {
-            let split = if c.split == Split::Test { "test" } else { "train" };
-            let mut row = vec![c.run.clone(), c.session.clone(), c.manoeuvre.clone(), split.into()];
-            row.extend([c.start_time.to_string(), c.duration.to_string(), which.into()]);
-            let deviation = outcome.deviation();
-            row.push(deviation.map_or(String::new(), |d| d.cvdm.to_string()));
-            row.extend((0..6).map(|i| deviation.and_then(|d| d.md[i]).map_or(String::new(), |m| m.to_string())));
-            row.push(match outcome {
-                Outcome::Diverged { diverged_after } => diverged_after.to_string(),
-                Outcome::Simulated(_) => String::new(),
-            });
-            row
-        })
-    });
+        ["run", "session", "manoeuvre", "split", "start_time [s]", "duration [s]", "model", "cvdm [%]"]
+            .map(str::to_owned)
+            .to_vec();
+    header.extend((0..6).map(|i| format!("md_{} [{}]", STATE_NAMES[i], dimension(i).1)));
+    header.push("diverged_after [s]".into());
+    let rows =
+        comparisons.iter().flat_map(|c| {
+            [("baseline", &c.baseline), ("fitted", &c.fitted)].map(|(which, outcome)| {
+                let split = if c.split == Split::Test { "test" } else { "train" };
+                let mut row = vec![c.run.clone(), c.session.clone(), c.manoeuvre.clone(), split.into()];
+                row.extend([c.start_time.to_string(), c.duration.to_string(), which.into()]);
+                let deviation = outcome.deviation();
+                row.push(deviation.map_or(String::new(), |d| d.cvdm.to_string()));
+                row.extend((0..6).map(|i| {
+                    deviation.and_then(|d| d.md[i]).map_or(String::new(), |m| (m * dimension(i).0).to_string())
+                }));
+                row.push(match outcome {
+                    Outcome::Diverged { diverged_after } => diverged_after.to_string(),
+                    Outcome::Simulated(_) => String::new(),
+                });
+                row
+            })
+        });
     csv_text(&header.iter().map(String::as_str).collect::<Vec<_>>(), rows)
 }
 
+/// Factor from SI and unit of a mean deviation; improvements are shares.
+fn unit_of(kind: &str, i: usize) -> (f64, &'static str) {
+    if kind == "improvement" { (1.0, "-") } else { dimension(i) }
+}
+
+fn scaled(e: Estimate, scale: f64) -> Estimate {
+    Estimate { value: e.value * scale, ci95: e.ci95.map(|ends| ends.map(|x| x * scale)) }
+}
+
 fn summary(summaries: &[Summary]) -> Result<Vec<u8>, CliError> {
-    let header = ["group", "measure", "value", "low95", "high95"];
+    let header = ["group", "measure", "unit", "value", "low95", "high95"];
     let rows = summaries.iter().flat_map(|s| {
         let named = [
             ("cvdm_baseline", s.cvdm_baseline),
@@ -344,21 +365,24 @@ fn summary(summaries: &[Summary]) -> Result<Vec<u8>, CliError> {
             ("mari", s.mari),
             ("consistency", s.consistency),
         ];
-        let named = named.into_iter().map(|(n, e)| (n.to_owned(), e));
+        let percent = |n: &str| (1.0, if n == "cvdm_baseline" || n == "cvdm_fitted" { "%" } else { "-" });
+        let named = named.into_iter().map(|(n, e)| (n.to_owned(), percent(n), e));
         let kinds = [("baseline", &s.md_baseline), ("fitted", &s.md_fitted), ("improvement", &s.md_improvement)];
-        let md = kinds
-            .into_iter()
-            .flat_map(|(kind, md)| (0..6).map(move |i| (format!("md_{}_{kind}", STATE_NAMES[i]), md[i])));
-        let estimates = named.chain(md).filter_map(|(name, e)| Some((name, e?)));
-        let rows = estimates.map(|(name, e)| {
+        let md = kinds.into_iter().flat_map(|(kind, md)| {
+            (0..6).map(move |i| (format!("md_{}_{kind}", STATE_NAMES[i]), unit_of(kind, i), md[i]))
+        });
+        let estimates = named.chain(md).filter_map(|(name, (scale, unit), e)| Some((name, unit, scaled(e?, scale))));
+        let rows = estimates.map(|(name, unit, e)| {
             let [lo, hi] = e.ci95.map_or([String::new(), String::new()], |ci| ci.map(|c| c.to_string()));
-            [s.group.clone(), name, e.value.to_string(), lo, hi]
+            [s.group.clone(), name, unit.into(), e.value.to_string(), lo, hi]
         });
         let counts = [("runs", s.runs), ("trajectories", s.trajectories), ("better", s.better), ("worse", s.worse)];
         let diverged = [("diverged_baseline", s.diverged_baseline), ("diverged_fitted", s.diverged_fitted)];
         let counts = counts.into_iter().chain(diverged);
-        rows.chain(counts.map(|(n, v)| [s.group.clone(), n.into(), v.to_string(), String::new(), String::new()]))
-            .collect::<Vec<_>>()
+        rows.chain(
+            counts.map(|(n, v)| [s.group.clone(), n.into(), "-".into(), v.to_string(), String::new(), String::new()]),
+        )
+        .collect::<Vec<_>>()
     });
     csv_text(&header, rows)
 }

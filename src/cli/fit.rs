@@ -16,6 +16,7 @@ use trimtab::numerals::sig;
 use trimtab::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
 use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, RunStore, Runs, Split};
+use trimtab::report::{USUAL, at_width};
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
 use trimtab::uncertainty::Uncertainty;
@@ -197,7 +198,7 @@ fn from_many(ranks: &Ranks, loaded: &Loaded, count: usize, output: &mut Output) 
         let ends = (0..free.len()).map(|j| row.end.get(j).map_or(String::new(), f64::to_string));
         first.into_iter().chain(row.start.iter().map(f64::to_string)).chain(ends).collect::<Vec<String>>()
     };
-    output.file("starts.csv", &csv_text(&header, rows.iter().enumerate().map(fields))?);
+    output.table("starts.csv", &csv_text(&header, rows.iter().enumerate().map(fields))?);
     let converged: Vec<&StartRow> = rows.iter().filter(|row| row.converged).collect();
     let best = converged.iter().min_by(|a, b| a.cost.unwrap_or(f64::NAN).total_cmp(&b.cost.unwrap_or(f64::NAN)));
     let Some((best, cost)) = best.and_then(|row| Some((row, row.cost?))) else {
@@ -230,7 +231,8 @@ pub fn speeds(ranks: &Ranks, windows: Runs) -> [f64; 2] {
 /// Writes the files of a fit.
 pub fn write(output: &mut Output, start: &Model, fit: &Fit, speeds: [f64; 2]) -> Result<(), CliError> {
     output.file("fitted.toml", fitted_text(&fit.model, fit.uncertainty())?.as_bytes());
-    output.file("fit.txt", fit.report().as_bytes());
+    // A file does not depend on the terminal it was made at.
+    output.file("fit.txt", at_width(USUAL, || fit.report()).as_bytes());
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
     let rows = fit.estimates.iter().map(|e| {
         let [low, high] = e.interval.map_or([None, None], |i| i.map(Some));
@@ -247,7 +249,7 @@ pub fn write(output: &mut Output, start: &Model, fit: &Fit, speeds: [f64; 2]) ->
         ]
     });
     let header = ["parameter", "symbol", "unit", "start", "estimate", "standard_error", "low95", "high95", "at_bound"];
-    output.file("parameters.csv", &csv_text(&header, rows)?);
+    output.table("parameters.csv", &csv_text(&header, rows)?);
     output.figure("curves", || curves(&[("start", GREY, start), ("fitted", FITTED, &fit.model)], speeds));
     Ok(())
 }

@@ -3,6 +3,7 @@
 
 use super::answer::Answer;
 use super::error::CliError;
+use super::lines::filled;
 use super::output::{print, print_json};
 use clap::Command;
 use trimtab::error::suggestion;
@@ -27,9 +28,6 @@ pub struct Args {
     #[arg(long)]
     schema: bool,
 }
-
-/// Width of the lines.
-const WIDTH: usize = 80;
 
 /// Runs the command; `program` defines the command line.
 pub fn run(args: &Args, program: &Command) -> Result<Answer, CliError> {
@@ -123,31 +121,17 @@ fn unmarked(text: &str) -> String {
     text.replace("**", "").replace("\\[", "[").replace("\\]", "]").replace("\\<", "<")
 }
 
-/// Adds a paragraph in lines of at most [`WIDTH`], those of an entry of a list behind its mark.
+/// Adds a paragraph in lines, those of an entry of a list behind its mark.
 fn flush(text: &mut String, paragraph: &mut String) {
     let words = unmarked(paragraph);
     let indent = if is_item(&words) { words.find(' ').map_or(0, |i| i + 1) } else { 0 };
-    let mut column = 0;
-    for word in words.split_whitespace() {
-        let length = word.chars().count();
-        if column > 0 && column + 1 + length > WIDTH {
-            *text += &format!("\n{}", " ".repeat(indent));
-            column = indent;
-        } else if column > 0 {
-            text.push(' ');
-            column += 1;
-        }
-        *text += word;
-        column += length;
-    }
-    if column > 0 {
-        text.push('\n');
-    }
+    *text += &filled(&words, indent);
     paragraph.clear();
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::lines::WIDTH;
     use super::*;
 
     #[test]

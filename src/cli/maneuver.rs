@@ -335,7 +335,7 @@ fn finish<M: Listed>(
     let table = measures_csv(trials);
     let rows = table.rows().iter().cloned();
     let header: Vec<&str> = table.header().iter().map(String::as_str).collect();
-    output.file(format!("{stem}_measures.csv"), &super::output::csv_text(&header, rows)?);
+    output.table(&format!("{stem}_measures.csv"), &super::output::csv_text(&header, rows)?);
     output.figure(stem, figure);
     Ok(())
 }

@@ -4,14 +4,17 @@
 mod answer;
 mod audited;
 mod check;
+mod compare;
 mod demo;
 mod diagnose;
 mod error;
 mod evaluate;
+mod export;
 mod figures;
 mod fit;
 mod help;
 mod import;
+mod lines;
 mod load;
 mod maneuver;
 mod new;
@@ -22,6 +25,8 @@ mod progress;
 mod shell;
 mod simulate;
 mod split;
+mod style;
+mod sweep;
 mod terminal;
 mod terms;
 
@@ -32,6 +37,7 @@ use processor::Build;
 use std::process::ExitCode;
 use terminal::{plain, tell};
 use trimtab::ranks::{Ranks, Traffic};
+use trimtab::report::{USUAL, set_width};
 
 const AFTER_HELP: &str = "\
 Begin with
@@ -74,9 +80,9 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    New(new::Args),
     Import(import::Args),
     Split(split::Args),
-    New(new::Args),
     Check(check::Args),
     Simulate(simulate::Args),
     Fit(fit::Args),
@@ -84,6 +90,9 @@ enum Command {
     Diagnose(diagnose::Args),
     Maneuver(maneuver::Args),
     Plan(plan::Args),
+    Sweep(sweep::Args),
+    Compare(compare::Args),
+    Export(export::Args),
     Terms(terms::Args),
     Demo(demo::Args),
     Help(help::Args),
@@ -110,6 +119,7 @@ pub fn run() -> ExitCode {
         // Help, or the version.
         Err(asked) => asked.exit(),
     };
+    set_width(style::columns().unwrap_or(USUAL));
     let ranks = Ranks::join();
     let outcome = execute(&cli, &ranks);
     if let (Err(error), true) = (&outcome, ranks.size() > 1) {
@@ -138,14 +148,17 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Evaluate(args) => evaluate::run(args, ranks),
         // The work of the others is not divided: one rank does it.
         _ if !ranks.is_first() => Ok(Answer::Yes),
+        Command::New(args) => new::run(args),
         Command::Import(args) => import::run(args),
         Command::Split(args) => split::run(args),
-        Command::New(args) => new::run(args),
         Command::Check(args) => check::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Diagnose(args) => diagnose::run(args),
         Command::Maneuver(args) => maneuver::run(args),
         Command::Plan(args) => plan::run(args),
+        Command::Sweep(args) => sweep::run(args),
+        Command::Compare(args) => compare::run(args),
+        Command::Export(args) => export::run(args),
         Command::Terms(args) => terms::run(args),
         Command::Demo(args) => demo::run(args),
         Command::Help(args) => help::run(args, &Cli::command()),

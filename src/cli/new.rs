@@ -3,7 +3,7 @@
 
 use super::answer::Answer;
 use super::error::CliError;
-use super::output::{print, print_json};
+use super::output::{print, print_file, print_json};
 use super::terminal::tell;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -121,7 +121,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     if args.json {
         print_json(&serde_json::json!({"command": "new", "result": estimated, "version": env!("CARGO_PKG_VERSION")}))?;
     } else if args.out.is_none() {
-        print(estimated.ship_file())?;
+        print_file(estimated.ship_file())?;
     } else {
         print(&summary(&estimated, args))?;
     }
@@ -216,7 +216,7 @@ fn summary(estimated: &Estimated, args: &Args) -> String {
         estimated.kind,
         sig(estimated.speed, 3),
         given.join(", "),
-        table.wrapped(100),
+        table,
         files.join(", ")
     )
 }

@@ -5,6 +5,7 @@ use super::audited::Audited;
 use super::error::CliError;
 use super::figures::{Captions, Drawing, FigureArgs};
 use super::load::Loaded;
+use super::style::shown;
 use super::terminal::{Escaped, plain};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -17,6 +18,7 @@ use std::time::SystemTime;
 use trimtab::files::{FolderError, Kept, Log, Origin, ResultFolder, plain_cell, sha256, utc};
 use trimtab::plot::{Figure, FigureError};
 use trimtab::ranks::Ranks;
+use trimtab::report::Table;
 use trimtab::report::diagnosis::{Provenance, SourceFile};
 
 /// Arguments that every command with results has.
@@ -29,6 +31,18 @@ pub struct OutputArgs {
     /// Print the result as one JSON object, and nothing else, to standard output.
     #[arg(long)]
     pub json: bool,
+    /// Write each table of the result in these forms too: `latex` (booktabs) and `markdown`, beside the CSV.
+    #[arg(long, value_name = "FORMAT", value_delimiter = ',', requires = "out")]
+    pub tables: Vec<TableFormat>,
+}
+
+/// A form of a table beside CSV.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum TableFormat {
+    /// LaTeX with the rules of booktabs.
+    Latex,
+    /// Markdown.
+    Markdown,
 }
 
 /// Collects the results of a command.
@@ -36,6 +50,7 @@ pub struct Output {
     command: &'static str,
     json: bool,
     silent: bool,
+    tables: Vec<TableFormat>,
     folder: Option<ResultFolder>,
     settings: BTreeMap<String, Value>,
     audited: Option<Audited>,
@@ -59,6 +74,10 @@ fn expected(command: &str) -> &'static [&'static str] {
         "maneuver zigzag" => &["maneuver_zigzag.json", "zigzag.png", "zigzag.csv", "zigzag_measures.csv"],
         "maneuver stopping" => &["maneuver_stopping.json", "stopping.png", "stopping.csv", "stopping_measures.csv"],
         "plan" => &["plan.json", "trials.csv", "detectable.csv", "isolability.csv", "isolability_map.png"],
+        "sweep" => {
+            &["sweep.json", "profiles.csv", "intervals.csv", "sensitivities.csv", "pairs.csv", "profile_curves.csv"]
+        }
+        "compare" => &["compare.json", "compare.csv", "compare.png"],
         "terms" => &["terms.json", "parameters.csv"],
         "man" => &["trimtab.1"],
         "demo" => {
@@ -79,6 +98,7 @@ impl Output {
             command,
             json: args.json,
             silent: false,
+            tables: args.tables.clone(),
             folder,
             settings,
             audited,
@@ -99,7 +119,7 @@ impl Output {
         if ranks.is_first() {
             return Self::new(command, args);
         }
-        Ok(Self { silent: true, ..Self::new(command, &OutputArgs { out: None, json: false })? })
+        Ok(Self { silent: true, ..Self::new(command, &OutputArgs { out: None, json: false, tables: Vec::new() })? })
     }
 
     /// Notes the files of a study and their digests for the manifest; with its recordings, if the command reads them.
@@ -166,6 +186,19 @@ impl Output {
     /// command ends, after its answer.
     pub fn file(&mut self, name: impl AsRef<Path>, bytes: &[u8]) {
         self.put(|folder| Ok(folder.write(name, bytes)?));
+    }
+
+    /// Writes a table of the result, CSV text of [`csv_text`], and the same in the other forms that are asked for.
+    pub fn table(&mut self, name: &str, csv: &[u8]) {
+        self.file(name, csv);
+        for format in self.tables.clone() {
+            let Some(table) = table_of(csv) else { continue };
+            let (end, text) = match format {
+                TableFormat::Latex => ("tex", table.latex()),
+                TableFormat::Markdown => ("md", table.markdown()),
+            };
+            self.file(Path::new(name).with_extension(end), text.as_bytes());
+        }
     }
 
     /// Draws a figure into the folder, if there is one; a failure is told as that of [`Self::file`].
@@ -378,6 +411,12 @@ fn without_nulls(value: Value) -> Value {
 /// has what it wanted.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut stdout = std::io::stdout().lock();
+    printed(stdout.write_all(shown(&plain(text)).as_bytes()).and_then(|()| stdout.flush()))
+}
+
+/// Prints the content of a file to standard output as it is, neither wrapped nor coloured.
+pub fn print_file(text: &str) -> Result<(), CliError> {
+    let mut stdout = std::io::stdout().lock();
     printed(stdout.write_all(plain(text).as_bytes()).and_then(|()| stdout.flush()))
 }
 
@@ -408,6 +447,16 @@ pub fn csv_text<R: IntoIterator<Item = String>>(
         writer.write_record(row).map_err(|e| fail(e.to_string()))?;
     }
     writer.into_inner().map_err(|e| fail(e.to_string()))
+}
+
+/// CSV text as a table.
+fn table_of(csv: &[u8]) -> Option<Table> {
+    let mut reader = csv::Reader::from_reader(csv);
+    let mut table = Table::new(reader.headers().ok()?.iter().map(str::to_owned));
+    for record in reader.records() {
+        table.row(record.ok()?.iter().map(str::to_owned));
+    }
+    Some(table)
 }
 
 #[cfg(test)]

@@ -169,7 +169,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         ("detectable.csv", detectable_table(&planned)),
         ("isolability.csv", isolability_table(&planned)),
     ] {
-        output.file(name, &csv(&table)?);
+        output.table(name, &csv(&table)?);
     }
     if !planned.isolability.mechanisms.is_empty() {
         output.figure("isolability_map", || isolability_figure(&planned));

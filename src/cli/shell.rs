@@ -3,7 +3,7 @@
 
 use super::answer::Answer;
 use super::error::CliError;
-use super::output::{Output, OutputArgs, print};
+use super::output::{Output, OutputArgs, print, print_file};
 use clap::Command;
 use clap_complete::Shell;
 use clap_mangen::Man;
@@ -42,13 +42,13 @@ pub struct ManArgs {
 pub fn completions(args: &CompletionsArgs, mut program: Command) -> Result<Answer, CliError> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut program, "trimtab", &mut script);
-    print(&String::from_utf8_lossy(&script))?;
+    print_file(&String::from_utf8_lossy(&script))?;
     Ok(Answer::Yes)
 }
 
 /// Writes the manual pages of `program`.
 pub fn man(args: &ManArgs, mut program: Command) -> Result<Answer, CliError> {
-    let mut output = Output::new("man", &OutputArgs { out: Some(args.out.clone()), json: false })?;
+    let mut output = Output::new("man", &OutputArgs { out: Some(args.out.clone()), json: false, tables: Vec::new() })?;
     program.build();
     pages(&mut output, program, "trimtab")?;
     let written = output.close();

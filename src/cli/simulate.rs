@@ -13,7 +13,7 @@ use trimtab::evaluate::{Outcome, outcome, predict_all};
 use trimtab::files::Names;
 use trimtab::fit::FitSettings;
 use trimtab::model::Model;
-use trimtab::numerals::sig;
+use trimtab::numerals::{DASH, sig, sig_above};
 use trimtab::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
@@ -129,10 +129,10 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         },
     )?;
     let header = table(&[]);
-    let header: Vec<&str> = header.header().iter().map(String::as_str).chain(["file"]).collect();
+    let header: Vec<&str> = header.header().iter().map(String::as_str).chain(["diverged_after [s]", "file"]).collect();
     if written {
-        let cells = rows.iter().zip(files).map(|(row, file)| cells(row).into_iter().chain([file]));
-        output.file("simulations.csv", &csv_text(&header, cells)?);
+        let cells = rows.iter().zip(files).map(|(row, file)| tidy(row).into_iter().chain([file]));
+        output.table("simulations.csv", &csv_text(&header, cells)?);
     }
     output.figure("tracks", || figure(&model.name, rows.len(), tracks));
     let validity = validity.coverage();
@@ -141,8 +141,13 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         0 => String::new(),
         more => format!("\nand {more} windows more (in --out and --json)\n"),
     };
-    let text =
-        format!("{} simulated with `{}`:\n\n{table}\n{more}\n{}", loaded.study.name, model.name, validity.line());
+    let text = format!(
+        "{} simulated with `{}`:\n\n{table}\n{more}{}\n{}",
+        loaded.study.name,
+        model.name,
+        divergences(&rows),
+        validity.line()
+    );
     let report = Report { model: &model.name, runs: Each(&rows), validity: Pruned(&validity) };
     output.finish_long(&text, &report)?;
     let diverged = rows.iter().find_map(|r| match r.outcome {
@@ -152,6 +157,20 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     match diverged {
         Some((run, after)) => Err(CliError::Diverged { what: format!("run `{run}`"), after }),
         None => Ok(Answer::Yes),
+    }
+}
+
+/// Which windows diverged, and when, as a line; nothing where none did.
+fn divergences(rows: &[Row]) -> String {
+    let after = |r: &Row| match r.outcome {
+        Outcome::Diverged { diverged_after } => Some(format!("{} diverged after {diverged_after:.0} s", r.run)),
+        Outcome::Simulated(_) => None,
+    };
+    let told: Vec<String> = rows.iter().filter_map(after).collect();
+    match told.len() {
+        0 => String::new(),
+        n if n > 5 => format!("{}, and {} windows more\n", told[..5].join(", "), n - 5),
+        _ => format!("{}\n", told.join(", ")),
     }
 }
 
@@ -229,16 +248,35 @@ fn cells(r: &Row) -> Vec<String> {
     match &r.outcome {
         Outcome::Simulated(d) => {
             let degrees = |i: usize| if i == 2 || i == 5 { 180.0 / std::f64::consts::PI } else { 1.0 };
-            let md = d.md.iter().enumerate().map(|(i, v)| v.map_or_else(|| "–".into(), |v| sig(v * degrees(i), 3)));
+            let md =
+                d.md.iter()
+                    .enumerate()
+                    .map(|(i, v)| v.map_or_else(|| "–".into(), |v| sig_above(v * degrees(i), 3, 1e-6)));
             cells.extend(md);
-            cells.push(sig(d.cvdm, 3));
+            cells.push(sig_above(d.cvdm, 3, 1e-6));
         }
-        Outcome::Diverged { diverged_after } => {
+        Outcome::Diverged { .. } => {
             cells.extend(std::iter::repeat_n("–".to_owned(), 6));
-            cells.push(format!("diverged after {diverged_after:.0} s"));
+            cells.push("diverged".to_owned());
         }
     }
     cells
+}
+
+/// The cells of a window's row in a file: what has no value is empty, and the time of a divergence has its own column.
+fn tidy(r: &Row) -> Vec<String> {
+    let diverged = match &r.outcome {
+        Outcome::Simulated(_) => None,
+        Outcome::Diverged { diverged_after } => Some(diverged_after.to_string()),
+    };
+    let mut cells = cells(r);
+    if diverged.is_some() {
+        // The words that stand in the place of cVDM in a terminal.
+        cells.pop();
+        cells.push(String::new());
+    }
+    let empty = |cell: String| if cell == DASH { String::new() } else { cell };
+    cells.into_iter().map(empty).chain([diverged.unwrap_or_default()]).collect()
 }
 
 /// The name of a window: its run, with its start to the millisecond where the run has several. `windows` are those of one

@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     } else {
         terms.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
     };
-    output.file("parameters.csv", &parameters(&terms)?);
+    output.table("parameters.csv", &parameters(&terms)?);
     output.finish(&text, &Listing { terms })?;
     Ok(Answer::Yes)
 }

@@ -248,7 +248,9 @@ fn values(f: &Finding) -> String {
         };
         return format!("{} {} {word} {angle:03.0} deg", sig(north.value.hypot(east.value), 3), north.unit);
     }
-    let one = |p: &Amplitude| format!("{} = {} {}", p.name, sig(p.value, 3), p.unit);
+    // A parameter without a unit has `-` in its place.
+    let unit = |p: &Amplitude| if p.unit == "-" { String::new() } else { format!(" {}", p.unit) };
+    let one = |p: &Amplitude| format!("{} = {}{}", p.name, sig(p.value, 3), unit(p));
     f.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 

@@ -24,12 +24,14 @@
 mod compare;
 mod cvdm;
 mod prove;
+mod ranking;
 mod settings;
 mod summary;
 
 pub use compare::{Comparison, compare, predict, predict_all};
 pub use cvdm::{Deviation, Outcome, outcome};
 pub use prove::{Evaluation, Judging, Part, Proof, prove};
+pub use ranking::{Ranked, Ranking, rank};
 pub use settings::EvaluationSettings;
 pub use summary::{Estimate, Named, Summary, summarise};
 
@@ -265,6 +267,33 @@ mod tests {
         assert!(lo < estimate.value && estimate.value < hi);
         let other = prove(&a, &b, &windows, &judging(2));
         assert_ne!(other.summary("test").unwrap().cvdm_improvement.unwrap().ci95, estimate.ci95);
+    }
+
+    #[test]
+    fn models_are_ranked_on_the_trajectories_that_all_run_through_and_differences_are_paired() {
+        let truth = model();
+        let all = windows(&truth, 6);
+        let mut off = truth.clone();
+        off.set(&[("rudder.lift1", 2.4)]).unwrap();
+        off.parameters.iter_mut().for_each(|p| p.free = p.name == "rudder.lift1");
+        let judging = Judging {
+            integration: Integration::default(),
+            max_yaw_rate: R_MAX,
+            settings: EvaluationSettings { resamples: 200, ..EvaluationSettings::default() },
+        };
+        let ranking = rank(&[off.clone(), truth.clone(), off.clone()], &all, &judging);
+        let [first, second, third] = &ranking.models[..] else { panic!("{ranking:?}") };
+        assert_eq!((ranking.runs, ranking.trajectories, ranking.common), (6, 6, 6));
+        assert_eq!((first.free, first.difference, second.runs_better, second.runs_worse), (1, None, 6, 0));
+        let gained = second.difference.unwrap();
+        assert!((gained.value - (second.cvdm.unwrap().value - first.cvdm.unwrap().value)).abs() < 1e-9);
+        assert!(gained.ci95.unwrap()[1] < 0.0, "{gained:?}");
+        assert_eq!(third.difference.map(|d| (d.value, d.ci95)), Some((0.0, Some([0.0, 0.0]))));
+        // The second model's deviation is that of an evaluation.
+        let evaluation = prove(&off, &truth, &all, &judging);
+        let test: Vec<&Comparison> = evaluation.trajectories.iter().collect();
+        let summary = summarise("all".into(), &test, &judging.settings);
+        assert_eq!(summary.cvdm_fitted.map(|e| e.value), second.cvdm.map(|e| e.value));
     }
 
     #[test]

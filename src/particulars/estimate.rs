@@ -39,7 +39,7 @@ const WAKE: &str =
 const DEDUCTION: &str = "t = 0.6 w, the middle of Schoenherr's 0.5 to 0.7 behind a streamlined rudder; Lewis 1988, Principles of Naval Architecture II, ch. VI";
 const RUDDER: &str = "A_R = L d/100 (1 + 25 (B/L)^2), Det Norske Veritas 1975, the least area behind a propeller; Lewis 1989, Principles of Naval Architecture III, ch. IX";
 const SPAN: &str = "aspect ratio 2.0, at most 0.9 d; usual are 1.2 to 2.2, Molland & Turnock 2007, Marine Rudders and Control Surfaces";
-const MMG: &str = "usual value of a single-screw ship, Yasukawa & Yoshimura 2015, J. Mar. Sci. Technol. 20, table 4";
+const MMG: &str = "engineering estimate for a single-screw ship; KVLCC2 has straightening 0.52, lever -0.71, wake_ratio 1.09, race 0.50 (Yasukawa & Yoshimura 2015, J. Mar. Sci. Technol. 20, table 4)";
 const AREAS: &str = "engineering estimate by type, no published regression; used by the wind alone";
 
 const ADDED_SWAY: &str = "-m_y', regression of Motora's charts by Zhou, Sheng & Feng 1983; used for L/B below 4.5, where that of Clarke fails";

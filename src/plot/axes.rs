@@ -74,7 +74,7 @@ fn row_labels(plot: Rect, labels: &[String], cell_w: f32) -> (Vec<Vec<String>>, 
 
 /// Share of a cell that names along y may take, and the lines of each at most.
 const NAMES: f32 = 0.36;
-const NAME_LINES: usize = 4;
+const NAME_LINES: usize = 6;
 
 /// The height that a plot needs so that every name along its y axis is whole, px.
 pub(super) fn least_height(panel: &Panel, cell_w: f32) -> f32 {

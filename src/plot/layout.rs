@@ -191,7 +191,8 @@ mod tests {
         let lying = Panel::new("", Axis::new("evidence [standard errors]"), Axis::categories("", names))
             .with(bars(&[3.0, 1.0, 0.2]));
         let standing =
-            Panel::new("", Axis::categories("", names), Axis::new("improvement [%]")).with(bars(&[30.0, -1.0, 2.0]));
+            Panel::new("", Axis::categories("", ["MD x", "MD psi", "consistency"]), Axis::new("improvement [%]"))
+                .with(bars(&[30.0, -1.0, 2.0]));
         let wave = |k: f64| {
             Layer::line(format!("run {k}"), BASELINE, (0..90).map(move |i| (f64::from(i), (k * f64::from(i)).sin())))
         };

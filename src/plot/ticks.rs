@@ -67,7 +67,15 @@ pub(super) fn ruler(
         }
         Scale::Linear => {
             let mut step = match axis.every {
-                Some(step) if drawable(step) && step > 0.0 && (hi - lo) / step <= 40.0 => step,
+                // On a range that was given the step is kept, however long; on one fitted to the data only where it divides it.
+                Some(step)
+                    if drawable(step)
+                        && step > 0.0
+                        && (hi - lo) / step <= 40.0
+                        && (axis.range.is_some() || (hi - lo) / step >= 2.0) =>
+                {
+                    step
+                }
                 _ => nice_step((hi - lo) * (spacing / length).min(1.0)),
             };
             // Coarser until the labels stand clear of one another.
@@ -79,8 +87,9 @@ pub(super) fn ruler(
                 }
                 step = nice_step(step * 1.01);
             }
-            // Two ticks hardly tell a scale: finer again, if the labels then do not touch. A step beyond the range asks for no ticks.
-            let asked = !axis.every.is_some_and(|every| every > hi - lo);
+            // Two ticks hardly tell a scale: finer again, if the labels then do not touch. A step beyond a range that was given asks
+            // for no ticks.
+            let asked = axis.range.is_none() || !axis.every.is_some_and(|every| every > hi - lo);
             for _ in 0..4 {
                 if ruler.ticks.len() >= FEWEST || !asked {
                     break;
@@ -232,7 +241,7 @@ mod tests {
     #[test]
     fn a_short_axis_has_three_ticks_and_one_that_asks_for_none_has_none() {
         let count = |axis: &Axis, range, length| {
-            ruler(axis, range, length, 110.0, false, |l| 13.0 * l.len() as f64 + 26.0).ticks.len()
+            ruler(axis, range, length, 110.0, false, |l| 13.0 * l.chars().count() as f64 + 26.0).ticks.len()
         };
         for range in [(0.0, 1.0), (-83.0, 91.0), (0.0, 1190.0), (-0.031, 0.033), (3.2, 3.9)] {
             assert!(count(&Axis::new("t"), range, 260.0) >= 3, "{range:?}");
@@ -240,7 +249,7 @@ mod tests {
         for range in [(2.0, 7.5), (1.5, 40.0), (0.4, 11.0), (0.2, 90.0)] {
             assert!(count(&Axis::new("t").log(), range, 500.0) >= 3, "{range:?}");
         }
-        assert_eq!(count(&Axis::new("east").every(10.0), (-1.4, 1.4), 500.0), 1, "zero alone");
+        assert_eq!(count(&Axis::new("east").range(-1.4, 1.4).every(10.0), (-1.4, 1.4), 500.0), 1, "zero alone");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! A fit in words and tables, for people: what was estimated, with which errors, which constraints are active and what it cost.
 //! The same content for programs is the fit itself, serialised.
 
+use super::active::lines;
 use super::table::Table;
 use crate::fit::{CovarianceKind, Derivatives, Estimate, Fit, Hessian, StartOutcome};
 use crate::numerals::{interval, sig};
@@ -130,7 +131,7 @@ impl Fit {
         if self.active.is_empty() {
             return "No constraint is active at the estimate.".to_owned();
         }
-        let rows = self.active.iter().map(|a| format!("\n  {}   ({})", a.sentence, a.rule));
+        let rows = lines(&self.active).into_iter().map(|line| format!("\n  {line}"));
         format!("Constraints active at the estimate:{}", rows.collect::<String>())
     }
 

@@ -7,6 +7,7 @@ use crate::plan::{Outlook, Parting, Plan, Sailed};
 use crate::plot::{Axis, Figure, Layer, Mark, Panel, RECORDED};
 use crate::report::paragraph::wrapped;
 use crate::report::table::Table;
+use crate::report::width::width;
 
 /// Width of the terminal summary \[characters\].
 const WIDTH: u16 = 100;
@@ -196,7 +197,7 @@ fn parted(p: &Parting) -> String {
 
 /// A paragraph of the plan.
 fn line(paragraph: &str) -> String {
-    wrapped("", 0, WIDTH.into(), paragraph)
+    wrapped("", 0, width().min(WIDTH.into()), paragraph)
 }
 
 /// The isolability matrix as a heat map.

@@ -1,8 +1,10 @@
 //! A table of text cells, the same one for the terminal and for HTML.
 //! It lays cells out; how a number reads is decided in `numerals`, and which values are worth a row by the caller.
 
-use crate::numerals::DASH;
-use comfy_table::{CellAlignment, ContentArrangement, LineStyle, presets};
+use super::paragraph::wrapped;
+use super::width::width;
+use crate::numerals::{DASH, sig};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Width, presets};
 use std::fmt;
 
 /// A table of text cells. Columns of numbers are set to the right, others to the left.
@@ -61,25 +63,113 @@ fn reads_as_number(cell: &str) -> bool {
 }
 
 impl fmt::Display for Table {
+    /// The table within the width that is set ([`super::width`]): long cells are divided between words, and where even that does not do, each
+    /// row becomes a block of lines `heading  value`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let width = self.width.map_or(usize::MAX, usize::from).min(width());
+        if self.least_width() > width {
+            return f.write_str(&self.blocks(width));
+        }
         let mut table = comfy_table::Table::new();
         table.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
-        if let Some(width) = self.width {
-            table.set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
-        }
+        table.set_content_arrangement(ContentArrangement::Dynamic).set_width(u16::try_from(width).unwrap_or(u16::MAX));
         table.set_header(self.header.clone());
         for row in &self.rows {
             table.add_row(row.clone());
         }
         for i in 0..self.header.len() {
+            let least = self.longest_word(i);
             if let Some(column) = table.column_mut(i) {
                 column.set_cell_alignment(if self.is_numeric(i) { CellAlignment::Right } else { CellAlignment::Left });
+                // No word and no number is cut in two; a column counts its blanks too.
+                let least = u16::try_from(least + 2).unwrap_or(u16::MAX);
+                column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(least)));
             }
         }
         // Trailing blanks would make copied tables and golden files noisy.
         let lines: Vec<String> = table.lines().map(|line| line.trim_end().to_owned()).collect();
+        if lines.iter().any(|line| line.chars().count() > width) {
+            return f.write_str(&self.blocks(width));
+        }
         f.write_str(&lines.join("\n"))
     }
+}
+
+impl Table {
+    /// Length of the longest word of a column, heading included.
+    fn longest_word(&self, i: usize) -> usize {
+        let cells = self.rows.iter().filter_map(|row| row.get(i)).chain(self.header.get(i));
+        cells.flat_map(|cell| cell.split_whitespace()).map(|word| word.chars().count()).max().unwrap_or(0)
+    }
+
+    /// Width below which words would be cut: every column has a blank on each side.
+    fn least_width(&self) -> usize {
+        (0..self.header.len()).map(|i| self.longest_word(i) + 2).sum::<usize>()
+    }
+
+    /// Each row as a block: its first cell, then a line for each of the others that is not empty.
+    fn blocks(&self, width: usize) -> String {
+        let longest = self.header.iter().skip(1).map(|h| h.chars().count()).max().unwrap_or(0).min(width / 2);
+        let block = |row: &Vec<String>| {
+            let cells = row.iter().zip(&self.header).skip(1).filter(|(cell, _)| !cell.is_empty());
+            let line = |(cell, heading): (&String, &String)| {
+                wrapped(&format!("  {heading:<longest$}  "), longest + 4, width, cell)
+            };
+            let first = row.first().map_or("", String::as_str);
+            format!("{first}\n{}", cells.map(line).collect::<String>())
+        };
+        self.rows.iter().map(block).collect::<String>().trim_end().to_owned()
+    }
+
+    /// The table as LaTeX with the rules of booktabs, numbers to four significant digits.
+    #[must_use]
+    pub fn latex(&self) -> String {
+        let columns: String = (0..self.header.len()).map(|i| if self.is_numeric(i) { 'r' } else { 'l' }).collect();
+        let line = |cells: &[String]| cells.iter().map(|c| latex_cell(&short(c))).collect::<Vec<_>>().join(" & ");
+        let rows: String = self.rows.iter().map(|row| format!("  {} \\\\\n", line(row))).collect();
+        let header = line(&self.header);
+        format!(
+            "\\begin{{tabular}}{{{columns}}}\n  \\toprule\n  {header} \\\\\n  \\midrule\n{rows}  \\bottomrule\n\\end{{tabular}}\n"
+        )
+    }
+
+    /// The table as Markdown, numbers to four significant digits.
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        let cell = |text: &String| short(text).replace('|', "\\|").replace('\n', " ");
+        let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(cell).collect::<Vec<_>>().join(" | "));
+        let sides: String = (0..self.header.len()).map(|i| if self.is_numeric(i) { "---:|" } else { "---|" }).collect();
+        let rows: String = self.rows.iter().map(|row| line(row)).collect();
+        format!("{}|{sides}\n{rows}", line(&self.header))
+    }
+}
+
+/// A cell as it reads in a paper: a number to four significant digits.
+fn short(cell: &str) -> String {
+    match cell.parse::<f64>() {
+        Ok(x) if x.is_finite() && cell.len() > 5 => sig(x, 4),
+        _ => cell.to_owned(),
+    }
+}
+
+/// A cell without characters that mean something to LaTeX.
+fn latex_cell(cell: &str) -> String {
+    let mut text = String::with_capacity(cell.len());
+    for c in cell.chars() {
+        match c {
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => text.extend(['\\', c]),
+            '\\' => text += "\\textbackslash{}",
+            '~' => text += "\\textasciitilde{}",
+            '^' => text += "\\textasciicircum{}",
+            '<' => text += "$<$",
+            '>' => text += "$>$",
+            '\u{2013}' => text += "--",
+            '\n' => text.push(' '),
+            other => text.push(other),
+        }
+    }
+    // A row that begins with a bracket would be an argument of the line break before it.
+    if text.starts_with('[') { format!("{{}}{text}") } else { text }
 }
 
 #[cfg(test)]
@@ -106,5 +196,32 @@ mod tests {
         let text = table.wrapped(50).to_string();
         assert!(text.lines().all(|l| l.chars().count() <= 50), "{text}");
         assert!(text.contains("heading"));
+    }
+
+    #[test]
+    fn a_table_fits_every_width_and_no_word_is_cut() {
+        let mut table = Table::new(["run", "split", "x [m]", "psi [deg]", "verdict"]);
+        table.row(["zigzag_20_20_starboard", "train", "12.345", "-0.12345", "met in all of the windows"]);
+        for columns in 40..=120 {
+            let text = super::super::width::at_width(columns, || table.to_string());
+            assert!(text.lines().all(|l| l.chars().count() <= columns), "{columns}:\n{text}");
+            for word in ["zigzag_20_20_starboard", "-0.12345", "psi", "windows"] {
+                assert!(text.contains(word), "{columns}: {word}\n{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn latex_and_markdown_hold_every_cell() {
+        let mut table = Table::new(["parameter", "value", "95 %"]);
+        table.row(["rudder.lift_1", "3.19312345", "[3.1, 3.3]"]).row(["a|b & c", "-0.017", DASH]);
+        let latex = table.latex();
+        assert!(latex.starts_with("\\begin{tabular}{lrr}\n  \\toprule\n") && latex.contains("\\bottomrule"), "{latex}");
+        assert!(
+            latex.contains("rudder.lift\\_1 & 3.193 & {}[3.1, 3.3] \\\\\n") && latex.contains("a|b \\& c"),
+            "{latex}"
+        );
+        let text = "| parameter | value | 95 % |\n|---|---:|---:|\n| rudder.lift_1 | 3.193 | [3.1, 3.3] |\n";
+        assert!(table.markdown().starts_with(text) && table.markdown().contains("a\\|b"), "{}", table.markdown());
     }
 }

@@ -1,10 +1,9 @@
 //! A table or figure of the paper: its name, its title, and the function that makes it.
 //! It makes none itself.
 
-use std::path::Path;
-
 use super::case::Case;
 use super::error::PaperError;
+use super::target::Target;
 
 /// A table or figure of the paper.
 #[derive(Debug)]
@@ -14,5 +13,5 @@ pub struct Artefact {
     /// What it shows.
     pub about: &'static str,
     /// Writes its files into a folder and gives a text with the tables.
-    pub make: fn(&[Case], &Path) -> Result<String, PaperError>,
+    pub make: fn(&[Case], &Target) -> Result<String, PaperError>,
 }

@@ -5,8 +5,8 @@ use super::artefact::Artefact;
 use super::captive_baseline::{rudder_points, rudder_rows};
 use super::case::Case;
 use super::error::PaperError;
+use super::target::Target;
 use crate::truth::captive::{Range, towing};
-use std::path::Path;
 use trimtab::fit::{CovarianceKind, Fit};
 use trimtab::model::Model;
 use trimtab::numerals::{DASH, fixed, sig};
@@ -158,7 +158,7 @@ impl Curve {
     }
 }
 
-fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
+fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
     let mut table = Table::new(["ship", "curve", "at", "p~ paper", "p~ captive", "p* paper", "p* ours", "+-95 %"]);
     let mut figure = Figure::new("Resistance and rudder curves (figure 2)").columns(3).panel_size(820, 640);
     for case in cases {
@@ -181,6 +181,6 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
             }
         }
     }
-    figure.save(&out.join("figure2"))?;
+    to.figure("figure2", figure)?;
     Ok(format!("{table}\n"))
 }

@@ -6,7 +6,7 @@ use super::case::Case;
 use super::error::PaperError;
 use super::scenarios::SHOWN;
 use super::sheet::{Sheet, cell};
-use std::path::Path;
+use super::target::Target;
 use trimtab::evaluate::{Comparison, Outcome};
 use trimtab::numerals::sig;
 use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel};
@@ -37,7 +37,7 @@ fn quantities() -> Vec<(String, Quantity)> {
     md.chain([("cVDM [%]".to_owned(), cvdm)]).collect()
 }
 
-fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
+fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
     let mut table = Table::new(["ship", "part", "quantity", "model", "quarter", "median", "three quarters", "worst"]);
     let header = ["ship", "part", "quantity", "model", "quarter", "median", "three_quarters", "worst", "runs"];
     let mut sheet = Sheet::new("distributions_values", header);
@@ -80,8 +80,8 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
             }
             figure = figure.with(panel);
         }
-        figure.save(&out.join(format!("distributions_{}", case.ship.name())))?;
+        to.figure(&format!("distributions_{}", case.ship.name()), figure)?;
     }
-    sheet.save(out)?;
+    sheet.save(&to.folder)?;
     Ok(format!("{table}\n"))
 }

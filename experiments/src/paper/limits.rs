@@ -6,7 +6,7 @@ use super::artefact::Artefact;
 use super::case::{Case, initial_model};
 use super::error::PaperError;
 use super::sheet::{Sheet, cell};
-use std::path::Path;
+use super::target::Target;
 use trimtab::evaluate::{EvaluationSettings, Judging, prove};
 use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::{Model, Prior};
@@ -47,7 +47,7 @@ const VARIANTS: [Variant; 5] = [
     },
 ];
 
-fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
+fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
     let mut table = Table::new([
         "ship",
         "variant",
@@ -108,7 +108,7 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
             }
         }
     }
-    sheet.save(out)?;
+    sheet.save(&to.folder)?;
     let gains: String =
         cases.iter().filter_map(|case| Some((case, captive_over_published(case)?))).map(sentence).collect();
     Ok(format!("{table}\n{gains}"))

@@ -21,3 +21,4 @@ pub mod scenarios;
 pub mod sheet;
 pub mod table1;
 pub mod table2;
+pub mod target;

@@ -5,8 +5,8 @@ use super::artefact::Artefact;
 use super::case::Case;
 use super::error::PaperError;
 use super::sheet::{Sheet, cell};
+use super::target::Target;
 use std::fmt::Write;
-use std::path::Path;
 use trimtab::evaluate::{Estimate, EvaluationSettings, Judging, Summary, predict, prove};
 use trimtab::model::Model;
 use trimtab::numerals::{DASH, fixed};
@@ -72,7 +72,7 @@ impl Bars {
 /// A measure: name, ours, the paper's.
 type Metric = (&'static str, Option<Estimate>, Option<f64>);
 
-fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
+fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
     let mut table = Table::new([
         "ship",
         "part",
@@ -119,8 +119,8 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
         }
         let _ = writeln!(text, "{}", integration(case));
     }
-    sheet.save(out)?;
-    bars.figure().save(&out.join("performance"))?;
+    sheet.save(&to.folder)?;
+    to.figure("performance", bars.figure())?;
     Ok(format!("{table}\n\n{text}"))
 }
 

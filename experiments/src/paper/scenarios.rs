@@ -8,8 +8,8 @@ use super::artefact::Artefact;
 use super::case::Case;
 use super::error::PaperError;
 use super::sheet::{Sheet, cell};
+use super::target::Target;
 use std::fmt::Write;
-use std::path::Path;
 use trimtab::evaluate::{Comparison, predict};
 use trimtab::numerals::{DASH, fixed, sig};
 use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, east_north};
@@ -39,7 +39,7 @@ pub const SHOWN: [(&str, f64); STATES] = [
     ("r [deg/s]", 180.0 / std::f64::consts::PI),
 ];
 
-fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
+fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
     let mut text = String::new();
     let header = [
         "ship",
@@ -67,12 +67,12 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
                 before.run,
                 before.manoeuvre
             );
-            figure(case, &case.windows[index], &title, before, other).save(&out.join(&name))?;
+            to.figure(&name, figure(case, &case.windows[index], &title, before, other))?;
             let _ = writeln!(text, "{title}\n{}\n", table(before, other));
             numbers(case, grade, before, other).into_iter().for_each(|row| sheet.row(row));
         }
     }
-    sheet.save(out)?;
+    sheet.save(&to.folder)?;
     Ok(text)
 }
 

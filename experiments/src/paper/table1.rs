@@ -6,8 +6,8 @@ use super::case::Case;
 use super::coverage::{Spread, printed_statistics, statistics};
 use super::error::PaperError;
 use super::sheet::{Sheet, cell};
+use super::target::Target;
 use crate::truth::dataset::{Split, period};
-use std::path::Path;
 use trimtab::numerals::{DASH, fixed};
 use trimtab::plot::{Axis, FITTED, Figure, GREY, Layer, Marker, Panel};
 use trimtab::report::Table;
@@ -53,7 +53,7 @@ impl Channel {
     }
 }
 
-fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
+fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
     let mut table = Table::new(["ship", "part", "channel", "min", "paper", "max", "paper", "mean", "paper"]);
     let header = ["ship", "part", "channel", "unit", "min", "paper_min", "max", "paper_max", "mean", "paper_mean"];
     let mut sheet = Sheet::new("table1_values", header);
@@ -85,12 +85,12 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
             }
         }
     }
-    sheet.save(out)?;
-    Figure::new("Data sets of ships A and B beside the paper's (Table 1)")
+    sheet.save(&to.folder)?;
+    let figure = Figure::new("Data sets of ships A and B beside the paper's (Table 1)")
         .columns(5)
         .panel_size(520, 620)
-        .with_all(channels.into_iter().map(|c| c.panel(&groups)))
-        .save(&out.join("table1"))?;
+        .with_all(channels.into_iter().map(|c| c.panel(&groups)));
+    to.figure("table1", figure)?;
     let sizes: String = cases.iter().map(size).collect();
     Ok(format!("{sizes}\n{table}\n"))
 }

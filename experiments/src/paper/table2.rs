@@ -5,8 +5,8 @@ use super::artefact::Artefact;
 use super::case::Case;
 use super::error::PaperError;
 use super::sheet::{Sheet, cell};
+use super::target::Target;
 use std::fmt::Write;
-use std::path::Path;
 use trimtab::fit::Fit;
 use trimtab::model::ELEVEN;
 use trimtab::numerals::{DASH, sig};
@@ -87,7 +87,7 @@ impl Row {
     }
 }
 
-fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
+fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
     let mut text = String::new();
     let header =
         ["ship", "symbol", "unit", "baseline_paper", "baseline_captive", "guess", "fitted_paper", "fitted", "lo", "hi"];
@@ -105,7 +105,7 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
             sheet.row([ship, symbol, unit, a, b, c, d, e, lo, hi]);
             figure = figure.with(row.panel());
         }
-        figure.save(&out.join(format!("table2_{}", case.ship.name())))?;
+        to.figure(&format!("table2_{}", case.ship.name()), figure)?;
         let _ = writeln!(text, "{}: {}\n{table}", case.label(), case.fit.status);
         let _ = writeln!(text, "Held back by {}.", list(&case.fit));
         let effect = case.fit.design_effect.map_or(DASH.to_owned(), |e| sig(e, 3));
@@ -114,7 +114,7 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
             "Intervals take runs as independent, not residuals: {effect} times the variance of independent residuals.\n"
         );
     }
-    sheet.save(out)?;
+    sheet.save(&to.folder)?;
     Ok(text)
 }
 

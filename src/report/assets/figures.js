@@ -65,7 +65,7 @@
       if (at.length >= 3) return { at: at.filter((_, i) => i % Math.ceil((at.length * room) / length) === 0), power: 0 };
     }
     // An axis with a tick step beyond its range is to have no ticks.
-    if (axis.e > hi - lo) return { at: [], power: 0 };
+    if (axis.e > axis.r[1] - axis.r[0]) return { at: [], power: 0 };
     let step = axis.e && (hi - lo) / axis.e < 40 && (hi - lo) / axis.e >= 2 ? axis.e : nice(((hi - lo) * room) / length);
     const values = (by) => {
       const first = Math.ceil(lo / by - 1e-9);
@@ -578,10 +578,6 @@
   };
 
   const figures = [];
-  for (const host of document.querySelectorAll('[data-figure]')) {
-    const spec = data.figures[host.dataset.figure];
-    if (spec) figures.push(new Figure(host, spec));
-  }
   const host = document.getElementById('run-picture');
   if (host && data.runs && data.runs.runs.length) {
     const runs = data.runs.runs;
@@ -599,6 +595,18 @@
       figure.show(runFigure(runs[+select.value]));
       note.textContent = runs[+select.value].note;
     });
+  }
+  for (const place of document.querySelectorAll('[data-figure]')) {
+    const spec = data.figures[place.dataset.figure];
+    if (!spec) continue;
+    try {
+      figures.push(new Figure(place, spec));
+    } catch (error) {
+      // The others are drawn all the same; the console has the error.
+      setTimeout(() => {
+        throw error;
+      });
+    }
   }
   let last = document.documentElement.clientWidth;
   addEventListener('resize', () => {

@@ -3,7 +3,7 @@
 
 use super::names::title_of;
 use super::quantity::{count, quantity};
-use super::verdict::{grade_label, subject, verdict_words};
+use super::verdict::{grade_label, subject, title};
 use crate::diagnose::{Diagnosis, Finding};
 use crate::numerals::{fixed, sig};
 use maud::{Markup, html};
@@ -18,7 +18,7 @@ struct Number {
 pub(super) fn opening(d: &Diagnosis, study: &str) -> Markup {
     html! {
         p.subject {
-            (verdict_words(d.verdict))
+            (title(d))
             @if let Some(f) = d.findings.first() {
                 @let (words, class) = grade_label(f.grade);
                 " " span class={ "grade " (class) } { (words) }

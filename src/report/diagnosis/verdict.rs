@@ -47,15 +47,20 @@ pub fn verdict_words(verdict: Verdict) -> &'static str {
     }
 }
 
-/// The verdict with its findings, and notes on the recordings.
-pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
-    let units = Units::of(&d.base.ship);
+/// The verdict in capitals; one on suspected findings alone says so.
+pub(super) fn title(d: &Diagnosis) -> String {
     let unconfirmed = !d.findings.is_empty() && d.findings.iter().all(|f| f.grade != Grade::Confirmed);
-    let mut lines = vec![match d.verdict {
+    match d.verdict {
         Verdict::Named if unconfirmed => "MISSING PHYSICS, SUSPECTED".to_owned(),
         Verdict::Sensor if unconfirmed => "A SENSOR ERROR, SUSPECTED".to_owned(),
         verdict => verdict_words(verdict).to_owned(),
-    }];
+    }
+}
+
+/// The verdict with its findings, and notes on the recordings.
+pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
+    let units = Units::of(&d.base.ship);
+    let mut lines = vec![title(d)];
     if d.findings.is_empty() {
         lines.push(d.headline.clone());
     }

@@ -1,7 +1,7 @@
 //! What is measured on a trial, drawn into its figure: advance, transfer and tactical diameter on a circle, overshoots on a zigzag.
 //! The measures are those of the trial; nothing is measured here.
 
-use crate::maneuver::{Side, Track, Trial, Turning, Zigzag};
+use crate::maneuver::{Intervals, Side, Track, Trial, Turning, Zigzag};
 use crate::numerals::{fixed, sig};
 use crate::plot::{Color, GREY, Layer, Marker, east_north};
 
@@ -24,12 +24,20 @@ fn measure(words: &str, [from, to]: [(f64, f64); 2], share: f64) -> Vec<Layer> {
     vec![Layer::arrows("measures", GREY, [[from, to]]).width(2.0), Layer::text(words, GREY, at)]
 }
 
+/// The 95 % interval of a measure in words; nothing where there is none.
+fn within(intervals: &Intervals, key: &str, number: impl Fn(f64) -> String) -> String {
+    intervals.get(key).map_or(String::new(), |[low, high]| format!(" [{}, {}]", number(*low), number(*high)))
+}
+
 /// Advance, transfer and tactical diameter of a circle, as far as they were reached; lengths in ship lengths of `length` \[m\].
 pub(super) fn circle(trial: &Trial<Turning>, length: f64) -> Vec<Layer> {
     let (m, track) = (&trial.measures, &trial.track);
     let side = if trial.side == Side::Starboard { 1.0 } else { -1.0 };
     let mut layers = Vec::new();
-    let words = |name: &str, v: f64| format!("{name} {} L", sig(v / length, 3));
+    let words = |name: &str, v: f64| {
+        let key = name.replace(' ', "_");
+        format!("{name} {} L{}", sig(v / length, 3), within(&trial.intervals, &key, |v| sig(v / length, 3)))
+    };
     if let (Some(advance), Some(transfer)) = (m.advance, m.transfer) {
         let corner = point(track, advance, 0.0);
         // The advances of both sides are on one line: their words are apart.
@@ -66,7 +74,9 @@ pub(super) fn overshoots(trial: &Trial<Zigzag>, color: Color) -> Vec<Layer> {
         let at = (track.t[peak], track.states[peak][2].to_degrees());
         let above = (at.0, at.1 + 0.12 * sign * m.heading.to_degrees().max(1.0) + 1.4 * sign);
         layers.push(Layer::scatter("overshoot", color, [at]).marker(Marker::Diamond));
-        layers.push(Layer::text(format!("{} deg", fixed(overshoot.to_degrees(), 1)), color, above));
+        let degrees = |v: f64| fixed(v.to_degrees(), 1);
+        let interval = within(&trial.intervals, &format!("overshoot_{}", i + 1), degrees);
+        layers.push(Layer::text(format!("{} deg{interval}", degrees(*overshoot)), color, above));
     }
     layers
 }

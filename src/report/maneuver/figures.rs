@@ -75,13 +75,19 @@ fn time_panel<M>(label: &str, trials: &[Trial<M>], value: impl Fn(&Track, usize)
     Panel::new("", Axis::new("time [s]"), Axis::new(label).including(0.0)).with_all(layers)
 }
 
+/// What the brackets in a figure are; nothing where no trial has intervals.
+fn in_brackets<M>(trials: &[Trial<M>]) -> &'static str {
+    if trials.iter().any(|t| !t.intervals.is_empty()) { " In brackets: 95 % intervals." } else { "" }
+}
+
 /// Turning circles to both sides: tracks, heading, rudder, speed and yaw rate.
 pub fn turning_figure(ship: &Ship, trials: &[Trial<Turning>]) -> Figure {
     let measured = trials.iter().flat_map(|t| circle(t, ship.hull.lpp));
     let caption = format!(
         "Turning circles to both sides; L = {} m. Advance: distance ahead at 90 deg of change of heading; transfer and tactical diameter: \
-         distance abeam at 90 and 180 deg, all of the midship point from where the rudder begins to move.",
-        sig(ship.hull.lpp, 4)
+         distance abeam at 90 and 180 deg, all of the midship point from where the rudder begins to move.{}",
+        sig(ship.hull.lpp, 4),
+        in_brackets(trials)
     );
     Figure::new(format!("{}: turning circles", ship.name))
         .columns(2)
@@ -98,8 +104,10 @@ pub fn turning_figure(ship: &Ship, trials: &[Trial<Turning>]) -> Figure {
 /// Zigzags, a row for each pair of angles: heading and rudder over time with either side first, and both tracks.
 pub fn zigzag_figure(ship: &Ship, trials: &[Trial<Zigzag>]) -> Figure {
     let same = |a: &Trial<Zigzag>, b: &Trial<Zigzag>| a.measures.heading == b.measures.heading;
-    let caption =
-        "Zigzags to both sides first: heading and rudder, the overshoot angle at each peak of heading, and the tracks.";
+    let caption = format!(
+        "Zigzags to both sides first: heading and rudder, the overshoot angle at each peak of heading, and the tracks.{}",
+        in_brackets(trials)
+    );
     let mut figure = Figure::new(format!("{}: zigzags", ship.name)).columns(3).panel_size(720, 520).caption(caption);
     for row in trials.chunk_by(same) {
         for trial in row {

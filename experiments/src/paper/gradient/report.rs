@@ -1,8 +1,6 @@
 //! Tables, CSV files and the figure of the gradient study.
 //! It computes nothing but ratios.
 
-use std::path::Path;
-
 use trimtab::model::Model;
 use trimtab::numerals::{DASH, fixed, sig};
 use trimtab::plot::{Axis, BLUE, Figure, Layer, Legend, ORANGE, Panel, SKY, VERMILLION};
@@ -14,6 +12,7 @@ use crate::paper::artefact::Artefact;
 use crate::paper::case::{Case, initial_model};
 use crate::paper::error::PaperError;
 use crate::paper::sheet::{Sheet, cell};
+use crate::paper::target::Target;
 
 /// Exact gradient against finite differences.
 pub static GRADIENT: Artefact = Artefact {
@@ -173,7 +172,7 @@ impl Report {
     }
 }
 
-fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
+fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
     let mut report = Report::new();
     for (i, case) in cases.iter().enumerate() {
         let model = initial_model(case.ship, case.setup.form)?;
@@ -182,15 +181,15 @@ fn make(cases: &[Case], out: &Path) -> Result<String, PaperError> {
         report.add_courses(case, &model, &runs)?;
         report.add_gradient_times(case, &model, &runs)?;
     }
-    report.accuracy_sheet.save(out)?;
-    report.fit_sheet.save(out)?;
-    report.ratio_sheet.save(out)?;
-    Figure::new("Exact gradient against finite differences")
+    report.accuracy_sheet.save(&to.folder)?;
+    report.fit_sheet.save(&to.folder)?;
+    report.ratio_sheet.save(&to.folder)?;
+    let figure = Figure::new("Exact gradient against finite differences")
         .columns(3)
         .panel_size(900, 640)
         .legend(Legend::EachPanel)
         .with(report.accuracy)
-        .with_all(report.courses)
-        .save(&out.join("gradient"))?;
+        .with_all(report.courses);
+    to.figure("gradient", figure)?;
     Ok(format!("{}\n\nTimes, as ratios within this run:\n{}\n", report.fits, report.speed))
 }
