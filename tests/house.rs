@@ -39,7 +39,7 @@ const LAYERS: [&[&str]; 15] = [
     &["fit"],
     &["evaluate", "maneuver"],
     &["diagnose"],
-    &["plan"],
+    &["plan", "dossier"],
     &["plot", "report"],
     &["guide"],
     &["cli", "main"],

@@ -6,6 +6,7 @@ mod audited;
 mod check;
 mod demo;
 mod diagnose;
+mod dossier;
 mod error;
 mod evaluate;
 mod figures;
@@ -77,6 +78,7 @@ enum Command {
     Fit(fit::Args),
     Evaluate(evaluate::Args),
     Diagnose(diagnose::Args),
+    Dossier(dossier::Args),
     Maneuver(maneuver::Args),
     Plan(plan::Args),
     Terms(terms::Args),
@@ -137,6 +139,7 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Check(args) => check::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Diagnose(args) => diagnose::run(args),
+        Command::Dossier(args) => dossier::run(args),
         Command::Maneuver(args) => maneuver::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Terms(args) => terms::run(args),

@@ -2,6 +2,7 @@
 //! It computes nothing beyond units, and no calculation imports it.
 
 pub mod diagnosis;
+pub mod dossier;
 #[cfg(feature = "ipopt")]
 mod fit;
 #[cfg(feature = "plot")]
