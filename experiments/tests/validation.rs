@@ -49,7 +49,7 @@ fn val_shipmmg_simulates_the_same_tracks_of_kvlcc2() {
             state = sail(&ship, &state, [&inputs(case, from), &inputs(case, to)], 0.1, 0.1);
             steps += 1;
         }
-        assert!((numbers[7] - rudder(case, t)).abs() < 1e-8, "{line}: another rudder");
+        assert!((numbers[7] - rudder(case, t)).abs() < 1e-6, "{line}: another rudder");
         for ((largest, found), expected) in largest.iter_mut().zip(state.to_array()).zip(&numbers[1..7]) {
             *largest = largest.max((found - expected).abs());
         }
@@ -100,7 +100,11 @@ fn val_zigzags_of_kvlcc2_by_published_mmg_parameters_are_near_the_model_tests_of
         // The method is known to give too small a second overshoot in a zigzag 10/10 of this hull, which is unstable in yaw.
         let limits = if order.abs() < 15.0 { [3.5, 8.0] } else { [3.5, 3.5] };
         for i in 0..2 {
-            assert!((found[i] - tested[i]).abs() < limits[i], "{order:+.0}, overshoot {}: {found:?}, {tested:?}", i + 1);
+            assert!(
+                (found[i] - tested[i]).abs() < limits[i],
+                "{order:+.0}, overshoot {}: {found:?}, {tested:?}",
+                i + 1
+            );
         }
     }
 }

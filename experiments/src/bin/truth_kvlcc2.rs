@@ -76,8 +76,10 @@ fn turns(r: &Reference, steps: [Approach; 2]) -> Vec<Line> {
     };
     let (starboard, port) = (circle(35.0), circle(-35.0));
     let right = (0..7).map(|i| line(35.0, i, starboard, r.starboard[i], MARIN_STARBOARD[i].1));
-    let left =
-        MARIN_PORT.into_iter().zip(r.port).map(|((i, tested), reference)| line(-35.0, i, port, reference, Some(tested)));
+    let left = MARIN_PORT
+        .into_iter()
+        .zip(r.port)
+        .map(|((i, tested), reference)| line(-35.0, i, port, reference, Some(tested)));
     right.chain(left).collect()
 }
 
