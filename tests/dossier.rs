@@ -1,5 +1,5 @@
 //! The dossier: its sections in their order, its numbers those of the other commands to the last digit, and nothing on the page that
-//! is not in the document. What the checks of the verification find in a broken model is tested beside them.
+//! is not in the document. Whether a diagnosis is right is tested elsewhere.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -122,6 +122,8 @@ fn causes_are_those_of_the_diagnosis_whether_read_or_made() {
     assert_eq!(d["causes"]["found"][0]["mechanism"], "current", "{}", d["causes"]["found"]);
     assert_eq!(d["causes"]["headline"], diagnosis["headline"]);
     assert_eq!(d["ship"]["noise"], diagnosis["noise_after"]["sensors"]);
+    let limits = d["limits"].to_string();
+    assert!(limits.contains("names causes of error that the model does not contain: steady current"), "{limits}");
     assert!(d["causes"]["source"].as_str().unwrap().contains("made of the same files"), "{}", d["causes"]["source"]);
     done(&CASE, &["dossier", "study.toml", "--model", "fit/fitted.toml", "--once", "--out", "anew"]);
     let anew = &json(&CASE.join("anew/dossier.json"))["result"];

@@ -82,39 +82,51 @@ pub fn dossier(question: &Question, progress: &dyn Fn(&str)) -> Dossier {
 
 /// The sections with what is missing in each.
 fn headings(d: &Dossier, refused: Option<String>) -> Vec<Heading> {
-    let missing = |key: &str| -> Vec<String> {
-        let when = |absent: bool, text: &str| absent.then(|| text.to_owned());
-        match key {
-            "claim" => when(d.claim.intended_use.is_none(), "the intended use is not stated; state it with --use").into_iter().collect(),
-            "ship" => [
-                when(d.ship.source.is_empty(), "the ship file names no source of its particulars"),
-                when(d.ship.noise.is_none(), "the noise of the sensors was not estimated, as there is no diagnosis"),
-            ]
-            .into_iter()
-            .flatten()
-            .collect(),
-            "model" => when(d.model.covariance.is_none(), "the model file has no covariance: its parameters have no standard errors")
-                .into_iter()
-                .collect(),
-            "verification" => d.verification.missing.clone(),
-            "validation" => validation_missing(d, refused.clone()),
-            "error_rates" => when(
-                d.error_rates.is_none(),
-                "not measured; `--calibrate N` measures them on 2 N simulated studies with the inputs and the noise of this one",
-            )
-            .into_iter()
-            .collect(),
-            "causes" => match &d.causes {
-                None => vec!["no diagnosis was made or given: no cause of error was looked for".into()],
-                Some(c) if c.stability.is_null() && !c.found.is_empty() => {
-                    vec!["the diagnosis was not repeated on changed recordings: the stability of what it names is not known".into()]
-                }
-                Some(_) => Vec::new(),
-            },
-            _ => Vec::new(),
-        }
+    let missing = |key: &str| match key {
+        "claim" => claim_missing(d),
+        "ship" => ship_missing(d),
+        "model" => model_missing(d),
+        "verification" => d.verification.missing.clone(),
+        "validation" => validation_missing(d, refused.clone()),
+        "error_rates" => rates_missing(d),
+        "causes" => causes_missing(d),
+        _ => Vec::new(),
     };
     SECTIONS.iter().map(|(key, title)| Heading { key, title, missing: missing(key) }).collect()
+}
+
+/// A sentence where something is absent.
+fn when(absent: bool, text: &str) -> Vec<String> {
+    if absent { vec![text.to_owned()] } else { Vec::new() }
+}
+
+fn claim_missing(d: &Dossier) -> Vec<String> {
+    when(d.claim.intended_use.is_none(), "the intended use is not stated; state it with --use")
+}
+
+fn ship_missing(d: &Dossier) -> Vec<String> {
+    let source = when(d.ship.source.is_empty(), "the ship file names no source of its particulars");
+    let noise = "the noise of the sensors was not estimated, as there is no diagnosis";
+    [source, when(d.ship.noise.is_none(), noise)].concat()
+}
+
+fn model_missing(d: &Dossier) -> Vec<String> {
+    let text = "the model file has no covariance: its parameters have no standard errors";
+    when(d.model.covariance.is_none(), text)
+}
+
+fn rates_missing(d: &Dossier) -> Vec<String> {
+    let text = "not measured; `--calibrate N` measures them on 2 N simulated studies with the inputs and the noise of \
+                this one";
+    when(d.error_rates.is_none(), text)
+}
+
+fn causes_missing(d: &Dossier) -> Vec<String> {
+    let Some(causes) = &d.causes else {
+        return when(true, "no diagnosis was made or given: no cause of error was looked for");
+    };
+    let text = "the diagnosis was not repeated on changed recordings: the stability of what it names is not known";
+    when(causes.stability.is_null() && !causes.found.is_empty(), text)
 }
 
 fn validation_missing(d: &Dossier, refused: Option<String>) -> Vec<String> {
@@ -172,6 +184,13 @@ fn limits(d: &Dossier) -> Vec<String> {
     let (errors, warnings) = (told(Severity::Error), told(Severity::Warning));
     if errors + warnings > 0 {
         all.push(format!("The audit of the recordings has {errors} kinds of error and {warnings} kinds of warning, listed under ship."));
+    }
+    if let Some(c) = d.causes.as_ref().filter(|c| !c.found.is_empty()) {
+        let titles: Vec<&str> = c.found.iter().filter_map(|f| f["title"].as_str()).collect();
+        all.push(format!(
+            "The diagnosis names causes of error that the model does not contain: {}.",
+            titles.join(", ")
+        ));
     }
     if let Some(c) = &d.causes {
         all.push(format!(

@@ -127,3 +127,46 @@ impl Sum {
         self.driving += usize::from(a.power > 0.0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::Form;
+    use crate::recording::Split;
+    use crate::ship::Ship;
+    use crate::state::Inputs;
+    use std::path::Path;
+
+    /// A turn of ship A with a linear resistance \[N s/m\].
+    fn turn(resistance: f64) -> Vec<Check> {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/ships/a.toml");
+        let mut model = Model::new(Ship::read(&path).unwrap(), "A", Form::Regular, &[]).unwrap();
+        model.set_eleven(&[-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370]);
+        let linear = model.find("resistance.linear").unwrap();
+        model.parameters[linear].value = resistance;
+        let inputs: Vec<_> = (0..=40).map(|k| Inputs::actuators(5.0 * f64::from(k), 2.0, 0.3)).collect();
+        let run = Run {
+            name: "run".into(),
+            recording: "run".into(),
+            session: String::new(),
+            manoeuvre: String::new(),
+            split: Split::Test,
+            dt: 5.0,
+            measured: vec![[Some(0.0); STATES]; inputs.len()],
+            inputs,
+            initial: [0.0, 0.0, 0.3, 4.0, 0.0, 0.0],
+            disturbed: Vec::new(),
+        };
+        conservation(&model, &[run]).unwrap()
+    }
+
+    #[test]
+    fn impulse_is_kept_and_a_hull_that_is_driven_by_its_resistance_is_told() {
+        let [momentum, energy] = turn(34187.0).try_into().unwrap();
+        assert!(momentum.passed && momentum.number < 1e-4, "{momentum:?}");
+        assert!(energy.passed && energy.number == 0.0, "{energy:?}");
+        let [momentum, energy] = turn(-40_000.0).try_into().unwrap();
+        assert!(momentum.passed, "{momentum:?}");
+        assert!(!energy.passed && energy.number > 0.0, "{energy:?}");
+    }
+}

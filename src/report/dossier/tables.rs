@@ -34,7 +34,7 @@ pub(super) fn ship(s: &Reader) -> Markup {
     let particulars = s.at("particulars").entries().iter().map(particular).collect();
     let r = s.at("recorded");
     html! {
-        p { (s.at("name").text()) ". " (s.at("source").text()) }
+        p { (s.at("name").text()) "." @if s.at("source").is_there() { " Source of the particulars: " (s.at("source").text()) "." } }
         (table("Particulars.", &["particular", "unit", "value"], 2, particulars))
         p {
             (r.at("recordings").count()) " recordings in " (r.at("sessions").count()) " sessions, " (r.at("rows").count()) " rows, "
@@ -144,7 +144,7 @@ pub(super) fn model(m: &Reader) -> Markup {
             html! { @if unit != "-" { (unit) } },
             html! { @if p.at("free").holds() { "yes" } @else { "no" } },
             p.at("value").number(1.0, Significant(4)),
-            p.at("error").number(1.0, Significant(2)),
+            html! { @if p.at("error").float() == Some(0.0) { "held" } @else { (p.at("error").number(1.0, Significant(2))) } },
         ]
     };
     let parameters: Vec<Vec<Markup>> = m.at("parameters").entries().iter().map(parameter).collect();
@@ -159,7 +159,7 @@ pub(super) fn model(m: &Reader) -> Markup {
         (ranges(&m.at("terms")))
         @for t in m.at("terms").entries() { (term(&t)) }
         @if !parameters.is_empty() {
-            (table("Free parameters, and those with a standard error.", &["parameter", "unit", "free", "value", "standard error"], 3, parameters))
+            (table("Free parameters, and those with a standard error; one that ends at a bound or a constraint is held there.", &["parameter", "unit", "free", "value", "standard error"], 3, parameters))
         }
         @if covariance.is_there() { p { "Standard errors: " (covariance.text()) "." } }
     }
