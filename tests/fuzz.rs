@@ -282,7 +282,9 @@ proptest! {
 
     #[test]
     fn a_damaged_log_neither_panics_nor_hangs(damages in prop::collection::vec(damage(), 1..5), which in 0..LOGS.len()) {
-        ends(damaged(&log(which), &damages), move |bytes| log_is_imported(LOGS[which], &bytes))?;
+        ends(damaged(&log(which), &damages), move |bytes| {
+            log_is_imported(LOGS[which], &bytes);
+        })?;
     }
 
     #[test]

@@ -147,7 +147,9 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         }
     }
     let bar = progress(format!("importing {} files", args.files.len()));
-    let imported = import(&args.files, &settings)?;
+    let imported = import(&args.files, &settings);
+    bar.finish_and_clear();
+    let imported = imported?;
     let antenna = antenna(args)?;
     let origins = Origins {
         name: &name,
@@ -183,7 +185,6 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             _ => output.file(file, text.as_bytes()),
         }
     }
-    bar.finish_and_clear();
     let text = text(args, &imported, &runs, skipped, &kept);
     output.finish(&text, &report(args, &imported, &runs, skipped))?;
     Ok(Answer::Yes)

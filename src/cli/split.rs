@@ -50,7 +50,7 @@ pub struct SplitArgs {
     /// How sessions are told apart: gaps, gaps=SECONDS, dates, files, or a pattern of file names with `{}` for the session.
     #[arg(long, value_name = "HOW")]
     sessions: Option<String>,
-    /// Longest run [s]; sixty times the time in which the ship turns ten degrees if not given.
+    /// Longest run [s]; forty times the time in which the ship turns ten degrees if not given.
     #[arg(long, value_name = "S")]
     longest: Option<f64>,
 }

@@ -115,7 +115,9 @@ pub fn direction(
         Some(given) if given.by_user || top <= MOST_RADIANS => (given.unit.as_str(), given.factor, String::new()),
         _ if top > MOST_RADIANS => ("deg", degree, format!("values up to {}", sig(top, 4))),
         _ => {
-            let length = |factor| agreement(factor, 1.0).map_or(0.0, |a| a[0]);
+            let length = |factor| {
+                [1.0, -1.0].map(|s| agreement(factor, s).map_or(0.0, |a| a[0])).into_iter().fold(0.0, f64::max)
+            };
             let (deg, rad) = (length(degree), length(1.0));
             let says = |unit| format!("values up to {}; the track goes that way in {unit}", sig(top, 3));
             match () {

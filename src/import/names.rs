@@ -19,7 +19,8 @@ fn words(name: &str) -> Vec<String> {
 }
 
 /// Spellings of units at the end of a name, as in `sog_kn`, and the unit.
-const ENDINGS: [(&[&str], &str); 19] = [
+const ENDINGS: [(&[&str], &str); 20] = [
+    (&["ms"], "ms"),
     (&["deg", "per", "min"], "deg/min"),
     (&["deg", "min"], "deg/min"),
     (&["deg", "s"], "deg/s"),

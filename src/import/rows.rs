@@ -2,7 +2,7 @@
 //! No drop-out is filled: a row without a value keeps the field blank, and a long gap ends the recording.
 
 use super::log::Meaning;
-use super::signal::{GAP_IN_STEPS, Signal};
+use super::signal::{GAP_IN_STEPS, Signal, nearest};
 use super::take::Signals;
 use crate::recording::{CHANNELS, Channel};
 
@@ -47,7 +47,10 @@ pub fn rows(signals: &Signals) -> Rows {
     let (t, step) = times(signals);
     let at = |meaning: Meaning| {
         let signal = signals.by.get(&meaning)?;
-        Some(t.iter().map(|t| signal.at(*t, step)).collect::<Vec<f64>>())
+        // A direction counts no turns; a heading goes on, so that turns can be seen.
+        let counts = !meaning.wraps() || meaning == Meaning::Channel(Channel::Psi);
+        let within = |v: f64| if counts || v.is_nan() { v } else { nearest(v) };
+        Some(t.iter().map(|t| within(signal.at(*t, step))).collect::<Vec<f64>>())
     };
     let mut channels: Vec<(Channel, Vec<f64>)> = Vec::new();
     for info in CHANNELS.iter().filter(|c| c.channel != Channel::T) {

@@ -20,7 +20,7 @@ pub struct SplitSettings {
     pub by: TestBy,
     /// How sessions are told apart.
     pub sessions: Sessions,
-    /// Longer runs are cut into equal pieces \[s\]; sixty times the time in which the ship turns ten degrees when not given.
+    /// Longer runs are cut into equal pieces \[s\]; forty times the time in which the ship turns ten degrees when not given.
     pub longest: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ pub struct SplitError(pub String);
 /// Times the time scale: a shorter stretch between two gaps is no run.
 const SHORTEST: f64 = 2.0;
 /// Times the time scale: the longest run.
-const LONGEST: f64 = 60.0;
+const LONGEST: f64 = 40.0;
 /// Rows of a run, at least.
 const FEWEST: usize = 10;
 
