@@ -76,6 +76,7 @@
 pub mod audit;
 pub mod demo;
 pub mod diagnose;
+pub mod dossier;
 pub mod dynamics;
 pub mod error;
 pub mod evaluate;

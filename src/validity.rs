@@ -28,6 +28,23 @@ pub struct Outside {
     pub met: [f64; 2],
 }
 
+/// The range of one term in one quantity beside the values that the data visit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Visit {
+    /// Name of the term.
+    pub term: &'static str,
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Its range, widened by other terms of the model where they model what this one leaves out; absent where open.
+    pub range: [Option<f64>; 2],
+    /// Samples at which the quantity is known.
+    pub samples: usize,
+    /// Smallest and largest value there; absent where none is known or where it is infinite (deep water).
+    pub visited: [Option<f64>; 2],
+    /// Share of these samples outside the range.
+    pub share_outside: f64,
+}
+
 /// How much of the data lies outside the ranges of a model's terms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Coverage {
@@ -47,6 +64,8 @@ struct Limit {
     known: usize,
     beyond: usize,
     met: [f64; 2],
+    /// Smallest and largest value, inside and outside.
+    visited: [f64; 2],
 }
 
 /// Samples counted against the ranges of a model's terms, some at a time.
@@ -104,7 +123,13 @@ impl<'a> Count<'a> {
             limit.known += more.known;
             limit.beyond += more.beyond;
             limit.met = [limit.met[0].min(more.met[0]), limit.met[1].max(more.met[1])];
+            limit.visited = [limit.visited[0].min(more.visited[0]), limit.visited[1].max(more.visited[1])];
         }
+    }
+
+    /// Every range beside what was counted here, in the order of the terms; ranges that hold everything visited too.
+    pub fn visits(&self) -> Vec<Visit> {
+        self.limits.iter().map(Limit::visit).collect()
     }
 
     /// Adds what the other ranks counted for the same model.
@@ -152,6 +177,10 @@ pub fn samples(run: &Run) -> impl Iterator<Item = ([f64; STATES], &Inputs<f64>)>
     run.measured.iter().map(or_nan).zip(&run.inputs)
 }
 
+fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
+}
+
 fn share(part: usize, whole: usize) -> f64 {
     if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
 }
@@ -180,6 +209,7 @@ fn limits(model: &Model) -> Vec<Limit> {
             known: 0,
             beyond: 0,
             met: [f64::INFINITY, f64::NEG_INFINITY],
+            visited: [f64::INFINITY, f64::NEG_INFINITY],
         })
         .collect()
 }
@@ -234,6 +264,7 @@ impl Limit {
     fn meet(&mut self, value: Option<f64>) -> bool {
         let Some(value) = value.filter(|v| !v.is_nan()) else { return false };
         self.known += 1;
+        self.visited = [self.visited[0].min(value), self.visited[1].max(value)];
         let out = !(self.range[0]..=self.range[1]).contains(&value);
         if out {
             self.beyond += 1;
@@ -245,16 +276,26 @@ impl Limit {
     /// Counts what the other ranks met too.
     fn gather(&mut self, ranks: &Ranks) {
         [self.known, self.beyond] = ranks.counts([self.known, self.beyond]);
-        let ends = ranks.largest(&[-self.met[0], self.met[1]]);
-        self.met = [-ends[0], ends[1]];
+        let ends = ranks.largest(&[-self.met[0], self.met[1], -self.visited[0], self.visited[1]]);
+        (self.met, self.visited) = ([-ends[0], ends[1]], [-ends[2], ends[3]]);
+    }
+
+    fn visit(&self) -> Visit {
+        Visit {
+            term: self.term,
+            quantity: self.quantity,
+            range: self.range.map(finite),
+            samples: self.known,
+            visited: self.visited.map(finite),
+            share_outside: share(self.beyond, self.known),
+        }
     }
 
     fn report(&self) -> Outside {
-        let open = |x: f64| x.is_finite().then_some(x);
         Outside {
             term: self.term,
             quantity: self.quantity,
-            range: self.range.map(open),
+            range: self.range.map(finite),
             samples: self.known,
             share: share(self.beyond, self.known),
             met: self.met,

@@ -41,7 +41,7 @@ const LAYERS: [&[&str]; 16] = [
     &["fit"],
     &["evaluate", "maneuver"],
     &["diagnose"],
-    &["plan", "sweep"],
+    &["plan", "sweep", "dossier"],
     &["plot", "report"],
     &["guide"],
     &["cli", "main"],

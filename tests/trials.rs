@@ -26,7 +26,7 @@ fn tracks(word: &str) -> Option<Vec<(String, Track)>> {
 }
 
 #[test]
-fn measured_turning_circles_give_their_published_measures() {
+fn val_kvlcc2_marin_measured_turning_circles_give_their_published_measures() {
     let Some(tracks) = tracks("turning") else { return };
     assert_eq!(tracks.len(), 2);
     for (name, track) in tracks {
@@ -44,7 +44,7 @@ fn measured_turning_circles_give_their_published_measures() {
 }
 
 #[test]
-fn measured_zigzags_give_their_published_overshoots() {
+fn val_kvlcc2_marin_measured_zigzags_give_their_published_overshoots() {
     let expected = [
         ("10/10 starboard", [8.2, 21.9]),
         ("10/10 port", [9.5, 15.0]),

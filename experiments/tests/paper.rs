@@ -8,6 +8,7 @@ use std::path::Path;
 use trimtab::fit::constraints;
 use trimtab::physics::Form;
 use trimtab::plot::{Axis, Figure, Format, Panel, Width};
+use trimtab::report::Table;
 use trimtab::simulate::Integration;
 use trimtab_experiments::paper::case::{Case, Setup, initial_model};
 use trimtab_experiments::paper::list::ARTEFACTS;
@@ -86,7 +87,12 @@ fn figures_are_drawn_in_the_formats_that_are_asked_for() {
         Target { formats: vec![Format::Pdf, Format::Svg], width: Some(Width::Two), ..Target::new(folder.path()) };
     let figure = Figure::new("R(u)").with(Panel::new("", Axis::new("u [m/s]"), Axis::new("R [kN]")));
     target.figure("figure2", figure).unwrap();
+    let mut table = Table::new(["ship", "R [kN]"]);
+    table.row(["A", "12"]);
+    target.table("table1", &table).unwrap();
+    Target { latex: true, ..target }.table("table2", &table).unwrap();
     let made = files(folder.path());
-    assert_eq!(made.keys().collect::<Vec<_>>(), ["figure2.csv", "figure2.pdf", "figure2.svg"]);
+    assert_eq!(made.keys().collect::<Vec<_>>(), ["figure2.csv", "figure2.pdf", "figure2.svg", "table2.tex"]);
+    assert!(String::from_utf8_lossy(&made["table2.tex"]).contains("\\toprule"));
     assert!(made["figure2.pdf"].starts_with(b"%PDF") && made["figure2.svg"].starts_with(b"<svg"));
 }

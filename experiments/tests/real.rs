@@ -30,7 +30,7 @@ fn present<T>(result: Result<T, RealError>) -> Option<T> {
 }
 
 #[test]
-fn zigzags_of_kvlcc2_predict_its_turning_circles() {
+fn val_kvlcc2_marin_zigzags_predict_its_turning_circles() {
     let Some(outcome) = present(kvlcc2::run()) else { return };
     assert!(outcome.fits.iter().all(|f| f.converged));
     let [empirical, freed] = [0, 2];
@@ -50,7 +50,7 @@ fn zigzags_of_kvlcc2_predict_its_turning_circles() {
 }
 
 #[test]
-fn a_freed_hull_predicts_zigzags_of_kvlcc2_that_it_has_not_seen() {
+fn val_kvlcc2_hsva_a_freed_hull_predicts_zigzags_that_it_has_not_seen() {
     let Some(predicted) = present(kvlcc2_hsva::run()) else { return };
     let [empirical, freed] = [0, 2];
     assert!(predicted.trials.fits.iter().all(|f| f.converged && f.cost < f.start_cost));

@@ -135,7 +135,8 @@ struct RecordingReport<'a> {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let settings = settings(args)?;
     let name = study_name(args);
-    let mut output = Output::new("import", &OutputArgs { out: Some(args.out.clone()), json: args.json })?;
+    let mut output =
+        Output::new("import", &OutputArgs { out: Some(args.out.clone()), json: args.json, tables: Vec::new() })?;
     let read: Vec<PathBuf> = args.files.iter().chain(&args.ship).chain(&args.model).cloned().collect();
     output.reads_files(&read);
     let (ship, model) = (own_file(args.ship.as_deref())?, own_file(args.model.as_deref())?);

@@ -7,6 +7,7 @@ mod check;
 mod compare;
 mod demo;
 mod diagnose;
+mod dossier;
 mod error;
 mod evaluate;
 mod export;
@@ -88,6 +89,7 @@ enum Command {
     Fit(fit::Args),
     Evaluate(evaluate::Args),
     Diagnose(diagnose::Args),
+    Dossier(dossier::Args),
     Maneuver(maneuver::Args),
     Plan(plan::Args),
     Sweep(sweep::Args),
@@ -154,6 +156,7 @@ fn execute(cli: &Cli, ranks: &Ranks) -> Result<Answer, CliError> {
         Command::Check(args) => check::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Diagnose(args) => diagnose::run(args),
+        Command::Dossier(args) => dossier::run(args),
         Command::Maneuver(args) => maneuver::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Sweep(args) => sweep::run(args),

@@ -70,6 +70,7 @@ fn expected(command: &str) -> &'static [&'static str] {
         "fit" => &["fit.json", "fitted.toml", "fit.txt", "parameters.csv", "curves.png", "curves.csv", "best.toml"],
         "evaluate" => &["evaluate.json", "trajectories.csv", "summary.csv", "improvement.png", "tracks.png"],
         "diagnose" => &["diagnosis.json", "improved.toml", "base.toml", "report.html"],
+        "dossier" => &["dossier.html", "dossier.json"],
         "maneuver turning" => &["maneuver_turning.json", "turning.png", "turning.csv", "turning_measures.csv"],
         "maneuver zigzag" => &["maneuver_zigzag.json", "zigzag.png", "zigzag.csv", "zigzag_measures.csv"],
         "maneuver stopping" => &["maneuver_stopping.json", "stopping.png", "stopping.csv", "stopping_measures.csv"],

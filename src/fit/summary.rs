@@ -132,6 +132,23 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// The estimates as they are told: what is a billionth of its parameter's scale or less, the rounding that an active constraint leaves, is
+    /// zero.
+    pub fn told(&self) -> Vec<Estimate> {
+        let told = |e: &Estimate| {
+            let scale = self.model.index(&e.name).map_or(0.0, |i| self.model.parameters[i].scale);
+            let whole = |x: f64| if x.abs() <= 1e-9 * scale { 0.0 } else { x };
+            Estimate {
+                start: whole(e.start),
+                value: whole(e.value),
+                standard_error: e.standard_error.map(whole),
+                interval: e.interval.map(|ends| ends.map(whole)),
+                ..e.clone()
+            }
+        };
+        self.estimates.iter().map(told).collect()
+    }
+
     /// The covariance as a model file keeps it; nothing where the data determine no parameter.
     pub fn uncertainty(&self) -> Option<Uncertainty> {
         let names: Vec<String> = self.estimates.iter().map(|e| e.name.clone()).collect();

@@ -93,7 +93,7 @@ impl Fit {
     /// The estimates, and how their errors are to be read.
     fn table(&self) -> String {
         let mut table = Table::new(["parameter", "symbol", "unit", "start", "estimate", "std. error", "95 % interval"]);
-        for e in &self.estimates {
+        for e in &self.told() {
             table.row([
                 e.name.clone(),
                 e.symbol.to_string(),

@@ -4,6 +4,7 @@
 #[cfg(feature = "ipopt")]
 mod active;
 pub mod diagnosis;
+pub mod dossier;
 #[cfg(feature = "ipopt")]
 mod fit;
 #[cfg(feature = "plot")]

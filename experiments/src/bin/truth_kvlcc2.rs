@@ -3,23 +3,10 @@
 
 use clap::Parser;
 use comfy_table::{Table, presets};
-use trimtab_experiments::truth::reference::{Reference, ZIGZAGS, references};
+use trimtab_experiments::truth::reference::{
+    MARIN_OVERSHOOTS, MARIN_PORT, MARIN_STARBOARD, Reference, ZIGZAGS, references,
+};
 use trimtab_experiments::truth::trial::{Approach, turning, zigzag};
-
-/// Free-running model tests of MARIN for SIMMAN 2008, in the order of [`ZIGZAGS`] \[deg\].
-const TESTED_OVERSHOOTS: [[f64; 2]; 4] = [[8.2, 21.9], [9.5, 15.0], [13.7, 14.9], [15.1, 13.3]];
-/// Measures of the 35 deg turn to starboard, in the order of `Turning::measures`, with the model tests where there are any.
-const STARBOARD: [(&str, Option<f64>); 7] = [
-    ("advance [L]", Some(3.10)),
-    ("transfer [L]", None),
-    ("tactical diameter [L]", Some(3.33)),
-    ("steady diameter [L]", None),
-    ("steady U/U0", Some(0.375)),
-    ("steady drift [deg]", Some(19.0)),
-    ("steady r L/U", None),
-];
-/// Advance and tactical diameter \[L\] of the model tests to port, and their places in `Turning::measures`.
-const PORT: [(usize, f64); 2] = [(0, 3.02), (2, 3.07)];
 
 /// One line of the table: ours at a fine step and at the step of the reference, reference, model test.
 struct Line {
@@ -82,15 +69,17 @@ fn table(reference: &Reference) -> Table {
 fn turns(r: &Reference, steps: [Approach; 2]) -> Vec<Line> {
     let circle = |degrees: f64| steps.map(|a| turning(&r.ship, &a, degrees.to_radians()).map(|t| t.measures()));
     let line = |degrees: f64, i: usize, ours: [Option<[f64; 7]>; 2], reference: f64, tested: Option<f64>| Line {
-        what: format!("turn {degrees:+.0} deg: {}", STARBOARD[i].0),
+        what: format!("turn {degrees:+.0} deg: {}", MARIN_STARBOARD[i].0),
         ours: ours.map(|m| m.map(|m| m[i])),
         reference,
         tested,
     };
     let (starboard, port) = (circle(35.0), circle(-35.0));
-    let right = (0..7).map(|i| line(35.0, i, starboard, r.starboard[i], STARBOARD[i].1));
-    let left =
-        PORT.into_iter().zip(r.port).map(|((i, tested), reference)| line(-35.0, i, port, reference, Some(tested)));
+    let right = (0..7).map(|i| line(35.0, i, starboard, r.starboard[i], MARIN_STARBOARD[i].1));
+    let left = MARIN_PORT
+        .into_iter()
+        .zip(r.port)
+        .map(|((i, tested), reference)| line(-35.0, i, port, reference, Some(tested)));
     right.chain(left).collect()
 }
 
@@ -103,7 +92,7 @@ fn zigzags(r: &Reference, steps: [Approach; 2]) -> Vec<Line> {
             what: format!("zigzag {0:.0}/{0:.0}, {side} first: overshoot {1} [deg]", order.abs(), k + 1),
             ours: runs.map(|run| run.map(|overshoots| overshoots[k].to_degrees())),
             reference: r.overshoots[i][k],
-            tested: Some(TESTED_OVERSHOOTS[i][k]),
+            tested: Some(MARIN_OVERSHOOTS[i][k]),
         }));
     }
     lines

@@ -182,5 +182,6 @@ fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
         }
     }
     to.figure("figure2", figure)?;
+    to.table("figure2", &table)?;
     Ok(format!("{table}\n"))
 }

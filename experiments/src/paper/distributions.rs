@@ -83,5 +83,6 @@ fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
         to.figure(&format!("distributions_{}", case.ship.name()), figure)?;
     }
     sheet.save(&to.folder)?;
+    to.table("distributions", &table)?;
     Ok(format!("{table}\n"))
 }

@@ -109,6 +109,7 @@ fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
         }
     }
     sheet.save(&to.folder)?;
+    to.table("limits", &table)?;
     let gains: String =
         cases.iter().filter_map(|case| Some((case, captive_over_published(case)?))).map(sentence).collect();
     Ok(format!("{table}\n{gains}"))

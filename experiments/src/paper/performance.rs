@@ -120,6 +120,7 @@ fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
         let _ = writeln!(text, "{}", integration(case));
     }
     sheet.save(&to.folder)?;
+    to.table("performance", &table)?;
     to.figure("performance", bars.figure())?;
     Ok(format!("{table}\n\n{text}"))
 }

@@ -33,6 +33,9 @@ struct Options {
     /// Lay the figures out for one column of a printed page (89 mm) or two (183 mm).
     #[arg(long, value_name = "COLUMNS", value_parser = PossibleValuesParser::new(["one", "two"]))]
     width: Option<String>,
+    /// Write the tables as LaTeX (booktabs) too.
+    #[arg(long)]
+    latex: bool,
     /// Seed of the data sets and of the bootstrap.
     #[arg(long, default_value_t = SEED)]
     seed: u64,
@@ -62,6 +65,7 @@ impl Options {
             folder: self.out.clone(),
             formats: self.format.iter().map(format).collect(),
             width: self.width.as_ref().map(width),
+            latex: self.latex,
         }
     }
 }

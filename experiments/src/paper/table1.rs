@@ -86,6 +86,7 @@ fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
         }
     }
     sheet.save(&to.folder)?;
+    to.table("table1", &table)?;
     let figure = Figure::new("Data sets of ships A and B beside the paper's (Table 1)")
         .columns(5)
         .panel_size(520, 620)

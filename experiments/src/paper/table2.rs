@@ -106,6 +106,7 @@ fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
             figure = figure.with(row.panel());
         }
         to.figure(&format!("table2_{}", case.ship.name()), figure)?;
+        to.table(&format!("table2_{}", case.ship.name()), &table)?;
         let _ = writeln!(text, "{}: {}\n{table}", case.label(), case.fit.status);
         let _ = writeln!(text, "Held back by {}.", list(&case.fit));
         let effect = case.fit.design_effect.map_or(DASH.to_owned(), |e| sig(e, 3));

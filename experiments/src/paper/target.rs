@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::PaperError;
 use trimtab::plot::{Figure, Format, Width};
+use trimtab::report::Table;
 
 /// A folder, and the formats and width of figures.
 #[derive(Clone, Debug)]
@@ -15,12 +16,14 @@ pub struct Target {
     pub formats: Vec<Format>,
     /// Width on a page; as wide as a figure needs to be if not given.
     pub width: Option<Width>,
+    /// Whether tables are written as LaTeX (booktabs) too.
+    pub latex: bool,
 }
 
 impl Target {
     /// A folder with figures as PNG.
     pub fn new(folder: impl AsRef<Path>) -> Self {
-        Self { folder: folder.as_ref().to_owned(), formats: vec![Format::Png], width: None }
+        Self { folder: folder.as_ref().to_owned(), formats: vec![Format::Png], width: None, latex: false }
     }
 
     /// Writes a figure and the CSV behind it.
@@ -34,5 +37,19 @@ impl Target {
         };
         figure.save_as(&self.folder.join(name), &self.formats)?;
         Ok(())
+    }
+
+    /// Writes a table as `NAME.tex`, if LaTeX is asked for.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn table(&self, name: &str, table: &Table) -> Result<(), PaperError> {
+        if !self.latex {
+            return Ok(());
+        }
+        let path = self.folder.join(format!("{name}.tex"));
+        std::fs::create_dir_all(&self.folder)
+            .and_then(|()| std::fs::write(&path, table.latex()))
+            .map_err(|source| PaperError::Write { path, source: source.into() })
     }
 }

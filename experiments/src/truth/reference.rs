@@ -12,6 +12,22 @@ use super::trial::Approach;
 /// Zigzags: rudder and heading \[deg\], sign of the first execute.
 pub const ZIGZAGS: [f64; 4] = [10.0, -10.0, 20.0, -20.0];
 
+/// Free-running model tests of MARIN for SIMMAN 2008, in the order of [`ZIGZAGS`] \[deg\].
+pub const MARIN_OVERSHOOTS: [[f64; 2]; 4] = [[8.2, 21.9], [9.5, 15.0], [13.7, 14.9], [15.1, 13.3]];
+/// Measures of the 35 deg turn to starboard, in the order of [`super::trial::Turning::measures`], with the model tests where there are any;
+/// advance and tactical diameter are read from the recorded tests, from the moment the rudder moves.
+pub const MARIN_STARBOARD: [(&str, Option<f64>); 7] = [
+    ("advance [L]", Some(3.10)),
+    ("transfer [L]", None),
+    ("tactical diameter [L]", Some(3.33)),
+    ("steady diameter [L]", None),
+    ("steady U/U0", Some(0.375)),
+    ("steady drift [deg]", Some(19.0)),
+    ("steady r L/U", None),
+];
+/// Advance and tactical diameter \[L\] of the model tests to port, and their places in these measures.
+pub const MARIN_PORT: [(usize, f64); 2] = [(0, 3.02), (2, 3.07)];
+
 /// A scale of the ship and the results of the reference simulation.
 pub struct Reference {
     /// `7 m model`

@@ -3,7 +3,7 @@
 
 use crate::maneuver::{Intervals, Side, Track, Trial, Turning, Zigzag};
 use crate::numerals::{fixed, sig};
-use crate::plot::{Color, GREY, Layer, Marker, east_north};
+use crate::plot::{Color, Layer, Marker, east_north};
 
 /// The state of a track at a time \[s\], or the last one before it.
 fn state_at(track: &Track, time: f64) -> Option<[f64; 6]> {
@@ -18,10 +18,15 @@ fn point(track: &Track, ahead: f64, abeam: f64) -> Option<(f64, f64)> {
     Some(east_north(x + c * ahead - s * abeam, y + s * ahead + c * abeam))
 }
 
-/// An arrow with its words at a share of its length.
-fn measure(words: &str, [from, to]: [(f64, f64); 2], share: f64) -> Vec<Layer> {
-    let at = (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1));
-    vec![Layer::arrows("measures", GREY, [[from, to]]).width(2.0), Layer::text(words, GREY, at)]
+/// Rows of words below the circles, and from one to the next, in ship lengths.
+const BELOW: f64 = 0.9;
+const ROW: f64 = 0.5;
+/// Measures of a circle: rows of words for each side.
+const MEASURES: usize = 3;
+
+/// An arrow of a side.
+fn arrow(color: Color, ends: [(f64, f64); 2]) -> Layer {
+    Layer::arrows("measures", color, [ends]).unlisted().width(2.5)
 }
 
 /// The 95 % interval of a measure in words; nothing where there is none.
@@ -29,31 +34,56 @@ fn within(intervals: &Intervals, key: &str, number: impl Fn(f64) -> String) -> S
     intervals.get(key).map_or(String::new(), |[low, high]| format!(" [{}, {}]", number(*low), number(*high)))
 }
 
-/// Advance, transfer and tactical diameter of a circle, as far as they were reached; lengths in ship lengths of `length` \[m\].
-pub(super) fn circle(trial: &Trial<Turning>, length: f64) -> Vec<Layer> {
+/// Advance, transfer and tactical diameter of circles as far as they were reached: arrows, and words in rows below the circles, port to
+/// the left. Lengths are in ship lengths of `length` \[m\]. Also the lowest row, as a value of the vertical axis.
+pub(super) fn circles(trials: &[Trial<Turning>], length: f64, color: fn(Side) -> Color) -> (Vec<Layer>, f64) {
+    let mut layers = Vec::new();
+    // With intervals a row has room for one side.
+    let wide = trials.iter().any(|t| !t.intervals.is_empty());
+    let mut lowest = 0.0_f64;
+    for (i, trial) in trials.iter().enumerate() {
+        layers.extend(arrows(trial, color(trial.side)));
+        let first = if wide { i * MEASURES } else { 0 };
+        let side = if trial.side == Side::Starboard { 1.0 } else { -1.0 };
+        let [x, y, ..] = trial.track.states.first().copied().unwrap_or_default();
+        let reach = trial.measures.tactical_diameter.unwrap_or(length);
+        for (k, words) in words(trial, length).into_iter().enumerate() {
+            let below = x - length * (BELOW + ROW * (first + k) as f64);
+            lowest = lowest.min(below);
+            layers.push(Layer::text(words, color(trial.side), east_north(below, y + side * reach)));
+        }
+    }
+    (layers, lowest - ROW * length)
+}
+
+/// The measures of a circle in words, with their intervals.
+fn words(trial: &Trial<Turning>, length: f64) -> Vec<String> {
+    let m = &trial.measures;
+    let all = [("advance", m.advance), ("transfer", m.transfer), ("tactical diameter", m.tactical_diameter)];
+    let one = |(name, value): (&str, Option<f64>)| {
+        let lengths = |v: f64| sig(v / length, 3);
+        let interval = within(&trial.intervals, &name.replace(' ', "_"), lengths);
+        Some(format!("{name} {} L{interval}", lengths(value?)))
+    };
+    all.into_iter().filter_map(one).collect()
+}
+
+/// The measures of a circle as arrows.
+fn arrows(trial: &Trial<Turning>, color: Color) -> Vec<Layer> {
     let (m, track) = (&trial.measures, &trial.track);
     let side = if trial.side == Side::Starboard { 1.0 } else { -1.0 };
     let mut layers = Vec::new();
-    let words = |name: &str, v: f64| {
-        let key = name.replace(' ', "_");
-        format!("{name} {} L{}", sig(v / length, 3), within(&trial.intervals, &key, |v| sig(v / length, 3)))
-    };
     if let (Some(advance), Some(transfer)) = (m.advance, m.transfer) {
-        let corner = point(track, advance, 0.0);
-        // The advances of both sides are on one line: their words are apart.
-        let share = if side > 0.0 { 0.82 } else { 0.62 };
-        if let (Some(start), Some(corner), Some(quarter)) =
-            (point(track, 0.0, 0.0), corner, point(track, advance, side * transfer))
-        {
-            layers.extend(measure(&words("advance", advance), [start, corner], share));
-            layers.extend(measure(&words("transfer", transfer), [corner, quarter], 0.5));
+        let ends = [point(track, 0.0, 0.0), point(track, advance, 0.0), point(track, advance, side * transfer)];
+        if let [Some(start), Some(corner), Some(quarter)] = ends {
+            layers.extend([arrow(color, [start, corner]), arrow(color, [corner, quarter])]);
         }
     }
     let half = m.time_180.zip(track.t.first()).and_then(|(time, start)| state_at(track, start + time));
     if let (Some(diameter), Some(s), Some([x, y, psi, ..])) = (m.tactical_diameter, half, track.states.first()) {
         let ahead = (s[0] - x) * psi.cos() + (s[1] - y) * psi.sin();
         if let (Some(foot), Some(end)) = (point(track, ahead, 0.0), point(track, ahead, side * diameter)) {
-            layers.extend(measure(&words("tactical diameter", diameter), [foot, end], 0.55));
+            layers.push(arrow(color, [foot, end]));
         }
     }
     layers

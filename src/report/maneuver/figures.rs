@@ -1,7 +1,7 @@
 //! Figures of trials: the track with ship outlines, and rudder, heading and speed over time.
 //! Nothing is computed here beyond units; measures are in `tables`.
 
-use super::annotate::{circle, overshoots};
+use super::annotate::{circles, overshoots};
 use crate::maneuver::{Side, Stopping, Track, Trial, Turning, Zigzag};
 use crate::numerals::sig;
 use crate::plot::{Axis, BLUE, Color, Figure, GREY, Layer, Legend, Panel, VERMILLION, east_north};
@@ -82,10 +82,13 @@ fn in_brackets<M>(trials: &[Trial<M>]) -> &'static str {
 
 /// Turning circles to both sides: tracks, heading, rudder, speed and yaw rate.
 pub fn turning_figure(ship: &Ship, trials: &[Trial<Turning>]) -> Figure {
-    let measured = trials.iter().flat_map(|t| circle(t, ship.hull.lpp));
+    let (measured, lowest) = circles(trials, ship.hull.lpp, color);
+    let mut circles = track_panel("", ship, trials.iter()).with_all(measured);
+    circles.y = circles.y.including(lowest);
     let caption = format!(
         "Turning circles to both sides; L = {} m. Advance: distance ahead at 90 deg of change of heading; transfer and tactical diameter: \
-         distance abeam at 90 and 180 deg, all of the midship point from where the rudder begins to move.{}",
+         distance abeam at 90 and 180 deg, all of the midship point from where the rudder begins to move. Arrows: advance ahead, \
+         transfer abeam at its end, tactical diameter abeam.{}",
         sig(ship.hull.lpp, 4),
         in_brackets(trials)
     );
@@ -93,7 +96,7 @@ pub fn turning_figure(ship: &Ship, trials: &[Trial<Turning>]) -> Figure {
         .columns(2)
         .panel_size(900, 760)
         .caption(caption)
-        .with(track_panel("", ship, trials.iter()).with_all(measured))
+        .with(circles)
         .with(time_panel("heading psi [deg]", trials, |t, k| t.states[k][2].to_degrees()))
         .with(time_panel("rudder delta [deg]", trials, |t, k| t.delta[k].to_degrees()))
         .with(time_panel("speed U [m/s]", trials, Track::speed))

@@ -1,0 +1,14 @@
+//! A dossier for people: a summary for the terminal and one HTML page, both read from the JSON document.
+//! It computes nothing beyond units, and says nothing that the document does not hold.
+
+#[cfg(feature = "plot")]
+mod page;
+#[cfg(feature = "plot")]
+mod reader;
+mod summary;
+#[cfg(feature = "plot")]
+mod tables;
+
+#[cfg(feature = "plot")]
+pub use page::page;
+pub use summary::summary;
