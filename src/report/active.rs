@@ -2,12 +2,13 @@
 //! Which constraints are active is decided in [`crate::fit`].
 
 use crate::fit::Active;
-use crate::numerals::sig;
 
 /// A sentence `name(at unit) limit`, taken apart.
 struct Parts<'a> {
     name: &'a str,
     at: f64,
+    /// The same number as it is written.
+    written: &'a str,
     unit: &'a str,
     limit: &'a str,
     rule: &'a str,
@@ -17,8 +18,8 @@ impl<'a> Parts<'a> {
     fn of(active: &'a Active) -> Option<Self> {
         let (name, rest) = active.sentence.split_once('(')?;
         let (inside, limit) = rest.split_once(')')?;
-        let (at, unit) = inside.split_once(' ').unwrap_or((inside, ""));
-        Some(Self { name, at: at.parse().ok()?, unit, limit: limit.trim(), rule: active.rule })
+        let (written, unit) = inside.split_once(' ').unwrap_or((inside, ""));
+        Some(Self { name, at: written.parse().ok()?, written, unit, limit: limit.trim(), rule: active.rule })
     }
 
     fn alike(&self, other: &Self) -> bool {
@@ -35,7 +36,7 @@ pub(super) fn lines(active: &[Active]) -> Vec<String> {
         lines.push(match (Parts::of(&active[i]), Parts::of(&active[i + length - 1])) {
             (Some(first), Some(last)) if length > 1 => {
                 let unit = if first.unit.is_empty() { String::new() } else { format!(" {}", first.unit) };
-                let (from, to) = (sig(first.at, 4), sig(last.at, 4));
+                let (from, to) = (first.written, last.written);
                 format!("{}({from} to {to}{unit}) {}   ({}, {length} samples)", first.name, first.limit, first.rule)
             }
             _ => format!("{}   ({})", active[i].sentence, active[i].rule),
