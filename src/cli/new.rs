@@ -104,7 +104,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     if let Some(speed) = args.speed.filter(|s| !(s.is_finite() && *s > 0.0)) {
         return Err(CliError::Argument(format!("--speed {speed} must be a positive number, in m/s")));
     }
-    for path in [&args.out, &args.model].into_iter().flatten().filter(|p| p.exists()) {
+    if let Some(path) = [&args.out, &args.model].into_iter().flatten().find(|p| p.exists()) {
         let path = path.display();
         return Err(CliError::Argument(format!("{path} is there already and is not overwritten; give another name")));
     }

@@ -50,7 +50,7 @@ pub fn trimmed(found: &Model, user: &Model, free: &[FreeParameter]) -> Model {
 /// The covariance of the parameters of `improved`, from the filter's information and the priors at an estimate. Additions in single
 /// sessions are profiled out.
 pub fn uncertainty(found: &Estimate, improved: &Model, integration: Integration, runs: &[Run]) -> Option<Uncertainty> {
-    let columns: Vec<Column> = found.free.iter().map(|f| f.column.clone()).collect();
+    let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
     let sessions: Vec<_> = found.free.iter().map(|f| f.sessions.clone()).collect();
     let filter = Filter::new(&found.model, integration, &columns);
     let mut information = Sums::of(&filter, runs, &found.noise, &sessions, false).evidence.total.information;

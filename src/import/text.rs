@@ -65,7 +65,7 @@ fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Table<'a> {
     // A second line of the header may hold the units.
     let second: Vec<&str> = lines.peek().map_or_else(Vec::new, |(_, line)| layout.delimiter.fields(line));
     let unit_of = |f: &str| f.trim_matches(['[', ']', '(', ')']).trim().to_owned();
-    if named && second.iter().any(|f| is_unit(&unit_of(f))) && !second.iter().any(|f| is_value(f)) {
+    if named && second.iter().any(|f| is_unit(&unit_of(f))) && !second.iter().any(is_value) {
         lines.next();
         for (name, unit) in names.iter_mut().zip(second) {
             name.1 = Some(unit_of(unit)).filter(|u| is_unit(u)).or(name.1.take());

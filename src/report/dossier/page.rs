@@ -8,7 +8,6 @@ use maud::{Markup, html};
 use serde_json::Value;
 
 /// The page of a document, that of `trimtab dossier` under its key `result`.
-#[must_use]
 pub fn page(document: &Value) -> Page {
     let d = Reader::new(document);
     let page = Page::new(format!("Validation dossier: {}", d.at("study").text())).opening(opening(&d));
