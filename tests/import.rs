@@ -424,8 +424,7 @@ fn files_with_a_clock_of_their_own_are_a_recording_each() {
     let paths: Vec<PathBuf> = [(0, 900), (900, 1800)]
         .iter()
         .map(|(from, to)| {
-            let mut text =
-                String::from("t [s] x [m] y [m] psi [rad] r [rad/s] n [rps] delta [rad]\n".replace("] ", "],"));
+            let mut text = "t [s] x [m] y [m] psi [rad] r [rad/s] n [rps] delta [rad]\n".replace("] ", "],");
             for s in &SAILED[*from..*to] {
                 let [x, y, psi, _, _, r] = s.state;
                 let _ = writeln!(text, "{},{x},{y},{psi},{r},{},{}", s.t - *from as f64, s.n, s.delta);
