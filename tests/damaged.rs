@@ -494,7 +494,7 @@ fn clocks() -> Vec<Case> {
     ]
 }
 
-/// Headings, fixes, and the split.
+/// Headings and fixes.
 fn places() -> Vec<Case> {
     let here = Where::Run(RUN);
     let through_north = Files::sound().run(RUN, |t| {
@@ -543,6 +543,23 @@ fn places() -> Vec<Case> {
             "time stamp",
         ),
         case(
+            "a frozen heading",
+            Files::sound().run(RUN, |t| {
+                let held = t.get("psi")[40];
+                t.each("psi", |i, p| if (40..60).contains(&i) { held } else { p });
+            }),
+            "frozen",
+            Channel::Psi,
+            here,
+            "blank",
+        ),
+    ]
+}
+
+/// Samples that two runs have in common.
+fn shared() -> Vec<Case> {
+    vec![
+        case(
             "the same recording on both sides",
             copied("ship_a_001", 0, 121),
             "shared_data",
@@ -565,17 +582,6 @@ fn places() -> Vec<Case> {
             None,
             Where::Study,
             "one side",
-        ),
-        case(
-            "a frozen heading",
-            Files::sound().run(RUN, |t| {
-                let held = t.get("psi")[40];
-                t.each("psi", |i, p| if (40..60).contains(&i) { held } else { p });
-            }),
-            "frozen",
-            Channel::Psi,
-            here,
-            "blank",
         ),
     ]
 }
@@ -609,7 +615,8 @@ impl Files {
 #[test]
 fn every_fault_is_told_with_its_run_its_channel_and_what_to_do() {
     let mut missed = Vec::new();
-    let cases: Vec<Case> = samples().into_iter().chain(contradictions()).chain(clocks()).chain(places()).collect();
+    let cases: Vec<Case> =
+        samples().into_iter().chain(contradictions()).chain(clocks()).chain(places()).chain(shared()).collect();
     assert!(cases.len() >= 30, "{}", cases.len());
     for Case { name, files, fault, channel, place, next } in cases {
         let found = doubts(&files.audit());

@@ -3,6 +3,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod support;
+
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -12,8 +14,8 @@ use trimtab::sweep::{SweepSettings, pair, profile, sensitivities};
 
 #[test]
 fn a_profile_is_the_standard_error_of_what_the_data_determine_and_a_pair_holds_its_profiles() {
-    let example = trimtab::demo::example().unwrap();
-    let (mut model, runs) = (example.model, &example.train[..12]);
+    let mut model = support::model();
+    let runs = &support::runs(&model, &support::truth_noise(), 12, 1);
     let wanted = ["rudder.lift1", "rudder.lift2"];
     model.parameters.iter_mut().for_each(|p| p.free = wanted.contains(&p.name.as_str()));
     let found = fit(&model, runs, &FitSettings::default(), &mut |_| true).unwrap();
@@ -59,10 +61,14 @@ fn the_commands_say_which_parameters_are_determined_and_which_model_predicts_bet
     }
     let fitted = trimtab(folder.path(), &["fit", "study.toml", "--out", "fit"]);
     assert_eq!(fitted.status.code(), Some(0), "{}", String::from_utf8_lossy(&fitted.stderr));
-    let arguments = ["sweep", "study.toml", "--parameter", "rudder.lift2", "--points", "2", "--out", "swept", "--json"];
+    let arguments =
+        ["sweep", "study.toml", "--parameter", "propeller.side_force", "--points", "2", "--out", "swept", "--json"];
     let swept = json(folder.path(), &arguments);
     let profile = &swept["result"]["profiles"][0];
-    assert_eq!((profile["parameter"].as_str(), profile["points"].as_array().unwrap().len()), (Some("rudder.lift2"), 5));
+    assert_eq!(
+        (profile["parameter"].as_str(), profile["points"].as_array().unwrap().len()),
+        (Some("propeller.side_force"), 5)
+    );
     for file in ["sweep.json", "profiles.csv", "intervals.csv", "sensitivities.csv", "profile_curves.png"] {
         assert!(folder.path().join("swept").join(file).is_file(), "{file}");
     }

@@ -78,6 +78,8 @@ fn judged(curve: &Curve, others: &[f64], usual: f64, worth: &impl Fn(f64) -> boo
     let mut turned = others.to_vec();
     turned[..curve.own].iter_mut().for_each(|c| *c = -*c);
     let zero = curve.zero();
+    // A run that shows by itself to which side the channel acts is believed before the others are.
+    let own_side = curve.sign[zero] > 0.0 && curve.effect(zero) > POOLED_EVIDENCE;
     let nothing = without(curve, others);
     let as_others = curve.sums[zero].left(others);
     let mut best: Option<(f64, Odd)> = None;
@@ -86,7 +88,7 @@ fn judged(curve: &Curve, others: &[f64], usual: f64, worth: &impl Fn(f64) -> boo
         let inside = place > 0 && place + 1 < curve.sums.len();
         let candidates = [
             (worth(seconds) && inside).then(|| (sums.left(others), Odd::Late(seconds))),
-            (place == zero).then(|| (sums.left(&turned), Odd::Turned)),
+            (place == zero && !own_side).then(|| (sums.left(&turned), Odd::Turned)),
         ];
         for (left, what) in candidates.into_iter().flatten() {
             if best.is_none_or(|(least, _)| left < least) {
@@ -100,4 +102,31 @@ fn judged(curve: &Curve, others: &[f64], usual: f64, worth: &impl Fn(f64) -> boo
     let evidence = curve.samples * (as_others - left) / noise;
     let unusual = as_others > POOLED_UNUSUAL * usual * nothing;
     (unusual && left < EXPLAINS * nothing && evidence > POOLED_EVIDENCE).then_some(what)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A run that answers to its channel with 0.8, against 0.8 to the other side in the other runs; `sign` is what its own regression
+    /// says, with other columns of its own.
+    fn run(sign: f64) -> Curve {
+        let sums = Sums { columns: vec![1.0], response: vec![0.8], squares: 1.0 };
+        Curve {
+            step: 2.0,
+            lags: vec![0],
+            left: vec![1.0],
+            sign: vec![sign],
+            without: 3.0,
+            samples: 40.0,
+            sums: vec![sums],
+            own: 1,
+        }
+    }
+
+    #[test]
+    fn a_run_that_shows_its_own_side_is_not_turned_by_what_the_others_say() {
+        let judged = |sign: f64| judged(&run(sign), &[-0.8], 0.1, &|_| false);
+        assert_eq!((judged(-1.0), judged(1.0)), (Some(Odd::Turned), None));
+    }
 }

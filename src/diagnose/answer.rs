@@ -2,7 +2,7 @@
 //! stable. It runs the steps in order and holds no arithmetic and no threshold.
 
 use super::base::{AuditedRuns, BaseFit, Question};
-use super::conclude::conclude;
+use super::conclude::{conclude, lead};
 use super::decide::{Decision, Unlisted, Verdict, decide};
 use super::error::DiagnoseError;
 use super::estimate::Estimate;
@@ -82,6 +82,7 @@ impl Answer {
         if !base.holds {
             tried.append(&mut findings);
         }
+        let verdict = lead(verdict, &mut findings);
         Self { verdict, findings, withdrawn: tried, kept, base, decision }
     }
 
@@ -147,6 +148,7 @@ impl Answer {
                 finding.grade = Grade::Suspected;
             }
         }
+        answer.verdict = lead(answer.verdict, &mut answer.findings);
         answer
     }
 

@@ -2,7 +2,9 @@
 //! It estimates nothing and knows no runs.
 
 use super::decide::Verdict;
+use super::finding::Finding;
 use super::grade::Grade;
+use crate::physics::Kind;
 
 /// The verdict, from the one that the tests of the kept model give, the grades of what was withdrawn, whether a mechanism led and was
 /// rejected for its own coefficients, and whether the base holds.
@@ -22,9 +24,50 @@ pub fn conclude(decided: Verdict, withdrawn: &[Grade], rejected: bool, base_hold
     }
 }
 
+/// Puts what unseen runs confirm before what is suspected, each in the order in which it was found, and gives the verdict that the first
+/// of them makes: a suspected sensor does not stand above a confirmed force.
+pub fn lead(decided: Verdict, findings: &mut [Finding]) -> Verdict {
+    findings.sort_by_key(|f| f.grade != Grade::Confirmed);
+    match (decided, findings.first()) {
+        (Verdict::Named | Verdict::OneOf | Verdict::Sensor, Some(first)) => {
+            if first.confidence_set.len() > 1 {
+                Verdict::OneOf
+            } else if first.kind == Kind::Sensor {
+                Verdict::Sensor
+            } else {
+                Verdict::Named
+            }
+        }
+        _ => decided,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::example::finding;
+
+    #[test]
+    fn a_confirmed_force_leads_a_suspected_sensor() {
+        let of = |name: &str, kind: Kind, grade: Grade| Finding { kind, grade, ..finding(name, name, &[name]) };
+        let clocks = |grade: Grade| of("time_skew", Kind::Sensor, grade);
+        let current = |grade: Grade| of("current", Kind::Environment, grade);
+        let order = |mut findings: Vec<Finding>| {
+            let verdict = lead(Verdict::Sensor, &mut findings);
+            (verdict, findings.iter().map(|f| f.mechanism.clone()).collect::<Vec<_>>())
+        };
+        let names = |a: &str, b: &str| vec![a.to_owned(), b.to_owned()];
+        let (sure, maybe) = (Grade::Confirmed, Grade::Suspected);
+        assert_eq!(order(vec![clocks(maybe), current(sure)]), (Verdict::Named, names("current", "time_skew")));
+        for grades in [[sure, sure], [maybe, maybe], [sure, maybe]] {
+            let found = order(vec![clocks(grades[0]), current(grades[1])]);
+            assert_eq!(found, (Verdict::Sensor, names("time_skew", "current")));
+        }
+        let mut both = [clocks(maybe), finding("current", "current", &["current", "mean_wind"])];
+        both[1].grade = sure;
+        assert_eq!(lead(Verdict::Sensor, &mut both), Verdict::OneOf);
+        assert_eq!(lead(Verdict::Insufficient, &mut both), Verdict::Insufficient);
+    }
 
     #[test]
     fn a_refuted_name_leaves_something_that_is_not_in_the_catalogue() {

@@ -6,9 +6,11 @@
 use super::candidate::{Candidate, candidates};
 use super::estimate::Estimate;
 use super::filter::Column;
+use super::finding::{Amplitude, Equations, Finding};
+use super::grade::Grade;
 use super::noise::{Noise, SensorNoise};
 use crate::model::Model;
-use crate::physics::Form;
+use crate::physics::{Form, Kind};
 use crate::recording::{Run, Split, measured};
 use crate::ship::Ship;
 use crate::simulate::{Integration, Method, Scenario, simulate};
@@ -104,4 +106,27 @@ pub fn candidate(model: &Model, name: &str) -> Candidate {
 /// A parameter of a model by its dotted name, as a column.
 pub fn column(model: &Model, name: &str) -> Column {
     Column::tangent(model, model.find(name).unwrap())
+}
+
+/// A suspected finding of a force on the ship, with its confidence set.
+pub fn finding(mechanism: &str, title: &str, set: &[&str]) -> Finding {
+    Finding {
+        mechanism: mechanism.into(),
+        title: title.into(),
+        kind: Kind::Environment,
+        confidence_set: set.iter().map(|s| (*s).to_owned()).collect(),
+        why: String::new(),
+        sessions: Vec::new(),
+        by_session: false,
+        statistic: 0.0,
+        p: 0.0,
+        equations: Equations::default(),
+        windows: Vec::new(),
+        region: None,
+        signature: String::new(),
+        parameters: vec![Amplitude::new("current.north".into(), 0.1234, "m/s", 0.01)],
+        grade: Grade::Suspected,
+        change: None,
+        held_out: None,
+    }
 }

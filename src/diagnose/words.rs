@@ -11,6 +11,7 @@ use super::influence::Following;
 use super::place::Place;
 use super::push::Window;
 use crate::numerals::sig;
+use crate::physics::Kind;
 
 /// What is missing and not in the catalogue, as far as the tests show it.
 pub enum Missing<'a> {
@@ -121,14 +122,8 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
     let first = said.findings.first();
     let withdrawn = |grade: Grade| said.withdrawn.iter().find(|f| f.grade == grade);
     match verdict {
-        Verdict::Named => {
-            let all: Vec<String> = said.findings.iter().map(titled).collect();
-            let confirmed = said.findings.iter().any(|f| f.grade == Grade::Confirmed);
-            let lead = if confirmed { "Missing physics" } else { "Missing physics, suspected and not confirmed" };
-            format!("{lead}: {}.", all.join("; and "))
-        }
+        Verdict::Named | Verdict::Sensor => named(said.findings),
         Verdict::OneOf => first.map_or(String::new(), one_of),
-        Verdict::Sensor => first.map_or(String::new(), |f| format!("A sensor, not the ship: {}.", titled(f))),
         Verdict::NotInCatalogue => match (said.missing, withdrawn(Grade::Refuted)) {
             (Some(missing), None) => missing.headline(),
             (Some(missing), Some(tried)) => format!(
@@ -254,6 +249,26 @@ fn values(f: &Finding) -> String {
     f.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
+/// What is named, forces of the ship and errors of sensors each for themselves, the leading kind first.
+fn named(findings: &[Finding]) -> String {
+    let Some(first) = findings.first() else { return String::new() };
+    let (sensors, forces): (Vec<&Finding>, Vec<&Finding>) = findings.iter().partition(|f| f.kind == Kind::Sensor);
+    let confirmed = |of: &[&Finding]| of.iter().any(|f| f.grade == Grade::Confirmed);
+    let said = |lead: &str, of: &[&Finding]| {
+        let doubt = if confirmed(of) { "" } else { ", suspected and not confirmed" };
+        let all: Vec<String> = of.iter().map(|f| titled(f)).collect();
+        format!("{lead}{doubt}: {}.", all.join("; and "))
+    };
+    let sensor = if forces.is_empty() { "A sensor, not the ship" } else { "A sensor error" };
+    let parts = [(&forces, "Missing physics"), (&sensors, sensor)];
+    let mut sentences: Vec<String> =
+        parts.iter().filter(|(of, _)| !of.is_empty()).map(|(of, lead)| said(lead, of)).collect();
+    if first.kind == Kind::Sensor {
+        sentences.reverse();
+    }
+    sentences.join(" ")
+}
+
 /// A finding that has rivals.
 fn one_of(f: &Finding) -> String {
     if f.mechanism != PUSH {
@@ -275,31 +290,7 @@ fn one_of(f: &Finding) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example;
-    use crate::diagnose::finding::Equations;
-    use crate::physics::Kind;
-
-    fn finding(mechanism: &str, title: &str, set: &[&str]) -> Finding {
-        Finding {
-            mechanism: mechanism.into(),
-            title: title.into(),
-            kind: Kind::Environment,
-            confidence_set: set.iter().map(|s| (*s).to_owned()).collect(),
-            why: String::new(),
-            sessions: Vec::new(),
-            by_session: false,
-            statistic: 0.0,
-            p: 0.0,
-            equations: Equations::default(),
-            windows: Vec::new(),
-            region: None,
-            signature: String::new(),
-            parameters: vec![Amplitude::new("current.north".into(), 0.1234, "m/s", 0.01)],
-            grade: Grade::Suspected,
-            change: None,
-            held_out: None,
-        }
-    }
+    use crate::diagnose::example::{self, finding};
 
     #[test]
     fn every_verdict_has_a_sentence_with_the_values_it_names() {
@@ -326,7 +317,21 @@ mod tests {
         assert!(headline(Verdict::Named, &[each], None).contains("2 sessions"));
         let set = finding("current", "steady current", &["current", "mean_wind"]);
         assert!(headline(Verdict::OneOf, &[set], None).contains("current, mean_wind"));
-        assert!(headline(Verdict::Sensor, &[current()], None).contains("sensor"));
+        let clocks = || Finding { kind: Kind::Sensor, ..finding("time_skew", "differing clocks", &["time_skew"]) };
+        let sensor = headline(Verdict::Sensor, &[clocks()], None);
+        assert!(
+            sensor.starts_with("A sensor, not the ship, suspected and not confirmed: differing clocks"),
+            "{sensor}"
+        );
+        let confirmed = Finding { grade: Grade::Confirmed, ..current() };
+        let both = headline(Verdict::Named, &[confirmed, clocks()], None);
+        assert!(both.starts_with("Missing physics: steady current"), "{both}");
+        assert!(both.contains(". A sensor error, suspected and not confirmed: differing clocks"), "{both}");
+        let both = headline(Verdict::Sensor, &[clocks(), current()], None);
+        assert!(
+            both.starts_with("A sensor error, suspected") && both.contains(". Missing physics, suspected"),
+            "{both}"
+        );
         let law = Missing::Law(vec![SurrogateTerm { name: "asymmetric.N_0".into(), value: 1.0, error: 0.1 }]);
         assert!(headline(Verdict::NotInCatalogue, &[], Some(&law)).contains("asymmetric.N_0"));
         let with = |grade| Finding { grade, change: Some(0.02), ..current() };

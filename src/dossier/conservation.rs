@@ -1,7 +1,7 @@
 //! Conservation on a study's own inputs: impulse equals the change of momentum, and hull and resistance take energy out of the motion.
 //! Both are of simulations in fine steps; how far a coarse step is from them is checked in `verification`.
 
-use super::verification::Check;
+use super::check::Check;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::recording::{Run, or_nan};

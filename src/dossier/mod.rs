@@ -6,6 +6,7 @@
 
 mod assembly;
 mod causes;
+mod check;
 mod claim;
 mod conservation;
 mod document;
@@ -18,10 +19,11 @@ mod verification;
 
 pub use assembly::{Question, dossier};
 pub use causes::Causes;
+pub use check::{Bound, Check};
 pub use claim::{Claim, Span};
 pub use document::{Dossier, Heading, SECTIONS};
 pub use particulars::{ChannelUse, Particular, Recorded, ShipPart, Told};
 pub use structure::{Parameter, Structure, TermPart};
 pub use trials::Trials;
 pub use validation::Validation;
-pub use verification::{Check, Verification};
+pub use verification::Verification;

@@ -1,7 +1,7 @@
 //! Symmetry of a model on a study's own inputs: the mirrored ship sails the mirrored track, and a turned one the turned track.
 //! What is mirrored and turned is defined where diagnoses are repeated, in [`crate::diagnose::stability`].
 
-use super::verification::{Check, apart};
+use super::check::{Check, apart};
 use crate::diagnose::stability::CHANGES;
 use crate::evaluate::{Judging, predict};
 use crate::model::Model;

@@ -1,60 +1,17 @@
 //! Verification on a study's own model and inputs: step size and derivatives, beside the checks of symmetry and conservation.
 //! A check compares a number with a limit that is stated beside it; whether the model is right is the validation's question.
 
+use super::check::{Bound, Check, apart};
 use super::conservation::conservation;
 use super::symmetry::symmetry;
-use crate::evaluate::{Judging, Outcome, outcome, predict};
+use crate::evaluate::{Judging, outcome, predict};
 use crate::fit::{Cost, Derivatives, FitSettings};
 use crate::model::Model;
-use crate::recording::{Run, Split, measured};
+use crate::recording::{Run, Split};
 use crate::simulate::{Integration, MOST_SUBSTEPS, Method, Trajectory};
 use crate::statistics::mean;
 use rayon::prelude::*;
 use serde::Serialize;
-
-/// A number beside its limit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Check {
-    /// Name.
-    pub key: &'static str,
-    /// What was computed, in words.
-    pub what: String,
-    /// The number.
-    pub number: f64,
-    /// Its unit; `-` for none.
-    pub unit: &'static str,
-    /// Whether the number must be at most or at least the limit.
-    pub at: Bound,
-    /// The limit.
-    pub limit: f64,
-    /// Whether the number keeps to the limit.
-    pub passed: bool,
-    /// Runs that it was computed on.
-    pub runs: usize,
-}
-
-/// To which side of a limit a number must be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Bound {
-    /// At most the limit.
-    Most,
-    /// At least the limit.
-    Least,
-}
-
-impl Check {
-    pub(super) fn most(
-        key: &'static str,
-        what: String,
-        number: f64,
-        unit: &'static str,
-        limit: f64,
-        runs: usize,
-    ) -> Self {
-        Self { key, what, number, unit, at: Bound::Most, limit, passed: number <= limit, runs }
-    }
-}
 
 /// The checks, and those that could not be made.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -88,24 +45,6 @@ impl Verification {
             }
         }
         all
-    }
-}
-
-/// How far a trajectory is from another of the same run: cVDM \[%\], absent where one of them diverged.
-pub(super) fn apart(
-    run: &Run,
-    model: &Model,
-    found: &Trajectory,
-    expected: &Trajectory,
-    max_yaw_rate: f64,
-) -> Option<f64> {
-    if expected.diverged_at.is_some() || expected.states.len() != run.measured.len() {
-        return None;
-    }
-    let against = Run { measured: measured(&expected.states), ..run.clone() };
-    match outcome(&against, found, &model.ship, max_yaw_rate) {
-        Outcome::Simulated(d) => Some(d.cvdm),
-        Outcome::Diverged { .. } => None,
     }
 }
 

@@ -104,7 +104,7 @@ enum Bad {
 pub fn is_nmea(bytes: &[u8]) -> bool {
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(20_000)]);
     let lines: Vec<&str> = text.lines().filter(|l| !l.trim().is_empty()).take(100).collect();
-    let like = lines.iter().filter(|l| framed(l).is_some_and(|(_, s)| s.len() > 6 && s.as_bytes()[5] == b',')).count();
+    let like = lines.iter().filter(|l| framed(l).is_some_and(|(_, s)| s.len() > 6)).count();
     like > 0 && 2 * like >= lines.len()
 }
 
@@ -112,7 +112,8 @@ pub fn is_nmea(bytes: &[u8]) -> bool {
 fn framed(line: &str) -> Option<(&str, &str)> {
     let at = line.find(['$', '!'])?;
     let sentence = line.get(at + 1..)?.trim_end();
-    sentence.get(..5)?.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit()).then_some((&line[..at], sentence))
+    let named = |head: &str| head.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit());
+    (named(sentence.get(..5)?) && sentence.as_bytes().get(5) == Some(&b',')).then_some((&line[..at], sentence))
 }
 
 /// A line as a sentence; `None` for a line without one.

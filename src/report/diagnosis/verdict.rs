@@ -8,6 +8,7 @@ use crate::diagnose::calibrate::ErrorRates;
 use crate::diagnose::stability::Stability;
 use crate::diagnose::{Diagnosis, Finding, Grade, Verdict};
 use crate::numerals::{DASH, fixed, sig};
+use crate::physics::Kind;
 use crate::report::units::Units;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -47,13 +48,20 @@ pub fn verdict_words(verdict: Verdict) -> &'static str {
     }
 }
 
-/// The verdict in capitals; one on suspected findings alone says so.
+/// The verdict in capitals; one on suspected findings alone says so, and one on a force and a sensor names both.
 pub(super) fn title(d: &Diagnosis) -> String {
-    let unconfirmed = !d.findings.is_empty() && d.findings.iter().all(|f| f.grade != Grade::Confirmed);
-    match d.verdict {
-        Verdict::Named if unconfirmed => "MISSING PHYSICS, SUSPECTED".to_owned(),
-        Verdict::Sensor if unconfirmed => "A SENSOR ERROR, SUSPECTED".to_owned(),
-        verdict => verdict_words(verdict).to_owned(),
+    let led = matches!(d.verdict, Verdict::Named | Verdict::Sensor);
+    let Some(first) = d.findings.first().filter(|_| led) else { return verdict_words(d.verdict).to_owned() };
+    let level: Vec<bool> =
+        d.findings.iter().filter(|f| f.grade == first.grade).map(|f| f.kind == Kind::Sensor).collect();
+    match (level.contains(&false), level.contains(&true), first.grade == Grade::Confirmed) {
+        (true, true, true) => "MISSING PHYSICS AND A SENSOR ERROR".to_owned(),
+        (true, true, false) => "MISSING PHYSICS AND A SENSOR ERROR, SUSPECTED".to_owned(),
+        (_, false, false) => "MISSING PHYSICS, SUSPECTED".to_owned(),
+        (false, _, false) => "A SENSOR ERROR, SUSPECTED".to_owned(),
+        // Forces that are only suspected stand beside it.
+        (false, _, true) if d.findings.iter().any(|f| f.kind != Kind::Sensor) => "A SENSOR ERROR".to_owned(),
+        (_, _, true) => verdict_words(d.verdict).to_owned(),
     }
 }
 
