@@ -2,7 +2,7 @@
 //! verification, validation, error rates, causes of error, limits. It judges nothing that was not computed, and lays out no page.
 //!
 //! Every number is computed by the function behind the command of the same name: those of [`crate::evaluate`], [`crate::maneuver`],
-//! [`crate::diagnose`] and [`crate::audit`]. What was not computed is listed as missing, section by section.
+//! [`mod@crate::diagnose`] and [`crate::audit`]. What was not computed is listed as missing, section by section.
 
 mod assembly;
 mod causes;

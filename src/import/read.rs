@@ -20,7 +20,7 @@ pub fn read(path: &Path, time: Option<&str>) -> Result<Log, ImportError> {
 /// Reads the content of a file; `path` is for messages.
 ///
 /// # Errors
-/// As [`read`].
+/// [`ImportError`]: it has no column or no time.
 pub fn read_bytes(path: &Path, bytes: &[u8], time: Option<&str>) -> Result<Log, ImportError> {
     if is_parquet(bytes) {
         read_parquet(path, bytes, time)
