@@ -10,7 +10,7 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use support::program;
-use trimtab_experiments::conceal::campaign::plan::{SEED, ci_slice, plan};
+use trimtab_experiments::conceal::campaign::plan::{PUSH_SEED, ci_slice, plan};
 use trimtab_experiments::conceal::judge::score::Score;
 use trimtab_experiments::conceal::runner::Runner;
 
@@ -44,7 +44,7 @@ fn forty_concealed_cases_are_judged_well_enough() {
         baselines: false,
         sindy: None,
     };
-    let cases = ci_slice(&plan(SEED));
+    let cases = ci_slice(&plan(PUSH_SEED));
     let scores = Mutex::new(Vec::new());
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
     runner

@@ -168,7 +168,7 @@ macro_rules! numbers {
     };
 }
 
-/// Concealed cases of the campaign's development seeds (21, 22, 24); its published seed 20250226 was not looked at.
+/// Concealed cases of the campaign's development seeds (21, 22, 24); no published seed was looked at before it was published.
 const SEEDS: &str = "development seeds of the campaign of concealed cases";
 /// Those cases, and recordings of two real hulls.
 const HULLS: &str = "development seeds of the campaign, and the recordings of Esso Osaka and KVLCC2";

@@ -13,8 +13,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use trimtab::files::{Lock, write_whole};
 use trimtab::progress::Teller;
 use trimtab::ranks::Ranks;
+use trimtab_experiments::conceal::campaign::calibration::calibration;
 use trimtab_experiments::conceal::campaign::figure::figure;
-use trimtab_experiments::conceal::campaign::plan::{Planned, SEED, ci_slice, plan};
+use trimtab_experiments::conceal::campaign::plan::{PUSH_SEED, Planned, SEED, ci_slice, plan};
 use trimtab_experiments::conceal::campaign::rows::{Rows, put_in_order, read, row};
 use trimtab_experiments::conceal::campaign::summary::{summary, table};
 use trimtab_experiments::conceal::error::ConcealError;
@@ -25,7 +26,7 @@ use trimtab_experiments::folders::exit;
 /// Makes, diagnoses and judges concealed cases, and compares the scores with the aims.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the results (`cases.csv`, `summary.csv`, the figure) and for each case while it runs.
+    /// Folder for the results (`cases.csv`, `summary.csv`, two figures) and for each case while it runs.
     #[arg(long, default_value = "figures/concealed")]
     out: PathBuf,
     /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json`.
@@ -43,9 +44,9 @@ struct Arguments {
     /// At most this many cases in this call.
     #[arg(long)]
     most: Option<usize>,
-    /// Seed of the campaign.
-    #[arg(long, default_value_t = SEED)]
-    seed: u64,
+    /// Seed of the campaign; that of the committed one if not given, and for the cases of every push that of an earlier one.
+    #[arg(long)]
+    seed: Option<u64>,
     /// Longest time for one diagnosis \[s\].
     #[arg(long, default_value_t = 300)]
     limit: u64,
@@ -85,7 +86,7 @@ fn main() -> ExitCode {
 }
 
 fn run(a: &Arguments, ranks: &Ranks) -> Result<(), ConcealError> {
-    let whole = plan(a.seed);
+    let whole = plan(a.seed.unwrap_or(if a.slice == Slice::Ci { PUSH_SEED } else { SEED }));
     let mut plan = if a.slice == Slice::Ci { ci_slice(&whole) } else { whole.clone() };
     plan.retain(|c| a.only.as_ref().is_none_or(|part| c.key.contains(part.as_str())));
     if a.list {
@@ -229,7 +230,9 @@ fn summarise(a: &Arguments, scores: &[Score]) -> Result<(), ConcealError> {
     }
     let text = writer.into_inner().map_err(|e| ConcealError::content(&path, &e))?;
     write_whole(&path, &text).map_err(|source| ConcealError::file(&path, source))?;
-    let stem = a.out.join("concealed");
-    figure(scores).save(&stem).map_err(|e| ConcealError::content(&stem, &e))?;
+    for (name, figure) in [("concealed", figure(scores)), ("calibration", calibration(scores))] {
+        let stem = a.out.join(name);
+        figure.save(&stem).map_err(|e| ConcealError::content(&stem, &e))?;
+    }
     Ok(())
 }

@@ -2,6 +2,7 @@
 //! Cases are made, diagnosed and judged elsewhere.
 
 pub mod arms;
+pub mod calibration;
 pub mod figure;
 pub mod plan;
 pub mod rows;

@@ -17,8 +17,24 @@ pub(crate) fn covers(value: f64, ci95: [f64; 2], truth: f64) -> bool {
     (value - truth).abs() <= NINETY * standard_error(ci95)
 }
 
-/// Error of the size and whether its 90 % interval contains the truth; `None` when not all parameters were reported.
-pub(crate) fn size(answer: &Answer, finding: &Finding) -> Option<(f64, Option<bool>)> {
+/// How far a size is from the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SizeError {
+    /// |found - true|/true.
+    pub(crate) share: f64,
+    /// (found - true) along the true direction, in standard errors; unknown where a parameter has no interval.
+    pub(crate) errors: Option<f64>,
+}
+
+impl SizeError {
+    /// Whether the 90 % interval contains the truth.
+    pub(crate) fn covered(self) -> Option<bool> {
+        self.errors.map(|e| e.abs() <= NINETY)
+    }
+}
+
+/// How far the size of a finding is from the truth; `None` when not all parameters were reported.
+pub(crate) fn size(answer: &Answer, finding: &Finding) -> Option<SizeError> {
     if answer.parameters.is_empty() {
         return None;
     }
@@ -35,15 +51,16 @@ pub(crate) fn size(answer: &Answer, finding: &Finding) -> Option<(f64, Option<bo
     // One component keeps its sign; of a vector the length is compared.
     let single = pairs.len() == 1;
     let found = if single { pairs[0].1.value } else { length(&mut pairs.iter().map(|p| p.1.value)) };
-    let error = (found - if single { pairs[0].0 } else { truth }).abs() / truth;
+    let share = (found - if single { pairs[0].0 } else { truth }).abs() / truth;
     // Along the true direction, components taken as independent.
     let along: f64 = pairs.iter().map(|(t, p)| (p.value - t) * t / truth).sum();
     let mut variance = 0.0;
     for (t, p) in &pairs {
-        let Some(ci95) = p.ci95 else { return Some((error, None)) };
+        let Some(ci95) = p.ci95 else { return Some(SizeError { share, errors: None }) };
         variance += (standard_error(ci95) * t / truth).powi(2);
     }
-    Some((error, Some(along.abs() <= NINETY * variance.sqrt())))
+    let errors = (variance > 0.0).then(|| along / variance.sqrt());
+    Some(SizeError { share, errors })
 }
 
 /// Time common to true and found windows over the time of their union, all runs together.

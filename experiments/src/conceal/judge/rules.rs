@@ -108,9 +108,9 @@ impl<'a> Reading<'a> {
             score.set_size = self.first().map(|_| set.len() as f64);
         }
         if let Some(right) = self.own.iter().find(|f| answer.accepted.contains(&f.mechanism))
-            && let Some((error, covered)) = size(answer, right)
+            && let Some(error) = size(answer, right)
         {
-            (score.size_error, score.covered) = (Some(error), covered);
+            (score.size_error, score.size_errors, score.covered) = (Some(error.share), error.errors, error.covered());
         }
         if let Some(answer) = answers.iter().find(|a| !a.windows.is_empty()) {
             let found = self.own.iter().flat_map(|f| &f.windows).chain(&self.diagnosis.windows);
@@ -160,6 +160,7 @@ impl<'a> Reading<'a> {
             unit: answers.first().map(|a| a.unit.clone()).unwrap_or_default(),
             expected: self.manifest.expected.clone(),
             verdict: self.diagnosis.verdict.clone(),
+            lead_p: self.diagnosis.ranking.iter().map(|r| r.p).reduce(f64::min),
             named: self.named.iter().map(|f| f.mechanism.as_str()).collect::<Vec<_>>().join("+"),
             structural: self.named.len() - self.own.len(),
             verdict_right: Some(self.verdict_fits()),
@@ -302,6 +303,8 @@ mod tests {
         assert!((s.window_iou.unwrap() - 40.0 / 60.0).abs() < 1e-12);
         assert!((s.size_error.unwrap() - 0.1).abs() < 1e-12);
         assert_eq!(s.covered, Some(true));
+        // 0.05 m/s along the true direction, of which each component has a standard error of 0.0306 m/s.
+        assert!((s.size_errors.unwrap() - 0.05 / 0.030_612).abs() < 1e-3, "{:?}", s.size_errors);
         assert_eq!((s.base_held_out, s.named_held_out, s.verdict_right), (Some(2.0), Some(1.1), Some(true)));
     }
 

@@ -107,11 +107,19 @@ pub struct Diagnosis {
     #[serde(default)]
     pub(crate) findings: Vec<Finding>,
     #[serde(default)]
+    pub(crate) ranking: Vec<Ranked>,
+    #[serde(default)]
     pub(crate) windows: Vec<FoundWindow>,
     pub(crate) held_out: Option<HeldOut>,
     #[serde(default)]
     pub(crate) admission: Admission,
     pub(crate) sides: Option<Sides>,
+}
+
+/// A mechanism against the base model.
+#[derive(Debug, Clone, Deserialize)]
+pub(crate) struct Ranked {
+    pub(crate) p: f64,
 }
 
 /// Whether port and starboard of the ship differ.

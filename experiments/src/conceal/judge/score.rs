@@ -38,6 +38,8 @@ pub struct Score {
     pub named: String,
     /// The verdict is right for the case.
     pub verdict_right: Option<bool>,
+    /// p of the strongest mechanism against the base model, corrected for the number of mechanisms, whatever came of it.
+    pub lead_p: Option<f64>,
     /// Nulls: a mechanism was named that is not the family's own structure, or missing physics was claimed.
     pub false_alarm: Option<bool>,
     /// Effects: the diagnosis reported missing physics.
@@ -54,6 +56,8 @@ pub struct Score {
     pub window_iou: Option<f64>,
     /// |found - true|/true of the size, where one number is comparable.
     pub size_error: Option<f64>,
+    /// (found - true)/standard error of that size, along the true direction.
+    pub size_errors: Option<f64>,
     /// The true size lies in the 90 % interval.
     pub covered: Option<bool>,
     /// Share of the held-out gap between the diagnosis' base model and the oracle that was closed.
