@@ -135,6 +135,14 @@ pub struct Parameter {
     pub scale: f64,
 }
 
+impl Parameter {
+    /// A value, an error or an end of an interval of this parameter as it is told: what is a billionth of its scale or less, the
+    /// rounding that an active constraint leaves, is zero.
+    pub fn told(&self, value: f64) -> f64 {
+        if value.abs() <= 1e-9 * self.scale { 0.0 } else { value }
+    }
+}
+
 /// A term and the part of the parameter vector that belongs to it.
 #[derive(Clone, Copy)]
 pub struct Placed {
@@ -711,5 +719,20 @@ impl Model {
     /// The model's terms with their places in the parameter vector: the base terms first, in the order of [`BASE`].
     pub fn placed(&self) -> &[Placed] {
         &self.terms
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::Form;
+
+    #[test]
+    fn rounding_that_a_constraint_leaves_is_told_as_zero() {
+        let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
+        let model = Model::new(ship, "HD", Form::Regular, &[]).unwrap();
+        let lift = &model.parameters[model.index("rudder.lift0").unwrap()];
+        assert_eq!([1.5e-16, -1.5e-16, 0.01, -3.0].map(|v| lift.told(v)), [0.0, 0.0, 0.01, -3.0]);
+        assert!(lift.told(f64::NAN).is_nan());
     }
 }

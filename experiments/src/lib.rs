@@ -6,6 +6,7 @@ pub mod demo;
 pub mod demo_concealed;
 pub mod folders;
 pub mod injected;
+pub mod killed;
 pub mod mutated;
 pub mod paper;
 pub mod process;

@@ -154,9 +154,9 @@ mod tests {
         assert_eq!(grade(&FindingTests { isolated: 0.09, ..sound() }), Grade::NotIsolated);
         assert_eq!(grade(&FindingTests { change: 0.049, ..sound() }), Grade::Immaterial);
         assert_eq!(grade(&FindingTests { change: 0.05, ..sound() }), Grade::Confirmed);
-        // A clock that is off by less than half a sample.
-        assert_eq!(grade(&FindingTests { shift: Some(0.49), ..sound() }), Grade::Immaterial);
-        assert_eq!(grade(&FindingTests { shift: Some(0.5), ..sound() }), Grade::Confirmed);
+        // A clock that is off by less than a sample.
+        assert_eq!(grade(&FindingTests { shift: Some(0.99), ..sound() }), Grade::Immaterial);
+        assert_eq!(grade(&FindingTests { shift: Some(1.0), ..sound() }), Grade::Confirmed);
         assert!(is_unstable(2, 6) && !is_unstable(3, 6) && !is_unstable(0, 0) && !Grade::Unstable.is_named());
         assert!(!Grade::Immaterial.is_named() && !Grade::Undetermined.is_named() && Grade::Suspected.is_named());
     }

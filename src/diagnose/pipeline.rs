@@ -105,6 +105,7 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
         holds: answer.base.holds,
         form_holds: tests.search.form_holds,
         missing: missing.as_ref(),
+        worse: proof.as_ref().filter(|p| p.is_worse()).and_then(|p| Some([p.before?, p.after?])),
     };
     Diagnosis {
         schema: "trimtab-diagnosis/2",

@@ -115,6 +115,8 @@ pub struct Said<'a> {
     pub form_holds: bool,
     /// What is missing and not in the catalogue.
     pub missing: Option<&'a Missing<'a>>,
+    /// cVDM \[%\] of unseen runs without the findings and with all of them, where they predict these runs worse.
+    pub worse: Option<[f64; 2]>,
 }
 
 /// The verdict in a sentence or two.
@@ -122,7 +124,7 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
     let first = said.findings.first();
     let withdrawn = |grade: Grade| said.withdrawn.iter().find(|f| f.grade == grade);
     match verdict {
-        Verdict::Named | Verdict::Sensor => named(said.findings),
+        Verdict::Named | Verdict::Sensor => named(said.findings) + &together(said.worse),
         Verdict::OneOf => first.map_or(String::new(), one_of),
         Verdict::NotInCatalogue => match (said.missing, withdrawn(Grade::Refuted)) {
             (Some(missing), None) => missing.headline(),
@@ -269,6 +271,17 @@ fn named(findings: &[Finding]) -> String {
     sentences.join(" ")
 }
 
+/// That all findings together predict unseen runs worse, where they do.
+fn together(worse: Option<[f64; 2]>) -> String {
+    worse.map_or(String::new(), |[before, after]| {
+        format!(
+            " Together they predict unseen runs worse than the base model (cVDM {} % to {} %), so that none of them is in the improved model.",
+            sig(before, 3),
+            sig(after, 3)
+        )
+    })
+}
+
 /// A finding that has rivals.
 fn one_of(f: &Finding) -> String {
     if f.mechanism != PUSH {
@@ -307,6 +320,7 @@ mod tests {
                     holds: verdict != Verdict::Insufficient,
                     form_holds: true,
                     missing,
+                    worse: None,
                 },
             )
         };
@@ -332,6 +346,8 @@ mod tests {
             both.starts_with("A sensor error, suspected") && both.contains(". Missing physics, suspected"),
             "{both}"
         );
+        assert!(together(Some([76.5, 89.4])).contains("worse than the base model (cVDM 76.5 % to 89.4 %)"));
+        assert_eq!(together(None), "");
         let law = Missing::Law(vec![SurrogateTerm { name: "asymmetric.N_0".into(), value: 1.0, error: 0.1 }]);
         assert!(headline(Verdict::NotInCatalogue, &[], Some(&law)).contains("asymmetric.N_0"));
         let with = |grade| Finding { grade, change: Some(0.02), ..current() };

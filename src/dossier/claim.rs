@@ -39,13 +39,13 @@ impl Claim {
         let conditions_of = if tested { Split::Test } else { Split::Train };
         let statement = if tested {
             format!(
-                "Started from its recorded state and given the recorded rudder and propeller, the model `{model}` predicts the motion of \
+                "Started from its recorded state and given the recorded rudder and propeller, the model \"{model}\" predicts the motion of \
                  {ship} on runs that it was not fitted to with the errors stated under validation, within the conditions below. Nothing \
                  is claimed outside them."
             )
         } else {
             format!(
-                "No accuracy is claimed for the model `{model}` of {ship}: the study has no test run, so that no error on unseen runs was \
+                "No accuracy is claimed for the model \"{model}\" of {ship}: the study has no test run, so that no error on unseen runs was \
                  measured."
             )
         };

@@ -132,12 +132,11 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The estimates as they are told: what is a billionth of its parameter's scale or less, the rounding that an active constraint leaves, is
-    /// zero.
+    /// The estimates as they are told, zero where only rounding is left.
     pub fn told(&self) -> Vec<Estimate> {
         let told = |e: &Estimate| {
-            let scale = self.model.index(&e.name).map_or(0.0, |i| self.model.parameters[i].scale);
-            let whole = |x: f64| if x.abs() <= 1e-9 * scale { 0.0 } else { x };
+            let parameter = self.model.index(&e.name).map(|i| &self.model.parameters[i]);
+            let whole = |x: f64| parameter.map_or(x, |p| p.told(x));
             Estimate {
                 start: whole(e.start),
                 value: whole(e.value),

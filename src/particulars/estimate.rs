@@ -30,8 +30,8 @@ pub enum EstimateError {
 const TOWNSIN: &str = "C_b = 0.7 + atan((23 - 100 Fn)/4)/8, Watson 1998, Practical Ship Design, eq. 3.14, p. 76";
 const SLENDER: &str = "engineering estimate for round-bilge displacement craft, no published regression";
 const MASS: &str = "m = rho C_b L B d";
-const X_G: &str = "even keel, so that x_G is the centre of buoyancy: (8.80 - 38.9 Fn) % of L, Schneekluth & Bertram 1998, Ship Design for Efficiency and Economy, ch. 1";
-const X_G_FULL: &str = "even keel, so that x_G is the centre of buoyancy: (-13.5 + 19.4 C_P) % of L for tankers and bulk carriers, Schneekluth & Bertram 1998, Ship Design for Efficiency and Economy, ch. 1";
+const X_G: &str = "even keel, so that x_G is the centre of buoyancy: (8.80 - 38.9 Fn) % of L, Schneekluth & Bertram 1998, Ship Design for Efficiency and Economy, ch. 2";
+const X_G_FULL: &str = "even keel, so that x_G is the centre of buoyancy: (-13.5 + 19.4 C_P) % of L for tankers and bulk carriers, Schneekluth & Bertram 1998, Ship Design for Efficiency and Economy, ch. 2";
 const GYRATION: &str =
     "0.25 L, ITTC Recommended Procedures 7.5-02-07-02.1 (seakeeping experiments): the radius where none is measured";
 const WAKE: &str =

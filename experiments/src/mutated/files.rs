@@ -43,13 +43,16 @@ pub fn recordings(files: &Files) -> Vec<String> {
     files.keys().filter(|name| name.ends_with(".csv")).cloned().collect()
 }
 
-/// Writes files into a folder, which is made.
+/// Writes files into a folder, which is made, as are the folders below it.
 ///
 /// # Errors
 /// If one cannot be written.
 pub fn write(files: &Files, folder: &Path) -> std::io::Result<()> {
-    std::fs::create_dir_all(folder)?;
-    files.iter().try_for_each(|(name, bytes)| std::fs::write(folder.join(name), bytes))
+    files.iter().try_for_each(|(name, bytes)| {
+        let path = folder.join(name);
+        std::fs::create_dir_all(path.parent().unwrap_or(folder))?;
+        std::fs::write(path, bytes)
+    })
 }
 
 /// A recording as cells.

@@ -152,7 +152,7 @@ pub(super) fn model(m: &Reader) -> Markup {
     let covariance = m.at("covariance");
     html! {
         p {
-            "Model `" (m.at("name").text()) "`, form `" (m.at("form").text()) "`. "
+            "Model \"" (m.at("name").text()) "\", form " (m.at("form").text()) ". "
             (v.at("share_outside").number(100.0, Significant(3))) " % of " (v.at("samples").count())
             " recorded samples lie outside the range of at least one term."
         }
@@ -172,7 +172,12 @@ fn ranges(terms: &Reader) -> Markup {
         let ends = |key: &str| {
             let entries = v.at(key).entries();
             let end = |i: usize| entries.get(i).map_or_else(|| html! { (DASH) }, |e| e.number(factor, Significant(3)));
-            html! { (end(0)) " to " (end(1)) }
+            let is_number = |i: usize| entries.get(i).is_some_and(|e| e.float().is_some());
+            if is_number(0) || is_number(1) {
+                html! { (end(0)) " to " (end(1)) }
+            } else {
+                html! { (DASH) }
+            }
         };
         let share = v.at("share_outside");
         vec![

@@ -1,7 +1,7 @@
 //! The figure of calibration over many studies: nominal levels against the rates that were measured on concealed cases.
 //! It only counts and draws.
 
-use trimtab::plot::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, Panel, SKY};
+use trimtab::plot::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, PURPLE, Panel, SKY};
 use trimtab::statistics::{Share, normal_quantile};
 
 use super::arms::{nulls, reached};
@@ -56,7 +56,7 @@ pub fn calibration(scores: &[Score]) -> Figure {
         Axis::new("share with the true size inside").range(0.0, 1.0),
     )
     .with(Layer::line("as nominal", LIMIT, [(0.0, 0.0), (1.0, 1.0)]));
-    for (name, color, snr) in [("SNR 6", SKY, 6.0), ("SNR 12", GREEN, 12.0), ("SNR 24", ORANGE, 24.0)] {
+    for (name, color, snr) in [("SNR 6", SKY, 6.0), ("SNR 12", GREEN, 12.0), ("SNR 24", PURPLE, 24.0)] {
         intervals = intervals.with_all(curve(name, color, rates(&INTERVALS, |l| coverage(scores, Some(snr), l))));
     }
     Figure::new("Nominal and measured rates of the diagnosis").columns(2).with(tests).with(intervals)

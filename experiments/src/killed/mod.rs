@@ -1,0 +1,303 @@
+//! Commands that are killed while they write over the results of an earlier run: what is left, and what the next run makes of it.
+//! It judges folders of results by their files alone; what the results say is judged elsewhere.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+use trimtab::files::{Manifest, sha256_of};
+
+use crate::conceal::error::ConcealError;
+use crate::mutated::files::{Files, recordings, sound, write};
+
+/// The commands that are killed, with what they are asked beside the study and the folder.
+pub const COMMANDS: [(&str, &[&str]); 5] = [
+    ("simulate", &[]),
+    ("fit", &[]),
+    ("evaluate", &["--model", "fitted.toml"]),
+    ("maneuver", &["turning", "--model", "fitted.toml"]),
+    ("diagnose", &["--once"]),
+];
+
+/// Kills fall within this many times the time that the command takes.
+const SPREAD: f64 = 1.05;
+/// Seed of the two studies.
+const STUDY: u64 = 7;
+/// The folder of results, below that of the studies.
+const OUT: &str = "results";
+
+/// What a folder holds after a kill.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Default)]
+#[serde(rename_all = "snake_case")]
+pub enum Left {
+    /// The results of the earlier run, every file as it was listed.
+    #[default]
+    Earlier,
+    /// The results of the killed run, complete.
+    New,
+    /// Files without a list: no one takes them for results.
+    Unlisted,
+    /// A list that a file does not agree with, or files of both runs under one list.
+    Mixed,
+}
+
+/// A row of the results.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Number of the kill.
+    pub kill: usize,
+    /// The command.
+    pub command: String,
+    /// Instant of the kill as a share of the time that the command takes.
+    pub at: f64,
+    /// Whether the command was still running.
+    pub running: bool,
+    /// What it left.
+    pub left: Left,
+    /// Whether the next run of the command made the folder as it is without a kill, with nothing left over.
+    pub mended: bool,
+}
+
+impl Row {
+    /// Whether nothing was lost or mixed.
+    pub fn right(&self) -> bool {
+        self.mended && self.left != Left::Mixed
+    }
+}
+
+/// What a command makes of one of the studies.
+struct Expected {
+    /// Its files.
+    files: BTreeMap<String, Vec<u8>>,
+    /// Those that are the same whenever they are made: times and dates are not.
+    same: BTreeSet<String>,
+    /// How long it takes.
+    time: Duration,
+}
+
+/// Kills commands, one at a time: instants count, and two at a time would disturb each other.
+pub struct Killer {
+    tool: PathBuf,
+    folder: PathBuf,
+}
+
+impl Killer {
+    /// Makes two sound studies in a folder, which differ by one recording, and fits them.
+    ///
+    /// # Errors
+    /// [`ConcealError`] if they cannot be made or fitted.
+    pub fn new(tool: PathBuf, folder: PathBuf) -> Result<Self, ConcealError> {
+        let tool = tool.canonicalize().map_err(|source| ConcealError::file(&tool, source))?;
+        let all = sound(STUDY, &folder.join("case"))?;
+        let killer = Self { tool, folder };
+        for (name, files) in [("one", all.clone()), ("other", turned(&all))] {
+            let study = killer.folder.join(name);
+            write(&files, &study).map_err(|source| ConcealError::file(&study, source))?;
+            killer.run(name, ("fit", &[]))?;
+            let fitted = study.join("fitted.toml");
+            std::fs::copy(study.join(OUT).join("fitted.toml"), &fitted)
+                .and_then(|_| std::fs::remove_dir_all(study.join(OUT)))
+                .map_err(|source| ConcealError::file(&fitted, source))?;
+        }
+        Ok(killer)
+    }
+
+    /// A command on a study; results always go to the folder of the first study, so that the second writes over them.
+    fn command(&self, study: &str, (command, arguments): (&str, &[&str])) -> Command {
+        let mut asked = Command::new(&self.tool);
+        asked.args(["--threads", "1", command]);
+        // The name of a trial comes before the study.
+        let before = usize::from(command == "maneuver");
+        asked.args(&arguments[..before]).arg("study.toml").args(&arguments[before..]).args(["--out", OUT]);
+        asked.current_dir(self.folder.join(study)).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        asked
+    }
+
+    fn results(&self, study: &str) -> PathBuf {
+        self.folder.join(study).join(OUT)
+    }
+
+    /// Runs a command to its end.
+    fn run(&self, study: &str, command: (&str, &[&str])) -> Result<Duration, ConcealError> {
+        let began = Instant::now();
+        let fail = |source| ConcealError::file(&self.tool, source);
+        let status = self.command(study, command).status().map_err(fail)?;
+        // 1 says that the answer is no, which is an answer.
+        if !matches!(status.code(), Some(0 | 1)) {
+            let message = format!("`{}` on a sound study ends with {status}", command.0);
+            return Err(ConcealError::content(&self.results(study), &message));
+        }
+        Ok(began.elapsed())
+    }
+
+    /// What a command makes of a study whose results are empty.
+    fn expected(&self, study: &str, command: (&str, &[&str])) -> Result<Expected, ConcealError> {
+        let results = self.results(study);
+        let mut made: Vec<BTreeMap<String, Vec<u8>>> = Vec::new();
+        let mut time = Duration::MAX;
+        for _ in 0..2 {
+            empty(&results)?;
+            time = time.min(self.run(study, command)?);
+            made.push(read(&results)?);
+        }
+        let (Some(files), Some(first)) = (made.pop(), made.pop()) else { return Err(no_files(&results)) };
+        let same = files.iter().filter(|(name, bytes)| first.get(*name) == Some(bytes)).map(|(name, _)| name.clone());
+        Ok(Expected { same: same.collect(), files, time })
+    }
+
+    /// Kills a command `count` times, at instants drawn with a seed, each time over the results of the other study.
+    ///
+    /// # Errors
+    /// A folder that cannot be written, or a command that fails without a kill.
+    pub fn all(
+        &self,
+        command: (&str, &[&str]),
+        seed: u64,
+        count: usize,
+        each: &mut dyn FnMut(Row) -> Result<(), ConcealError>,
+    ) -> Result<(), ConcealError> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let [one, other] = [self.expected("one", command)?, self.expected("other", command)?];
+        let results = self.results("one");
+        for kill in 1..=count {
+            let at = SPREAD * random.random::<f64>();
+            empty(&results)?;
+            write(&other.files, &results).map_err(|source| ConcealError::file(&results, source))?;
+            let fail = |source| ConcealError::file(&self.tool, source);
+            let mut child = self.command("one", command).spawn().map_err(fail)?;
+            std::thread::sleep(one.time.mul_f64(at));
+            let running = child.try_wait().map_err(fail)?.is_none();
+            // A command that has ended cannot be killed.
+            let _ = child.kill();
+            child.wait().map_err(fail)?;
+            let left = left(&results, &other, &one)?;
+            let again = self.run("one", command).is_ok();
+            let mended = again && agrees(&read(&results)?, &one) && listed(&results);
+            each(Row { kill, command: command.0.to_owned(), at, running, left, mended })?;
+        }
+        Ok(())
+    }
+}
+
+/// The same study without its last recording.
+fn turned(files: &Files) -> Files {
+    let mut files = files.clone();
+    let text = files.get("study.toml").map(|bytes| String::from_utf8_lossy(bytes).into_owned()).unwrap_or_default();
+    let last = recordings(&files).pop().unwrap_or_default();
+    let kept: Vec<&str> = text.split("[[runs]]").filter(|run| !run.contains(&format!("\"{last}\""))).collect();
+    // The settings stand behind the last run.
+    let tail = text.find("[evaluate]").map_or("", |i| &text[i..]);
+    let text = kept.join("[[runs]]");
+    let text = if text.contains("[evaluate]") { text } else { text + tail };
+    files.insert("study.toml".to_owned(), text.into_bytes());
+    files
+}
+
+fn no_files(folder: &Path) -> ConcealError {
+    ConcealError::content(folder, &"no results were written")
+}
+
+/// Removes all that is in a folder of results.
+fn empty(folder: &Path) -> Result<(), ConcealError> {
+    match std::fs::remove_dir_all(folder) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(ConcealError::file(folder, e)),
+        _ => Ok(()),
+    }
+}
+
+/// The files of a folder by their path in it; none where there is no folder.
+fn read(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, ConcealError> {
+    let fail = |source| ConcealError::file(folder, source);
+    let mut files = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(here) = folders.pop().filter(|here| here.is_dir()) {
+        for entry in std::fs::read_dir(&here).map_err(fail)? {
+            let path = entry.map_err(fail)?.path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().into_owned();
+            files.insert(name, std::fs::read(&path).map_err(fail)?);
+        }
+    }
+    Ok(files)
+}
+
+/// Whether a folder lists its files and every file is as it is listed.
+fn listed(folder: &Path) -> bool {
+    let Ok(manifest) = Manifest::read(folder) else { return false };
+    let mut files = manifest.results.values().flat_map(|entry| &entry.files);
+    !manifest.results.is_empty()
+        && files.all(|(name, digest)| sha256_of(&folder.join(name)).is_ok_and(|found| found == *digest))
+}
+
+/// Whether files are those that are expected, with nothing beside them.
+fn agrees(files: &BTreeMap<String, Vec<u8>>, expected: &Expected) -> bool {
+    let names = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
+    names(files) == names(&expected.files)
+        && expected.same.iter().all(|name| files.get(name) == expected.files.get(name))
+}
+
+/// What a kill left of the earlier results and of the new ones.
+fn left(folder: &Path, earlier: &Expected, new: &Expected) -> Result<Left, ConcealError> {
+    let files = read(folder)?;
+    if !folder.join("manifest.json").is_file() {
+        return Ok(Left::Unlisted);
+    }
+    let lists = listed(folder);
+    let of =
+        |expected: &Expected| lists && expected.same.iter().all(|name| files.get(name) == expected.files.get(name));
+    Ok(match (of(earlier), of(new)) {
+        (true, _) => Left::Earlier,
+        (_, true) => Left::New,
+        _ => Left::Mixed,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trimtab::files::Entry;
+
+    #[test]
+    fn a_study_without_its_last_recording_keeps_its_settings() {
+        let folder = tempfile::tempdir().unwrap();
+        let all = sound(STUDY, folder.path()).unwrap();
+        let count = |files: &Files| String::from_utf8_lossy(&files["study.toml"]).matches("[[runs]]").count();
+        let fewer = turned(&all);
+        assert_eq!(count(&fewer) + 1, count(&all));
+        assert!(String::from_utf8_lossy(&fewer["study.toml"]).contains("[fit]"));
+    }
+
+    #[test]
+    fn a_folder_with_files_of_two_runs_is_mixed_and_one_without_a_list_is_unlisted() {
+        let folder = tempfile::tempdir().unwrap();
+        let of = |text: &str| {
+            let files = [("a.csv".to_owned(), trimtab::files::sha256(text.as_bytes()))].into();
+            let results = [("fit".to_owned(), Entry { files, ..Entry::default() })].into();
+            (text.as_bytes().to_vec(), serde_json::to_vec(&Manifest { results }).unwrap())
+        };
+        let expected = |text: &str| Expected {
+            files: [("a.csv".to_owned(), of(text).0)].into(),
+            same: ["a.csv".to_owned()].into(),
+            time: Duration::ZERO,
+        };
+        let judged = |text: &str, list: Option<&str>| {
+            std::fs::write(folder.path().join("a.csv"), text).unwrap();
+            let manifest = folder.path().join("manifest.json");
+            match list {
+                Some(list) => std::fs::write(&manifest, of(list).1).unwrap(),
+                None => drop(std::fs::remove_file(&manifest)),
+            }
+            left(folder.path(), &expected("old"), &expected("new")).unwrap()
+        };
+        let found = [("old", Some("old")), ("new", Some("new")), ("new", Some("old")), ("new", None)];
+        let found = found.map(|(text, list)| judged(text, list));
+        assert_eq!(found, [Left::Earlier, Left::New, Left::Mixed, Left::Unlisted]);
+    }
+}
