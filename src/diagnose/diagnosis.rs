@@ -161,7 +161,7 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// One sentence.
     pub headline: String,
-    /// What was found, strongest first.
+    /// What was found, the confirmed before the suspected, each strongest first.
     pub findings: Vec<Finding>,
     /// What was selected and is not named, with the grade that says why.
     pub withdrawn: Vec<Finding>,

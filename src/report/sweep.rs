@@ -105,7 +105,7 @@ pub fn profiles_figure(profiles: &[Profile], limit: f64) -> Figure {
     };
     Figure::new("Profiles of the likelihood")
         .columns(3)
-        .panel_size(330, 260)
+        .panel_size(660, 520)
         .caption(
             "Twice the fall of the log-likelihood with a parameter held at a value and all others fitted again; dashed: what its standard \
              error alone says. The 95 % interval lies below the horizontal line.",
@@ -125,7 +125,7 @@ pub fn pairs_figure(pairs: &[Pair]) -> Figure {
     };
     Figure::new("Profiles of the likelihood by pair")
         .columns(2)
-        .panel_size(560, 460)
+        .panel_size(960, 820)
         .caption(
             "Twice the fall of the log-likelihood with two parameters held and all others fitted again; 95 % of both lie where it is below \
              about 6.",
