@@ -10,6 +10,7 @@ use super::grade::Grade;
 use super::influence::Following;
 use super::place::Place;
 use super::push::Window;
+use super::settings::MATERIAL_SHARE;
 use crate::numerals::sig;
 use crate::physics::Kind;
 
@@ -176,12 +177,14 @@ fn nothing(said: &Said) -> String {
         return format!("Nothing is missing that can be named. {}", not_isolated(f));
     }
     if let Some(f) = withdrawn(Grade::Immaterial) {
-        return format!(
-            "Nothing is missing that matters: {} ({}) is measurable, and changes predictions by {} % of their error.",
-            f.title,
-            values(f),
-            sig(100.0 * f.change.unwrap_or(0.0), 2)
-        );
+        let change = f.change.unwrap_or(0.0);
+        // What changes predictions by more was withdrawn as a clock.
+        let why = if change < MATERIAL_SHARE {
+            format!("is measurable, and changes predictions by {} % of their error", sig(100.0 * change, 2))
+        } else {
+            "is measurable, and is less than a sample period".to_owned()
+        };
+        return format!("Nothing is missing that matters: {} ({}) {why}.", f.title, values(f));
     }
     "Nothing is missing that these data could show.".into()
 }
@@ -356,6 +359,9 @@ mod tests {
         assert!(said(Verdict::NotInCatalogue, &[], &[], None).contains("wave drift gains most"));
         let small = said(Verdict::NothingMissing, &[], &[with(Grade::Immaterial)], None);
         assert!(small.contains("steady current") && small.contains("2.0 % of their error"), "{small}");
+        let clock = Finding { change: Some(0.07), ..with(Grade::Immaterial) };
+        let clock = said(Verdict::NothingMissing, &[], &[clock], None);
+        assert!(clock.contains("less than a sample period") && !clock.contains("7.0 %"), "{clock}");
         let bound = said(Verdict::NothingMissing, &[], &[with(Grade::NotIsolated)], None);
         assert!(bound.contains("opposite headings"), "{bound}");
         let lost = headline(Verdict::Insufficient, &[], None);

@@ -5,6 +5,7 @@ use super::names::title_of;
 use super::phrases::{amplitude, p_value, percent};
 use crate::audit::Issue;
 use crate::diagnose::calibrate::ErrorRates;
+use crate::diagnose::settings::MATERIAL_SHARE;
 use crate::diagnose::stability::Stability;
 use crate::diagnose::{Diagnosis, Finding, Grade, Verdict};
 use crate::numerals::{DASH, fixed, sig};
@@ -120,9 +121,13 @@ pub(super) fn grade_label(grade: Grade) -> (&'static str, &'static str) {
 }
 
 /// Why a mechanism of this grade is not named.
-fn withdrawn_because(grade: Grade) -> &'static str {
-    match grade {
+fn withdrawn_because(f: &Finding) -> &'static str {
+    match f.grade {
         Grade::Refuted => "unseen runs refute it",
+        // What changes predictions by more was withdrawn as a clock.
+        Grade::Immaterial if f.change.is_some_and(|c| c >= MATERIAL_SHARE) => {
+            "it is measurable, and less than a sample period"
+        }
         Grade::Immaterial => "it is measurable, and too small to matter",
         Grade::NotIsolated => {
             "on the headings that were sailed the ship's own parameters (a side force, trim, resistance, the compass zero) can take over \
@@ -136,7 +141,7 @@ fn withdrawn_because(grade: Grade) -> &'static str {
 
 /// A mechanism that was tried and is not named, with the reason.
 pub(super) fn withdrawn(f: &Finding, units: Units) -> String {
-    let reason = withdrawn_because(f.grade);
+    let reason = withdrawn_because(f);
     let interval = |value: Option<f64>, ci95: Option<[f64; 2]>, of: &dyn Fn(f64) -> String| match (value, ci95) {
         (Some(value), Some([low, high])) => format!("{} [{}, {}]", of(value), of(low), of(high)),
         (Some(value), None) => of(value),
