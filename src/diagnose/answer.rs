@@ -194,8 +194,8 @@ mod tests {
         let (model, settings) = (model(), without_repetitions());
         let mut all = runs(&model, 12);
         for run in &mut all {
-            // Positions a row of 3 s late in session a, a row early in session b.
-            let (inner, shift) = (1..run.measured.len() - 1, if run.session == "a" { -1 } else { 1 });
+            // Positions two rows of 3 s late in session a, two rows early in session b.
+            let (inner, shift) = (2..run.measured.len() - 2, if run.session == "a" { -2 } else { 2 });
             let from = |row: usize, channel: usize| run.measured[row.wrapping_add_signed(shift)][channel];
             let measured = inner.clone().map(|row| {
                 let [_, _, psi, u, v, r] = run.measured[row];
@@ -209,7 +209,7 @@ mod tests {
         let answer = Answer::new(&question, all, &[]);
         let found = answer.findings.iter().find(|f| f.mechanism == "time_skew").unwrap();
         let delay = |name: &str| found.parameters.iter().find(|a| a.name == name).unwrap();
-        for (name, truth) in [("time_skew.position [a]", 3.0), ("time_skew.position [b]", -3.0)] {
+        for (name, truth) in [("time_skew.position [a]", 6.0), ("time_skew.position [b]", -6.0)] {
             let [lower, upper] = delay(name).ci95;
             assert!(lower < truth && truth < upper && upper - lower < 1.0, "{name}: {lower} to {upper}");
         }
