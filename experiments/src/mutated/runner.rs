@@ -106,7 +106,9 @@ impl Runner {
         }
         asked.arg(folder.join("study.toml"));
         match command {
-            "evaluate" | "maneuver" => drop(asked.arg("--model").arg(folder.join("fitted.toml"))),
+            "evaluate" => drop(asked.arg("--model").arg(folder.join("fitted.toml"))),
+            // The draws for the intervals would take sixty times as long.
+            "maneuver" => drop(asked.arg("--model").arg(folder.join("fitted.toml")).args(["--draws", "0"])),
             // The repetitions would take seven times as long.
             "diagnose" => drop(asked.arg("--once")),
             _ => {}
