@@ -3,8 +3,11 @@
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+
+use crate::conceal::error::ConcealError;
 
 /// What a process left.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +22,15 @@ pub struct Ended {
     pub messages: String,
     /// Time it took \[s\].
     pub seconds: f64,
+}
+
+/// Refuses a program that is not there.
+///
+/// # Errors
+/// [`ConcealError::Content`] with what to do.
+pub fn is_there(tool: &Path) -> Result<(), ConcealError> {
+    let message = "there is no such program; build it with `cargo build --release`, or give its path with --tool";
+    if tool.is_file() { Ok(()) } else { Err(ConcealError::content(tool, &message)) }
 }
 
 /// Runs a command to its end, at most `limit`.
@@ -74,6 +86,12 @@ mod tests {
         let ended = shell("echo said; echo told >&2; exit 2", Duration::from_secs(20));
         assert_eq!((ended.code, ended.stopped), (Some(2), false));
         assert_eq!((ended.output.as_str(), ended.messages.as_str()), ("said\n", "told\n"));
+    }
+
+    #[test]
+    fn a_program_that_is_not_there_is_refused_with_what_to_do() {
+        let refused = is_there(Path::new("nowhere/trimtab")).unwrap_err().to_string();
+        assert!(refused.contains("nowhere/trimtab") && refused.contains("cargo build --release"), "{refused}");
     }
 
     #[test]

@@ -1,10 +1,9 @@
 //! The verdict once every finding has its grade: what is left of the decision on the tests, as a pure function.
 //! It estimates nothing and knows no runs.
 
-use super::decide::Verdict;
+use super::decide::{Verdict, named};
 use super::finding::Finding;
 use super::grade::Grade;
-use crate::physics::Kind;
 
 /// The verdict, from the one that the tests of the kept model give, the grades of what was withdrawn, whether a mechanism led and was
 /// rejected for its own coefficients, and whether the base holds.
@@ -30,13 +29,7 @@ pub fn lead(decided: Verdict, findings: &mut [Finding]) -> Verdict {
     findings.sort_by_key(|f| f.grade != Grade::Confirmed);
     match (decided, findings.first()) {
         (Verdict::Named | Verdict::OneOf | Verdict::Sensor, Some(first)) => {
-            if first.confidence_set.len() > 1 {
-                Verdict::OneOf
-            } else if first.kind == Kind::Sensor {
-                Verdict::Sensor
-            } else {
-                Verdict::Named
-            }
+            named(first.kind, first.confidence_set.len())
         }
         _ => decided,
     }
@@ -46,6 +39,7 @@ pub fn lead(decided: Verdict, findings: &mut [Finding]) -> Verdict {
 mod tests {
     use super::*;
     use crate::diagnose::example::finding;
+    use crate::physics::Kind;
 
     #[test]
     fn a_confirmed_force_leads_a_suspected_sensor() {

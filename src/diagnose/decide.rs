@@ -201,7 +201,7 @@ pub fn decide(table: &TestTable) -> Decision {
     let verdict = if table.audit_blocks {
         Verdict::Sensor
     } else if let Some(first) = mechanisms.first() {
-        named(first)
+        named(first.kind, first.set_size)
     } else if let Some(push) = push {
         if push.in_few_recordings() { Verdict::OneOf } else { Verdict::Named }
     } else {
@@ -235,11 +235,11 @@ fn push(table: &TestTable, mechanisms: &[MechanismTest], left: &ResidualTests) -
     push.filter(|p| alone || !p.in_few_recordings())
 }
 
-/// The verdict where a mechanism is the first finding.
-fn named(first: &MechanismTest) -> Verdict {
-    if first.set_size > 1 {
+/// The verdict of the first finding, by its kind and by how many mechanisms the data allow in its place.
+pub fn named(kind: Kind, set_size: usize) -> Verdict {
+    if set_size > 1 {
         Verdict::OneOf
-    } else if first.kind == Kind::Sensor {
+    } else if kind == Kind::Sensor {
         Verdict::Sensor
     } else {
         Verdict::Named

@@ -4,6 +4,7 @@
 use super::grade::Grade;
 use super::locate::EquationShare;
 use super::push::Window;
+use super::settings::MATERIAL_SHARE;
 use super::unseen::FindingProof;
 use crate::physics::Kind;
 use serde::Serialize;
@@ -92,6 +93,14 @@ pub struct Finding {
     pub change: Option<f64>,
     /// Without and with it on unseen runs, everything else refitted.
     pub held_out: Option<FindingProof>,
+}
+
+impl Finding {
+    /// Whether it was withdrawn as immaterial for a clock's sake, that it is off by less than is resolved: what changes predictions by as
+    /// much as matters was not withdrawn for its change.
+    pub fn is_unresolved_clock(&self) -> bool {
+        self.grade == Grade::Immaterial && self.change.is_some_and(|c| c >= MATERIAL_SHARE)
+    }
 }
 
 /// Name of a force for a limited time.

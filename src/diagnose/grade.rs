@@ -14,7 +14,7 @@ pub enum Grade {
     Suspected,
     /// Unseen runs are worse with it, the interval below zero: it is not named and not written to the improved model.
     Refuted,
-    /// Significant, but it changes predictions by less than matters.
+    /// Significant, but it changes predictions by less than matters, or a clock by less than is resolved.
     Immaterial,
     /// The interval of its size does not exclude zero.
     Undetermined,

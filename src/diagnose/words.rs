@@ -10,7 +10,6 @@ use super::grade::Grade;
 use super::influence::Following;
 use super::place::Place;
 use super::push::Window;
-use super::settings::MATERIAL_SHARE;
 use crate::numerals::sig;
 use crate::physics::Kind;
 
@@ -177,12 +176,11 @@ fn nothing(said: &Said) -> String {
         return format!("Nothing is missing that can be named. {}", not_isolated(f));
     }
     if let Some(f) = withdrawn(Grade::Immaterial) {
-        let change = f.change.unwrap_or(0.0);
-        // What changes predictions by more was withdrawn as a clock.
-        let why = if change < MATERIAL_SHARE {
-            format!("is measurable, and changes predictions by {} % of their error", sig(100.0 * change, 2))
-        } else {
+        let why = if f.is_unresolved_clock() {
             "is measurable, and is less than a sample period".to_owned()
+        } else {
+            let change = 100.0 * f.change.unwrap_or(0.0);
+            format!("is measurable, and changes predictions by {} % of their error", sig(change, 2))
         };
         return format!("Nothing is missing that matters: {} ({}) {why}.", f.title, values(f));
     }

@@ -132,6 +132,12 @@ impl Layer {
         Self::new(name, color, Mark::Errors(points.into_iter().collect(), Marker::Circle))
     }
 
+    /// A line through points with intervals, (x, y, lo, hi), and the intervals, under one name.
+    pub fn line_with_intervals(name: &str, color: Color, points: Vec<(f64, f64, f64, f64)>) -> [Self; 2] {
+        let line = Self::line(name, color, points.iter().map(|p| (p.0, p.1)));
+        [line, Self::errors(name, color, points).unlisted()]
+    }
+
     /// An area between two curves: (x, lo, hi).
     pub fn band(name: impl Into<String>, color: Color, points: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
         Self::new(name, color, Mark::Band(points.into_iter().collect()))

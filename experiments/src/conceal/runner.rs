@@ -52,11 +52,7 @@ impl Runner {
         workers: usize,
         each: &(dyn Fn(Score) -> Result<(), ConcealError> + Sync),
     ) -> Result<(), ConcealError> {
-        if !self.tool.is_file() {
-            let message =
-                "there is no such program; build it with `cargo build --release`, or give its path with --tool";
-            return Err(ConcealError::content(&self.tool, &message));
-        }
+        process::is_there(&self.tool)?;
         workers::each(plan, workers, &|planned| {
             // A meter of its own: a meter keeps its last fit, which two cases at a time would overwrite.
             let meter = DiagnosisMeter::new(planned.spec.family)?;

@@ -54,10 +54,8 @@ fn by_strength(all: &[Scored], title: &str, aim: f64, of: Question) -> Panel {
             let s = share(all, |r| r.kind == "single" && r.set == set.name() && r.strength == Some(x), of)?;
             Some((x, s.value(), s.low, s.high))
         };
-        let points: Vec<_> = STEPS.into_iter().filter_map(at).collect();
-        panel = panel
-            .with(Layer::line(words(set), color(set), points.iter().map(|p| (p.0, p.1))))
-            .with(Layer::errors(words(set), color(set), points).unlisted());
+        let points = STEPS.into_iter().filter_map(at).collect();
+        panel = panel.with_all(Layer::line_with_intervals(words(set), color(set), points));
     }
     panel.with(Layer::h_line("aim", LIMIT, aim))
 }

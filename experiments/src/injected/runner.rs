@@ -38,11 +38,7 @@ impl Runner {
         workers: usize,
         each: &(dyn Fn(Row) -> Result<(), InjectedError> + Sync),
     ) -> Result<(), InjectedError> {
-        if !self.tool.is_file() {
-            let message =
-                "there is no such program; build it with `cargo build --release`, or give its path with --tool";
-            return Err(InjectedError::content(&self.tool, &message));
-        }
+        process::is_there(&self.tool)?;
         for case in cases {
             case.configuration.set.folder()?;
         }

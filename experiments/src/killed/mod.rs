@@ -4,15 +4,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
-use trimtab::files::{Manifest, sha256_of};
+use trimtab::files::{MANIFEST, Manifest, sha256_of};
 
 use crate::conceal::error::ConcealError;
-use crate::mutated::files::{Files, recordings, sound, write};
+use crate::mutated::files::{Files, sound, write};
+use crate::process;
 
 /// The commands that are killed, with what they are asked beside the study and the folder.
 pub const COMMANDS: [(&str, &[&str]); 5] = [
@@ -27,7 +28,9 @@ pub const COMMANDS: [(&str, &[&str]); 5] = [
 const SPREAD: f64 = 1.05;
 /// Seed of the two studies.
 const STUDY: u64 = 7;
-/// The folder of results, below that of the studies.
+/// Longest time for a command that is not killed.
+const LIMIT: Duration = Duration::from_secs(300);
+/// The folder of results, below that of a study.
 const OUT: &str = "results";
 
 /// What a folder holds after a kill.
@@ -62,13 +65,6 @@ pub struct Row {
     pub mended: bool,
 }
 
-impl Row {
-    /// Whether nothing was lost or mixed.
-    pub fn right(&self) -> bool {
-        self.mended && self.left != Left::Mixed
-    }
-}
-
 /// What a command makes of one of the studies.
 struct Expected {
     /// Its files.
@@ -86,15 +82,16 @@ pub struct Killer {
 }
 
 impl Killer {
-    /// Makes two sound studies in a folder, which differ by one recording, and fits them.
+    /// Makes two sound studies in a folder, which differ by one run, and fits them.
     ///
     /// # Errors
     /// [`ConcealError`] if they cannot be made or fitted.
     pub fn new(tool: PathBuf, folder: PathBuf) -> Result<Self, ConcealError> {
+        process::is_there(&tool)?;
         let tool = tool.canonicalize().map_err(|source| ConcealError::file(&tool, source))?;
         let all = sound(STUDY, &folder.join("case"))?;
         let killer = Self { tool, folder };
-        for (name, files) in [("one", all.clone()), ("other", turned(&all))] {
+        for (name, files) in [("one", all.clone()), ("other", without_last(&all))] {
             let study = killer.folder.join(name);
             write(&files, &study).map_err(|source| ConcealError::file(&study, source))?;
             killer.run(name, ("fit", &[]))?;
@@ -106,14 +103,14 @@ impl Killer {
         Ok(killer)
     }
 
-    /// A command on a study; results always go to the folder of the first study, so that the second writes over them.
+    /// A command on a study, with its results in a folder beside it.
     fn command(&self, study: &str, (command, arguments): (&str, &[&str])) -> Command {
         let mut asked = Command::new(&self.tool);
         asked.args(["--threads", "1", command]);
         // The name of a trial comes before the study.
         let before = usize::from(command == "maneuver");
         asked.args(&arguments[..before]).arg("study.toml").args(&arguments[before..]).args(["--out", OUT]);
-        asked.current_dir(self.folder.join(study)).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        asked.current_dir(self.folder.join(study));
         asked
     }
 
@@ -121,35 +118,32 @@ impl Killer {
         self.folder.join(study).join(OUT)
     }
 
-    /// Runs a command to its end.
+    /// Runs a command to its end, and gives its time.
     fn run(&self, study: &str, command: (&str, &[&str])) -> Result<Duration, ConcealError> {
-        let began = Instant::now();
-        let fail = |source| ConcealError::file(&self.tool, source);
-        let status = self.command(study, command).status().map_err(fail)?;
+        let ended = process::run(self.command(study, command), LIMIT);
+        let ended = ended.map_err(|source| ConcealError::file(&self.tool, source))?;
         // 1 says that the answer is no, which is an answer.
-        if !matches!(status.code(), Some(0 | 1)) {
-            let message = format!("`{}` on a sound study ends with {status}", command.0);
+        if !matches!(ended.code, Some(0 | 1)) {
+            let message = format!("`{}` on a sound study fails: {}", command.0, ended.messages.trim());
             return Err(ConcealError::content(&self.results(study), &message));
         }
-        Ok(began.elapsed())
+        Ok(Duration::from_secs_f64(ended.seconds))
     }
 
     /// What a command makes of a study whose results are empty.
     fn expected(&self, study: &str, command: (&str, &[&str])) -> Result<Expected, ConcealError> {
         let results = self.results(study);
-        let mut made: Vec<BTreeMap<String, Vec<u8>>> = Vec::new();
-        let mut time = Duration::MAX;
-        for _ in 0..2 {
+        let made = || {
             empty(&results)?;
-            time = time.min(self.run(study, command)?);
-            made.push(read(&results)?);
-        }
-        let (Some(files), Some(first)) = (made.pop(), made.pop()) else { return Err(no_files(&results)) };
+            let time = self.run(study, command)?;
+            Ok::<_, ConcealError>((read(&results)?, time))
+        };
+        let ((first, slow), (files, time)) = (made()?, made()?);
         let same = files.iter().filter(|(name, bytes)| first.get(*name) == Some(bytes)).map(|(name, _)| name.clone());
-        Ok(Expected { same: same.collect(), files, time })
+        Ok(Expected { same: same.collect(), time: time.min(slow), files })
     }
 
-    /// Kills a command `count` times, at instants drawn with a seed, each time over the results of the other study.
+    /// Kills a command `count` times, at instants drawn with a seed, each time over the results that it made of the other study.
     ///
     /// # Errors
     /// A folder that cannot be written, or a command that fails without a kill.
@@ -168,7 +162,9 @@ impl Killer {
             empty(&results)?;
             write(&other.files, &results).map_err(|source| ConcealError::file(&results, source))?;
             let fail = |source| ConcealError::file(&self.tool, source);
-            let mut child = self.command("one", command).spawn().map_err(fail)?;
+            let mut asked = self.command("one", command);
+            asked.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+            let mut child = asked.spawn().map_err(fail)?;
             std::thread::sleep(one.time.mul_f64(at));
             let running = child.try_wait().map_err(fail)?.is_none();
             // A command that has ended cannot be killed.
@@ -183,22 +179,16 @@ impl Killer {
     }
 }
 
-/// The same study without its last recording.
-fn turned(files: &Files) -> Files {
+/// The same study without its last run; the settings, which stand behind it, are kept.
+fn without_last(files: &Files) -> Files {
     let mut files = files.clone();
-    let text = files.get("study.toml").map(|bytes| String::from_utf8_lossy(bytes).into_owned()).unwrap_or_default();
-    let last = recordings(&files).pop().unwrap_or_default();
-    let kept: Vec<&str> = text.split("[[runs]]").filter(|run| !run.contains(&format!("\"{last}\""))).collect();
-    // The settings stand behind the last run.
-    let tail = text.find("[evaluate]").map_or("", |i| &text[i..]);
-    let text = kept.join("[[runs]]");
-    let text = if text.contains("[evaluate]") { text } else { text + tail };
-    files.insert("study.toml".to_owned(), text.into_bytes());
+    if let Some(bytes) = files.get_mut("study.toml") {
+        let text = String::from_utf8_lossy(bytes).into_owned();
+        let (head, last) = text.rsplit_once("[[runs]]").unwrap_or((&text, ""));
+        let settings = last.find("[evaluate]").map_or("", |i| &last[i..]);
+        *bytes = format!("{head}{settings}").into_bytes();
+    }
     files
-}
-
-fn no_files(folder: &Path) -> ConcealError {
-    ConcealError::content(folder, &"no results were written")
 }
 
 /// Removes all that is in a folder of results.
@@ -246,7 +236,7 @@ fn agrees(files: &BTreeMap<String, Vec<u8>>, expected: &Expected) -> bool {
 /// What a kill left of the earlier results and of the new ones.
 fn left(folder: &Path, earlier: &Expected, new: &Expected) -> Result<Left, ConcealError> {
     let files = read(folder)?;
-    if !folder.join("manifest.json").is_file() {
+    if !folder.join(MANIFEST).is_file() {
         return Ok(Left::Unlisted);
     }
     let lists = listed(folder);
@@ -265,11 +255,11 @@ mod tests {
     use trimtab::files::Entry;
 
     #[test]
-    fn a_study_without_its_last_recording_keeps_its_settings() {
+    fn a_study_without_its_last_run_keeps_its_settings() {
         let folder = tempfile::tempdir().unwrap();
         let all = sound(STUDY, folder.path()).unwrap();
         let count = |files: &Files| String::from_utf8_lossy(&files["study.toml"]).matches("[[runs]]").count();
-        let fewer = turned(&all);
+        let fewer = without_last(&all);
         assert_eq!(count(&fewer) + 1, count(&all));
         assert!(String::from_utf8_lossy(&fewer["study.toml"]).contains("[fit]"));
     }
@@ -289,7 +279,7 @@ mod tests {
         };
         let judged = |text: &str, list: Option<&str>| {
             std::fs::write(folder.path().join("a.csv"), text).unwrap();
-            let manifest = folder.path().join("manifest.json");
+            let manifest = folder.path().join(MANIFEST);
             match list {
                 Some(list) => std::fs::write(&manifest, of(list).1).unwrap(),
                 None => drop(std::fs::remove_file(&manifest)),

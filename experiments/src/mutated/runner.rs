@@ -37,11 +37,7 @@ impl Runner {
     /// # Errors
     /// [`ConcealError`] if the study cannot be made or a command refuses it.
     pub fn new(tool: PathBuf, limit: Duration, folder: PathBuf) -> Result<Self, ConcealError> {
-        if !tool.is_file() {
-            let message =
-                "there is no such program; build it with `cargo build --release`, or give its path with --tool";
-            return Err(ConcealError::content(&tool, &message));
-        }
+        process::is_there(&tool)?;
         let files = sound(STUDY, &folder.join("case"))?;
         let mut runner = Self { tool, limit, folder, sound: files, answers: BTreeMap::new() };
         let study = runner.folder.join("sound");

@@ -5,7 +5,6 @@ use super::names::title_of;
 use super::phrases::{amplitude, p_value, percent};
 use crate::audit::Issue;
 use crate::diagnose::calibrate::ErrorRates;
-use crate::diagnose::settings::MATERIAL_SHARE;
 use crate::diagnose::stability::Stability;
 use crate::diagnose::{Diagnosis, Finding, Grade, Verdict};
 use crate::numerals::{DASH, fixed, sig};
@@ -124,10 +123,7 @@ pub(super) fn grade_label(grade: Grade) -> (&'static str, &'static str) {
 fn withdrawn_because(f: &Finding) -> &'static str {
     match f.grade {
         Grade::Refuted => "unseen runs refute it",
-        // What changes predictions by more was withdrawn as a clock.
-        Grade::Immaterial if f.change.is_some_and(|c| c >= MATERIAL_SHARE) => {
-            "it is measurable, and less than a sample period"
-        }
+        Grade::Immaterial if f.is_unresolved_clock() => "it is measurable, and less than a sample period",
         Grade::Immaterial => "it is measurable, and too small to matter",
         Grade::NotIsolated => {
             "on the headings that were sailed the ship's own parameters (a side force, trim, resistance, the compass zero) can take over \

@@ -1,7 +1,7 @@
 //! The figure of calibration over many studies: nominal levels against the rates that were measured on concealed cases.
 //! It only counts and draws.
 
-use trimtab::plot::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, PURPLE, Panel, SKY};
+use trimtab::plot::{Axis, BLUE, Figure, GREEN, LIMIT, Layer, ORANGE, PURPLE, Panel, SKY};
 use trimtab::statistics::{Share, normal_quantile};
 
 use super::arms::{nulls, reached};
@@ -27,15 +27,10 @@ fn alarms(scores: &[Score], family: &str, level: f64) -> Option<Share> {
 }
 
 /// Share of the single effects whose true size lies in the interval of a level, as if estimates were normal.
-fn coverage(scores: &[Score], snr: Option<f64>, level: f64) -> Option<Share> {
+fn coverage(scores: &[Score], snr: f64, level: f64) -> Option<Share> {
     let reach = normal_quantile(0.5 + 0.5 * level);
-    let cases = scores.iter().filter(|s| s.arm == "single" && reached(s) && snr.is_none_or(|r| s.snr_asked == Some(r)));
+    let cases = scores.iter().filter(|s| s.arm == "single" && reached(s) && s.snr_asked == Some(snr));
     Share::of(cases.map(|s| s.size_errors.map(|e| e.abs() <= reach)))
-}
-
-fn curve(name: &str, color: Color, points: Vec<Point>) -> [Layer; 2] {
-    let line = Layer::line(name, color, points.iter().map(|p| (p.0, p.1)));
-    [line, Layer::errors(name, color, points).unlisted()]
 }
 
 /// Tests on the left, intervals on the right.
@@ -48,7 +43,11 @@ pub fn calibration(scores: &[Score]) -> Figure {
     .with(Layer::line("as nominal", LIMIT, LEVELS.map(|level| (level, level))));
     for (name, color, family) in [("HD truth, as the model", BLUE, "hd"), ("MMG truth, of another form", ORANGE, "mmg")]
     {
-        tests = tests.with_all(curve(name, color, rates(&LEVELS, |level| alarms(scores, family, level))));
+        tests = tests.with_all(Layer::line_with_intervals(
+            name,
+            color,
+            rates(&LEVELS, |level| alarms(scores, family, level)),
+        ));
     }
     let mut intervals = Panel::new(
         "single effects, right name",
@@ -57,7 +56,11 @@ pub fn calibration(scores: &[Score]) -> Figure {
     )
     .with(Layer::line("as nominal", LIMIT, [(0.0, 0.0), (1.0, 1.0)]));
     for (name, color, snr) in [("SNR 6", SKY, 6.0), ("SNR 12", GREEN, 12.0), ("SNR 24", PURPLE, 24.0)] {
-        intervals = intervals.with_all(curve(name, color, rates(&INTERVALS, |l| coverage(scores, Some(snr), l))));
+        intervals = intervals.with_all(Layer::line_with_intervals(
+            name,
+            color,
+            rates(&INTERVALS, |l| coverage(scores, snr, l)),
+        ));
     }
     Figure::new("Nominal and measured rates of the diagnosis").columns(2).with(tests).with(intervals)
 }
@@ -84,8 +87,8 @@ mod tests {
             ..Score::default()
         };
         let singles = [single(-0.5), single(1.8)];
-        let covered = |level: f64| coverage(&singles, Some(12.0), level).unwrap().value();
+        let covered = |level: f64| coverage(&singles, 12.0, level).unwrap().value();
         assert_eq!((covered(0.3), covered(0.9), covered(0.95)), (0.0, 0.5, 1.0));
-        assert!(coverage(&singles, Some(6.0), 0.9).is_none());
+        assert!(coverage(&singles, 6.0, 0.9).is_none());
     }
 }

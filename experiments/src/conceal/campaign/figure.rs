@@ -21,15 +21,13 @@ fn share_axis() -> Axis {
     Axis::new("share of cases").range(0.0, 1.0)
 }
 
-/// Shares of single effects over their strength, with intervals; no layers without a case.
-fn curve(name: &str, color: Color, scores: &[Score], family: Option<&str>, of: Question) -> Vec<Layer> {
+/// Shares of single effects over their strength, with intervals; no points without a case.
+fn curve(name: &str, color: Color, scores: &[Score], family: Option<&str>, of: Question) -> [Layer; 2] {
     let point = |snr: f64| {
         let s = Share::of(single(scores, family, snr).map(of))?;
         Some((snr, s.value(), s.low, s.high))
     };
-    let points: Vec<_> = STEPS.into_iter().filter_map(point).collect();
-    let line = Layer::line(name, color, points.iter().map(|p| (p.0, p.1)));
-    vec![line, Layer::errors(name, color, points).unlisted()]
+    Layer::line_with_intervals(name, color, STEPS.into_iter().filter_map(point).collect())
 }
 
 /// A share as a bar with its interval; nothing without a case.
