@@ -449,6 +449,7 @@ mod tests {
             manoeuvre: String::new(),
             split: Split::Train,
             dt: 1.0,
+            recorded_dt: 1.0,
             inputs: vec![inputs],
             measured: measured(&[state]),
             initial: state,

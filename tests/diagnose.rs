@@ -122,6 +122,7 @@ fn scaled(run: &Run, k: f64) -> Run {
     let state = |s: &Measured| std::array::from_fn(|i| s[i].map(|v| v * units[i]));
     Run {
         dt: run.dt * time,
+        recorded_dt: run.recorded_dt * time,
         inputs: run.inputs.iter().map(|i| Inputs::actuators(i.t * time, i.n / time, i.delta)).collect(),
         measured: run.measured.iter().map(state).collect(),
         initial: std::array::from_fn(|i| run.initial[i] * units[i]),

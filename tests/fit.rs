@@ -83,6 +83,7 @@ fn recordings(truth: &Model, count: usize, noise: f64, extra: impl Fn(usize, usi
                 manoeuvre: String::new(),
                 split: Split::Train,
                 dt: DT,
+                recorded_dt: DT,
                 inputs: inputs[samples.clone()].to_vec(),
                 measured: measured.collect(),
                 initial: states[start],

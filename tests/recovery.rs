@@ -70,6 +70,7 @@ fn recordings(truth: &Model, dt: f64, samples: usize) -> Vec<Run> {
             manoeuvre: (*name).into(),
             split: Split::Train,
             dt,
+            recorded_dt: dt,
             inputs,
             measured: measured(&trajectory.states),
             initial,

@@ -51,6 +51,7 @@ pub fn recordings(dt: f64) -> Vec<Run> {
                 manoeuvre: String::new(),
                 split: Split::Train,
                 dt,
+                recorded_dt: dt,
                 inputs,
                 measured: measured(&states),
                 initial,

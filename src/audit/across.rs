@@ -5,6 +5,7 @@ use super::issue::{Issue, Severity};
 use super::limits::{
     EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, SAME_LAG, SESSION_SHARE, SHARED_ROWS, SHARED_SHARE,
 };
+use super::orders::{Leap, ordered};
 use super::pooled::{Odd, odd};
 use super::propeller::{advance, advance_ratio};
 use super::record::Responses;
@@ -29,6 +30,8 @@ pub struct Evidence {
     /// Median advance ratio.
     ratio: Option<f64>,
     responses: Responses,
+    /// The largest leap of the rudder.
+    leap: Option<Leap>,
     /// Fingerprints of the rows in which the ship's motion changed.
     rows: Vec<u64>,
 }
@@ -54,6 +57,7 @@ impl Evidence {
             speed: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
             ratio: advance_ratio(recording, ship),
             responses,
+            leap: Leap::of(recording),
             rows: fingerprints(recording),
         }
     }
@@ -88,6 +92,9 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
         found.extend(late(runs, pair, time));
         found.extend(sessions(runs, pair, time));
     }
+    let leaps: Vec<Leap> = runs.iter().filter_map(|r| r.leap).collect();
+    let every = || runs.iter().map(|r| r.run.clone()).collect();
+    found.extend(ordered(&leaps, time).map(|issue| Shared { runs: every(), issue }));
     found.extend(shared_rows(runs));
     found
 }

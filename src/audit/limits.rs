@@ -118,6 +118,14 @@ pub const RATIO_INSIDE: [f64; 2] = [2.0, 0.8];
 /// One run in another unit: its ratio is this many times that of the other runs, or this share of it.
 pub const RATIO_APART: f64 = 3.5;
 
+// --- Orders ---
+
+/// A rudder that turns by more than this in a ship length sailed \[deg\] is no steering gear: ships have 30 to 100 (2.3 deg/s at 14 to
+/// 40 s a length), and so have their models,
+pub const ORDERED_DEGREES: f64 = 500.0;
+/// where it turns by more than this from one row to the next \[deg\]: a smaller step is a fast sampling of a gear that starts at once.
+pub const ORDERED_LEAP: f64 = 5.0;
+
 // --- Clocks ---
 
 /// Steps from which a lag between two channels that tell one motion is worth a note, and a warning.

@@ -14,6 +14,7 @@ mod jumps;
 mod kinematics;
 mod limits;
 mod model;
+mod orders;
 mod pooled;
 mod propeller;
 mod receiver;

@@ -272,6 +272,7 @@ mod tests {
                 manoeuvre: String::new(),
                 split: Split::Train,
                 dt,
+                recorded_dt: dt,
                 inputs: (0..121).map(|k| Inputs::actuators(dt * f64::from(k), 10.0, 0.1)).collect(),
                 initial: states[0],
                 measured: measured(&states),

@@ -166,8 +166,8 @@ impl Audited {
         let (first, count) = (doubt.runs.first().map_or("", String::as_str), doubt.runs.len());
         let (told, runs) = match count {
             0 => (String::new(), String::new()),
-            1 => (String::new(), format!(": run {first}")),
-            _ => (format!(" (as in {first})"), format!(": {count} of {} runs", self.runs)),
+            1 => (String::new(), format!(": run `{first}`")),
+            _ => (format!(" (as in `{first}`)"), format!(": {count} of {} runs", self.runs)),
         };
         format!("{channel}{}{told}{runs}; {}", doubt.text, doubt.next_step)
     }
@@ -216,7 +216,7 @@ mod tests {
         let lines: Vec<&str> = lines.lines().collect();
         assert!(audited.refused());
         assert_eq!(lines[0], "error: r: the sign is turned: run b; look at it");
-        assert_eq!(lines[1], "warning: psi: stands still for 3 s (as in a): 2 of 3 runs; look at it");
+        assert_eq!(lines[1], "warning: psi: stands still for 3 s (as in `a`): 2 of 3 runs; look at it");
         assert!(lines[2].starts_with("`trimtab check`") && lines.len() == 4, "{lines:?}");
         assert_eq!(Audited::default().lines(), "");
     }

@@ -37,11 +37,11 @@ period, 1), repeat (repeat the analysis on the recordings turned, mirrored, cut,
 other start values to see whether what is named is stable, true), calibrate (simulated studies for
 the error rates of this study, 0), seed (of bootstrap and simulations).
 
-Every finding has a grade. Confirmed: test runs are likelier with it (interval above zero), are not
-simulated worse, and every repetition finds it. Suspected: the training runs speak for it, test
-runs cannot tell or there are none. What test runs refute, what no interval tells from zero, what is
-too small to matter and what most repetitions do not find is not named, and is listed with the
-reason. Without test runs every fourth recording is set aside for the proof, from eight on.";
+Every finding has a grade. Confirmed: test runs are better with it, by log-likelihood or by free
+simulation (interval above zero), not worse by the other, and every repetition finds it. Suspected:
+the training runs speak for it, test runs cannot tell or there are none. What test runs refute, what
+no interval tells from zero, what is too small to matter and what most repetitions do not find is
+not named, and is listed with the reason. Without test runs every fourth recording is set aside for the proof, from eight on.";
 
 const EXAMPLE: &str = "\
 Example:

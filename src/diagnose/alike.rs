@@ -43,7 +43,8 @@ mod tests {
 
     fn selected(candidates: &[Candidate], name: &str) -> Selected {
         let candidate = candidates.iter().position(|c| c.mechanism.name == name).unwrap();
-        Selected { candidate, extent: Extent::All, statistic: 0.0, p: 0.0, set: vec![candidate], why: "alone".into() }
+        let (set, why) = (vec![candidate], "alone".into());
+        Selected { candidate, extent: Extent::All, statistic: 0.0, p: 0.0, set, why, carried: false }
     }
 
     /// The names alike to a current in these runs.

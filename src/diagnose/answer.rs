@@ -14,7 +14,7 @@ use super::residual::{Kept, Residual};
 use super::select::Selection;
 use super::settings::Settings;
 use super::stability::{Brief, CHANGES, Change, Doubts, Stability, Variant};
-use super::weigh::{Base, findings, weakest, weigh, withdrawn};
+use super::weigh::{Base, Weight, carried, findings, weakest, weigh, withdrawn};
 use crate::model::Model;
 use crate::recording::Run;
 use std::borrow::Cow;
@@ -56,6 +56,7 @@ impl Answer {
         held_out: &[Run],
     ) -> Self {
         let (kept, decision, weights) = loop {
+            let push = residual.selection.push.clone();
             let decision: Decision = decide(&residual.table(question));
             let kept: Kept = residual.decided(&decision);
             let mut weights = weigh(question, &kept, held_out);
@@ -65,15 +66,18 @@ impl Answer {
                     weight.grade = Grade::Unstable;
                 }
             }
+            let stays: Vec<bool> = weights.iter().map(Weight::is_carried).collect();
             match (weakest(&weights), &kept.left) {
                 (Some(i), Some(left)) => {
                     let weight = weights.swap_remove(i);
                     tried.push(withdrawn(&kept, left, i, &weight));
-                    residual = kept.without(question, i, weight.without);
+                    residual = kept.without(question, i, weight.without, push);
                 }
-                _ => break (kept, decision, weights),
+                _ if kept.is_marked(&stays) => break (kept, decision, weights),
+                _ => residual = kept.marked(&stays, push),
             }
         };
+        tried.extend(carried(&kept, &weights));
         let base = Base::new(question, &kept);
         let grades: Vec<Grade> = tried.iter().map(|f| f.grade).collect();
         let rejected = !kept.selection.rejected.is_empty();
@@ -88,7 +92,8 @@ impl Answer {
 
     /// The estimate with what is named; that of the base model where nothing is.
     pub fn improved(&self) -> &Estimate {
-        if self.base.holds { &self.kept.selection.estimate } else { &self.kept.selection.tests.fit.estimate }
+        let Selection { estimate, tests, .. } = &self.kept.selection;
+        if self.findings.is_empty() { &tests.fit.estimate } else { estimate }
     }
 
     /// What the catalogue does not hold.
@@ -140,7 +145,8 @@ impl Answer {
     fn doubted(self, question: &Question, doubts: &Doubts, held_out: &[Run]) -> Self {
         let mut answer = self;
         if !doubts.unstable.is_empty() {
-            let Self { kept: Kept { selection, left, .. }, withdrawn, .. } = answer;
+            let Self { kept: Kept { selection, left, .. }, mut withdrawn, .. } = answer;
+            withdrawn.retain(|f| !selection.carries(&f.mechanism));
             answer = Self::settled(question, Residual { selection, left }, withdrawn, &doubts.unstable, held_out);
         }
         for finding in answer.findings.iter_mut().filter(|f| doubts.doubtful.contains(&f.mechanism)) {
@@ -183,7 +189,7 @@ fn brief(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{model, runs, with};
+    use crate::diagnose::example::{made_by_euler, model, runs, with};
 
     fn without_repetitions() -> Settings {
         Settings { nuisance: false, repeat: false, ..Settings::default() }
@@ -216,6 +222,20 @@ mod tests {
     }
 
     #[test]
+    fn clocks_and_lags_that_euler_steps_explain_as_well_stay_in_the_model_and_are_not_named() {
+        let (model, settings) = (model(), without_repetitions());
+        let question = Question::new(&model, &settings, &|_| ()).unwrap();
+        let answer = Answer::new(&question, made_by_euler(&model, 12), &[]);
+        assert_eq!((answer.verdict, answer.findings.len()), (Verdict::NothingMissing, 0), "{:?}", answer.findings);
+        // Such steps answer the propeller late as well.
+        let withdrawn: Vec<(&str, Grade)> = answer.withdrawn.iter().map(|f| (f.mechanism.as_str(), f.grade)).collect();
+        assert_eq!(withdrawn, [("time_skew", Grade::EulerSteps), ("engine_lag", Grade::EulerSteps)]);
+        assert!(answer.kept.selection.carries("time_skew") && answer.kept.left_by_named().is_none());
+        // Where nothing is named, the improved model is the base model.
+        assert!(answer.improved().free.len() < answer.kept.selection.estimate.free.len());
+    }
+
+    #[test]
     fn what_most_repetitions_do_not_find_is_withdrawn_and_what_one_does_not_find_is_suspected() {
         let (model, settings) = (model(), without_repetitions());
         let question = Question::new(&model, &settings, &|_| ()).unwrap();
@@ -223,7 +243,7 @@ mod tests {
         let (train, unseen) = all.split_at(9);
         let answer = Answer::new(&question, train, unseen);
         let grade = |answer: &Answer, name: &str| answer.findings.iter().find(|f| f.mechanism == name).map(|f| f.grade);
-        assert_eq!(grade(&answer, "current"), Some(Grade::Confirmed));
+        assert_eq!(grade(&answer, "current"), Some(Grade::Confirmed), "{:?}", answer.findings);
         assert!(grade(&answer, "rudder_lag").is_some());
         let [current, lag] = ["current", "rudder_lag"].map(str::to_owned);
         let doubts = Doubts { unstable: vec![lag.clone()], doubtful: vec![current, lag.clone()] };

@@ -197,7 +197,7 @@ fn is_made_by_euler(runs: &[Run]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{SAMPLES, model, runs};
+    use crate::diagnose::example::{EULER, SAMPLES, made_by_euler, model, runs, sailed};
 
     fn question<'a>(model: &'a Model, settings: &'a Settings) -> Question<'a> {
         Question { model, full: model.clone(), settings, progress: &|_| () }
@@ -224,29 +224,16 @@ mod tests {
     #[test]
     fn recordings_made_by_explicit_euler_are_read_as_euler() {
         let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
-        let coarse = Integration { method: Method::Euler, substeps: 1 };
-        let mut runs = runs(&model, 6);
-        for r in &mut runs {
-            let scenario = crate::simulate::Scenario { dt: r.dt, inputs: r.inputs.clone(), initial: r.initial };
-            let fine =
-                crate::simulate::simulate(&model, &model.values_in(&r.session), settings.integration(), &scenario);
-            let made = crate::simulate::simulate(&model, &model.values_in(&r.session), coarse, &scenario);
-            // The same sensor errors on another trajectory.
-            for ((m, a), b) in r.measured.iter_mut().zip(&fine.states).zip(&made.states) {
-                (0..6).for_each(|c| m[c] = m[c].map(|v| v + b[c] - a[c]));
-            }
-        }
+        let mut runs = made_by_euler(&model, 6);
         // With the errors of sensors nobody can say so.
         assert!(!is_made_by_euler(&runs));
         for r in &mut runs {
-            let scenario = crate::simulate::Scenario { dt: r.dt, inputs: r.inputs.clone(), initial: r.initial };
-            let made = crate::simulate::simulate(&model, &model.values_in(&r.session), coarse, &scenario);
-            // As a file holds them, to a millimetre.
-            r.measured = made.states.iter().map(|s| s.map(|v| Some((v * 1e5).round() / 1e5))).collect();
+            // As a file holds them, to a hundredth of a millimetre.
+            r.measured = sailed(&model, r, EULER).iter().map(|s| s.map(|v| Some((v * 1e5).round() / 1e5))).collect();
         }
         assert!(is_made_by_euler(&runs));
         let base = BaseFit::new(&question(&model, &settings), AuditedRuns::new(runs, 85.0));
         assert!(is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
-        assert_eq!((base.integration, base.admission.integration), (coarse, coarse));
+        assert_eq!((base.integration, base.admission.integration), (EULER, EULER));
     }
 }

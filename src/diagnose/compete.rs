@@ -32,6 +32,8 @@ pub struct Selected {
     pub set: Vec<usize>,
     /// Why the set is what it is.
     pub why: String,
+    /// Whether it is not named and yet stays in the model, so that what it does is not taken for something else.
+    pub carried: bool,
 }
 
 impl Selected {
@@ -309,7 +311,8 @@ impl Competition<'_> {
         let estimate = if h.candidate == leader.candidate { estimate } else { self.problem.again(&estimate, SETTLE) };
         let gain = (estimate.log_posterior - self.current.log_posterior).max(0.5 * h.statistic);
         let p = h.p.min(leader.p);
-        let entry = Selected { candidate: h.candidate, statistic: 2.0 * gain, p, extent: h.extent, set, why };
+        let statistic = 2.0 * gain;
+        let entry = Selected { candidate: h.candidate, statistic, p, extent: h.extent, set, why, carried: false };
         (entry, estimate)
     }
 }

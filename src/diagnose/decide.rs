@@ -133,7 +133,7 @@ pub struct TestTable {
     pub runs: usize,
     /// Their samples.
     pub samples: usize,
-    /// Standard deviation of the unknown force under the base model, the larger of surge and sway \[N\].
+    /// Standard deviation of the unknown force under the model with what was selected, the larger of surge and sway \[N\].
     pub unknown_force: f64,
     /// Force that turns the ship, m u^2 / L \[N\].
     pub turning_force: f64,
@@ -145,7 +145,7 @@ pub struct TestTable {
     pub push_in_base: Option<PushTest>,
     /// What the base model leaves.
     pub base: ResidualTests,
-    /// The mechanisms that were selected, in their order.
+    /// The mechanisms that were selected, in their order, without those that stay in the model unnamed.
     pub mechanisms: Vec<MechanismTest>,
     /// What the model with the selected mechanisms leaves; `None` without any.
     pub selected: Option<ResidualTests>,
@@ -213,7 +213,7 @@ pub fn decide(table: &TestTable) -> Decision {
 /// Why the selected mechanisms are not what is missing: a name that leaves more unexplained than it explains, in forces that
 /// break mirror symmetry or are fixed on the earth, is only the nearest of the catalogue; and weather is the same everywhere.
 fn refutation(table: &TestTable) -> Option<Unlisted> {
-    let left = table.selected.as_ref()?;
+    let left = table.selected.as_ref().filter(|_| !table.mechanisms.is_empty())?;
     let explained: f64 = table.mechanisms.iter().map(|m| m.statistic).sum();
     if left.asymmetric_p < UNLISTED_P && left.asymmetric_gain > explained {
         return Some(Unlisted::Law);

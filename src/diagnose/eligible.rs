@@ -88,7 +88,8 @@ mod tests {
     }
 
     fn selected(candidate: usize, statistic: f64) -> Selected {
-        Selected { candidate, extent: Extent::All, statistic, p: 0.0, set: vec![candidate], why: String::new() }
+        let (set, why) = (vec![candidate], String::new());
+        Selected { candidate, extent: Extent::All, statistic, p: 0.0, set, why, carried: false }
     }
 
     #[test]

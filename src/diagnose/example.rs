@@ -22,6 +22,9 @@ use std::path::Path;
 
 pub const RK4: Integration = Integration { method: Method::Rk4, substeps: 1 };
 
+/// Explicit Euler steps of one sample period.
+pub const EULER: Integration = Integration { method: Method::Euler, substeps: 1 };
+
 /// Samples in a run.
 pub const SAMPLES: usize = 60;
 
@@ -85,11 +88,30 @@ fn run(model: &Model, i: usize, rng: &mut ChaCha8Rng) -> Run {
         manoeuvre: ["turn", "zigzag", "stop"][i % 3].into(),
         split: Split::Train,
         dt,
+        recorded_dt: dt,
         inputs,
         initial: samples[0],
         measured: measured(&samples),
         disturbed: Vec::new(),
     }
+}
+
+/// Runs of [`runs`] as a program with explicit Euler steps of one sample period makes them, with the same errors of the sensors.
+pub fn made_by_euler(model: &Model, count: usize) -> Vec<Run> {
+    let mut runs = runs(model, count);
+    for run in &mut runs {
+        let [fine, made] = [RK4, EULER].map(|steps| sailed(model, run, steps));
+        for ((m, a), b) in run.measured.iter_mut().zip(&fine).zip(&made) {
+            (0..6).for_each(|c| m[c] = m[c].map(|v| v + b[c] - a[c]));
+        }
+    }
+    runs
+}
+
+/// The states of a run as a model sails it from the run's start.
+pub fn sailed(model: &Model, run: &Run, steps: Integration) -> Vec<[f64; 6]> {
+    let scenario = Scenario { dt: run.dt, inputs: run.inputs.clone(), initial: run.initial };
+    simulate(model, &model.values_in(&run.session), steps, &scenario).states
 }
 
 /// An estimate at a model's values with the noise above and its own free parameters.

@@ -8,7 +8,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Grade {
-    /// Unseen runs are likelier with it, the interval above zero, and free simulation is not worse.
+    /// Unseen runs are better with it: by one of log-likelihood and free simulation beyond chance, and not worse by the other.
     Confirmed,
     /// The training runs speak for it; unseen runs cannot tell, or there are none.
     Suspected,
@@ -20,6 +20,9 @@ pub enum Grade {
     Undetermined,
     /// Weather nearly all of whose effect the ship's own parameters can take over, on the headings that were sailed.
     NotIsolated,
+    /// A clock or an actuator that is late, and explicit Euler steps of one sample period explain it as well: these recordings cannot tell
+    /// it from a coarse simulation or from values held until the next sample.
+    EulerSteps,
     /// Most repetitions on the same recordings told otherwise do not find it.
     Unstable,
 }
@@ -28,6 +31,12 @@ impl Grade {
     /// Whether a finding of this grade is named.
     pub fn is_named(self) -> bool {
         matches!(self, Self::Confirmed | Self::Suspected)
+    }
+
+    /// Whether a finding of this grade may stay in the model, though it is not named: it is there, and what it does would be taken for
+    /// something else.
+    pub fn may_be_carried(self) -> bool {
+        matches!(self, Self::Immaterial | Self::EulerSteps)
     }
 }
 
@@ -61,6 +70,9 @@ pub struct FindingTests {
     pub change: f64,
     /// The least time in its interval by which it shifts a sensor's clock, in sample periods, where it does so.
     pub shift: Option<f64>,
+    /// For a clock and for an actuator, the share of its gain in log-posterior that explicit Euler steps of one sample period take over; 0
+    /// for all else.
+    pub by_steps: f64,
     /// Gain in log-likelihood of unseen runs.
     pub likelihood: Option<GainTest>,
     /// Improvement of the free simulation of unseen runs.
@@ -72,24 +84,45 @@ pub fn is_unstable(found: usize, repetitions: usize) -> bool {
     2 * found < repetitions
 }
 
-/// Whether one measure of unseen runs is worse beyond chance and the other does not say that they are better. Where the two disagree,
-/// as they do when an error that the finding made up for shows, nothing is refuted.
-fn is_refuted(one: Option<GainTest>, other: Option<GainTest>) -> bool {
-    one.is_some_and(|g| g.is_below_zero()) && other.is_none_or(|g| g.gain <= 0.0)
+impl FindingTests {
+    /// Whether unseen runs are worse with it: by one measure beyond chance, and not better beyond chance by the other. Where both are
+    /// beyond chance and disagree, as they do when an error that the finding made up for shows, nothing is refuted.
+    pub fn is_refuted(&self) -> bool {
+        let refutes = |one: Option<GainTest>, other: Option<GainTest>| {
+            one.is_some_and(|g| g.is_below_zero()) && !other.is_some_and(|g| g.is_above_zero())
+        };
+        refutes(self.likelihood, self.prediction) || refutes(self.prediction, self.likelihood)
+    }
+
+    /// Whether unseen runs are better with it: by one measure beyond chance, and not worse by the other.
+    fn is_confirmed(&self) -> bool {
+        let confirms = |one: Option<GainTest>, other: Option<GainTest>| {
+            one.is_some_and(|g| g.is_above_zero()) && other.is_some_and(|g| g.gain >= 0.0)
+        };
+        confirms(self.likelihood, self.prediction) || confirms(self.prediction, self.likelihood)
+    }
+
+    /// Whether it changes predictions by too little to matter, or a clock by less than is resolved.
+    fn is_immaterial(&self) -> bool {
+        self.change < MATERIAL_SHARE || self.shift.is_some_and(|s| s < RESOLVED_SAMPLES)
+    }
 }
 
-/// The grade that the tests of a finding give it.
+/// The grade that the tests of a finding give it. What is determined and too small to matter is neither confirmed nor refuted.
 pub fn grade(tests: &FindingTests) -> Grade {
-    if is_refuted(tests.likelihood, tests.prediction) || is_refuted(tests.prediction, tests.likelihood) {
+    let small = tests.excludes_zero && tests.isolated >= FORM_TOLERANCE && tests.is_immaterial();
+    if small {
+        Grade::Immaterial
+    } else if tests.is_refuted() {
         Grade::Refuted
     } else if !tests.excludes_zero {
         Grade::Undetermined
     } else if tests.isolated < FORM_TOLERANCE {
         // What is left is no more than the form of the ship's own forces is known.
         Grade::NotIsolated
-    } else if tests.change < MATERIAL_SHARE || tests.shift.is_some_and(|s| s < RESOLVED_SAMPLES) {
-        Grade::Immaterial
-    } else if tests.likelihood.is_some_and(|g| g.is_above_zero()) && tests.prediction.is_some_and(|g| g.gain >= 0.0) {
+    } else if tests.by_steps > 1.0 - FORM_TOLERANCE {
+        Grade::EulerSteps
+    } else if tests.is_confirmed() {
         Grade::Confirmed
     } else {
         Grade::Suspected
@@ -110,34 +143,42 @@ mod tests {
             isolated: 1.0,
             change: 0.5,
             shift: None,
+            by_steps: 0.0,
             likelihood: BETTER,
             prediction: BETTER,
         }
     }
 
     #[test]
-    fn a_finding_is_confirmed_where_unseen_runs_are_likelier_and_not_simulated_worse() {
+    fn a_finding_is_confirmed_where_unseen_runs_are_better_by_one_measure_and_not_worse_by_the_other() {
         assert_eq!(grade(&sound()), Grade::Confirmed);
         assert_eq!(grade(&FindingTests { prediction: UNDECIDED, ..sound() }), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { likelihood: UNDECIDED, ..sound() }), Grade::Confirmed);
         let little_worse = Some(GainTest { gain: -0.01, ci95: Some([-0.2, 0.1]) });
         assert_eq!(grade(&FindingTests { prediction: little_worse, ..sound() }), Grade::Suspected);
+        assert_eq!(grade(&FindingTests { likelihood: little_worse, ..sound() }), Grade::Suspected);
     }
 
     #[test]
     fn without_unseen_runs_or_with_too_few_it_is_suspected() {
-        for likelihood in [None, UNDECIDED, Some(GainTest { gain: 50.0, ci95: None })] {
-            assert_eq!(grade(&FindingTests { likelihood, ..sound() }), Grade::Suspected);
+        for undecided in [None, UNDECIDED, Some(GainTest { gain: 50.0, ci95: None })] {
+            let tests = FindingTests { likelihood: undecided, prediction: undecided, ..sound() };
+            assert_eq!(grade(&tests), Grade::Suspected);
         }
-        assert_eq!(grade(&FindingTests { prediction: None, ..sound() }), Grade::Suspected);
+        for tests in [FindingTests { likelihood: None, ..sound() }, FindingTests { prediction: None, ..sound() }] {
+            assert_eq!(grade(&tests), Grade::Suspected);
+        }
     }
 
     #[test]
-    fn unseen_runs_that_are_worse_by_one_measure_and_no_better_by_the_other_refute_it() {
+    fn unseen_runs_that_are_worse_by_one_measure_and_not_better_by_the_other_refute_it() {
         let little_worse = Some(GainTest { gain: -0.01, ci95: Some([-0.2, 0.1]) });
         for tests in [
             FindingTests { likelihood: WORSE, prediction: WORSE, ..sound() },
             FindingTests { likelihood: WORSE, prediction: little_worse, ..sound() },
             FindingTests { likelihood: little_worse, prediction: WORSE, ..sound() },
+            FindingTests { likelihood: UNDECIDED, prediction: WORSE, ..sound() },
+            FindingTests { likelihood: WORSE, prediction: UNDECIDED, ..sound() },
             FindingTests { likelihood: WORSE, prediction: None, ..sound() },
             FindingTests { likelihood: WORSE, prediction: WORSE, excludes_zero: false, change: 0.0, ..sound() },
         ] {
@@ -154,9 +195,19 @@ mod tests {
         assert_eq!(grade(&FindingTests { isolated: 0.09, ..sound() }), Grade::NotIsolated);
         assert_eq!(grade(&FindingTests { change: 0.049, ..sound() }), Grade::Immaterial);
         assert_eq!(grade(&FindingTests { change: 0.05, ..sound() }), Grade::Confirmed);
-        // A clock that is off by less than a sample.
-        assert_eq!(grade(&FindingTests { shift: Some(0.99), ..sound() }), Grade::Immaterial);
-        assert_eq!(grade(&FindingTests { shift: Some(1.0), ..sound() }), Grade::Confirmed);
+        // A clock that is off by less than half a sample.
+        assert_eq!(grade(&FindingTests { shift: Some(0.49), ..sound() }), Grade::Immaterial);
+        assert_eq!(grade(&FindingTests { shift: Some(0.5), ..sound() }), Grade::Confirmed);
+        // One that steps of a coarse simulation explain as well.
+        let clock = FindingTests { shift: Some(1.0), ..sound() };
+        assert_eq!(grade(&FindingTests { by_steps: 0.89, ..clock }), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { by_steps: 0.91, ..clock }), Grade::EulerSteps);
+        assert_eq!(grade(&FindingTests { by_steps: 0.91, shift: Some(0.49), ..clock }), Grade::Immaterial);
+        assert!([Grade::Immaterial, Grade::EulerSteps].iter().all(|g| g.may_be_carried() && !g.is_named()));
+        assert!([Grade::Refuted, Grade::Suspected, Grade::Undetermined].iter().all(|g| !g.may_be_carried()));
+        // What is too small to matter is not refuted either, but it is not kept against the unseen runs.
+        let small = FindingTests { change: 0.01, likelihood: WORSE, prediction: WORSE, ..sound() };
+        assert!(grade(&small) == Grade::Immaterial && small.is_refuted());
         assert!(is_unstable(2, 6) && !is_unstable(3, 6) && !is_unstable(0, 0) && !Grade::Unstable.is_named());
         assert!(!Grade::Immaterial.is_named() && !Grade::Undetermined.is_named() && Grade::Suspected.is_named());
     }

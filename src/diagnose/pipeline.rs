@@ -84,7 +84,7 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
     let (tests, found) = (&answer.kept.selection.tests, answer.improved());
     let (fit, first) = (&tests.fit, &tests.screen);
     let base = &fit.estimate;
-    let last = answer.kept.left.as_ref().filter(|_| answer.base.holds).map(|l| &l.screen);
+    let last = answer.kept.left_by_named().filter(|_| answer.base.holds).map(|l| &l.screen);
     let missing = match (answer.unlisted(), &answer.kept.place) {
         (Some(Unlisted::Place), Some(place)) => Some(Missing::Place(place)),
         (Some(Unlisted::Law), _) => {
@@ -120,7 +120,7 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
         noise_before: base.noise,
         noise_after: found.noise,
         location: tests.location.clone(),
-        location_after: answer.kept.left.as_ref().map(|l| l.location.clone()),
+        location_after: answer.kept.left_by_named().map(|l| l.location.clone()),
         ranking: ranking(first, &tests.candidates),
         absorbed: absorbed(first, &tests.candidates),
         detectable: detectable(first, &tests.candidates, question.settings, &question.full),

@@ -308,6 +308,7 @@ mod tests {
                 manoeuvre: String::new(),
                 split: Split::Train,
                 dt: 2.0,
+                recorded_dt: 2.0,
                 inputs: (0..count * LENGTH).map(|k| Inputs::actuators(2.0 * k as f64, 1.0, 0.0)).collect(),
                 measured: vec![[Some(0.0); STATES]; count * LENGTH],
                 initial: [0.0; STATES],

@@ -57,7 +57,7 @@ impl Residual {
             let m = tests.candidates[a.candidate].mechanism;
             MechanismTest { kind: m.kind, weather: m.is_weather(), statistic: a.statistic, set_size: a.set.len() }
         };
-        let [surge, sway, _] = tests.fit.estimate.noise.force;
+        let [surge, sway, _] = self.selection.estimate.noise.force;
         TestTable {
             audit_blocks: tests.is_blocked(),
             euler_gain: admission.euler_gain,
@@ -69,7 +69,7 @@ impl Residual {
             push_allowed: question.settings.allows(PUSH),
             push_in_base: push.as_ref().map(PushTest::from),
             base: residual_tests(&tests.screen, &tests.location),
-            mechanisms: mechanisms.iter().map(test).collect(),
+            mechanisms: mechanisms.iter().filter(|m| !m.carried).map(test).collect(),
             selected: self.left.as_ref().map(|l| residual_tests(&l.screen, &l.location)),
         }
     }
@@ -92,12 +92,31 @@ impl Residual {
 }
 
 impl Kept {
-    /// The selection without one of its mechanisms, at the estimate without it, tested anew.
-    pub fn without(self, question: &Question, index: usize, estimate: Estimate) -> Residual {
-        let Self { mut selection, .. } = self;
+    /// The selection without one of its mechanisms, at the estimate without it, tested anew. `push` is that of the selection.
+    pub fn without(self, question: &Question, index: usize, estimate: Estimate, push: Option<Push>) -> Residual {
+        let mut selection = Selection { push, estimate, ..self.selection };
         selection.mechanisms.remove(index);
-        selection.estimate = estimate;
         Residual::new(question, selection)
+    }
+
+    /// Whether the mechanisms that stay in the model without being named are those that are `carried`.
+    pub fn is_marked(&self, carried: &[bool]) -> bool {
+        self.selection.mechanisms.iter().zip(carried).all(|(m, c)| m.carried == *c)
+    }
+
+    /// The selection with those marked that stay in the model without being named, with the tests of what they leave as they are. `push` is
+    /// that of the selection.
+    pub fn marked(self, carried: &[bool], push: Option<Push>) -> Residual {
+        let mut selection = Selection { push, ..self.selection };
+        for (mechanism, carried) in selection.mechanisms.iter_mut().zip(carried) {
+            mechanism.carried = *carried;
+        }
+        Residual { selection, left: self.left }
+    }
+
+    /// What the mechanisms that are named leave; `None` where none is.
+    pub fn left_by_named(&self) -> Option<&Left> {
+        self.left.as_ref().filter(|_| self.selection.mechanisms.iter().any(|m| !m.carried))
     }
 }
 
@@ -181,6 +200,15 @@ mod tests {
         assert!(left < 0.1 * table.base.asymmetric_gain, "{left} {}", table.base.asymmetric_gain);
         let decision = decide(&table);
         assert_eq!((decision.verdict, decision.keeps_mechanisms), (Verdict::Named, true));
+        // What stays in the model without being named is in no table, and what it explains is not left.
+        let residual = residual.decided(&decision).marked(&[true], None);
+        let carrying = residual.table(&question);
+        assert!(carrying.mechanisms.is_empty() && residual.selection.carries("current"));
+        assert_eq!(carrying.selected.map_or(f64::NAN, |s| s.asymmetric_gain), left);
+        assert_eq!(decide(&carrying).verdict, Verdict::NothingMissing);
+        let kept = residual.decided(&decide(&carrying));
+        assert!(kept.is_marked(&[true]) && !kept.is_marked(&[false]) && kept.left_by_named().is_none());
+        let residual = kept.marked(&[false], None);
         let base = residual.selection.tests.fit.estimate.clone();
         let kept = residual.decided(&Decision { keeps_mechanisms: false, ..decision });
         assert!(kept.selection.mechanisms.is_empty() && kept.left.is_none());

@@ -51,6 +51,11 @@ impl Selection {
         out
     }
 
+    /// Whether a mechanism of this name stays in the model without being named.
+    pub fn carries(&self, name: &str) -> bool {
+        self.mechanisms.iter().any(|m| m.carried && self.tests.candidates[m.candidate].mechanism.name == name)
+    }
+
     /// The estimate with all mechanisms, as Fisher scoring left it: this build has no Ipopt.
     #[cfg(not(feature = "ipopt"))]
     pub fn refitted(self, _question: &Question) -> Self {
@@ -224,7 +229,8 @@ mod tests {
             let candidate = s.tests.candidates.iter().position(|c| c.mechanism.name == *name).unwrap();
             s.estimate.free.extend(s.tests.candidates[candidate].parameters(&Extent::All));
             let (set, why) = (vec![candidate], String::new());
-            s.mechanisms.push(Selected { candidate, extent: Extent::All, statistic: 0.0, p: 0.0, set, why });
+            let (extent, carried) = (Extent::All, false);
+            s.mechanisms.push(Selected { candidate, extent, statistic: 0.0, p: 0.0, set, why, carried });
         }
         let problem = s.tests.problem(&Settings::default()).again(&s.estimate, SETTLE);
         s.estimate = problem;

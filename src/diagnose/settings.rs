@@ -331,8 +331,8 @@ numbers! {
 
     /// Share of the error of predictions that a finding must change, in one channel at least, to matter.
     MATERIAL_SHARE: f64 = 0.05, "the default share of the users' requirement; not tuned";
-    /// Sample periods that a clock must be off by to be resolved.
-    RESOLVED_SAMPLES: f64 = 1.0, "positions from explicit Euler steps, or from values held until the next sample, are late by one";
+    /// Sample periods of the recordings that a clock must be off by to be resolved.
+    RESOLVED_SAMPLES: f64 = 0.5, "half of it, as a resolution is counted; not tuned";
     /// Share of the runs that a model must simulate better than steady motion does, to be a base on which anything is named.
     FOLLOWED_SHARE: f64 = 0.5, "by the meaning of a majority; not tuned";
     /// Fewest recordings of which a part is set aside for the proof.

@@ -8,13 +8,14 @@ use super::estimate::Estimate;
 use super::finding::{Amplitude, Finding};
 use super::grade::{FindingTests, Grade, grade};
 use super::influence::{Following, change};
+use super::problem::Problem;
 use super::residual::{Kept, Left};
-use super::settings::{FOLLOWED_SHARE, REFIT};
+use super::settings::{FOLLOWED_SHARE, REFIT, SETTLE};
 use super::unseen::FindingProof;
 use crate::evaluate::predict_all;
 use crate::physics::Kind;
 use crate::recording::Run;
-use crate::simulate::Trajectory;
+use crate::simulate::{Integration, MOST_SUBSTEPS, Method, Trajectory};
 use crate::statistics::median;
 
 /// A selected mechanism with what speaks for and against it.
@@ -30,6 +31,11 @@ pub struct Weight {
 }
 
 impl Weight {
+    /// Whether it stays in the model, though it is not named: unseen runs must not speak against it.
+    pub fn is_carried(&self) -> bool {
+        self.grade.may_be_carried() && !self.tests.is_refuted()
+    }
+
     /// How much it gains on unseen runs, for an order among those that are withdrawn.
     fn gain(&self) -> f64 {
         self.tests.likelihood.map_or(0.0, |g| g.gain)
@@ -68,7 +74,7 @@ fn weight(
         let judging = &question.settings.judging;
         FindingProof::new(&without.model, &found.model, &fit.estimate.noise, fit.integration, held_out, judging)
     });
-    let tests = FindingTests {
+    let mut tests = FindingTests {
         excludes_zero: intervals.excludes_zero(found, candidate, &of.extent),
         isolated: if candidate.mechanism.is_weather() {
             tests.screen.test(of.candidate, &of.extent).retained
@@ -77,25 +83,49 @@ fn weight(
         },
         change: change(&fit.runs, &predict_all(&without.model, &fit.runs, fit.integration), with),
         shift: (candidate.mechanism.kind == Kind::Sensor).then(|| shift(&amplitudes, &fit.runs)).flatten(),
+        by_steps: 0.0,
         likelihood: proof.as_ref().map(FindingProof::likelihood),
         prediction: proof.as_ref().and_then(FindingProof::prediction),
     };
+    // Costs an estimate, and only what would be named needs it.
+    let may_be_steps = tests.shift.is_some() || candidate.mechanism.kind == Kind::Actuator;
+    if may_be_steps && grade(&tests).is_named() {
+        tests.by_steps = by_steps(question, kept, &without);
+    }
     Weight { grade: grade(&tests), tests, proof, without }
 }
 
-/// The least time by which a clock is off, in sample periods: the end of its interval that is nearer to zero, of the largest of its
+/// The share of what a clock or an actuator's lag gains over the model `without` it that explicit Euler steps of one sample period of the
+/// recordings gain in its place: with such steps positions are late by a sample and the ship answers its actuators late, and so it is
+/// where values are held until the next.
+fn by_steps(question: &Question, kept: &Kept, without: &Estimate) -> f64 {
+    let steps = median(kept.selection.tests.fit.runs.iter().map(|r| r.dt / r.recorded_dt)).unwrap_or(1.0);
+    let substeps = (steps.round() as usize).clamp(1, MOST_SUBSTEPS);
+    let fine = kept.selection.tests.problem(question.settings);
+    let coarse = Problem { integration: Integration { method: Method::Euler, substeps }, ..fine };
+    let found = &kept.selection.estimate;
+    // All three with noise estimated along, so that no reading is ahead for its rounds.
+    let settled = |p: &Problem, e: &Estimate| p.estimate(&e.model, &e.free, &found.noise, SETTLE).log_posterior;
+    let base = settled(&fine, without);
+    let gain = settled(&fine, found) - base;
+    if gain > 0.0 { ((settled(&coarse, without) - base) / gain).max(0.0) } else { 0.0 }
+}
+
+/// The least time by which a clock is off, in sample periods of the recordings: the end of its interval that is nearer to zero, of the largest of its
 /// parameters; `None` for what is no time.
 fn shift(amplitudes: &[Amplitude], runs: &[Run]) -> Option<f64> {
-    let period = median(runs.iter().map(|r| r.dt))?;
+    let period = median(runs.iter().map(|r| r.recorded_dt))?;
     let times = !amplitudes.is_empty() && amplitudes.iter().all(|a| a.unit == "s");
     let least = |a: &Amplitude| f64::max(a.ci95[0], -a.ci95[1]).max(0.0);
     times.then(|| amplitudes.iter().map(least).fold(0.0, f64::max) / period)
 }
 
-/// The mechanism that is withdrawn first: of those that their grade does not name, the one that gains least on unseen runs.
+/// The mechanism that is withdrawn first: of those that their grade neither names nor keeps in the model, the one that gains least on
+/// unseen runs.
 pub fn weakest(weights: &[Weight]) -> Option<usize> {
-    let not_named = weights.iter().enumerate().filter(|(_, w)| !w.grade.is_named());
-    not_named.min_by(|a, b| a.1.gain().total_cmp(&b.1.gain())).map(|(i, _)| i)
+    let goes = |w: &Weight| !w.grade.is_named() && !w.is_carried();
+    let going = weights.iter().enumerate().filter(|(_, w)| goes(w));
+    going.min_by(|a, b| a.1.gain().total_cmp(&b.1.gain())).map(|(i, _)| i)
 }
 
 /// A mechanism that was tried and withdrawn, as a finding with its grade.
@@ -106,13 +136,21 @@ pub fn withdrawn(kept: &Kept, left: &Left, index: usize, weight: &Weight) -> Fin
     Finding { grade: weight.grade, held_out: weight.proof.clone(), change: Some(weight.tests.change), ..finding }
 }
 
+/// The mechanisms that stay in the model and are not named, as findings with their grades.
+pub fn carried(kept: &Kept, weights: &[Weight]) -> Vec<Finding> {
+    let Some(left) = &kept.left else { return Vec::new() };
+    let places = kept.selection.mechanisms.iter().zip(weights).enumerate().filter(|(_, (m, _))| m.carried);
+    places.map(|(i, (_, weight))| withdrawn(kept, left, i, weight)).collect()
+}
+
 /// The findings, the strongest first: faults of sensors, mechanisms with their weights, a push.
 pub fn findings(kept: &Kept, weights: &[Weight]) -> Vec<Finding> {
     let tests = &kept.selection.tests;
     let mut out = if tests.is_blocked() { sensor_findings(&tests.fit.admission) } else { Vec::new() };
     if let Some(left) = &kept.left {
         let intervals = Intervals::new(&kept.selection.estimate, &tests.fit.runs, &left.screen);
-        out.extend(kept.selection.mechanisms.iter().zip(weights).map(|(m, weight)| Finding {
+        let named = kept.selection.mechanisms.iter().zip(weights).filter(|(m, _)| !m.carried);
+        out.extend(named.map(|(m, weight)| Finding {
             grade: weight.grade,
             change: Some(weight.tests.change),
             held_out: weight.proof.clone(),
@@ -154,14 +192,26 @@ mod tests {
 
     fn weight(grade: Grade, gain: f64) -> Weight {
         let likelihood = Some(GainTest { gain, ci95: None });
-        let tests =
-            FindingTests { excludes_zero: true, isolated: 1.0, change: 1.0, shift: None, likelihood, prediction: None };
+        let tests = FindingTests {
+            excludes_zero: true,
+            isolated: 1.0,
+            change: 1.0,
+            shift: None,
+            by_steps: 0.0,
+            likelihood,
+            prediction: None,
+        };
         Weight { grade, tests, proof: None, without: crate::diagnose::example::at(&model()) }
     }
 
     #[test]
     fn the_first_to_go_is_the_one_that_gains_least_of_those_that_are_not_named() {
-        let all = [weight(Grade::Confirmed, -90.0), weight(Grade::Refuted, -20.0), weight(Grade::Immaterial, -30.0)];
+        let all = [
+            weight(Grade::Confirmed, -90.0),
+            weight(Grade::Refuted, -20.0),
+            weight(Grade::Undetermined, -30.0),
+            weight(Grade::Immaterial, -80.0),
+        ];
         assert_eq!(weakest(&all), Some(2));
         assert_eq!(weakest(&all[..1]), None);
         assert_eq!(weakest(&[]), None);

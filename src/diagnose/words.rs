@@ -177,12 +177,20 @@ fn nothing(said: &Said) -> String {
     }
     if let Some(f) = withdrawn(Grade::Immaterial) {
         let why = if f.is_unresolved_clock() {
-            "is measurable, and is less than a sample period".to_owned()
+            "is measurable, and is less than half a sample period".to_owned()
         } else {
             let change = 100.0 * f.change.unwrap_or(0.0);
             format!("is measurable, and changes predictions by {} % of their error", sig(change, 2))
         };
         return format!("Nothing is missing that matters: {} ({}) {why}.", f.title, values(f));
+    }
+    if let Some(f) = withdrawn(Grade::EulerSteps) {
+        return format!(
+            "Nothing is missing that can be named: {} ({}) would explain the recordings, and so would explicit Euler steps of one sample \
+             period in the program that made them, or values held until the next sample.",
+            f.title,
+            values(f)
+        );
     }
     "Nothing is missing that these data could show.".into()
 }
@@ -359,7 +367,7 @@ mod tests {
         assert!(small.contains("steady current") && small.contains("2.0 % of their error"), "{small}");
         let clock = Finding { change: Some(0.07), ..with(Grade::Immaterial) };
         let clock = said(Verdict::NothingMissing, &[], &[clock], None);
-        assert!(clock.contains("less than a sample period") && !clock.contains("7.0 %"), "{clock}");
+        assert!(clock.contains("less than half a sample period") && !clock.contains("7.0 %"), "{clock}");
         let bound = said(Verdict::NothingMissing, &[], &[with(Grade::NotIsolated)], None);
         assert!(bound.contains("opposite headings"), "{bound}");
         let lost = headline(Verdict::Insufficient, &[], None);

@@ -152,6 +152,7 @@ mod tests {
             manoeuvre: String::new(),
             split: Split::Test,
             dt: 5.0,
+            recorded_dt: 5.0,
             measured: vec![[Some(0.0); STATES]; inputs.len()],
             inputs,
             initial: [0.0, 0.0, 0.3, 4.0, 0.0, 0.0],

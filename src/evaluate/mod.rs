@@ -72,6 +72,7 @@ mod tests {
                     manoeuvre: "turn".into(),
                     split: Split::Test,
                     dt: 5.0,
+                    recorded_dt: 5.0,
                     measured: vec![initial.map(Some); inputs.len()],
                     inputs,
                     initial,

@@ -93,6 +93,7 @@ mod tests {
             manoeuvre: String::new(),
             split: Split::Train,
             dt: 1.0,
+            recorded_dt: 1.0,
             inputs: (0..20).map(|k| Inputs::actuators(f64::from(k), 2.0, 0.1)).collect(),
             measured: measured(&[[0.0; 6]; 20]),
             initial: [0.0, 0.0, 0.0, 4.0, 0.0, 0.0],

@@ -177,6 +177,7 @@ mod tests {
             manoeuvre: String::new(),
             split: Split::Train,
             dt: 0.5,
+            recorded_dt: 0.5,
             inputs: (0..=steps).map(|k| Inputs::actuators(100.0 + 0.5 * k as f64, 1.0, 0.0)).collect(),
             measured: measured(&(0..=steps).map(|k| [k as f64; 6]).collect::<Vec<_>>()),
             initial: [-1.0; 6],

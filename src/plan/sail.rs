@@ -179,6 +179,7 @@ impl Basin<'_> {
             manoeuvre: trial.kind.word().into(),
             split: Split::Train,
             dt: self.step,
+            recorded_dt: self.step,
             inputs: scenario.inputs,
             measured: samples,
             initial,

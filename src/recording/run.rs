@@ -43,6 +43,8 @@ pub struct Run {
     pub split: Split,
     /// Sample period \[s\].
     pub dt: f64,
+    /// Usual time between two rows of the recording \[s\]: less than `dt` where the recording was thinned.
+    pub recorded_dt: f64,
     /// Inputs at each sample.
     pub inputs: Vec<Inputs<f64>>,
     /// Measured `[x, y, psi, u, v, r]` at each sample, `None` where a channel has no value.
@@ -132,6 +134,7 @@ mod tests {
             manoeuvre: "straight".into(),
             split: Split::Train,
             dt: 1.0,
+            recorded_dt: 1.0,
             inputs: (0..10).map(|k| Inputs::actuators(5.0 + f64::from(k), 1.0, 0.0)).collect(),
             initial: states[0],
             measured: measured(&states),

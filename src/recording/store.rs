@@ -204,7 +204,7 @@ impl RunFile {
     }
 }
 
-/// A run as bytes: name, step, start, disturbed ranges, then each input and each channel as one value or as one a sample.
+/// A run as bytes: name, step, step of the recording, start, disturbed ranges, then each input and each channel as one value or as one a sample.
 fn encoded(run: &Run) -> Vec<u8> {
     let samples = run.inputs.len();
     let mut bytes = Vec::with_capacity(64 + 8 * samples * (3 + STATES));
@@ -213,6 +213,7 @@ fn encoded(run: &Run) -> Vec<u8> {
     count(&mut bytes, run.name.len());
     bytes.extend(run.name.as_bytes());
     put(&mut bytes, run.dt);
+    put(&mut bytes, run.recorded_dt);
     run.initial.iter().for_each(|x| put(&mut bytes, *x));
     count(&mut bytes, run.disturbed.len());
     for (from, to) in &run.disturbed {
@@ -294,6 +295,7 @@ fn decoded<'a>(bytes: &'a [u8], source: &Source) -> Option<Run> {
     let letters = bytes.count()?;
     let name = String::from_utf8(bytes.take(letters)?.to_vec()).ok()?;
     let dt = bytes.number()?;
+    let recorded_dt = bytes.number()?;
     let mut initial = [0.0; STATES];
     for x in &mut initial {
         *x = bytes.number()?;
@@ -321,6 +323,7 @@ fn decoded<'a>(bytes: &'a [u8], source: &Source) -> Option<Run> {
         manoeuvre: source.manoeuvre.clone(),
         split: source.split,
         dt,
+        recorded_dt,
         inputs: (0..samples).map(inputs).collect(),
         measured: (0..measured).map(|k| std::array::from_fn(|c| value(k, c))).collect(),
         initial,
@@ -351,6 +354,7 @@ mod tests {
                 manoeuvre: "zigzag".into(),
                 split: if i.is_multiple_of(2) { Split::Train } else { Split::Test },
                 dt: 0.1,
+                recorded_dt: 0.05,
                 inputs: (0..samples).map(inputs).collect(),
                 measured: (0..samples).map(measured).collect(),
                 initial: [1.0, -0.0, f64::MIN_POSITIVE, 1e300, 0.1, 2.0],

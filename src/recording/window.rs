@@ -207,6 +207,7 @@ impl Recording {
             manoeuvre: labels.manoeuvre.clone(),
             split: labels.split,
             dt: sampler.step,
+            recorded_dt: grid.usual,
             inputs: inputs.collect(),
             initial: first.map(|v| v.unwrap_or(0.0)),
             measured,

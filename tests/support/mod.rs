@@ -74,6 +74,7 @@ pub fn commanded(
                 manoeuvre: String::new(),
                 split: Split::Train,
                 dt: DT,
+                recorded_dt: DT,
                 inputs,
                 initial: states[0],
                 measured: measured(&states),

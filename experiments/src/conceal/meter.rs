@@ -116,6 +116,7 @@ fn runs(recorded: &Recorded, sea: &Recorded) -> Vec<Run> {
                 manoeuvre: plan.manoeuvre.to_owned(),
                 split: Split::Train,
                 dt: PERIOD,
+                recorded_dt: PERIOD,
                 inputs: inputs.collect(),
                 initial: rows.iter().flatten().next().copied().unwrap_or_default(),
                 measured: rows.iter().map(|r| r.map_or([None; 6], |r| r.map(Some))).collect(),

@@ -70,8 +70,20 @@ pub struct Facts {
 /// Time between two rows of MARIN's recordings \[s\].
 const MARIN_ROW: f64 = 0.1353;
 
-/// What Esso Osaka's own pond does: any name for weather may be right, and velocities lag the positions.
-const POND: [&str; 8] = ["time_skew", "mean_wind", "wind", "wave_drift", "current", "earth_force", "tide", "water_log"];
+/// What Esso Osaka's recordings carry: any name for the weather of the pond may be right, velocities lag the positions, and the rudder is
+/// recorded as ordered (it leaps by up to 60 deg in 0.1 s in every run), so that the steering gear is missing.
+const POND: [&str; 10] = [
+    "time_skew",
+    "mean_wind",
+    "wind",
+    "wave_drift",
+    "current",
+    "earth_force",
+    "tide",
+    "water_log",
+    "rudder_lag",
+    "rudder_rate",
+];
 
 impl Set {
     /// What is known of it.

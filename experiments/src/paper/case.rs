@@ -148,6 +148,7 @@ fn window(ship: ShipId, run: &Run) -> recording::Run {
             dataset::Split::Test => Split::Test,
         },
         dt: dataset::period(ship),
+        recorded_dt: dataset::period(ship),
         inputs: (0..run.t.len()).map(|i| Inputs::actuators(run.t[i], run.n[i], run.delta[i])).collect(),
         measured: measured(&run.state),
         initial: run.state[0],

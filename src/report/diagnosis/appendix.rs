@@ -42,7 +42,7 @@ const GLOSSARY: [(&str, &str); 15] = [
     ("mechanism", "a named physical effect or sensor error of the catalogue (`trimtab terms` lists them)"),
     (
         "confirmed",
-        "unseen recordings are likelier with the finding (the 95 % interval of the gain is above zero), are not simulated worse, and every repetition of the analysis finds it",
+        "unseen recordings are better with the finding by log-likelihood or by free simulation (the 95 % interval of the gain is above zero), not worse by the other, and every repetition of the analysis finds it",
     ),
     ("suspected", "the training runs speak for the finding, and unseen recordings cannot tell or are missing"),
     ("test run, unseen recording", "a run that only the proof uses: no step before has seen it"),

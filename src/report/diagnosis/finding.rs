@@ -36,7 +36,7 @@ fn grade_sentence(f: &Finding) -> String {
     let tested = format!("{} after correction for the number of mechanisms tested", p_value(f.p));
     match grade_label(f.grade).0 {
         "confirmed" => {
-            format!("confirmed: unseen recordings are likelier with it, and no repetition misses it ({tested})")
+            format!("confirmed: unseen recordings are better with it, and no repetition misses it ({tested})")
         }
         _ => format!(
             "suspected: the training runs speak for it ({tested}), and unseen recordings cannot tell or are missing"

@@ -103,7 +103,7 @@ fn grade_words(grade: Grade) -> &'static str {
     match grade {
         Grade::Confirmed => "CONFIRMED:",
         Grade::Suspected => "SUSPECTED:",
-        Grade::Refuted | Grade::Immaterial | Grade::Undetermined | Grade::NotIsolated | Grade::Unstable => "not named:",
+        _ => "not named:",
     }
 }
 
@@ -113,9 +113,7 @@ pub(super) fn grade_label(grade: Grade) -> (&'static str, &'static str) {
     match grade {
         Grade::Confirmed => ("confirmed", "confirmed"),
         Grade::Suspected => ("suspected", "suspected"),
-        Grade::Refuted | Grade::Immaterial | Grade::Undetermined | Grade::NotIsolated | Grade::Unstable => {
-            ("not named", "withdrawn")
-        }
+        _ => ("not named", "withdrawn"),
     }
 }
 
@@ -123,11 +121,15 @@ pub(super) fn grade_label(grade: Grade) -> (&'static str, &'static str) {
 fn withdrawn_because(f: &Finding) -> &'static str {
     match f.grade {
         Grade::Refuted => "unseen runs refute it",
-        Grade::Immaterial if f.is_unresolved_clock() => "it is measurable, and less than a sample period",
+        Grade::Immaterial if f.is_unresolved_clock() => "it is measurable, and less than half a sample period",
         Grade::Immaterial => "it is measurable, and too small to matter",
         Grade::NotIsolated => {
             "on the headings that were sailed the ship's own parameters (a side force, trim, resistance, the compass zero) can take over \
              nearly all of its effect; the same runs on opposite headings would part them"
+        }
+        Grade::EulerSteps => {
+            "explicit Euler steps of one sample period in the program that made the recordings, or values held until the next sample, \
+             explain them as well"
         }
         Grade::Unstable => "most repetitions on the same recordings told otherwise do not find it",
         Grade::Undetermined => "the interval of its size contains zero",
