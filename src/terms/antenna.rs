@@ -32,7 +32,7 @@ static INFO: TermInfo = TermInfo {
         by_session: false,
         floor: 0.02,
         stand_in: false,
-        look_alikes: &["time_skew"],
+        look_alikes: &["time_skew", "position_lever"],
         trial: "a turn on the spot",
     }],
     parameters: &[

@@ -25,6 +25,7 @@ pub mod loading;
 pub mod log_scale;
 pub mod mean_wind;
 pub mod munk;
+pub mod position_lever;
 pub mod propeller;
 pub mod propeller_walk;
 pub mod push;
@@ -93,6 +94,7 @@ pub static CATALOGUE: &[&dyn AnyTerm] = &[
     &log_scale::LogScale,
     &sway_log_bias::SwayLogBias,
     &antenna::Antenna,
+    &position_lever::PositionLever,
     &time_skew::TimeSkew,
     &water_log::WaterLog,
 ];

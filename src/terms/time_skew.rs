@@ -33,7 +33,7 @@ static INFO: TermInfo = TermInfo {
         by_session: true,
         floor: 0.02,
         stand_in: false,
-        look_alikes: &["antenna", "rudder_lag"],
+        look_alikes: &["antenna", "position_lever", "rudder_lag"],
         trial: "zigzags after a check of the clocks",
     }],
     parameters: &[

@@ -112,10 +112,11 @@ impl Maker<'_> {
     }
 
     fn lever(&mut self, velocities: bool) -> Operation {
+        let term = if velocities { "antenna" } else { "position_lever" };
         let bearing: f64 = self.rng.random_range(0.0..std::f64::consts::TAU);
         let [forward, starboard] = [bearing.cos() * self.size.abs(), bearing.sin() * self.size.abs()];
-        self.truth("antenna.x", forward);
-        self.truth("antenna.y", starboard);
+        self.truth(&format!("{term}.x"), forward);
+        self.truth(&format!("{term}.y"), starboard);
         Operation::Lever { forward, starboard, velocities }
     }
 
@@ -269,7 +270,7 @@ pub const EFFECTS: [Effect; 19] = [
         name: "lever_position",
         unit: "m",
         reference: |set| 0.05 * set.facts().length,
-        accepted: &["antenna"],
+        accepted: &["position_lever"],
         make: |m| m.lever(false),
         ..PLAIN
     },

@@ -19,8 +19,12 @@ const WINDS: f64 = 1.0;
 const NEAR: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
 /// Parameters of mechanisms with more than one, in the order of a ranking.
-const ORDERS: [(&str, [&str; 2]); 3] =
-    [("current", ["north", "east"]), ("time_skew", ["position", "heading"]), ("antenna", ["x", "y"])];
+const ORDERS: [(&str, [&str; 2]); 4] = [
+    ("current", ["north", "east"]),
+    ("time_skew", ["position", "heading"]),
+    ("antenna", ["x", "y"]),
+    ("position_lever", ["x", "y"]),
+];
 
 /// Scores of one case. A score that does not apply is absent.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

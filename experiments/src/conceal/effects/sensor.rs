@@ -44,6 +44,22 @@ impl Physics for Antenna {
     }
 }
 
+/// Positions are those of an antenna at (l_x, l_y) \[m\], velocities those of midship.
+struct PositionLever([f64; 2]);
+
+impl Physics for PositionLever {
+    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
+        let [lx, ly] = self.0;
+        let (sin, cos) = y[2].sin_cos();
+        y[0] += lx * cos - ly * sin;
+        y[1] += lx * sin + ly * cos;
+    }
+
+    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
+        vec![("x", self.0[0], "m"), ("y", self.0[1], "m")]
+    }
+}
+
 /// Positions arrive late \[s\]: the true track is read off at an earlier time, the fitter expands to first order.
 struct Late(f64);
 
@@ -146,6 +162,17 @@ pub const ENTRIES: &[Entry] = &[
         reference: true,
         law: "rigid-body kinematics",
         build: |size, d| Box::new(Antenna(vector(size, d.direction()))),
+        ..SENSOR
+    },
+    Entry {
+        name: "position_lever",
+        accepted: &["position_lever"],
+        unit: "m",
+        size: 8.0,
+        most: 100.0,
+        compare: Compare::Truth,
+        law: "rigid-body kinematics of the positions alone",
+        build: |size, d| Box::new(PositionLever(vector(size, d.direction()))),
         ..SENSOR
     },
     Entry {
