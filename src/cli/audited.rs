@@ -215,7 +215,7 @@ mod tests {
         let lines = audited.lines();
         let lines: Vec<&str> = lines.lines().collect();
         assert!(audited.refused());
-        assert_eq!(lines[0], "error: r: the sign is turned: run b; look at it");
+        assert_eq!(lines[0], "error: r: the sign is turned: run `b`; look at it");
         assert_eq!(lines[1], "warning: psi: stands still for 3 s (as in `a`): 2 of 3 runs; look at it");
         assert!(lines[2].starts_with("`trimtab check`") && lines.len() == 4, "{lines:?}");
         assert_eq!(Audited::default().lines(), "");
