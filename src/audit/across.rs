@@ -93,8 +93,9 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
         found.extend(sessions(runs, pair, time));
     }
     let leaps: Vec<Leap> = runs.iter().filter_map(|r| r.leap).collect();
-    let every = || runs.iter().map(|r| r.run.clone()).collect();
-    found.extend(ordered(&leaps, time).map(|issue| Shared { runs: every(), issue }));
+    found.extend(
+        ordered(&leaps, time).map(|issue| Shared { runs: runs.iter().map(|r| r.run.clone()).collect(), issue }),
+    );
     found.extend(shared_rows(runs));
     found
 }

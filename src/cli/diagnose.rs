@@ -41,7 +41,8 @@ Every finding has a grade. Confirmed: test runs are better with it, by log-likel
 simulation (interval above zero), not worse by the other, and every repetition finds it. Suspected:
 the training runs speak for it, test runs cannot tell or there are none. What test runs refute, what
 no interval tells from zero, what is too small to matter and what most repetitions do not find is
-not named, and is listed with the reason. Without test runs every fourth recording is set aside for the proof, from eight on.";
+not named, and is listed with the reason. Without test runs every fourth recording is set aside for
+the proof, from eight on.";
 
 const EXAMPLE: &str = "\
 Example:

@@ -111,8 +111,8 @@ fn by_steps(question: &Question, kept: &Kept, without: &Estimate) -> f64 {
     if gain > 0.0 { ((settled(&coarse, without) - base) / gain).max(0.0) } else { 0.0 }
 }
 
-/// The least time by which a clock is off, in sample periods of the recordings: the end of its interval that is nearer to zero, of the largest of its
-/// parameters; `None` for what is no time.
+/// The least time by which a clock is off, in sample periods of the recordings: the end of its interval that is nearer to zero, of the
+/// largest of its parameters; `None` for what is no time.
 fn shift(amplitudes: &[Amplitude], runs: &[Run]) -> Option<f64> {
     let period = median(runs.iter().map(|r| r.recorded_dt))?;
     let times = !amplitudes.is_empty() && amplitudes.iter().all(|a| a.unit == "s");
@@ -128,35 +128,36 @@ pub fn weakest(weights: &[Weight]) -> Option<usize> {
     going.min_by(|a, b| a.1.gain().total_cmp(&b.1.gain())).map(|(i, _)| i)
 }
 
+/// A mechanism with its weight, as a finding.
+fn weighed(kept: &Kept, mechanism: &Selected, weight: &Weight, intervals: &Intervals) -> Finding {
+    let finding = mechanism_finding(mechanism, &kept.selection, intervals);
+    Finding { grade: weight.grade, held_out: weight.proof.clone(), change: Some(weight.tests.change), ..finding }
+}
+
 /// A mechanism that was tried and withdrawn, as a finding with its grade.
 pub fn withdrawn(kept: &Kept, left: &Left, index: usize, weight: &Weight) -> Finding {
-    let (selection, found) = (&kept.selection, &kept.selection.estimate);
-    let intervals = Intervals::new(found, &selection.tests.fit.runs, &left.screen);
-    let finding = mechanism_finding(&selection.mechanisms[index], selection, &intervals);
-    Finding { grade: weight.grade, held_out: weight.proof.clone(), change: Some(weight.tests.change), ..finding }
+    let intervals = Intervals::new(&kept.selection.estimate, &kept.selection.tests.fit.runs, &left.screen);
+    weighed(kept, &kept.selection.mechanisms[index], weight, &intervals)
+}
+
+/// The mechanisms that stay in the model and are not named, or else those that are named, as findings with their grades.
+fn mechanisms(kept: &Kept, weights: &[Weight], are_carried: bool) -> Vec<Finding> {
+    let Some(left) = &kept.left else { return Vec::new() };
+    let intervals = Intervals::new(&kept.selection.estimate, &kept.selection.tests.fit.runs, &left.screen);
+    let some = kept.selection.mechanisms.iter().zip(weights).filter(|(m, _)| m.carried == are_carried);
+    some.map(|(m, weight)| weighed(kept, m, weight, &intervals)).collect()
 }
 
 /// The mechanisms that stay in the model and are not named, as findings with their grades.
 pub fn carried(kept: &Kept, weights: &[Weight]) -> Vec<Finding> {
-    let Some(left) = &kept.left else { return Vec::new() };
-    let places = kept.selection.mechanisms.iter().zip(weights).enumerate().filter(|(_, (m, _))| m.carried);
-    places.map(|(i, (_, weight))| withdrawn(kept, left, i, weight)).collect()
+    mechanisms(kept, weights, true)
 }
 
 /// The findings, the strongest first: faults of sensors, mechanisms with their weights, a push.
 pub fn findings(kept: &Kept, weights: &[Weight]) -> Vec<Finding> {
     let tests = &kept.selection.tests;
     let mut out = if tests.is_blocked() { sensor_findings(&tests.fit.admission) } else { Vec::new() };
-    if let Some(left) = &kept.left {
-        let intervals = Intervals::new(&kept.selection.estimate, &tests.fit.runs, &left.screen);
-        let named = kept.selection.mechanisms.iter().zip(weights).filter(|(m, _)| !m.carried);
-        out.extend(named.map(|(m, weight)| Finding {
-            grade: weight.grade,
-            change: Some(weight.tests.change),
-            held_out: weight.proof.clone(),
-            ..mechanism_finding(m, &kept.selection, &intervals)
-        }));
-    }
+    out.extend(mechanisms(kept, weights, false));
     out.extend(kept.push.as_ref().map(|p| push_finding(p, &tests.location)));
     out
 }

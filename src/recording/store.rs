@@ -204,7 +204,8 @@ impl RunFile {
     }
 }
 
-/// A run as bytes: name, step, step of the recording, start, disturbed ranges, then each input and each channel as one value or as one a sample.
+/// A run as bytes: name, step, step of the recording, start, disturbed ranges, then each input and each channel as one value or as one a
+/// sample.
 fn encoded(run: &Run) -> Vec<u8> {
     let samples = run.inputs.len();
     let mut bytes = Vec::with_capacity(64 + 8 * samples * (3 + STATES));

@@ -1,7 +1,7 @@
 //! Positions and velocities of an antenna that is away from midship.
 //! Its horizontal lever only; motion of the antenna in roll is not modelled.
 
-use crate::parameter::ParameterInfo;
+use super::position_lever::{forward, shift, starboard};
 use crate::physics::Flow;
 use crate::physics::Probe;
 use crate::physics::Validity;
@@ -36,15 +36,8 @@ static INFO: TermInfo = TermInfo {
         trial: "a turn on the spot",
     }],
     parameters: &[
-        ParameterInfo::new("x", "l_x", "m", "antenna forward of its stated position")
-            .scale(|s| 0.05 * s.hull.lpp)
-            .spread(|s| 0.3 * s.hull.lpp)
-            .bounds(-300.0, 300.0),
-        ParameterInfo::new("y", "l_y", "m", "antenna to starboard of its stated position")
-            .scale(|s| 0.02 * s.hull.lpp)
-            .spread(|s| 0.1 * s.hull.lpp)
-            .bounds(-50.0, 50.0)
-            .odd(),
+        forward("antenna forward of its stated position"),
+        starboard("antenna to starboard of its stated position"),
     ],
 };
 
@@ -63,9 +56,7 @@ impl<S: Scalar> Physics<S> for Antenna {
         _rate: &[S; STATES],
         y: &mut [S; STATES],
     ) {
-        let [sin, cos] = at.heading;
-        y[0] += cos * p[0] - sin * p[1];
-        y[1] += sin * p[0] + cos * p[1];
+        shift(p, at.heading, y);
         y[3] -= at.state.r * p[1];
         y[4] += at.state.r * p[0];
     }

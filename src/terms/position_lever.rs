@@ -36,17 +36,34 @@ static INFO: TermInfo = TermInfo {
         trial: "a turn on the spot",
     }],
     parameters: &[
-        ParameterInfo::new("x", "l_x", "m", "point of the positions forward of that of the velocities")
-            .scale(|s| 0.05 * s.hull.lpp)
-            .spread(|s| 0.3 * s.hull.lpp)
-            .bounds(-300.0, 300.0),
-        ParameterInfo::new("y", "l_y", "m", "point of the positions to starboard of that of the velocities")
-            .scale(|s| 0.02 * s.hull.lpp)
-            .spread(|s| 0.1 * s.hull.lpp)
-            .bounds(-50.0, 50.0)
-            .odd(),
+        forward("point of the positions forward of that of the velocities"),
+        starboard("point of the positions to starboard of that of the velocities"),
     ],
 };
+
+/// The parameter `x` of a lever arm: metres forward.
+pub(super) const fn forward(about: &'static str) -> ParameterInfo {
+    ParameterInfo::new("x", "l_x", "m", about)
+        .scale(|s| 0.05 * s.hull.lpp)
+        .spread(|s| 0.3 * s.hull.lpp)
+        .bounds(-300.0, 300.0)
+}
+
+/// The parameter `y` of a lever arm: metres to starboard.
+pub(super) const fn starboard(about: &'static str) -> ParameterInfo {
+    ParameterInfo::new("y", "l_y", "m", about)
+        .scale(|s| 0.02 * s.hull.lpp)
+        .spread(|s| 0.1 * s.hull.lpp)
+        .bounds(-50.0, 50.0)
+        .odd()
+}
+
+/// Moves reported positions to the point of a lever arm, at a heading given by its sine and cosine.
+#[inline(always)]
+pub(super) fn shift<S: Scalar>(lever: &[S::Coefficient], [sin, cos]: [S; 2], y: &mut [S; STATES]) {
+    y[0] += cos * lever[0] - sin * lever[1];
+    y[1] += sin * lever[0] + cos * lever[1];
+}
 
 impl Term for PositionLever {
     fn info(&self) -> &'static TermInfo {
@@ -63,8 +80,6 @@ impl<S: Scalar> Physics<S> for PositionLever {
         _rate: &[S; STATES],
         y: &mut [S; STATES],
     ) {
-        let [sin, cos] = at.heading;
-        y[0] += cos * p[0] - sin * p[1];
-        y[1] += sin * p[0] + cos * p[1];
+        shift(p, at.heading, y);
     }
 }

@@ -72,7 +72,7 @@ const MARIN_ROW: f64 = 0.1353;
 
 /// What Esso Osaka's recordings carry: any name for the weather of the pond may be right, velocities lag the positions, and the rudder is
 /// recorded as ordered (it leaps by up to 60 deg in 0.1 s in every run), so that the steering gear is missing.
-const POND: [&str; 10] = [
+const CARRIED_BY_ESSO: [&str; 10] = [
     "time_skew",
     "mean_wind",
     "wind",
@@ -131,7 +131,7 @@ impl Set {
                 turn: 0.1,
                 row: 0.1,
                 steps: &[0.4, 0.5, 1.0],
-                carried: &POND,
+                carried: &CARRIED_BY_ESSO,
                 calm: false,
                 rudder_measured: false,
             },

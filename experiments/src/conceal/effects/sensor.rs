@@ -26,37 +26,26 @@ impl Physics for LogScale {
     }
 }
 
-/// Position and velocity are those of an antenna at (l_x, l_y) \[m\].
-struct Antenna([f64; 2]);
+/// Positions are those of an antenna at (l_x, l_y) \[m\], and so are velocities where they are not those of midship.
+struct Antenna {
+    lever: [f64; 2],
+    velocities: bool,
+}
 
 impl Physics for Antenna {
     fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
-        let [lx, ly] = self.0;
+        let [lx, ly] = self.lever;
         let (sin, cos) = y[2].sin_cos();
         y[0] += lx * cos - ly * sin;
         y[1] += lx * sin + ly * cos;
-        y[3] -= y[5] * ly;
-        y[4] += y[5] * lx;
+        if self.velocities {
+            y[3] -= y[5] * ly;
+            y[4] += y[5] * lx;
+        }
     }
 
     fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("x", self.0[0], "m"), ("y", self.0[1], "m")]
-    }
-}
-
-/// Positions are those of an antenna at (l_x, l_y) \[m\], velocities those of midship.
-struct PositionLever([f64; 2]);
-
-impl Physics for PositionLever {
-    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
-        let [lx, ly] = self.0;
-        let (sin, cos) = y[2].sin_cos();
-        y[0] += lx * cos - ly * sin;
-        y[1] += lx * sin + ly * cos;
-    }
-
-    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
-        vec![("x", self.0[0], "m"), ("y", self.0[1], "m")]
+        vec![("x", self.lever[0], "m"), ("y", self.lever[1], "m")]
     }
 }
 
@@ -161,7 +150,7 @@ pub const ENTRIES: &[Entry] = &[
         // A fitted hull of unknown Y_r, N_v has a pivot point of its own, some metres from the antenna's.
         reference: true,
         law: "rigid-body kinematics",
-        build: |size, d| Box::new(Antenna(vector(size, d.direction()))),
+        build: |size, d| Box::new(Antenna { lever: vector(size, d.direction()), velocities: true }),
         ..SENSOR
     },
     Entry {
@@ -172,7 +161,7 @@ pub const ENTRIES: &[Entry] = &[
         most: 100.0,
         compare: Compare::Truth,
         law: "rigid-body kinematics of the positions alone",
-        build: |size, d| Box::new(PositionLever(vector(size, d.direction()))),
+        build: |size, d| Box::new(Antenna { lever: vector(size, d.direction()), velocities: false }),
         ..SENSOR
     },
     Entry {
