@@ -1,6 +1,7 @@
 //! What only a comparison of runs shows: clocks that differ, one run in another unit, the same data on both sides of the split.
 //! The evidence of each run is gathered where the run is audited; no recording is read here.
 
+use super::held::{Repeats, held, repeats};
 use super::issue::{Issue, Severity};
 use super::limits::{
     EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, SAME_LAG, SESSION_SHARE, SHARED_ROWS, SHARED_SHARE,
@@ -10,6 +11,8 @@ use super::pooled::{Odd, odd};
 use super::propeller::{advance, advance_ratio};
 use super::record::Responses;
 use super::response::Curve;
+use super::scales::scales;
+use super::scatter::{Scatter, scatters};
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording, Split};
 use crate::ship::Ship;
@@ -32,6 +35,10 @@ pub struct Evidence {
     responses: Responses,
     /// The largest leap of the rudder.
     leap: Option<Leap>,
+    /// How its velocities scatter.
+    scatter: Scatter,
+    /// What its channels repeat.
+    repeats: Vec<Repeats>,
     /// Fingerprints of the rows in which the ship's motion changed.
     rows: Vec<u64>,
 }
@@ -58,6 +65,8 @@ impl Evidence {
             ratio: advance_ratio(recording, ship),
             responses,
             leap: Leap::of(recording),
+            scatter: Scatter::of(recording),
+            repeats: repeats(recording),
             rows: fingerprints(recording),
         }
     }
@@ -96,6 +105,16 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     found.extend(
         ordered(&leaps, time).map(|issue| Shared { runs: runs.iter().map(|r| r.run.clone()).collect(), issue }),
     );
+    let responses: Vec<(&str, &Responses)> = runs.iter().map(|r| (r.run.as_str(), &r.responses)).collect();
+    let scattered: Vec<(&str, Scatter)> = runs.iter().map(|r| (r.run.as_str(), r.scatter)).collect();
+    for shared in scales(&responses).into_iter().chain(scatters(&scattered)) {
+        let same = |f: &Shared| f.runs == shared.runs && f.issue.channel == shared.issue.channel;
+        if !found.iter().any(same) {
+            found.push(shared);
+        }
+    }
+    let repeated: Vec<(&str, &[Repeats])> = runs.iter().map(|r| (r.run.as_str(), &r.repeats[..])).collect();
+    found.extend(held(&repeated));
     found.extend(shared_rows(runs));
     found
 }

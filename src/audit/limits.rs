@@ -66,6 +66,31 @@ pub const FROZEN_RANGE: f64 = 0.3;
 /// and by this share of the speed, or of the yaw rate: on a straight course a velocity does hold.
 pub const FROZEN_LEVEL: f64 = 0.05;
 
+// --- Held values ---
+
+/// Fewest rows of one value that are called held.
+pub const HELD_ROWS: usize = 3;
+/// By chance a value is held so long in one of so many studies, from how often values are repeated elsewhere, and from the resolution.
+pub const HELD_CHANCE: f64 = 300.0;
+/// Changes below this many of the smallest one are asked whether they are its multiples,
+pub const HELD_CHANGES: f64 = 20.0;
+/// to this share of it: a sensor's step is written with few decimals.
+pub const HELD_SAME: f64 = 0.05;
+/// Most decimals of a written value.
+pub const HELD_DIGITS: i32 = 9;
+/// Changes before and after a held value that tell how the channel moves beside it.
+pub const HELD_BESIDE: usize = 3;
+/// Changes below this share of the usual ones of the run are those of a ship at rest: HSVA's KVLCC2 is held on its course for 27 to 32
+/// rows before it is released.
+pub const HELD_REST: f64 = 0.2;
+/// A channel that changes by fewer of its steps before or after may stand still as it turns: that model's heading does for 16 rows.
+pub const HELD_STEPS: f64 = 10.0;
+/// Elsewhere at most this share of the rows may repeat a value, in the run and in all runs. Recordings of models in basins, written to
+/// three or four digits (KVLCC2 of MARIN and of HSVA), repeat more than that near the ends of their swings.
+pub const HELD_SELDOM: f64 = 0.01;
+/// Rows in which the channel must move in the run.
+pub const HELD_ROWS_MOVING: usize = 30;
+
 // --- Units, signs, axes ---
 
 /// A rudder that stays below this angle \[rad\], 1.6 deg, may be in radians and read as degrees,
@@ -147,6 +172,21 @@ pub const POOLED_EVIDENCE: f64 = 15.0;
 pub const POOLED_UNUSUAL: f64 = 2.5;
 /// Runs in which a channel is this many times as large, squared and by sample, as in the middle one do not count.
 pub const POOLED_SIZE: f64 = 5.0;
+/// A channel in another unit, or of another sign, than in the other runs: undone it leaves at most this share of the squares,
+pub const SCALE_LEAVES: f64 = 0.25;
+/// and twice the log-likelihood ratio is at least this: it is asked of every run, channel and unit.
+pub const SCALE_EVIDENCE: f64 = 40.0;
+/// A run in which the channel is this many times as large, squared and by row, as in the middle one does not count: less is a turn with
+/// the rudder hard over among runs on a course.
+pub const SCALE_SIZE: f64 = 30.0;
+/// A factor between units is that of the best proportion to what the other runs say, but for this share,
+pub const SCALE_SAME: f64 = 0.25;
+/// and the cosine of the two is at least this: a current also makes a ship sway more.
+pub const SCALE_COHERENCE: f64 = 0.7;
+/// Velocities of all runs but one scatter alike: by at most this factor from the middle one. Scatter of 120 rows is known to 8 %.
+pub const SCATTER_ALIKE: f64 = 1.4;
+/// The scatter of that one is the factor between two units, to this factor.
+pub const SCATTER_SAME: f64 = 1.25;
 /// Runs from which coefficients of others can be told.
 pub const POOLED_RUNS: usize = 6;
 /// A lag of all runs together is that of a single one if it differs by at most this share.

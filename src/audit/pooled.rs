@@ -16,7 +16,7 @@ pub enum Odd {
 }
 
 /// The sums of several runs at lag 0, added.
-fn total<'c>(curves: impl Iterator<Item = &'c Curve>) -> Option<Sums> {
+pub(super) fn total<'c>(curves: impl Iterator<Item = &'c Curve>) -> Option<Sums> {
     let mut sum: Option<Sums> = None;
     for curve in curves {
         let one = &curve.sums[curve.zero()];
@@ -32,7 +32,7 @@ fn total<'c>(curves: impl Iterator<Item = &'c Curve>) -> Option<Sums> {
 }
 
 /// Coefficients from sums; `less` is taken out of them.
-fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
+pub(super) fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
     let n = sum.response.len();
     let of = |i: usize, all: &[f64], some: Option<&[f64]>| all[i] - some.map_or(0.0, |some| some[i]);
     let a = DMatrix::from_fn(n, n, |i, j| of(i * n + j, &sum.columns, less.map(|l| &l.columns[..])));
@@ -119,6 +119,7 @@ mod tests {
             sign: vec![sign],
             without: 3.0,
             samples: 40.0,
+            rows: 40.0,
             sums: vec![sums],
             own: 1,
         }

@@ -8,7 +8,7 @@ use super::gaps::completeness;
 use super::issue::{Issue, Severity};
 use super::jumps::outliers;
 use super::kinematics::Kinematics;
-use super::response::{Curve, gyro, propeller, receiver, rudder};
+use super::response::{Curve, gyro, propeller, receiver, rudder, sway};
 use super::series::Series;
 use super::signs::{Actuators, Track};
 use super::units::{Turning, magnitudes};
@@ -92,6 +92,8 @@ pub struct Responses {
     pub rudder: Option<Curve>,
     /// Surge to propeller.
     pub propeller: Option<Curve>,
+    /// Sway to the turn.
+    pub sway: Option<Curve>,
     /// Heading to yaw rate.
     pub gyro: Option<Curve>,
     /// Position to velocity and heading.
@@ -101,7 +103,13 @@ pub struct Responses {
 impl Responses {
     /// Those of some rows.
     pub fn of(series: &Series<'_>) -> Self {
-        Self { rudder: rudder(series), propeller: propeller(series), gyro: gyro(series), receiver: receiver(series) }
+        Self {
+            rudder: rudder(series),
+            propeller: propeller(series),
+            sway: sway(series),
+            gyro: gyro(series),
+            receiver: receiver(series),
+        }
     }
 }
 

@@ -23,6 +23,8 @@ pub struct Curve {
     pub without: f64,
     /// Independent samples that the residuals are worth.
     pub samples: f64,
+    /// Equations of the regression.
+    pub rows: f64,
     /// The sums of the regression at each lag, the mean taken out, for a comparison with other runs.
     pub sums: Vec<Sums>,
     /// Columns of the regression that belong to the channel: the first ones.
@@ -159,6 +161,29 @@ pub fn propeller(series: &Series<'_>) -> Option<Curve> {
     )
 }
 
+/// The sway against the turn: `v = a r + b r|r| + c u r + d delta + e delta n|n| + f`, the mean over some steps in which the ship sails
+/// ahead with its propeller ahead: the drift of a turn, which is the same at the same turn in every run.
+pub fn sway(series: &Series<'_>) -> Option<Curve> {
+    let (v, r, u) = (series.recorded(Channel::V)?, series.get(Channel::R)?, series.get(Channel::U)?);
+    let (t, n, delta) = (&series.t, series.n.as_deref(), series.delta.as_deref());
+    let of = |values: Option<&[f64]>, row: usize| values.map_or(0.0, |v| v[row]);
+    let slide = integral(t, |i| v[i]);
+    let turn = integral(t, |i| r[i]);
+    let square = integral(t, |i| r[i] * r[i].abs());
+    let centre = integral(t, |i| u[i] * r[i]);
+    let angle = integral(t, |i| of(delta, i));
+    let force = integral(t, |i| of(delta, i) * of(n, i) * of(n, i).abs());
+    let ahead = |row: usize| u[row] > 0.0 && n.is_none_or(|n| n[row] >= 0.0);
+    let usable = |start: usize| (start..=start + RESPONSE_STEPS).all(ahead);
+    let late =
+        |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
+    curve::<6, 5, 1>(series, usable, |i, k| {
+        let over = |of: &[f64]| late(of, i, 0);
+        let columns = [over(&turn), over(&square), over(&centre), over(&angle), over(&force), over(t)];
+        [(columns, late(&slide, i, k))]
+    })
+}
+
 /// The yaw rate against the heading: `d psi/dt = a r + b`.
 pub fn gyro(series: &Series<'_>) -> Option<Curve> {
     let (psi, r, t) = (series.get(Channel::Psi)?, series.recorded(Channel::R)?, &series.t);
@@ -226,7 +251,8 @@ fn curve<const N: usize, const P: usize, const E: usize>(
     let samples = starts.len() as f64 * (1.0 - correlation) / (1.0 + correlation);
     let (left, sign) = solved.iter().map(|s| (s.left, s.sign)).unzip();
     let sums = solved.into_iter().map(|s| s.sums).collect();
-    Some(Curve { step: series.step, lags, left, sign, without, samples, sums, own: P })
+    let rows = (E * starts.len()) as f64;
+    Some(Curve { step: series.step, lags, left, sign, without, samples, rows, sums, own: P })
 }
 
 /// The regression at one lag, and what is left without the channel. `None` where nothing moves.

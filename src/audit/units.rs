@@ -17,11 +17,19 @@ pub fn magnitudes(recording: &Recording, issues: &mut Vec<Issue>) {
         let largest = values.iter().copied().filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
         // A ship that is steered straight needs no more rudder than that.
         let straight = channel == Channel::Delta && turned(recording).is_some_and(|t| t < SMALL_RUDDER_TURNS * largest);
-        if largest > 0.0 && largest < limit && recording.unit(channel) != unit && !straight {
+        // What is in radians already may have been converted twice; then only the turn of the ship tells.
+        let twice = channel == Channel::Delta && recording.unit(channel) == unit && turned(recording).is_some();
+        if largest > 0.0 && largest < limit && (recording.unit(channel) != unit || twice) && !straight {
             let factor = channel.info().quantity.factor(recording.unit(channel)).unwrap_or(1.0);
             let text =
                 format!("{} never exceeds {:.3} {}", channel.info().words, largest / factor, recording.unit(channel));
-            let next = format!("is the column in {unit}? set `unit` for `{channel}` in a column map");
+            let next = if twice {
+                format!(
+                    "was it converted to {unit} twice? `scale = 57.3` for `{channel}` in a column map takes it back"
+                )
+            } else {
+                format!("is the column in {unit}? set `unit` for `{channel}` in a column map")
+            };
             issues.push(Issue::new(Severity::Warning, "unit_error", text, next).of(channel));
         }
     }

@@ -144,8 +144,10 @@ fn grouped(found: impl Iterator<Item = Doubt>) -> Vec<Doubt> {
     for one in found {
         let same = |d: &&mut Doubt| (d.severity, &d.fault, d.channel) == (one.severity, &one.fault, one.channel);
         match doubts.iter_mut().find(same) {
-            Some(doubt) if doubt.runs.last() == one.runs.last() => {}
-            Some(doubt) => doubt.runs.extend(one.runs),
+            Some(doubt) => {
+                let new = one.runs.into_iter().filter(|run| !doubt.runs.contains(run)).collect::<Vec<_>>();
+                doubt.runs.extend(new);
+            }
             None => doubts.push(one),
         }
     }

@@ -1,0 +1,204 @@
+//! One run against all others: whether a rudder, a propeller rate or a sway velocity is in another unit, or of another sign.
+//! It asks with the coefficients that the other runs have; lags are in `pooled`, and what contradicts itself within a run is in `units`.
+
+use super::across::Shared;
+use super::issue::{Issue, Severity};
+use super::limits::{
+    POOLED_RUNS, POOLED_UNUSUAL, SCALE_COHERENCE, SCALE_EVIDENCE, SCALE_LEAVES, SCALE_SAME, SCALE_SIZE,
+};
+use super::pooled::{coefficients, total};
+use super::record::Responses;
+use super::response::{Curve, Sums};
+use crate::numerals::sig;
+use crate::recording::Channel;
+use crate::statistics::median;
+
+/// A channel that may be a multiple of what it is in the other runs.
+struct Asked {
+    channel: Channel,
+    of: fn(&Responses) -> Option<&Curve>,
+    /// Whether it is what the coefficients explain, and not what they belong to.
+    explained: bool,
+    /// By what it may be too large.
+    factors: &'static [f64],
+    /// What it does, up to `than in the other runs`.
+    turned: &'static str,
+}
+
+const DEGREES: f64 = 57.295_779_5;
+
+const ASKED: [Asked; 3] = [
+    Asked {
+        channel: Channel::Delta,
+        of: |r| r.rudder.as_ref(),
+        explained: false,
+        // Its sign is told in `pooled`. One in degrees that counts as radians is no rudder at all; to a run in which it does nothing, every large factor fits.
+        factors: &[1.0 / DEGREES],
+        turned: "acts on the yaw of the ship to the other side",
+    },
+    Asked {
+        channel: Channel::N,
+        of: |r| r.propeller.as_ref(),
+        explained: false,
+        factors: &[-1.0],
+        turned: "acts on the surge of the ship to the other side",
+    },
+    Asked {
+        channel: Channel::V,
+        of: |r| r.sway.as_ref(),
+        explained: true,
+        factors: &[-1.0, 3.6, 1.0 / 3.6],
+        turned: "answers yaw rate and rudder to the other side",
+    },
+];
+
+impl Asked {
+    /// Squares left by coefficients of other runs, if the channel is so many times what it is in them. With a channel `c` recorded as
+    /// `f c`: `|y - X_c b_c / f - X b|^2` where it acts, `|y / f - X b|^2` where it is what is explained.
+    fn left(&self, curve: &Curve, sums: &Sums, others: &[f64], factor: f64) -> f64 {
+        if self.explained {
+            let response = sums.response.iter().map(|b| b / factor).collect();
+            let squares = sums.squares / (factor * factor);
+            return Sums { columns: sums.columns.clone(), response, squares }.left(others);
+        }
+        let mut own = others.to_vec();
+        own[..curve.own].iter_mut().for_each(|c| *c /= factor);
+        sums.left(&own)
+    }
+
+    /// The factor of each run, in their order; `None` where its channel is as in the other runs, or that cannot be told.
+    fn factors(&self, curves: &[Option<&Curve>]) -> Vec<Option<f64>> {
+        let none = || vec![None; curves.len()];
+        let Some(step) = curves.iter().flatten().map(|c| c.step).next() else { return none() };
+        let sums = |c: &Curve| -> Sums { c.sums[c.zero()].clone() };
+        let size = |c: &Curve| {
+            let sums = &c.sums[c.zero()];
+            let size = if self.explained { sums.squares } else { sums.columns.first().copied().unwrap_or(0.0) };
+            size / c.rows
+        };
+        let Some(middle) = median(curves.iter().flatten().map(|c| size(c))) else { return none() };
+        let alike = |c: &&Curve| (c.step / step - 1.0).abs() < 0.01;
+        // A run with a damaged sample would outweigh all others.
+        let known: Vec<&Curve> =
+            curves.iter().flatten().copied().filter(alike).filter(|c| size(c) <= SCALE_SIZE * middle).collect();
+        let Some(sum) = total(known.iter().copied()).filter(|_| known.len() >= POOLED_RUNS) else { return none() };
+        let others = |c: &Curve| {
+            let own = known.iter().any(|k| std::ptr::eq(*k, c)).then(|| sums(c));
+            coefficients(&sum, own.as_ref())
+        };
+        let square = |c: &Curve| Some(sums(c).left(&others(c)?) / c.rows);
+        let Some(usual) = median(known.iter().filter_map(|c| square(c))).filter(|u| *u > 0.0) else { return none() };
+        let judged = |curve: &Option<&Curve>| {
+            let curve = curve.filter(alike)?;
+            self.judged(curve, &others(curve)?, usual)
+        };
+        curves.iter().map(judged).collect()
+    }
+
+    /// The factor of one run, given the coefficients of the others and the mean square that these usually leave.
+    fn judged(&self, curve: &Curve, others: &[f64], usual: f64) -> Option<f64> {
+        let sums = &curve.sums[curve.zero()];
+        let left = |factor: f64| self.left(curve, sums, others, factor) / curve.rows;
+        let as_it_is = left(1.0);
+        let evidence = |factor: f64| {
+            // Whatever is divided is smaller: the density of what was recorded is that of what is explained over the factor.
+            let divided = if self.explained { 2.0 * factor.abs().ln() } else { 0.0 };
+            curve.samples * ((as_it_is - left(factor)) / left(factor).max(usual) - divided)
+        };
+        let best = self.factors.iter().copied().max_by(|a, b| evidence(*a).total_cmp(&evidence(*b)))?;
+        let unusual = as_it_is > POOLED_UNUSUAL * usual && left(best) < POOLED_UNUSUAL * usual;
+        let told = unusual && left(best) < SCALE_LEAVES * as_it_is && evidence(best) > SCALE_EVIDENCE;
+        (told && (!self.explained || proportional(sums, others, best))).then_some(best)
+    }
+
+    fn issue(&self, factor: f64) -> Issue {
+        let map = format!("for `{}` in a column map of this run", self.channel);
+        let (fault, text, next) = if factor < 0.0 {
+            let text = format!("{} than in the other runs", self.turned);
+            ("sign_error", text, format!("is its sign that of the other runs? set `sign = -1` {map}"))
+        } else {
+            let text = format!("fits the other runs only if it is recorded {} times too large", sig(factor, 3));
+            ("unit_error", text, format!("is its unit that of the other runs? set `unit`, or `scale`, {map}"))
+        };
+        Issue::new(Severity::Warning, fault, text, next).of(self.channel)
+    }
+}
+
+/// Whether what is explained is so many times what coefficients of other runs say: `y . p / p . p` is the factor, and the cosine of the
+/// two, `p = X b`, is large.
+fn proportional(sums: &Sums, others: &[f64], factor: f64) -> bool {
+    let both: f64 = others.iter().zip(&sums.response).map(|(c, b)| c * b).sum();
+    // |y - p|^2 = |y|^2 - 2 y.p + |p|^2
+    let said = sums.left(others) - sums.squares + 2.0 * both;
+    let gain = both / said;
+    (gain / factor - 1.0).abs() < SCALE_SAME && both.abs() > SCALE_COHERENCE * (said * sums.squares).sqrt()
+}
+
+/// The channels of single runs that are in another unit, or of another sign, than in the other runs.
+pub fn scales(runs: &[(&str, &Responses)]) -> Vec<Shared> {
+    let mut found = Vec::new();
+    for asked in &ASKED {
+        let curves: Vec<Option<&Curve>> = runs.iter().map(|(_, r)| (asked.of)(r)).collect();
+        for ((run, _), factor) in runs.iter().zip(asked.factors(&curves)) {
+            found.extend(factor.map(|f| Shared { runs: vec![(*run).to_owned()], issue: asked.issue(f) }));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::audit::series::Series;
+    use crate::recording::Recording;
+
+    /// A run in which the rudder swings: yaw and sway answer it as they do in every run, with noise; `factors` are those of v and of the
+    /// rudder as recorded.
+    fn run(seed: u32, [sway, rudder]: [f64; 2]) -> Responses {
+        let mut state = seed.wrapping_mul(2_654_435_761) | 1;
+        let mut noise = |size: f64| {
+            state ^= state << 13;
+            state ^= state >> 17;
+            state ^= state << 5;
+            size * (f64::from(state) / f64::from(u32::MAX) - 0.5)
+        };
+        let mut columns: [Vec<f64>; 6] = Default::default();
+        let (mut r, mut v) = (0.0, 0.0);
+        for i in 0..160 {
+            let delta = 0.3 * (f64::from(i) * (0.06 + 0.01 * f64::from(seed))).sin().signum();
+            let row = [4.0 + noise(0.02), sway * (v + noise(0.02)), r + noise(1e-3), 2.0, rudder * delta, f64::from(i)];
+            columns.iter_mut().zip(row).for_each(|(c, value)| c.push(value));
+            r += (0.05 * delta - r) / 8.0;
+            v += (-8.0 * r - v) / 4.0;
+        }
+        let names = [Channel::U, Channel::V, Channel::R, Channel::N, Channel::Delta, Channel::T];
+        let recording = Recording::from_channels("run", names.into_iter().zip(columns).collect()).unwrap();
+        Responses::of(&Series::from(&recording))
+    }
+
+    /// What is told of eight runs, the first of which is recorded with these factors.
+    fn study(factors: [f64; 2]) -> Vec<Shared> {
+        let runs: Vec<(String, Responses)> =
+            (0..8).map(|i| (format!("r{i}"), run(i + 1, if i == 0 { factors } else { [1.0; 2] }))).collect();
+        scales(&runs.iter().map(|(name, r)| (name.as_str(), r)).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn a_sound_study_tells_nothing() {
+        assert_eq!(study([1.0, 1.0]), []);
+    }
+
+    #[test]
+    fn another_unit_and_another_sign_in_one_run_are_told() {
+        let cases = [
+            ([-1.0, 1.0], Channel::V, "sign_error"),
+            ([3.6, 1.0], Channel::V, "unit_error"),
+            ([1.0, 1.0 / DEGREES], Channel::Delta, "unit_error"),
+        ];
+        for (factors, channel, fault) in cases {
+            let told = study(factors);
+            let right = |s: &Shared| s.runs == ["r0"] && (s.issue.channel, s.issue.fault) == (Some(channel), fault);
+            assert!(told.iter().any(right) && told.iter().all(|s| s.runs == ["r0"]), "{factors:?}: {told:?}");
+        }
+    }
+}
