@@ -2,7 +2,7 @@
 //! The evidence of each run is gathered where the run is audited; no recording is read here.
 
 use super::held::{Repeats, held, repeats};
-use super::issue::{Issue, Severity};
+use super::issue::{Issue, Severity, Shared};
 use super::limits::{
     EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, SAME_LAG, SESSION_SHARE, SHARED_ROWS, SHARED_SHARE,
 };
@@ -41,15 +41,6 @@ pub struct Evidence {
     repeats: Vec<Repeats>,
     /// Fingerprints of the rows in which the ship's motion changed.
     rows: Vec<u64>,
-}
-
-/// A doubt about some runs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Shared {
-    /// The runs, by name.
-    pub runs: Vec<String>,
-    /// The doubt; its text names the runs where they are several.
-    pub issue: Issue,
 }
 
 impl Evidence {

@@ -1,8 +1,7 @@
 //! Held values: a channel that repeats its value to the last digit, where by chance it never does.
 //! Rudder and propeller are held by their nature, and coarse channels repeat; stretches that contradict other channels are in `frozen`.
 
-use super::across::Shared;
-use super::issue::{Issue, Severity};
+use super::issue::{Issue, Severity, Shared};
 use super::limits::{
     HELD_BESIDE, HELD_CHANCE, HELD_CHANGES, HELD_DIGITS, HELD_REST, HELD_ROWS, HELD_ROWS_MOVING, HELD_SAME,
     HELD_SELDOM, HELD_STEPS,

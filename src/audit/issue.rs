@@ -33,6 +33,15 @@ pub struct Issue {
     pub next_step: String,
 }
 
+/// A doubt about some runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shared {
+    /// The runs, by name.
+    pub runs: Vec<String>,
+    /// The doubt; its text names the runs where they are several.
+    pub issue: Issue,
+}
+
 impl Issue {
     /// An issue about recordings as a whole.
     pub fn new(severity: Severity, fault: &'static str, text: impl Into<String>, next_step: impl Into<String>) -> Self {

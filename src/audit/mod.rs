@@ -29,8 +29,8 @@ mod signs;
 mod study;
 mod units;
 
-pub use across::{Evidence, Shared, across};
-pub use issue::{Issue, Severity};
+pub use across::{Evidence, across};
+pub use issue::{Issue, Severity, Shared};
 pub use kinematics::Kinematics;
 pub use model::audit_model;
 pub use receiver::{Jump, jumps, piece, settled};
@@ -254,6 +254,17 @@ mod tests {
         let found = issues(run);
         assert!(found.iter().any(|i| i.lines == Some((12, 15)) && i.severity == Severity::Warning), "{found:?}");
         assert!(found.iter().any(|i| i.lines == Some((301, 302)) && i.text.contains("7.500 s")), "{found:?}");
+    }
+
+    #[test]
+    fn a_rudder_converted_to_radians_twice_is_suspected_where_the_ship_turns() {
+        let twice = |turn: f64| {
+            let mut run = swing();
+            values(&mut run, Channel::Delta).iter_mut().for_each(|d| *d /= 57.3);
+            values(&mut run, Channel::Psi).iter_mut().for_each(|p| *p *= turn);
+            issues(run).iter().any(|i| i.channel == Some(Channel::Delta) && i.next_step.contains("twice"))
+        };
+        assert!(twice(1.0) && !twice(1e-3));
     }
 
     #[test]

@@ -1,8 +1,7 @@
 //! One run against all others: whether a rudder, a propeller rate or a sway velocity is in another unit, or of another sign.
 //! It asks with the coefficients that the other runs have; lags are in `pooled`, and what contradicts itself within a run is in `units`.
 
-use super::across::Shared;
-use super::issue::{Issue, Severity};
+use super::issue::{Issue, Severity, Shared};
 use super::limits::{
     POOLED_RUNS, POOLED_UNUSUAL, SCALE_COHERENCE, SCALE_EVIDENCE, SCALE_LEAVES, SCALE_SAME, SCALE_SIZE,
 };

@@ -1,8 +1,8 @@
 //! The audit of a study: every recording, what comes of cutting it, and what a diagnosis would leave out.
 //! It asks nothing of its own of a recording; the questions are in the files beside it.
 
-use super::across::{Evidence, Shared, across};
-use super::issue::{Issue, Severity};
+use super::across::{Evidence, across};
+use super::issue::{Issue, Severity, Shared};
 use super::receiver::settled;
 use super::record::{Audit, examined};
 use crate::recording::{Recording, Split, WindowSettings};
