@@ -32,6 +32,17 @@ pub fn sum_of_rows<S: Scalar>(p: &Square<S>, first: usize, second: usize) -> [S;
     out
 }
 
+/// The sum of the first rows of a symmetric matrix, each times a slope, and of one more row.
+#[inline(always)]
+pub fn sum_along<S: Scalar>(p: &Square<S>, slopes: &[S; STATES], more: usize) -> [S; Z] {
+    let mut sum = row(p, more);
+    for (l, slope) in slopes.iter().enumerate() {
+        let of_state = row(p, l);
+        (0..Z).for_each(|i| sum[i] += of_state[i] * *slope);
+    }
+    sum
+}
+
 /// Takes `gain ph'` out of the covariance: what a measurement tells, `ph` being the covariance of the filter state with it.
 #[inline(always)]
 pub fn correct<S: Scalar>(p: &mut Square<S>, gain: &[S; Z], ph: &[S; Z]) {

@@ -1,7 +1,7 @@
 //! The estimate of the noise by maximum likelihood on linearised runs, and a first guess of it from the recordings alone.
 //! The ship's parameters are held: they are estimated elsewhere, in turn with the noise.
 
-use super::covariance::{Discrete, Z, correct, initial, predict, sum_of_rows};
+use super::covariance::{Discrete, Z, correct, initial, predict, sum_along, sum_of_rows};
 use super::filter::{Tangent, boost};
 use super::noise::{GROUP_OF, NOISE_PARAMETERS, Noise, NoisePrior, NoiseScore, SensorNoise};
 use super::optimise::{Outcome, Proposal};
@@ -28,8 +28,10 @@ trait Linearised {
     fn samples(&self) -> usize;
     /// Where the filter starts.
     fn start(&self) -> [Lanes; STATES];
-    /// A measurement less what its sensor adds to the state, and 1 where there is one; `None` without any.
+    /// A measurement less what its sensor reports where the state is zero, and 1 where there is one; `None` without any.
     fn measured(&self, sample: usize, channel: usize) -> Option<(Lanes, Lanes)>;
+    /// How the report of a channel changes with the state; `None` where it is the state.
+    fn report(&self, sample: usize, channel: usize) -> Option<[Lanes; STATES]>;
     /// The step from a sample to the next.
     fn step(&self, sample: usize) -> Step;
 }
@@ -57,6 +59,10 @@ impl Linearised for One<'_> {
     fn measured(&self, sample: usize, channel: usize) -> Option<(Lanes, Lanes)> {
         let y = self.0.measured[sample][channel]?;
         Some((Lanes::from_f64(y - self.1.offset[sample][channel]), Lanes::one()))
+    }
+    #[inline(always)]
+    fn report(&self, sample: usize, channel: usize) -> Option<[Lanes; STATES]> {
+        Some(self.1.report.get(sample)?[channel].map(Lanes::from_f64))
     }
     #[inline(always)]
     fn step(&self, sample: usize) -> Step {
@@ -94,6 +100,11 @@ impl Linearised for Four<'_> {
         let some = self.0.iter().any(|(run, _)| has(run).is_some());
         some.then(|| (error, self.gather(|run, _| has(run).map(|_| 1.0))))
     }
+    #[inline(always)]
+    fn report(&self, sample: usize, channel: usize) -> Option<[Lanes; STATES]> {
+        let senses = self.0.iter().any(|(_, t)| !t.report.is_empty());
+        senses.then(|| std::array::from_fn(|l| self.gather(|_, t| Some(t.report.get(sample)?[channel][l]))))
+    }
     fn step(&self, sample: usize) -> Step {
         Step {
             state: std::array::from_fn(|i| self.gather(|_, t| Some(t.state.get(sample)?[i]))),
@@ -124,12 +135,21 @@ fn innovations<L: Linearised>(
     for k in 0..samples {
         for j in 0..STATES {
             let Some((y, present)) = along.measured(k, j) else { continue };
-            let mut error = -(z[j] + z[9 + j]) + y;
+            let (ph, reported, spread) = match along.report(k, j) {
+                None => {
+                    let ph = sum_of_rows(&p, j, 9 + j);
+                    (ph, z[j], ph[j])
+                }
+                Some(slopes) => {
+                    let ph = sum_along(&p, &slopes, 9 + j);
+                    (ph, product(&slopes, &z), product(&slopes, &ph))
+                }
+            };
+            let mut error = -(reported + z[9 + j]) + y;
             if j == 2 {
                 error = trimtab_ad::smooth::wrap_angle(error);
             }
-            let ph = sum_of_rows(&p, j, 9 + j);
-            let variance = noise.white[j] + ph[j] + ph[9 + j];
+            let variance = noise.white[j] + spread + ph[9 + j];
             let outlier = (gate * variance).less(error * error);
             let inverse = Lanes::select(outlier, Lanes::zero(), present / variance);
             let gain = ph.map(|ph| ph * inverse);
@@ -143,6 +163,12 @@ fn innovations<L: Linearised>(
             predict(&mut p, &step.a, &step.gamma, noise, step.boost);
         }
     }
+}
+
+/// Slopes by the ship's state times the first entries of a vector.
+#[inline(always)]
+fn product(slopes: &[Lanes; STATES], of: &[Lanes; Z]) -> Lanes {
+    (0..STATES).fold(Lanes::zero(), |sum, l| sum + slopes[l] * of[l])
 }
 
 /// Log-likelihood of innovations: an outlier counts as if it were at the gate.
@@ -359,7 +385,7 @@ pub fn guess(runs: &[Run], model: &Model) -> Noise {
 mod tests {
     use super::*;
     use crate::diagnose::estimate::passes;
-    use crate::diagnose::example::{RK4, model, noise, runs};
+    use crate::diagnose::example::{RK4, model, noise, runs, with};
     use crate::diagnose::filter::{GATE, Pass};
     use crate::diagnose::settings::FIRST;
 
@@ -374,6 +400,21 @@ mod tests {
 
     fn linearised(runs: &[Run]) -> Vec<Pass> {
         passes(&model(), RK4, &[], runs, &noise(), true)
+    }
+
+    #[test]
+    fn the_linearised_filter_is_the_filter_also_where_sensors_report_rates_of_the_state() {
+        let skewed = with(&[("time_skew.position", -1.5), ("time_skew.heading", 0.7), ("position_lever.x", 12.0)]);
+        let (runs, prior) = (runs(&skewed, 5), NoisePrior::around(&noise()));
+        let passes = passes(&skewed, RK4, &[], &runs, &noise(), true);
+        let tangents: Vec<&Tangent> = passes.iter().filter_map(|p| p.tangent.as_ref()).collect();
+        let runs: Vec<&Run> = runs.iter().collect();
+        let fit = NoiseFit { runs: &runs, tangents: &tangents, model: &skewed, prior: &prior, gate: GATE };
+        for (of_run, pass) in fit.innovations(&noise().to_log()).iter().zip(&passes) {
+            let sizes = of_run.iter().map(|i| i.error / i.variance.sqrt());
+            let filtered = pass.innovations.iter().flatten().filter(|e| !e.is_nan());
+            assert!(sizes.zip(filtered).all(|(a, b)| (a - b).abs() < 1e-6 * b.abs().max(1.0)));
+        }
     }
 
     #[test]

@@ -78,8 +78,10 @@ pub struct Tangent {
     pub a: Vec<[[f64; STATES]; STATES]>,
     /// Force Jacobian.
     pub gamma: Vec<[[f64; 3]; STATES]>,
-    /// What the sensors report at the point of linearisation, less the state.
+    /// What the sensors report where the state is zero, by the report's linearisation at the predicted state.
     pub offset: Vec<[f64; STATES]>,
+    /// How the report changes with the state, by channel; empty where the sensors report the state itself.
+    pub report: Vec<[[f64; STATES]; STATES]>,
 }
 
 /// The gains of a filter along one run: with them held fixed, the innovations are a smooth function of the parameters whose

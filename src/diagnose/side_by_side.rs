@@ -1,7 +1,7 @@
 //! The filter over a few runs of one sample period side by side: correction by the measurements, sensitivities, prediction.
 //! What a step or a column does to the ship is computed elsewhere; how runs are put together is the filter's affair.
 
-use super::covariance::{self, Discrete, Square, Z, initial, predict, row, sum_of_rows};
+use super::covariance::{self, Discrete, Square, Z, initial, predict, sum_along, sum_of_rows};
 use super::directions::{Directions, Prepared};
 use super::noise::Noise;
 use super::pass::{GATE, Gains, Pass, Tangent, Wanted, boost};
@@ -267,7 +267,8 @@ impl<'f, P: Plain> Filtering<'f, P> {
             out.all[j] = (0..P::WIDTH).all(|lane| used.in_lane(lane) > 0.0);
             self.apply(k, j, &ph, used, out);
         }
-        let offset = std::array::from_fn(|j| report[j] - reference[j]);
+        let linear = |j: usize| along(senses, &out.report, j, |l| reference[l]);
+        let offset = std::array::from_fn(|j| report[j] - linear(j));
         self.note(k, &innovation, &variance, &offset, out);
     }
 
@@ -278,17 +279,10 @@ impl<'f, P: Plain> Filtering<'f, P> {
         if !self.directions.senses {
             return sum_of_rows(p, channel, 9 + channel);
         }
-        let mut sum = [P::zero(); Z];
-        for (l, factor) in report[channel].iter().enumerate() {
-            let of_state = row(p, l);
-            (0..Z).for_each(|i| sum[i] = of_state[i].mul_add(*factor, sum[i]));
-        }
-        let coloured = row(p, 9 + channel);
-        std::array::from_fn(|i| coloured[i] + sum[i])
+        sum_along(p, &report[channel], 9 + channel)
     }
 
-    /// Notes what the measurements of a sample brought: standardised innovations, their variances, and what the sensors report beside
-    /// the state.
+    /// Notes what the measurements of a sample brought: standardised innovations, their variances, and the linearised report.
     fn note(
         &mut self,
         k: usize,
@@ -306,6 +300,9 @@ impl<'f, P: Plain> Filtering<'f, P> {
             }
             if let Some(t) = &mut pass.tangent {
                 t.offset.push(offset.map(|o| o.in_lane(lane)));
+                if self.directions.senses {
+                    t.report.push(correction.report.map(|row| row.map(|x| x.in_lane(lane))));
+                }
             }
             if let Some(g) = &mut pass.gains {
                 g.variance.push(variance.map(|s| s.in_lane(lane)));
