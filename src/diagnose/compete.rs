@@ -5,6 +5,7 @@ use super::candidate::{Candidate, Extent};
 use super::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
 use super::evidence::chi_squared_p;
 use super::forces::only_cancels;
+use super::kinematic::agreements;
 use super::noise::Noise;
 use super::problem::Problem;
 use super::screen::{Row, Screen};
@@ -102,16 +103,17 @@ impl Hypothesis {
     }
 }
 
-/// The hypotheses that are refitted beside the leader: look-alikes from outside the ship, and whatever promises nearly as much.
+/// The hypotheses that are refitted beside the leader: look-alikes from outside the ship or among its sensors, and whatever promises
+/// nearly as much.
 fn rivals(s: &Screen, leaders: &[&Row], candidates: &[Candidate]) -> Vec<Hypothesis> {
     let leader = leaders[0];
     let first = candidates[leader.candidate].mechanism;
     let alike = |r: &&Row| {
         let m = candidates[r.candidate].mechanism;
-        r.candidate != leader.candidate && m.kind == Kind::Environment && r.visible && m.looks_like(first)
+        r.candidate != leader.candidate && m.kind == first.kind && r.visible && m.looks_like(first)
     };
     let mut out: Vec<Hypothesis> = Vec::new();
-    if first.kind == Kind::Environment {
+    if matches!(first.kind, Kind::Environment | Kind::Sensor) {
         out.extend(s.rows.iter().filter(alike).filter_map(|r| Hypothesis::in_place_of(r, leader, s, candidates)));
     }
     // A rival whose promised gain is far below the leader's does not overtake it.
@@ -224,6 +226,39 @@ impl Competition<'_> {
         Refit { hypothesis, estimate, value }
     }
 
+    /// Errors of sensors, compared by what the sensors say of each other, whatever the ship does: the one that the recordings prefer to
+    /// the leader beyond chance takes its place, those that are worse than it beyond chance are no rivals, and it comes back with
+    /// the candidates that are not told from it.
+    fn told_by_sensors(&self, first: &mut Hypothesis, rivals: &mut Vec<Hypothesis>) -> Vec<usize> {
+        let Problem { runs, candidates, .. } = self.problem;
+        let is_sensor =
+            |h: &Hypothesis| candidates[h.candidate].mechanism.kind == Kind::Sensor && h.extent == Extent::All;
+        if !is_sensor(first) || !rivals.iter().any(is_sensor) {
+            return Vec::new();
+        }
+        let (mut sensors, mut others): (Vec<Hypothesis>, Vec<Hypothesis>) = rivals.drain(..).partition(is_sensor);
+        let asked: Vec<&Candidate> =
+            std::iter::once(&*first).chain(&sensors).map(|h| &candidates[h.candidate]).collect();
+        let Some(mut agreements) = agreements(&self.current.model, runs, &asked) else {
+            rivals.append(&mut sensors);
+            rivals.append(&mut others);
+            return Vec::new();
+        };
+        let ahead = |i: &usize| agreements[*i].over(&agreements[0]).filter(|[low, _]| *low > 0.0);
+        let best = (1..agreements.len()).filter_map(|i| Some((i, ahead(&i)?)));
+        if let Some((i, _)) = best.max_by(|a, b| a.1[0].total_cmp(&b.1[0])) {
+            agreements.swap(0, i);
+            std::mem::swap(first, &mut sensors[i - 1]);
+            first.amplitude = agreements[0].amplitude.clone();
+        }
+        let behind = |i: usize| agreements[i].over(&agreements[0]).is_some_and(|[_, high]| high < 0.0);
+        let kept = sensors.into_iter().enumerate().filter(|(i, _)| !behind(i + 1)).map(|(_, h)| h);
+        rivals.extend(kept);
+        let alike = std::iter::once(first.candidate).chain(rivals.iter().map(|h| h.candidate)).collect();
+        rivals.append(&mut others);
+        alike
+    }
+
     /// Whether the refit confirms the mechanism: significant by Wald's test and by the likelihood itself, and large enough.
     fn is_confirmed(&self, Refit { hypothesis, estimate, .. }: &Refit) -> bool {
         let Problem { integration, runs, candidates, settings, .. } = self.problem;
@@ -248,7 +283,10 @@ impl Competition<'_> {
     fn best(&self, leaders: &[&Row]) -> Result<(Selected, Estimate), Rejection> {
         let candidates = self.problem.candidates;
         let leader = *leaders.first().ok_or(Rejection::Unconfirmed)?;
-        let first = self.refit(Hypothesis::of(leader), &self.current.noise, SETTLE, f64::NEG_INFINITY);
+        let mut rivals = rivals(self.screen, leaders, candidates);
+        let mut first = Hypothesis::of(leader);
+        let alike = self.told_by_sensors(&mut first, &mut rivals);
+        let first = self.refit(first, &self.current.noise, SETTLE, f64::NEG_INFINITY);
         let noise = first.estimate.noise;
         let confirmed = self.is_confirmed(&first);
         // A rival that stays further behind a leader than any set is wide changes nothing.
@@ -257,7 +295,7 @@ impl Competition<'_> {
         } else {
             (f64::NEG_INFINITY, Vec::new())
         };
-        for rival in rivals(self.screen, leaders, candidates) {
+        for rival in rivals {
             let rival = self.refit(rival, &noise, REFIT, least);
             if rival.value < least || (self.is_plausible(&rival) && self.is_confirmed(&rival)) {
                 refitted.push(rival);
@@ -277,8 +315,17 @@ impl Competition<'_> {
             Rejection::Unconfirmed
         })?;
         let candidate = |e: &Entry| refitted[e.place].hypothesis.candidate;
-        let set = ranking.set().iter().map(candidate).collect();
-        let why = self.why(&ranking, &candidate, least);
+        let mut set: Vec<usize> = ranking.set().iter().map(candidate).collect();
+        let mut why = self.why(&ranking, &candidate, least);
+        let reach = form_tolerance(ranking.best - self.current.log_posterior);
+        let near = ranking.entries.iter().filter(|e| ranking.best - e.value < reach).map(candidate);
+        let more: Vec<usize> =
+            near.filter(|c| alike.contains(&set[0]) && alike.contains(c) && !set.contains(c)).collect();
+        if !more.is_empty() {
+            let titles: Vec<&str> = more.iter().map(|c| candidates[*c].mechanism.title).collect();
+            why = format!("{why}; what the sensors say of each other does not tell it from {}", titles.join(", "));
+            set.extend(more);
+        }
         let winner = refitted.swap_remove(ranking.entries[0].place);
         Ok(self.selected(winner, leader, set, why))
     }

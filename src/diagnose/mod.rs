@@ -54,6 +54,7 @@ pub mod generic;
 pub mod grade;
 mod improved;
 pub mod influence;
+mod kinematic;
 pub mod locate;
 pub mod noise;
 pub mod noise_fit;

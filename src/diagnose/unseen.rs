@@ -105,7 +105,7 @@ fn by_recording(runs: &[Run], [before, after]: [Vec<f64>; 2]) -> Vec<f64> {
 }
 
 /// The 95 % interval of a sum of independent values, by Student's t.
-fn interval_of_sum(values: &[f64]) -> Option<[f64; 2]> {
+pub(super) fn interval_of_sum(values: &[f64]) -> Option<[f64; 2]> {
     let count = values.len();
     if count < FEWEST_SET_ASIDE {
         return None;

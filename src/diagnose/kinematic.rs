@@ -1,0 +1,266 @@
+//! What the sensors say of each other, whatever the ship does: a track is the integral of the velocities along the heading, and a heading
+//! that of the yaw rate. Errors of sensors are compared by it without a model of the ship; which are compared is decided elsewhere.
+
+use super::candidate::Candidate;
+use super::settings::GATE;
+use super::unseen::interval_of_sum;
+use crate::dynamics::Dynamics;
+use crate::model::Model;
+use crate::recording::{Measured, Run};
+use crate::state::STATES;
+use crate::statistics::median;
+use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
+use trimtab_ad::smooth::wrap_angle;
+
+/// The equations of a stretch: its way ahead and to starboard \[m\], its turn \[rad\].
+type Equations = [f64; 3];
+
+/// A stretch of a run, half a ship length long.
+struct Stretch<'r> {
+    recording: &'r str,
+    /// Recorded way and turn less those that the recorded velocities make.
+    left: Equations,
+    /// The same of what a unit of each column adds to the reports.
+    columns: Vec<Equations>,
+}
+
+/// How well the sensors agree if one of them errs.
+#[derive(Clone, Debug)]
+pub struct Agreement {
+    /// Its amplitudes at which they agree best, in units of the candidate's columns.
+    pub amplitude: DVector<f64>,
+    /// Log-likelihood by recording, up to a constant that all errors share.
+    by_recording: BTreeMap<String, f64>,
+}
+
+impl Agreement {
+    /// The 95 % interval over recordings of how much likelier it is than another; `None` where they are too few.
+    pub fn over(&self, other: &Self) -> Option<[f64; 2]> {
+        let gains: Vec<f64> = self.by_recording.iter().map(|(name, l)| l - other.by_recording[name]).collect();
+        interval_of_sum(&gains)
+    }
+}
+
+/// The agreement of the sensors under each of some candidates, which are errors of sensors with one amplitude in all sessions; `None`
+/// where no stretch has every channel. Positions p, heading psi, velocities V over ground and yaw rate r tell
+/// `R(-psi) (p(t + T) - p(t) - int R(psi) V dt)` and `psi(t + T) - psi(t) - int r dt`, which are linear in the amplitudes; each equation
+/// counts by the scatter that all errors together leave in it, with outliers at the filter's gate.
+pub fn agreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> Option<Vec<Agreement>> {
+    let stretches: Vec<Stretch> = runs.iter().flat_map(|run| stretches(model, run, candidates)).collect();
+    let all: Vec<usize> = (0..stretches.first()?.columns.len()).collect();
+    let mut scatter = scatter_of(stretches.iter().map(|s| s.left));
+    // Without what the errors explain, and then by what is left without outliers.
+    for _ in 0..2 {
+        let fitted = solve(&stretches, &all, &scatter)?;
+        scatter = scatter_of(stretches.iter().map(|s| less(s, &all, &fitted)));
+    }
+    let mut from = 0;
+    let each = candidates.iter().map(|c| {
+        let own: Vec<usize> = (from..from + c.columns.len()).collect();
+        from += c.columns.len();
+        let amplitude = solve(&stretches, &own, &scatter)?;
+        let mut by_recording = BTreeMap::new();
+        for stretch in &stretches {
+            let of = |(e, s): (f64, f64)| -0.5 * (e / s).powi(2).min(GATE * GATE);
+            let likelihood: f64 = less(stretch, &own, &amplitude).into_iter().zip(scatter).map(of).sum();
+            *by_recording.entry(stretch.recording.to_owned()).or_default() += likelihood;
+        }
+        Some(Agreement { amplitude, by_recording })
+    });
+    each.collect()
+}
+
+/// What some columns at these amplitudes leave of a stretch.
+fn less(stretch: &Stretch, columns: &[usize], amplitude: &DVector<f64>) -> Equations {
+    std::array::from_fn(|q| {
+        let explained: f64 = columns.iter().zip(amplitude.iter()).map(|(c, a)| stretch.columns[*c][q] * a).sum();
+        stretch.left[q] - explained
+    })
+}
+
+/// The scatter of each equation: 1.4826 times the median size, that is a standard deviation where it is normal.
+fn scatter_of(left: impl Iterator<Item = Equations> + Clone) -> Equations {
+    let of = |q: usize| median(left.clone().map(|e| e[q].abs())).unwrap_or(0.0);
+    std::array::from_fn(|q| (1.4826 * of(q)).max(f64::MIN_POSITIVE.sqrt()))
+}
+
+/// Amplitudes of some columns by least squares over the stretches that are no outliers; `None` where they are no numbers.
+fn solve(stretches: &[Stretch], columns: &[usize], scatter: &Equations) -> Option<DVector<f64>> {
+    let n = columns.len();
+    let mut amplitude = DVector::zeros(n);
+    // What lies far from a first solution is left out of the second.
+    for round in 0..2 {
+        let (mut h, mut g) = (DMatrix::zeros(n, n), DVector::zeros(n));
+        for s in stretches {
+            let left = less(s, columns, &amplitude);
+            for q in (0..3).filter(|q| round == 0 || left[*q].abs() < GATE * scatter[*q]) {
+                let row = DVector::from_fn(n, |i, _| s.columns[columns[i]][q] / scatter[q]);
+                g += &row * (s.left[q] / scatter[q]);
+                h += &row * row.transpose();
+            }
+        }
+        let least = f64::EPSILON * f64::max(h.amax(), f64::MIN_POSITIVE);
+        amplitude = h.pseudo_inverse(least).ok()? * g;
+    }
+    amplitude.iter().all(|a| a.is_finite()).then_some(amplitude)
+}
+
+/// The stretches of a run in which every channel was measured.
+fn stretches<'r>(model: &Model, run: &'r Run, candidates: &[&Candidate]) -> Vec<Stretch<'r>> {
+    let states: Vec<Option<[f64; STATES]>> = run.measured.iter().map(whole).collect();
+    let reports = reports(model, run, &states, candidates);
+    let speed = median(states.iter().flatten().map(|s| s[3].hypot(s[4]))).unwrap_or(0.0);
+    let rows = (0.5 * model.ship.hull.lpp / (speed * run.dt)).round();
+    let rows = if rows.is_finite() { (rows as usize).clamp(1, states.len().max(2) - 1) } else { return Vec::new() };
+    let starts = (0..states.len().saturating_sub(rows)).step_by(rows);
+    let whole = |from: usize| states[from..=from + rows].iter().copied().collect::<Option<Vec<_>>>();
+    let stretch = |from: usize| {
+        let states = whole(from)?;
+        let added = |c: usize| &reports[c][from..=from + rows];
+        let columns = (0..reports.len()).map(|c| slope(&states, added(c), run.dt)).collect();
+        Some(Stretch { recording: &run.recording, left: disagreement(&states, run.dt), columns })
+    };
+    starts.filter_map(stretch).collect()
+}
+
+fn whole(measured: &Measured) -> Option<[f64; STATES]> {
+    let mut state = [0.0; STATES];
+    for (s, m) in state.iter_mut().zip(measured) {
+        *s = (*m)?;
+    }
+    Some(state)
+}
+
+/// What a unit of each column adds to the report of each sample.
+fn reports(
+    model: &Model,
+    run: &Run,
+    states: &[Option<[f64; STATES]>],
+    candidates: &[&Candidate],
+) -> Vec<Vec<[f64; STATES]>> {
+    let values = model.values_in(&run.session);
+    let of = |values: Vec<f64>| -> Vec<[f64; STATES]> {
+        let dynamics = Dynamics::new(model, values);
+        let report = |(s, input): (&Option<[f64; STATES]>, _)| s.map_or([0.0; STATES], |s| dynamics.report(&s, input));
+        states.iter().zip(&run.inputs).map(report).collect()
+    };
+    let plain = of(values.clone());
+    let column = |c: &super::filter::Column| {
+        let mut with = values.clone();
+        with[c.parameter] += c.scale;
+        of(with).iter().zip(&plain).map(|(w, p)| std::array::from_fn(|j| w[j] - p[j])).collect()
+    };
+    candidates.iter().flat_map(|c| &c.columns).map(column).collect()
+}
+
+/// Recorded way and turn of a stretch less those that its velocities make, by the trapezoidal rule, along its middle heading.
+fn disagreement(states: &[[f64; STATES]], dt: f64) -> Equations {
+    let (first, last) = (states[0], states[states.len() - 1]);
+    let mut left = [last[0] - first[0], last[1] - first[1], wrap_angle(last[2] - first[2])];
+    for pair in states.windows(2) {
+        for [_, _, psi, u, v, r] in pair {
+            let (sin, cos) = psi.sin_cos();
+            let way = [u * cos - v * sin, u * sin + v * cos, *r];
+            (0..3).for_each(|q| left[q] -= 0.5 * dt * way[q]);
+        }
+    }
+    left[2] = wrap_angle(left[2]);
+    along(states, left)
+}
+
+/// How the disagreement changes with what is added to the reports.
+fn slope(states: &[[f64; STATES]], added: &[[f64; STATES]], dt: f64) -> Equations {
+    let (first, last) = (added[0], added[added.len() - 1]);
+    let mut change: Equations = std::array::from_fn(|q| last[q] - first[q]);
+    for k in 1..states.len() {
+        for i in [k - 1, k] {
+            let ([_, _, psi, u, v, _], [_, _, turned, du, dv, dr]) = (states[i], added[i]);
+            let (sin, cos) = psi.sin_cos();
+            let (ahead, across) = (du - v * turned, dv + u * turned);
+            let way = [ahead * cos - across * sin, ahead * sin + across * cos, dr];
+            (0..3).for_each(|q| change[q] -= 0.5 * dt * way[q]);
+        }
+    }
+    along(states, change)
+}
+
+/// A way on the earth's axes, along the heading in the middle of a stretch.
+fn along(states: &[[f64; STATES]], [north, east, turn]: Equations) -> Equations {
+    let (sin, cos) = states[states.len() / 2][2].sin_cos();
+    [north * cos + east * sin, east * cos - north * sin, turn]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::candidate::candidates;
+    use crate::diagnose::example::{model, runs, with};
+
+    /// Runs of a ship whose sensors err.
+    fn erring(errors: &[(&str, f64)], count: usize) -> Vec<Run> {
+        let with = with(errors);
+        let dynamics = Dynamics::new(&with, with.values_in(""));
+        let mut runs = runs(&model(), count);
+        for run in &mut runs {
+            for (m, input) in run.measured.iter_mut().zip(&run.inputs) {
+                *m = dynamics.report(&whole(m).unwrap(), input).map(Some);
+            }
+        }
+        runs
+    }
+
+    /// Agreements under a late clock, a lever arm of the positions and a bias of the gyro.
+    fn of(runs: &[Run]) -> Vec<Agreement> {
+        let model = model();
+        let list = candidates(&model, &[]);
+        let named = |name: &str| list.iter().find(|c| c.mechanism.name == name).unwrap();
+        agreements(&model, runs, &["time_skew", "position_lever", "yaw_rate_bias"].map(named)).unwrap()
+    }
+
+    fn value(agreement: &Agreement, place: usize, name: &str) -> f64 {
+        let m = model();
+        agreement.amplitude[place] * m.parameters[m.find(name).unwrap()].scale
+    }
+
+    #[test]
+    fn the_error_that_the_sensors_have_is_told_from_its_look_alike_and_its_size_is_found() {
+        let late = of(&erring(&[("time_skew.position", -2.0)], 12));
+        assert!(
+            (value(&late[0], 0, "time_skew.position") + 2.0).abs() < 0.1,
+            "{}",
+            value(&late[0], 0, "time_skew.position")
+        );
+        assert!(late[0].over(&late[1]).is_some_and(|[low, _]| low > 0.0), "{:?}", late[0].over(&late[1]));
+        let off = of(&erring(&[("position_lever.x", 12.0)], 12));
+        assert!((value(&off[1], 0, "position_lever.x") - 12.0).abs() < 0.6);
+        assert!(off[1].over(&off[0]).is_some_and(|[low, _]| low > 0.0), "{:?}", off[1].over(&off[0]));
+        let biased = of(&erring(&[("yaw_rate_bias.bias", 0.002)], 12));
+        assert!((value(&biased[2], 0, "yaw_rate_bias.bias") - 0.002).abs() < 2e-4);
+    }
+
+    #[test]
+    fn sensors_that_agree_tell_no_error_from_another() {
+        let sound = of(&runs(&model(), 12));
+        assert!(sound[0].over(&sound[1]).is_some_and(|[low, high]| low < 0.0 && high > 0.0), "{sound:?}");
+    }
+
+    #[test]
+    fn a_current_or_a_force_is_no_disagreement_and_where_a_channel_is_missing_there_is_no_answer() {
+        let calm = of(&runs(&model(), 6));
+        let drifting = of(&runs(&with(&[("current.north", 0.5), ("earth_force.east", 2e4)]), 6));
+        let size = |a: &Agreement| value(a, 0, "time_skew.position").abs();
+        assert!(size(&calm[0]) < 0.2 && size(&drifting[0]) < 0.2);
+        let mut blind = runs(&model(), 6);
+        blind.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[4] = None);
+        let model = model();
+        let list = candidates(&model, &[]);
+        assert!(agreements(&model, &blind, &[&list[0]]).is_none());
+    }
+
+    #[test]
+    fn two_recordings_have_an_agreement_and_no_interval() {
+        let few = of(&runs(&model(), 2));
+        assert!(few[0].over(&few[1]).is_none());
+    }
+}
