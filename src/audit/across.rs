@@ -3,6 +3,7 @@
 
 use super::held::{Repeats, held, repeats};
 use super::issue::{Issue, Severity, Shared};
+use super::length::{Length, shorter};
 use super::limits::{
     EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, SAME_LAG, SESSION_SHARE, SHARED_ROWS, SHARED_SHARE,
 };
@@ -39,6 +40,8 @@ pub struct Evidence {
     scatter: Scatter,
     /// What its channels repeat.
     repeats: Vec<Repeats>,
+    /// Its length, if the study uses all of it.
+    length: Option<Length>,
     /// Fingerprints of the rows in which the ship's motion changed.
     rows: Vec<u64>,
 }
@@ -58,6 +61,7 @@ impl Evidence {
             leap: Leap::of(recording),
             scatter: Scatter::of(recording),
             repeats: repeats(recording),
+            length: Length::of(recording).filter(|_| run.from.is_none() && run.to.is_none()),
             rows: fingerprints(recording),
         }
     }
@@ -93,9 +97,8 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
         found.extend(sessions(runs, pair, time));
     }
     let leaps: Vec<Leap> = runs.iter().filter_map(|r| r.leap).collect();
-    found.extend(
-        ordered(&leaps, time).map(|issue| Shared { runs: runs.iter().map(|r| r.run.clone()).collect(), issue }),
-    );
+    let every = || runs.iter().map(|r| r.run.clone()).collect();
+    found.extend(ordered(&leaps, time).map(|issue| Shared { runs: every(), issue }));
     let responses: Vec<(&str, &Responses)> = runs.iter().map(|r| (r.run.as_str(), &r.responses)).collect();
     let scattered: Vec<(&str, Scatter)> = runs.iter().map(|r| (r.run.as_str(), r.scatter)).collect();
     for shared in scales(&responses).into_iter().chain(scatters(&scattered)) {
@@ -106,6 +109,8 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     }
     let repeated: Vec<(&str, &[Repeats])> = runs.iter().map(|r| (r.run.as_str(), &r.repeats[..])).collect();
     found.extend(held(&repeated));
+    let lengths: Vec<(&str, Option<Length>)> = runs.iter().map(|r| (r.run.as_str(), r.length)).collect();
+    found.extend(shorter(&lengths));
     found.extend(shared_rows(runs));
     found
 }

@@ -5,7 +5,7 @@ use super::issue::{Issue, Severity};
 use super::limits::{
     FROZEN_CHANGES, FROZEN_DIFFERENCES, FROZEN_LEVEL, FROZEN_RANGE, FROZEN_ROWS, FROZEN_SELDOM, FROZEN_SPANS,
 };
-use super::series::Series;
+use super::series::{Series, changes, constant};
 use crate::recording::{Channel, STATE_CHANNELS};
 use crate::statistics::{median, quantile};
 use std::ops::Range;
@@ -111,12 +111,9 @@ fn range(values: &[f64]) -> f64 {
 /// Median change of value from stretch to stretch before or after stretch `at`, the larger one: motion in a row, or the resolution
 /// where that is coarser, which may change with the digits of the value.
 fn usual_change(values: &[f64], stretches: &[Range<usize>], at: usize) -> f64 {
-    let changes = |near: &[Range<usize>]| {
-        let changes = near.windows(2).map(|s| (values[s[1].start] - values[s[0].start]).abs());
-        median(changes.filter(|d| *d > 0.0)).unwrap_or(0.0)
-    };
+    let usual = |near: &[Range<usize>]| median(changes(values, near)).unwrap_or(0.0);
     let (before, after) = (&stretches[at.saturating_sub(6)..=at], &stretches[at..(at + 7).min(stretches.len())]);
-    changes(before).max(changes(after))
+    usual(before).max(usual(after))
 }
 
 /// Difference, over so many rows, of what a channel changes and what its rate says, that it seldom exceeds where the channel does not
@@ -149,16 +146,4 @@ fn usual_difference(
     differences.retain(|d| d.is_finite());
     differences.sort_by(f64::total_cmp);
     quantile(&differences, FROZEN_SELDOM).unwrap_or(0.0)
-}
-
-/// Stretches of one value within `rows`.
-fn constant(values: &[f64], rows: Range<usize>) -> Vec<Range<usize>> {
-    let mut stretches: Vec<Range<usize>> = Vec::new();
-    for row in rows {
-        match stretches.last_mut() {
-            Some(last) if values[last.start] == values[row] => last.end = row + 1,
-            _ => stretches.push(row..row + 1),
-        }
-    }
-    stretches
 }

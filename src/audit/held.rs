@@ -6,6 +6,7 @@ use super::limits::{
     HELD_BESIDE, HELD_CHANCE, HELD_CHANGES, HELD_DIGITS, HELD_REST, HELD_ROWS, HELD_ROWS_MOVING, HELD_SAME,
     HELD_SELDOM, HELD_STEPS,
 };
+use super::series::{changes, constant};
 use crate::recording::{Channel, Recording, STATE_CHANNELS};
 use crate::statistics::median;
 use serde::{Deserialize, Serialize};
@@ -62,8 +63,7 @@ fn of_channel(recording: &Recording, channel: Channel, state: &[Channel]) -> Opt
     let values = recording.get(channel)?;
     let segments = recording.segments();
     let stretches: Vec<Range<usize>> = segments.iter().flat_map(|s| constant(values, s.clone())).collect();
-    let changes: Vec<f64> =
-        stretches.windows(2).map(|s| (values[s[1].start] - values[s[0].start]).abs()).filter(|c| *c > 0.0).collect();
+    let changes: Vec<f64> = changes(values, &stretches).collect();
     let others: Vec<&[f64]> = state.iter().filter(|c| **c != channel).filter_map(|c| recording.get(*c)).collect();
     let partner = match channel {
         Channel::Psi => recording.get(Channel::R),
@@ -96,18 +96,6 @@ fn of_channel(recording: &Recording, channel: Channel, state: &[Channel]) -> Opt
     })
 }
 
-/// Stretches of one value within `rows`, in which no value is missing.
-fn constant(values: &[f64], rows: Range<usize>) -> Vec<Range<usize>> {
-    let mut stretches: Vec<Range<usize>> = Vec::new();
-    for row in rows {
-        match stretches.last_mut() {
-            Some(last) if values[last.start] == values[row] => last.end = row + 1,
-            _ => stretches.push(row..row + 1),
-        }
-    }
-    stretches
-}
-
 /// The last digit with which values are written in a unit of that factor; 0 where they have more than [`HELD_DIGITS`] decimals.
 fn digits(values: &[f64], factor: f64) -> f64 {
     let written = |power: &f64| {
@@ -135,9 +123,7 @@ fn coarse(resolution: f64, change: f64, typical: f64) -> f64 {
 
 /// Median change from value to value before or after stretch `at`, the smaller one: motion dies away before it stands still.
 fn change_beside(values: &[f64], stretches: &[Range<usize>], at: usize) -> f64 {
-    let change = |near: &[Range<usize>]| {
-        median(near.windows(2).map(|s| (values[s[1].start] - values[s[0].start]).abs()).filter(|c| *c > 0.0))
-    };
+    let change = |near: &[Range<usize>]| median(changes(values, near));
     let (before, after) = (
         change(&stretches[at.saturating_sub(HELD_BESIDE)..=at]),
         change(&stretches[at..(at + 1 + HELD_BESIDE).min(stretches.len())]),
@@ -192,16 +178,11 @@ fn told(one: &Repeats, all: &[&Repeats]) -> Option<Issue> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::audit::example::noise;
 
     /// A run with noise in every channel, to four digits; `change` may damage channel r.
     fn run(seed: u32, digits: f64, change: impl Fn(&mut Vec<f64>)) -> Vec<Repeats> {
-        let mut state = seed.wrapping_mul(2_654_435_761) | 1;
-        let mut noise = || {
-            state ^= state << 13;
-            state ^= state >> 17;
-            state ^= state << 5;
-            f64::from(state) / f64::from(u32::MAX) - 0.5
-        };
+        let mut noise = noise(seed);
         let mut column = |size: f64| {
             let value = |i: u32| (size * ((f64::from(i) * 0.05).sin() + 0.3 * noise()) * digits).round() / digits;
             (0..120).map(value).collect::<Vec<f64>>()
@@ -213,18 +194,13 @@ mod tests {
     }
 
     fn study(digits: f64, damaged: usize, change: impl Fn(&mut Vec<f64>) + Copy) -> Vec<Shared> {
-        let runs: Vec<(String, Vec<Repeats>)> = (0..8)
-            .map(|i| {
-                (
-                    format!("r{i}"),
-                    run(i + 1, digits, |r| {
-                        if (i as usize) < damaged {
-                            change(r)
-                        }
-                    }),
-                )
-            })
-            .collect();
+        let damage = |i: u32, r: &mut Vec<f64>| {
+            if (i as usize) < damaged {
+                change(r)
+            }
+        };
+        let runs: Vec<(String, Vec<Repeats>)> =
+            (0..8).map(|i| (format!("r{i}"), run(i + 1, digits, |r| damage(i, r)))).collect();
         held(&runs.iter().map(|(name, r)| (name.as_str(), &r[..])).collect::<Vec<_>>())
     }
 

@@ -2,7 +2,10 @@
 //! Positions that jump are in `fixes`; jumps that last are in `receiver`, since a run is parted there.
 
 use super::issue::{Issue, Severity};
-use super::limits::{END_WINDOWS, FAR, FAR_SHARE, FAR_SHARE_AT_ENDS, FEW, FEW_SHARE, MEDIAN_ROWS, OUTSIDE_SHARE, TAIL};
+use super::limits::{
+    APART_SHARE, END_WINDOWS, FAR, FAR_SHARE, FAR_SHARE_AT_ENDS, FEW, FEW_SHARE, FEW_SHARE_APART, LOST_SAME,
+    MEDIAN_ROWS, OUTSIDE_SHARE, TAIL,
+};
 use crate::recording::{Channel, Recording, STATE_CHANNELS};
 use crate::statistics::median;
 
@@ -25,7 +28,7 @@ pub fn outliers(recording: &Recording, told: &[Channel], issues: &mut Vec<Issue>
     for (channel, set) in moved.chain(SET.map(|c| (c, true))) {
         let known = told.contains(&channel) || recording.derived().contains(&channel);
         let Some(values) = recording.get(channel).filter(|_| !known) else { continue };
-        let far = far(recording.time(), values, set);
+        let far = far(channel, recording.time(), values, set);
         let (Some(&first), Some(&last)) = (far.first(), far.last()) else { continue };
         let line = |row: usize| recording.line(row);
         let factor = channel.info().quantity.factor(recording.unit(channel)).unwrap_or(1.0);
@@ -45,7 +48,7 @@ pub fn outliers(recording: &Recording, told: &[Channel], issues: &mut Vec<Issue>
 }
 
 /// The rows that lie far from their neighbours; none where they are so many that they are no single values.
-fn far(t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
+fn far(channel: Channel, t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
     let rows: Vec<usize> = (0..values.len()).filter(|&i| values[i].is_finite()).collect();
     let finite: Vec<f64> = rows.iter().map(|&i| values[i]).collect();
     if finite.len() < 4 * MEDIAN_ROWS {
@@ -59,21 +62,45 @@ fn far(t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
     // The usual scatter; beside it a share of the range, since data without noise have none.
     let least = |scatter: f64| (FAR * scatter).max(FAR_SHARE * (high - low));
     let usual = least(deviation(from_median.iter().copied()));
-    let outside = OUTSIDE_SHARE * (high - low) + FAR_SHARE * low.abs().max(high.abs());
-    let possible = |k: usize| set && (low - outside..=high + outside).contains(&finite[k]);
+    // The range of what is set: of values that do not stand alone.
+    let near = FAR_SHARE * (sorted[sorted.len() - 1] - sorted[0]);
+    let pairs = finite.windows(2).filter(|pair| (pair[0] - pair[1]).abs() <= near).flatten();
+    let (lowest, highest) = pairs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let outside = OUTSIDE_SHARE * (highest - lowest) + FAR_SHARE * lowest.abs().max(highest.abs());
+    let possible = |k: usize| set && (lowest - outside..=highest + outside).contains(&finite[k]);
     let inner = MEDIAN_ROWS..finite.len() - MEDIAN_ROWS;
-    let mut far: Vec<usize> = inner.filter(|&k| from_median[k].abs() > usual && !possible(k)).collect();
+    let off = |k: &usize| from_median[*k].abs();
+    let impossible: Vec<usize> = inner.filter(|k| off(k) > APART_SHARE * usual && !possible(*k)).collect();
+    let mut far: Vec<usize> = impossible.iter().copied().filter(|k| off(k) > usual).collect();
+    // None is half way: these are no tail of what the channel does.
+    let beside = |k: &usize| far.iter().any(|f| f.abs_diff(*k) <= MEDIAN_ROWS);
+    let apart = impossible.iter().all(beside);
     // A set channel may have been changed just before the end.
     if !set {
         let at_ends = |scatter: f64| (FAR * scatter).max(FAR_SHARE_AT_ENDS * (high - low));
         far.extend(far_at_ends(t, &rows, &finite, at_ends));
         far.sort_unstable();
     }
-    let few = FEW.max((FEW_SHARE * finite.len() as f64) as usize);
     if set && far.is_empty() {
         far.extend(set_at_ends(&finite));
     }
+    if matches!(channel, Channel::N | Channel::Delta) {
+        far.extend(lost(&finite, usual).filter(|k| !far.contains(k)).collect::<Vec<_>>());
+        far.sort_unstable();
+    }
+    let share = if apart { FEW_SHARE_APART } else { FEW_SHARE };
+    let few = FEW.max((share * finite.len() as f64) as usize);
     if far.len() > few { Vec::new() } else { far.into_iter().map(|k| rows[k]).collect() }
+}
+
+/// Single zeros of a channel that is set, between values of one sign and about one size: orders do not come back to where they were.
+fn lost(values: &[f64], least: f64) -> impl Iterator<Item = usize> {
+    let lost = move |three: &[f64]| {
+        let (before, after) = (three[0], three[2]);
+        let smaller = before.abs().min(after.abs());
+        three[1] == 0.0 && before * after > 0.0 && smaller > least && (before - after).abs() <= LOST_SAME * smaller
+    };
+    values.windows(3).enumerate().filter(move |(_, three)| lost(three)).map(|(k, _)| k + 1)
 }
 
 /// First and last value of a channel that is set, where all others are alike and it is several times as large as any of them.
@@ -127,4 +154,53 @@ fn neighbours(values: &[f64], k: usize) -> f64 {
 /// Standard deviation of values around 0 by their median size, which single large ones do not change.
 fn deviation(values: impl Iterator<Item = f64>) -> f64 {
     1.4826 * median(values.map(f64::abs).filter(|v| v.is_finite())).unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::audit::example::noise;
+
+    /// Rows that are told of a channel that moves or of a rudder, after damage to them.
+    fn told(channel: Channel, values: impl Fn(usize) -> f64, damage: impl Fn(&mut [f64])) -> Vec<usize> {
+        let set = SET.contains(&channel);
+        let t: Vec<f64> = (0..121).map(|i| 2.0 * i as f64).collect();
+        let mut values: Vec<f64> = (0..121).map(values).collect();
+        damage(&mut values);
+        far(channel, &t, &values, set)
+    }
+
+    fn speed(seed: u32) -> Vec<f64> {
+        let mut noise = noise(seed);
+        (0..121).map(|i| 4.0 + 1.5 * (0.05 * f64::from(i)).sin() + 0.1 * noise()).collect()
+    }
+
+    #[test]
+    fn single_rows_are_told_however_many_they_are_as_long_as_none_is_half_way() {
+        let u = speed(1);
+        let damaged = |rows: &'static [usize], to: f64| {
+            told(Channel::U, |i| u[i], move |u| rows.iter().for_each(|row| u[*row] = to))
+        };
+        assert!(damaged(&[], 0.0).is_empty());
+        assert_eq!(damaged(&[20], 0.0), [20]);
+        assert_eq!(damaged(&[18, 73, 103, 109], 0.0), [18, 73, 103, 109]);
+        // A channel that leaps by any size is not damaged in single rows.
+        let leaps = told(Channel::U, |i| u[i], |u| (10..115).step_by(10).for_each(|row| u[row] += 0.03 * row as f64));
+        assert!(leaps.is_empty(), "{leaps:?}");
+    }
+
+    #[test]
+    fn a_rudder_that_is_zero_for_one_row_was_lost_and_one_that_is_turned_was_not() {
+        let zigzag = |i: usize| if (i / 20).is_multiple_of(2) { 0.175 } else { -0.175 };
+        let lost =
+            |rows: &'static [usize]| told(Channel::Delta, zigzag, move |d| rows.iter().for_each(|row| d[*row] = 0.0));
+        assert!(lost(&[]).is_empty());
+        assert_eq!(lost(&[5, 47, 70, 90]), [5, 47, 70, 90]);
+        // On its way to the other side.
+        assert!(lost(&[20, 40]).is_empty());
+        assert!(told(Channel::Thruster, zigzag, |d| d[47] = 0.0).is_empty());
+        // A propeller at one rate that is read ten times too large in four rows.
+        let tenfold = |n: &mut [f64]| [4, 29, 68, 98].iter().for_each(|row| n[*row] *= 10.0);
+        assert_eq!(told(Channel::N, |_| 2.57, tenfold), [4, 29, 68, 98]);
+    }
 }

@@ -19,6 +19,12 @@ pub const OUTSIDE_SHARE: f64 = 0.5;
 pub const FEW: usize = 3;
 /// See [`FEW`].
 pub const FEW_SHARE: f64 = 0.01;
+/// The same where no other value is this share as far: those that are far are no tail of what the channel does.
+pub const APART_SHARE: f64 = 0.5;
+/// See [`APART_SHARE`].
+pub const FEW_SHARE_APART: f64 = 0.05;
+/// A rudder or a propeller that is 0 for one row was lost where the values before and after differ by at most this share.
+pub const LOST_SAME: f64 = 0.5;
 /// Windows from which the scatter at the ends of a run is told; of longer runs every n-th is taken.
 pub const END_WINDOWS: usize = 2000;
 /// Share of the values on each side that does not count for the range of the others.
@@ -211,6 +217,11 @@ pub const AGAINST: f64 = -0.8;
 pub const AGAINST_TURN: f64 = std::f64::consts::FRAC_PI_2;
 /// and with at least this rudder, root mean square \[rad\].
 pub const AGAINST_RUDDER: f64 = 0.05;
+
+// --- Length ---
+
+/// Recordings, all but one of one length, among which a shorter one may have been cut.
+pub const LENGTH_RUNS: usize = 6;
 
 // --- Train and test ---
 

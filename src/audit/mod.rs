@@ -5,6 +5,8 @@
 
 mod across;
 mod clocks;
+#[cfg(test)]
+mod example;
 mod fill;
 mod fixes;
 mod frozen;
@@ -13,6 +15,7 @@ mod held;
 mod issue;
 mod jumps;
 mod kinematics;
+mod length;
 mod limits;
 mod model;
 mod orders;

@@ -16,10 +16,10 @@ pub enum Odd {
 }
 
 /// The sums of several runs at lag 0, added.
-pub(super) fn total<'c>(curves: impl Iterator<Item = &'c Curve>) -> Option<Sums> {
+fn total<'c>(curves: impl Iterator<Item = &'c Curve>) -> Option<Sums> {
     let mut sum: Option<Sums> = None;
     for curve in curves {
-        let one = &curve.sums[curve.zero()];
+        let one = curve.at_zero();
         match &mut sum {
             None => sum = Some(one.clone()),
             Some(sum) => {
@@ -32,7 +32,7 @@ pub(super) fn total<'c>(curves: impl Iterator<Item = &'c Curve>) -> Option<Sums>
 }
 
 /// Coefficients from sums; `less` is taken out of them.
-pub(super) fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
+fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
     let n = sum.response.len();
     let of = |i: usize, all: &[f64], some: Option<&[f64]>| all[i] - some.map_or(0.0, |some| some[i]);
     let a = DMatrix::from_fn(n, n, |i, j| of(i * n + j, &sum.columns, less.map(|l| &l.columns[..])));
@@ -43,25 +43,64 @@ pub(super) fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> 
     Some(solved.iter().copied().collect())
 }
 
+/// Runs of one sample period in which a channel is of the usual size, and against which a run is held.
+pub(super) struct Pool<'c> {
+    step: f64,
+    known: Vec<&'c Curve>,
+    sum: Sums,
+}
+
+impl<'c> Pool<'c> {
+    /// Those of some runs in which the `size` of the channel is at most so many times that of the middle one: a run with a damaged
+    /// sample would outweigh all others. `None` for fewer than [`POOLED_RUNS`].
+    pub(super) fn new(curves: &[Option<&'c Curve>], size: impl Fn(&Curve) -> f64, most: f64) -> Option<Self> {
+        let step = curves.iter().flatten().next()?.step;
+        let middle = median(curves.iter().flatten().map(|c| size(c)))?;
+        let usual = |c: &&Curve| is_step(c, step) && size(c) <= most * middle;
+        let known: Vec<&Curve> = curves.iter().flatten().copied().filter(usual).collect();
+        let sum = total(known.iter().copied()).filter(|_| known.len() >= POOLED_RUNS)?;
+        Some(Self { step, known, sum })
+    }
+
+    /// Its runs.
+    pub(super) fn runs(&self) -> impl Iterator<Item = &'c Curve> {
+        self.known.iter().copied()
+    }
+
+    /// Whether a run is one of them.
+    fn has(&self, curve: &Curve) -> bool {
+        self.known.iter().any(|k| std::ptr::eq(*k, curve))
+    }
+
+    /// Whether a run has their sample period, so that their coefficients are its own.
+    pub(super) fn is_alike(&self, curve: &Curve) -> bool {
+        is_step(curve, self.step)
+    }
+
+    /// Coefficients of all runs but this one.
+    pub(super) fn others(&self, curve: &Curve) -> Option<Vec<f64>> {
+        coefficients(&self.sum, self.has(curve).then(|| curve.at_zero()))
+    }
+}
+
+fn is_step(curve: &Curve, step: f64) -> bool {
+    (curve.step / step - 1.0).abs() < 0.01
+}
+
 /// What is odd in each run, in their order. `worth` says which lags \\[s\\] matter.
 pub fn odd(curves: &[Option<&Curve>], worth: impl Fn(f64) -> bool) -> Vec<Option<Odd>> {
-    let Some(step) = curves.iter().flatten().map(|c| c.step).next() else { return vec![None; curves.len()] };
-    let alike = |c: &&Curve| (c.step / step - 1.0).abs() < 0.01;
-    // A run with a damaged sample would outweigh all others.
-    let size = |c: &Curve| c.sums[c.zero()].columns.first().copied().unwrap_or(0.0) / c.samples;
-    let Some(middle) = median(curves.iter().flatten().map(|c| size(c))) else { return vec![None; curves.len()] };
-    let usual_size = |c: &&Curve| size(c) <= POOLED_SIZE * middle;
-    let known: Vec<&Curve> = curves.iter().flatten().copied().filter(alike).filter(usual_size).collect();
-    let Some(sum) = total(known.iter().copied()).filter(|_| known.len() >= POOLED_RUNS) else {
-        return vec![None; curves.len()];
-    };
-    let others = |c: &Curve| coefficients(&sum, Some(&c.sums[c.zero()]));
+    let none = || vec![None; curves.len()];
+    let size = |c: &Curve| c.at_zero().columns.first().copied().unwrap_or(0.0) / c.samples;
+    let Some(pool) = Pool::new(curves, size, POOLED_SIZE) else { return none() };
     // What the coefficients of the other runs leave, as a share of what is left without the channel.
-    let share = |c: &Curve| Some(c.sums[c.zero()].left(&others(c)?) / without(c, &others(c)?));
-    let Some(usual) = median(known.iter().filter_map(|c| share(c))) else { return vec![None; curves.len()] };
+    let share = |c: &Curve| {
+        let others = pool.others(c)?;
+        Some(c.at_zero().left(&others) / without(c, &others))
+    };
+    let Some(usual) = median(pool.runs().filter_map(share)) else { return none() };
     let judged = |curve: &Option<&Curve>| {
-        let curve = curve.filter(alike).filter(usual_size)?;
-        judged(curve, &others(curve)?, usual, &worth)
+        let curve = curve.filter(|c| pool.has(c))?;
+        judged(curve, &pool.others(curve)?, usual, &worth)
     };
     curves.iter().map(judged).collect()
 }
@@ -70,7 +109,7 @@ pub fn odd(curves: &[Option<&Curve>], worth: impl Fn(f64) -> bool) -> Vec<Option
 fn without(curve: &Curve, coefficients: &[f64]) -> f64 {
     let mut rest = coefficients.to_vec();
     rest[..curve.own].fill(0.0);
-    curve.sums[curve.zero()].left(&rest)
+    curve.at_zero().left(&rest)
 }
 
 /// What is odd in a run, given the coefficients of the others and the share of the squares that these usually leave.

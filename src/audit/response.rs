@@ -67,6 +67,11 @@ impl Curve {
         self.lags.iter().position(|lag| *lag == 0).unwrap_or(0)
     }
 
+    /// The sums at lag 0.
+    pub fn at_zero(&self) -> &Sums {
+        &self.sums[self.zero()]
+    }
+
     /// Place of the lag that leaves least.
     pub fn best(&self) -> usize {
         (0..self.left.len()).min_by(|i, j| self.left[*i].total_cmp(&self.left[*j])).unwrap_or(0)
@@ -115,6 +120,11 @@ fn lags(longest: usize) -> Vec<isize> {
     lags
 }
 
+/// What an integral gains from step `i` over some steps, `k` steps later.
+fn late(of: &[f64], i: usize, k: isize) -> f64 {
+    of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)]
+}
+
 /// The rudder against the yaw: `dr/dt = a r + b r|r| + c v + d delta + e delta n|n| + f`, integrated over some steps in which the ship
 /// sails ahead with its propeller ahead: a rudder in a flow from astern acts to the other side, or not at all.
 pub fn rudder(series: &Series<'_>) -> Option<Curve> {
@@ -126,8 +136,6 @@ pub fn rudder(series: &Series<'_>) -> Option<Curve> {
     let sway = integral(t, |i| of(v, i));
     let angle = integral(t, |i| delta[i]);
     let force = integral(t, |i| delta[i] * of(n, i) * of(n, i).abs());
-    let late =
-        |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
     let u = series.get(Channel::U);
     let ahead = |row: usize| u.is_none_or(|u| u[row] > 0.0) && n.is_none_or(|n| n[row] >= 0.0);
     let usable = |start: usize| (start..=start + RESPONSE_STEPS).all(ahead);
@@ -148,8 +156,6 @@ pub fn propeller(series: &Series<'_>) -> Option<Curve> {
     let (speed, square) = (integral(t, |i| u[i]), integral(t, |i| u[i] * u[i].abs()));
     let turning = integral(t, |i| of(v, i) * of(r, i));
     let drag = integral(t, |i| of(delta, i) * of(delta, i));
-    let late =
-        |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
     curve::<7, 2, 1>(
         series,
         |_| true,
@@ -175,8 +181,6 @@ pub fn sway(series: &Series<'_>) -> Option<Curve> {
     let force = integral(t, |i| of(delta, i) * of(n, i) * of(n, i).abs());
     let ahead = |row: usize| u[row] > 0.0 && n.is_none_or(|n| n[row] >= 0.0);
     let usable = |start: usize| (start..=start + RESPONSE_STEPS).all(ahead);
-    let late =
-        |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
     curve::<6, 5, 1>(series, usable, |i, k| {
         let over = |of: &[f64]| late(of, i, 0);
         let columns = [over(&turn), over(&square), over(&centre), over(&angle), over(&force), over(t)];
@@ -188,8 +192,6 @@ pub fn sway(series: &Series<'_>) -> Option<Curve> {
 pub fn gyro(series: &Series<'_>) -> Option<Curve> {
     let (psi, r, t) = (series.get(Channel::Psi)?, series.recorded(Channel::R)?, &series.t);
     let turn = integral(t, |i| r[i]);
-    let late =
-        |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
     curve::<2, 1, 1>(series, |_| true, |i, k| [([late(&turn, i, k), late(t, i, 0)], late(psi, i, 0))])
 }
 
@@ -201,8 +203,6 @@ pub fn receiver(series: &Series<'_>) -> Option<Curve> {
     let t = &series.t;
     let north = integral(t, |i| u[i] * psi[i].cos() - v[i] * psi[i].sin());
     let east = integral(t, |i| u[i] * psi[i].sin() + v[i] * psi[i].cos());
-    let late =
-        |of: &[f64], i: usize, k: isize| of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)];
     curve::<3, 1, 2>(
         series,
         |_| true,

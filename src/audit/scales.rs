@@ -2,10 +2,8 @@
 //! It asks with the coefficients that the other runs have; lags are in `pooled`, and what contradicts itself within a run is in `units`.
 
 use super::issue::{Issue, Severity, Shared};
-use super::limits::{
-    POOLED_RUNS, POOLED_UNUSUAL, SCALE_COHERENCE, SCALE_EVIDENCE, SCALE_LEAVES, SCALE_SAME, SCALE_SIZE,
-};
-use super::pooled::{coefficients, total};
+use super::limits::{POOLED_UNUSUAL, SCALE_COHERENCE, SCALE_EVIDENCE, SCALE_LEAVES, SCALE_SAME, SCALE_SIZE};
+use super::pooled::Pool;
 use super::record::Responses;
 use super::response::{Curve, Sums};
 use crate::numerals::sig;
@@ -68,35 +66,24 @@ impl Asked {
     /// The factor of each run, in their order; `None` where its channel is as in the other runs, or that cannot be told.
     fn factors(&self, curves: &[Option<&Curve>]) -> Vec<Option<f64>> {
         let none = || vec![None; curves.len()];
-        let Some(step) = curves.iter().flatten().map(|c| c.step).next() else { return none() };
-        let sums = |c: &Curve| -> Sums { c.sums[c.zero()].clone() };
         let size = |c: &Curve| {
-            let sums = &c.sums[c.zero()];
+            let sums = c.at_zero();
             let size = if self.explained { sums.squares } else { sums.columns.first().copied().unwrap_or(0.0) };
             size / c.rows
         };
-        let Some(middle) = median(curves.iter().flatten().map(|c| size(c))) else { return none() };
-        let alike = |c: &&Curve| (c.step / step - 1.0).abs() < 0.01;
-        // A run with a damaged sample would outweigh all others.
-        let known: Vec<&Curve> =
-            curves.iter().flatten().copied().filter(alike).filter(|c| size(c) <= SCALE_SIZE * middle).collect();
-        let Some(sum) = total(known.iter().copied()).filter(|_| known.len() >= POOLED_RUNS) else { return none() };
-        let others = |c: &Curve| {
-            let own = known.iter().any(|k| std::ptr::eq(*k, c)).then(|| sums(c));
-            coefficients(&sum, own.as_ref())
-        };
-        let square = |c: &Curve| Some(sums(c).left(&others(c)?) / c.rows);
-        let Some(usual) = median(known.iter().filter_map(|c| square(c))).filter(|u| *u > 0.0) else { return none() };
+        let Some(pool) = Pool::new(curves, size, SCALE_SIZE) else { return none() };
+        let square = |c: &Curve| Some(c.at_zero().left(&pool.others(c)?) / c.rows);
+        let Some(usual) = median(pool.runs().filter_map(square)).filter(|u| *u > 0.0) else { return none() };
         let judged = |curve: &Option<&Curve>| {
-            let curve = curve.filter(alike)?;
-            self.judged(curve, &others(curve)?, usual)
+            let curve = curve.filter(|c| pool.is_alike(c))?;
+            self.judged(curve, &pool.others(curve)?, usual)
         };
         curves.iter().map(judged).collect()
     }
 
     /// The factor of one run, given the coefficients of the others and the mean square that these usually leave.
     fn judged(&self, curve: &Curve, others: &[f64], usual: f64) -> Option<f64> {
-        let sums = &curve.sums[curve.zero()];
+        let sums = curve.at_zero();
         let left = |factor: f64| self.left(curve, sums, others, factor) / curve.rows;
         let as_it_is = left(1.0);
         let evidence = |factor: f64| {
@@ -148,19 +135,15 @@ pub fn scales(runs: &[(&str, &Responses)]) -> Vec<Shared> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::audit::example::noise;
     use crate::audit::series::Series;
     use crate::recording::Recording;
 
     /// A run in which the rudder swings: yaw and sway answer it as they do in every run, with noise; `factors` are those of v and of the
     /// rudder as recorded.
     fn run(seed: u32, [sway, rudder]: [f64; 2]) -> Responses {
-        let mut state = seed.wrapping_mul(2_654_435_761) | 1;
-        let mut noise = |size: f64| {
-            state ^= state << 13;
-            state ^= state >> 17;
-            state ^= state << 5;
-            size * (f64::from(state) / f64::from(u32::MAX) - 0.5)
-        };
+        let mut unit = noise(seed);
+        let mut noise = |size: f64| size * unit();
         let mut columns: [Vec<f64>; 6] = Default::default();
         let (mut r, mut v) = (0.0, 0.0);
         for i in 0..160 {

@@ -59,17 +59,12 @@ pub fn scatters(runs: &[(&str, Scatter)]) -> Vec<Shared> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::audit::example::noise;
 
     /// Eight runs that sail straight on; v of the first is recorded so many times too large.
     fn study(factor: f64, of_each: impl Fn(u32) -> f64) -> Vec<Shared> {
         let run = |seed: u32| {
-            let mut state = seed.wrapping_mul(2_654_435_761) | 1;
-            let mut noise = || {
-                state ^= state << 13;
-                state ^= state >> 17;
-                state ^= state << 5;
-                f64::from(state) / f64::from(u32::MAX) - 0.5
-            };
+            let mut noise = noise(seed);
             let scale = of_each(seed) * if seed == 1 { factor } else { 1.0 };
             let v: Vec<f64> = (0..150).map(|_| scale * 0.1 * noise()).collect();
             let t = (0..150).map(f64::from).collect();

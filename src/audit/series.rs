@@ -26,6 +26,23 @@ pub struct Series<'a> {
     pub delta: Option<Cow<'a, [f64]>>,
 }
 
+/// Stretches of one value within `rows`.
+pub fn constant(values: &[f64], rows: Range<usize>) -> Vec<Range<usize>> {
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    for row in rows {
+        match stretches.last_mut() {
+            Some(last) if values[last.start] == values[row] => last.end = row + 1,
+            _ => stretches.push(row..row + 1),
+        }
+    }
+    stretches
+}
+
+/// Sizes of the changes from stretch to stretch of one value.
+pub fn changes(values: &[f64], stretches: &[Range<usize>]) -> impl Iterator<Item = f64> {
+    stretches.windows(2).map(|s| (values[s[1].start] - values[s[0].start]).abs()).filter(|change| *change > 0.0)
+}
+
 /// Length of the local fits for a motion of some duration and step \[s\].
 fn span(duration: f64, step: f64) -> f64 {
     let shortest = SPAN.0 * step;

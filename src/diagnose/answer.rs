@@ -2,7 +2,7 @@
 //! stable. It runs the steps in order and holds no arithmetic and no threshold.
 
 use super::base::{AuditedRuns, BaseFit, Question};
-use super::conclude::{conclude, lead};
+use super::conclude::{cap, conclude, lead};
 use super::decide::{Decision, Unlisted, Verdict, decide};
 use super::error::DiagnoseError;
 use super::estimate::Estimate;
@@ -10,6 +10,7 @@ use super::event::{BaseTests, Opening};
 use super::finding::{Finding, PUSH};
 use super::grade::Grade;
 use super::improved::trimmed;
+use super::prove::HeldOut;
 use super::residual::{Kept, Residual};
 use super::select::Selection;
 use super::settings::Settings;
@@ -35,6 +36,12 @@ pub struct Answer {
 }
 
 impl Answer {
+    /// This answer under the proof of all findings together.
+    pub fn capped(mut self, proof: Option<&HeldOut>) -> Self {
+        cap(&mut self.findings, proof.is_some_and(HeldOut::is_refuted));
+        self
+    }
+
     /// All steps up to the verdict. A mechanism that its grade does not name is taken out again, one after the other, and what is left
     /// is tested and decided anew.
     pub fn new<'r>(question: &Question, runs: impl Into<Cow<'r, [Run]>>, held_out: &[Run]) -> Self {

@@ -236,14 +236,12 @@ impl Competition<'_> {
         if !is_sensor(first) || !rivals.iter().any(is_sensor) {
             return Vec::new();
         }
+        let asked: Vec<&Candidate> = std::iter::once(&*first)
+            .chain(rivals.iter().filter(|h| is_sensor(h)))
+            .map(|h| &candidates[h.candidate])
+            .collect();
+        let Some(mut agreements) = agreements(&self.current.model, runs, &asked) else { return Vec::new() };
         let (mut sensors, mut others): (Vec<Hypothesis>, Vec<Hypothesis>) = rivals.drain(..).partition(is_sensor);
-        let asked: Vec<&Candidate> =
-            std::iter::once(&*first).chain(&sensors).map(|h| &candidates[h.candidate]).collect();
-        let Some(mut agreements) = agreements(&self.current.model, runs, &asked) else {
-            rivals.append(&mut sensors);
-            rivals.append(&mut others);
-            return Vec::new();
-        };
         let ahead = |i: &usize| agreements[*i].over(&agreements[0]).filter(|[low, _]| *low > 0.0);
         let best = (1..agreements.len()).filter_map(|i| Some((i, ahead(&i)?)));
         if let Some((i, _)) = best.max_by(|a, b| a.1[0].total_cmp(&b.1[0])) {
@@ -317,14 +315,15 @@ impl Competition<'_> {
         let candidate = |e: &Entry| refitted[e.place].hypothesis.candidate;
         let mut set: Vec<usize> = ranking.set().iter().map(candidate).collect();
         let mut why = self.why(&ranking, &candidate, least);
-        let reach = form_tolerance(ranking.best - self.current.log_posterior);
-        let near = ranking.entries.iter().filter(|e| ranking.best - e.value < reach).map(candidate);
-        let more: Vec<usize> =
-            near.filter(|c| alike.contains(&set[0]) && alike.contains(c) && !set.contains(c)).collect();
-        if !more.is_empty() {
-            let titles: Vec<&str> = more.iter().map(|c| candidates[*c].mechanism.title).collect();
-            why = format!("{why}; what the sensors say of each other does not tell it from {}", titles.join(", "));
-            set.extend(more);
+        if alike.contains(&set[0]) {
+            let reach = form_tolerance(ranking.best - self.current.log_posterior);
+            let near = ranking.entries.iter().filter(|e| ranking.best - e.value < reach).map(candidate);
+            let more: Vec<usize> = near.filter(|c| alike.contains(c) && !set.contains(c)).collect();
+            if !more.is_empty() {
+                let titles: Vec<&str> = more.iter().map(|c| candidates[*c].mechanism.title).collect();
+                why = format!("{why}; what the sensors say of each other does not tell it from {}", titles.join(", "));
+                set.extend(more);
+            }
         }
         let winner = refitted.swap_remove(ranking.entries[0].place);
         Ok(self.selected(winner, leader, set, why))

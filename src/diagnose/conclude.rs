@@ -35,6 +35,13 @@ pub fn lead(decided: Verdict, findings: &mut [Finding]) -> Verdict {
     }
 }
 
+/// What is confirmed by itself is suspected where all findings together make unseen runs worse beyond chance: each may then stand for a
+/// part of something else.
+pub fn cap(findings: &mut [Finding], refuted_together: bool) {
+    let confirmed = findings.iter_mut().filter(|f| refuted_together && f.grade == Grade::Confirmed);
+    confirmed.for_each(|f| f.grade = Grade::Suspected);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -75,6 +82,16 @@ mod tests {
         assert_eq!(conclude(Verdict::NotInCatalogue, &[Grade::NotIsolated], false, true), Verdict::Insufficient);
         assert_eq!(conclude(Verdict::Named, &[Grade::Refuted], true, true), Verdict::Named);
         assert_eq!(conclude(Verdict::Insufficient, &[Grade::Refuted], false, true), Verdict::Insufficient);
+    }
+
+    #[test]
+    fn nothing_is_confirmed_where_all_findings_together_are_refuted() {
+        let of = |grade: Grade| Finding { grade, ..finding("current", "current", &["current"]) };
+        for (refuted, left) in [(true, Grade::Suspected), (false, Grade::Confirmed)] {
+            let mut findings = [of(Grade::Confirmed), of(Grade::Suspected)];
+            cap(&mut findings, refuted);
+            assert_eq!(findings.map(|f| f.grade), [left, Grade::Suspected]);
+        }
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //! that of the yaw rate. Errors of sensors are compared by it without a model of the ship; which are compared is decided elsewhere.
 
 use super::candidate::Candidate;
-use super::settings::GATE;
+use super::filter::Column;
+use super::settings::{GATE, STRETCH};
 use super::unseen::interval_of_sum;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
@@ -111,12 +112,11 @@ fn stretches<'r>(model: &Model, run: &'r Run, candidates: &[&Candidate]) -> Vec<
     let states: Vec<Option<[f64; STATES]>> = run.measured.iter().map(whole).collect();
     let reports = reports(model, run, &states, candidates);
     let speed = median(states.iter().flatten().map(|s| s[3].hypot(s[4]))).unwrap_or(0.0);
-    let rows = (0.5 * model.ship.hull.lpp / (speed * run.dt)).round();
+    let rows = (STRETCH * model.ship.hull.lpp / (speed * run.dt)).round();
     let rows = if rows.is_finite() { (rows as usize).clamp(1, states.len().max(2) - 1) } else { return Vec::new() };
     let starts = (0..states.len().saturating_sub(rows)).step_by(rows);
-    let whole = |from: usize| states[from..=from + rows].iter().copied().collect::<Option<Vec<_>>>();
     let stretch = |from: usize| {
-        let states = whole(from)?;
+        let states: Vec<[f64; STATES]> = states[from..=from + rows].iter().copied().collect::<Option<_>>()?;
         let added = |c: usize| &reports[c][from..=from + rows];
         let columns = (0..reports.len()).map(|c| slope(&states, added(c), run.dt)).collect();
         Some(Stretch { recording: &run.recording, left: disagreement(&states, run.dt), columns })
@@ -124,6 +124,7 @@ fn stretches<'r>(model: &Model, run: &'r Run, candidates: &[&Candidate]) -> Vec<
     starts.filter_map(stretch).collect()
 }
 
+/// The measured state, where every channel has a value.
 fn whole(measured: &Measured) -> Option<[f64; STATES]> {
     let mut state = [0.0; STATES];
     for (s, m) in state.iter_mut().zip(measured) {
@@ -146,7 +147,7 @@ fn reports(
         states.iter().zip(&run.inputs).map(report).collect()
     };
     let plain = of(values.clone());
-    let column = |c: &super::filter::Column| {
+    let column = |c: &Column| {
         let mut with = values.clone();
         with[c.parameter] += c.scale;
         of(with).iter().zip(&plain).map(|(w, p)| std::array::from_fn(|j| w[j] - p[j])).collect()
@@ -154,35 +155,42 @@ fn reports(
     candidates.iter().flat_map(|c| &c.columns).map(column).collect()
 }
 
-/// Recorded way and turn of a stretch less those that its velocities make, by the trapezoidal rule, along its middle heading.
+/// Recorded way and turn of a stretch less those that its velocities make, along its middle heading.
 fn disagreement(states: &[[f64; STATES]], dt: f64) -> Equations {
     let (first, last) = (states[0], states[states.len() - 1]);
-    let mut left = [last[0] - first[0], last[1] - first[1], wrap_angle(last[2] - first[2])];
-    for pair in states.windows(2) {
-        for [_, _, psi, u, v, r] in pair {
-            let (sin, cos) = psi.sin_cos();
-            let way = [u * cos - v * sin, u * sin + v * cos, *r];
-            (0..3).for_each(|q| left[q] -= 0.5 * dt * way[q]);
-        }
-    }
-    left[2] = wrap_angle(left[2]);
-    along(states, left)
+    let change = [last[0] - first[0], last[1] - first[1], wrap_angle(last[2] - first[2])];
+    let rate = |k: usize| {
+        let [_, _, psi, u, v, r] = states[k];
+        over_ground(psi, [u, v, r])
+    };
+    let [north, east, turn] = less_integral(change, rate, states.len(), dt);
+    along(states, [north, east, wrap_angle(turn)])
 }
 
 /// How the disagreement changes with what is added to the reports.
 fn slope(states: &[[f64; STATES]], added: &[[f64; STATES]], dt: f64) -> Equations {
     let (first, last) = (added[0], added[added.len() - 1]);
-    let mut change: Equations = std::array::from_fn(|q| last[q] - first[q]);
-    for k in 1..states.len() {
-        for i in [k - 1, k] {
-            let ([_, _, psi, u, v, _], [_, _, turned, du, dv, dr]) = (states[i], added[i]);
-            let (sin, cos) = psi.sin_cos();
-            let (ahead, across) = (du - v * turned, dv + u * turned);
-            let way = [ahead * cos - across * sin, ahead * sin + across * cos, dr];
-            (0..3).for_each(|q| change[q] -= 0.5 * dt * way[q]);
+    let rate = |k: usize| {
+        let ([_, _, psi, u, v, _], [_, _, turned, du, dv, dr]) = (states[k], added[k]);
+        over_ground(psi, [du - v * turned, dv + u * turned, dr])
+    };
+    along(states, less_integral(std::array::from_fn(|q| last[q] - first[q]), rate, states.len(), dt))
+}
+
+/// Velocities ahead and to starboard on the earth's axes; the yaw rate is the same.
+fn over_ground(psi: f64, [ahead, across, turn]: Equations) -> Equations {
+    let (sin, cos) = psi.sin_cos();
+    [ahead * cos - across * sin, ahead * sin + across * cos, turn]
+}
+
+/// A change over so many samples less the integral of its rate, by the trapezoidal rule.
+fn less_integral(mut change: Equations, rate: impl Fn(usize) -> Equations, samples: usize, dt: f64) -> Equations {
+    for k in 1..samples {
+        for rate in [rate(k - 1), rate(k)] {
+            (0..3).for_each(|q| change[q] -= 0.5 * dt * rate[q]);
         }
     }
-    along(states, change)
+    change
 }
 
 /// A way on the earth's axes, along the heading in the middle of a stretch.

@@ -49,6 +49,7 @@ pub fn diagnose<'r>(
     let (answer, stability): (Answer, Option<Stability>) = answer.repeated(&question, &given, &held_out)?;
     let rates: Option<ErrorRates> = ErrorRates::new(&question, &answer, &given, &held_out, settings.calibrate)?;
     let proof: Option<HeldOut> = proof(&question, &answer, &held_out);
+    let answer: Answer = answer.capped(proof.as_ref());
     let sailed: Vec<Sailed> = pictured(&question, &answer, &held_out);
     Ok(Diagnosis { set_aside, stability, error_rates: rates, sailed, ..report(&question, answer, proof) })
 }

@@ -61,6 +61,11 @@ impl HeldOut {
     pub fn is_worse(&self) -> bool {
         self.improvement.is_some_and(|i| i < 0.0)
     }
+
+    /// Whether it is worse beyond chance: then no part of what changed is confirmed, though each by itself may predict better.
+    pub fn is_refuted(&self) -> bool {
+        self.ci95.is_some_and(|[_, high]| high < 0.0)
+    }
 }
 
 /// Log-likelihood of runs under a model, and the mean square of its standardised innovations without the outliers.

@@ -269,6 +269,8 @@ numbers! {
     INDISTINGUISHABLE: f64 = 3.0, "a likelihood ratio of 20";
     /// That difference as a share of the gain of a force or of the ship's own physics, whose law is known only so well.
     FORM_TOLERANCE: f64 = 0.1, SEEDS;
+    /// Length of the stretches over which the sensors are held against each other, in ship lengths.
+    STRETCH: f64 = 0.5, "chosen with the method, before any case, and not varied";
     /// Prior standard deviations that a mechanism's own coefficients may be off before its force is another mechanism's.
     IMPLAUSIBLE: f64 = 2.0, CUSTOM;
     /// Share of its own force that a mechanism must leave once the force of the base's asymmetric parameters is added.
