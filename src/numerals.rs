@@ -57,6 +57,12 @@ pub fn interval(lo: f64, hi: f64, digits: usize) -> String {
     format!("[{}, {}]", sig(lo, digits), sig(hi, digits))
 }
 
+/// `1 window`, `3 windows`: a number with its noun, which has a regular plural.
+#[must_use]
+pub fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 /// `3` as `³`, `-6` as `⁻⁶`.
 #[must_use]
 pub fn superscript(n: i32) -> String {
@@ -106,6 +112,11 @@ mod tests {
             }
             x *= 3.9;
         }
+    }
+
+    #[test]
+    fn a_noun_is_in_the_plural_but_for_one() {
+        assert_eq!([0, 1, 2].map(|n| counted(n, "run")), ["0 runs", "1 run", "2 runs"]);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::limits::{
 };
 use super::orders::{Leap, ordered};
 use super::pooled::{Odd, odd};
-use super::propeller::{advance, advance_ratio};
+use super::propeller::{advance, advance_ratio, is_unpowered, unpowered};
 use super::record::Responses;
 use super::response::Curve;
 use super::scales::scales;
@@ -34,6 +34,10 @@ pub struct Evidence {
     /// Median advance ratio.
     ratio: Option<f64>,
     responses: Responses,
+    /// Channels of the wrong sign.
+    turned: Vec<Channel>,
+    /// Whether its propeller never turns though it sails.
+    unpowered: bool,
     /// The largest leap of the rudder.
     leap: Option<Leap>,
     /// How its velocities scatter.
@@ -48,7 +52,7 @@ pub struct Evidence {
 
 impl Evidence {
     /// That of a run, from the part of its recording that the study uses.
-    pub(super) fn of(run: &Listed, recording: &Recording, ship: &Ship, responses: Responses) -> Self {
+    pub(super) fn of(run: &Listed, recording: &Recording, ship: &Ship, responses: Responses, issues: &[Issue]) -> Self {
         let squares: Vec<f64> =
             recording.get(Channel::U).into_iter().flatten().filter(|u| u.is_finite()).map(|u| u * u).collect();
         Self {
@@ -58,6 +62,8 @@ impl Evidence {
             speed: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
             ratio: advance_ratio(recording, ship),
             responses,
+            turned: issues.iter().filter(|i| i.fault == "sign_error").filter_map(|i| i.channel).collect(),
+            unpowered: is_unpowered(recording, ship),
             leap: Leap::of(recording),
             scatter: Scatter::of(recording),
             repeats: repeats(recording),
@@ -97,7 +103,10 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
         found.extend(sessions(runs, pair, time));
     }
     let leaps: Vec<Leap> = runs.iter().filter_map(|r| r.leap).collect();
-    let every = || runs.iter().map(|r| r.run.clone()).collect();
+    let every = || runs.iter().map(|r| r.run.clone()).collect::<Vec<_>>();
+    if !runs.is_empty() && runs.iter().all(|r| r.unpowered) {
+        found.push(Shared { runs: every(), issue: unpowered() });
+    }
     found.extend(ordered(&leaps, time).map(|issue| Shared { runs: every(), issue }));
     let responses: Vec<(&str, &Responses)> = runs.iter().map(|r| (r.run.as_str(), &r.responses)).collect();
     let scattered: Vec<(&str, Scatter)> = runs.iter().map(|r| (r.run.as_str(), r.scatter)).collect();
@@ -188,8 +197,10 @@ fn late(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
         return Vec::new();
     }
     let worth = |seconds: f64, step: f64| seconds.abs() > (LAG_SHARE * time).max(LAG_STEPS[0] * step);
-    let curves: Vec<(&Evidence, &Curve)> =
-        runs.iter().filter_map(|r| Some((r, (pair.of)(&r.responses)?))).filter(|(_, c)| telling(c)).collect();
+    // What acts to the wrong side, or on a motion that is told to the wrong side, is as good as late by half a period.
+    let sound = |r: &&Evidence| !r.turned.iter().any(|c| [pair.channel, Channel::R, Channel::U].contains(c));
+    let of_sound = runs.iter().filter(sound).filter_map(|r| Some((r, (pair.of)(&r.responses)?)));
+    let curves: Vec<(&Evidence, &Curve)> = of_sound.filter(|(_, c)| telling(c)).collect();
     let all = Sum::of(curves.iter().map(|(_, c)| *c)).filter(|_| curves.len() > 1).and_then(|sum| {
         let (best, zero) = (sum.best(), sum.lags.iter().position(|lag| *lag == 0)?);
         let sure = sum.total[zero] - sum.total[best] > LAG_EVIDENCE && !sum.at_end(best);

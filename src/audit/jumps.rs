@@ -59,9 +59,10 @@ fn far(channel: Channel, t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
     sorted.sort_by(f64::total_cmp);
     let tail = (TAIL * sorted.len() as f64).ceil() as usize;
     let (low, high) = (sorted[tail], sorted[sorted.len() - 1 - tail]);
+    // What is set may hold one value for most of a run: its size then counts for its range.
+    let range = if set { (high - low).max(high.abs().max(low.abs())) } else { high - low };
     // The usual scatter; beside it a share of the range, since data without noise have none.
-    let least = |scatter: f64| (FAR * scatter).max(FAR_SHARE * (high - low));
-    let usual = least(deviation(from_median.iter().copied()));
+    let usual = (FAR * deviation(from_median.iter().copied())).max(FAR_SHARE * range);
     // The range of what is set: of values that do not stand alone.
     let near = FAR_SHARE * (sorted[sorted.len() - 1] - sorted[0]);
     let pairs = finite.windows(2).filter(|pair| (pair[0] - pair[1]).abs() <= near).flatten();
@@ -199,6 +200,9 @@ mod tests {
         // On its way to the other side.
         assert!(lost(&[20, 40]).is_empty());
         assert!(told(Channel::Thruster, zigzag, |d| d[47] = 0.0).is_empty());
+        // Turned at the start of the run, and held.
+        let turned = |side: f64| told(Channel::Delta, |i| side * (0.09 * i as f64).min(0.61), |_| ());
+        assert!(turned(1.0).is_empty() && turned(-1.0).is_empty());
         // A propeller at one rate that is read ten times too large in four rows.
         let tenfold = |n: &mut [f64]| [4, 29, 68, 98].iter().for_each(|row| n[*row] *= 10.0);
         assert_eq!(told(Channel::N, |_| 2.57, tenfold), [4, 29, 68, 98]);

@@ -139,6 +139,8 @@ pub const LEVER_SHARE: f64 = 0.2;
 /// Advance ratios u / (n D) that ships under way have, from heavy towing to wind from astern. Open-water diagrams of the Wageningen B
 /// series reach zero thrust between 0.6 and 1.5, by pitch.
 pub const SAILED: [f64; 2] = [0.2, 1.6];
+/// A propeller that turns slower than this share of its fastest in the run is stopped, and has no advance ratio.
+pub const POWERED: f64 = 0.05;
 /// Samples ahead under power that a ratio is told from.
 pub const RATIO_SAMPLES: usize = 20;
 /// A ship is under way at this many times the speed below which its dynamics are regularised.
@@ -211,7 +213,9 @@ pub const RESPONSE_STEPS: usize = 4;
 pub const ASTERN_SHARE: f64 = 0.9;
 /// and in the last third of them the ship still sails ahead at this share of its speed in the first.
 pub const ASTERN_SPEED: f64 = 0.5;
-/// A steady turn against the rudder: cosine of rudder and yaw rate below this,
+/// A rudder that stays below this angle \[rad\], 0.1 deg, was never moved.
+pub const STILL_RUDDER: f64 = 0.1 * std::f64::consts::PI / 180.0;
+/// A steady turn with or against the rudder: cosine of rudder and yaw rate beyond this,
 pub const AGAINST: f64 = -0.8;
 /// over at least this change of heading \[rad\]
 pub const AGAINST_TURN: f64 = std::f64::consts::FRAC_PI_2;

@@ -129,6 +129,9 @@ mod tests {
             (vec![Channel::U, Channel::V], 1.943_844, Channel::U, "in knots and was declared m/s"),
             (vec![Channel::U, Channel::V], 1.0 / 1.943_844, Channel::U, "in m/s and was declared kn"),
             (vec![Channel::U, Channel::V], -1.0, Channel::U, "against its recorded velocity"),
+            (vec![Channel::U, Channel::V], 1.0 / 0.3048, Channel::U, "in ft/s and was declared m/s"),
+            (vec![Channel::X, Channel::Y], 1.0 / 0.3048, Channel::U, "position is in ft"),
+            (vec![Channel::X, Channel::Y], 1.0 / 1852.0, Channel::U, "position is in nautical miles"),
             (vec![Channel::V], -1.0, Channel::V, "sway of the track"),
             (vec![Channel::Y], -1.0, Channel::Psi, "mirror image"),
         ];
@@ -157,6 +160,57 @@ mod tests {
             let issues: Vec<Issue> = propeller::advance(&[ratio], &ship).into_iter().flatten().collect();
             assert_eq!(issues.len(), usize::from(told.is_some()), "{issues:?}");
             assert!(told.is_none_or(|t| issues[0].text.contains(&format!("the column is in {t} "))), "{issues:?}");
+        }
+    }
+
+    #[test]
+    fn a_propeller_that_is_stopped_has_no_advance_ratio_and_one_that_never_turns_is_told() {
+        let ship = Ship::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/ships/a.toml")).unwrap();
+        let with = |rate: &dyn Fn(usize) -> f64| {
+            let mut run = swing();
+            values(&mut run, Channel::N).iter_mut().enumerate().for_each(|(i, n)| *n = rate(i));
+            Recording::from_channels("run", run).unwrap()
+        };
+        let windmilling = with(&|i| if i < 100 { 2.0 } else { 0.004 });
+        let ratio = propeller::advance_ratio(&windmilling, &ship).unwrap();
+        assert!((0.2..1.6).contains(&ratio), "{ratio}");
+        assert!(!propeller::is_unpowered(&windmilling, &ship) && propeller::is_unpowered(&with(&|_| 0.0), &ship));
+    }
+
+    /// A turn under a rudder that is held: the yaw rate answers once, and then follows from nothing that changes.
+    fn turn(side: f64) -> Vec<(Channel, Vec<f64>)> {
+        let t: Vec<f64> = (0..400).map(f64::from).collect();
+        // The turn slackens as the ship loses speed, while the rudder stays.
+        let r: Vec<f64> = t.iter().map(|t| 0.01 * (1.0 + (-t / 40.0).exp()) * (1.0 - (-t / 10.0).exp())).collect();
+        let psi = r
+            .iter()
+            .scan(0.0, |psi: &mut f64, r| {
+                *psi += r;
+                Some(*psi)
+            })
+            .collect();
+        let delta = t.iter().map(|t| side * 0.6 * (1.0 - 0.02 * (t / 30.0).min(1.0))).collect();
+        let u = t.iter().map(|t| 3.0 + 2.0 * (-t / 60.0).exp()).collect();
+        vec![(Channel::T, t), (Channel::Psi, psi), (Channel::U, u), (Channel::R, r), (Channel::Delta, delta)]
+    }
+
+    #[test]
+    fn a_steady_turn_shows_the_side_to_which_the_rudder_acts() {
+        let against = |side: f64| issues(turn(side)).iter().any(|i| i.text.contains("against its rudder"));
+        assert!(!against(1.0) && against(-1.0));
+    }
+
+    #[test]
+    fn a_rudder_that_never_moves_is_told_where_the_ship_turns() {
+        let still = |run| issues(run).iter().any(|i| i.fault == "still");
+        assert!(still(turn(0.0)) && !still(turn(1.0)));
+    }
+
+    #[test]
+    fn what_follows_from_a_turned_sign_is_not_told_beside_it() {
+        for channel in [Channel::V, Channel::R, Channel::Delta] {
+            let found = scaled(&[channel], -1.0);
+            assert!(found.iter().all(|i| i.fault == "sign_error"), "{channel}: {found:?}");
         }
     }
 

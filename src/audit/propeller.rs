@@ -2,7 +2,7 @@
 //! What the propeller's thrust is, is the model's affair.
 
 use super::issue::{Issue, Severity};
-use super::limits::{RATIO_APART, RATIO_INSIDE, RATIO_SAMPLES, SAILED, UNDER_WAY};
+use super::limits::{POWERED, RATIO_APART, RATIO_INSIDE, RATIO_SAMPLES, SAILED, UNDER_WAY};
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording};
 use crate::ship::Ship;
@@ -21,7 +21,8 @@ const UNITS: [(f64, &str); 4] = [
 pub fn advance_ratio(recording: &Recording, ship: &Ship) -> Option<f64> {
     let (n, u) = recording.get(Channel::N).zip(recording.get(Channel::U))?;
     let slow = ship.small_speed();
-    let ahead = n.iter().zip(u).filter(|(n, u)| **n > 0.0 && **u > UNDER_WAY * slow);
+    let fastest = n.iter().copied().filter(|n| n.is_finite()).fold(0.0, f64::max);
+    let ahead = n.iter().zip(u).filter(|(n, u)| **n > POWERED * fastest && **u > UNDER_WAY * slow);
     let ratios: Vec<f64> = ahead.map(|(n, u)| u / (n * ship.propeller.diameter)).collect();
     if ratios.len() < RATIO_SAMPLES { None } else { median(ratios) }
 }
@@ -50,4 +51,18 @@ fn doubt(ratio: f64, ship: &Ship) -> Issue {
     let text = format!("the advance ratio u / (n D) is {} in the median{meaning}", sig(ratio, 2));
     let next = format!("check `unit` of n in a column map, and D = {} m in the ship file", ship.propeller.diameter);
     Issue::new(Severity::Warning, "advance_ratio", text, next).of(Channel::N)
+}
+
+/// Whether the propeller stands still in every row of a ship that sails.
+pub fn is_unpowered(recording: &Recording, ship: &Ship) -> bool {
+    let Some((n, u)) = recording.get(Channel::N).zip(recording.get(Channel::U)) else { return false };
+    let sails = u.iter().any(|u| *u > UNDER_WAY * ship.small_speed());
+    sails && n.iter().all(|n| *n == 0.0 || n.is_nan()) && n.contains(&0.0)
+}
+
+/// The doubt where that is so in every run.
+pub fn unpowered() -> Issue {
+    let text = "the propeller never turns in any run, and the ship sails";
+    let next = "map the column of the propeller rate, or give a measured one (`trimtab help columns`): without it a fit takes the ship to be coasting";
+    Issue::new(Severity::Warning, "unpowered", text, next).of(Channel::N)
 }

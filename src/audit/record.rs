@@ -11,7 +11,7 @@ use super::kinematics::Kinematics;
 use super::response::{Curve, gyro, propeller, receiver, rudder, sway};
 use super::series::Series;
 use super::signs::{Actuators, Track};
-use super::units::{Turning, magnitudes};
+use super::units::{Turning, magnitudes, still};
 use crate::recording::{Channel, Recording};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -128,6 +128,7 @@ pub(super) fn examined(recording: &Recording) -> (Audit, Responses) {
     told.extend(turned.as_ref().map(|_| Channel::Psi));
     let recording = turned.as_ref().unwrap_or(recording);
     magnitudes(recording, &mut issues);
+    still(recording, &mut issues);
     let series = Series::from(recording);
     let responses = Responses::of(&series);
     let kinematics = agreement([(&series, &responses)], &mut issues);

@@ -11,6 +11,7 @@ use super::limits::{
 use super::response::Curve;
 use super::series::Series;
 use super::units::{SPEED_GAINS, known_gain};
+use crate::numerals::sig;
 use crate::recording::Channel;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -108,11 +109,14 @@ impl Track {
             issues.push(axes);
             return;
         }
+        // A turned sway turns the velocity, too: what follows from it is not told beside it.
+        let sway_turned = self.sway_turned();
         if coherence > COHERENT {
-            if self.wrong_velocity(angle.to_degrees(), self.along.hypot(self.across) / self.earth, issues) {
+            if self.wrong_velocity(angle.to_degrees(), self.along.hypot(self.across) / self.earth, sway_turned, issues)
+            {
                 return;
             }
-        } else {
+        } else if !sway_turned {
             let rms = (self.difference / self.count).sqrt();
             let text =
                 format!("track and velocity agree poorly (coherence {coherence:.2}, rms difference {rms:.3} m/s)");
@@ -142,7 +146,7 @@ impl Track {
     }
 
     /// Direction and speed of the track against the velocity's; true when a unit or a sign is plainly wrong.
-    fn wrong_velocity(&self, degrees: f64, gain: f64, issues: &mut Vec<Issue>) -> bool {
+    fn wrong_velocity(&self, degrees: f64, gain: f64, sway_turned: bool, issues: &mut Vec<Issue>) -> bool {
         let mut push = |severity, fault, channel, text: String, next: &str| {
             issues.push(Issue::new(severity, fault, text, next).of(channel));
         };
@@ -154,14 +158,14 @@ impl Track {
             return true;
         }
         // Without v, a ship that drifts in turns seems to run beside its heading.
-        if degrees.abs() > offset && self.sway.known() {
+        if degrees.abs() > offset && self.sway.known() && !sway_turned {
             let severity = if degrees.abs() > wrong { Severity::Error } else { Severity::Warning };
             let text = format!("the track runs {degrees:.1} deg clockwise of heading and velocity");
             let next = "is the heading offset, or a current left out? `offset` in a column map corrects a heading";
             push(severity, "axes_error", Channel::Psi, text, next);
         }
         if let Some((fault, meaning)) = known_gain(gain, &SPEED_GAINS) {
-            let text = format!("the track is {gain:.3} times as fast as the velocity: {meaning}");
+            let text = format!("the track is {} times as fast as the velocity: {meaning}", sig(gain, 3));
             push(Severity::Error, fault, Channel::U, text, "correct `unit` of u and v, or of x and y, in a column map");
             return true;
         }
@@ -175,6 +179,12 @@ impl Track {
         false
     }
 
+    /// Whether the track slides to the other side than v says.
+    fn sway_turned(&self) -> bool {
+        let known = self.lever.known() && self.sway.known();
+        known && self.sway.rms_sum() < SWAY_LEAVES * self.sway.rms() && self.sway.coherence() < SWAY_COHERENCE
+    }
+
     /// Sway of the track against recorded sway: a lever arm between the two points, or a turned sign.
     fn tell_sway(&self, kinematics: &mut Kinematics, issues: &mut Vec<Issue>) {
         if !self.lever.known() {
@@ -184,7 +194,7 @@ impl Track {
         if !self.sway.known() {
             return;
         }
-        if self.sway.rms_sum() < SWAY_LEAVES * self.sway.rms() && self.sway.coherence() < SWAY_COHERENCE {
+        if self.sway_turned() {
             let text = format!("sway of the track is {:.2} times the recorded v", self.sway.gain());
             let next = "is v positive to port? set `sign = -1` for `v` in a column map";
             issues.push(Issue::new(Severity::Error, "sign_error", text, next).of(Channel::V));
@@ -269,10 +279,11 @@ impl Actuators {
     /// What all rows say.
     pub fn tell(&self, issues: &mut Vec<Issue>) {
         let [both, delta, r] = self.held;
-        let steady = both < AGAINST * (delta * r).sqrt()
-            && self.turned.abs() > AGAINST_TURN
-            && delta > AGAINST_RUDDER * AGAINST_RUDDER * self.rows;
-        if self.rudder.turned() || steady {
+        let (turns, together) = (self.turned.abs() > AGAINST_TURN, both / (delta * r).sqrt());
+        let steered = turns && delta > AGAINST_RUDDER * AGAINST_RUDDER * self.rows;
+        // A steady turn shows its side by itself; how the yaw rate answers shows only where it changes.
+        let with = steered && together > -AGAINST;
+        if (self.rudder.turned() && !with) || (steered && together < AGAINST) {
             let next = "is the rudder positive to port? set `sign = -1` for `delta` in a column map";
             let issue = Issue::new(Severity::Error, "sign_error", "the ship turns against its rudder", next);
             issues.push(issue.of(Channel::Delta));

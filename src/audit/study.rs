@@ -105,7 +105,7 @@ fn audited(study: &Study, ship: &Ship, run: &Listed) -> Audited {
     let settings = study.settings(run, ship.hull.draught);
     let part = used(&recording, &settings);
     let (mut audit, responses) = examined(part.as_ref().unwrap_or(&recording));
-    let evidence = Evidence::of(run, part.as_ref().unwrap_or(&recording), ship, responses);
+    let evidence = Evidence::of(run, part.as_ref().unwrap_or(&recording), ship, responses, &audit.issues);
     let (mut train, mut test) = (0, 0);
     match recording.windows(&run.labels, &settings) {
         Ok(windows) => {

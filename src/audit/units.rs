@@ -4,7 +4,9 @@
 use super::clocks::Pair;
 use super::issue::{Issue, Severity};
 use super::kinematics::{Kinematics, Proportion};
-use super::limits::{APART, CALIBRATED, COHERENT, SAME_GAIN, SMALL_RATE, SMALL_RUDDER, SMALL_RUDDER_TURNS};
+use super::limits::{
+    AGAINST_TURN, APART, CALIBRATED, COHERENT, SAME_GAIN, SMALL_RATE, SMALL_RUDDER, SMALL_RUDDER_TURNS, STILL_RUDDER,
+};
 use super::series::Series;
 use crate::recording::{Channel, Recording};
 
@@ -35,6 +37,17 @@ pub fn magnitudes(recording: &Recording, issues: &mut Vec<Issue>) {
     }
 }
 
+/// A rudder that never moves while the ship turns: its column may not have been recorded.
+pub fn still(recording: &Recording, issues: &mut Vec<Issue>) {
+    let (Some(delta), Some(turned)) = (recording.get(Channel::Delta), turned(recording)) else { return };
+    let still = delta.iter().filter(|d| d.is_finite()).all(|d| d.abs() < STILL_RUDDER);
+    if still && turned > AGAINST_TURN {
+        let text = format!("the rudder is never moved, and the ship turns by {:.0} deg", turned.to_degrees());
+        let next = "is it the column of the rudder's angle, and was it recorded? A ship that turns by other means needs them recorded (`trimtab help channels`)";
+        issues.push(Issue::new(Severity::Warning, "still", text, next).of(Channel::Delta));
+    }
+}
+
 /// Largest less smallest heading of a run \[rad\]; `None` without a heading.
 fn turned(recording: &Recording) -> Option<f64> {
     let finite = || recording.get(Channel::Psi).into_iter().flatten().copied().filter(|p| p.is_finite());
@@ -42,14 +55,17 @@ fn turned(recording: &Recording) -> Option<f64> {
 }
 
 /// Known wrong units and signs by the gain they cause on a speed, and what each means.
-pub const SPEED_GAINS: [(f64, &str); 8] = [
-    (1e-3, "the time is in ms and was declared s"),
+pub const SPEED_GAINS: [(f64, &str); 11] = [
+    (1e-3, "the time is in ms and was declared s, or the position is in km and was declared m"),
     (1e3, "the time is in s and was declared ms"),
     (-1.0, "the sign is turned"),
     (1852.0 / 3600.0, "the column is in knots and was declared m/s"),
     (3600.0 / 1852.0, "the column is in m/s and was declared kn"),
     (1.0 / 3.6, "the column is in km/h and was declared m/s"),
     (3.6, "the column is in m/s and was declared km/h"),
+    (0.3048, "the column is in ft/s and was declared m/s, or the position is in m and was declared ft"),
+    (1.0 / 0.3048, "the position is in ft and was declared m"),
+    (1.0 / 1852.0, "the position is in nautical miles and was declared m"),
     (-1852.0 / 3600.0, "the column is in knots, was declared m/s, and its sign is turned"),
 ];
 

@@ -179,17 +179,22 @@ impl Audited {
         self.doubts.iter().any(Doubt::refused)
     }
 
-    /// The lines that come before the answer; empty where there is nothing to say.
-    pub fn lines(&self) -> String {
+    /// What was found, a sentence each.
+    pub fn told(&self) -> Vec<String> {
         let line = |d: &Doubt| {
             let word = match (d.severity, d.accepted) {
                 (Severity::Error, true) => "accepted error",
                 (Severity::Error, false) => "error",
                 _ => "warning",
             };
-            format!("{word}: {}\n", self.sentence(d))
+            format!("{word}: {}", self.sentence(d))
         };
-        let mut text: String = self.doubts.iter().map(line).collect();
+        self.doubts.iter().map(line).collect()
+    }
+
+    /// The lines that come before the answer; empty where there is nothing to say.
+    pub fn lines(&self) -> String {
+        let mut text: String = self.told().iter().flat_map(|line| [line, "\n"]).collect();
         if self.runs > 0 && !text.is_empty() {
             text += "`trimtab check` lists all that was found in the recordings.\n\n";
         }

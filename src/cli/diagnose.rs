@@ -95,6 +95,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     output.reads(&loaded, true);
     let settings = prepared(&loaded, settings(args, loaded.diagnose_settings()?)?)?;
     let audited = examined(&loaded, &args.accept)?;
+    output.recordings(audited.clone());
     output.settings("fit", &loaded.fit_settings()?)?;
     output.settings("evaluate", &loaded.evaluation_settings()?)?;
     output.settings("diagnose", &settings)?;

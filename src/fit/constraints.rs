@@ -16,7 +16,8 @@
 //! over the recorded speeds of its ships, `limits = "paper"` imposes it up to 5.4 m/s; (iii) is printed with the rudder's
 //! subscript; (iv) at a = 0 would force p4 = 0, so the grid leaves zero out, and it cannot hold beyond 45 degrees, where
 //! every such cubic changes sign. A propeller that drives a ship pushes: up to the advance ratios of a loaded propeller its
-//! thrust coefficient is positive.
+//! thrust coefficient is positive. The model's c_L includes the rudder's pull on the hull (1 + a_H, 1.2 to 1.4), so that it may exceed
+//! the 1 of a rudder alone: for any ship its limit is 2, and 1 with `limits = "paper"`.
 
 use super::error::FitError;
 use crate::model::Model;
@@ -33,7 +34,7 @@ use trimtab_ad::{Dual, Scalar, VectorFunction, jacobian};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Limits {
-    /// For any ship: no upper limit on resistance, which depends on the ship's size.
+    /// For any ship: no upper limit on resistance, which depends on the ship's size, and a lift of at most 2.
     #[default]
     General,
     /// As in the paper for its two container ships: R <= 80 kN, imposed up to 5.4 m/s.
@@ -255,7 +256,8 @@ pub fn rows(model: &Model, settings: &ConstraintSettings, speeds: [f64; 2]) -> R
     let speed_step = ((fastest - slowest) / 60.0).max(1e-6);
     let paper = settings.limits == Limits::Paper;
     let (highest, upper) = if paper { (5.4, 80e3) } else { (fastest, f64::INFINITY) };
-    let lift = |from: f64, to: f64, lower: f64| [from, to, 1.0, lower, lower + 1.0];
+    // With the rudder's pull on the hull, 1 + a_H.
+    let lift = if paper { 1.0 } else { 2.0 };
     let defaults: [(&str, Curve, Rule, [f64; 5]); 8] = [
         ("resistance", Curve::Resistance, settings.resistance, [0.0, highest, highest.max(1e-6) / 54.0, 0.0, upper]),
         (
@@ -265,8 +267,8 @@ pub fn rows(model: &Model, settings: &ConstraintSettings, speeds: [f64; 2]) -> R
             [slowest, fastest, speed_step, 0.0, f64::INFINITY],
         ),
         ("side_force", Curve::SideForce, settings.side_force, [0.0, 0.0, 1.0, -0.05, 0.05]),
-        ("lift_port", Curve::Lift, settings.lift_port, lift(-45.0, -1.0, -1.0)),
-        ("lift_starboard", Curve::Lift, settings.lift_starboard, lift(1.0, 45.0, 0.0)),
+        ("lift_port", Curve::Lift, settings.lift_port, [-45.0, -1.0, 1.0, -lift, 0.0]),
+        ("lift_starboard", Curve::Lift, settings.lift_starboard, [1.0, 45.0, 1.0, 0.0, lift]),
         ("drag", Curve::Drag, settings.drag, [-45.0, 45.0, 1.0, 0.0, 1.5]),
         ("drag_zero", Curve::Drag, settings.drag_zero, [0.0, 0.0, 1.0, f64::NEG_INFINITY, 0.05]),
         ("thrust", Curve::Thrust, settings.thrust, [0.0, 0.5, 0.05, 0.0, f64::INFINITY]),
@@ -410,6 +412,18 @@ mod tests {
         assert!(!broken.is_empty());
         // The lift just tops 1: the printed digits round it up.
         assert!(broken.iter().all(|r| r.rule == "lift_starboard" && r.violation(&free_values(&model)) < 2e-3));
+    }
+
+    #[test]
+    fn lift_with_the_pull_on_the_hull_may_exceed_that_of_a_rudder_alone_but_in_the_paper() {
+        let limits = |limits: Limits| {
+            let settings = ConstraintSettings { limits, tolerance: 0.0, ..Default::default() };
+            let rows = rows(&model(), &settings, [0.0, 8.0]).unwrap();
+            let of = |rule: &str| rows.iter().find(|r| r.rule == rule).map(|r| [r.lower, r.upper]);
+            (of("lift_port"), of("lift_starboard"))
+        };
+        assert_eq!(limits(Limits::General), (Some([-2.0, 0.0]), Some([0.0, 2.0])));
+        assert_eq!(limits(Limits::Paper), (Some([-1.0, 0.0]), Some([0.0, 1.0])));
     }
 
     #[test]

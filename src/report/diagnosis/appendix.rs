@@ -18,6 +18,8 @@ pub struct Provenance {
     pub command: String,
     /// The files.
     pub files: Vec<SourceFile>,
+    /// What the audit of the recordings tells, a sentence each; absent where none was made.
+    pub doubts: Option<Vec<String>>,
 }
 
 /// A file that was read.
@@ -112,6 +114,11 @@ pub(super) fn data(d: &Diagnosis, from: &Provenance) -> Section {
         table.row([if name.is_empty() { "(one)" } else { name }.to_owned(), runs.to_string(), sig(seconds / 60.0, 3)]);
     }
     section = section.table(&table, "Training runs that the analysis used.");
+    section = match from.doubts.as_deref() {
+        None => section,
+        Some([]) => section.text("The audit of the recordings found neither errors nor warnings."),
+        Some(doubts) => section.text("The audit of the recordings tells:").list(doubts),
+    };
     let mut files = Table::new(["file", "last change (UTC)", "SHA-256"]);
     for f in from.files.iter().take(MOST_FILES) {
         let or_dash = |text: &Option<String>| text.clone().unwrap_or_else(|| crate::numerals::DASH.to_owned());
