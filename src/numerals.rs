@@ -60,7 +60,13 @@ pub fn interval(lo: f64, hi: f64, digits: usize) -> String {
 /// `1 window`, `3 windows`: a number with its noun, which has a regular plural.
 #[must_use]
 pub fn counted(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+    format!("{count} {}", plural(count, noun))
+}
+
+/// `window` for one and `windows` for any other number of them.
+#[must_use]
+pub fn plural(count: usize, noun: &str) -> String {
+    format!("{noun}{}", if count == 1 { "" } else { "s" })
 }
 
 /// `3` as `³`, `-6` as `⁻⁶`.

@@ -18,7 +18,7 @@ use trimtab::diagnose::{Diagnosis, Grade, diagnose};
 use trimtab::evaluate::{Estimate, Evaluation};
 use trimtab::files::{Origin, ResultFolder};
 use trimtab::fit::Fit;
-use trimtab::numerals::{DASH, sig};
+use trimtab::numerals::{DASH, counted, sig};
 use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Runs, Split};
 
@@ -227,9 +227,9 @@ fn judged(evaluation: &Evaluation) -> String {
     let Some(test) = evaluation.summary("test") else { return "There is no test run.".to_owned() };
     let percent = |cvdm: Option<Estimate>| cvdm.map_or_else(|| DASH.to_owned(), |e| sig(e.value, 3));
     format!(
-        "cVDM (mean deviation from the recording, in % of the motion) on {} test runs: {} % with the published parameters, {} % \
+        "cVDM (mean deviation from the recording, in % of the motion) on {}: {} % with the published parameters, {} % \
          fitted; better on {}, worse on {}.",
-        test.runs,
+        counted(test.runs, "test run"),
         percent(test.cvdm_baseline),
         percent(test.cvdm_fitted),
         test.runs_better,

@@ -150,9 +150,13 @@ pub fn write_diagnosis(output: &mut Output, diagnosis: &Diagnosis, name: &str) -
 fn write_files(output: &mut Output, diagnosis: &Diagnosis, name: &str, json: &Value) -> Result<(), CliError> {
     if output.has_folder() {
         output.file("diagnosis.json", (serde_json::to_string_pretty(json)? + "\n").as_bytes());
-        let improved = fitted_text(&diagnosis.model, diagnosis.uncertainty.clone())?;
+        let mut improved = diagnosis.model.clone();
+        improved.name += ", improved";
+        let improved = fitted_text(&improved, diagnosis.uncertainty.clone())?;
+        let mut base = diagnosis.base.clone();
+        base.name += ", refitted";
         output.file("improved.toml", improved.as_bytes());
-        output.file("base.toml", model_text(&diagnosis.base)?.as_bytes());
+        output.file("base.toml", model_text(&base)?.as_bytes());
         let (pictures, from) = (pictures(diagnosis), output.provenance());
         output.file("report.html", page(diagnosis, name, &pictures, &from)?.render().as_bytes());
         output.figures(

@@ -110,8 +110,9 @@ pub(super) fn confusability(d: &Diagnosis) -> Option<Picture> {
     };
     let values: Vec<Vec<f64>> = names.iter().map(|a| names.iter().map(|b| between(a, b)).collect()).collect();
     let map = Mark::Heatmap { values, range: Some((0.5, 1.0)), annotate: true };
-    let short = Axis::categories("", names.iter().copied());
-    let long = Axis::categories("", names.iter().map(|m| title_of(&d.model, m)));
+    let numbered = || names.iter().enumerate().map(|(i, m)| (i + 1, title_of(&d.model, m)));
+    let short = Axis::categories("", numbered().map(|(number, _)| number.to_string()));
+    let long = Axis::categories("", numbered().map(|(number, title)| format!("{title}  {number}")));
     let side = 60 * names.len() as u32;
     Some(Picture {
         stem: "confusability",

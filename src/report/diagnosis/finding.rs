@@ -8,7 +8,7 @@ use super::verdict::{grade_label, size, withdrawn};
 use crate::diagnose::finding::Amplitude;
 use crate::diagnose::unseen::FindingProof;
 use crate::diagnose::{Diagnosis, Finding};
-use crate::numerals::{fixed, sig};
+use crate::numerals::{fixed, plural, sig};
 use crate::physics::Kind;
 use crate::report::html::Section;
 use crate::report::units::Units;
@@ -122,7 +122,7 @@ fn proof(f: &Finding, i: usize) -> Markup {
     let mean = h.before.zip(h.after);
     html! {
         div.scroll { table {
-            caption { "Free simulation of " (count(&format!("findings[{i}].held_out.recordings"), h.recordings)) " unseen recordings, everything else refitted without the finding." }
+            caption { "Free simulation of " (count(&format!("findings[{i}].held_out.recordings"), h.recordings)) " " (plural(h.recordings, "unseen recording")) ", everything else refitted without the finding." }
             thead { tr { th { "measure" } th.number { "without" } th.number { "with" } th { "unit" } } }
             tbody {
                 @for (name, words, pair, factor, unit) in rows { @if let Some(pair) = pair { (one(name, words, pair, factor, unit)) } }

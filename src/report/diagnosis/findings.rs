@@ -19,6 +19,12 @@ pub(super) fn model(d: &Diagnosis) -> Vec<String> {
             format!("{} = {}{about}", a.name, amplitude(a, units))
         }));
     }
+    let further: Vec<String> =
+        d.model.to_file().terms.into_iter().filter(|t| !d.findings.iter().any(|f| f.mechanism == *t)).collect();
+    if !d.findings.is_empty() && !further.is_empty() {
+        let list = further.join(", ");
+        lines.push(format!("beside the findings improved.toml has {list}: terms of the study's model, and the ship's own kept near their priors"));
+    }
     for t in &d.surrogate {
         lines.push(format!(
             "sparse force law (a description, not physics): {} = {} +- {}",

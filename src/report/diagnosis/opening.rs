@@ -5,7 +5,7 @@ use super::names::title_of;
 use super::quantity::{count, quantity};
 use super::verdict::{grade_label, subject, title};
 use crate::diagnose::{Diagnosis, Finding};
-use crate::numerals::{fixed, sig};
+use crate::numerals::{fixed, plural, sig};
 use maud::{Markup, html};
 
 /// A number to be seen first: what it is, and in words what it means.
@@ -65,7 +65,7 @@ fn nearer(d: &Diagnosis, i: usize, f: &Finding) -> Option<Number> {
         value: html! { (part(0, before)) " → " (part(1, after)) "\u{a0}" (unit) },
         meaning: html! {
             (words) " on " (count(&format!("findings[{i}].held_out.recordings"), h.recordings))
-            " unseen recordings, without and with " (title)
+            " " (plural(h.recordings, "unseen recording")) ", without and with " (title)
         },
     })
 }
@@ -79,14 +79,14 @@ fn cvdm(d: &Diagnosis) -> Option<Number> {
     let (Some(after), Some(gain), false) = (h.after, h.improvement, d.findings.is_empty()) else {
         return Some(Number {
             value: html! { (mean("before", before)) "\u{a0}%" },
-            meaning: html! { "error (cVDM) of the base model, refitted, on " (count("held_out.runs", h.runs)) " test runs" },
+            meaning: html! { "error (cVDM) of the base model, refitted, on " (count("held_out.runs", h.runs)) " " (plural(h.runs, "test run")) },
         });
     };
     Some(Number {
         value: html! { (percent("improvement", gain)) "\u{a0}%" },
         meaning: html! {
             "smaller error (cVDM " (mean("before", before)) "\u{a0}% → " (mean("after", after)) "\u{a0}%) on "
-            (count("held_out.runs", h.runs)) " test runs"
+            (count("held_out.runs", h.runs)) " " (plural(h.runs, "test run"))
             @if let Some([low, high]) = h.ci95 {
                 "; 95 % interval " (percent("ci95[0]", low)) "\u{a0}% to " (percent("ci95[1]", high)) "\u{a0}%"
             }

@@ -69,13 +69,15 @@ pub(super) fn pattern(d: &Diagnosis) -> Option<Picture> {
         let [_, _, _, u, v, _] = t.state[k];
         (u.hypot(v) > slow).then(|| (-v).atan2(u.abs()).to_degrees())
     };
-    let all: [(Axis, Abscissa<'_>, f64); 4] = [
-        (Axis::new("heading psi [deg]").range(0.0, 360.0).every(90.0), &heading, SECTOR),
+    let all: [(Axis, Abscissa<'_>, Option<f64>); 4] = [
+        (Axis::new("heading psi [deg]").range(0.0, 360.0).every(90.0), &heading, Some(SECTOR)),
         (Axis::new("propeller rate n [1/s]"), &rate, tenth(d, &rate)),
         (Axis::new("rudder angle delta [deg]"), &rudder, tenth(d, &rudder)),
         (Axis::new("drift angle (bow to starboard of course) [deg]"), &drift, tenth(d, &drift)),
     ];
-    let mut figure = Figure::new("Mean unknown force against state and inputs").columns(4).panel_size(520, 400);
+    let all: Vec<(Axis, Abscissa<'_>, f64)> = all.into_iter().filter_map(|(x, of, w)| Some((x, of, w?))).collect();
+    let columns = all.len();
+    let mut figure = Figure::new("Mean unknown force against state and inputs").columns(columns).panel_size(520, 400);
     for e in 0..3 {
         let (factor, label) = units.axis(e);
         for (x, of, width) in &all {
@@ -100,18 +102,18 @@ pub(super) fn pattern(d: &Diagnosis) -> Option<Picture> {
         stem: "pattern",
         part: "WHERE",
         caption:
-            "Mean unknown force against heading, propeller, rudder and drift, with 95 % intervals from the scatter \
+            "Mean unknown force against what varies of heading, propeller, rudder and drift, with 95 % intervals from the scatter \
                   between runs. A sine in heading is fixed on the earth; a slope in the others moves with the ship."
                 .to_owned(),
         figure,
     })
 }
 
-/// A round number near a tenth of the range of something over all samples.
-fn tenth(d: &Diagnosis, of: Abscissa<'_>) -> f64 {
+/// A round number near a tenth of the range of something over all samples; `None` where it does not vary.
+fn tenth(d: &Diagnosis, of: Abscissa<'_>) -> Option<f64> {
     let values = d.traces.iter().flat_map(|t| (0..t.state.len()).filter_map(|k| of(t, k))).filter(|v| v.is_finite());
     let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |a, v| (a.0.min(v), a.1.max(v)));
-    nice_step(((hi - lo) / 10.0).max(1e-9))
+    (hi - lo > 1e-6 * lo.abs().max(hi.abs())).then(|| nice_step((hi - lo) / 10.0))
 }
 
 /// Mean horizontal force by heading of the ship, as arrows in earth axes.

@@ -45,7 +45,7 @@ pub(super) fn equations(shares: [&EquationShare; 3], units: Units) -> String {
         .zip(shares)
         .map(|((e, unit, _), s)| format!("{e} {} ({})", percent(s.share), units.text(s.rms, unit)))
         .collect::<Vec<_>>()
-        .join("   ")
+        .join(", ")
 }
 
 /// A force in each equation with its 95 % interval, from its standard errors.

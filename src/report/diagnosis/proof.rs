@@ -3,7 +3,7 @@
 
 use super::phrases::percent;
 use crate::diagnose::{Diagnosis, Finding};
-use crate::numerals::{DASH, fixed, sig};
+use crate::numerals::{DASH, counted, fixed, sig};
 
 /// A cVDM in words.
 fn percentage(cvdm: Option<f64>) -> String {
@@ -32,7 +32,7 @@ fn alone(f: &Finding) -> Option<String> {
     parts.extend(distance(h.position, 1.0, "position error", "m"));
     parts.extend(distance(h.heading, 1f64.to_degrees(), "heading error", "deg"));
     parts.extend(distance(h.speed, 1.0, "speed error", "m/s"));
-    Some(format!("{} by itself, on {} recordings: {}", f.title, h.recordings, parts.join(", ")))
+    Some(format!("{} by itself, on {}: {}", f.title, counted(h.recordings, "recording"), parts.join(", ")))
 }
 
 /// What the findings gain on the test runs.
@@ -45,8 +45,8 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     };
     if d.findings.is_empty() {
         return vec![format!(
-            "no finding to prove; base model, refitted, on {} test runs: cVDM {} %",
-            h.runs,
+            "no finding to prove; base model, refitted, on {}: cVDM {} %",
+            counted(h.runs, "test run"),
             percentage(h.before)
         )];
     }
@@ -55,8 +55,8 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
         format!("95 % {} to {}", percent(low), percent(high))
     });
     let mut lines = vec![format!(
-        "{} test runs: cVDM {} % before, {} % after (improvement {gain}, {interval}); {} better, {} worse",
-        h.runs,
+        "{}: cVDM {} % before, {} % after (improvement {gain}, {interval}); {} better, {} worse",
+        counted(h.runs, "test run"),
         percentage(h.before),
         percentage(h.after),
         h.better,

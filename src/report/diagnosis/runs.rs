@@ -91,6 +91,8 @@ pub(super) fn picture(d: &Diagnosis, all: usize) -> Result<Option<Markup>, Figur
             "{} of {all} {which}s can be chosen, at equal distances in their list (at most {MOST_RUNS})",
             d.sailed.len()
         )
+    } else if all == 1 {
+        format!("it is the only {which}")
     } else {
         format!("all {all} {which}s can be chosen")
     };

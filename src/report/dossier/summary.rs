@@ -2,7 +2,7 @@
 //! The page has the rest.
 
 use crate::dossier::Dossier;
-use crate::numerals::sig;
+use crate::numerals::{counted, sig};
 use crate::report::table::Table;
 
 /// The summary.
@@ -14,8 +14,8 @@ pub fn summary(d: &Dossier) -> String {
             |e: Option<crate::evaluate::Estimate>, f: f64| e.map_or("not measured".into(), |e| sig(e.value * f, 3));
         let [x, y, psi, u, ..] = t.md_fitted;
         text += &format!(
-            "{} test runs: mean deviation x {} m, y {} m, heading {} deg, speed {} m/s; cVDM {} %\n",
-            t.runs,
+            "{}: mean deviation x {} m, y {} m, heading {} deg, speed {} m/s; cVDM {} %\n",
+            counted(t.runs, "test run"),
             number(x, 1.0),
             number(y, 1.0),
             number(psi, 1f64.to_degrees()),
