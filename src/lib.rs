@@ -113,6 +113,7 @@ pub mod terms;
 pub mod uncertainty;
 pub mod units;
 pub mod validity;
+pub mod written;
 
 pub use diagnose::{Diagnosis, Settings, Verdict, diagnose};
 pub use evaluate::{Evaluation, EvaluationSettings, Judging, prove};

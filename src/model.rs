@@ -5,10 +5,11 @@ use crate::error::suggestion;
 use crate::files::intact;
 use crate::parameter::ParameterInfo;
 use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number, TermInfo};
-use crate::ship::{COEFFICIENTS, Ship, explain, line_of};
+use crate::ship::{COEFFICIENTS, Ship};
 use crate::state::Inputs;
 use crate::terms;
 use crate::uncertainty::Uncertainty;
+use crate::written::{Kind, line_at, read_text, read_toml, told};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -38,7 +39,7 @@ pub const ELEVEN: [&str; 11] = [
 #[non_exhaustive]
 pub enum ModelError {
     /// The file could not be opened.
-    #[error("{path}: cannot read the model file ({source}); check the path given as `model` in the study")]
+    #[error("{path}: cannot read the model file ({source}); check the path: --model, or `model` or `baseline` in the study")]
     Read {
         /// The file.
         path: PathBuf,
@@ -71,6 +72,26 @@ pub enum ModelError {
         /// A near name, as part of a sentence.
         suggestion: String,
     },
+    /// A parameter of a term that the model does not have.
+    #[error("parameter `{name}` belongs to the term `{term}`, which the model does not have; add it: terms = [\"{term}\"]")]
+    AbsentTerm {
+        /// The name found.
+        name: String,
+        /// The term.
+        term: String,
+    },
+    /// A parameter that is set twice, by its name and by its symbol.
+    #[error("parameter `{name}` is set twice, by its name and by its symbol; keep one of them")]
+    SetTwice {
+        /// Dotted name.
+        name: String,
+    },
+    /// The parameters of another ship.
+    #[error("{0}")]
+    OtherShip(OtherShip),
+    /// Several of these.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Several(Vec<ModelError>),
     /// A parameter in the ship file that no term of the catalogue has.
     #[error(
         "the ship file sets `{name}`, which no term has{suggestion}; `trimtab terms` lists the parameters of each term"
@@ -102,6 +123,43 @@ pub enum ModelError {
         /// Its determinant.
         determinant: f64,
     },
+}
+
+/// A model that was fitted to another ship than that with which it is to be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the parameters are those of {}, L = {} m, and the ship here, {}, has L = {} m; use the ship file of the fit, or fit the model to this ship",
+    fitted.name, fitted.lpp, here.name, here.lpp
+)]
+pub struct OtherShip {
+    /// The ship of the parameters.
+    pub fitted: FittedShip,
+    /// The ship with which they are to be used.
+    pub here: FittedShip,
+}
+
+/// The ship to which the parameters of a model file belong: what tells it from another.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FittedShip {
+    /// Its name, for messages.
+    pub name: String,
+    /// Its length between perpendiculars \[m\].
+    pub lpp: f64,
+}
+
+impl FittedShip {
+    /// Share by which two lengths of one ship may differ: they are written with three digits or more.
+    const SAME: f64 = 2e-3;
+
+    fn of(ship: &Ship) -> Self {
+        Self { name: ship.name.clone(), lpp: ship.hull.lpp }
+    }
+
+    /// Whether this is the ship, by its length.
+    fn is(&self, ship: &Ship) -> bool {
+        (self.lpp - ship.hull.lpp).abs() <= Self::SAME * ship.hull.lpp
+    }
 }
 
 /// A prior on a parameter: what is known of it before the data.
@@ -207,6 +265,9 @@ pub struct ModelFile {
     /// Additions by session and dotted parameter name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub sessions: BTreeMap<String, BTreeMap<String, f64>>,
+    /// The ship to which the parameters belong, as a fit writes it: with a ship of another length the model is refused.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fitted_ship: Option<FittedShip>,
     /// Covariance of the estimates, as a fit writes it; a model that is changed has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub covariance: Option<Uncertainty>,
@@ -336,8 +397,13 @@ impl Model {
             if let Some(i) = model.index(name) {
                 model.parameters[i].value = *value;
             } else if !model.catalogued().any(|known| known == *name) {
-                let known: Vec<String> = model.catalogued().collect();
-                let near = suggestion(name, known.iter().map(String::as_str));
+                let near = match model.find(name) {
+                    Ok(i) => format!(", did you mean `{}`?", model.parameters[i].name),
+                    Err(_) => {
+                        let known: Vec<String> = model.catalogued().collect();
+                        suggestion(name, known.iter().map(String::as_str))
+                    }
+                };
                 return Err(ModelError::ShipParameter { name: name.clone(), suggestion: near });
             }
         }
@@ -393,8 +459,7 @@ impl Model {
 
     /// Reads a model file.
     pub fn read(path: &Path, ship: Ship) -> Result<Self, ModelError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| ModelError::Read { path: path.to_path_buf(), source })?;
+        let text = read_text(path).map_err(|source| ModelError::Read { path: path.to_path_buf(), source })?;
         Self::parse(&text, path, ship)
     }
 
@@ -408,24 +473,7 @@ impl Model {
             line: text.lines().count().max(1),
             message: broken.to_string(),
         })?;
-        let file: ModelFile = toml::from_str(text).map_err(|e| ModelError::Parse {
-            path: path.to_path_buf(),
-            line: e.span().map_or(1, |s| line_of(text, s.start)),
-            message: explain(e.message()),
-        })?;
-        Self::from_file(&file, ship).map_err(|e| {
-            let (ModelError::UnknownTerm { name, .. }
-            | ModelError::UnknownParameter { name, .. }
-            | ModelError::BadValue { name, .. }) = &e
-            else {
-                return e;
-            };
-            ModelError::Parse {
-                path: path.to_path_buf(),
-                line: text.find(name.as_str()).map_or(1, |at| line_of(text, at)),
-                message: e.to_string(),
-            }
-        })
+        Self::from_file(&model_file(text, path)?, ship).map_err(|error| placed(error, text, path))
     }
 
     /// A model from the content of a model file.
@@ -442,40 +490,22 @@ impl Model {
     /// Those of [`Model::from_file`].
     pub fn from_file_with(catalogue: Catalogue, file: &ModelFile, ship: Ship) -> Result<Self, ModelError> {
         let extra: Vec<&str> = file.terms.iter().map(String::as_str).collect();
+        if let Some(fitted) = file.fitted_ship.as_ref().filter(|fitted| !fitted.is(&ship)) {
+            return Err(ModelError::OtherShip(OtherShip { fitted: fitted.clone(), here: FittedShip::of(&ship) }));
+        }
         let mut model = Self::with_catalogue(catalogue, ship, &file.name, file.form, &extra)?;
         if file.hull == Some(HullSetting::Free) {
             model.free_hull();
         }
+        let (mut errors, mut set) = (Vec::new(), Vec::new());
         for (name, setting) in &file.parameters {
-            let i = model.find(name)?;
-            let default = model.default_prior(i);
-            let p = &mut model.parameters[i];
-            p.value = setting.value.unwrap_or(p.value);
-            p.free = setting.free.unwrap_or(p.free || setting.prior == Some(PriorSetting::Default));
-            p.lower = setting.lower.unwrap_or(p.lower);
-            p.upper = setting.upper.unwrap_or(p.upper);
-            match setting.prior {
-                Some(PriorSetting::Default) => p.prior = Some(default),
-                Some(PriorSetting::Given(prior)) => p.prior = Some(prior),
-                None => {}
-            }
-            if let Some(prior) = p.prior
-                && !(prior.sd > 0.0 && prior.sd.is_finite() && prior.mean.is_finite())
-            {
-                let expected = match setting.prior {
-                    Some(PriorSetting::Default) => {
-                        "nothing is known of it beforehand, so that it has no default prior; give prior = { mean = ..., sd = ... }"
-                    }
-                    _ => "a prior needs a finite mean and a positive, finite sd",
-                };
-                return Err(ModelError::BadValue { name: name.clone(), value: prior.sd, expected: expected.into() });
-            }
-            if !p.value.is_finite() || p.lower.is_nan() || p.upper.is_nan() || p.lower > p.upper {
-                return Err(ModelError::BadValue {
-                    name: name.clone(),
-                    value: p.value,
-                    expected: format!("the value must be finite and lower ({}) <= upper ({})", p.lower, p.upper),
-                });
+            match model.find(name) {
+                Err(unknown) => errors.push(unknown),
+                Ok(i) if set.contains(&i) => errors.push(ModelError::SetTwice { name: model.parameters[i].name.clone() }),
+                Ok(i) => {
+                    set.push(i);
+                    errors.extend(model.apply(i, name, setting));
+                }
             }
         }
         for (session, additions) in &file.sessions {
@@ -483,18 +513,75 @@ impl Model {
             for (name, value) in additions {
                 if !value.is_finite() {
                     let expected = format!("the addition in session `{session}` must be finite");
-                    return Err(ModelError::BadValue { name: name.clone(), value: *value, expected });
+                    errors.push(ModelError::BadValue { name: name.clone(), value: *value, expected });
                 }
-                list.push((model.find(name)?, *value));
+                match model.find(name) {
+                    Ok(i) => list.push((i, *value)),
+                    Err(unknown) => errors.push(unknown),
+                }
             }
             model.sessions.insert(session.clone(), list);
         }
         if let Some(fault) = file.covariance.as_ref().and_then(|c| c.fault(|name| model.index(name).is_some())) {
-            return Err(ModelError::Covariance(fault));
+            errors.push(ModelError::Covariance(fault));
+        }
+        match errors.len() {
+            0 => {}
+            1 => return Err(errors.remove(0)),
+            _ => return Err(ModelError::Several(errors)),
         }
         model.check_bounds()?;
         model.check()?;
         Ok(model)
+    }
+
+    /// Applies what a model file says of a parameter, and tells what of it is not possible.
+    fn apply(&mut self, parameter: usize, name: &str, setting: &Setting) -> Option<ModelError> {
+        let default = self.default_prior(parameter);
+        let p = &mut self.parameters[parameter];
+        p.value = setting.value.unwrap_or(p.value);
+        p.free = setting.free.unwrap_or(p.free || setting.prior == Some(PriorSetting::Default));
+        p.lower = setting.lower.unwrap_or(p.lower);
+        p.upper = setting.upper.unwrap_or(p.upper);
+        match setting.prior {
+            Some(PriorSetting::Default) => p.prior = Some(default),
+            Some(PriorSetting::Given(prior)) => p.prior = Some(prior),
+            None => {}
+        }
+        let wrong = |value, expected: String| Some(ModelError::BadValue { name: name.into(), value, expected });
+        for (key, bound) in [("lower", p.lower), ("upper", p.upper)] {
+            if bound.is_nan() {
+                return wrong(bound, format!("its `{key}` must be a number; correct it, or leave it out"));
+            }
+        }
+        if p.lower > p.upper {
+            let (lower, upper) = (p.lower, p.upper);
+            return wrong(p.value, format!("its `lower` ({lower}) must be at most its `upper` ({upper}); swap or correct them"));
+        }
+        if !p.value.is_finite() {
+            return wrong(p.value, "its `value` must be finite; correct it, or leave it out".to_owned());
+        }
+        let prior = p.prior?;
+        let known = prior.sd > 0.0 && prior.sd.is_finite() && prior.mean.is_finite();
+        match setting.prior {
+            Some(PriorSetting::Default) if !known => wrong(
+                p.value,
+                "nothing is known of it beforehand, so that it has no default prior; give prior = { mean = ..., sd = ... }".into(),
+            ),
+            _ if !known => wrong(
+                p.value,
+                format!(
+                    "its prior has the mean {} and the sd {}, where a finite mean and a positive, finite sd are needed; correct them",
+                    prior.mean, prior.sd
+                ),
+            ),
+            // Three standard deviations: what the bounds leave is then refused by the prior.
+            Some(PriorSetting::Given(_)) if prior.mean + 3.0 * prior.sd < p.lower || prior.mean - 3.0 * prior.sd > p.upper => {
+                let Prior { mean, sd } = prior;
+                wrong(p.value, format!("its prior ({mean} with sd {sd}) lies outside its bounds ({} to {}); correct one of them", p.lower, p.upper))
+            }
+            _ => None,
+        }
     }
 
     /// The covariance in a model file, if it has one.
@@ -502,14 +589,8 @@ impl Model {
     /// # Errors
     /// The file cannot be read, or is no model file.
     pub fn read_uncertainty(path: &Path) -> Result<Option<Uncertainty>, ModelError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| ModelError::Read { path: path.to_path_buf(), source })?;
-        let file: ModelFile = toml::from_str(&text).map_err(|e| ModelError::Parse {
-            path: path.to_path_buf(),
-            line: e.span().map_or(1, |s| line_of(&text, s.start)),
-            message: explain(e.message()),
-        })?;
-        Ok(file.covariance)
+        let text = read_text(path).map_err(|source| ModelError::Read { path: path.to_path_buf(), source })?;
+        Ok(model_file(&text, path)?.covariance)
     }
 
     /// Frees every hydrodynamic coefficient of the hull with its default prior: what `hull = "free"` in a model file does.
@@ -579,6 +660,7 @@ impl Model {
             terms: self.term_names().iter().filter(|t| !BASE.contains(t)).map(ToString::to_string).collect(),
             parameters,
             sessions: self.sessions.iter().map(|(s, list)| (s.clone(), list.iter().map(name_of).collect())).collect(),
+            fitted_ship: Some(FittedShip::of(&self.ship)),
             covariance: None,
         }
     }
@@ -627,11 +709,18 @@ impl Model {
         curve.all(|p| p.value == 0.0)
     }
 
+    /// The error of a name that no parameter of the model has.
     fn unknown(&self, name: &str) -> ModelError {
-        ModelError::UnknownParameter {
-            name: name.into(),
-            suggestion: suggestion(name, self.parameters.iter().map(|p| p.name.as_str())),
+        if let Some((term, _)) = name.split_once('.').filter(|_| self.catalogued().any(|known| known == name)) {
+            return ModelError::AbsentTerm { name: name.into(), term: term.into() };
         }
+        // The second half of a name means that parameter, whatever else is spelt like it.
+        let half = |p: &&Parameter| p.info.name == name;
+        let suggestion = match self.parameters.iter().find(half) {
+            Some(meant) => format!(", did you mean `{}`?", meant.name),
+            None => suggestion(name, self.parameters.iter().map(|p| p.name.as_str())),
+        };
+        ModelError::UnknownParameter { name: name.into(), suggestion }
     }
 
     /// Sets parameters by dotted name or symbol.
@@ -720,6 +809,33 @@ impl Model {
     pub fn placed(&self) -> &[Placed] {
         &self.terms
     }
+}
+
+/// The content of a model file.
+fn model_file(text: &str, path: &Path) -> Result<ModelFile, ModelError> {
+    read_toml(text, Kind::Model).map_err(|mistakes| {
+        let (line, message) = told(mistakes, path);
+        ModelError::Parse { path: path.to_path_buf(), line, message }
+    })
+}
+
+/// An error about a name in a model file, told with the line on which it stands.
+fn placed(error: ModelError, text: &str, path: &Path) -> ModelError {
+    let (ModelError::UnknownTerm { name, .. }
+    | ModelError::UnknownParameter { name, .. }
+    | ModelError::AbsentTerm { name, .. }
+    | ModelError::SetTwice { name }
+    | ModelError::BadValue { name, .. }) = &error
+    else {
+        return match error {
+            ModelError::Several(errors) => {
+                ModelError::Several(errors.into_iter().map(|error| placed(error, text, path)).collect())
+            }
+            other => other,
+        };
+    };
+    let line = text.find(name.as_str()).map_or(1, |at| line_at(text, at));
+    ModelError::Parse { path: path.to_path_buf(), line, message: error.to_string() }
 }
 
 #[cfg(test)]

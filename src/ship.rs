@@ -3,6 +3,7 @@
 
 use crate::numerals::sig;
 use crate::units::GRAVITY;
+use crate::written::{Kind, read_text, read_toml, told};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -59,6 +60,9 @@ pub enum ShipError {
         /// What it should be, as the rest of a sentence.
         expected: String,
     },
+    /// Several values that no ship can have.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Several(Vec<ShipError>),
 }
 
 /// A ship: its fixed particulars, in SI units.
@@ -246,30 +250,32 @@ pub const COEFFICIENTS: [(&str, i32); 16] = [
 impl Ship {
     /// Reads and checks a ship file.
     pub fn read(path: &Path) -> Result<Self, ShipError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| ShipError::Read { path: path.to_path_buf(), source })?;
+        let text = read_text(path).map_err(|source| ShipError::Read { path: path.to_path_buf(), source })?;
         Self::parse(&text, path)
     }
 
     /// Reads and checks the text of a ship file; `path` is used in messages.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ShipError> {
-        let ship: Self = toml::from_str(text).map_err(|e| match missing(text) {
-            missing if e.message().contains("missing field") && !missing.is_empty() => {
+        let ship: Self = read_toml(text, Kind::Ship).map_err(|mistakes| match missing(text) {
+            missing if !missing.is_empty() && mistakes.iter().all(|m| m.message.contains(" is missing")) => {
                 ShipError::Missing { path: path.to_path_buf(), missing }
             }
-            _ => ShipError::Parse {
-                path: path.to_path_buf(),
-                line: e.span().map_or(1, |s| line_of(text, s.start)),
-                message: explain(e.message()),
-            },
+            _ => {
+                let (line, message) = told(mistakes, path);
+                ShipError::Parse { path: path.to_path_buf(), line, message }
+            }
         })?;
-        ship.check(&Source { text, path })?;
-        Ok(ship)
+        let mut errors = ship.errors(&Source { text, path });
+        match errors.len() {
+            0 => Ok(ship),
+            1 => Err(errors.remove(0)),
+            _ => Err(ShipError::Several(errors)),
+        }
     }
 
-    /// Checks every number and coefficient name; `source` places the messages.
-    fn check(&self, source: &Source<'_>) -> Result<(), ShipError> {
-        self.check_finite(source)?;
+    /// What is wrong with the numbers and the names of coefficients; `source` places the messages.
+    fn errors(&self, source: &Source<'_>) -> Vec<ShipError> {
+        let mut errors = self.not_finite(source);
         for range in self.ranges() {
             let [low, high] = range.limits;
             if !(low..=high).contains(&range.value) {
@@ -279,35 +285,32 @@ impl Ship {
                     format!("between {} and {}", sig(low, 4), sig(high, 4))
                 };
                 let expected = format!("must be {within}: {}", range.meaning);
-                return source.value(range.key, range.value, &expected);
+                errors.push(source.value(range.key, range.value, &expected));
             }
         }
-        self.check_mass(source)?;
-        self.check_coefficient_names(source)?;
-        let d = self.mass_determinant();
-        if d.is_nan() || d <= 0.0 {
-            return source.value(
-                "hull.mass",
-                self.hull.mass,
-                &format!(
-                    "kg makes the sway-yaw mass matrix singular (determinant {d:.3e}); check Yvdot, Yrdot, Nvdot, Nrdot, x_g and gyration"
-                ),
-            );
+        errors.extend(self.unknown_coefficients(source));
+        if errors.is_empty() {
+            errors.extend(self.mass_error(source));
+            errors.extend(self.coefficients_of_another_size(source));
         }
-        Ok(())
+        let d = self.mass_determinant();
+        if errors.is_empty() && (d.is_nan() || d <= 0.0) {
+            let expected = format!(
+                "kg makes the sway-yaw mass matrix singular (determinant {d:.3e}); check Yvdot, Yrdot, Nvdot, Nrdot, x_g and gyration"
+            );
+            errors.push(source.value("hull.mass", self.hull.mass, &expected));
+        }
+        errors
     }
 
     /// The tables of free numbers, and those that have no range: TOML has words for NaN and infinity.
-    fn check_finite(&self, source: &Source<'_>) -> Result<(), ShipError> {
+    fn not_finite(&self, source: &Source<'_>) -> Vec<ShipError> {
         let tables = [&self.coefficients, &self.coefficients_prime, &self.parameters];
         let given = tables.into_iter().flatten().map(|(name, value)| (name.as_str(), *value));
         let thrust = self.propeller.thrust_coefficients.iter().map(|k| ("propeller.thrust_coefficients", *k));
-        match given.chain(thrust).find(|(_, value)| !value.is_finite()) {
-            Some((key, value)) => {
-                source.value(key, value, "is no number to compute with; correct it, or leave the entry out")
-            }
-            None => Ok(()),
-        }
+        let wrong = given.chain(thrust).filter(|(_, value)| !value.is_finite());
+        let expected = "is no number to compute with; correct it, or leave the entry out";
+        wrong.map(|(key, value)| source.value(key, value, expected)).collect()
     }
 
     /// The range of every particular that a ship can have, wide enough for models, tugs and barges: what is outside is a wrong unit or
@@ -420,29 +423,50 @@ impl Ship {
     }
 
     /// The mass against the displacement rho L B d C_b: a factor of two is a wrong unit.
-    fn check_mass(&self, source: &Source<'_>) -> Result<(), ShipError> {
+    fn mass_error(&self, source: &Source<'_>) -> Option<ShipError> {
         let h = &self.hull;
         let displaced = h.water_density * h.lpp * h.breadth * h.draught * h.block_coefficient;
-        if (0.5..2.0).contains(&(h.mass / displaced)) {
-            return Ok(());
-        }
         let expected = format!("kg is not the {displaced:.4e} kg that rho L B d C_b displaces; is the mass in kg?");
-        source.value("hull.mass", h.mass, &expected)
+        (!(0.5..2.0).contains(&(h.mass / displaced))).then(|| source.value("hull.mass", h.mass, &expected))
     }
 
-    fn check_coefficient_names(&self, source: &Source<'_>) -> Result<(), ShipError> {
+    /// Names that are no coefficients, and coefficients that are given in both tables, of which one would go unread.
+    fn unknown_coefficients(&self, source: &Source<'_>) -> Vec<ShipError> {
         let known: Vec<&str> = COEFFICIENTS.iter().map(|(n, _)| *n).collect();
-        let mut given = self.coefficients.keys().chain(self.coefficients_prime.keys());
-        let Some(name) = given.find(|name| !known.contains(&name.as_str())) else { return Ok(()) };
-        Err(ShipError::Parse {
+        let fail = |name: &str, message| ShipError::Parse {
             path: source.path.to_path_buf(),
             line: source.line(name),
-            message: format!(
-                "unknown coefficient `{name}`{}; known are {}",
-                crate::error::suggestion(name, known.iter().copied()),
-                known.join(", ")
-            ),
-        })
+            message,
+        };
+        let given = self.coefficients.keys().chain(self.coefficients_prime.keys());
+        let unknown = given.filter(|name| !known.contains(&name.as_str())).map(|name| {
+            let near = crate::error::suggestion(name, known.iter().copied());
+            fail(name, format!("unknown coefficient `{name}`{near}; known are {}", known.join(", ")))
+        });
+        let both = self.coefficients.keys().filter(|name| self.coefficients_prime.contains_key(*name)).map(|name| {
+            let text = format!("`{name}` is in [coefficients] and in [coefficients_prime]; keep one of them");
+            fail(name, text)
+        });
+        unknown.chain(both).collect()
+    }
+
+    /// Coefficients that are in the table of the other form: a prime value where one in SI units belongs, or the reverse. What is
+    /// published of ships lies between 0.0001 and 2 as a prime; the limits are a good order of magnitude beyond.
+    fn coefficients_of_another_size(&self, source: &Source<'_>) -> Vec<ShipError> {
+        let unit = |power: i32| 0.5 * self.hull.water_density * self.hull.lpp.powi(power) * self.hull.draught;
+        let power = |name: &str| COEFFICIENTS.iter().find(|(n, _)| *n == name).map_or(0, |(_, power)| *power);
+        let si = self.coefficients.iter().filter_map(|(name, value)| {
+            let prime = (value / unit(power(name))).abs();
+            let expected = format!(
+                "is {prime:.1e} without dimension, which no ship has; values without dimension stand in [coefficients_prime]"
+            );
+            (prime > 0.0 && !(5e-6..=50.0).contains(&prime)).then(|| (name, *value, expected))
+        });
+        let prime = self.coefficients_prime.iter().filter_map(|(name, value)| {
+            let expected = "is more than any ship has without dimension; values in SI units stand in [coefficients]";
+            (value.abs() > 50.0).then(|| (name, *value, expected.to_owned()))
+        });
+        si.chain(prime).map(|(name, value, expected)| source.value(name, value, &expected)).collect()
     }
 
     /// (m - Y_vdot)(I_z - N_rdot) - (m x_G - Y_rdot)(m x_G - N_vdot), which must be positive.
@@ -569,14 +593,14 @@ impl Source<'_> {
     }
 
     /// The error of a value that no ship can have.
-    fn value(&self, key: &str, found: f64, expected: &str) -> Result<(), ShipError> {
-        Err(ShipError::Value {
+    fn value(&self, key: &str, found: f64, expected: &str) -> ShipError {
+        ShipError::Value {
             path: self.path.to_path_buf(),
             line: self.line(key),
             key: key.into(),
             found,
             expected: expected.into(),
-        })
+        }
     }
 }
 
@@ -623,26 +647,11 @@ fn completion(path: &Path, missing: &[&str]) -> String {
 /// The line, counted from 1, of a ship file that sets a parameter by its dotted name; 1 where it cannot be found.
 pub fn parameter_line(path: &Path, name: &str) -> usize {
     let text = std::fs::read_to_string(path).unwrap_or_default();
-    text.lines().position(|l| l.trim_start().starts_with(&format!("\"{name}\""))).map_or(1, |i| i + 1)
-}
-
-/// The line, counted from 1, of a byte offset in a text.
-pub(crate) fn line_of(text: &str, offset: usize) -> usize {
-    text.as_bytes().iter().take(offset).filter(|b| **b == b'\n').count() + 1
-}
-
-/// Adds the next step to what the TOML reader says of a ship or model file.
-pub(crate) fn explain(message: &str) -> String {
-    let message = message.trim_end();
-    // serde writes: unknown field `found`, expected one of `a`, `b`
-    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    match quoted.split_first() {
-        Some((found, known)) if message.starts_with("unknown ") => {
-            format!("{message}{}", crate::error::suggestion(found, known.iter().copied()))
-        }
-        _ if message.contains("missing field") => format!("{message}; add it, in SI units where it has one"),
-        _ => message.to_string(),
-    }
+    let sets = |line: &str| {
+        let rest = line.trim_start().trim_start_matches('"').strip_prefix(name);
+        rest.is_some_and(|rest| rest.trim_start_matches('"').trim_start().starts_with('='))
+    };
+    text.lines().position(sets).map_or(1, |i| i + 1)
 }
 
 #[cfg(test)]
@@ -668,7 +677,7 @@ mod tests {
             ("span = 3.56", "span = 3.56\nx = 42.5", ":26: rudder.x", "aft is negative"),
             ("wake = 0.28", "wake = 28", ":17: propeller.wake", "a share of the ship's speed"),
             ("\"rudder.lift1\" = 0.864", "\"rudder.lift1\" = nan", ":39: rudder.lift1", "leave the entry out"),
-            ("wake = 0.28", "wakes = 0.28", ":17: unknown field", "did you mean `wake`?"),
+            ("wake = 0.28", "wakes = 0.28", ":17: unknown key", "did you mean `wake`?"),
             (
                 "area = 7.9",
                 "",

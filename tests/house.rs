@@ -28,6 +28,7 @@ const LAYERS: [&[&str]; 16] = [
         "uncertainty",
         "ranges",
         "files",
+        "written",
         "progress",
     ],
     &["physics"],

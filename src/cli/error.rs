@@ -40,6 +40,9 @@ pub enum CliError {
         /// The fault's name.
         fault: String,
     },
+    /// Several of these, each in a line of its own or more.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Several(Vec<CliError>),
     /// Files that could not be imported.
     #[error(transparent)]
     Import(#[from] ImportError),
@@ -136,6 +139,13 @@ pub enum CliError {
     /// Standard output could not be written.
     #[error("cannot write to standard output ({0}); is the disk full?")]
     Stdout(std::io::Error),
+}
+
+impl CliError {
+    /// All of some errors as one, of which there must be some.
+    pub fn all(mut errors: Vec<Self>) -> Self {
+        if errors.len() == 1 { errors.remove(0) } else { Self::Several(errors) }
+    }
 }
 
 impl From<toml::de::Error> for CliError {

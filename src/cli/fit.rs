@@ -149,7 +149,7 @@ pub fn fit_windows(
     if let Some(kept) = &kept {
         kept.remove();
     }
-    let mut fit = result.map_err(|error| CliError::Fit { path: loaded.study.path.clone(), error })?;
+    let mut fit = result.map_err(|error| loaded.of_fit(error))?;
     if !start.name.ends_with(FITTED_NAME) {
         fit.model.name += FITTED_NAME;
     }

@@ -7,8 +7,9 @@ use super::lines::filled;
 use super::output::{print, print_json};
 use clap::Command;
 use trimtab::error::suggestion;
+use trimtab::guide::reference::tables;
 use trimtab::guide::schema::{WITH_SCHEMA, schema};
-use trimtab::guide::{CHAPTERS, chapter};
+use trimtab::guide::{CHAPTERS, Chapter, chapter};
 
 const AFTER: &str = "\
 Examples:
@@ -45,6 +46,8 @@ pub fn run(args: &Args, program: &Command) -> Result<Answer, CliError> {
         print(&shown(chapter.text))?;
     } else if let Some(help) = command_help(program, &args.topic) {
         print(&help)?;
+    } else if let Some(chapter) = describing(&topic) {
+        print(&shown(chapter.text))?;
     } else {
         let commands: Vec<String> = program.get_subcommands().map(|c| c.get_name().to_owned()).collect();
         let known = CHAPTERS.iter().map(|c| c.name).chain(commands.iter().map(String::as_str));
@@ -54,6 +57,12 @@ pub fn run(args: &Args, program: &Command) -> Result<Answer, CliError> {
         )));
     }
     Ok(Answer::Yes)
+}
+
+/// The chapter that has a table of this name, such as `runs` of a study.
+fn describing(table: &str) -> Option<&'static Chapter> {
+    let describes = |chapter: &&Chapter| tables(chapter.name).iter().any(|t| t.paths.iter().any(|path| path == table));
+    CHAPTERS.iter().find(describes)
 }
 
 /// What `--help` of a command prints; nothing for one that there is not.

@@ -3,18 +3,20 @@
 
 use super::error::CliError;
 use super::progress::progress;
+use super::terminal::tell;
+use super::unreached::unreached;
 use serde::de::DeserializeOwned;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use trimtab::diagnose::Settings;
-use trimtab::error::suggestion;
 use trimtab::evaluate::EvaluationSettings;
-use trimtab::fit::FitSettings;
+use trimtab::fit::{FitError, FitSettings};
 use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::{Model, ModelError};
 use trimtab::plan::PlanSettings;
 use trimtab::ranges::Limited;
 use trimtab::ranks::Ranks;
-use trimtab::recording::{Run, Split, Windows};
+use trimtab::recording::{ColumnMap, Run, Split, Windows};
 use trimtab::ship::{Ship, parameter_line};
 use trimtab::study::{Listed, Study};
 use trimtab::uncertainty::Uncertainty;
@@ -41,12 +43,43 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Reads study, ship and model.
+    /// Reads study, ship, model, settings and column maps; what is wrong with any of them is told at once.
     pub fn new(args: &StudyArgs) -> Result<Self, CliError> {
-        let study = Study::read(&args.study)?;
+        let loaded = Self::read(args, Study::read(&args.study)?)?;
+        for doubt in unreached(&loaded.study, &loaded.model, &loaded.model_path) {
+            tell(&format!("warning: {doubt}"));
+        }
+        Ok(loaded)
+    }
+
+    /// A study with its ship and model, or everything that is wrong with these and with the settings.
+    fn read(args: &StudyArgs, study: Study) -> Result<Self, CliError> {
         let path = args.model.clone().unwrap_or_else(|| study.model.clone());
-        let model = read_model(&path, Ship::read(&study.ship)?).map_err(|error| in_ship_file(error, &study.ship))?;
-        Ok(Self { study, model, model_path: path })
+        let mut errors = Vec::new();
+        let model = match Ship::read(&study.ship) {
+            Ok(ship) => read_model(&path, ship).map_err(|e| errors.push(in_ship_file(e, &study.ship))).ok(),
+            Err(error) => {
+                errors.push(error.into());
+                // Without a ship there is no model, but its file may be read.
+                errors.extend(Model::read_uncertainty(&path).err().map(|error| CliError::Model { path: None, error }));
+                None
+            }
+        };
+        let tables = [
+            settings::<FitSettings>(&study, "fit").err(),
+            settings::<EvaluationSettings>(&study, "evaluate").err(),
+            settings::<Settings>(&study, "diagnose").err(),
+            settings::<ManeuverSettings>(&study, "maneuver").err(),
+            settings::<PlanSettings>(&study, "plan").err(),
+        ];
+        errors.extend(tables.into_iter().flatten());
+        let maps: BTreeSet<&PathBuf> = study.runs.iter().filter_map(|run| run.column_map.as_ref()).collect();
+        let unread = maps.into_iter().filter_map(|map| ColumnMap::read(map).err());
+        errors.extend(unread.map(|error| CliError::Study(error.into())));
+        match model.filter(|_| errors.is_empty()) {
+            Some(model) => Ok(Self { study, model, model_path: path }),
+            None => Err(CliError::all(errors)),
+        }
     }
 
     /// The files that were read, and those of the recordings that are to be read if `recordings` says so.
@@ -63,10 +96,7 @@ impl Loaded {
 
     /// Reads study, ship and model, not the list of recordings, which need not exist.
     pub fn without_runs(args: &StudyArgs) -> Result<Self, CliError> {
-        let study = Study::read_without_runs(&args.study)?;
-        let path = args.model.clone().unwrap_or_else(|| study.model.clone());
-        let model = read_model(&path, Ship::read(&study.ship)?).map_err(|error| in_ship_file(error, &study.ship))?;
-        Ok(Self { study, model, model_path: path })
+        Self::read(args, Study::read_without_runs(&args.study)?)
     }
 
     /// The covariance of the model's parameters, where its file has one, and that file.
@@ -145,57 +175,51 @@ impl Loaded {
         }
     }
 
+    /// An error of a fit, told of the study, with the line of a constraint that cannot be imposed.
+    pub fn of_fit(&self, error: FitError) -> CliError {
+        let path = match &error {
+            FitError::BadRule { rule, .. } => {
+                format!("{}:{}", self.study.path.display(), self.study.line_of("fit.constraints", rule)).into()
+            }
+            _ => self.study.path.clone(),
+        };
+        CliError::Fit { path, error }
+    }
+
     /// Table `[fit]`.
     pub fn fit_settings(&self) -> Result<FitSettings, CliError> {
-        self.table("fit", &self.study.fit)
+        settings(&self.study, "fit")
     }
 
     /// Table `[evaluate]`.
     pub fn evaluation_settings(&self) -> Result<EvaluationSettings, CliError> {
-        self.table("evaluate", &self.study.evaluate)
+        settings(&self.study, "evaluate")
     }
 
     /// Table `[diagnose]`.
     pub fn diagnose_settings(&self) -> Result<Settings, CliError> {
-        self.table("diagnose", &self.study.diagnose)
+        settings(&self.study, "diagnose")
     }
 
     /// Table `[maneuver]`.
     pub fn maneuver_settings(&self) -> Result<ManeuverSettings, CliError> {
-        self.table("maneuver", &self.study.maneuver)
+        settings(&self.study, "maneuver")
     }
 
     /// Table `[plan]`.
     pub fn plan_settings(&self) -> Result<PlanSettings, CliError> {
-        self.table("plan", &self.study.plan)
+        settings(&self.study, "plan")
     }
+}
 
-    /// A table of the study as settings.
-    fn table<T: DeserializeOwned + Limited>(&self, name: &'static str, table: &toml::Table) -> Result<T, CliError> {
-        let settings: T = table.clone().try_into().map_err(|e: toml::de::Error| {
-            let message = e.message().trim().replace('\n', " ");
-            // serde writes: unknown field `found`, expected one of `a`, `b`
-            let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-            let unknown = message.starts_with("unknown ");
-            let (found, known) = quoted.split_first().map_or(("", &[][..]), |(f, k)| (*f, k));
-            let near = if unknown { suggestion(found, known.iter().copied()) } else { String::new() };
-            let key =
-                if unknown { found } else { table.keys().find(|k| message.contains(*k)).map_or("", String::as_str) };
-            CliError::Table {
-                path: self.study.path.clone(),
-                line: self.study.line_of(name, key),
-                table: name,
-                message: format!("{message}{near}"),
-            }
-        })?;
-        settings.limits().map_err(|outside| CliError::Table {
-            path: self.study.path.clone(),
-            line: self.study.line_of(name, outside.key),
-            table: name,
-            message: outside.to_string(),
-        })?;
-        Ok(settings)
-    }
+/// A table of the study as settings, or all that is wrong with it.
+fn settings<T: DeserializeOwned + Limited>(study: &Study, table: &'static str) -> Result<T, CliError> {
+    let fail = |line, message| CliError::Table { path: study.path.clone(), line, table, message };
+    let settings: T = study.section(table).map_err(|mistakes| {
+        CliError::all(mistakes.into_iter().map(|mistake| fail(mistake.line, mistake.message)).collect())
+    })?;
+    settings.limits().map_err(|outside| fail(study.line_of(table, outside.key), outside.to_string()))?;
+    Ok(settings)
 }
 
 /// An error that a model raises over its ship, told of the ship file.
@@ -212,7 +236,7 @@ fn in_ship_file(error: CliError, ship: &Path) -> CliError {
 pub(super) fn read_model(path: &Path, ship: Ship) -> Result<Model, CliError> {
     Model::read(path, ship).map_err(|error| {
         // The texts of these two errors begin with the path.
-        let named = matches!(error, ModelError::Read { .. } | ModelError::Parse { .. });
+        let named = matches!(error, ModelError::Read { .. } | ModelError::Parse { .. } | ModelError::Several(_));
         CliError::Model { path: (!named).then(|| path.to_owned()), error }
     })
 }

@@ -30,9 +30,11 @@ mod style;
 mod sweep;
 mod terminal;
 mod terms;
+mod unreached;
 
 use answer::Answer;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::error::ContextKind;
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use error::CliError;
 use processor::Build;
 use std::process::ExitCode;
@@ -90,6 +92,7 @@ enum Command {
     Evaluate(evaluate::Args),
     Diagnose(diagnose::Args),
     Dossier(dossier::Args),
+    #[command(alias = "manoeuvre")]
     Maneuver(maneuver::Args),
     Plan(plan::Args),
     Sweep(sweep::Args),
@@ -102,6 +105,17 @@ enum Command {
     Man(shell::ManArgs),
 }
 
+/// The command line, in which every option takes a negative number: that it must be positive is for the option to say.
+fn program() -> clap::Command {
+    fn signed(command: clap::Command) -> clap::Command {
+        command.mut_subcommands(signed).mut_args(|argument| {
+            let option = argument.get_long().is_some() && argument.get_action().takes_values();
+            if option { argument.allow_negative_numbers(true) } else { argument }
+        })
+    }
+    signed(Cli::command())
+}
+
 /// Runs the command that the process was given.
 pub fn run() -> ExitCode {
     match processor::build() {
@@ -112,9 +126,12 @@ pub fn run() -> ExitCode {
         }
         Build::TooOld => tell(&format!("warning: {TOO_OLD}")),
     }
-    let cli = match Cli::try_parse() {
+    let parsed = program().try_get_matches().and_then(|given| Cli::from_arg_matches(&given));
+    let cli = match parsed {
         Ok(cli) => cli,
-        Err(wrong) if wrong.use_stderr() => {
+        Err(mut wrong) if wrong.use_stderr() => {
+            // How to pass what looks like an option as a file is no help to who misspelt an option.
+            wrong.remove(ContextKind::Suggested);
             tell(wrong.render().to_string().trim_end());
             return ExitCode::from(2);
         }

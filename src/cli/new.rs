@@ -12,6 +12,7 @@ use trimtab::files::{plain_cell, write_whole};
 use trimtab::numerals::sig;
 use trimtab::particulars::{Entry, Estimated, KINDS, Kind, Origin, estimate};
 use trimtab::report::Table as Listing;
+use trimtab::written::{Kind as Written, read_tables, read_text, told};
 
 const LONG: &str = "\
 Writes a ship file with every value that you do not give estimated by the published regressions of the field, each with its \
@@ -170,15 +171,12 @@ fn given(args: &Args) -> Result<Table, CliError> {
 
 /// The tables of a ship file, of which not all need be there.
 fn read(path: &Path) -> Result<Table, CliError> {
-    let text = std::fs::read_to_string(path).map_err(|source| {
-        CliError::Argument(format!(
-            "{}: cannot read the ship file ({source}); check the path of --from",
-            path.display()
-        ))
+    let text = read_text(path).map_err(|source| {
+        CliError::Argument(format!("{}: cannot read the ship file ({source}); check the path of --from", path.display()))
     })?;
-    text.parse().map_err(|e: toml::de::Error| {
-        let line = e.span().map_or(1, |s| text[..s.start.min(text.len())].matches('\n').count() + 1);
-        CliError::Argument(format!("{}:{line}: {}", path.display(), e.message().trim().replace('\n', " ")))
+    read_tables(&text, Written::Ship).map_err(|mistakes| {
+        let (line, message) = told(mistakes, path);
+        CliError::Argument(format!("{}:{line}: {message}", path.display()))
     })
 }
 

@@ -7,6 +7,7 @@ use super::output::{Output, OutputArgs, csv_text};
 use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::error::suggestion;
+use trimtab::parameter::ParameterInfo;
 use trimtab::report::terms::{Entry, listing, summary};
 use trimtab::ship::Ship;
 use trimtab::terms::CATALOGUE;
@@ -54,9 +55,10 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let ship = args.ship.as_deref().map(Ship::read).transpose()?;
     output.reads_files(args.ship.as_slice());
     let known = || CATALOGUE.iter().map(|t| t.info().name);
-    if let Some(name) = args.names.iter().find(|n| !known().any(|k| k == **n)) {
-        let near = suggestion(name, known());
-        return Err(CliError::Argument(format!("unknown term `{name}`{near}; `trimtab terms` lists them")));
+    let unknown: Vec<String> =
+        args.names.iter().filter(|n| !known().any(|k| k == **n)).map(|name| unknown(name)).collect();
+    if !unknown.is_empty() {
+        return Err(CliError::Argument(format!("{}; `trimtab terms` lists them", unknown.join("; "))));
     }
     let mut terms = listing(None, ship.as_ref());
     terms.retain(|t| args.names.is_empty() || args.names.iter().any(|n| n == t.name));
@@ -68,6 +70,36 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     output.table("parameters.csv", &parameters(&terms)?);
     output.finish(&text, &Listing { terms })?;
     Ok(Answer::Yes)
+}
+
+/// A name that no term has: that of a parameter, by name or symbol, or one that is spelt like a term.
+fn unknown(name: &str) -> String {
+    let owner = CATALOGUE.iter().map(|term| term.info()).find(|info| {
+        let of = |p: &ParameterInfo| p.symbol == name || p.name == name || format!("{}.{}", info.name, p.name) == name;
+        info.parameters.iter().any(of)
+    });
+    match owner {
+        Some(info) => format!("`{name}` is a parameter of the term `{0}`: `trimtab terms {0}` shows it", info.name),
+        None => format!("unknown term `{name}`{}", near_term(name)),
+    }
+}
+
+/// `, did you mean ...?` with the term whose name is spelt alike, or is made of the same words in another order.
+fn near_term(name: &str) -> String {
+    let sorted = |name: &str| {
+        let mut words: Vec<String> = name.to_lowercase().split(['_', '-', ' ']).map(str::to_owned).collect();
+        words.sort();
+        words.join("_")
+    };
+    let names: Vec<&str> = CATALOGUE.iter().map(|t| t.info().name).collect();
+    let direct = suggestion(name, names.iter().copied());
+    if !direct.is_empty() {
+        return direct;
+    }
+    let by_words: Vec<String> = names.iter().map(|n| sorted(n)).collect();
+    let near = suggestion(&sorted(name), by_words.iter().map(String::as_str));
+    let found = by_words.iter().position(|words| near.contains(&format!("`{words}`")));
+    found.map_or(String::new(), |i| format!(", did you mean `{}`?", names[i]))
 }
 
 fn parameters(terms: &[Entry]) -> Result<Vec<u8>, CliError> {

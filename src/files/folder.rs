@@ -27,6 +27,12 @@ const FILES: &str = "files";
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FolderError {
+    /// There is a file where the folder should be.
+    #[error("{}: this is a file, not a folder; choose another folder", path.display())]
+    NoFolder {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file or folder could not be read or written.
     #[error("{}: cannot write ({source}); check that the folder is writable and the disk not full", path.display())]
     Write {
@@ -157,6 +163,9 @@ impl ResultFolder {
     /// # Errors
     /// Every [`FolderError`] but [`FolderError::InputChanged`].
     pub fn open(folder: &Path, command: &str, expected: &[&str]) -> Result<Self, FolderError> {
+        if folder.is_file() {
+            return Err(FolderError::NoFolder { path: folder.to_owned() });
+        }
         std::fs::create_dir_all(folder).map_err(write_error(folder))?;
         let lock = Lock::take(folder).map_err(|source| FolderError::Lock { path: folder.to_owned(), source })?;
         let path = folder.join(ASIDE);
@@ -677,5 +686,15 @@ mod tests {
         assert!(matches!(ResultFolder::open(folder.path(), "fit", &["best.toml"]), Err(FolderError::Foreign { .. })));
         kept.remove();
         assert!(!path.exists());
+    }
+
+    #[test]
+    fn a_file_is_no_folder_for_results() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("ship.toml");
+        fs::write(&path, "a = 1").unwrap();
+        let error = ResultFolder::open(&path, "fit", &[]).err().unwrap().to_string();
+        assert!(error.ends_with("this is a file, not a folder; choose another folder"), "{error}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "a = 1");
     }
 }

@@ -8,6 +8,7 @@ use crate::ranges::{Limited, OutOfRange, within};
 use crate::state::{Force, Inputs, STATES, State};
 use crate::units::GRAVITY;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// Settings of the trials, the table `[maneuver]` of a study. A setting left out is derived from the ship.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -74,6 +75,11 @@ impl ManeuverSettings {
     pub fn approach(&self, model: &Model, theta: &[f64]) -> Result<Approach, ManeuverError> {
         self.limits()?;
         let length = model.ship.hull.lpp;
+        if let Some(speed) = self.speed {
+            let fastest = (GRAVITY * length).sqrt();
+            let meaning = "an approach speed in m/s, up to a Froude number of 1, where no displacement ship sails; is it in knots?";
+            within("speed", speed, &(0.0..=(fastest * 100.0).round() / 100.0), meaning)?;
+        }
         let (speed, n, balanced) = match (self.speed, self.n_rpm) {
             (Some(speed), Some(rpm)) => (speed, rpm / 60.0, false),
             (None, Some(rpm)) => (balanced_speed(model, theta, rpm / 60.0)?, rpm / 60.0, true),
@@ -103,6 +109,9 @@ impl ManeuverSettings {
     }
 }
 
+/// Angles that a trial is sailed with \[deg\]: one below is in radians, as 0.61 for 35 deg.
+const SAILED_DEG: RangeInclusive<f64> = 2.0..=90.0;
+
 impl Limited for ManeuverSettings {
     fn limits(&self) -> Result<(), OutOfRange> {
         let positive = [
@@ -126,7 +135,7 @@ impl Limited for ManeuverSettings {
         }
         let angles = self.zigzag_deg.iter().flatten().flatten().map(|a| ("zigzag_deg", *a));
         for (key, value) in angles.chain(self.turning_deg.map(|a| ("turning_deg", a))) {
-            within(key, value, &(0.1..=90.0), "an angle in degrees; both sides are sailed")?;
+            within(key, value, &SAILED_DEG, "an angle in degrees, not in radians; both sides are sailed")?;
         }
         Ok(())
     }

@@ -86,11 +86,15 @@ pub fn estimate(kind: &'static Kind, given: &Table, speed: Option<f64>) -> Resul
 
 /// What is wrong with a value, without the line of a file that nobody has seen.
 fn impossible(error: ShipError) -> EstimateError {
-    EstimateError::Impossible(match error {
-        ShipError::Value { key, found, expected, .. } => format!("{key} = {found} {expected}"),
-        ShipError::Parse { message, .. } => message,
-        other => other.to_string(),
-    })
+    fn told(error: &ShipError) -> String {
+        match error {
+            ShipError::Value { key, found, expected, .. } => format!("{key} = {found} {expected}"),
+            ShipError::Parse { message, .. } => message.clone(),
+            ShipError::Several(errors) => errors.iter().map(told).collect::<Vec<_>>().join("\n"),
+            other => other.to_string(),
+        }
+    }
+    EstimateError::Impossible(told(&error))
 }
 
 /// What every estimate begins with.

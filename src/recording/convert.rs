@@ -149,7 +149,26 @@ impl Recording {
             problem: if t[row] == t[row - 1] { "repeats" } else { "goes back from" },
             previous: t[row - 1],
             previous_line: self.line(row - 1),
+            next: self.after_repeat(row),
         })
+    }
+
+    /// What to do about a row whose time is not later than that of the row before: a row that is there twice needs another remedy than
+    /// a clock that was rounded.
+    fn after_repeat(&self, row: usize) -> String {
+        let t = self.time();
+        let bits = |values: &[f64], row: usize| values[row].to_bits();
+        let same = |row: &usize| self.channels().all(|(_, values)| bits(values, *row) == bits(values, *row - 1));
+        let repeats: Vec<usize> = (1..t.len()).filter(|&i| t[i] == t[i - 1]).collect();
+        if t[row] < t[row - 1] {
+            "sort the rows by time, and remove what is there twice".to_owned()
+        } else if same(&row) {
+            let times = repeats.iter().filter(|row| same(row)).count();
+            let all = if times > 1 { format!(", and {} others that are there twice", times - 1) } else { String::new() };
+            format!("the whole row is there twice: remove it{all}")
+        } else {
+            "the rows differ: set `dt` in a column map if the time column was rounded, and remove the row otherwise".to_owned()
+        }
     }
 
     /// Fills dropouts no longer than `longest` seconds by straight lines, channel by channel.

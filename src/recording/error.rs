@@ -2,7 +2,6 @@
 //! Doubts that do not prevent use are not errors: they are issues of `check`.
 
 use super::channel::Channel;
-use crate::error::suggestion;
 use std::path::PathBuf;
 
 /// Why a recording could not be read or cut into windows.
@@ -12,6 +11,14 @@ pub enum RecordingError {
     /// The file could not be opened.
     #[error("{path}: cannot read the recording ({source}); check the path", path = path.display())]
     Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The column map could not be opened.
+    #[error("{path}: cannot read the column map ({source}); check the path given as `column_map` in the study", path = path.display())]
+    ReadMap {
         /// The file.
         path: PathBuf,
         /// What the system said.
@@ -45,8 +52,28 @@ pub enum RecordingError {
         /// What is wrong and what is expected.
         message: String,
     },
+    /// The file is no text: a spreadsheet, or text in two bytes a letter.
+    #[error("{path}: this is no plain text; export it as CSV in UTF-8 (a spreadsheet: Save as, CSV UTF-8)", path = path.display())]
+    NoText {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The header is one field because the file has another delimiter than the map says.
+    #[error("{path}:{line}: the columns are separated by `{separator}` ({header}); set `delimiter = \"{name}\"` in a column map, and `decimal = \"comma\"` if numbers are written 1,5", path = path.display())]
+    Delimiter {
+        /// The file.
+        path: PathBuf,
+        /// Line of the header.
+        line: usize,
+        /// The delimiter found.
+        separator: char,
+        /// Its name in a column map.
+        name: &'static str,
+        /// The header.
+        header: String,
+    },
     /// A column is not in the header.
-    #[error("{path}:{line}: no column `{column}` for channel `{channel}`{suggestion}; the columns are {found}. Rename it in the header or name it in a column map", path = path.display())]
+    #[error("{path}:{line}: no column `{column}` for channel `{channel}`{suggestion}; the columns are {found}. Rename it in the header, or name it in a column map: [columns] {channel} = \"...\"", path = path.display())]
     MissingColumn {
         /// The file.
         path: PathBuf,
@@ -130,7 +157,7 @@ pub enum RecordingError {
         hint: String,
     },
     /// Time does not increase.
-    #[error("{path}:{line}: time {found} s {problem} {previous} s of line {previous_line}; sort the rows and remove repeats, or set `dt` in a column map if the time column was rounded", path = path.display())]
+    #[error("{path}:{line}: time {found} s {problem} {previous} s of line {previous_line}; {next}", path = path.display())]
     Time {
         /// The file.
         path: PathBuf,
@@ -144,6 +171,8 @@ pub enum RecordingError {
         previous: f64,
         /// Line before.
         previous_line: usize,
+        /// Next step.
+        next: String,
     },
     /// Values are missing and the study does not say to cut the run there.
     #[error("{path}:{line}: {what} missing (NaN or blank) from line {line} to {last_line}, {rows} rows in the file in all; fill them, bridge short ones with `bridge` in a column map, or set `gaps = \"split\"` in the study to cut the run there", path = path.display())]
@@ -231,22 +260,4 @@ pub enum RecordingError {
         /// Rows of the channel.
         found: usize,
     },
-}
-
-/// Line, message and suggestion of a TOML error: `unknown field `sing`, expected ..., did you mean `sign`?`.
-pub(crate) fn toml_problem(text: &str, error: &toml::de::Error) -> (usize, String) {
-    let line = error.span().map_or(1, |s| line_at(text, s.start));
-    let message = error.message().trim().replace('\n', " ");
-    // serde writes: unknown field `found`, expected one of `a`, `b`
-    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let hint = match (message.starts_with("unknown "), quoted.split_first()) {
-        (true, Some((found, known))) => suggestion(found, known.iter().copied()),
-        _ => String::new(),
-    };
-    (line, format!("{message}{hint}"))
-}
-
-/// The line, counted from 1, of a byte offset.
-pub(crate) fn line_at(text: &str, offset: usize) -> usize {
-    1 + text.bytes().take(offset).filter(|&b| b == b'\n').count()
 }

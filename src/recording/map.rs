@@ -18,8 +18,9 @@
 
 use super::blank::Blank;
 use super::channel::{CHANNELS, Channel};
-use super::error::{RecordingError, line_at, toml_problem};
+use super::error::RecordingError;
 use crate::error::suggestion;
+use crate::written::{Kind, Mistake, line_at, read_toml, read_text, told};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -334,44 +335,57 @@ impl ColumnMap {
     /// Reads and checks a column map.
     ///
     /// # Errors
-    /// [`RecordingError::Read`] or [`RecordingError::Map`], the latter with line and near names.
+    /// [`RecordingError::ReadMap`] or [`RecordingError::Map`], the latter with line and near names.
     pub fn read(path: &Path) -> Result<Self, RecordingError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| RecordingError::Read { path: path.to_owned(), source })?;
+        let text = read_text(path).map_err(|source| RecordingError::ReadMap { path: path.to_owned(), source })?;
         Self::parse(&text, path)
     }
 
     /// Checks the text of a column map; `path` is for messages.
     ///
     /// # Errors
-    /// [`RecordingError::Map`].
+    /// [`RecordingError::Map`], with every mistake.
     pub fn parse(text: &str, path: &Path) -> Result<Self, RecordingError> {
         let fail = |line, message| RecordingError::Map { path: path.to_owned(), line, message };
-        let mut map: Self = toml::from_str(text).map_err(|e| {
-            let (line, message) = toml_problem(text, &e);
+        let mut map: Self = read_toml(text, Kind::Columns).map_err(|mistakes| {
+            let (line, message) = told(mistakes.into_iter().map(channel_at_the_top).collect(), path);
             fail(line, message)
         })?;
         map.path = Some(path.to_owned());
         map.lines = channel_lines(text);
-        let listed = map.columns.iter().flat_map(BTreeMap::keys).map(|name| (name, map.line(name)));
-        let left_out = map.leave_out.iter().map(|name| (name, key_line(text, "leave_out")));
-        for (name, line) in listed.chain(left_out) {
-            if Channel::from_name(name).is_none() {
-                let near = suggestion(name, CHANNELS.iter().map(|c| c.name));
-                return Err(fail(line, format!("unknown channel `{name}`{near}; `trimtab help channels` lists them")));
-            }
+        let mistakes = map.mistakes(text);
+        if mistakes.is_empty() {
+            return Ok(map);
         }
-        let positive = [("dt", map.dt), ("derive_span", map.derive_span), ("bridge", map.bridge)];
+        let (line, message) = told(mistakes, path);
+        Err(fail(line, message))
+    }
+
+    /// Names that are no channels, and numbers that cannot be.
+    fn mistakes(&self, text: &str) -> Vec<Mistake> {
+        let mut mistakes = Vec::new();
+        let listed = self.columns.iter().flat_map(BTreeMap::keys).map(|name| (name, self.line(name)));
+        let left_out = self.leave_out.iter().map(|name| (name, key_line(text, "leave_out")));
+        for (name, line) in listed.chain(left_out).filter(|(name, _)| Channel::from_name(name).is_none()) {
+            mistakes.push(Mistake::new(line, unknown_channel(name)));
+        }
+        let positive = [("dt", self.dt), ("derive_span", self.derive_span), ("bridge", self.bridge)];
         for (key, value) in positive {
             if value.is_some_and(|v| !v.is_finite() || v <= 0.0) {
-                return Err(fail(key_line(text, key), format!("`{key}` must be a positive number of seconds")));
+                mistakes.push(Mistake::new(key_line(text, key), format!("`{key}` must be a positive number of seconds")));
             }
         }
-        let points = map.reference_point.iter().chain(map.velocity_point.iter().flatten());
-        if points.into_iter().any(|v| !v.is_finite()) || !map.time_zero.is_finite() {
-            return Err(fail(1, "`reference_point`, `velocity_point` and `time_zero` must be finite".to_owned()));
+        let point = |p: &[f64; 2]| p.iter().all(|v| v.is_finite());
+        for (key, finite) in [
+            ("reference_point", point(&self.reference_point)),
+            ("velocity_point", self.velocity_point.as_ref().is_none_or(point)),
+            ("time_zero", self.time_zero.is_finite()),
+        ] {
+            if !finite {
+                mistakes.push(Mistake::new(key_line(text, key), format!("`{key}` must be finite; correct it")));
+            }
         }
-        Ok(map)
+        mistakes
     }
 
     /// The delays of the channels in the runs of a session, those that are not 0 \[s\].
@@ -386,6 +400,27 @@ impl ColumnMap {
     /// Line of a channel's entry in the map file, 1 when it was not read from one.
     pub(crate) fn line(&self, channel: &str) -> usize {
         self.lines.get(channel).copied().unwrap_or(1)
+    }
+}
+
+/// A name in `[columns]` or `leave_out` that is no channel, with the one that is meant.
+fn unknown_channel(name: &str) -> String {
+    let map = schemars::schema_for!(ColumnMap);
+    if map.get("properties").is_some_and(|keys| keys.get(name).is_some()) {
+        return format!("`{name}` is a key of the whole map: it stands at the top, before [columns]");
+    }
+    let near = match Channel::meant_by(name) {
+        Some(meant) => format!(", did you mean `{meant}` ({})?", meant.info().words),
+        None => suggestion(name, CHANNELS.iter().map(|c| c.name)),
+    };
+    format!("unknown channel `{name}`{near}; `trimtab help channels` lists them")
+}
+
+/// A channel that stands at the top of a map, where it is an unknown key.
+fn channel_at_the_top(mistake: Mistake) -> Mistake {
+    match mistake.unknown.as_deref().filter(|key| Channel::from_name(key).is_some()) {
+        Some(name) => Mistake::new(mistake.line, format!("the channel `{name}` stands in the table [columns], below its heading")),
+        None => mistake,
     }
 }
 
@@ -443,7 +478,11 @@ mod tests {
     fn mistakes_in_a_map_name_line_and_the_near_word() {
         let cases = [
             ("delimter = \"tab\"", "columns.toml:1:", "did you mean `delimiter`?"),
-            ("dt = 0.1\nderive = [\"q\"]", "columns.toml:2:", "unknown variant `q`"),
+            ("dt = 0.1\nderive = [\"q\"]", "columns.toml:2:", "unknown word `q`"),
+            ("[columns]\nrudder = \"delta\"", "columns.toml:2:", "did you mean `delta` (rudder angle)?"),
+            ("delta = { sign = -1 }", "columns.toml:1:", "stands in the table [columns]"),
+            ("[columns]\ndecimal = \"comma\"", "columns.toml:2:", "stands at the top"),
+            ("dt = 0\nbridge = 0\n[columns]\nrpm = \"n\"", "columns.toml:1:", "columns.toml:4: unknown channel `rpm`"),
             ("[columns]\n\npsy = \"heading\"", "columns.toml:3:", "did you mean `psi`?"),
             ("[columns]\nn = { index = 0 }", "columns.toml:2:", "counts from 1"),
             ("[columns]\nn = { index = 1, sing = -1 }", "columns.toml:2:", "did you mean `sign`?"),
@@ -457,7 +496,7 @@ mod tests {
             ("[columns]\nn = { delay = { \"a\" = nan } }", "columns.toml:2:", "seconds late"),
             ("blank = [nan]", "columns.toml:1:", "must be finite"),
             ("\nblank = { outside = [3.0, 2.0] }", "columns.toml:2:", "the first below the second"),
-            ("[columns]\nn = { blank = { beyond = [0, 1] } }", "columns.toml:2:", "unknown field `beyond`"),
+            ("[columns]\nn = { blank = { beyond = [0, 1] } }", "columns.toml:2:", "unknown key `beyond`"),
         ];
         for (text, place, hint) in cases {
             let message = parse(text).unwrap_err();

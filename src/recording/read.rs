@@ -60,6 +60,18 @@ impl Recording {
         recording(Lines::new(BufReader::with_capacity(1 << 16, file)), path, map, session)
     }
 
+    /// The channels that the first lines of a recording have, by its column map; the rows are not read.
+    ///
+    /// # Errors
+    /// Any [`RecordingError`] about the header.
+    pub fn channels_in(path: &Path, map: &ColumnMap) -> Result<Vec<Channel>, RecordingError> {
+        let fail = |source| RecordingError::Read { path: path.to_owned(), source };
+        let file = std::fs::File::open(path).map_err(fail)?;
+        let mut lines = Lines::new(BufReader::new(file));
+        let (header, header_line, _) = header(&mut lines, path, map)?;
+        Ok(sources(header.as_deref(), header_line, path, map)?.into_iter().map(|source| source.channel).collect())
+    }
+
     /// Reads a recording from the text of a file; `path` is used in messages and, without its ending, as the name.
     ///
     /// # Errors
@@ -114,21 +126,7 @@ fn recording<R: BufRead>(
 ) -> Result<Recording, RecordingError> {
     let fail = |source| RecordingError::Read { path: path.to_owned(), source };
     let empty = |line, what: &str| RecordingError::Empty { path: path.to_owned(), line, what: what.to_owned() };
-    for _ in 0..map.skip_lines {
-        lines.next().map_err(fail)?;
-    }
-    let mut first = None;
-    while first.is_none() {
-        let Some((line, content)) = lines.next().map_err(fail)? else { break };
-        first = (!content.trim().is_empty()).then(|| (line, content.into_owned()));
-    }
-    let header_line = first.as_ref().map_or(1, |(line, _)| *line);
-    let header: Option<Vec<HeaderColumn>> = if map.header.0 {
-        let (_, line) = first.take().ok_or_else(|| empty(1, "there is no header line"))?;
-        Some(split(&line, map.delimiter).iter().map(|f| header_column(f)).collect())
-    } else {
-        None
-    };
+    let (header, header_line, first) = header(&mut lines, path, map)?;
     let sources = sources(header.as_deref(), header_line, path, map)?;
     let needed = sources.iter().filter_map(|s| s.field).max().map_or(0, |f| f + 1);
     let shape = Shape { expected: header.as_ref().map(Vec::len), needed };
@@ -164,6 +162,33 @@ fn recording<R: BufRead>(
     }
     recording.finish(map, session)?;
     Ok(recording)
+}
+
+/// The header where there is one, the line at which the file begins, and the first row where there is no header.
+type Beginning = (Option<Vec<HeaderColumn>>, usize, Option<(usize, String)>);
+
+/// How a file begins.
+fn header<R: BufRead>(lines: &mut Lines<R>, path: &Path, map: &ColumnMap) -> Result<Beginning, RecordingError> {
+    let fail = |source| RecordingError::Read { path: path.to_owned(), source };
+    for _ in 0..map.skip_lines {
+        lines.next().map_err(fail)?;
+    }
+    let mut first = None;
+    while first.is_none() {
+        let Some((line, content)) = lines.next().map_err(fail)? else { break };
+        if content.contains('\0') {
+            return Err(RecordingError::NoText { path: path.to_owned() });
+        }
+        first = (!content.trim().is_empty()).then(|| (line, content.into_owned()));
+    }
+    let header_line = first.as_ref().map_or(1, |(line, _)| *line);
+    if !map.header.0 {
+        return Ok((None, header_line, first));
+    }
+    let what = "there is no header line".to_owned();
+    let (_, line) = first.ok_or_else(|| RecordingError::Empty { path: path.to_owned(), line: 1, what })?;
+    let columns = split(&line, map.delimiter).iter().map(|f| header_column(f)).collect();
+    Ok((Some(columns), header_line, None))
 }
 
 /// How many fields a row has.
@@ -428,12 +453,26 @@ fn missing_column(
     channel: Channel,
 ) -> RecordingError {
     let header = header.unwrap_or_default();
+    if let [only] = header
+        && let Some((separator, name)) = [(';', "semicolon"), ('\t', "tab"), (',', "comma")]
+            .into_iter()
+            .find(|(separator, _)| only.full.matches(*separator).count() > 1)
+    {
+        let (path, header) = (path.to_owned(), only.full.clone());
+        return RecordingError::Delimiter { path, line, separator, name, header };
+    }
+    // What a name stands for goes before how it is spelt: `rpm` is no `r`.
+    let meant = header.iter().find(|h| Channel::meant_by(&h.name) == Some(channel)).map(|h| h.name.as_str());
+    let near = meant.map_or_else(
+        || suggestion(column, header.iter().map(|h| h.name.as_str()).filter(|name| Channel::meant_by(name).is_none())),
+        |name| format!(", did you mean `{name}`?"),
+    );
     RecordingError::MissingColumn {
         path: path.to_owned(),
         line,
         column: column.to_owned(),
         channel,
-        suggestion: suggestion(column, header.iter().map(|h| h.name.as_str())),
+        suggestion: near,
         found: header.iter().map(|h| format!("`{}`", h.full)).collect::<Vec<_>>().join(", "),
     }
 }

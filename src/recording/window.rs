@@ -142,6 +142,9 @@ impl Recording {
         let begin = (first + settings.discard_start).max(settings.from.unwrap_or(f64::MIN));
         let end = (last - settings.discard_end).min(settings.to.unwrap_or(f64::MAX));
 
+        if begin >= end {
+            return Err(self.nothing_left(settings, first, last));
+        }
         let mut result = Windows::default();
         let mut longest: Option<(f64, usize)> = None;
         for segment in self.segments() {
@@ -172,6 +175,23 @@ impl Recording {
             return Err(RecordingError::TooShort { path: self.path.clone(), line, have, need });
         }
         Ok(result)
+    }
+
+    /// The error of a run of which `from`, `to` and what is discarded leave nothing.
+    fn nothing_left(&self, settings: &WindowSettings, first: f64, last: f64) -> RecordingError {
+        let given = [
+            ("from", settings.from),
+            ("to", settings.to),
+            ("discard_start", Some(settings.discard_start).filter(|t| *t > 0.0)),
+            ("discard_end", Some(settings.discard_end).filter(|t| *t > 0.0)),
+        ];
+        let given = given.into_iter().filter_map(|(key, value)| Some(format!("`{key}` = {} s", value?)));
+        let given = given.collect::<Vec<_>>().join(", ");
+        let message = format!(
+            "the recording lasts from {first} s to {last} s, of which {given} {} nothing; correct the times in the study",
+            if given.contains(", ") { "leave" } else { "leaves" }
+        );
+        RecordingError::Setting { path: self.path.clone(), message }
     }
 
     /// One window: samples `samples` of the sampler's grid.
@@ -249,6 +269,13 @@ impl Recording {
         if let Some((key, value)) = times.into_iter().find(|(_, v)| !v.is_finite() || *v <= 0.0) {
             return Err(fail(format!("`{key}` = {value} s is not a positive time; correct it in the study")));
         }
+        if self.len() > 1 && step * MIN_STEPS as f64 > self.duration() * (1.0 + SAME_STEP) {
+            let duration = self.duration();
+            let text = format!(
+                "`step` = {step} s is too long for a recording of {duration} s with a step of {own} s; leave it out, or shorten it"
+            );
+            return Err(fail(text));
+        }
         if step * FINEST < own {
             let text = format!(
                 "`step` = {step} s is less than a {FINEST}th of the recording's own step of {own} s; leave it out, or set it to that step or more"
@@ -258,7 +285,9 @@ impl Recording {
         let window = settings.window.map(|w| (w / step).round() as usize);
         if let Some(short) = window.filter(|&w| w < MIN_STEPS) {
             let text = format!(
-                "a window of {short} steps of {step} s is too short; set `window` to {MIN_STEPS} steps or more"
+                "`window` = {} s is {short} steps of {step} s, too short; set it to {MIN_STEPS} steps or more, {} s",
+                settings.window.unwrap_or_default(),
+                MIN_STEPS as f64 * step
             );
             return Err(fail(text));
         }

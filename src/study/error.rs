@@ -29,7 +29,7 @@ pub enum StudyError {
         message: String,
     },
     /// None of the data folders exists.
-    #[error("{path}:{line}: no folder with the recordings: {tried}; set the variable, or correct `data`", path = path.display())]
+    #[error("{path}:{line}: no folder with the recordings: {tried}; correct `data`", path = path.display())]
     NoData {
         /// The study.
         path: PathBuf,

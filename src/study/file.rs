@@ -1,14 +1,12 @@
-//! The study file and its table of runs as they are written: keys, their defaults, and what serde reads them into.
+//! The study file and an entry of its runs as they are written: keys, their defaults, and what serde reads them into.
 //! It checks nothing beyond the shape; what the values mean is decided in `study` and `listed`.
 
-use super::error::StudyError;
 use super::split::SplitRule;
-use crate::error::suggestion;
 use crate::recording::{Gaps, Split};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The study file as written.
 #[derive(Deserialize, JsonSchema)]
@@ -79,6 +77,12 @@ pub(super) struct StudyFile {
 /// those of the settings of each command.
 pub fn study_schema(generator: &mut SchemaGenerator) -> Schema {
     StudyFile::json_schema(generator)
+}
+
+/// Whether a key belongs at the top of a study file.
+pub(super) fn is_key_of_a_study(key: &str) -> bool {
+    let file = schemars::schema_for!(StudyFile);
+    file.get("properties").is_some_and(|keys| keys.get(key).is_some())
 }
 
 /// `data` as it may be written.
@@ -190,36 +194,4 @@ pub(super) struct RunEntry {
     pub(super) to: Option<f64>,
     /// Column map of this run, relative to the study, instead of the study's.
     pub(super) column_map: Option<PathBuf>,
-}
-
-/// Reads a CSV table of runs: the keys of `[[runs]]` as columns, blank where not given.
-pub(super) fn read_table(path: &Path) -> Result<Vec<(usize, RunEntry)>, StudyError> {
-    let read = |source: csv::Error| {
-        let line = source.position().map_or(1, |p| p.line() as usize);
-        let text = source.to_string();
-        let quoted: Vec<&str> = text.split('`').skip(1).step_by(2).collect();
-        let hint = match quoted.split_first() {
-            Some((found, known)) if text.contains("unknown ") => suggestion(found, known.iter().copied()),
-            _ => String::new(),
-        };
-        StudyError::Parse {
-            path: path.to_owned(),
-            line,
-            message: format!("{text}{hint}; columns are file, name, session, manoeuvre, split, from, to, column_map"),
-        }
-    };
-    let file = std::fs::File::open(path).map_err(|source| StudyError::Read {
-        path: path.to_owned(),
-        what: "table of runs",
-        source,
-    })?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(file);
-    let headers = reader.headers().map_err(read)?.clone();
-    let mut entries = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(read)?;
-        let line = record.position().map_or(1, |p| p.line() as usize);
-        entries.push((line, record.deserialize::<RunEntry>(Some(&headers)).map_err(read)?));
-    }
-    Ok(entries)
 }

@@ -5,6 +5,7 @@ use super::error::StudyError;
 use super::file::RunEntry;
 use super::split::{SplitRule, UNNAMED, draw};
 use crate::recording::{Labels, Split};
+use crate::written::{Mistake, told};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -34,36 +35,18 @@ pub(super) fn label(
     folder: &Path,
     shared_map: Option<&Path>,
 ) -> Result<(Vec<Listed>, Option<SplitRule>), StudyError> {
-    let fail = |line, message| StudyError::Parse { path: path.to_owned(), line, message };
-    if entries.is_empty() {
-        return Err(fail(1, "no run is listed; add [[runs]] with `file`, or rows to the table of runs".to_owned()));
+    let fail = |mistakes| {
+        let (line, message) = told(mistakes, path);
+        StudyError::Parse { path: path.to_owned(), line, message }
+    };
+    let mistakes = mistakes(&entries, rule);
+    if !mistakes.is_empty() {
+        return Err(fail(mistakes));
     }
     let given = entries.iter().filter(|(_, e)| e.split.is_some()).count();
-    if let Some((line, e)) = entries.iter().find(|(_, e)| e.split.is_none()).filter(|_| given > 0) {
-        let text = format!("run {} has no `split`, though others have; give every run one, or none", e.file.display());
-        return Err(fail(*line, text));
-    }
-    if given > 0 && rule.is_some() {
-        return Err(fail(
-            entries[0].0,
-            "runs have a `split` and the study a [split] rule; drop one of the two".to_owned(),
-        ));
-    }
     let mut runs: Vec<Listed> = Vec::new();
-    let mut named: HashMap<String, usize> = HashMap::new();
     for (line, e) in entries {
-        let stem = e.file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-        let name = e.name.unwrap_or(stem);
-        if let Some(other) = named.insert(name.clone(), line) {
-            let text =
-                format!("run `{name}` is listed twice, here and at line {other}; give one of them a `name` of its own");
-            return Err(fail(line, text));
-        }
-        if let (Some(from), Some(to)) = (e.from, e.to)
-            && from >= to
-        {
-            return Err(fail(line, format!("`from` = {from} s is not before `to` = {to} s")));
-        }
+        let name = name_of(&e);
         let labels = Labels {
             // Without a word that days differ, one hull under one sky: a session is what may differ in something hidden.
             session: e.session.filter(|s| !s.is_empty()).unwrap_or_else(|| UNNAMED.to_owned()),
@@ -81,4 +64,45 @@ pub(super) fn label(
     let rule = rule.unwrap_or_default();
     draw(runs.iter_mut().map(|r| &mut r.labels), rule);
     Ok((runs, Some(rule)))
+}
+
+/// The name of a run: its own, or that of its file without the ending.
+fn name_of(entry: &RunEntry) -> String {
+    let stem = || entry.file.file_stem().map(|s| s.to_string_lossy().into_owned());
+    entry.name.clone().or_else(stem).unwrap_or_default()
+}
+
+/// What is wrong with the runs as they are listed.
+fn mistakes(entries: &[(usize, RunEntry)], rule: Option<SplitRule>) -> Vec<Mistake> {
+    let mut found = Vec::new();
+    let Some((first, _)) = entries.first() else {
+        return vec![Mistake::new(1, "no run is listed; add [[runs]] with `file`, or rows to the table of runs")];
+    };
+    let given = entries.iter().any(|(_, e)| e.split.is_some());
+    if given && rule.is_some() {
+        found.push(Mistake::new(*first, "runs have a `split` and the study a [split] rule; drop one of the two"));
+    }
+    let mut named: HashMap<String, usize> = HashMap::new();
+    for (line, e) in entries {
+        let mut wrong = |text: String| found.push(Mistake::new(*line, text));
+        if given && e.split.is_none() {
+            let file = e.file.display();
+            wrong(format!("run {file} has no `split`, though others have; give every run one, or none"));
+        }
+        let name = name_of(e);
+        if let Some(other) = named.insert(name.clone(), *line) {
+            wrong(format!("run `{name}` is listed twice, here and at line {other}; give one of them a `name` of its own"));
+        }
+        for (key, time) in [("from", e.from), ("to", e.to)] {
+            if let Some(time) = time.filter(|t| !t.is_finite()) {
+                wrong(format!("`{key}` = {time} is not a time in seconds; correct it, or leave it out"));
+            }
+        }
+        if let (Some(from), Some(to)) = (e.from, e.to)
+            && from >= to
+        {
+            wrong(format!("`from` = {from} s is not before `to` = {to} s; correct one of them"));
+        }
+    }
+    found
 }

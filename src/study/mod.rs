@@ -7,6 +7,7 @@ mod listed;
 mod open;
 mod settings;
 mod split;
+mod table;
 
 pub use error::StudyError;
 pub use file::study_schema;

@@ -2,13 +2,15 @@
 //! Ship, model and the tables of the commands are read by those who use them.
 
 use super::error::StudyError;
-use super::file::{RunEntry, RunTable, StudyFile, read_table};
+use super::file::{RunEntry, RunTable, StudyFile, is_key_of_a_study};
 use super::listed::{Listed, label};
 use super::settings::window_settings;
 use super::split::{SplitBy, SplitRule};
-use crate::error::suggestion;
-use crate::recording::{ColumnMap, Recording, Split, WindowSettings, Windows, key_line, line_at, toml_problem};
+use super::table::read_table;
+use crate::recording::{Channel, ColumnMap, Recording, Split, WindowSettings, Windows, key_line};
+use crate::written::{Kind, Mistake, line_at, near_file, read_text, read_toml, section, told};
 use rayon::prelude::*;
+use serde::de::DeserializeOwned;
 use std::mem::take;
 use std::path::{Path, PathBuf};
 
@@ -78,7 +80,7 @@ impl Study {
         })?;
         let (entries, runs_path) = match file.runs {
             None => {
-                let message = "missing field `runs`; add [[runs]] with `file`, or name a table of runs".to_owned();
+                let message = "no run is listed; add [[runs]] with `file`, or name a table of runs as `runs`".to_owned();
                 return Err(StudyError::Parse { path: path.to_owned(), line: 1, message });
             }
             Some(RunTable::Listed(entries)) => {
@@ -98,16 +100,20 @@ impl Study {
     /// The study but for its runs, and what the file says of these.
     fn without_runs(text: &str, path: &Path) -> Result<(Self, StudyFile), StudyError> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        let fail = |line, message| StudyError::Parse { path: path.to_owned(), line, message };
-        let mut file: StudyFile = toml::from_str(text).map_err(|e| {
-            let (line, message) = toml_problem(text, &e);
-            fail(line, message)
-        })?;
-        let windows = window_settings(&file, text, path)?;
-        if let Some(rule) = file.split.filter(|r| !(0.0..1.0).contains(&r.test)) {
-            let message = format!("`test` = {} is not a share from 0 to 1; the paper's is 0.125", rule.test);
-            return Err(fail(key_line(text, "test"), message));
-        }
+        let fail = |mistakes: Vec<Mistake>| {
+            let (line, message) = told(mistakes, path);
+            StudyError::Parse { path: path.to_owned(), line, message }
+        };
+        let mut file: StudyFile = read_toml(text, Kind::Study).map_err(|m| fail(m.into_iter().map(in_a_table).collect()))?;
+        let windows = window_settings(&file, text);
+        let rule = file.split.filter(|r| !(0.0..1.0).contains(&r.test)).map(|rule| {
+            let message = format!("`test` = {} is not a share from 0 to below 1; the paper's is 0.125", rule.test);
+            Mistake::new(key_line(text, "test"), message)
+        });
+        let windows = match (windows, rule) {
+            (Ok(windows), None) => windows,
+            (windows, rule) => return Err(fail(windows.err().into_iter().flatten().chain(rule).collect())),
+        };
         let study = Self {
             path: path.to_owned(),
             name: take(&mut file.name),
@@ -152,12 +158,20 @@ impl Study {
                 path: self.runs_path.clone(),
                 line: run.line,
                 file: run.file.clone(),
-                suggestion: near_file(&run.file),
+                suggestion: if run.file.is_dir() { " as a file: it is a folder".into() } else { near_file(&run.file) },
             });
         }
         let mut recording = Recording::read_in(&run.file, &self.column_map(run)?, &run.labels.session)?;
         recording.name.clone_from(&run.labels.run);
         Ok(recording)
+    }
+
+    /// The channels that a run has, by the first lines of its recording.
+    ///
+    /// # Errors
+    /// [`StudyError::Recording`].
+    pub fn channels(&self, run: &Listed) -> Result<Vec<Channel>, StudyError> {
+        Ok(Recording::channels_in(&run.file, &self.column_map(run)?)?)
     }
 
     /// The window settings of a run; `draught` \[m\] is the ship's.
@@ -241,6 +255,21 @@ impl Study {
         }
     }
 
+    /// A table of the study, such as `[fit]`, as settings; those of a table that is not there are the defaults.
+    ///
+    /// # Errors
+    /// Every mistake in it, with lines of the study.
+    pub fn section<T: DeserializeOwned>(&self, table: &str) -> Result<T, Vec<Mistake>> {
+        let at_the_top = |mistake: Mistake| match mistake.unknown.as_deref().filter(|key| is_key_of_a_study(key)) {
+            Some(key) => Mistake::new(
+                mistake.line,
+                format!("`{key}` is a key of the whole study: it stands at the top, before the first [table]"),
+            ),
+            None => mistake,
+        };
+        section(&self.text, table).map_err(|mistakes| mistakes.into_iter().map(at_the_top).collect())
+    }
+
     /// The line at which `key` of table `[table]`, or of a table inside it, is set, for messages about it; the first of their
     /// headings when it is not.
     pub fn line_of(&self, table: &str, key: &str) -> usize {
@@ -261,7 +290,18 @@ impl Study {
 
 fn text_of(path: &Path) -> Result<String, StudyError> {
     let read = |source| StudyError::Read { path: path.to_owned(), what: "study", source };
-    std::fs::read_to_string(path).map_err(read)
+    read_text(path).map_err(read)
+}
+
+/// An unknown key of a study, which may stand in the wrong one of its tables.
+fn in_a_table(mistake: Mistake) -> Mistake {
+    let below = "; the settings of a command stand below the heading of its table, such as [fit] (`trimtab help study`)";
+    match &mistake.unknown {
+        Some(_) if !mistake.message.contains("did you mean") => {
+            Mistake { message: mistake.message.clone() + below, ..mistake }
+        }
+        _ => mistake,
+    }
 }
 
 /// The first of the candidate folders that exists; the study's own folder without candidates.
@@ -279,7 +319,7 @@ fn data_folder(candidates: &[String], folder: &Path) -> Result<PathBuf, String> 
                 let (variable, tail) = rest.split_once('/').unwrap_or((rest, ""));
                 match std::env::var_os(variable) {
                     None => {
-                        tried.push(format!("`${variable}` is not set"));
+                        tried.push(format!("the environment variable `${variable}` is not set"));
                         continue;
                     }
                     Some(value) => Path::new(&value).join(tail),
@@ -289,18 +329,8 @@ fn data_folder(candidates: &[String], folder: &Path) -> Result<PathBuf, String> 
         if path.is_dir() {
             return Ok(path);
         }
-        tried.push(format!("{} does not exist", path.display()));
+        let what = if path.exists() { "is a file, not a folder" } else { "does not exist" };
+        tried.push(format!("{} {what}{}", path.display(), if path.exists() { String::new() } else { near_file(&path) }));
     }
     Err(tried.join(", "))
-}
-
-/// A file of a like name beside a missing one.
-fn near_file(file: &Path) -> String {
-    let (Some(folder), Some(name)) = (file.parent(), file.file_name()) else { return String::new() };
-    let names: Vec<String> = std::fs::read_dir(folder)
-        .into_iter()
-        .flatten()
-        .filter_map(|entry| entry.ok().map(|e| e.file_name().to_string_lossy().into_owned()))
-        .collect();
-    suggestion(&name.to_string_lossy(), names.iter().map(String::as_str))
 }
