@@ -39,7 +39,9 @@ pub const ELEVEN: [&str; 11] = [
 #[non_exhaustive]
 pub enum ModelError {
     /// The file could not be opened.
-    #[error("{path}: cannot read the model file ({source}); check the path: --model, or `model` or `baseline` in the study")]
+    #[error(
+        "{path}: cannot read the model file ({source}); check the path: --model, or `model` or `baseline` in the study"
+    )]
     Read {
         /// The file.
         path: PathBuf,
@@ -73,7 +75,9 @@ pub enum ModelError {
         suggestion: String,
     },
     /// A parameter of a term that the model does not have.
-    #[error("parameter `{name}` belongs to the term `{term}`, which the model does not have; add it: terms = [\"{term}\"]")]
+    #[error(
+        "parameter `{name}` belongs to the term `{term}`, which the model does not have; add it: terms = [\"{term}\"]"
+    )]
     AbsentTerm {
         /// The name found.
         name: String,
@@ -501,7 +505,9 @@ impl Model {
         for (name, setting) in &file.parameters {
             match model.find(name) {
                 Err(unknown) => errors.push(unknown),
-                Ok(i) if set.contains(&i) => errors.push(ModelError::SetTwice { name: model.parameters[i].name.clone() }),
+                Ok(i) if set.contains(&i) => {
+                    errors.push(ModelError::SetTwice { name: model.parameters[i].name.clone() })
+                }
                 Ok(i) => {
                     set.push(i);
                     errors.extend(model.apply(i, name, setting));
@@ -556,7 +562,10 @@ impl Model {
         }
         if p.lower > p.upper {
             let (lower, upper) = (p.lower, p.upper);
-            return wrong(p.value, format!("its `lower` ({lower}) must be at most its `upper` ({upper}); swap or correct them"));
+            return wrong(
+                p.value,
+                format!("its `lower` ({lower}) must be at most its `upper` ({upper}); swap or correct them"),
+            );
         }
         if !p.value.is_finite() {
             return wrong(p.value, "its `value` must be finite; correct it, or leave it out".to_owned());

@@ -276,17 +276,15 @@ impl Ship {
     /// What is wrong with the numbers and the names of coefficients; `source` places the messages.
     fn errors(&self, source: &Source<'_>) -> Vec<ShipError> {
         let mut errors = self.not_finite(source);
-        for range in self.ranges() {
+        for range in self.outside() {
             let [low, high] = range.limits;
-            if !(low..=high).contains(&range.value) {
-                let within = if low == f64::MIN_POSITIVE {
-                    format!("a positive number, at most {}", sig(high, 4))
-                } else {
-                    format!("between {} and {}", sig(low, 4), sig(high, 4))
-                };
-                let expected = format!("must be {within}: {}", range.meaning);
-                errors.push(source.value(range.key, range.value, &expected));
-            }
+            let within = if low == f64::MIN_POSITIVE {
+                format!("a positive number, at most {}", sig(high, 4))
+            } else {
+                format!("between {} and {}", sig(low, 4), sig(high, 4))
+            };
+            let expected = format!("must be {within}: {}", range.meaning);
+            errors.push(source.value(range.key, range.value, &expected));
         }
         errors.extend(self.unknown_coefficients(source));
         if errors.is_empty() {
@@ -311,6 +309,29 @@ impl Ship {
         let wrong = given.chain(thrust).filter(|(_, value)| !value.is_finite());
         let expected = "is no number to compute with; correct it, or leave the entry out";
         wrong.map(|(key, value)| source.value(key, value, expected)).collect()
+    }
+
+    /// The particulars outside their ranges. Where a main dimension is, the ranges that follow from it say nothing.
+    fn outside(&self) -> Vec<Range> {
+        let mut outside = self.ranges();
+        outside.retain(|range| !(range.limits[0]..=range.limits[1]).contains(&range.value));
+        let Some(main) = outside.iter().find(|range| MAIN_DIMENSIONS.contains(&range.key)).map(|range| range.key)
+        else {
+            return outside;
+        };
+        let limits_of = |scale: f64| {
+            let mut ship = self.clone();
+            (ship.hull.lpp, ship.hull.breadth, ship.hull.draught) = (100.0 * scale, 15.0 * scale, 5.0 * scale);
+            ship.ranges()
+        };
+        let fixed: Vec<&str> = limits_of(1.0)
+            .iter()
+            .zip(limits_of(2.0))
+            .filter(|(a, b)| a.limits == b.limits)
+            .map(|(a, _)| a.key)
+            .collect();
+        outside.retain(|range| range.key == main || fixed.contains(&range.key));
+        outside
     }
 
     /// The range of every particular that a ship can have, wide enough for models, tugs and barges: what is outside is a wrong unit or
@@ -547,6 +568,9 @@ impl Ship {
     }
 }
 
+/// From these the ranges of the others follow.
+const MAIN_DIMENSIONS: [&str; 3] = ["hull.lpp", "hull.breadth", "hull.draught"];
+
 /// A particular and the range it must be in.
 fn range(key: &'static str, value: f64, low: f64, high: f64, meaning: &'static str) -> Range {
     Range { key, value, limits: [low, high], meaning }
@@ -690,6 +714,34 @@ mod tests {
             assert!(text.contains(place) && text.contains(next) && !text.contains('\n'), "{to}:\n{text}");
         }
         assert_eq!(message("lpp = 85.0", "lpp = 85.0"), None);
+    }
+
+    #[test]
+    fn several_wrong_values_are_told_at_once_and_a_wrong_length_hides_what_follows_from_it() {
+        let text = SHIP.replace("wake = 0.28", "wake = 28.0").replace("gyration = 0.25", "gyration = 21.25");
+        let said = |text: &str| Ship::parse(text, Path::new("ship.toml")).unwrap_err().to_string();
+        let both = said(&text);
+        assert!(
+            both.lines().count() == 2 && both.contains("ship.toml:12: ") && both.contains("\nship.toml:17: "),
+            "{both}"
+        );
+        let length = said(&text.replace("lpp = 85.0", "lpp = -85.0"));
+        assert!(length.lines().count() == 3 && length.contains("hull.lpp = -85"), "{length}");
+    }
+
+    #[test]
+    fn coefficients_in_the_wrong_table_are_refused() {
+        for (tables, words) in [
+            ("[coefficients]\nYv = -0.3\n", "without dimension stand in [coefficients_prime]"),
+            ("[coefficients_prime]\nYv = -3e5\n", "in SI units stand in [coefficients]"),
+            ("[coefficients]\nYv = -5e4\n[coefficients_prime]\nYv = -0.3\n", "keep one of them"),
+        ] {
+            let said = message("[parameters]", &format!("{tables}[parameters]")).unwrap_or_default();
+            assert!(said.contains(words) && said.contains("ship.toml:3"), "{tables}{said}");
+        }
+        let zero =
+            "[coefficients]\nYrdot = 0.0\nYv = -5e4\n[coefficients_prime]\nNv = -0.1\nNrrv = 0.0003\n[parameters]";
+        assert_eq!(message("[parameters]", zero), None);
     }
 
     #[test]

@@ -58,6 +58,25 @@ fn headers() -> Vec<Fault> {
             "run.csv:1: no column `delta`",
             "did you mean `dleta`?",
         ),
+        (
+            "rudder by its usual name",
+            header("delta [deg]", "Rudder angle [deg]"),
+            "run.csv:1: no column `delta`",
+            "did you mean `Rudder angle`?",
+        ),
+        ("rate by its unit", header("n [rpm]", "rpm"), "run.csv:1: no column `n`", "did you mean `rpm`?"),
+        (
+            "semicolons",
+            good().join("\n").replace(',', ";"),
+            "run.csv:1: the columns are separated by `;`",
+            "delimiter = \"semicolon\"",
+        ),
+        (
+            "a spreadsheet",
+            "PK\u{3}\u{4}\u{14}\0\u{6}\0".to_owned(),
+            "run.csv: this is no plain text",
+            "export it as CSV",
+        ),
         ("no unit", header("delta [deg]", "delta"), "run.csv:1: column `delta` has no unit", "`delta [rad]`"),
         (
             "unknown unit",
@@ -86,6 +105,12 @@ fn values() -> Vec<Fault> {
         (
             "duplicate time",
             with_line(6, &row(3.0)),
+            "run.csv:6: time 3 s repeats 3 s of line 5",
+            "the whole row is there twice: remove it",
+        ),
+        (
+            "rounded clock",
+            with_line(6, "3,8,0,0,2,0,0,60,5"),
             "run.csv:6: time 3 s repeats 3 s of line 5",
             "`dt` in a column map",
         ),
@@ -191,7 +216,7 @@ fn maps() -> Vec<Fault> {
         (
             "map with a wrong key",
             "delimiter = \"coma\"\n",
-            "columns.toml:1: unknown variant `coma`",
+            "columns.toml:1: `delimiter`: unknown word `coma`",
             "did you mean `comma`?",
         ),
         ("no header, no indices", "header = false\n", "columns.toml:1: a file without a header", "`index`"),
@@ -220,6 +245,29 @@ fn every_fault_of_a_recording_is_one_message_with_place_and_next_step() {
             "{name}:\n{message}\nshould start {start}\nand contain {rest}"
         );
         assert!(!message.contains('\n') && !message.contains("NaN is"), "{name}: one line\n{message}");
+    }
+}
+
+#[test]
+fn times_that_leave_nothing_are_told_with_those_of_the_recording() {
+    let recording = Recording::parse(&good().join("\n"), Path::new("run.csv"), &ColumnMap::default()).unwrap();
+    let labels = Labels { run: "run".into(), session: "a".into(), manoeuvre: "b".into(), split: Split::Train };
+    let whole = WindowSettings::whole(5.0);
+    for (settings, words) in [
+        (
+            WindowSettings { from: Some(100.0), ..whole.clone() },
+            "lasts from 0 s to 9 s, of which `from` = 100 s leaves nothing",
+        ),
+        (WindowSettings { to: Some(-5.0), ..whole.clone() }, "`to` = -5 s leaves nothing"),
+        (
+            WindowSettings { discard_start: 5.0, discard_end: 5.0, ..whole.clone() },
+            "`discard_start` = 5 s, `discard_end` = 5 s leave nothing",
+        ),
+        (WindowSettings { step: Some(60.0), ..whole.clone() }, "`step` = 60 s is too long for a recording of 9 s"),
+        (WindowSettings { window: Some(1.0), ..whole }, "`window` = 1 s is 1 steps of 1 s"),
+    ] {
+        let message = recording.windows(&labels, &settings).err().map_or(String::new(), |e| e.to_string());
+        assert!(message.starts_with("run.csv: ") && message.contains(words), "{message}");
     }
 }
 

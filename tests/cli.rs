@@ -420,3 +420,88 @@ fn the_demo_finds_and_confirms_what_is_concealed_in_its_study() {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
     assert_eq!(demo.join("recordings").read_dir().unwrap().count(), 40);
 }
+
+#[test]
+fn mistakes_in_several_files_are_told_in_one_go() {
+    let study = Study::new();
+    study.edit("study.toml", "[evaluate]", "[evaluate]\nwindow = 60.0");
+    study.edit("study.toml", "speed = 6.0", "sped = 6.0");
+    study.edit("ship.toml", "wake = 0.28", "wake = 28.0");
+    study.edit("model.toml", "form = \"paper\"", "from = \"paper\"");
+    for command in [&["fit", "study.toml"][..], &["check", "study.toml"], &["maneuver", "turning", "study.toml"]] {
+        let message = study.refuses(command);
+        contains_all(
+            &message,
+            &[
+                "`window` is a key of the whole study",
+                "did you mean `speed`?",
+                "propeller.wake = 28",
+                "did you mean `form`?",
+            ],
+        );
+    }
+}
+
+#[test]
+fn a_file_in_the_place_of_another_is_named_for_what_it_is() {
+    let study = Study::new();
+    for (arguments, words) in [
+        (&["check", "ship.toml"][..], "ship.toml:1: this is a ship file, not a study"),
+        (&["fit", "model.toml"], "this is a model file, not a study"),
+        (&["fit", "runs.csv"], "this is a table of values (CSV), not a study"),
+        (&["simulate", "study.toml", "--model", "ship.toml"], "this is a ship file, not a model file"),
+        (&["simulate", "study.toml", "--model", "study.toml"], "this is a study, not a model file"),
+        (&["new", "--from", "model.toml", "--type", "coaster"], "this is a model file, not a ship file"),
+        (&["check", "."], "it is a folder; name a file in it, such as `./study.toml`"),
+        (&["check", "stduy.toml"], "did you mean `study.toml`?"),
+        (&["fit", "study.toml", "--out", "ship.toml"], "this is a file, not a folder"),
+    ] {
+        contains_all(&study.refuses(arguments), &[words]);
+    }
+}
+
+#[test]
+fn a_fitted_model_is_refused_with_another_ship() {
+    let study = Study::new();
+    study.does(&["fit", "study.toml", "--out", "results"]);
+    study.edit("ship.toml", "lpp = 85.0", "lpp = 100.0");
+    study.edit("ship.toml", "mass = 3.359e6", "mass = 3.952e6");
+    for command in [&["simulate", "study.toml", "--model"][..], &["export", "--study", "study.toml"]] {
+        let message = study.refuses(&[command, &["results/fitted.toml"]].concat());
+        contains_all(&message, &["results/fitted.toml", "L = 85 m", "L = 100 m", "fit the model to this ship"]);
+    }
+}
+
+#[test]
+fn what_a_model_says_of_nothing_in_the_study_is_told() {
+    let study = Study::new();
+    study.edit("model.toml", "form = \"paper\"", "form = \"paper\"\nterms = [\"wind\"]");
+    study.append("model.toml", "[sessions.\"day 9\"]\n\"rudder.lift1\" = 0.1\n");
+    let output = study.run(&["simulate", "study.toml"]);
+    assert_eq!(output.status.code(), Some(0));
+    contains_all(
+        &text(&output.stderr),
+        &["the term `wind` has no effect in", "`wind_speed`", "session `day 9` is used in no run"],
+    );
+}
+
+#[test]
+fn arguments_that_cannot_be_are_told_in_words() {
+    let study = Study::new();
+    for (arguments, words) in [
+        (&["compare", "study.toml", "model.toml", "model.toml"][..], "model.toml is given twice"),
+        (&["terms", "p5"], "`trimtab terms rudder` shows it"),
+        (&["terms", "ruder_late"], "did you mean"),
+        (&["maneuver", "turning", "study.toml", "--speed", "60"], "is it in knots?"),
+        (&["maneuver", "turning", "study.toml", "--draws", "-3"], "a whole number of 0 or more"),
+        (&["new", "--lpp", "-5", "--breadth", "2", "--draught", "1", "--type", "tug"], "a positive number in m"),
+        (&["new", "--lpp", "50m", "--breadth", "9", "--draught", "3", "--type", "tug"], "without a unit"),
+    ] {
+        contains_all(&study.refuses(arguments), &[words]);
+    }
+    assert!(!study.refuses(&["fit", "study.toml", "--ouput", "o"]).contains("to pass"));
+    assert!(study.does(&["help", "runs"]).starts_with("The study file"));
+    study.does(&["manoeuvre", "turning", "study.toml"]);
+    study.edit("study.toml", "speed = 6.0", "speed = 6.0\nturning_deg = 0.61");
+    contains_all(&study.refuses(&["maneuver", "turning", "study.toml"]), &["degrees, not in radians"]);
+}

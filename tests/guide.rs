@@ -72,7 +72,11 @@ fn taken(chapter: &str, table: &Table, path: &str) -> BTreeSet<String> {
         _ => ColumnMap::parse(&of(&place), at).unwrap_err().to_string(),
     };
     assert!(message.contains("`unheard_of`"), "{chapter} {path}: {message}");
-    let (_, expected) = message.split_once("expected").unwrap_or_else(|| panic!("{chapter} {path}: {message}"));
+    let line = message.lines().find(|line| line.contains("`unheard_of`")).unwrap_or_default();
+    let listed = line.split_once("the keys here are ").or_else(|| line.split_once("expected"));
+    let (_, expected) = listed.unwrap_or_else(|| panic!("{chapter} {path}: {message}"));
+    // A sentence may follow that says where keys of other tables stand.
+    let expected = expected.split(';').next().unwrap_or_default();
     expected.split('`').skip(1).step_by(2).map(str::to_owned).collect()
 }
 

@@ -221,3 +221,62 @@ fn a_model_without_resistance_says_so() {
     bare.parameters.clear();
     assert!(Model::new(bare, "m", Form::default(), &[]).unwrap().without_resistance());
 }
+
+#[test]
+fn a_parameter_of_a_term_that_the_model_lacks_is_told_with_the_term() {
+    let error = read("name = \"m\"\n[parameters]\n\"current.north\" = { value = 0.1 }\n").unwrap_err();
+    assert!(error.contains("model.toml:3") && error.contains("add it: terms = [\"current\"]"), "{error}");
+    let error = read("name = \"m\"\n[parameters]\n\"side_force\" = { value = 0.1 }\n").unwrap_err();
+    assert!(error.contains("did you mean `propeller.side_force`?"), "{error}");
+}
+
+#[test]
+fn what_contradicts_itself_in_a_setting_is_refused_in_words() {
+    for (setting, words) in [
+        ("\"rudder.lift1\" = { value = 1.0 }\np5 = { value = 2.0 }", "set twice, by its name and by its symbol"),
+        ("\"rudder.lift1\" = { lower = 3.0, upper = 2.0 }", "its `lower` (3) must be at most its `upper` (2)"),
+        ("\"rudder.lift1\" = { prior = { mean = 1.0, sd = 0.0 } }", "the sd 0, where"),
+        (
+            "\"rudder.lift1\" = { lower = 0.0, upper = 3.0, prior = { mean = 9.0, sd = 0.1 } }",
+            "lies outside its bounds",
+        ),
+        ("rudder.lift1 = { value = 1.0 }", "write the name in quotes"),
+        ("\"rudder.lift1\" = { value = \"1.0\" }", "found the text"),
+        ("\"rudder.lift1\" = 1.0", "such as { key = value }"),
+    ] {
+        let error = read(&format!("name = \"m\"\n[parameters]\n{setting}\n")).unwrap_err();
+        assert!(error.starts_with("model.toml:") && error.contains(words), "{setting}\n{error}");
+    }
+    // A prior beyond a bound by less than its own width is knowledge that the bound cuts.
+    assert!(
+        read("name = \"m\"\n[parameters]\n\"rudder.lift1\" = { lower = 0.0, prior = { mean = -0.1, sd = 0.5 } }\n")
+            .is_ok()
+    );
+}
+
+#[test]
+fn every_mistake_of_a_model_file_is_told_at_once() {
+    let text = "name = \"m\"\n[parameters]\n\"rudder.lfit1\" = { value = 1.0 }\n\"rudder.drag0\" = { value = nan }\n[sessions.a]\n\"wnid.side\" = 1.0\n";
+    let error = read(text).unwrap_err();
+    let lines: Vec<&str> = error.lines().collect();
+    assert_eq!(lines.len(), 3, "{error}");
+    for (place, words) in [(":3:", "rudder.lift1"), (":4:", "must be finite"), (":6:", "wnid.side")] {
+        assert!(lines.iter().any(|line| line.contains(place) && line.contains(words)), "{error}");
+    }
+}
+
+#[test]
+fn a_model_that_was_fitted_to_another_ship_is_refused() {
+    let text = toml::to_string(&read("name = \"m\"\n").unwrap().to_file()).unwrap();
+    assert!(text.contains("[fitted_ship]") && read(&text).is_ok(), "{text}");
+    let mut other = ship();
+    other.hull.lpp *= 1.2;
+    let parse = |ship: Ship, text: &str| Model::parse(text, Path::new("fitted.toml"), ship).map_err(|e| e.to_string());
+    let error = parse(other.clone(), &text).unwrap_err();
+    assert!(
+        error.contains("L = 85 m") && error.contains("L = 102 m") && error.contains("fit the model to this ship"),
+        "{error}"
+    );
+    // A file without the table, as written by hand or before there was one, may serve any ship.
+    assert!(parse(other, "name = \"m\"\n").is_ok());
+}

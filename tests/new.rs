@@ -123,7 +123,7 @@ fn a_missing_dimension_and_an_impossible_value_are_told() {
     contains_all(&told("[hull]\nlpp = 30.0\nbreadth = -10.0\ndraught = 4.0\n"), &["hull.breadth must be given"]);
     let text = "[hull]\nlpp = 30.0\nbreadth = 10.0\ndraught = 4.0\n";
     contains_all(&told(&format!("{text}mass = 3.0\n")), &["hull.mass = 3 kg is not the"]);
-    contains_all(&told(&format!("{text}masss = 3.0\n")), &["unknown field `masss`", "did you mean `mass`?"]);
+    contains_all(&told(&format!("{text}masss = 3.0\n")), &["unknown key `masss`", "did you mean `mass`?"]);
 }
 
 #[test]

@@ -53,7 +53,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("compare", &args.output)?.drawn_as(&args.figures);
     for (i, path) in args.models.iter().enumerate() {
         if args.models[..i].contains(path) {
-            let text = format!("{} is given twice: a model has no difference from itself; name it once", path.display());
+            let text =
+                format!("{} is given twice: a model has no difference from itself; name it once", path.display());
             return Err(CliError::Argument(text));
         }
     }

@@ -116,6 +116,13 @@ fn program() -> clap::Command {
     signed(Cli::command())
 }
 
+/// A message about an argument with what a number must be said as to a user, not as the reader of numbers says it.
+fn in_words(message: &str) -> String {
+    message
+        .replace("invalid float literal", "it must be a number, without a unit and with a decimal point")
+        .replace("invalid digit found in string", "it must be a whole number of 0 or more")
+}
+
 /// Runs the command that the process was given.
 pub fn run() -> ExitCode {
     match processor::build() {
@@ -132,7 +139,7 @@ pub fn run() -> ExitCode {
         Err(mut wrong) if wrong.use_stderr() => {
             // How to pass what looks like an option as a file is no help to who misspelt an option.
             wrong.remove(ContextKind::Suggested);
-            tell(wrong.render().to_string().trim_end());
+            tell(in_words(&wrong.render().to_string()).trim_end());
             return ExitCode::from(2);
         }
         // Help, or the version.

@@ -172,7 +172,10 @@ fn given(args: &Args) -> Result<Table, CliError> {
 /// The tables of a ship file, of which not all need be there.
 fn read(path: &Path) -> Result<Table, CliError> {
     let text = read_text(path).map_err(|source| {
-        CliError::Argument(format!("{}: cannot read the ship file ({source}); check the path of --from", path.display()))
+        CliError::Argument(format!(
+            "{}: cannot read the ship file ({source}); check the path of --from",
+            path.display()
+        ))
     })?;
     read_tables(&text, Written::Ship).map_err(|mistakes| {
         let (line, message) = told(mistakes, path);

@@ -58,7 +58,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let unknown: Vec<String> =
         args.names.iter().filter(|n| !known().any(|k| k == **n)).map(|name| unknown(name)).collect();
     if !unknown.is_empty() {
-        return Err(CliError::Argument(format!("{}; `trimtab terms` lists them", unknown.join("; "))));
+        return Err(CliError::Argument(unknown.join("\n")));
     }
     let mut terms = listing(None, ship.as_ref());
     terms.retain(|t| args.names.is_empty() || args.names.iter().any(|n| n == t.name));
@@ -79,8 +79,8 @@ fn unknown(name: &str) -> String {
         info.parameters.iter().any(of)
     });
     match owner {
-        Some(info) => format!("`{name}` is a parameter of the term `{0}`: `trimtab terms {0}` shows it", info.name),
-        None => format!("unknown term `{name}`{}", near_term(name)),
+        Some(info) => format!("`{name}` is no term but a parameter of one: `trimtab terms {}` shows it", info.name),
+        None => format!("unknown term `{name}`{}; `trimtab terms` lists them", near_term(name)),
     }
 }
 

@@ -164,10 +164,12 @@ impl Recording {
             "sort the rows by time, and remove what is there twice".to_owned()
         } else if same(&row) {
             let times = repeats.iter().filter(|row| same(row)).count();
-            let all = if times > 1 { format!(", and {} others that are there twice", times - 1) } else { String::new() };
+            let all =
+                if times > 1 { format!(", and {} others that are there twice", times - 1) } else { String::new() };
             format!("the whole row is there twice: remove it{all}")
         } else {
-            "the rows differ: set `dt` in a column map if the time column was rounded, and remove the row otherwise".to_owned()
+            "the rows differ: set `dt` in a column map if the time column was rounded, and remove the row otherwise"
+                .to_owned()
         }
     }
 

@@ -20,7 +20,7 @@ use super::blank::Blank;
 use super::channel::{CHANNELS, Channel};
 use super::error::RecordingError;
 use crate::error::suggestion;
-use crate::written::{Kind, Mistake, line_at, read_toml, read_text, told};
+use crate::written::{Kind, Mistake, line_at, read_text, read_toml, told};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -372,7 +372,8 @@ impl ColumnMap {
         let positive = [("dt", self.dt), ("derive_span", self.derive_span), ("bridge", self.bridge)];
         for (key, value) in positive {
             if value.is_some_and(|v| !v.is_finite() || v <= 0.0) {
-                mistakes.push(Mistake::new(key_line(text, key), format!("`{key}` must be a positive number of seconds")));
+                mistakes
+                    .push(Mistake::new(key_line(text, key), format!("`{key}` must be a positive number of seconds")));
             }
         }
         let point = |p: &[f64; 2]| p.iter().all(|v| v.is_finite());
@@ -419,7 +420,9 @@ fn unknown_channel(name: &str) -> String {
 /// A channel that stands at the top of a map, where it is an unknown key.
 fn channel_at_the_top(mistake: Mistake) -> Mistake {
     match mistake.unknown.as_deref().filter(|key| Channel::from_name(key).is_some()) {
-        Some(name) => Mistake::new(mistake.line, format!("the channel `{name}` stands in the table [columns], below its heading")),
+        Some(name) => {
+            Mistake::new(mistake.line, format!("the channel `{name}` stands in the table [columns], below its heading"))
+        }
         None => mistake,
     }
 }

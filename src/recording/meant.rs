@@ -35,8 +35,12 @@ impl Channel {
     /// The channel that a name stands for by its meaning: the channel described by exactly these words, or else by one of them. A
     /// name that is a channel's own stands for that one.
     pub fn meant_by(name: &str) -> Option<Self> {
-        let words: Vec<String> =
-            name.to_lowercase().split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(Into::into).collect();
+        let words: Vec<String> = name
+            .to_lowercase()
+            .split(|c: char| !c.is_alphanumeric())
+            .filter(|w| !w.is_empty())
+            .map(Into::into)
+            .collect();
         let phrase = words.join(" ");
         let described = || CHANNELS.iter().find(|c| c.words == phrase).map(|c| c.channel);
         let everyday = |word: &String| EVERYDAY.iter().find(|(known, _)| known == word).map(|(_, channel)| *channel);

@@ -91,7 +91,9 @@ fn mistakes(entries: &[(usize, RunEntry)], rule: Option<SplitRule>) -> Vec<Mista
         }
         let name = name_of(e);
         if let Some(other) = named.insert(name.clone(), *line) {
-            wrong(format!("run `{name}` is listed twice, here and at line {other}; give one of them a `name` of its own"));
+            wrong(format!(
+                "run `{name}` is listed twice, here and at line {other}; give one of them a `name` of its own"
+            ));
         }
         for (key, time) in [("from", e.from), ("to", e.to)] {
             if let Some(time) = time.filter(|t| !t.is_finite()) {

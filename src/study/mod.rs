@@ -87,15 +87,36 @@ mod tests {
             (format!("initial_span = 2.0\n{runs}"), ":4: ", "\"first\""),
             (format!("{runs}splt = \"train\"\n"), ":7: ", "did you mean `split`?"),
             (format!("{runs}{runs}"), ":7: ", "listed twice"),
-            (format!("{runs}[split]\ntest = 12.5\n"), ":8: ", "share from 0 to 1"),
+            (format!("{runs}[split]\ntest = 12.5\n"), ":8: ", "share from 0 to below 1"),
             ("runs = []\n".to_owned(), ":1: ", "no run is listed"),
             (format!("data = \"$NO_SUCH_VARIABLE_HERE/x\"\n{runs}"), ":4: ", "`$NO_SUCH_VARIABLE_HERE` is not set"),
+            (format!("{runs}window = 60.0\n"), ":7: ", "stands at the top"),
+            (format!("tolerance = 60.0\n{runs}"), ":4: ", "below the heading of its table"),
+            (format!("window_overlap = 60.0\n{runs}"), ":4: ", "no effect without `window`"),
+            (format!("window = 60.0\nwindow_overlap = 60.0\n{runs}"), ":5: ", "shorter than `window`"),
+            (format!("{runs}from = nan\n"), ":4: ", "not a time in seconds"),
+            (format!("{runs}{runs}windw = 1\n"), ":10: ", "unknown key `windw`"),
+            (format!("window = -3.0\nstep = 0.0\n{runs}"), ":4: ", "study.toml:5: `step` = 0"),
             (format!("{runs}split = \"test\"\n[[runs]]\nfile = \"b.csv\"\n"), ":8: ", "has no `split`"),
         ];
         for (text, place, hint) in cases {
             let message = parse(&text).unwrap_err();
             assert!(message.contains(&format!("study.toml{place}")) && message.contains(hint), "{text}\n{message}");
         }
+    }
+
+    #[test]
+    fn a_key_of_the_study_in_the_table_of_a_command_is_told_with_its_place() {
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields, default)]
+        #[derive(Default)]
+        struct Settings {
+            steps: usize,
+        }
+        let study = parse(&format!("[fit]\nsteps = 3\nwindow = 3.0\n{}", listed(1))).unwrap();
+        let mistakes = study.section::<Settings>("fit").unwrap_err();
+        assert!(mistakes[0].line == 6 && mistakes[0].message.contains("stands at the top"), "{mistakes:?}");
+        assert_eq!(study.section::<Settings>("plan").unwrap().steps, 0);
     }
 
     #[test]

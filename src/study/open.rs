@@ -80,7 +80,8 @@ impl Study {
         })?;
         let (entries, runs_path) = match file.runs {
             None => {
-                let message = "no run is listed; add [[runs]] with `file`, or name a table of runs as `runs`".to_owned();
+                let message =
+                    "no run is listed; add [[runs]] with `file`, or name a table of runs as `runs`".to_owned();
                 return Err(StudyError::Parse { path: path.to_owned(), line: 1, message });
             }
             Some(RunTable::Listed(entries)) => {
@@ -104,7 +105,8 @@ impl Study {
             let (line, message) = told(mistakes, path);
             StudyError::Parse { path: path.to_owned(), line, message }
         };
-        let mut file: StudyFile = read_toml(text, Kind::Study).map_err(|m| fail(m.into_iter().map(in_a_table).collect()))?;
+        let mut file: StudyFile =
+            read_toml(text, Kind::Study).map_err(|m| fail(m.into_iter().map(in_a_table).collect()))?;
         let windows = window_settings(&file, text);
         let rule = file.split.filter(|r| !(0.0..1.0).contains(&r.test)).map(|rule| {
             let message = format!("`test` = {} is not a share from 0 to below 1; the paper's is 0.125", rule.test);
@@ -261,10 +263,7 @@ impl Study {
     /// Every mistake in it, with lines of the study.
     pub fn section<T: DeserializeOwned>(&self, table: &str) -> Result<T, Vec<Mistake>> {
         let at_the_top = |mistake: Mistake| match mistake.unknown.as_deref().filter(|key| is_key_of_a_study(key)) {
-            Some(key) => Mistake::new(
-                mistake.line,
-                format!("`{key}` is a key of the whole study: it stands at the top, before the first [table]"),
-            ),
+            Some(key) => out_of_place(mistake.line, key),
             None => mistake,
         };
         section(&self.text, table).map_err(|mistakes| mistakes.into_iter().map(at_the_top).collect())
@@ -295,13 +294,22 @@ fn text_of(path: &Path) -> Result<String, StudyError> {
 
 /// An unknown key of a study, which may stand in the wrong one of its tables.
 fn in_a_table(mistake: Mistake) -> Mistake {
-    let below = "; the settings of a command stand below the heading of its table, such as [fit] (`trimtab help study`)";
-    match &mistake.unknown {
-        Some(_) if !mistake.message.contains("did you mean") => {
-            Mistake { message: mistake.message.clone() + below, ..mistake }
-        }
-        _ => mistake,
+    let Some(key) = &mistake.unknown else { return mistake };
+    if is_key_of_a_study(key) {
+        return out_of_place(mistake.line, key);
     }
+    // Only the keys at the top are told with those of the windows.
+    if mistake.message.contains("`initial_state`") && !mistake.message.contains("did you mean") {
+        let below =
+            "; the settings of a command stand below the heading of its table, such as [fit] (`trimtab help study`)";
+        return Mistake { message: mistake.message.clone() + below, ..mistake };
+    }
+    mistake
+}
+
+/// A key of the study that stands in one of its tables.
+fn out_of_place(line: usize, key: &str) -> Mistake {
+    Mistake::new(line, format!("`{key}` is a key of the whole study: it stands at the top, before the first [table]"))
 }
 
 /// The first of the candidate folders that exists; the study's own folder without candidates.
@@ -330,7 +338,11 @@ fn data_folder(candidates: &[String], folder: &Path) -> Result<PathBuf, String> 
             return Ok(path);
         }
         let what = if path.exists() { "is a file, not a folder" } else { "does not exist" };
-        tried.push(format!("{} {what}{}", path.display(), if path.exists() { String::new() } else { near_file(&path) }));
+        tried.push(format!(
+            "{} {what}{}",
+            path.display(),
+            if path.exists() { String::new() } else { near_file(&path) }
+        ));
     }
     Err(tried.join(", "))
 }

@@ -28,11 +28,16 @@ pub(super) fn window_settings(file: &StudyFile, text: &str) -> Result<WindowSett
     }
     match file.window {
         None if file.window_overlap > 0.0 => {
-            fail("window_overlap", "`window_overlap` has no effect without `window`; set the length of the windows, or drop it".into());
+            fail(
+                "window_overlap",
+                "`window_overlap` has no effect without `window`; set the length of the windows, or drop it".into(),
+            );
         }
         Some(window) if file.window_overlap >= window && window > 0.0 => {
             let overlap = file.window_overlap;
-            let text = format!("`window_overlap` = {overlap} s must be shorter than `window` = {window} s; correct one of them");
+            let text = format!(
+                "`window_overlap` = {overlap} s must be shorter than `window` = {window} s; correct one of them"
+            );
             fail("window_overlap", text);
         }
         Some(window) if file.step.is_some_and(|step| step >= window && window > 0.0) => {

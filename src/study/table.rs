@@ -69,7 +69,9 @@ fn header(record: &StringRecord) -> Result<Vec<String>, Vec<String>> {
         && let Some(separator) = [';', '\t'].into_iter().find(|s| only.contains(*s))
     {
         let named = if separator == ';' { "semicolons" } else { "tabulators" };
-        return Err(vec![format!("the fields are separated by {named}; separate them by commas, with a decimal point in numbers")]);
+        return Err(vec![format!(
+            "the fields are separated by {named}; separate them by commas, with a decimal point in numbers"
+        )]);
     }
     if !columns.iter().any(|c| known(&c)) {
         return Err(vec![format!("this is no table of runs: its first line must name the columns, which are {list}")]);
@@ -91,7 +93,9 @@ fn entry(columns: &[String], record: &StringRecord) -> Result<RunEntry, Vec<Stri
     let surplus = record.iter().skip(columns.len()).any(|field| !field.is_empty());
     if record.len() < columns.len() || surplus {
         let (found, expected) = (record.len(), columns.len());
-        return Err(vec![format!("{found} fields where the first line has {expected}; is a comma too many or too few?")]);
+        return Err(vec![format!(
+            "{found} fields where the first line has {expected}; is a comma too many or too few?"
+        )]);
     }
     let cell = |column: &str| {
         let at = columns.iter().position(|c| c == column)?;
@@ -115,7 +119,9 @@ fn entry(columns: &[String], record: &StringRecord) -> Result<RunEntry, Vec<Stri
         let text = cell(column)?;
         let value = text.parse::<f64>().ok();
         if value.is_none() {
-            let text = format!("`{column}` = {text} is not a number of seconds; write it with a decimal point, or leave it blank");
+            let text = format!(
+                "`{column}` = {text} is not a number of seconds; write it with a decimal point, or leave it blank"
+            );
             wrong.push(text);
         }
         value
@@ -150,9 +156,12 @@ mod tests {
         let found = wrong("file,split,from\na.csv,training,\n,train,\nc.csv,test,\"0,5\"\nd.csv,test\n");
         let lines: Vec<usize> = found.iter().map(|(line, _)| *line).collect();
         assert_eq!(lines, [2, 3, 4, 5], "{found:?}");
-        for ((_, message), words) in
-            found.iter().zip(["did you mean `train`?", "is blank", "decimal point", "2 fields where the first line has 3"])
-        {
+        for ((_, message), words) in found.iter().zip([
+            "did you mean `train`?",
+            "is blank",
+            "decimal point",
+            "2 fields where the first line has 3",
+        ]) {
             assert!(message.contains(words), "{message}");
         }
     }

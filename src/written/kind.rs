@@ -30,7 +30,9 @@ impl Kind {
     /// Where a file of this kind is named.
     fn place(self) -> &'static str {
         match self {
-            Self::Study => "the study is the file that names ship, model and recordings; `trimtab help study` shows one",
+            Self::Study => {
+                "the study is the file that names ship, model and recordings; `trimtab help study` shows one"
+            }
             Self::Ship => "the ship file is named by `ship` in the study; `trimtab help ship` shows one",
             Self::Model => {
                 "a model file is named by `model` in the study, or by --model; `trimtab fit --out` writes one, fitted.toml"

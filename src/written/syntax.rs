@@ -48,10 +48,10 @@ fn meant(message: &str, line: &str, key: &str) -> String {
         "a key and its value are joined by `=`, as in key = \"text\""
     } else if value.is_some_and(|v| v.starts_with('"') && v.matches('"').count() == 1) {
         "the quote at the end is missing"
+    } else if value.is_some_and(|v| v.starts_with(|c: char| c.is_ascii_digit())) {
+        "a number stands alone, without a unit"
     } else if message.contains("must be quoted") {
         "a text stands in quotes, as in key = \"text\""
-    } else if value.is_some_and(|v| digit_after(v, ' ') || v.starts_with(|c: char| c.is_ascii_digit())) {
-        "a number stands alone, without a unit"
     } else {
         return format!("{message}; `key = value` is expected, a text in quotes, a comment after `#`");
     };
@@ -84,15 +84,15 @@ mod tests {
             ("step = 10 s", "without a unit"),
             ("name = \"b\"", "`name` is there twice"),
         ] {
-            assert!(said(&format!("name = \"a\"\n{line}\n")).contains(words), "{line}: {}", said(&format!("name = \"a\"\n{line}\n")));
+            let message = said(&format!("name = \"a\"\n{line}\n"));
+            assert!(message.contains(words), "{line}: {message}");
         }
     }
 
     #[test]
     fn mistakes_on_several_lines_are_told_at_once() {
         let text = "a = 0,5\nb = True\nc = 1\n";
-        let lines: Vec<usize> =
-            mistakes(text, &DeTable::parse_recoverable(text).1).iter().map(|m| m.line).collect();
+        let lines: Vec<usize> = mistakes(text, &DeTable::parse_recoverable(text).1).iter().map(|m| m.line).collect();
         assert_eq!(lines, [1, 2]);
     }
 }

@@ -62,8 +62,9 @@ pub fn near_file(file: &Path) -> String {
     if !near.is_empty() {
         return near;
     }
-    // The folder itself may be another: the one above it, or one in either.
-    let base = if folder.is_dir() { folder } else { folder.parent().unwrap_or(Path::new("")) };
+    // The folder itself may be another: the nearest above it that is there, or one in that.
+    let base = file.ancestors().skip(1).find(|folder| folder.as_os_str().is_empty() || folder.is_dir());
+    let base = base.unwrap_or(Path::new(""));
     let inner = names(base).into_iter().map(|n| base.join(n)).filter(|p| p.is_dir());
     for place in std::iter::once(base.to_owned()).chain(inner) {
         if let Some(same) = names(&place).into_iter().find(|n| n.eq_ignore_ascii_case(&name)) {
@@ -113,7 +114,9 @@ mod tests {
         let at = |name: &str| folder.path().join(name);
         std::fs::create_dir(at("recordings"))?;
         std::fs::write(at("recordings/turn_1.csv"), "")?;
-        for wrong in ["recordings/turn1.csv", "turn_1.csv", "data/turn_1.csv", "Recordings/TURN_1.CSV"] {
+        for wrong in
+            ["recordings/turn1.csv", "turn_1.csv", "data/turn_1.csv", "a/b/turn_1.csv", "Recordings/TURN_1.CSV"]
+        {
             assert!(near_file(&at(wrong)).contains("turn_1.csv`?"), "{wrong}");
         }
         assert!(near_file(Path::new(r"recordings\turn_1.csv")).contains("write `/`"));

@@ -55,7 +55,8 @@ impl Unknown<'_> {
         let near = suggestion(self.found, self.known.iter().copied());
         let one = if self.is_key { "the keys here are" } else { "it must be one of" };
         let list: Vec<String> = self.known.iter().map(|k| format!("`{k}`")).collect();
-        let list = if list.is_empty() { "; there are none here".into() } else { format!("; {one} {}", list.join(", ")) };
+        let list =
+            if list.is_empty() { "; there are none here".into() } else { format!("; {one} {}", list.join(", ")) };
         format!("{what} `{}`{near}{list}", self.found)
     }
 }
@@ -75,7 +76,8 @@ pub(super) fn plain(message: &str, key: Option<&str>) -> String {
             Some((_, words)) => format!("{of}it must be {words}"),
             None => match message.strip_prefix("invalid length ").and_then(|rest| rest.split_once(", expected ")) {
                 Some((length, expected)) => {
-                    let expected = expected.replace("an array of length ", "").replace("fewer elements in array", "fewer");
+                    let expected =
+                        expected.replace("an array of length ", "").replace("fewer elements in array", "fewer");
                     format!("{of}it has {length} values, but must have {expected}")
                 }
                 None => format!("{of}{message}"),
@@ -112,7 +114,10 @@ mod tests {
             "`window`: found the number `-5`, but it must be a whole number of 0 or more"
         );
         assert!(said("invalid type: map, expected struct Setting").ends_with("a table, such as { key = value }"));
-        assert_eq!(said("invalid length 2, expected an array of length 3"), "`window`: it has 2 values, but must have 3");
+        assert_eq!(
+            said("invalid length 2, expected an array of length 3"),
+            "`window`: it has 2 values, but must have 3"
+        );
         assert_eq!(plain("a law of its own", None), "a law of its own");
     }
 }
