@@ -96,8 +96,17 @@ fn read_all<T: DeserializeOwned>(text: &str, root: Spanned<DeTable<'_>>) -> Resu
             break;
         }
     }
+    let misspelt: Vec<String> = mistakes.iter().filter_map(|m| meant(&m.message)).collect();
+    // A key that is misspelt is missing for that reason alone.
+    mistakes.retain(|m| words::missing_told(&m.message).is_none_or(|key| !misspelt.iter().any(|meant| meant == key)));
     mistakes.sort_by_key(|m| m.line);
     Err(mistakes)
+}
+
+/// The name that a message takes another for.
+fn meant(message: &str) -> Option<String> {
+    let (_, rest) = message.split_once("did you mean `")?;
+    Some(rest.split('`').next()?.to_owned())
 }
 
 /// Puts a text where a value is missing.
@@ -111,7 +120,7 @@ fn stand_in(root: &mut DeValue<'_>, way: &[Step], key: &str) -> bool {
 /// The mistake of a key that is not there.
 fn missing(line: usize, key: &str, way: &[Step]) -> Mistake {
     let place = dotted(way).map_or(String::new(), |table| format!(" in `{table}`"));
-    Mistake::new(line, format!("the key `{key}` is missing{place}; add it"))
+    Mistake::new(line, words::missing_key(key, &place))
 }
 
 /// The mistake of an entry.
@@ -227,6 +236,8 @@ mod tests {
         );
         let found = messages("name = 3\nship = \"b\"\n");
         assert!(found.len() == 1 && found[0].starts_with("`name`: found the number `3`"), "{found:?}");
+        let found = messages("name = \"a\"\nshp = \"b\"\n");
+        assert!(found.len() == 1 && found[0].contains("did you mean `ship`?"), "{found:?}");
     }
 
     #[test]

@@ -66,6 +66,17 @@ pub(super) fn missing(message: &str) -> Option<&str> {
     message.strip_prefix("missing field `")?.split('`').next()
 }
 
+/// The words for a key that is missing at a place.
+pub(super) fn missing_key(key: &str, place: &str) -> String {
+    format!("the key `{key}` is missing{place}; add it")
+}
+
+/// The key of which [`missing_key`] says that it is missing.
+pub(super) fn missing_told(message: &str) -> Option<&str> {
+    let (key, rest) = message.strip_prefix("the key `")?.split_once('`')?;
+    rest.starts_with(" is missing").then_some(key)
+}
+
 /// What serde says of a value of the wrong kind, with the key where there is one.
 pub(super) fn plain(message: &str, key: Option<&str>) -> String {
     let of = key.map_or(String::new(), |k| format!("`{k}`: "));
