@@ -481,7 +481,7 @@ impl Ship {
             let expected = format!(
                 "is {prime:.1e} without dimension, which no ship has; values without dimension stand in [coefficients_prime]"
             );
-            (prime > 0.0 && !(5e-6..=50.0).contains(&prime)).then(|| (name, *value, expected))
+            (prime > 0.0 && !(5e-6..=50.0).contains(&prime)).then_some((name, *value, expected))
         });
         let prime = self.coefficients_prime.iter().filter_map(|(name, value)| {
             let expected = "is more than any ship has without dimension; values in SI units stand in [coefficients]";
