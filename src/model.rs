@@ -528,7 +528,10 @@ impl Model {
             }
             model.sessions.insert(session.clone(), list);
         }
-        if let Some(fault) = file.covariance.as_ref().and_then(|c| c.fault(|name| model.index(name).is_some())) {
+        // A name that is wrong there as well is wrong for the same reason.
+        if errors.is_empty()
+            && let Some(fault) = file.covariance.as_ref().and_then(|c| c.fault(|name| model.index(name).is_some()))
+        {
             errors.push(ModelError::Covariance(fault));
         }
         match errors.len() {

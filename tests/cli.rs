@@ -493,13 +493,20 @@ fn arguments_that_cannot_be_are_told_in_words() {
         (&["terms", "p5"], "`trimtab terms rudder` shows it"),
         (&["terms", "ruder_late"], "did you mean"),
         (&["maneuver", "turning", "study.toml", "--speed", "60"], "is it in knots?"),
-        (&["maneuver", "turning", "study.toml", "--draws", "-3"], "a whole number of 0 or more"),
         (&["new", "--lpp", "-5", "--breadth", "2", "--draught", "1", "--type", "tug"], "a positive number in m"),
-        (&["new", "--lpp", "50m", "--breadth", "9", "--draught", "3", "--type", "tug"], "without a unit"),
     ] {
         contains_all(&study.refuses(arguments), &[words]);
     }
-    assert!(!study.refuses(&["fit", "study.toml", "--ouput", "o"]).contains("to pass"));
+    for (arguments, words) in [
+        (&["maneuver", "turning", "study.toml", "--draws", "-3"][..], "a whole number of 0 or more"),
+        (&["new", "--lpp", "50m", "--breadth", "9", "--draught", "3", "--type", "tug"], "without a unit"),
+        (&["fit", "study.toml", "--ouput", "o"], "unexpected argument '--ouput'"),
+    ] {
+        let output = study.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let message = text(&output.stderr);
+        assert!(message.contains(words) && !message.contains("to pass"), "{message}");
+    }
     assert!(study.does(&["help", "runs"]).starts_with("The study file"));
     study.does(&["manoeuvre", "turning", "study.toml"]);
     study.edit("study.toml", "speed = 6.0", "speed = 6.0\nturning_deg = 0.61");

@@ -188,7 +188,7 @@ fn what_a_model_cannot_compute_with_is_refused_with_line_and_near_name() {
         ("[parameters]\n\"rudder.lfit1\" = { value = 2.0 }\n", ":3", "did you mean `rudder.lift1`?"),
         ("[parameters]\n\"rudder.lift1\" = { valeu = 2.0 }\n", ":3", "did you mean `value`?"),
         ("[parameters]\n\"rudder.lift1\" = { value = nan }\n", ":3", "must be finite"),
-        ("[parameters]\n\"rudder.lift1\" = { lower = nan }\n", ":3", "lower (NaN)"),
+        ("[parameters]\n\"rudder.lift1\" = { lower = nan }\n", ":3", "its `lower` must be a number"),
         ("[sessions.a]\n\"rudder.lift1\" = inf\n", ":3", "must be finite"),
         ("trems = [\"wind\"]\n", ":2", "did you mean `terms`?"),
     ];

@@ -28,7 +28,7 @@ const FILES: &str = "files";
 #[non_exhaustive]
 pub enum FolderError {
     /// There is a file where the folder should be.
-    #[error("{}: this is a file, not a folder; choose another folder", path.display())]
+    #[error("{}: cannot write into it: this is a file, not a folder; choose another folder", path.display())]
     NoFolder {
         /// The file.
         path: PathBuf,

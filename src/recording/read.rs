@@ -187,9 +187,19 @@ fn header<R: BufRead>(lines: &mut Lines<R>, path: &Path, map: &ColumnMap) -> Res
     }
     let what = "there is no header line".to_owned();
     let (_, line) = first.ok_or_else(|| RecordingError::Empty { path: path.to_owned(), line: 1, what })?;
-    let columns = split(&line, map.delimiter).iter().map(|f| header_column(f)).collect();
-    Ok((Some(columns), header_line, None))
+    let fields = split(&line, map.delimiter);
+    if let [only] = &fields[..]
+        && let Some((separator, name)) =
+            SEPARATORS.into_iter().find(|(separator, _)| only.matches(*separator).count() > 1)
+    {
+        let header = only.to_string();
+        return Err(RecordingError::Delimiter { path: path.to_owned(), line: header_line, separator, name, header });
+    }
+    Ok((Some(fields.iter().map(|f| header_column(f)).collect()), header_line, None))
 }
+
+/// What separates fields, and its name in a column map.
+const SEPARATORS: [(char, &str); 3] = [(';', "semicolon"), ('\t', "tab"), (',', "comma")];
 
 /// How many fields a row has.
 struct Shape {
@@ -453,14 +463,6 @@ fn missing_column(
     channel: Channel,
 ) -> RecordingError {
     let header = header.unwrap_or_default();
-    if let [only] = header
-        && let Some((separator, name)) = [(';', "semicolon"), ('\t', "tab"), (',', "comma")]
-            .into_iter()
-            .find(|(separator, _)| only.full.matches(*separator).count() > 1)
-    {
-        let (path, header) = (path.to_owned(), only.full.clone());
-        return RecordingError::Delimiter { path, line, separator, name, header };
-    }
     // What a name stands for goes before how it is spelt: `rpm` is no `r`.
     let meant = header.iter().find(|h| Channel::meant_by(&h.name) == Some(channel)).map(|h| h.name.as_str());
     let near = meant.map_or_else(
