@@ -3,9 +3,9 @@
 
 use super::error::ImportError;
 use super::log::{Column, Log, Meaning};
-use super::names::{is_magnetic, meaning};
+use super::names::{is_second_choice, is_unit, meaning};
 use crate::error::suggestion;
-use crate::recording::CHANNELS;
+use crate::recording::{CHANNELS, Quantity};
 use std::collections::BTreeMap;
 
 /// What the user says of the columns.
@@ -38,7 +38,7 @@ impl Choices {
             }
         }
         for (name, unit) in &self.units {
-            let Some(quantity) = Meaning::from_name(name).map(Meaning::quantity) else { continue };
+            let quantity = Meaning::from_name(name).map_or(Quantity::Time, Meaning::quantity);
             if quantity.factor(unit).is_none() {
                 let choices = quantity.choices();
                 return Err(ImportError::Choice(format!(
@@ -84,8 +84,10 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec
     let mut candidates: BTreeMap<Meaning, Vec<&str>> = BTreeMap::new();
     let mut unused = Vec::new();
     for name in distinct(all().map(|c| c.name.as_str())) {
-        let by_format = all().find(|c| c.name == name).and_then(|c| c.meaning);
-        match forced.get(name).copied().or(by_format).or_else(|| meaning(name)) {
+        let first = all().find(|c| c.name == name);
+        let unit = first.and_then(|c| c.unit.as_deref());
+        let by_name = meaning(name).filter(|meaning| unit.is_none_or(|unit| fits(*meaning, unit)));
+        match forced.get(name).copied().or(first.and_then(|c| c.meaning)).or(by_name) {
             Some(meaning) => candidates.entry(meaning).or_default().push(name),
             None => unused.push(Unused { column: name.to_owned(), why: "nothing here uses it".to_owned() }),
         }
@@ -96,7 +98,8 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec
         let most = names.iter().map(|n| samples(n)).max().unwrap_or(0);
         let rank = |name: &&str| {
             let wanted = forced.get(*name) == Some(&meaning);
-            (wanted, 5 * samples(name) > most, !is_magnetic(name))
+            let moves = all().filter(|c| c.name == **name).any(|c| c.v.iter().any(|v| *v != c.v[0]));
+            (wanted, 5 * samples(name) > most, moves, !is_second_choice(name))
         };
         // The first of the best.
         let Some(best) = names.iter().rev().copied().max_by_key(rank) else { continue };
@@ -111,6 +114,12 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec
         chosen.insert(meaning, all().filter(|c| c.name == best).collect());
     }
     Ok((chosen, unused))
+}
+
+/// Whether a quantity may be measured in a unit: a rudder in deg/s is no rudder angle. A spelling that is no unit says nothing, nor does
+/// `ms`, which is written for m/s too.
+fn fits(meaning: Meaning, unit: &str) -> bool {
+    meaning.quantity().factor(unit).is_some() || !is_unit(unit) || Quantity::Time.factor(unit).is_some()
 }
 
 fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {

@@ -3,6 +3,7 @@
 
 use super::log::Clock;
 use jiff::civil::DateTime;
+use jiff::fmt::rfc2822;
 use jiff::tz::TimeZone;
 use jiff::{SignedDuration, Timestamp};
 
@@ -18,20 +19,89 @@ pub enum DateOrder {
     MonthFirst,
 }
 
+/// Dates with the name of the month, as `strptime` has them.
+const NAMED_MONTHS: [&str; 6] = [
+    "%d-%b-%Y %H:%M:%S%.f",
+    "%d %b %Y %H:%M:%S%.f",
+    "%d/%b/%Y %H:%M:%S%.f",
+    "%b %d, %Y %H:%M:%S%.f",
+    "%b %d %Y %H:%M:%S%.f",
+    "%a %b %d %H:%M:%S %Y",
+];
+
 /// Seconds since 1970 of a written date and time; `None` where it is none.
 pub fn date_time(text: &str, order: DateOrder) -> Option<f64> {
     let text = text.trim().trim_matches('"').trim();
-    if !text.starts_with(|c: char| c.is_ascii_digit()) || text.len() < 8 || text.len() > 64 {
+    if !text.contains(|c: char| c.is_ascii_digit()) || text.len() < 8 || text.len() > 64 {
         return None;
     }
     let text = text.strip_suffix("UTC").or_else(|| text.strip_suffix("GMT")).map_or(text, str::trim_end);
+    let (text, half) = half_of_day(text);
+    if text.as_bytes().windows(3).any(|w| w.iter().all(u8::is_ascii_alphabetic)) {
+        return half.shift(named_month(text)?);
+    }
+    if !text.starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
     // A comma may separate the fraction.
     let iso = reordered(&text.replace(',', "."), order)?;
     if let Ok(stamp) = iso.parse::<Timestamp>() {
-        return Some(seconds(stamp));
+        return half.shift(seconds(stamp));
     }
     let civil: DateTime = iso.trim_end_matches(['Z', 'z']).parse().ok()?;
+    half.shift(utc(civil)?)
+}
+
+fn utc(civil: DateTime) -> Option<f64> {
     Some(seconds(civil.to_zoned(TimeZone::UTC).ok()?.timestamp()))
+}
+
+fn named_month(text: &str) -> Option<f64> {
+    if let Ok(stamp) = rfc2822::parse(text) {
+        return Some(seconds(stamp.timestamp()));
+    }
+    NAMED_MONTHS.iter().find_map(|format| utc(DateTime::strptime(format, text).ok()?))
+}
+
+/// The half of the day that a clock of twelve hours tells.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Half {
+    Before,
+    After,
+    /// A clock of 24 hours.
+    None,
+}
+
+/// A time without its `AM` or `PM`.
+fn half_of_day(text: &str) -> (&str, Half) {
+    for (end, half) in [("AM", Half::Before), ("PM", Half::After), ("a.m.", Half::Before), ("p.m.", Half::After)] {
+        let at = text.len().saturating_sub(end.len());
+        if let (Some(rest), Some(last)) = (text.get(..at), text.get(at..))
+            && last.eq_ignore_ascii_case(end)
+            && rest.ends_with(|c: char| c.is_ascii_digit() || c == ' ')
+        {
+            return (rest.trim_end(), half);
+        }
+    }
+    (text, Half::None)
+}
+
+impl Half {
+    /// Seconds as a clock of 24 hours has them; `None` where its hour is none of the twelve.
+    fn shift(self, seconds: f64) -> Option<f64> {
+        let hour = (seconds / 3600.0).floor().rem_euclid(24.0);
+        match self {
+            Self::None => Some(seconds),
+            _ if !(1.0..=12.0).contains(&hour) => None,
+            Self::Before => Some(if hour == 12.0 { seconds - 0.5 * DAY } else { seconds }),
+            Self::After => Some(if hour == 12.0 { seconds } else { seconds + 0.5 * DAY }),
+        }
+    }
+}
+
+/// Whether a text is a date without a time of day.
+pub fn is_date_alone(text: &str) -> bool {
+    text.len() <= 12 && !text.contains(':') && date_time(text, DateOrder::DayFirst).is_some()
 }
 
 fn seconds(stamp: Timestamp) -> f64 {
@@ -40,10 +110,14 @@ fn seconds(stamp: Timestamp) -> f64 {
 
 /// The same with the date as ISO 8601 has it: `24.12.2024 10:00` is `2024-12-24 10:00`.
 fn reordered(text: &str, order: DateOrder) -> Option<String> {
-    let at = text.find([' ', 'T']).unwrap_or(text.len());
+    // Fourteen digits are a date and a time of day.
+    if text.len() >= 14 && text.bytes().take(14).all(|b| b.is_ascii_digit()) {
+        return Some(format!("{}T{}", &text[..8], &text[8..]));
+    }
+    let at = text.find([' ', 'T', '_']).unwrap_or(text.len());
     let (date, rest) = (text.get(..at)?, text.get(at..)?);
-    let rest = rest.trim_start_matches([' ', 'T']);
-    let separator = date.chars().find(|c| ['.', '/'].contains(c));
+    let rest = rest.trim_start_matches([' ', 'T', '_']);
+    let separator = date.chars().find(|c| ['.', '/'].contains(c) || (*c == '-' && date.find('-') < Some(4)));
     let date = match separator {
         None => date.to_owned(),
         Some(separator) => {
@@ -63,6 +137,12 @@ fn reordered(text: &str, order: DateOrder) -> Option<String> {
     Some(if rest.is_empty() { date } else { format!("{date}T{}", rest.replace(' ', "")) })
 }
 
+/// Whether a date may have the day or the month first: `05/01/2024`, `5-1-2024`.
+pub fn two_orders(text: &str) -> bool {
+    let digits = text.bytes().take_while(u8::is_ascii_digit).count();
+    (1..=2).contains(&digits) && text[digits..].starts_with(['/', '-'])
+}
+
 /// Whether dates with slashes have the day first; `None` where no date says.
 pub fn date_order<'a>(texts: impl Iterator<Item = &'a str>) -> Option<DateOrder> {
     for text in texts {
@@ -77,17 +157,41 @@ pub fn date_order<'a>(texts: impl Iterator<Item = &'a str>) -> Option<DateOrder>
     None
 }
 
-/// Seconds since midnight of a time of day such as `10:03:05.25`.
+/// Hours that a time since some start may have.
+const MOST_HOURS: u32 = 10_000;
+
+/// Seconds since midnight, or since some start, of a time such as `10:03:05.25`, `10:03 PM`, `03:05.25` or `1 days 02:03:05`.
 pub fn time_of_day(text: &str) -> Option<f64> {
     let text = text.trim().trim_matches('"').trim_end_matches(['Z', 'z']).replace(',', ".");
+    let (days, text) = text.split_once(" days ").or_else(|| text.split_once(" day ")).unwrap_or(("0", &text));
+    let days: u8 = days.trim().parse().ok()?;
+    let (text, half) = half_of_day(text.trim());
     let parts: Vec<&str> = text.split(':').collect();
     let (hours, minutes, seconds) = match parts.as_slice() {
-        [h, m, s] => (h.parse::<u8>().ok()?, m.parse::<u8>().ok()?, s.parse::<f64>().ok()?),
+        [h, m, s] => (h.parse::<u32>().ok()?, m.parse::<u8>().ok()?, s.parse::<f64>().ok()?),
+        // Only seconds have a fraction.
+        [m, s] if s.contains('.') => (0, m.parse().ok()?, s.parse().ok()?),
         [h, m] => (h.parse().ok()?, m.parse().ok()?, 0.0),
         _ => return None,
     };
-    let possible = hours < 24 && minutes < 60 && (0.0..61.0).contains(&seconds);
-    possible.then(|| 3600.0 * f64::from(hours) + 60.0 * f64::from(minutes) + seconds)
+    let possible = hours < MOST_HOURS && minutes < 60 && (0.0..61.0).contains(&seconds);
+    let total = f64::from(days) * DAY + 3600.0 * f64::from(hours) + 60.0 * f64::from(minutes) + seconds;
+    possible.then(|| half.shift(total)).flatten()
+}
+
+/// Seconds since midnight of hours, minutes and seconds in one number: `101530.25`.
+pub fn digits_of_day(value: f64) -> Option<f64> {
+    let (hours, minutes, seconds) = ((value / 1e4).floor(), (value / 100.0).floor() % 100.0, value % 100.0);
+    let possible = (0.0..24.0).contains(&hours) && minutes < 60.0 && seconds < 61.0;
+    possible.then_some(3600.0 * hours + 60.0 * minutes + seconds)
+}
+
+/// Whether numbers are times of day as `101530.25`: from 59 they go on to 100, where a count of seconds has the forty between.
+pub fn are_digits_of_day(values: &[f64]) -> bool {
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let (low, high) = finite().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
+    let step = values.windows(2).map(|v| v[1] - v[0]).filter(|s| *s > 0.0).fold(f64::MAX, f64::min);
+    high - low > 100.0 && step <= 30.0 && finite().all(|v| v % 100.0 < 60.0 && digits_of_day(v).is_some())
 }
 
 /// Times of day that go on past midnight.
@@ -120,15 +224,27 @@ pub fn numeric_time(values: &[f64], unit: Option<f64>) -> NumericTime {
     let middle = finite.len() / 2;
     let typical = if finite.is_empty() { 0.0 } else { *finite.select_nth_unstable_by(middle, f64::total_cmp).1 };
     let time = |clock, factor, zero, words| NumericTime { clock, factor, zero, words };
+    // A unit that takes the numbers to a date since 1973 is that of an epoch.
+    if let Some(unit) = unit.filter(|unit| (1e8..1e11).contains(&(typical * unit))) {
+        return time(Clock::Utc, unit, 0.0, "time since 1970");
+    }
+    let own = unit.filter(|unit| typical * unit < 1e8);
     match typical {
+        _ if own.is_some() => time(Clock::Own, own.unwrap_or(1.0), 0.0, "time from a start of its own"),
         v if v > 1e17 => time(Clock::Utc, 1e-9, 0.0, "nanoseconds since 1970"),
         v if v > 1e14 => time(Clock::Utc, 1e-6, 0.0, "microseconds since 1970"),
         v if v > 1e11 => time(Clock::Utc, 1e-3, 0.0, "milliseconds since 1970"),
         v if v > 1e8 => time(Clock::Utc, 1.0, 0.0, "seconds since 1970"),
-        _ if unit.is_some() => time(Clock::Own, unit.unwrap_or(1.0), 0.0, "time from a start of its own"),
-        // Days of a spreadsheet: 36 526 is the first of January 2000, and a second a hundred-thousandth.
-        v if (36_526.0..73_050.0).contains(&v) && fine(values) => {
+        // Days of this century until 2050, by what they count from; a second is a hundred-thousandth.
+        v if (36_526.0..54_789.0).contains(&v) && fine(values) => {
             time(Clock::Utc, DAY, 25_569.0, "days of a spreadsheet")
+        }
+        v if (54_789.0..69_807.0).contains(&v) && fine(values) => {
+            time(Clock::Utc, DAY, 40_587.0, "modified Julian days")
+        }
+        v if (730_486.0..748_749.0).contains(&v) && fine(values) => time(Clock::Utc, DAY, 719_529.0, "days of MATLAB"),
+        v if (2_451_544.0..2_469_808.0).contains(&v) && fine(values) => {
+            time(Clock::Utc, DAY, 2_440_587.5, "Julian days")
         }
         _ => time(Clock::Own, 1.0, 0.0, "seconds from a start of its own"),
     }
@@ -198,12 +314,22 @@ mod tests {
             "01.05.2024 10:00:03.25",
             "2024/05/01 10:00:03.25",
             "1/5/2024 10:00:03.25",
+            "1-5-2024 10:00:03.25 AM",
+            "01-May-2024 10:00:03.25",
+            "May 1, 2024 10:00:03.25",
+            "20240501100003.25",
+            "2024-05-01_10:00:03.25",
         ];
         for text in same {
             assert_eq!(date_time(text, DateOrder::DayFirst), Some(1_714_557_603.25), "{text}");
         }
         assert_eq!(date_time("5/1/2024 10:00:03.25", DateOrder::MonthFirst), Some(1_714_557_603.25));
-        assert_eq!(date_time("12345678.5", DateOrder::DayFirst), None);
+        for text in ["Wed May  1 22:00:03 2024", "Wed, 01 May 2024 22:00:03 +0000", "01/05/2024 10:00:03 pm"] {
+            assert_eq!(date_time(text, DateOrder::DayFirst), Some(1_714_600_803.0), "{text}");
+        }
+        for text in ["12345678.5", "01/05/2024 13:00:03 PM", "engine 1 stopped"] {
+            assert_eq!(date_time(text, DateOrder::DayFirst), None, "{text}");
+        }
         assert_eq!(written(1_714_557_603.25), "2024-05-01 10:00:03");
     }
 
@@ -214,6 +340,30 @@ mod tests {
         let days = numeric_time(&[45_413.5, 45_413.500_01], None);
         assert_eq!((days.clock, (45_413.5 - days.zero) * days.factor), (Clock::Utc, 1_714_564_800.0));
         assert_eq!(numeric_time(&[0.0, 1.0, 45_000.0], None).clock, Clock::Own);
+        for noon in [60_431.5, 739_373.5, 2_460_432.0] {
+            let days = numeric_time(&[noon, noon + 1e-5], None);
+            assert_eq!((days.clock, (noon - days.zero) * days.factor), (Clock::Utc, 1_714_564_800.0));
+        }
+    }
+
+    #[test]
+    fn times_of_day_are_read_as_people_write_them() {
+        let cases = [
+            ("10:03:05.25", 36_185.25),
+            ("12:03:05 AM", 185.0),
+            ("12:03:05PM", 43_385.0),
+            ("03:05.25", 185.25),
+            ("1 days 00:00:01", 86_401.0),
+            ("25:00:01", 90_001.0),
+        ];
+        for (text, seconds) in cases {
+            assert_eq!(time_of_day(text), Some(seconds), "{text}");
+        }
+        assert_eq!(time_of_day("13:00:00 PM"), None);
+        let clock: Vec<f64> = (0..200).map(|i| f64::from(101_500 + i / 60 * 100 + i % 60)).collect();
+        assert!(are_digits_of_day(&clock) && digits_of_day(101_530.25) == Some(36_930.25));
+        let seconds: Vec<f64> = (0..200).map(f64::from).collect();
+        assert!(!are_digits_of_day(&seconds));
     }
 
     #[test]

@@ -50,6 +50,8 @@ pub struct Known {
 const NEAR: f64 = 0.15;
 /// The same for speeds through water, which a current changes.
 const NEAR_IN_WATER: f64 = 0.3;
+/// A speed that is this many times another is no measurement of the same.
+const FAR: f64 = 5.0;
 /// Coherence from which a ratio means something.
 const COHERENT: f64 = 0.6;
 /// Directions agree.
@@ -111,19 +113,19 @@ pub fn direction(
         known.track.as_ref().and_then(|track| track.agreement(&signal, sense))
     };
     let top = largest(columns);
+    let length =
+        |factor| [1.0, -1.0].map(|s| agreement(factor, s).map_or(0.0, |a| a[0])).into_iter().fold(0.0, f64::max);
     let (unit, factor, why) = match given {
-        Some(given) if given.by_user || top <= MOST_RADIANS => (given.unit.as_str(), given.factor, String::new()),
+        Some(given) if given.by_user => (given.unit.as_str(), given.factor, String::new()),
         _ if top > MOST_RADIANS => ("deg", degree, format!("values up to {}", sig(top, 4))),
-        _ => {
-            let length = |factor| {
-                [1.0, -1.0].map(|s| agreement(factor, s).map_or(0.0, |a| a[0])).into_iter().fold(0.0, f64::max)
-            };
+        given => {
             let (deg, rad) = (length(degree), length(1.0));
             let says = |unit| format!("values up to {}; the track goes that way in {unit}", sig(top, 3));
-            match () {
-                () if deg > AGREE && deg > rad + 0.1 => ("deg", degree, says("degrees")),
-                () if rad > AGREE && rad > deg + 0.1 => ("rad", 1.0, says("radians")),
-                () => return Err(ask(meaning, name, "deg or rad")),
+            match given {
+                _ if deg > AGREE && deg > rad + 0.1 => ("deg", degree, says("degrees")),
+                _ if rad > AGREE && rad > deg + 0.1 => ("rad", 1.0, says("radians")),
+                Some(given) => (given.unit.as_str(), given.factor, String::new()),
+                None => return Err(ask(meaning, name, "deg or rad")),
             }
         }
     };
@@ -169,14 +171,23 @@ pub fn speed(
     }
     let in_water = matches!(meaning, Meaning::Channel(Channel::UWater | Channel::VWater));
     let near = if in_water { NEAR_IN_WATER } else { NEAR };
-    let found = known.track.as_ref().and_then(|track| {
+    let ratio = known.track.as_ref().and_then(|track| {
         let pairs: Vec<[f64; 2]> = track.speed.pairs(size).into_iter().filter(|p| p[0] > 0.3 * track.fast).collect();
-        let ratio = ratio(&pairs).filter(|r| r.coherence > COHERENT)?;
+        ratio(&pairs).filter(|r| r.coherence > COHERENT)
+    });
+    let found = ratio.and_then(|ratio| {
         let (unit, factor) = nearest_unit(Quantity::Speed, &["m/s", "kn", "km/h"], ratio.gain, near)?;
         Some((unit, factor, format!("speed of the track / {name} = {}", sig(ratio.gain, 3))))
     });
+    let times = |given: &Given| ratio.map_or(1.0, |ratio| ratio.gain.abs() / given.factor);
     match (found, given) {
         (Some((unit, factor, why)), given) => Ok(by_data(unit, factor, why, given)),
+        (None, Some(given)) if !in_water && !(1.0 / FAR..FAR).contains(&times(given)) => {
+            let (many, unit, flag) = (sig(times(given), 3), &given.unit, meaning.name());
+            Err(format!(
+                "the track is sailed {many} times as fast as column `{name}` says in {unit}: is the time in another unit (`--unit t=ms`, `--unit t=min`), or are the positions? With `--unit {flag}={unit}` it is taken as it is"
+            ))
+        }
         (None, Some(given)) => Ok(as_given(given, "")),
         (None, None) => Err(ask(meaning, name, "kn or m/s")),
     }
@@ -253,6 +264,14 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
         }
         _ => return Err(ask(meaning, name, "deg or rad")),
     };
+    if given.is_none_or(|g| !g.by_user) && lacks_side(columns, known) {
+        return Err(format!(
+            "the side of column `{name}` ({}), which is never negative while the ship turns to both sides: give it a sign, letters P and S, or a column of them beside it; with `--unit {}={}` it is taken as it is",
+            meaning.words(),
+            meaning.name(),
+            verdict.unit
+        ));
+    }
     let signal = Signal::new(columns, verdict.factor, 0.0, false).0;
     let effect = known.r.as_ref().and_then(|r| rudder_effect(&r.smooth(r.span()), &signal));
     match effect {
@@ -269,6 +288,16 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
         }
     }
     Ok(verdict)
+}
+
+/// Whether a rudder angle is written without its sign: the ship turns as fast to one side as to the other with angles of one sign.
+fn lacks_side(columns: &[&Column], known: &Known) -> bool {
+    let Some(r) = &known.r else { return false };
+    let r = r.smooth(r.span());
+    let (low, high) = r.v.iter().fold((0.0_f64, 0.0_f64), |(l, h), v| (l.min(*v), h.max(*v)));
+    let both = low.abs().min(high) > 0.3 * low.abs().max(high);
+    let top = largest(columns);
+    both && top > 0.0 && columns.iter().flat_map(|c| &c.v).all(|v| *v >= -0.02 * top)
 }
 
 /// A propeller rate.

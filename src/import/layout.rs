@@ -18,17 +18,19 @@ impl Delimiter {
         match self {
             Self::Character(';') => "semicolons",
             Self::Character('\t') => "tabs",
+            Self::Character('|') => "upright strokes",
             Self::Character(_) => "commas",
             Self::Blanks => "blanks",
         }
     }
 
-    /// The fields of a line, without blanks around them and without their quotes.
+    /// The fields of a line, without blanks around them and without their quotes. A quote opens only at the start of a field: within
+    /// one it may stand for seconds of an arc.
     pub fn fields(self, line: &str) -> Vec<&str> {
-        let Self::Character(separator) = self else { return line.split_whitespace().collect() };
+        let Self::Character(separator) = self else { return line.split_whitespace().map(bare).collect() };
         let (mut fields, mut start, mut quoted) = (Vec::new(), 0, false);
         for (at, c) in line.char_indices() {
-            if c == '"' {
+            if c == '"' && (quoted || line[start..at].trim().is_empty()) {
                 quoted = !quoted;
             } else if c == separator && !quoted {
                 fields.push(bare(&line[start..at]));
@@ -42,24 +44,36 @@ impl Delimiter {
 
 fn bare(field: &str) -> &str {
     let field = field.trim();
-    field.strip_prefix('"').and_then(|f| f.strip_suffix('"')).unwrap_or(field).trim()
+    let within = |quote: char| field.strip_prefix(quote).and_then(|f| f.strip_suffix(quote));
+    within('"').or_else(|| within('\'')).unwrap_or(field).trim()
 }
 
-/// Text of a file, whatever its encoding: UTF-8, UTF-16 with a mark, or Latin-1.
+/// A line of a comment without its mark: `#`, `%` or `//`; `None` for any other line.
+pub fn comment(line: &str) -> Option<&str> {
+    let line = line.trim_start();
+    ["#", "%", "//"].iter().find_map(|mark| line.strip_prefix(mark))
+}
+
+/// Text of a file, whatever its encoding: UTF-8, UTF-16 or Latin-1. Lines may end as on any system, and noughts that a logger left
+/// at the end of a file are no text.
 pub fn decoded(bytes: &[u8]) -> Cow<'_, str> {
-    let wide = |swap: bool| {
-        let units =
-            bytes[2..].chunks_exact(2).map(|b| u16::from_le_bytes(if swap { [b[1], b[0]] } else { [b[0], b[1]] }));
-        Cow::Owned(char::decode_utf16(units).map(|c| c.unwrap_or('\u{fffd}')).collect())
-    };
-    match bytes {
-        [0xff, 0xfe, ..] => wide(false),
-        [0xfe, 0xff, ..] => wide(true),
+    let text = match bytes {
+        [0xff, 0xfe, rest @ ..] => wide(rest, u16::from_le_bytes),
+        [0xfe, 0xff, rest @ ..] => wide(rest, u16::from_be_bytes),
+        // A text without a mark that begins with two letters of the alphabet.
+        [a, 0, b, 0, ..] if *a > 0 && *b > 0 => wide(bytes, u16::from_le_bytes),
+        [0, a, 0, b, ..] if *a > 0 && *b > 0 => wide(bytes, u16::from_be_bytes),
         _ => match std::str::from_utf8(bytes) {
-            Ok(text) => Cow::Borrowed(text.trim_start_matches('\u{feff}')),
+            Ok(text) => Cow::Borrowed(text.trim_start_matches('\u{feff}').trim_end_matches('\0')),
             Err(_) => Cow::Owned(bytes.iter().map(|b| char::from(*b)).collect()),
         },
-    }
+    };
+    if text.contains('\r') && !text.contains('\n') { Cow::Owned(text.replace('\r', "\n")) } else { text }
+}
+
+fn wide(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Cow<'static, str> {
+    let units = bytes.chunks_exact(2).map(|b| unit([b[0], b[1]]));
+    Cow::Owned(char::decode_utf16(units).map(|c| c.unwrap_or('\u{fffd}')).collect())
 }
 
 /// Lines that are looked at to tell a layout.
@@ -80,19 +94,35 @@ pub struct Layout {
 
 /// The layout of a text; `None` where its lines have no number of fields in common.
 pub fn layout(text: &str) -> Option<Layout> {
-    let lines: Vec<(usize, &str)> =
-        text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty() && !l.starts_with('#')).take(LOOKED_AT).collect();
-    let candidates = [';', '\t', ','].map(Delimiter::Character).into_iter().chain([Delimiter::Blanks]);
+    let wanted = |line: &str| !line.trim().is_empty() && comment(line).is_none();
+    let lines: Vec<(usize, &str)> = text.lines().enumerate().filter(|(_, l)| wanted(l)).take(LOOKED_AT).collect();
+    let candidates = [';', '\t', ',', '|'].map(Delimiter::Character).into_iter().chain([Delimiter::Blanks]);
     for delimiter in candidates {
-        let widths: Vec<usize> = lines.iter().map(|(_, line)| delimiter.fields(line).len()).collect();
+        let fields: Vec<Vec<&str>> = lines.iter().map(|(_, line)| delimiter.fields(line)).collect();
+        let widths: Vec<usize> = fields.iter().map(Vec::len).collect();
         let usual = most_common(&widths)?;
         let share = widths.iter().filter(|w| **w == usual).count() as f64 / widths.len() as f64;
-        if usual >= 2 && share >= AGREE {
-            let first = lines.iter().zip(&widths).find(|(_, w)| **w == usual).map_or(1, |((i, _), _)| i + 1);
-            return Some(Layout { delimiter, width: usual, first });
+        // A delimiter at the end of each line separates nothing.
+        let trailing = |f: &Vec<&str>| f.len() < usual || f.last().is_some_and(|last| last.is_empty());
+        let width = if fields.iter().all(trailing) { usual - 1 } else { usual };
+        if width >= 2 && share >= AGREE {
+            let fits = |f: &&Vec<&str>| f.len() >= width && f[width..].iter().all(|f| f.is_empty());
+            let first = lines.iter().zip(&fields).find(|(_, f)| fits(f)).map_or(1, |((i, _), _)| i + 1);
+            return Some(Layout { delimiter, width, first });
         }
     }
     None
+}
+
+impl Layout {
+    /// The fields of a line, without empty ones beyond the last column.
+    pub fn fields<'a>(&self, line: &'a str) -> Vec<&'a str> {
+        let mut fields = self.delimiter.fields(line);
+        if fields.len() > self.width && fields[self.width..].iter().all(|f| f.is_empty()) {
+            fields.truncate(self.width);
+        }
+        fields
+    }
 }
 
 fn most_common(widths: &[usize]) -> Option<usize> {
@@ -100,33 +130,93 @@ fn most_common(widths: &[usize]) -> Option<usize> {
 }
 
 /// Words for a value that is missing.
-const MISSING: [&str; 12] = ["", "nan", "-nan", "na", "n/a", "null", "none", "-", "--", "---", "inf", "?"];
+const MISSING: [&str; 27] = [
+    "",
+    "nan",
+    "-nan",
+    "na",
+    "n/a",
+    "null",
+    "none",
+    "-",
+    "--",
+    "---",
+    "inf",
+    "-inf",
+    "?",
+    "*",
+    "***",
+    "nil",
+    "(null)",
+    "<na>",
+    "\\n",
+    "#n/a",
+    "#nv",
+    "#value!",
+    "#div/0!",
+    "nan(ind)",
+    "-nan(ind)",
+    "1.#qnan",
+    "-1.#ind",
+];
 
 /// A field as a number: `Some(NaN)` for a missing value, `None` for what is no number. A comma may separate the fraction where it
-/// does not separate fields; a letter N, S, E or W after a number gives its sign.
+/// does not separate fields.
 pub fn number(field: &str, decimal_comma: bool) -> Option<f64> {
     let field = field.trim();
     if MISSING.iter().any(|m| field.eq_ignore_ascii_case(m)) {
         return Some(f64::NAN);
     }
-    let (field, sign) = match field.char_indices().last() {
-        Some((at, 'N' | 'E')) => (field[..at].trim_end(), 1.0),
-        Some((at, 'S' | 'W')) => (field[..at].trim_end(), -1.0),
-        Some((at, '°')) => (field[..at].trim_end(), 1.0),
-        _ => (field, 1.0),
-    };
-    let field = field.trim_end_matches('°');
     if !field.starts_with(|c: char| c.is_ascii_digit() || "+-.,".contains(c)) {
         return None;
     }
-    let value: f64 = if decimal_comma && field.contains(',') {
-        // Dots before a comma part thousands.
-        let whole = if field.contains('.') { field.replace('.', "") } else { field.to_owned() };
-        whole.replace(',', ".").parse().ok()?
-    } else {
-        field.parse().ok()?
+    let value: f64 = plain(field, decimal_comma)?.parse().ok()?;
+    Some(if value.is_finite() { value } else { f64::NAN })
+}
+
+/// A number with a point before its fraction and nothing between its thousands; `None` where marks do not part thousands.
+fn plain(field: &str, decimal_comma: bool) -> Option<Cow<'_, str>> {
+    let part = |c: char| [',', ' ', '\u{a0}', '\u{202f}', '\''].contains(&c);
+    if !field.contains(part) {
+        return Some(Cow::Borrowed(field));
+    }
+    let (point, comma) = (field.rfind('.'), field.rfind(','));
+    // Of a point and a comma the last is the one before the fraction.
+    let decimal = match (point, comma) {
+        (Some(point), Some(comma)) => Some(point.max(comma)),
+        (None, Some(comma)) if decimal_comma && field.matches(',').count() == 1 => Some(comma),
+        (point, _) => point,
     };
-    Some(sign * if value.is_finite() { value } else { f64::NAN })
+    let (whole, fraction) = decimal.map_or((field, ""), |at| (&field[..at], &field[at + 1..]));
+    let mut groups = whole.split(|c| part(c) || c == '.');
+    let first = groups.next()?.trim_start_matches(['+', '-']);
+    let parted = whole.contains(|c| part(c) || c == '.');
+    let three = groups.all(|g| g.len() == 3 && g.bytes().all(|b| b.is_ascii_digit()));
+    if parted && !(three && (1..=3).contains(&first.len()) && !first.starts_with('0')) {
+        return None;
+    }
+    let whole: String = whole.chars().filter(|c| !part(*c) && *c != '.').collect();
+    Some(Cow::Owned(format!("{whole}.{fraction}")))
+}
+
+/// Whether a comma separates the fraction in numbers that have one: `Some(false)` where it parts thousands, `None` where nothing
+/// tells. In `1,234` beside `5.6` it parts thousands, as in `1,234.5`; `1,23` has a fraction.
+pub fn decimal_comma<'a>(fields: impl Iterator<Item = &'a str>) -> Option<bool> {
+    let (mut points, mut commas) = (false, false);
+    for field in fields.filter(|f| f.starts_with(|c: char| c.is_ascii_digit() || "+-.,".contains(c))) {
+        let number = |comma: bool| number(field, comma).is_some();
+        match (field.rfind('.'), field.rfind(',')) {
+            (Some(point), Some(comma)) if number(true) => return Some(comma > point),
+            (Some(_), None) => points |= number(false),
+            (None, Some(_)) if number(true) && !number(false) => return Some(true),
+            (None, Some(_)) => commas |= number(true),
+            _ => {}
+        }
+    }
+    if !commas {
+        return Some(!points);
+    }
+    points.then_some(false)
 }
 
 #[cfg(test)]
@@ -140,6 +230,10 @@ mod tests {
             ("logger 7\n\nt\tx\ty\n0\t1\t2\n1\t1\t2\n2\t1\t3\n3\t1\t3\n", Delimiter::Character('\t'), 3, 3),
             ("# a, comment\nt,\"x, y\"\n0,1\n", Delimiter::Character(','), 2, 2),
             ("t   x\n0.0 1.0\n 1.0  2.0\n", Delimiter::Blanks, 2, 1),
+            ("t | x\n0 | 1\n", Delimiter::Character('|'), 2, 1),
+            ("t,x\n0,1,\n1,2,\n", Delimiter::Character(','), 2, 1),
+            ("t,x,\n0,1\n1,2\n", Delimiter::Character(','), 2, 1),
+            ("% a; b; c\n// d; e\nt;lat\n0;54°02'33\"N\n1;54°02'34\"N\n", Delimiter::Character(';'), 2, 3),
         ];
         for (text, delimiter, width, first) in cases {
             let found = layout(text).unwrap();
@@ -152,13 +246,28 @@ mod tests {
     fn numbers_are_read_as_people_write_them() {
         assert_eq!(number("1.234,5", true), Some(1234.5));
         assert_eq!(number("-0,25", true), Some(-0.25));
-        assert_eq!(number("54.5 S", false), Some(-54.5));
-        assert!(number("n/a", false).unwrap().is_nan() && number("abc", false).is_none());
+        for text in ["1,234.5", "1.234,5", "1 234,5", "1\u{a0}234.5"] {
+            assert_eq!(number(text, true), Some(1234.5), "{text}");
+        }
+        assert_eq!((number("1,234", false), number("1,234", true)), (Some(1234.0), Some(1.234)));
+        assert_eq!((number("12,34", false), number("51 30.25", false)), (None, None));
+        for missing in ["n/a", "#N/A", "(null)", "1.#QNAN", "-Infinity"] {
+            assert!(number(missing, false).unwrap().is_nan(), "{missing}");
+        }
+        assert!(number("abc", false).is_none());
+        let tell = |fields: &[&'static str]| decimal_comma(fields.iter().copied());
+        assert_eq!(
+            (tell(&["1,5", "2"]), tell(&["1,234", "5.6"]), tell(&["1,234.5"])),
+            (Some(true), Some(false), Some(false))
+        );
+        assert_eq!((tell(&["1,234", "20:15"]), tell(&["1.234,5"])), (None, Some(true)));
     }
 
     #[test]
     fn any_encoding_is_text() {
         assert_eq!(decoded(b"psi [\xb0]"), "psi [°]");
         assert_eq!(decoded(&[0xff, 0xfe, b't', 0, b'\n', 0]), "t\n");
+        assert_eq!(decoded(&[b't', 0, b'\n', 0]), "t\n");
+        assert_eq!((decoded(b"t\r0\r"), decoded(b"t\n0\n\0\0")), ("t\n0\n".into(), "t\n0\n".into()));
     }
 }

@@ -19,7 +19,7 @@ fn words(name: &str) -> Vec<String> {
 }
 
 /// Spellings of units at the end of a name, as in `sog_kn`, and the unit.
-const ENDINGS: [(&[&str], &str); 20] = [
+const ENDINGS: [(&[&str], &str); 26] = [
     (&["ms"], "ms"),
     (&["deg", "per", "min"], "deg/min"),
     (&["deg", "min"], "deg/min"),
@@ -40,12 +40,18 @@ const ENDINGS: [(&[&str], &str); 20] = [
     (&["knots"], "kn"),
     (&["rpm"], "rpm"),
     (&["rps"], "rps"),
+    (&["kmph"], "km/h"),
+    (&["millis"], "ms"),
+    (&["us"], "us"),
+    (&["ns"], "ns"),
+    (&["time", "min"], "min"),
+    (&["time", "h"], "h"),
 ];
 
 /// A header field as name and unit: `Rudder angle [deg]`, `SOG (kn)`, `hdg_deg`, `Shaft RPM`.
 pub fn name_and_unit(field: &str) -> (String, Option<String>) {
     let field = field.trim().trim_matches('"').trim();
-    for (open, close) in [('[', ']'), ('(', ')')] {
+    for (open, close) in [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>')] {
         if let Some((name, rest)) = field.split_once(open)
             && let Some((unit, _)) = rest.split_once(close)
         {
@@ -72,16 +78,29 @@ pub fn is_unit(text: &str) -> bool {
 const PHRASES: &[(&str, Meaning)] = &[
     ("lat", Meaning::Latitude),
     ("latitude", Meaning::Latitude),
+    ("breite", Meaning::Latitude),
+    ("breddegrad", Meaning::Latitude),
+    ("breedtegraad", Meaning::Latitude),
     ("lon", Meaning::Longitude),
     ("lng", Meaning::Longitude),
     ("long", Meaning::Longitude),
     ("longitude", Meaning::Longitude),
+    ("länge", Meaning::Longitude),
+    ("laenge", Meaning::Longitude),
+    ("lengdegrad", Meaning::Longitude),
+    ("lengtegraad", Meaning::Longitude),
     ("v north", Meaning::VelocityNorth),
     ("vn", Meaning::VelocityNorth),
     ("velocity north", Meaning::VelocityNorth),
+    ("north velocity", Meaning::VelocityNorth),
+    ("speed north", Meaning::VelocityNorth),
+    ("north speed", Meaning::VelocityNorth),
     ("v east", Meaning::VelocityEast),
     ("ve", Meaning::VelocityEast),
     ("velocity east", Meaning::VelocityEast),
+    ("east velocity", Meaning::VelocityEast),
+    ("speed east", Meaning::VelocityEast),
+    ("east speed", Meaning::VelocityEast),
     ("u water", Meaning::Channel(Channel::UWater)),
     ("v water", Meaning::Channel(Channel::VWater)),
     ("stw", Meaning::Channel(Channel::UWater)),
@@ -94,22 +113,38 @@ const PHRASES: &[(&str, Meaning)] = &[
     ("bow thruster", Meaning::Channel(Channel::Thruster)),
     ("thruster", Meaning::Channel(Channel::Thruster)),
     ("rudder", Meaning::Channel(Channel::Delta)),
+    ("rud", Meaning::Channel(Channel::Delta)),
+    ("ruderlage", Meaning::Channel(Channel::Delta)),
+    ("ruderwinkel", Meaning::Channel(Channel::Delta)),
+    ("ror", Meaning::Channel(Channel::Delta)),
+    ("rorvinkel", Meaning::Channel(Channel::Delta)),
+    ("roerhoek", Meaning::Channel(Channel::Delta)),
     ("rudderangle", Meaning::Channel(Channel::Delta)),
     ("rsa", Meaning::Channel(Channel::Delta)),
     ("helm", Meaning::Channel(Channel::Delta)),
     ("delta", Meaning::Channel(Channel::Delta)),
+    ("δ", Meaning::Channel(Channel::Delta)),
     ("rot", Meaning::Channel(Channel::R)),
     ("rate of turn", Meaning::Channel(Channel::R)),
     ("turn rate", Meaning::Channel(Channel::R)),
     ("yaw rate", Meaning::Channel(Channel::R)),
     ("yawrate", Meaning::Channel(Channel::R)),
+    ("drehrate", Meaning::Channel(Channel::R)),
+    ("wendegeschwindigkeit", Meaning::Channel(Channel::R)),
+    ("svinghastighet", Meaning::Channel(Channel::R)),
+    ("draaisnelheid", Meaning::Channel(Channel::R)),
     ("cog", Meaning::Course),
     ("course", Meaning::Course),
     ("track made good", Meaning::Course),
+    ("kurs über grund", Meaning::Course),
+    ("kurs over grunn", Meaning::Course),
+    ("grondkoers", Meaning::Course),
     ("sog", Meaning::GroundSpeed),
     ("speed over ground", Meaning::GroundSpeed),
     ("ground speed", Meaning::GroundSpeed),
     ("gps speed", Meaning::GroundSpeed),
+    ("fahrt über grund", Meaning::GroundSpeed),
+    ("fart over grunn", Meaning::GroundSpeed),
     ("heading", Meaning::Channel(Channel::Psi)),
     ("hdg", Meaning::Channel(Channel::Psi)),
     ("hdt", Meaning::Channel(Channel::Psi)),
@@ -117,17 +152,30 @@ const PHRASES: &[(&str, Meaning)] = &[
     ("psi", Meaning::Channel(Channel::Psi)),
     ("yaw", Meaning::Channel(Channel::Psi)),
     ("compass", Meaning::Channel(Channel::Psi)),
+    ("head", Meaning::Channel(Channel::Psi)),
+    ("steuerkurs", Meaning::Channel(Channel::Psi)),
+    ("ψ", Meaning::Channel(Channel::Psi)),
     ("rpm", Meaning::Channel(Channel::N)),
     ("rps", Meaning::Channel(Channel::N)),
     ("revs", Meaning::Channel(Channel::N)),
     ("rev", Meaning::Channel(Channel::N)),
     ("revolutions", Meaning::Channel(Channel::N)),
+    ("revolution", Meaning::Channel(Channel::N)),
+    ("drehzahl", Meaning::Channel(Channel::N)),
+    ("propellerdrehzahl", Meaning::Channel(Channel::N)),
+    ("turtall", Meaning::Channel(Channel::N)),
+    ("toerental", Meaning::Channel(Channel::N)),
     ("shaft speed", Meaning::Channel(Channel::N)),
     ("propeller rate", Meaning::Channel(Channel::N)),
     ("propeller speed", Meaning::Channel(Channel::N)),
+    ("propeller rotation", Meaning::Channel(Channel::N)),
     ("engine speed", Meaning::Channel(Channel::N)),
     ("northing", Meaning::Channel(Channel::X)),
     ("easting", Meaning::Channel(Channel::Y)),
+    ("north", Meaning::Channel(Channel::X)),
+    ("east", Meaning::Channel(Channel::Y)),
+    ("x0", Meaning::Channel(Channel::X)),
+    ("y0", Meaning::Channel(Channel::Y)),
     ("pos x", Meaning::Channel(Channel::X)),
     ("pos y", Meaning::Channel(Channel::Y)),
     ("surge", Meaning::Channel(Channel::U)),
@@ -146,11 +194,56 @@ const PHRASES: &[(&str, Meaning)] = &[
     ("r", Meaning::Channel(Channel::R)),
     ("n", Meaning::Channel(Channel::N)),
     ("speed", Meaning::GroundSpeed),
+    ("spd", Meaning::GroundSpeed),
+    ("geschwindigkeit", Meaning::GroundSpeed),
+    ("snelheid", Meaning::GroundSpeed),
 ];
 
 /// Words that make a column an order rather than a measurement.
-const ORDERS: [&str; 9] =
-    ["order", "ordered", "command", "commanded", "cmd", "setpoint", "demand", "desired", "target"];
+const ORDERS: [&str; 16] = [
+    "order",
+    "ordered",
+    "ord",
+    "command",
+    "commanded",
+    "cmd",
+    "set",
+    "setpoint",
+    "demand",
+    "desired",
+    "target",
+    "ref",
+    "reference",
+    "requested",
+    "soll",
+    "sollwert",
+];
+
+/// Words that make a column something else of the thing that it names: how fast a rudder moves, whether its pump runs.
+const ELSE: [&str; 22] = [
+    "acceleration",
+    "accel",
+    "acc",
+    "limit",
+    "pump",
+    "status",
+    "state",
+    "alarm",
+    "mode",
+    "running",
+    "valid",
+    "quality",
+    "torque",
+    "power",
+    "load",
+    "temperature",
+    "temp",
+    "pressure",
+    "turbo",
+    "turbocharger",
+    "std",
+    "covariance",
+];
 
 /// What a name says a column is; `None` where it says nothing that is used.
 pub fn meaning(name: &str) -> Option<Meaning> {
@@ -174,6 +267,10 @@ pub fn meaning(name: &str) -> Option<Meaning> {
         }
     });
     let meaning = found.map(|(_, meaning)| *meaning)?;
+    let rate = matches!(meaning, Meaning::Channel(Channel::Delta)) && has("rate");
+    if rate || ELSE.iter().any(|word| has(word)) {
+        return None;
+    }
     if !ORDERS.iter().any(|order| has(order)) {
         return Some(meaning);
     }
@@ -215,21 +312,25 @@ fn wind(parts: &[String]) -> Option<Meaning> {
 pub fn time_rank(name: &str) -> u8 {
     let parts = words(name);
     let has = |word: &str| parts.iter().any(|p| p == word);
-    if ["timestamp", "datetime", "time", "utc", "epoch", "unix"].iter().any(|w| has(w)) {
+    let clocks =
+        ["timestamp", "datetime", "time", "utc", "epoch", "unix", "zeit", "uhrzeit", "zeitstempel", "tid", "tijd"];
+    if clocks.iter().any(|w| has(w)) {
         return 2;
     }
+    if ["stamp", "elapsed", "seconds", "secs", "sec", "millis"].iter().any(|w| has(w)) {
+        return 1;
+    }
     u8::from(parts.first().is_some_and(|p| p == "t") && parts.len() <= 2)
-}
-
-/// Whether a name is that of a date.
-pub fn is_date(name: &str) -> bool {
-    let parts = words(name);
-    parts.iter().any(|p| p == "date") && !parts.iter().any(|p| p == "time")
 }
 
 /// Whether a heading is that of a magnetic compass, by its name.
 pub fn is_magnetic(name: &str) -> bool {
     words(name).iter().any(|p| ["magnetic", "mag", "hdm", "compass"].contains(&p.as_str()))
+}
+
+/// Whether a column is taken only where no other is there: a magnetic heading, the rate of an engine beside that of its shaft.
+pub fn is_second_choice(name: &str) -> bool {
+    is_magnetic(name) || words(name).iter().any(|p| p == "engine")
 }
 
 #[cfg(test)]
@@ -250,6 +351,12 @@ mod tests {
             ("Latitude", "lat", None),
             ("True wind speed [m/s]", "wind_speed", Some("m/s")),
             ("u [kn]", "u", Some("kn")),
+            ("Ruderlage [°]", "delta", Some("°")),
+            ("Fahrt über Grund [kn]", "sog", Some("kn")),
+            ("RUD ORD", "delta_order", None),
+            ("Prop. Rev. [rpm]", "n", Some("rpm")),
+            ("North [m]", "x", Some("m")),
+            ("δ <deg>", "delta", Some("deg")),
             ("speed_through_water_kn", "u_water", Some("kn")),
         ];
         for (field, expected, unit) in cases {
@@ -257,7 +364,15 @@ mod tests {
             assert_eq!(meaning(&name).map(Meaning::name), Some(expected), "{field}");
             assert_eq!(found.as_deref(), unit, "{field}");
         }
-        for field in ["Depth below keel", "Heading setpoint", "engine load", "UTC"] {
+        for field in [
+            "Depth below keel",
+            "Heading setpoint",
+            "engine load",
+            "UTC",
+            "Rudder rate",
+            "Rudder pump 1",
+            "Sway acceleration",
+        ] {
             assert_eq!(meaning(field), None, "{field}");
         }
     }

@@ -1,7 +1,7 @@
 //! Reads logs of NMEA 0183 sentences: position, course and speed, heading, rate of turn, rudder, propeller, water speed, wind, depth.
 //! Checksums are verified; lines that fail are counted and told. Sentences without a time have that of the last one with a time.
 
-use super::clock::{DAY, DateOrder, date_time, past_midnight};
+use super::clock::{DAY, DateOrder, date_time, digits_of_day, past_midnight};
 use super::error::ImportError;
 use super::layout::decoded;
 use super::log::{Clock, Column, Log, Meaning};
@@ -102,7 +102,7 @@ enum Bad {
 
 /// Whether most lines of a text are sentences.
 pub fn is_nmea(bytes: &[u8]) -> bool {
-    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(20_000)]);
+    let text = decoded(&bytes[..bytes.len().min(20_000)]);
     let lines: Vec<&str> = text.lines().filter(|l| !l.trim().is_empty()).take(100).collect();
     let like = lines.iter().filter(|l| framed(l).is_some_and(|(_, s)| s.len() > 6)).count();
     like > 0 && 2 * like >= lines.len()
@@ -139,10 +139,7 @@ fn sentence(line: &str) -> Option<Result<Sentence<'_>, Bad>> {
 
 /// Hours, minutes and seconds in one number: `101530.25`.
 fn time_of_day(text: &str) -> Option<f64> {
-    let value: f64 = text.parse().ok()?;
-    let (hours, minutes, seconds) = ((value / 1e4).floor(), (value / 100.0).floor() % 100.0, value % 100.0);
-    let possible = (0.0..24.0).contains(&hours) && minutes < 60.0 && seconds < 61.0;
-    possible.then_some(3600.0 * hours + 60.0 * minutes + seconds)
+    digits_of_day(text.parse().ok()?)
 }
 
 /// Midnight of a date \[s since 1970\].

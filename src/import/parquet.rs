@@ -1,6 +1,7 @@
 //! Reads Parquet files: flat columns of numbers, times or text, of any of the usual compressions.
 //! Nested columns are left out and told.
 
+use super::choose::Choices;
 use super::clock::{DateOrder, NumericTime, date_time, numeric_time, spread};
 use super::error::ImportError;
 use super::layout::number;
@@ -35,11 +36,11 @@ struct Cells {
     texts: Vec<String>,
 }
 
-/// Reads a Parquet file; `time` names its time column where the user does.
+/// Reads a Parquet file, its time as the user says.
 ///
 /// # Errors
 /// [`ImportError::File`]: it cannot be read, or has no time.
-pub fn read_parquet(path: &Path, bytes: &[u8], time: Option<&str>) -> Result<Log, ImportError> {
+pub fn read_parquet(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Log, ImportError> {
     let fail = |message: String| ImportError::File { path: path.to_owned(), message };
     // The decoder may meet what it does not expect in a damaged file.
     let read = catch_unwind(AssertUnwindSafe(|| columns(bytes)));
@@ -52,12 +53,12 @@ pub fn read_parquet(path: &Path, bytes: &[u8], time: Option<&str>) -> Result<Log
         }
         Err(_) => return Err(fail("is damaged and cannot be read as Parquet; write it again".to_owned())),
     };
-    let at = time_column(&cells, time).ok_or_else(|| {
+    let at = time_column(&cells, choices.columns.get("t").map(String::as_str)).ok_or_else(|| {
         let names: Vec<&str> = cells.iter().map(|c| c.name.as_str()).collect();
         fail(format!("no column is a time; the columns are {}. Name it with `--column t=NAME`", names.join(", ")))
     })?;
     let clock_cells = cells.remove(at);
-    let (clock, mut times, how) = times(&clock_cells);
+    let (clock, mut times, how) = times(&clock_cells, choices.units.get("t"));
     if times.iter().filter(|t| t.is_finite()).count() < 2 {
         return Err(fail(format!(
             "column `{}` is no time; name the time column with `--column t=NAME`",
@@ -91,7 +92,7 @@ fn time_column(cells: &[Cells], wanted: Option<&str>) -> Option<usize> {
     (0..cells.len()).rev().max_by_key(rank).filter(|i| rank(i) > (false, 0))
 }
 
-fn times(cells: &Cells) -> (Clock, Vec<f64>, &'static str) {
+fn times(cells: &Cells, unit: Option<&String>) -> (Clock, Vec<f64>, &'static str) {
     if let Some(factor) = cells.stamp {
         return (Clock::Utc, cells.values.iter().map(|v| v * factor).collect(), "a timestamp");
     }
@@ -99,7 +100,7 @@ fn times(cells: &Cells) -> (Clock, Vec<f64>, &'static str) {
         let parsed = cells.texts.iter().map(|text| date_time(text, DateOrder::DayFirst).unwrap_or(f64::NAN));
         return (Clock::Utc, parsed.collect(), "a date and time (UTC where it has no zone)");
     }
-    let unit = cells.unit.as_deref().and_then(|u| crate::recording::Quantity::Time.factor(u));
+    let unit = unit.or(cells.unit.as_ref()).and_then(|u| crate::recording::Quantity::Time.factor(u));
     let NumericTime { clock, factor, zero, words } = numeric_time(&cells.values, unit);
     (clock, cells.values.iter().map(|t| (t - zero) * factor).collect(), words)
 }

@@ -1,32 +1,40 @@
 //! Reads a file of any format that is known, by its content rather than its name.
 //! How each format is read is in the files beside it.
 
+use super::choose::Choices;
 use super::error::ImportError;
+use super::foreign::foreign;
 use super::log::Log;
 use super::nmea::{is_nmea, read_nmea};
 use super::parquet::{is_parquet, read_parquet};
 use super::text::read_text;
 use std::path::Path;
 
-/// Reads a file; `time` names its time column where the user does.
+/// Reads a file, its time as the user says. A file whose own clock starts again several times is as many logs.
 ///
 /// # Errors
-/// [`ImportError`]: it cannot be read, or has no column or no time.
-pub fn read(path: &Path, time: Option<&str>) -> Result<Log, ImportError> {
+/// [`ImportError`]: it cannot be read, is no log, or has no column or no time.
+pub fn read(path: &Path, choices: &Choices) -> Result<Vec<Log>, ImportError> {
+    if path.is_dir() {
+        let message = "is a folder; give the files in it".to_owned();
+        return Err(ImportError::File { path: path.to_owned(), message });
+    }
     let bytes = std::fs::read(path).map_err(|source| ImportError::Read { path: path.to_owned(), source })?;
-    read_bytes(path, &bytes, time)
+    read_bytes(path, &bytes, choices)
 }
 
 /// Reads the content of a file; `path` is for messages.
 ///
 /// # Errors
-/// [`ImportError`]: it has no column or no time.
-pub fn read_bytes(path: &Path, bytes: &[u8], time: Option<&str>) -> Result<Log, ImportError> {
-    if is_parquet(bytes) {
-        read_parquet(path, bytes, time)
+/// [`ImportError`]: it is no log, or has no column or no time.
+pub fn read_bytes(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log>, ImportError> {
+    if let Some(message) = foreign(bytes) {
+        Err(ImportError::File { path: path.to_owned(), message })
+    } else if is_parquet(bytes) {
+        Ok(vec![read_parquet(path, bytes, choices)?])
     } else if is_nmea(bytes) {
-        read_nmea(path, bytes)
+        Ok(vec![read_nmea(path, bytes)?])
     } else {
-        read_text(path, bytes, time)
+        read_text(path, bytes, choices)
     }
 }

@@ -162,7 +162,11 @@ fn study(imported: &Imported, origins: &Origins<'_>) -> String {
          runs = \"runs.csv\"               # file, session, manoeuvre, split and times of each run, by `trimtab split`\n\
          gaps = \"split\"                  # no run reaches across a gap or a missing value\n\
          initial_state = \"smoothed\"      # measured states are noisy: each start is fitted over\n\
-         initial_span = {span:?}            # [s]\n",
+         initial_span = {span:?}            # [s]\n\
+         \n\
+         [fit]\n\
+         # A real ship takes no Euler steps: with these the step is no part of the answer.\n\
+         integration = {{ method = \"rk4\" }}\n",
         origins.name
     )
 }

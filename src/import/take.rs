@@ -53,7 +53,7 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
     let mut signals = Signals::default();
     let mut known = Known::default();
     let given = |meaning: Meaning| given(meaning, chosen.get(&meaning).map_or(&[], Vec::as_slice), choices);
-    signals.positions(chosen)?;
+    signals.positions(chosen, choices)?;
     for channel in [Channel::X, Channel::Y] {
         let meaning = Meaning::Channel(channel);
         if let Some(columns) = chosen.get(&meaning).filter(|_| !signals.by.contains_key(&meaning)) {
@@ -170,11 +170,13 @@ impl Signals {
     }
 
     /// Latitude and longitude as metres.
-    fn positions(&mut self, chosen: &Chosen<'_>) -> Result<(), ImportError> {
+    fn positions(&mut self, chosen: &Chosen<'_>, choices: &Choices) -> Result<(), ImportError> {
         let (Some(lat), Some(lon)) = (chosen.get(&Meaning::Latitude), chosen.get(&Meaning::Longitude)) else {
             return Ok(());
         };
-        let (columns, minutes) = degrees(&[lat, lon])?;
+        let units = [given(Meaning::Latitude, lat, choices)?, given(Meaning::Longitude, lon, choices)?];
+        let radians = units.iter().all(|unit| unit.as_ref().is_some_and(|u| u.factor == 1.0));
+        let (columns, minutes) = degrees(&[lat, lon], if radians { 1f64.to_degrees() } else { 1.0 })?;
         let [latitudes, longitudes] = columns;
         let (lat_signal, tidied) = Signal::new(&[&latitudes], 1.0, 0.0, false);
         let (lon_signal, _) = Signal::new(&[&longitudes], 1f64.to_radians(), 0.0, true);
@@ -205,7 +207,11 @@ impl Signals {
             );
             self.notes.push(text);
         }
-        let form = if minutes { "deg and minutes (dddmm.mmm)" } else { "deg" };
+        let form = match (minutes, radians) {
+            (true, _) => "deg and minutes (dddmm.mmm)",
+            (_, true) => "rad",
+            _ => "deg",
+        };
         let why = format!("plane tangent to WGS84 at {} N {} E", plane.origin[0], plane.origin[1]);
         self.tell(Meaning::Latitude, lat, &lat_signal, tidied, form, why.clone());
         self.tell(Meaning::Longitude, lon, &lon_signal, Tidied::default(), form, why);
@@ -247,8 +253,9 @@ impl Signals {
     }
 }
 
-/// Latitudes and longitudes in degrees, and whether they were written as degrees and minutes. Single values that are none are left out.
-fn degrees(both: &[&Vec<&Column>; 2]) -> Result<([Column; 2], bool), ImportError> {
+/// Latitudes and longitudes in degrees, of which one value is `unit`, and whether they were written as degrees and minutes. Single
+/// values that are none are left out.
+fn degrees(both: &[&Vec<&Column>; 2], unit: f64) -> Result<([Column; 2], bool), ImportError> {
     let usual = |columns: &Vec<&Column>| columns.iter().map(|c| size_below(&c.v, 0.5)).fold(0.0, f64::max);
     let in_minutes = usual(both[0]) > 90.0;
     let mut found = [Column::default(), Column::default()];
@@ -256,7 +263,7 @@ fn degrees(both: &[&Vec<&Column>; 2]) -> Result<([Column; 2], bool), ImportError
         let most = [90.0, 360.0][i];
         let (mut wrong, mut count) = (None, 0);
         for (t, v) in columns.iter().flat_map(|c| c.t.iter().zip(&c.v)) {
-            let degrees = if in_minutes { from_minutes(*v).unwrap_or(f64::NAN) } else { *v };
+            let degrees = if in_minutes { from_minutes(*v).unwrap_or(f64::NAN) } else { unit * *v };
             if degrees.abs() <= most {
                 found[i].push(*t, degrees);
             } else {

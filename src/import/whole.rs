@@ -73,8 +73,10 @@ pub struct Imported {
 /// [`ImportError`]: a file that cannot be read, and everything that the files do not tell.
 pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, ImportError> {
     settings.choices.check()?;
-    let time = settings.choices.columns.get("t").map(String::as_str);
-    let mut logs = files.iter().map(|file| read(file, time)).collect::<Result<Vec<Log>, ImportError>>()?;
+    let mut logs: Vec<Log> = Vec::new();
+    for file in files {
+        logs.extend(read(file, &settings.choices)?);
+    }
     let shifts = shifts(&logs)?;
     for (log, shift) in logs.iter_mut().zip(&shifts) {
         log.columns.iter_mut().for_each(|c| c.t.iter_mut().for_each(|t| *t += shift));
@@ -105,13 +107,15 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
         return Err(ImportError::File { path: files.first().cloned().unwrap_or_default(), message: text.to_owned() });
     }
     name_apart(&mut recordings);
-    for (log, format) in logs.iter().zip(files) {
-        notes.extend(log.notes.iter().map(|note| format!("{}: {note}", format.display())));
+    for log in &logs {
+        notes.extend(log.notes.iter().map(|note| format!("{}: {note}", log.path.display())));
     }
     notes.append(&mut signals.notes);
     let (derive, velocity) = derived(&signals, &recordings);
+    let mut read: Vec<(PathBuf, String)> = logs.iter().map(|log| (log.path.clone(), log.format.clone())).collect();
+    read.dedup();
     let mut imported = Imported {
-        files: logs.iter().map(|log| (log.path.clone(), log.format.clone())).collect(),
+        files: read,
         taken: signals.taken,
         unused: signals.unused,
         notes,

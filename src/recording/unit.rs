@@ -48,6 +48,8 @@ pub const UNITS: &[Unit] = &[
     unit(Quantity::Time, &["s", "sec", "second", "seconds"], 1.0),
     unit(Quantity::Time, &["min", "minute", "minutes"], 60.0),
     unit(Quantity::Time, &["ms", "millisecond", "milliseconds"], 1e-3),
+    unit(Quantity::Time, &["us", "µs", "microsecond", "microseconds"], 1e-6),
+    unit(Quantity::Time, &["ns", "nanosecond", "nanoseconds"], 1e-9),
     unit(Quantity::Time, &["h", "hour", "hours"], 3600.0),
     unit(Quantity::Length, &["m", "metre", "meter", "metres", "meters"], 1.0),
     unit(Quantity::Length, &["km"], 1000.0),
