@@ -256,6 +256,193 @@ fn units_and_senses_are_told_by_the_data() {
     }
 }
 
+/// A log with these names of columns, its fields as `row` writes them.
+fn log(names: &str, separator: &str, row: impl Fn(&Sample) -> Vec<String>) -> String {
+    let mut text = names.split('|').collect::<Vec<_>>().join(separator) + "\n";
+    SAILED.iter().for_each(|s| text += &(row(s).join(separator) + "\n"));
+    text
+}
+
+const NAMES: &str = "Time|Latitude|Longitude|SOG [kn]|COG [deg]|Heading [deg]|ROT [deg/min]|Rudder [deg]|Shaft [rpm]";
+
+/// The fields that these names stand for.
+fn fields(s: &Sample) -> Vec<String> {
+    let ([latitude, longitude], [sog, cog]) = (s.place(), s.over_ground());
+    let values = [sog, cog, s.heading(), s.rot(), s.delta.to_degrees(), 60.0 * s.n];
+    let place = [latitude, longitude].map(|v| format!("{v:.8}"));
+    [s.iso()].into_iter().chain(place).chain(values.map(|v| format!("{v:.4}"))).collect()
+}
+
+/// The same with some of the fields written otherwise.
+fn with(s: &Sample, others: &[(usize, String)]) -> Vec<String> {
+    let mut fields = fields(s);
+    others.iter().for_each(|(i, text)| fields[*i].clone_from(text));
+    fields
+}
+
+fn assert_read(what: &str, bytes: &[u8]) -> Imported {
+    let imported = imported("log.csv", bytes, &ImportSettings::default()).unwrap_or_else(|e| panic!("{what}: {e}"));
+    assert_eq!(imported.recordings[0].rows.t.len(), SAILED.len(), "{what}");
+    assert_as_sailed(&imported, ROUNDED);
+    imported
+}
+
+#[test]
+fn a_log_is_read_in_any_layout() {
+    let text = log(NAMES, ",", fields);
+    let lines =
+        |f: &dyn Fn(usize, &str) -> String| text.lines().enumerate().map(|(i, l)| f(i, l) + "\n").collect::<String>();
+    assert_read("upright strokes", log(NAMES, " | ", fields).as_bytes());
+    assert_read(
+        "a delimiter at the end of rows",
+        lines(&|i, l| if i == 0 { l.into() } else { format!("{l},") }).as_bytes(),
+    );
+    assert_read("names in a comment", format!("% logger 7\n% {text}").as_bytes());
+    assert_read("lines of old machines", text.replace('\n', "\r").as_bytes());
+    assert_read("UTF-16 without a mark", &text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>());
+    let quoted = lines(&|_, l| format!("\"{}\"", l.replace('.', ";").replace(',', "\",\"").replace(';', ",")));
+    assert_read("quoted decimal commas", quoted.as_bytes());
+    assert_read("single quotes", lines(&|_, l| format!("'{}'", l.replace(',', "','"))).as_bytes());
+    let header = text.lines().next().unwrap();
+    let again = assert_read(
+        "names again",
+        lines(&|i, l| if i == 500 { format!("{l}\n{header}") } else { l.into() }).as_bytes(),
+    );
+    assert!(again.notes.iter().any(|n| n.contains("comes 1 times more")), "{:?}", again.notes);
+    let german =
+        "Zeit|Breite|Länge|Fahrt über Grund [kn]|Kurs über Grund|Steuerkurs|Drehrate|Ruderlage|Drehzahl [1/min]";
+    assert_read("German", log(german, ";", fields).replace('.', ",").as_bytes());
+    let twice =
+        assert_read("each row twice", lines(&|i, l| if i == 0 { l.into() } else { format!("{l}\n{l}") }).as_bytes());
+    assert!(twice.notes.iter().any(|n| n.contains("have the time of another")), "{:?}", twice.notes);
+}
+
+#[test]
+fn times_are_read_as_people_write_them() {
+    let clock = |s: &Sample| {
+        let t = s.t as usize + 12 * 3600;
+        [t / 3600, t / 60 % 60, t % 60]
+    };
+    let cases: [(&str, &str, &dyn Fn(&Sample) -> String); 9] = [
+        ("twelve hours", "Time", &|s| {
+            let [h, m, s] = clock(s);
+            format!("1/5/2024 {}:{m:02}:{s:02} PM", (h + 11) % 12 + 1)
+        }),
+        ("name of the month", "Time", &|s| format!("01-May-2024 {}", &s.iso()[11..19])),
+        ("fourteen digits", "Time", &|s| s.iso().replace(['-', 'T', ':', 'Z'], "")),
+        ("digits of the day", "UTC", &|s| s.iso()[11..19].replace(':', "")),
+        ("days of MATLAB", "Time", &|s| format!("{:.9}", (START + s.t) / 86_400.0 + 719_529.0)),
+        ("a start of its own", "Elapsed", &|s| {
+            format!("0 days {:02}:{:02}:{:02}", s.t as usize / 3600, s.t as usize / 60 % 60, s.t as usize % 60)
+        }),
+        ("microseconds", "Time [us]", &|s| format!("{}", s.t as usize * 1_000_000)),
+        ("date and time", "Date|Time", &|s| s.iso()[..19].replace('T', ",")),
+        ("Datum und Zeit", "Datum|Zeit", &|s| format!("01.05.2024,{}", &s.iso()[11..19])),
+    ];
+    for (what, name, write) in cases {
+        let names = NAMES.replace("Time", name);
+        let read = assert_read(what, log(&names, ",", |s| with(s, &[(0, write(s))])).as_bytes());
+        let dated = !["digits of the day", "microseconds", "a start of its own"].contains(&what);
+        let start = Some("2024-05-01 12:00:00").filter(|_| dated);
+        assert_eq!(read.recordings[0].start.as_deref(), start, "{what}");
+    }
+}
+
+#[test]
+fn places_and_sides_are_read_as_people_write_them() {
+    let minutes = |v: f64| (v.floor() as i32, 60.0 * v.fract());
+    let signs = |s: &Sample, letters: [char; 2]| {
+        let place = s.place().map(minutes);
+        std::array::from_fn::<String, 2, _>(|i| format!("{}°{:09.6}'{}", place[i].0, place[i].1, letters[i]))
+    };
+    let arcs = |s: &Sample, letters| {
+        let [latitude, longitude] = signs(s, letters);
+        with(s, &[(1, latitude), (2, longitude)])
+    };
+    assert_read("degrees and minutes", log(NAMES, ",", |s| arcs(s, ['N', 'E'])).as_bytes());
+    let south = imported("log.csv", log(NAMES, ",", |s| arcs(s, ['S', 'W'])).as_bytes(), &ImportSettings::default());
+    let beside = NAMES.replace("Latitude", "Latitude|N/S").replace("Longitude", "Longitude|E/W");
+    let lettered = log(&beside, ",", |s| {
+        let f = fields(s);
+        with(s, &[(1, format!("{},S", f[1])), (2, format!("{},W", f[2]))])
+    });
+    let letters = imported("log.csv", lettered.as_bytes(), &ImportSettings::default());
+    for read in [south, letters] {
+        let origin = read.unwrap().origin.unwrap();
+        assert!(origin[0] < -53.0 && origin[1] < -9.0, "{origin:?}");
+    }
+    let degrees = |s: &Sample| s.delta.to_degrees();
+    let side = |s: &Sample| if s.delta < 0.0 { "P" } else { "S" };
+    let letter = |s: &Sample| format!("{} {:.4}", side(s), degrees(s).abs());
+    assert_read("letters of the side", log(NAMES, ",", |s| with(s, &[(7, letter(s))])).as_bytes());
+    let names = NAMES.replace("Rudder [deg]", "Rudder [deg]|Side");
+    let apart = |s: &Sample| format!("{:.4},{}", degrees(s).abs(), side(s));
+    assert_read("a column of sides", log(&names, ",", |s| with(s, &[(7, apart(s))])).as_bytes());
+    let units = log(&NAMES.replace(" [deg]", ""), ",", |s| {
+        let f = fields(s);
+        with(s, &[(5, format!("{}° T", f[5])), (7, format!("{} deg", f[7])), (8, format!("{} rpm", f[8]))])
+    });
+    assert_read("units beside numbers", units.as_bytes());
+    let astern = log(NAMES, ",", |s| with(s, &[(8, format!("{:.4}", -60.0 * s.n))]));
+    let read = imported("log.csv", astern.as_bytes(), &ImportSettings::default()).unwrap();
+    assert!((channel(&read, 0, Channel::N)[5] - SAILED[5].n).abs() < 1e-5);
+}
+
+#[test]
+fn what_is_beside_is_not_taken_for_it_and_fill_values_are_missing() {
+    let names = NAMES
+        .replace("Rudder [deg]", "Rudder rate|Rudder set|Rudder [deg]")
+        .replace("Shaft [rpm]", "Engine RPM|Shaft RPM");
+    let row = |s: &Sample| {
+        let f = fields(s);
+        let odd = |i: usize, fill: &str| if s.t % 97.0 == 5.0 { fill.to_owned() } else { f[i].clone() };
+        let (rudder, shaft) = (format!("2.3,35,{}", odd(7, "-999")), format!("{:.4},{}", 600.0 * s.n, f[8]));
+        with(s, &[(3, odd(3, "102.3")), (5, odd(5, "511")), (7, rudder), (8, shaft)])
+    };
+    let read = assert_read("columns beside", log(&names, ",", row).as_bytes());
+    assert!(channel(&read, 0, Channel::Psi)[5].is_nan() && channel(&read, 0, Channel::Delta)[5].is_nan());
+    contains_all(&read.notes.join("; "), &["`Heading` holds 511", "`SOG` holds 102.3", "`Rudder` holds -999"]);
+    // Runs one below the other, each from its own start.
+    let names = NAMES.replace("Time", "t [s]");
+    let run = |s: &Sample| with(s, &[(0, s.t.to_string())]);
+    let text = log(&names, ",", run);
+    let twice = text.clone() + text.split_once('\n').unwrap().1;
+    let read = assert_read("two runs", twice.as_bytes());
+    assert_eq!(read.recordings.len(), 2);
+    assert_eq!(read.recordings[1].rows.t.len(), SAILED.len());
+}
+
+#[test]
+fn what_can_be_read_in_two_ways_is_asked() {
+    let degrees = |s: &Sample| format!("{:.4}", s.delta.to_degrees().abs());
+    let xy = "t|x|y|heading [deg]|r [rad/s]|rudder [deg]|rpm";
+    let exchanged = |s: &Sample| {
+        let [x, y, _, _, _, r] = s.state;
+        [s.t, y, x, s.heading(), r, s.delta.to_degrees(), 60.0 * s.n].map(|v| v.to_string()).to_vec()
+    };
+    let cases: [(String, &[&str]); 8] = [
+        (log(NAMES, ",", |s| with(s, &[(7, degrees(s))])), &["the side of column `Rudder`", "letters P and S"]),
+        (log(NAMES, ",", |s| with(s, &[(0, (1000.0 * s.t).to_string())])), &["the track is sailed", "`--unit t=ms`"]),
+        (log(xy, ",", exchanged), &["x is east and y north", "--column x=NAME --column y=NAME", "--unit psi=deg"]),
+        ("t,x\n0,\"1,234\"\n1,\"1,235\"\n".to_owned(), &[":2:2: `1,234` may be a fraction or thousands"]),
+        ("t,x\n1,2\n".to_owned(), &["there is one line of data"]),
+        ("t,x\n".to_owned(), &["there is no line of data"]),
+        ("PK\u{3}\u{4}xl/workbook.xml".to_owned(), &["a workbook (Excel)", "save the sheet as CSV"]),
+        ("\u{1}\u{2}\u{3}\u{4}\u{5}\u{6}\u{7}".to_owned(), &["bytes that are no text"]),
+    ];
+    for (text, expected) in cases {
+        let said = imported("log.csv", text.as_bytes(), &ImportSettings::default()).unwrap_err();
+        contains_all(&said, expected);
+    }
+    let choices = Choices { units: [("t".to_owned(), "ms".to_owned())].into(), ..Choices::default() };
+    let text = log(NAMES, ",", |s| with(s, &[(0, (1000.0 * s.t).to_string())]));
+    let read = imported("log.csv", text.as_bytes(), &ImportSettings { choices, session_gap: None }).unwrap();
+    assert_as_sailed(&read, ROUNDED);
+    let folder = tempfile::tempdir().unwrap();
+    let said = import(&[folder.path().to_owned()], &ImportSettings::default()).unwrap_err();
+    contains_all(&said.to_string(), &["is a folder"]);
+}
+
 fn sentence(body: &str) -> String {
     format!("${body}*{:02X}\r\n", body.bytes().fold(0_u8, |sum, b| sum ^ b))
 }
@@ -472,6 +659,8 @@ fn from_a_noisy_log_to_a_fit_without_editing() {
     assert_eq!(steered, ["turn", "zigzag", "stop", "turn", "zigzag", "turn"], "{runs}");
     assert!(runs.contains(",test,") && runs.contains(",train,") && runs.contains(",2024-05-01,"));
 
+    let written = std::fs::read_to_string(study.path("own/study.toml")).unwrap();
+    contains_all(&written, &["integration = { method = \"rk4\" }"]);
     study.does(&["check", "own/study.toml"]);
     let fit = study.json(&["fit", "own/study.toml"]);
     assert_eq!(at(&fit, "result.converged"), true);
@@ -545,7 +734,7 @@ fn mistakes_are_mended_from_the_message() {
         (&log, &["--column", "psi"], &["QUANTITY=..."]),
         (&log, &["--antenna", "3"], &["metres forward and to starboard"]),
         ("a,b\n1,2\n3,4\n", &[], &["no column is a time", "--column t=NAME"]),
-        ("", &[], &["no columns are found"]),
+        ("", &[], &["is empty"]),
         ("PAR1abc", &[], &["cannot be read as Parquet"]),
     ];
     for (text, flags, expected) in cases {

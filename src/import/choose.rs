@@ -3,10 +3,13 @@
 
 use super::error::ImportError;
 use super::log::{Column, Log, Meaning};
-use super::names::{is_second_choice, is_unit, meaning};
+use super::names::{is_second_choice, is_shaft, is_unit, meaning};
 use crate::error::suggestion;
-use crate::recording::{CHANNELS, Quantity};
+use crate::recording::{CHANNELS, Channel, Quantity};
 use std::collections::BTreeMap;
+
+/// What a column of revolutions is.
+const SHAFT: Meaning = Meaning::Channel(Channel::N);
 
 /// What the user says of the columns.
 #[derive(Clone, Debug, Default)]
@@ -86,7 +89,9 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec
     for name in distinct(all().map(|c| c.name.as_str())) {
         let first = all().find(|c| c.name == name);
         let unit = first.and_then(|c| c.unit.as_deref());
-        let by_name = meaning(name).filter(|meaning| unit.is_none_or(|unit| fits(*meaning, unit)));
+        let shaft =
+            || (is_shaft(name) && unit.is_some_and(|u| Quantity::Rotation.factor(u).is_some())).then_some(SHAFT);
+        let by_name = meaning(name).filter(|meaning| unit.is_none_or(|unit| fits(*meaning, unit))).or_else(shaft);
         match forced.get(name).copied().or(first.and_then(|c| c.meaning)).or(by_name) {
             Some(meaning) => candidates.entry(meaning).or_default().push(name),
             None => unused.push(Unused { column: name.to_owned(), why: "nothing here uses it".to_owned() }),

@@ -40,12 +40,34 @@ pub struct Given {
 pub struct Known {
     /// The track.
     pub track: Option<Track>,
+    /// Whether the axes of the track may be exchanged: they are called x and y, not north and east.
+    pub axes_untold: bool,
+    /// Sway velocity in its own unit, where it was recorded.
+    pub sway: Option<Signal>,
     /// Heading \[rad\].
     pub psi: Option<Signal>,
     /// Yaw rate \[rad/s\]: the recorded one, or that of the heading.
     pub r: Option<Signal>,
 }
 
+impl Known {
+    /// Whether exchanged axes explain a direction that turns against the track as well as its own sense does: where nothing calls them
+    /// north and east, only a sway velocity tells.
+    fn mirrored(&self, columns: &[&Column], verdict: &Verdict) -> bool {
+        let Some(track) = self.track.as_ref().filter(|_| self.axes_untold) else { return false };
+        let heading = Signal::new(columns, verdict.factor, verdict.offset, true).0;
+        self.sway.as_ref().is_none_or(|sway| track.sways(&heading, sway) < SWAYS)
+    }
+
+    /// Whether the ship goes ahead, by heading and track.
+    fn goes_ahead(&self) -> bool {
+        let told = self.track.as_ref().zip(self.psi.as_ref()).and_then(|(track, psi)| track.agreement(psi, 1.0));
+        told.is_some_and(|[length, angle]| length > AGREE && angle.abs() < FRAC_PI_2)
+    }
+}
+
+/// Agreement from which a sway velocity tells to which side the ship goes.
+const SWAYS: f64 = 0.3;
 /// Ratios may differ from those of the units by this share.
 const NEAR: f64 = 0.15;
 /// The same for speeds through water, which a current changes.
@@ -144,6 +166,13 @@ pub fn direction(
         if mirrored > AGREE && mirrored > right + 0.3 {
             let quarter = (turned / FRAC_PI_2).round() * FRAC_PI_2;
             (verdict.factor, verdict.offset) = (-factor, quarter);
+            if given.is_none_or(|g| !g.by_user) && known.mirrored(columns, &verdict) {
+                return Err(format!(
+                    "whether x is east and y north, or column `{name}` ({}) is counted anticlockwise, since it turns against the track: exchange the axes with `--column x=NAME --column y=NAME`, or pass `--unit {}={unit}` if it is anticlockwise",
+                    meaning.words(),
+                    meaning.name()
+                ));
+            }
             verdict.evidence += &format!(
                 "; turns against the track: counted anticlockwise, from {} deg clockwise of north",
                 degrees(quarter)
@@ -304,7 +333,12 @@ fn lacks_side(columns: &[&Column], known: &Known) -> bool {
 ///
 /// # Errors
 /// The question to ask.
-pub fn rotation(meaning: Meaning, columns: &[&Column], given: Option<&Given>) -> Result<Verdict, String> {
+pub fn rotation(
+    meaning: Meaning,
+    columns: &[&Column],
+    given: Option<&Given>,
+    known: &Known,
+) -> Result<Verdict, String> {
     let name = columns.first().map_or("", |c| c.name.as_str());
     let top = columns.iter().map(|c| size_below(&c.v, 0.999)).fold(0.0, f64::max);
     let per_minute = Quantity::Rotation.factor("rpm").unwrap_or(1.0);
@@ -315,8 +349,15 @@ pub fn rotation(meaning: Meaning, columns: &[&Column], given: Option<&Given>) ->
         None if top > 0.0 && top < RPS_BELOW => by_data("rps", 1.0, why, None),
         None => return Err(ask(meaning, name, "rpm or rps")),
     };
-    if top * verdict.factor > 7.0 && top * verdict.factor < 60.0 {
-        let rpm = sig(top * verdict.factor * 60.0, 3);
+    let turning = || columns.iter().flat_map(|c| &c.v).filter(|v| v.abs() > 0.1 * top);
+    let (astern, all) = (turning().filter(|v| **v < 0.0).count(), turning().count());
+    if 20 * astern > 19 * all && known.goes_ahead() {
+        verdict.factor = -verdict.factor;
+        verdict.evidence += "; the ship goes ahead with negative ones: turned";
+    }
+    let factor = verdict.factor.abs();
+    if top * factor > 7.0 && top * factor < 60.0 {
+        let rpm = sig(top * factor * 60.0, 3);
         verdict.doubt = Some(format!(
             "{rpm} rpm is much for a ship's propeller: if it is the engine's, add `n = {{ scale = 0.2 }}` (1 / gear ratio) to [columns] of columns.toml"
         ));

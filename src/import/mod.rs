@@ -5,6 +5,7 @@ mod choose;
 mod clock;
 mod error;
 mod evidence;
+mod fills;
 mod foreign;
 mod geodesy;
 mod layout;

@@ -117,6 +117,23 @@ impl Track {
     }
 }
 
+impl Track {
+    /// How a sway velocity, in any unit, agrees with that of the track under headings \[rad\]: from -1, where it is to the other side, to 1.
+    pub fn sways(&self, heading: &Signal, sway: &Signal) -> f64 {
+        let (mut own, mut both, mut other) = (0.0, 0.0, 0.0);
+        for (i, t) in self.north.t.iter().enumerate() {
+            let (sin, cos) = heading.at(*t, self.north.step).sin_cos();
+            let (across, told) = (self.east.v[i] * cos - self.north.v[i] * sin, sway.at(*t, self.north.step));
+            if across.is_finite() && told.is_finite() {
+                own += across * across;
+                both += across * told;
+                other += told * told;
+            }
+        }
+        if own * other > 0.0 { both / (own * other).sqrt() } else { 0.0 }
+    }
+}
+
 /// Which way a ship turns when its rudder is put over: the coefficient b of
 /// `r(t + h) - r(t) = a r(t) + b mean(delta over t to t + h) + c`, over its standard error; `None` where it cannot be told.
 pub fn rudder_effect(r: &Signal, delta: &Signal) -> Option<f64> {

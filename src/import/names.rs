@@ -323,6 +323,13 @@ pub fn time_rank(name: &str) -> u8 {
     u8::from(parts.first().is_some_and(|p| p == "t") && parts.len() <= 2)
 }
 
+/// Whether a column that is counted in revolutions is that of the propeller or what drives it: `ME speed [rpm]`, `Propeller [1/min]`.
+pub fn is_shaft(name: &str) -> bool {
+    let parts = words(name);
+    let has = |all: &[&str]| parts.iter().any(|p| all.contains(&p.as_str()));
+    has(&["propeller", "prop", "shaft", "engine", "me"]) && !has(&ELSE) && !has(&ORDERS)
+}
+
 /// Whether a heading is that of a magnetic compass, by its name.
 pub fn is_magnetic(name: &str) -> bool {
     words(name).iter().any(|p| ["magnetic", "mag", "hdm", "compass"].contains(&p.as_str()))
@@ -330,7 +337,7 @@ pub fn is_magnetic(name: &str) -> bool {
 
 /// Whether a column is taken only where no other is there: a magnetic heading, the rate of an engine beside that of its shaft.
 pub fn is_second_choice(name: &str) -> bool {
-    is_magnetic(name) || words(name).iter().any(|p| p == "engine")
+    is_magnetic(name) || words(name).iter().any(|p| ["engine", "me"].contains(&p.as_str()))
 }
 
 #[cfg(test)]

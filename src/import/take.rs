@@ -64,6 +64,10 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
     let get = |signals: &Signals, channel| signals.by.get(&Meaning::Channel(channel)).cloned();
     if let (Some(x), Some(y)) = (get(&signals, Channel::X), get(&signals, Channel::Y)) {
         known.track = Track::of(&x, &y);
+        known.axes_untold =
+            signals.origin.is_none() && !chosen.get(&Meaning::Channel(Channel::X)).is_some_and(|c| names_north(c));
+        let sway = chosen.get(&Meaning::Channel(Channel::V));
+        known.sway = sway.map(|columns| Signal::new(columns, 1.0, 0.0, false).0);
     }
     for meaning in [Meaning::Channel(Channel::Psi), Meaning::Course] {
         if let Some(columns) = chosen.get(&meaning) {
@@ -83,7 +87,7 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         let Meaning::Channel(channel) = *meaning else { continue };
         let verdict = match channel {
             Channel::Delta | Channel::DeltaOrder => rudder(*meaning, columns, given(*meaning)?.as_ref(), &known),
-            Channel::N | Channel::NOrder => rotation(*meaning, columns, given(*meaning)?.as_ref()),
+            Channel::N | Channel::NOrder => rotation(*meaning, columns, given(*meaning)?.as_ref(), &known),
             _ if signals.by.contains_key(meaning) || signals.is_told(*meaning) => continue,
             _ => other(*meaning, columns, given(*meaning)?.as_ref()),
         };
@@ -108,6 +112,11 @@ fn given(meaning: Meaning, columns: &[&Column], choices: &Choices) -> Result<Opt
     }
     let unit = units.first().map(|u| (*u).clone());
     Ok(unit.and_then(|unit| quantity.factor(&unit).map(|factor| Given { unit, factor, by_user: false })))
+}
+
+/// Whether a position is called north by its name.
+fn names_north(columns: &[&Column]) -> bool {
+    columns.iter().any(|c| c.name.to_lowercase().contains("north"))
 }
 
 /// Channels without which nothing can be simulated, or which measure the motion: their unit must be known.

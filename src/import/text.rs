@@ -54,7 +54,7 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
         if table.decimal_comma && layout.delimiter != Delimiter::Character(',') { " and decimal commas" } else { "" };
     let format = format!("text with {}{decimal}; time is {how}", layout.delimiter.words());
     let log = |columns, notes| Log { path: path.to_owned(), format: format.clone(), clock, columns, notes };
-    let runs = if clock == Clock::Utc { vec![0..t.len()] } else { runs(&t) };
+    let runs = runs(clock, &t);
     if let [_, _, ..] = runs.as_slice() {
         table.notes.push(format!("its time starts again {} times: {} runs", runs.len() - 1, runs.len()));
     }
@@ -73,8 +73,8 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
     Ok(logs)
 }
 
-/// The rows of each run, where a clock starts again; all rows as one where they are merely out of order.
-fn runs(t: &[f64]) -> Vec<std::ops::Range<usize>> {
+/// The rows of each run, where a clock of its own starts again; all rows as one where they are merely out of order.
+fn runs(clock: Clock, t: &[f64]) -> Vec<std::ops::Range<usize>> {
     let mut runs = Vec::new();
     let (mut start, mut last) = (0, f64::NAN);
     for (row, time) in t.iter().enumerate().filter(|(_, time)| time.is_finite()) {
@@ -87,7 +87,8 @@ fn runs(t: &[f64]) -> Vec<std::ops::Range<usize>> {
         last = *time;
     }
     runs.push(start..t.len());
-    if runs.iter().all(|run| run.len() >= FEWEST) { runs } else { std::iter::once(0..t.len()).collect() }
+    let own = clock != Clock::Utc && runs.iter().all(|run| run.len() >= FEWEST);
+    if own { runs } else { std::iter::once(0..t.len()).collect() }
 }
 
 /// The lines below the header, and what the header says.

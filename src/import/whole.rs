@@ -4,7 +4,9 @@
 use super::choose::{Choices, Chosen, Unused, choose};
 use super::clock::written;
 use super::error::ImportError;
+use super::fills::take_out;
 use super::log::{Clock, Log, Meaning};
+use super::names::meaning;
 use super::read::read;
 use super::rows::{Rows, rows};
 use super::take::{Signals, Taken, take};
@@ -77,6 +79,7 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     for file in files {
         logs.extend(read(file, &settings.choices)?);
     }
+    logs.iter_mut().for_each(|log| blank_fills(log, &settings.choices));
     let shifts = shifts(&logs)?;
     for (log, shift) in logs.iter_mut().zip(&shifts) {
         log.columns.iter_mut().for_each(|c| c.t.iter_mut().for_each(|t| *t += shift));
@@ -111,6 +114,9 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
         notes.extend(log.notes.iter().map(|note| format!("{}: {note}", log.path.display())));
     }
     notes.append(&mut signals.notes);
+    if !signals.by.contains_key(&Meaning::Channel(Channel::X)) {
+        notes.push("no column is taken for a position: if one is, name it with `--column lat=NAME --column lon=NAME` or `--column x=NAME --column y=NAME`".to_owned());
+    }
     let (derive, velocity) = derived(&signals, &recordings);
     let mut read: Vec<(PathBuf, String)> = logs.iter().map(|log| (log.path.clone(), log.format.clone())).collect();
     read.dedup();
@@ -129,6 +135,20 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     imported.part_with_lonely();
     imported.tell_gaps();
     Ok(imported)
+}
+
+/// Takes the numbers that stand for missing values out of a log, and notes them.
+fn blank_fills(log: &mut Log, choices: &Choices) {
+    for column in &mut log.columns {
+        let forced = choices.columns.iter().find(|(_, name)| name.eq_ignore_ascii_case(&column.name));
+        let forced = forced.and_then(|(quantity, _)| Meaning::from_name(quantity));
+        for (fill, count) in take_out(column, forced.or(column.meaning).or_else(|| meaning(&column.name))) {
+            let name = &column.name;
+            log.notes.push(format!(
+                "column `{name}` holds {fill} in {count} lines, far from all other values; taken as missing"
+            ));
+        }
+    }
 }
 
 /// First and last time of a file.

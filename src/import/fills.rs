@@ -1,0 +1,82 @@
+//! Numbers that stand for a missing value: -999 amid rudder angles, 511 amid headings, 102.3 amid speeds.
+//! They are taken out before any unit is told from the values, and told.
+
+use super::log::{Column, Meaning};
+use crate::recording::usual_fill;
+
+/// A fill value is further from all others than their range, this many times.
+const APART: f64 = 3.0;
+/// The same for numbers that nobody writes for anything else.
+const APART_USUAL: f64 = 1.0;
+/// Kinds of fill values that one column may have.
+const KINDS: usize = 3;
+
+/// Takes the fill values of a column out; gives each with its number.
+pub fn take_out(column: &mut Column, meaning: Option<Meaning>) -> Vec<(f64, usize)> {
+    let mut found = Vec::new();
+    while found.len() < KINDS
+        && let Some(fill) = fill(&column.v, meaning)
+    {
+        let kept: Vec<bool> = column.v.iter().map(|v| *v != fill).collect();
+        found.push((fill, kept.iter().filter(|k| !**k).count()));
+        let keep = |values: &mut Vec<f64>| {
+            let mut kept = kept.iter();
+            values.retain(|_| kept.next().is_some_and(|k| *k));
+        };
+        keep(&mut column.t);
+        keep(&mut column.v);
+    }
+    found
+}
+
+/// The value that is furthest from the others, where it stands for a missing one.
+fn fill(values: &[f64], meaning: Option<Meaning>) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (low, high, middle) = (*sorted.first()?, *sorted.last()?, sorted[sorted.len() / 2]);
+    let candidate = if high - middle > middle - low { high } else { low };
+    let rest: Vec<f64> = sorted.iter().copied().filter(|v| *v != candidate).collect();
+    let (least, most) = (*rest.first()?, *rest.last()?);
+    let count = sorted.len() - rest.len();
+    let (apart, range) = ((candidate - most).max(least - candidate), most - least);
+    if candidate == 0.0 || range <= 0.0 || count > rest.len() {
+        return None;
+    }
+    let turns = meaning.is_some_and(Meaning::wraps) && meaning != Some(Meaning::Longitude);
+    // Directions from 0 to 360, but for one number beside them; a heading that counts turns passes through many.
+    let beside =
+        turns && most > 7.0 && least >= 0.0 && most <= 360.0 && count > 1 && !(0.0..=360.0).contains(&candidate);
+    // What is set, such as a propeller, may be switched from one value to another far away.
+    let moves = turns || matches!(meaning, Some(Meaning::GroundSpeed | Meaning::VelocityNorth | Meaning::VelocityEast));
+    let usual = usual_fill(candidate) && apart > APART_USUAL * range;
+    (beside || usual || (moves && count > 1 && apart > APART * range)).then_some(candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::Channel;
+
+    fn without(values: &[f64], meaning: Meaning) -> Vec<(f64, usize)> {
+        let t = (0..values.len()).map(|i| i as f64).collect();
+        take_out(&mut Column { t, v: values.to_vec(), ..Column::default() }, Some(meaning))
+    }
+
+    #[test]
+    fn what_stands_for_a_missing_value_is_taken_out_and_nothing_else() {
+        let heading = Meaning::Channel(Channel::Psi);
+        assert_eq!(without(&[10.0, 350.0, 511.0, 200.0, 511.0], heading), [(511.0, 2)]);
+        assert_eq!(without(&[10.0, 350.0, -1.0, 200.0, -1.0], heading), [(-1.0, 2)]);
+        // A heading that counts turns, and one that goes to both sides.
+        assert!(without(&[300.0, 340.0, 380.0, 380.0, 420.0], heading).is_empty());
+        assert!(without(&[-90.0, -20.0, 90.0, 20.0, -90.0], heading).is_empty());
+        assert_eq!(without(&[9.0, 102.3, 11.0, 102.3, 10.0], Meaning::GroundSpeed), [(102.3, 2)]);
+        assert_eq!(
+            without(&[-20.0, 20.0, -999.0, 9999.0, 0.0], Meaning::Channel(Channel::Delta)),
+            [(9999.0, 1), (-999.0, 1)]
+        );
+        // A propeller that is switched off.
+        assert!(without(&[100.0, 101.0, 0.0, 0.0, 100.0], Meaning::Channel(Channel::N)).is_empty());
+        assert!(without(&[35.0, 35.0, 1.0, -1.0, 0.0], Meaning::Channel(Channel::Delta)).is_empty());
+    }
+}
