@@ -175,7 +175,7 @@ fn assert_as_sailed(imported: &Imported, tolerances: [f64; 6]) {
         assert!(!found.is_finite() || (found - truth).abs() <= tolerance, "{what} at {t} s: {found}, sailed {truth}");
     };
     for (i, t) in rows.t.iter().enumerate() {
-        let s = SAILED[*t as usize];
+        let s = SAILED[t.round() as usize];
         close(x[i] - origin[0], s.state[0], position, "x", *t);
         close(y[i] - origin[1], s.state[1], position, "y", *t);
         let turn = (psi[i] - s.state[2]).rem_euclid(std::f64::consts::TAU);

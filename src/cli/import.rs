@@ -23,10 +23,13 @@ Makes a study folder of the files that ships and loggers write, so that `trimtab
     `trimtab fit` can follow: recordings in SI units, column map, table of runs, ship, model and study.
 
 Reads, by content and not by name:
-  text        commas, semicolons, tabs or blanks; decimal points or commas; times as ISO 8601,
-              date and time apart, seconds or milliseconds since 1970, spreadsheet days, or seconds
-              from any start; latitude and longitude in degrees or as dddmm.mmm; fields may be empty,
-              and each column may have its own rate
+  text        commas, semicolons, tabs, upright strokes or blanks; decimal points or commas; times as
+              ISO 8601, with the name of the month, date and time apart, of twelve hours, seconds or
+              milliseconds since 1970, days of a spreadsheet or of MATLAB, or seconds from any start
+              (another unit by --unit t=ms); latitude and longitude in degrees, as dddmm.mmm or as
+              51°30.25'N; letters of the hemisphere or of the rudder's side beside the number or in a
+              column of their own; fields may be empty, and each column may have its own rate; a time
+              that starts again begins another recording
   NMEA 0183   RMC GGA VTG HDT THS HDG ROT RSA RPM VHW VBW MWV DPT ZDA; checksums are verified, and a
               time before each sentence is used
   Parquet     flat columns of numbers, timestamps or text

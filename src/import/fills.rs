@@ -29,27 +29,32 @@ pub fn take_out(column: &mut Column, meaning: Option<Meaning>) -> Vec<(f64, usiz
     found
 }
 
-/// The value that is furthest from the others, where it stands for a missing one.
+/// The largest or the smallest value, where it stands for a missing one; the further of the two first.
 fn fill(values: &[f64], meaning: Option<Meaning>) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let (low, high, middle) = (*sorted.first()?, *sorted.last()?, sorted[sorted.len() / 2]);
-    let candidate = if high - middle > middle - low { high } else { low };
+    let both = if high - middle > middle - low { [high, low] } else { [low, high] };
+    both.into_iter().find(|candidate| stands_apart(&sorted, *candidate, meaning))
+}
+
+/// Whether a value is too far from the others, in rising order, to be one of them.
+fn stands_apart(sorted: &[f64], candidate: f64, meaning: Option<Meaning>) -> bool {
     let rest: Vec<f64> = sorted.iter().copied().filter(|v| *v != candidate).collect();
-    let (least, most) = (*rest.first()?, *rest.last()?);
+    let (Some(least), Some(most)) = (rest.first().copied(), rest.last().copied()) else { return false };
     let count = sorted.len() - rest.len();
     let (apart, range) = ((candidate - most).max(least - candidate), most - least);
     if candidate == 0.0 || range <= 0.0 || count > rest.len() {
-        return None;
+        return false;
     }
     let turns = meaning.is_some_and(Meaning::wraps) && meaning != Some(Meaning::Longitude);
     // Directions from 0 to 360, but for one number beside them; a heading that counts turns passes through many.
-    let beside =
-        turns && most > 7.0 && least >= 0.0 && most <= 360.0 && count > 1 && !(0.0..=360.0).contains(&candidate);
+    let within = most > 7.0 && least >= 0.0 && most <= 360.0;
+    let beside = turns && within && count > 1 && !(0.0..=360.0).contains(&candidate);
     // What is set, such as a propeller, may be switched from one value to another far away.
     let moves = turns || matches!(meaning, Some(Meaning::GroundSpeed | Meaning::VelocityNorth | Meaning::VelocityEast));
     let usual = usual_fill(candidate) && apart > APART_USUAL * range;
-    (beside || usual || (moves && count > 1 && apart > APART * range)).then_some(candidate)
+    beside || usual || (moves && count > 1 && apart > APART * range)
 }
 
 #[cfg(test)]
@@ -66,7 +71,7 @@ mod tests {
     fn what_stands_for_a_missing_value_is_taken_out_and_nothing_else() {
         let heading = Meaning::Channel(Channel::Psi);
         assert_eq!(without(&[10.0, 350.0, 511.0, 200.0, 511.0], heading), [(511.0, 2)]);
-        assert_eq!(without(&[10.0, 350.0, -1.0, 200.0, -1.0], heading), [(-1.0, 2)]);
+        assert_eq!(without(&[10.0, 350.0, -1.0, 20.0, 15.0, -1.0], heading), [(-1.0, 2)]);
         // A heading that counts turns, and one that goes to both sides.
         assert!(without(&[300.0, 340.0, 380.0, 380.0, 420.0], heading).is_empty());
         assert!(without(&[-90.0, -20.0, 90.0, 20.0, -90.0], heading).is_empty());
