@@ -325,7 +325,8 @@ fn lacks_side(columns: &[&Column], known: &Known) -> bool {
     let r = r.smooth(r.span());
     let (low, high) = r.v.iter().fold((0.0_f64, 0.0_f64), |(l, h), v| (l.min(*v), h.max(*v)));
     let both = low.abs().min(high) > 0.3 * low.abs().max(high);
-    let top = largest(columns);
+    // A stray number far away is no measure of the angles.
+    let top = columns.iter().map(|c| size_below(&c.v, 0.95)).fold(0.0, f64::max);
     both && top > 0.0 && columns.iter().flat_map(|c| &c.v).all(|v| *v >= -0.02 * top)
 }
 
