@@ -59,7 +59,7 @@ pub fn interval(lo: f64, hi: f64, digits: usize) -> String {
 
 /// `1 window`, `3 windows`: a number with its noun, which has a regular plural.
 #[must_use]
-pub fn counted(count: usize, noun: &str) -> String {
+pub fn number_of(count: usize, noun: &str) -> String {
     format!("{count} {}", plural(count, noun))
 }
 
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_noun_is_in_the_plural_but_for_one() {
-        assert_eq!([0, 1, 2].map(|n| counted(n, "run")), ["0 runs", "1 run", "2 runs"]);
+        assert_eq!([0, 1, 2].map(|n| number_of(n, "run")), ["0 runs", "1 run", "2 runs"]);
     }
 
     #[test]

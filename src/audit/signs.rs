@@ -109,14 +109,11 @@ impl Track {
             issues.push(axes);
             return;
         }
-        // A turned sway turns the velocity, too: what follows from it is not told beside it.
-        let sway_turned = self.sway_turned();
         if coherence > COHERENT {
-            if self.wrong_velocity(angle.to_degrees(), self.along.hypot(self.across) / self.earth, sway_turned, issues)
-            {
+            if self.wrong_velocity(angle.to_degrees(), self.along.hypot(self.across) / self.earth, issues) {
                 return;
             }
-        } else if !sway_turned {
+        } else if !self.sway_turned() {
             let rms = (self.difference / self.count).sqrt();
             let text =
                 format!("track and velocity agree poorly (coherence {coherence:.2}, rms difference {rms:.3} m/s)");
@@ -146,7 +143,7 @@ impl Track {
     }
 
     /// Direction and speed of the track against the velocity's; true when a unit or a sign is plainly wrong.
-    fn wrong_velocity(&self, degrees: f64, gain: f64, sway_turned: bool, issues: &mut Vec<Issue>) -> bool {
+    fn wrong_velocity(&self, degrees: f64, gain: f64, issues: &mut Vec<Issue>) -> bool {
         let mut push = |severity, fault, channel, text: String, next: &str| {
             issues.push(Issue::new(severity, fault, text, next).of(channel));
         };
@@ -158,7 +155,7 @@ impl Track {
             return true;
         }
         // Without v, a ship that drifts in turns seems to run beside its heading.
-        if degrees.abs() > offset && self.sway.known() && !sway_turned {
+        if degrees.abs() > offset && self.sway.known() && !self.sway_turned() {
             let severity = if degrees.abs() > wrong { Severity::Error } else { Severity::Warning };
             let text = format!("the track runs {degrees:.1} deg clockwise of heading and velocity");
             let next = "is the heading offset, or a current left out? `offset` in a column map corrects a heading";
@@ -179,7 +176,7 @@ impl Track {
         false
     }
 
-    /// Whether the track slides to the other side than v says.
+    /// Whether the track slides to the other side than v says: that turns the velocity, too, and what follows from it is not told beside it.
     fn sway_turned(&self) -> bool {
         let known = self.lever.known() && self.sway.known();
         known && self.sway.rms_sum() < SWAY_LEAVES * self.sway.rms() && self.sway.coherence() < SWAY_COHERENCE

@@ -7,7 +7,7 @@ use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs, csv_text};
 use super::progress::progress;
 use trimtab::audit::{Audit, Issue, Severity, StudyAudit, audit_model, audit_study};
-use trimtab::numerals::{counted, fixed, sig};
+use trimtab::numerals::{fixed, number_of, sig};
 use trimtab::report::Table;
 
 const LONG: &str = "\
@@ -75,7 +75,8 @@ fn text(audit: &StudyAudit) -> String {
             verdict(a),
         ]);
     }
-    let windows = format!("{} to train on, {} to test on", counted(audit.train_windows, "window"), audit.test_windows);
+    let windows =
+        format!("{} to train on, {} to test on", number_of(audit.train_windows, "window"), audit.test_windows);
     let mut text = format!("{}: {}; {windows}.\n\n{runs}\n", audit.study, audit.split);
     // Notes are many and rarely needed; the file and the JSON have them.
     let told = grouped(audit);
@@ -85,7 +86,7 @@ fn text(audit: &StudyAudit) -> String {
     }
     let found = || audit.issues.iter().chain(audit.recordings.iter().flat_map(|a| &a.issues));
     let notes = found().filter(|i| i.severity == Severity::Note).count();
-    let noted = counted(notes, "note");
+    let noted = number_of(notes, "note");
     text + &match (told.is_empty(), notes) {
         (true, 0) => "\nNothing found.".to_owned(),
         (true, _) => format!("\nNo error and no warning, {noted} (in --out and --json)."),
@@ -98,7 +99,7 @@ fn text(audit: &StudyAudit) -> String {
 fn graver<'a>(issues: impl Iterator<Item = &'a Issue> + Clone) -> String {
     let count = |s: Severity| issues.clone().filter(|i| i.severity == s).count();
     let named = [(count(Severity::Error), "error"), (count(Severity::Warning), "warning")];
-    let parts: Vec<String> = named.iter().filter(|(n, _)| *n > 0).map(|(n, noun)| counted(*n, noun)).collect();
+    let parts: Vec<String> = named.iter().filter(|(n, _)| *n > 0).map(|(n, noun)| number_of(*n, noun)).collect();
     parts.join(", ")
 }
 

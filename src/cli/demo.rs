@@ -18,7 +18,7 @@ use trimtab::diagnose::{Diagnosis, Grade, diagnose};
 use trimtab::evaluate::{Estimate, Evaluation};
 use trimtab::files::{Origin, ResultFolder};
 use trimtab::fit::Fit;
-use trimtab::numerals::{DASH, counted, sig};
+use trimtab::numerals::{DASH, number_of, sig};
 use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Runs, Split};
 
@@ -229,7 +229,7 @@ fn judged(evaluation: &Evaluation) -> String {
     format!(
         "cVDM (mean deviation from the recording, in % of the motion) on {}: {} % with the published parameters, {} % \
          fitted; better on {}, worse on {}.",
-        counted(test.runs, "test run"),
+        number_of(test.runs, "test run"),
         percent(test.cvdm_baseline),
         percent(test.cvdm_fitted),
         test.runs_better,

@@ -10,7 +10,7 @@ use super::grade::Grade;
 use super::influence::Following;
 use super::place::Place;
 use super::push::Window;
-use crate::numerals::{counted, sig};
+use crate::numerals::{number_of, sig};
 use crate::physics::Kind;
 
 /// What is missing and not in the catalogue, as far as the tests show it.
@@ -237,7 +237,7 @@ fn proof(f: &Finding) -> String {
     if let (Some(before), Some(after)) = (h.before, h.after) {
         parts.push(format!("cVDM {} % to {} %", sig(before, 3), sig(after, 3)));
     }
-    parts.push(counted(h.recordings, "unseen recording"));
+    parts.push(number_of(h.recordings, "unseen recording"));
     format!(" ({})", parts.join(", "))
 }
 

@@ -17,7 +17,7 @@
 
 use super::covariance::Covariances;
 use super::task::Task;
-use crate::numerals::sig;
+use crate::numerals::{number_of, sig};
 use crate::ranks::{ExactSums, Ranks};
 use crate::recording::Run;
 use crate::state::STATES;
@@ -167,9 +167,8 @@ impl ResidualStatistics {
             limit: LIKENESS_LIMIT,
             sentence: format!(
                 "residuals are alike within runs and recordings, {value:.0} of them as good as one (the intervals allow for it as \
-                 far as {} {} can tell)",
-                covariances.clusters,
-                if covariances.clusters == 1 { "recording" } else { "recordings" }
+                 far as {} can tell)",
+                number_of(covariances.clusters, "recording")
             ),
         })
     }

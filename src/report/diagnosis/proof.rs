@@ -3,7 +3,7 @@
 
 use super::phrases::percent;
 use crate::diagnose::{Diagnosis, Finding};
-use crate::numerals::{DASH, counted, fixed, sig};
+use crate::numerals::{DASH, fixed, number_of, sig};
 
 /// A cVDM in words.
 fn percentage(cvdm: Option<f64>) -> String {
@@ -32,7 +32,7 @@ fn alone(f: &Finding) -> Option<String> {
     parts.extend(distance(h.position, 1.0, "position error", "m"));
     parts.extend(distance(h.heading, 1f64.to_degrees(), "heading error", "deg"));
     parts.extend(distance(h.speed, 1.0, "speed error", "m/s"));
-    Some(format!("{} by itself, on {}: {}", f.title, counted(h.recordings, "recording"), parts.join(", ")))
+    Some(format!("{} by itself, on {}: {}", f.title, number_of(h.recordings, "recording"), parts.join(", ")))
 }
 
 /// What the findings gain on the test runs.
@@ -46,7 +46,7 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     if d.findings.is_empty() {
         return vec![format!(
             "no finding to prove; base model, refitted, on {}: cVDM {} %",
-            counted(h.runs, "test run"),
+            number_of(h.runs, "test run"),
             percentage(h.before)
         )];
     }
@@ -56,7 +56,7 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     });
     let mut lines = vec![format!(
         "{}: cVDM {} % before, {} % after (improvement {gain}, {interval}); {} better, {} worse",
-        counted(h.runs, "test run"),
+        number_of(h.runs, "test run"),
         percentage(h.before),
         percentage(h.after),
         h.better,

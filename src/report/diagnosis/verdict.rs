@@ -7,7 +7,7 @@ use crate::audit::Issue;
 use crate::diagnose::calibrate::ErrorRates;
 use crate::diagnose::stability::Stability;
 use crate::diagnose::{Diagnosis, Finding, Grade, Verdict};
-use crate::numerals::{DASH, counted, fixed, sig};
+use crate::numerals::{DASH, fixed, number_of, sig};
 use crate::physics::Kind;
 use crate::report::units::Units;
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,12 +20,12 @@ const NOTES: usize = 2;
 pub fn subject(d: &Diagnosis, study: &str) -> String {
     let a = &d.admission;
     let aside = if d.set_aside > 0 { " (set aside here, as none are marked)" } else { "" };
-    let runs = d.held_out.as_ref().map(|h| format!("{}{aside}", counted(h.runs, "test run")));
+    let runs = d.held_out.as_ref().map(|h| format!("{}{aside}", number_of(h.runs, "test run")));
     let held_out = runs.unwrap_or_else(|| "no test runs".to_owned());
     format!(
         "{study} · {} in {} ({} samples), {held_out} · base model {} · {}, {} a sample",
-        counted(a.runs, "run"),
-        counted(a.sessions, "session"),
+        number_of(a.runs, "run"),
+        number_of(a.sessions, "session"),
         a.samples,
         d.base.name,
         format!("{:?}", a.integration.method).to_uppercase(),
@@ -148,7 +148,7 @@ pub(super) fn withdrawn(f: &Finding, units: Units) -> String {
     let proof = f.held_out.as_ref().map_or(String::new(), |h| {
         format!(
             "; on {}: improvement of cVDM {}, log-likelihood {}",
-            counted(h.recordings, "unseen recording"),
+            number_of(h.recordings, "unseen recording"),
             interval(h.improvement, h.improvement_ci95, &percent),
             interval(Some(h.log_likelihood_gain), h.log_likelihood_ci95, &|v| fixed(v, 0))
         )

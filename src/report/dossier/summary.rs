@@ -2,7 +2,7 @@
 //! The page has the rest.
 
 use crate::dossier::Dossier;
-use crate::numerals::{counted, sig};
+use crate::numerals::{number_of, sig};
 use crate::report::table::Table;
 
 /// The summary.
@@ -15,7 +15,7 @@ pub fn summary(d: &Dossier) -> String {
         let [x, y, psi, u, ..] = t.md_fitted;
         text += &format!(
             "{}: mean deviation x {} m, y {} m, heading {} deg, speed {} m/s; cVDM {} %\n",
-            counted(t.runs, "test run"),
+            number_of(t.runs, "test run"),
             number(x, 1.0),
             number(y, 1.0),
             number(psi, 1f64.to_degrees()),
