@@ -16,7 +16,9 @@ pub fn eligible<'s>(
     alone: bool,
     settings: &Settings,
 ) -> Vec<&'s Row> {
-    let may = |r: &&Row| may_be_named(r, candidates, settings) && (alone || may_be_further(r, selected, candidates));
+    let may = |r: &&Row| {
+        may_be_named(r, candidates, settings) && (alone || may_be_further(&Further::from(*r), selected, candidates))
+    };
     s.rows.iter().filter(may).collect()
 }
 
@@ -38,18 +40,36 @@ fn significance(m: &Mechanism, settings: &Settings) -> f64 {
     if own { OWN_PHYSICS_ALPHA * settings.alpha } else { settings.alpha }
 }
 
+/// What a mechanism that may be named beside others is judged by.
+pub struct Further<'a> {
+    /// Index into the candidates.
+    pub candidate: usize,
+    /// Where it acts.
+    pub extent: &'a Extent,
+    /// The statistic of its test.
+    pub statistic: f64,
+    /// The corrected p-value.
+    pub p: f64,
+}
+
+impl<'a> From<&'a Row> for Further<'a> {
+    fn from(r: &'a Row) -> Self {
+        Self { candidate: r.candidate, extent: &r.extent, statistic: r.test.statistic, p: r.p }
+    }
+}
+
 /// Whether a further mechanism may be named beside those that were selected: it must be beyond doubt, and more than what an
 /// imperfect form of an earlier one leaves behind.
-pub fn may_be_further(r: &Row, selected: &[Selected], candidates: &[Candidate]) -> bool {
-    let m = candidates[r.candidate].mechanism;
+pub fn may_be_further(f: &Further, selected: &[Selected], candidates: &[Candidate]) -> bool {
+    let m = candidates[f.candidate].mechanism;
     let left_by = |a: &Selected| {
         let first = candidates[a.candidate].mechanism;
         // Changes of the ship's own forces between sessions: the form of the first cannot be told from a second.
-        let between_sessions = a.extent != Extent::All && r.extent != Extent::All;
+        let between_sessions = a.extent != Extent::All && *f.extent != Extent::All;
         (between_sessions && m.needs_reference && first.needs_reference)
-            || (m.looks_like(first) && r.test.statistic < FURTHER_SHARE * a.statistic)
+            || (m.looks_like(first) && f.statistic < FURTHER_SHARE * a.statistic)
     };
-    r.p < FURTHER_P && selected.iter().all(|a| a.candidate != r.candidate && !left_by(a))
+    f.p < FURTHER_P && selected.iter().all(|a| a.candidate != f.candidate && !left_by(a))
 }
 
 #[cfg(test)]
@@ -117,7 +137,7 @@ mod tests {
     #[test]
     fn a_further_mechanism_must_be_beyond_doubt_another_and_no_remainder_of_a_look_alike() {
         let list = list();
-        let may = |r: &Row, taken: &[Selected]| may_be_further(r, taken, &list);
+        let may = |r: &Row, taken: &[Selected]| may_be_further(&Further::from(r), taken, &list);
         assert!(may(&row(0, 60.0), &[]) && !may(&Row { p: 1e-6, ..row(0, 60.0) }, &[]));
         assert!(!may(&row(0, 60.0), &[selected(0, 10.0)]));
         // Mean wind and a force fixed on the earth look alike, a compass looks like neither.

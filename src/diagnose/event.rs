@@ -14,6 +14,7 @@ use super::problem::Problem;
 use super::push::Push;
 use super::screen::{Screen, screen};
 use super::settings::{SETTLE, Settings};
+use super::together::leading;
 use crate::audit::Issue;
 use crate::recording::Run;
 use crate::simulate::Integration;
@@ -134,7 +135,8 @@ impl Opening {
         } else {
             let leaders = eligible(&tests.screen, &tests.candidates, &[], true, settings);
             // What is rejected here is tried again by the selection.
-            compete(&tests.screen, leaders, &tests.fit.estimate, problem, &mut Vec::new(), question.progress)
+            let (estimate, sensor) = (&tests.fit.estimate, leading(&tests.fit.estimate, problem, &[], true));
+            compete(&tests.screen, leaders, sensor, estimate, problem, &mut Vec::new(), question.progress)
         };
         let left =
             |(_, found): &(Selected, Estimate)| tests.search.push(found, problem.runs).map_or(0.0, |p| p.statistic);

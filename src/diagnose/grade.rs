@@ -19,10 +19,11 @@ pub enum Grade {
     Immaterial,
     /// The interval of its size does not exclude zero.
     Undetermined,
-    /// Weather nearly all of whose effect the ship's own parameters can take over, on the headings that were sailed.
+    /// Weather nearly all of whose effect the ship's own parameters and the zeros and scales of its sensors can take over, on the headings
+    /// that were sailed.
     NotIsolated,
-    /// A clock or an actuator that is late, and explicit Euler steps of one sample period explain it as well: these recordings cannot tell
-    /// it from a coarse simulation or from values held until the next sample.
+    /// A clock, a point of the positions or an actuator that is late, and explicit Euler steps of one sample period explain it as well:
+    /// these recordings cannot tell it from a coarse simulation or from values held until the next sample.
     EulerSteps,
     /// Most repetitions on the same recordings told otherwise do not find it.
     Unstable,
@@ -65,7 +66,8 @@ impl GainTest {
 pub struct FindingTests {
     /// Whether the interval of its size excludes zero, whichever of its parameters brings it.
     pub excludes_zero: bool,
-    /// For weather, the share of its information that is left beside the ship's own parameters, in the worst direction; 1 for all else.
+    /// For weather, the share of its information that is left beside the ship's own parameters and the errors of its sensors, in the worst
+    /// direction; 1 for all else.
     pub isolated: f64,
     /// By how much it changes predictions of the training runs, as a share of the error there is, in the channel where that is most.
     pub change: f64,

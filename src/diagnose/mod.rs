@@ -80,6 +80,7 @@ pub mod signal;
 pub mod stability;
 mod step_map;
 pub(crate) mod summary;
+mod together;
 pub mod unseen;
 mod wald;
 mod weigh;

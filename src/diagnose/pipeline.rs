@@ -71,7 +71,8 @@ fn proof(question: &Question, answer: &Answer, held_out: &[Run]) -> Option<HeldO
     let tests = &answer.kept.selection.tests;
     let (base, screen) = (&tests.fit.estimate, &tests.screen);
     let generic = corrected(&screen.law, &screen.evidence, &screen.base, &base.model);
-    let (before, after) = ((&base.model, &base.noise), (&answer.improved().model, &base.noise));
+    let found = answer.improved();
+    let [before, after] = [&base.model, &found.model].map(|m| (m, &found.noise));
     Some(prove(before, after, Some(&generic), tests.fit.integration, held_out, &question.settings.judging))
 }
 

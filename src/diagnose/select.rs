@@ -5,7 +5,7 @@ use super::admit::followed;
 use super::base::Question;
 use super::compete::{Rejected, Selected, amplitudes, compare, compete, form_tolerance};
 use super::decide::is_euler;
-use super::eligible::{eligible, may_be_further, may_be_named};
+use super::eligible::{Further, eligible, may_be_further, may_be_named};
 use super::estimate::{Estimate, passes};
 use super::event::{BaseTests, Opening};
 use super::evidence::chi_squared_p;
@@ -15,6 +15,7 @@ use super::push::Push;
 use super::refit::refit;
 use super::screen::{Row, Screen, screen};
 use super::settings::{PARAMETER_PRICE, REFIT, REMOVAL_ALPHA, SETTLE, SMALLEST_SIZE, Settings};
+use super::together::leading;
 use super::wald::Wald;
 use crate::physics::Kind;
 
@@ -90,7 +91,8 @@ impl Selection {
         let by_euler = is_euler(self.tests.fit.admission.euler_gain);
         let alone = self.mechanisms.is_empty() && self.push.is_none() && !by_euler;
         let leaders = eligible(screen, problem.candidates, &self.mechanisms, alone, question.settings);
-        compete(screen, leaders, &self.estimate, problem, &mut self.rejected, question.progress)
+        let sensor = leading(&self.estimate, problem, &self.mechanisms, alone);
+        compete(screen, leaders, sensor, &self.estimate, problem, &mut self.rejected, question.progress)
     }
 
     /// Removes a mechanism that a later one made needless.
@@ -160,7 +162,9 @@ fn rival_of(
     let others: Vec<Selected> = selected.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, a)| a.clone()).collect();
     let s = screen(&rest, integration, runs, candidates);
     let may = |r: &&Row| {
-        outside(r.candidate) && may_be_named(r, candidates, settings) && may_be_further(r, &others, candidates)
+        outside(r.candidate)
+            && may_be_named(r, candidates, settings)
+            && may_be_further(&Further::from(*r), &others, candidates)
     };
     let leaders: Vec<&Row> = s.rows.iter().filter(may).collect();
     let (entry, found) = compare(&s, &leaders, &rest, problem)?;

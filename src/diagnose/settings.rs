@@ -96,6 +96,8 @@ pub const FIRST: Effort = Effort { rounds: 12, noise_rounds: 4, noise_iterations
 pub const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0, noise_runs: 10 };
 /// A refit with the noise estimated along.
 pub const SETTLE: Effort = Effort { rounds: 10, noise_rounds: 1, noise_iterations: 4, noise_runs: 10 };
+/// The errors of all sensors at once.
+pub const TOGETHER_EFFORT: Effort = Effort { rounds: 8, noise_rounds: 3, noise_iterations: 6, noise_runs: 10 };
 /// The base model of a signal-to-noise ratio: noise within a few per cent.
 pub const SIGNAL: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
 /// The start of a model that is given its mechanisms: parameters and noise are estimated again with them.
@@ -269,6 +271,8 @@ numbers! {
     INDISTINGUISHABLE: f64 = 3.0, "a likelihood ratio of 20";
     /// That difference as a share of the gain of a force or of the ship's own physics, whose law is known only so well.
     FORM_TOLERANCE: f64 = 0.1, SEEDS;
+    /// Prior standard deviation of a sensor's error beside those of all sensors, in units of the parameter's scale.
+    SENSOR_SPREAD: f64 = 10.0, "wider than any error that a user would not see; not varied";
     /// Length of the stretches over which the sensors are held against each other, in ship lengths.
     STRETCH: f64 = 0.5, "chosen with the method, before any case, and not varied";
     /// Prior standard deviations that a mechanism's own coefficients may be off before its force is another mechanism's.

@@ -5,6 +5,7 @@ use super::base::Question;
 use super::compete::Selected;
 use super::describe::{Intervals, mechanism_finding, push_finding, sensor_findings};
 use super::estimate::Estimate;
+use super::event::BaseTests;
 use super::finding::{Amplitude, Finding};
 use super::grade::{FindingTests, Grade, grade};
 use super::influence::{Following, change};
@@ -13,10 +14,13 @@ use super::residual::{Kept, Left};
 use super::settings::{FOLLOWED_SHARE, REFIT, SETTLE};
 use super::unseen::FindingProof;
 use crate::evaluate::predict_all;
-use crate::physics::Kind;
+use crate::physics::{Kind, Mechanism};
 use crate::recording::Run;
 use crate::simulate::{Integration, MOST_SUBSTEPS, Method, Trajectory};
 use crate::statistics::median;
+
+/// Clocks that differ, in the catalogue.
+const CLOCKS: &str = "time_skew";
 
 /// A selected mechanism with what speaks for and against it.
 pub struct Weight {
@@ -72,15 +76,11 @@ fn weight(
     let amplitudes = intervals.amplitudes(found, candidate, &of.extent);
     let proof = (!held_out.is_empty()).then(|| {
         let judging = &question.settings.judging;
-        FindingProof::new(&without.model, &found.model, &fit.estimate.noise, fit.integration, held_out, judging)
+        FindingProof::new(&without.model, &found.model, &found.noise, fit.integration, held_out, judging)
     });
     let mut tests = FindingTests {
         excludes_zero: intervals.excludes_zero(found, candidate, &of.extent),
-        isolated: if candidate.mechanism.is_weather() {
-            tests.screen.test(of.candidate, &of.extent).retained
-        } else {
-            1.0
-        },
+        isolated: isolated(tests, of),
         change: change(&fit.runs, &predict_all(&without.model, &fit.runs, fit.integration), with),
         shift: (candidate.mechanism.kind == Kind::Sensor).then(|| shift(&amplitudes, &fit.runs)).flatten(),
         by_steps: 0.0,
@@ -88,16 +88,25 @@ fn weight(
         prediction: proof.as_ref().and_then(FindingProof::prediction),
     };
     // Costs an estimate, and only what would be named needs it.
-    let may_be_steps = tests.shift.is_some() || candidate.mechanism.kind == Kind::Actuator;
+    let like_a_clock = |m: &Mechanism| m.kind == Kind::Sensor && (m.name == CLOCKS || m.look_alikes.contains(&CLOCKS));
+    let may_be_steps = like_a_clock(candidate.mechanism) || candidate.mechanism.kind == Kind::Actuator;
     if may_be_steps && grade(&tests).is_named() {
         tests.by_steps = by_steps(question, kept, &without);
     }
     Weight { grade: grade(&tests), tests, proof, without }
 }
 
-/// The share of what a clock or an actuator's lag gains over the model `without` it that explicit Euler steps of one sample period of the
-/// recordings gain in its place: with such steps positions are late by a sample and the ship answers its actuators late, and so it is
-/// where values are held until the next.
+/// The least share of its information that is left to the weather of a set: what cannot be told from a member that the ship takes over is
+/// taken over with it. 1 for what is no weather.
+fn isolated(tests: &BaseTests, of: &Selected) -> f64 {
+    let is_weather = |i: &&usize| tests.candidates[**i].mechanism.is_weather();
+    let left = of.set.iter().filter(is_weather).map(|i| tests.screen.isolated(*i, &of.extent, &tests.candidates));
+    left.fold(1.0, f64::min)
+}
+
+/// The share of what a clock, a sensor's error like it or an actuator's lag gains over the model `without` it that explicit Euler steps of
+/// one sample period of the recordings gain in its place: with such steps positions are late by a sample and the ship answers its
+/// actuators late, and so it is where values are held until the next.
 fn by_steps(question: &Question, kept: &Kept, without: &Estimate) -> f64 {
     let steps = median(kept.selection.tests.fit.runs.iter().map(|r| r.dt / r.recorded_dt)).unwrap_or(1.0);
     let substeps = (steps.round() as usize).clamp(1, MOST_SUBSTEPS);

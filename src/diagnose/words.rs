@@ -163,8 +163,9 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
 /// That weather cannot be told from the ship itself.
 fn not_isolated(f: &Finding) -> String {
     format!(
-        "These recordings cannot tell: {} is significant, but on the headings that were sailed the ship's own parameters (a side force, \
-         trim, resistance, the compass zero) can take over nearly all of its effect; the same runs on opposite headings would part them.",
+        "These recordings cannot tell: {} is significant, but on the headings that were sailed the ship's own parameters and its sensors \
+         (a side force, trim, resistance, the zero of the compass, the scale of the log) can take over nearly all of its effect; \
+         the same runs on opposite headings would part them.",
         f.title
     )
 }
