@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::Serialize;
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 /// Mean of the finite values; `None` of nothing.
 pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
@@ -51,6 +51,16 @@ pub fn chi_squared_p(statistic: f64, degrees: usize) -> f64 {
         return 1.0;
     }
     ChiSquared::new(degrees as f64).map_or(1.0, |d| d.sf(statistic.max(0.0)).max(f64::MIN_POSITIVE))
+}
+
+/// Upper tail of a quadratic form in `directions` standard normal values whose variance was estimated from `degrees` independent ones:
+/// of `directions` times Fisher's F. Tends to [`chi_squared_p`] for many degrees; 1 without directions or degrees.
+pub fn scattered_p(statistic: f64, directions: usize, degrees: usize) -> f64 {
+    if !statistic.is_finite() {
+        return 1.0;
+    }
+    let f = statistic.max(0.0) / directions.max(1) as f64;
+    FisherSnedecor::new(directions as f64, degrees as f64).map_or(1.0, |d| d.sf(f).max(f64::MIN_POSITIVE))
 }
 
 /// Value that a standard normal variable stays below with a probability.

@@ -2,6 +2,7 @@
 //! them, and keeps every one that the data allow. What is tested, and what is said of the outcome, is decided elsewhere.
 
 use super::candidate::{Candidate, Extent};
+use super::eligible::is_worth_naming;
 use super::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
 use super::evidence::chi_squared_p;
 use super::forces::only_cancels;
@@ -10,8 +11,8 @@ use super::noise::Noise;
 use super::problem::Problem;
 use super::screen::{Row, Screen};
 use super::settings::{
-    Effort, FORM_TOLERANCE, IMPLAUSIBLE, INDISTINGUISHABLE, PARAMETER_PRICE, REFIT, RIVAL_GAP, RIVAL_LIKENESS,
-    RIVAL_SHARE, RIVALS, SESSIONS_GAIN, SETTLE, SMALLEST_SIZE, STARTS, STARTS_OF_SQUARES, UNRELATED_LIKENESS,
+    Effort, FORM_TOLERANCE, IMPLAUSIBLE, INDISTINGUISHABLE, LIKENESS, PARAMETER_PRICE, REFIT, REMAINDER, RIVAL_GAP,
+    RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES,
 };
 use super::together::Leading;
 use super::wald::Wald;
@@ -118,12 +119,12 @@ fn rivals(s: &Screen, leaders: &[&Row], candidates: &[Candidate]) -> Vec<Hypothe
         out.extend(s.rows.iter().filter(alike).filter_map(|r| Hypothesis::in_place_of(r, leader, s, candidates)));
     }
     // A rival whose promised gain is far below the leader's does not overtake it.
-    let gain_needed = leader.test.statistic - f64::max(RIVAL_GAP, RIVAL_SHARE * leader.test.statistic);
+    let gain_needed = leader.test.statistic - f64::max(RIVAL_GAP, REMAINDER * leader.test.statistic);
     let near = leaders[1..]
         .iter()
         .filter(|r| r.test.statistic > gain_needed)
         // What acts in some sessions only is alike by what those sessions sailed.
-        .filter(|r| r.extent != Extent::All || s.likeness(leader.candidate, r.candidate) > RIVAL_LIKENESS);
+        .filter(|r| r.extent != Extent::All || s.likeness(leader.candidate, r.candidate) > LIKENESS);
     for r in near {
         if out.iter().all(|c| c.candidate != r.candidate) {
             out.push(Hypothesis::of(r));
@@ -266,7 +267,7 @@ impl Competition<'_> {
         let gain = 2.0 * (estimate.log_posterior - self.current.log_posterior);
         let statistic = w.statistic().min(gain.max(0.0));
         chi_squared_p(statistic, w.value.len()) * (self.tried.max(1) as f64) < settings.alpha
-            && c.size(w.value.as_slice()) >= SMALLEST_SIZE
+            && is_worth_naming(c.size(w.value.as_slice()))
             && !only_cancels(c, estimate, runs)
     }
 
@@ -299,7 +300,7 @@ impl Competition<'_> {
         c.add(&mut model, &each, &amplitudes);
         free.extend(c.parameters(&each));
         let each = refit(each, amplitudes, &model, &free);
-        if each.value > all.value + 0.5 * SESSIONS_GAIN { each } else { all }
+        if each.value > all.value + INDISTINGUISHABLE { each } else { all }
     }
 
     /// Refits the leader and its rivals, and returns the best with its confidence set. The leader is the best of the ranking or the
@@ -491,7 +492,7 @@ pub fn compete(
         }
         let (leader, p) = leader?;
         rejected.push(Rejected { candidate: leader, p });
-        leaders.retain(|r| r.candidate != leader && screen.likeness(leader, r.candidate) < UNRELATED_LIKENESS);
+        leaders.retain(|r| r.candidate != leader && screen.likeness(leader, r.candidate) < LIKENESS);
     }
 }
 

@@ -4,7 +4,7 @@
 use super::algebra::pick;
 use super::evidence::{Base, Evidence};
 use super::filter::Column;
-use super::settings::{GENERIC_GAIN, SURROGATE_P, SURROGATE_TERMS};
+use super::settings::{PARAMETER_PRICE, SURROGATE_P, SURROGATE_TERMS};
 use crate::model::Model;
 use nalgebra::{DVector, SymmetricEigen};
 use serde::Serialize;
@@ -92,7 +92,7 @@ fn shrinkage(information: &DVector<f64>, score: &DVector<f64>) -> Option<f64> {
     for i in 0..=40 {
         let v = 10f64.powf(-8.0 + 0.25 * f64::from(i));
         let value = log_marginal(v);
-        if value > best + GENERIC_GAIN {
+        if value > best + PARAMETER_PRICE {
             (best, variance) = (value, Some(v));
         }
     }

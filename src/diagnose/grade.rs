@@ -15,6 +15,9 @@ pub enum Grade {
     /// Unseen runs are worse with it by log-likelihood or free simulation, the interval below zero: it is not named and not written to the
     /// improved model.
     Refuted,
+    /// Unseen runs are not worse with it by itself, but with all that was found together, and it does least for them of what was found: it is
+    /// neither named nor written.
+    RefutedTogether,
     /// Significant, but it changes predictions by less than matters, or a clock by less than is resolved.
     Immaterial,
     /// The interval of its size does not exclude zero.
@@ -56,7 +59,7 @@ impl GainTest {
         self.ci95.is_some_and(|[low, _]| low > 0.0)
     }
 
-    fn is_below_zero(&self) -> bool {
+    pub(super) fn is_below_zero(&self) -> bool {
         self.ci95.is_some_and(|[_, high]| high < 0.0)
     }
 }

@@ -8,8 +8,9 @@ use super::decide::Unlisted;
 use super::describe::kinds;
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
+use super::estimate::Estimate;
 use super::generic::{corrected, surrogate};
-use super::improved::{trimmed, uncertainty};
+use super::improved::{inside_bounds, trimmed, uncertainty};
 use super::prove::{HeldOut, prove};
 use super::sailed::{Sailed, sailed};
 use super::set_aside::Divided;
@@ -48,30 +49,47 @@ pub fn diagnose<'r>(
     let answer: Answer = Answer::new(&question, training, &held_out);
     let (answer, stability): (Answer, Option<Stability>) = answer.repeated(&question, &given, &held_out)?;
     let rates: Option<ErrorRates> = ErrorRates::new(&question, &answer, &given, &held_out, settings.calibrate)?;
-    let proof: Option<HeldOut> = proof(&question, &answer, &held_out);
+    let written: Written = Written::new(&question, &answer);
+    let proof: Option<HeldOut> = proof(&question, &answer, &written, &held_out);
     let answer: Answer = answer.capped(proof.as_ref());
-    let sailed: Vec<Sailed> = pictured(&question, &answer, &held_out);
-    Ok(Diagnosis { set_aside, stability, error_rates: rates, sailed, ..report(&question, answer, proof) })
+    let sailed: Vec<Sailed> = pictured(&question, &answer, &written, &held_out);
+    Ok(Diagnosis { set_aside, stability, error_rates: rates, sailed, ..report(&question, answer, &written, proof) })
+}
+
+/// The models that a diagnosis writes, which every command reads, and which the proof compares.
+struct Written {
+    base: Estimate,
+    found: Estimate,
+}
+
+impl Written {
+    fn new(question: &Question, answer: &Answer) -> Self {
+        let tests = &answer.kept.selection.tests;
+        let inside = |estimate| inside_bounds(estimate, tests.problem(question.settings));
+        let base = inside(&tests.fit.estimate);
+        let found = if answer.findings.is_empty() { base.clone() } else { inside(answer.improved()) };
+        Self { base, found }
+    }
 }
 
 /// The runs that a report shows with their simulations: those of the proof, or else those of the training.
-fn pictured(question: &Question, answer: &Answer, held_out: &[Run]) -> Vec<Sailed> {
+fn pictured(question: &Question, answer: &Answer, written: &Written, held_out: &[Run]) -> Vec<Sailed> {
     let fit = &answer.kept.selection.tests.fit;
     let runs = if held_out.is_empty() { &fit.runs[..] } else { held_out };
-    let found = (!answer.findings.is_empty()).then(|| &answer.improved().model);
-    sailed(runs, &fit.estimate.model, found, question.settings.judging.integration)
+    let found = (!answer.findings.is_empty()).then_some(&written.found.model);
+    sailed(runs, &written.base.model, found, question.settings.judging.integration)
 }
 
 /// The base model against the model with the findings, and against a generic correction, on runs that no step before has used.
-fn proof(question: &Question, answer: &Answer, held_out: &[Run]) -> Option<HeldOut> {
+fn proof(question: &Question, answer: &Answer, written: &Written, held_out: &[Run]) -> Option<HeldOut> {
     if held_out.is_empty() {
         return None;
     }
     (question.progress)("proving on held-out runs");
     let tests = &answer.kept.selection.tests;
-    let (base, screen) = (&tests.fit.estimate, &tests.screen);
-    let generic = corrected(&screen.law, &screen.evidence, &screen.base, &base.model);
-    let found = answer.improved();
+    let screen = &tests.screen;
+    let generic = corrected(&screen.law, &screen.evidence, &screen.base, &tests.fit.estimate.model);
+    let Written { base, found } = written;
     let [before, after] = [&base.model, &found.model].map(|m| (m, &found.noise));
     Some(prove(before, after, Some(&generic), tests.fit.integration, held_out, &question.settings.judging))
 }
@@ -82,7 +100,7 @@ fn coverage(model: &Model, runs: &[Run]) -> Coverage {
 }
 
 /// Everything that the diagnosis says of one analysis.
-fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagnosis {
+fn report(question: &Question, answer: Answer, written: &Written, proof: Option<HeldOut>) -> Diagnosis {
     let (tests, found) = (&answer.kept.selection.tests, answer.improved());
     let (fit, first) = (&tests.fit, &tests.screen);
     let base = &fit.estimate;
@@ -96,8 +114,8 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
     };
     // What predicts unseen runs worse than the base model is no improvement, however sure its parts are.
     let worse = proof.as_ref().is_some_and(HeldOut::is_worse);
-    let written = if worse { base } else { found };
-    let improved = trimmed(&written.model, question.model, &written.free);
+    let kept = if worse { &written.base } else { &written.found };
+    let improved = trimmed(&kept.model, question.model, &kept.free);
     let verdict = answer.verdict;
     let said = Said {
         findings: &answer.findings,
@@ -105,7 +123,7 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
         rejected: answer.kept.selection.rejected.first().map(|r| tests.candidates[r.candidate].mechanism.title),
         following: &answer.base.following,
         holds: answer.base.holds,
-        form_holds: tests.search.form_holds,
+        form_holds: tests.search.chance.form_holds,
         missing: missing.as_ref(),
         worse: proof.as_ref().filter(|p| p.is_worse()).and_then(|p| Some([p.before?, p.after?])),
     };
@@ -142,9 +160,9 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
         sailed: Vec::new(),
         traces: traces(&fit.runs, fit.integration, base, last.map(|_| found)),
         validity: coverage(&improved, &fit.runs),
-        uncertainty: uncertainty(written, &improved, fit.integration, &fit.runs),
+        uncertainty: uncertainty(kept, &improved, fit.integration, &fit.runs),
         model: improved,
-        base: trimmed(&base.model, question.model, &base.free),
+        base: trimmed(&written.base.model, question.model, &written.base.free),
         findings: answer.findings,
         withdrawn: answer.withdrawn,
     }

@@ -65,7 +65,7 @@ impl Residual {
             samples: admission.samples,
             unknown_force: surge.max(sway),
             turning_force: turning_force(&tests.fit.estimate, &tests.fit.runs),
-            form_holds: tests.search.form_holds,
+            chance: tests.search.chance,
             push_allowed: question.settings.allows(PUSH),
             push_in_base: push.as_ref().map(PushTest::from),
             base: residual_tests(&tests.screen, &tests.location),

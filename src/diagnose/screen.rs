@@ -7,7 +7,7 @@ use super::estimate::{Estimate, Sums, base_of, restrictions};
 use super::evidence::{Base, Evidence, Test, are_references};
 use super::filter::{Column, Filter};
 use super::generic::{GenericLaw, widen};
-use super::settings::{AMPLITUDE_GAIN, DIVIDED_SESSIONS, EQUAL_STATISTICS, IDENTIFIABLE_SHARE, SESSIONS_GAIN};
+use super::settings::{DIVIDED_SESSIONS, EQUAL_STATISTICS, IDENTIFIABLE_SHARE, INDISTINGUISHABLE, PARAMETER_PRICE};
 use crate::model::Model;
 use crate::physics::Kind;
 use crate::recording::Run;
@@ -325,8 +325,8 @@ fn corrected(p: f64, extent: &Extent, options: usize, by_session: bool, division
 /// differ beyond doubt; what is possible comes before what is not.
 fn choose(options: Vec<Tested>, divisions: f64) -> Option<Tested> {
     let price = |extent: &Extent, more: usize| match extent {
-        Extent::All | Extent::In(_) => SESSIONS_GAIN + 2.0 * divisions.ln(),
-        Extent::Each(_) => SESSIONS_GAIN + AMPLITUDE_GAIN * more as f64,
+        Extent::All | Extent::In(_) => 2.0 * (INDISTINGUISHABLE + divisions.ln()),
+        Extent::Each(_) => 2.0 * INDISTINGUISHABLE + PARAMETER_PRICE * more as f64,
     };
     let gain = |t: &Tested| t.test.statistic - t.test.degrees as f64;
     options.into_iter().reduce(|best, next| {

@@ -5,7 +5,7 @@ use super::admit::followed;
 use super::base::Question;
 use super::compete::{Rejected, Selected, amplitudes, compare, compete, form_tolerance};
 use super::decide::is_euler;
-use super::eligible::{Further, eligible, may_be_further, may_be_named};
+use super::eligible::{Further, eligible, is_worth_naming, may_be_further, may_be_named};
 use super::estimate::{Estimate, passes};
 use super::event::{BaseTests, Opening};
 use super::evidence::chi_squared_p;
@@ -14,7 +14,7 @@ use super::push::Push;
 #[cfg(feature = "ipopt")]
 use super::refit::refit;
 use super::screen::{Row, Screen, screen};
-use super::settings::{PARAMETER_PRICE, REFIT, REMOVAL_ALPHA, SETTLE, SMALLEST_SIZE, Settings};
+use super::settings::{PARAMETER_PRICE, REFIT, SETTLE, Settings};
 use super::together::leading;
 use super::wald::Wald;
 use crate::physics::Kind;
@@ -105,8 +105,8 @@ impl Selection {
         let needless = earlier.iter().position(|a| {
             let c = &problem.candidates[a.candidate];
             let w = amplitudes(&all, &self.estimate, c, &a.extent);
-            chi_squared_p(w.statistic(), w.value.len()) > REMOVAL_ALPHA * settings.alpha
-                || c.size(w.value.as_slice()) < SMALLEST_SIZE
+            chi_squared_p(w.statistic(), w.value.len()) > settings.strict()
+                || !is_worth_naming(c.size(w.value.as_slice()))
         });
         let Some(i) = needless else { return };
         let needless = self.mechanisms.remove(i);

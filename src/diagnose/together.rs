@@ -4,13 +4,13 @@
 
 use super::candidate::{Candidate, Extent};
 use super::compete::Selected;
-use super::eligible::{Further, may_be_further};
+use super::eligible::{Further, is_worth_naming, may_be_further};
 use super::estimate::{Estimate, FreeParameter, log_posterior};
 use super::evidence::chi_squared_p;
 use super::kinematic::{Disagreement, disagreements};
 use super::noise::Noise;
 use super::problem::Problem;
-use super::settings::{SENSOR_SPREAD, SMALLEST_SIZE, TOGETHER_EFFORT};
+use super::settings::{SENSOR_SPREAD, TOGETHER_EFFORT};
 use super::wald::Wald;
 use crate::model::{Model, Prior};
 use crate::physics::Kind;
@@ -73,7 +73,7 @@ pub fn leading(current: &Estimate, problem: Problem, selected: &[Selected], alon
         let part = wald.part(own);
         let statistic = part.statistic();
         let p = chi_squared_p(statistic, own.len()) * sensors.len() as f64;
-        let is_worth = candidates[*i].size(part.value.as_slice()) >= SMALLEST_SIZE;
+        let is_worth = is_worth_naming(candidates[*i].size(part.value.as_slice()));
         (is_worth && may_lead(*i, statistic, p)).then_some((*i, part.value, statistic, p))
     };
     let (candidate, amplitude, statistic, p) =

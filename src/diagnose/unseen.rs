@@ -4,7 +4,7 @@
 use super::filter::{Filter, Wanted};
 use super::grade::GainTest;
 use super::noise::Noise;
-use super::settings::FEWEST_SET_ASIDE;
+use super::settings::FEWEST_RECORDINGS;
 use crate::audit::settled;
 use crate::evaluate::{self, Comparison, Judging, summarise};
 use crate::model::Model;
@@ -122,7 +122,7 @@ fn improvement_over(compared: &[&Comparison], runs: &[Run]) -> Option<[f64; 2]> 
 /// The 95 % interval of a sum of independent values, by Student's t.
 pub(super) fn interval_of_sum(values: &[f64]) -> Option<[f64; 2]> {
     let count = values.len();
-    if count < FEWEST_SET_ASIDE {
+    if count < FEWEST_RECORDINGS {
         return None;
     }
     let (mean, variance) = (mean(values.iter().copied())?, variance(values)?);

@@ -11,7 +11,7 @@ use super::grade::{FindingTests, Grade, grade};
 use super::influence::{Following, change};
 use super::problem::Problem;
 use super::residual::{Kept, Left};
-use super::settings::{FOLLOWED_SHARE, REFIT, SETTLE};
+use super::settings::{REFIT, SETTLE};
 use super::unseen::FindingProof;
 use crate::evaluate::predict_all;
 use crate::physics::{Kind, Mechanism};
@@ -137,6 +137,31 @@ pub fn weakest(weights: &[Weight]) -> Option<usize> {
     going.min_by(|a, b| a.1.gain().total_cmp(&b.1.gain())).map(|(i, _)| i)
 }
 
+/// Where all that is kept makes unseen runs worse beyond chance, and no part does so by itself, the part that does least for them: it is
+/// withdrawn first. What stands beside a name must not refute it.
+pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight], held_out: &[Run]) -> Option<usize> {
+    // A single mechanism was weighed against the base model already.
+    if weights.len() < 2 || held_out.is_empty() {
+        return None;
+    }
+    let (fit, found) = (&kept.selection.tests.fit, &kept.selection.estimate);
+    let judging = &question.settings.judging;
+    let proof = FindingProof::new(&fit.estimate.model, &found.model, &found.noise, fit.integration, held_out, judging);
+    let simulated = proof.prediction().is_some_and(|g| g.is_below_zero());
+    if !simulated && !proof.likelihood().is_below_zero() {
+        return None;
+    }
+    let index = does_least(weights, simulated)?;
+    weights[index].grade = Grade::RefutedTogether;
+    Some(index)
+}
+
+/// The mechanism that gains least on unseen runs, in free simulation or in log-likelihood.
+fn does_least(weights: &[Weight], simulated: bool) -> Option<usize> {
+    let gain = |w: &Weight| if simulated { w.tests.prediction.map_or(0.0, |g| g.gain) } else { w.gain() };
+    weights.iter().enumerate().min_by(|a, b| gain(a.1).total_cmp(&gain(b.1))).map(|(i, _)| i)
+}
+
 /// A mechanism with its weight, as a finding.
 fn weighed(kept: &Kept, mechanism: &Selected, weight: &Weight, intervals: &Intervals) -> Finding {
     let finding = mechanism_finding(mechanism, &kept.selection, intervals);
@@ -190,7 +215,7 @@ impl Base {
         };
         let (base, found) = (of(&fit.estimate), of(&kept.selection.estimate));
         let following = if found.share() > base.share() { found } else { base };
-        Self { holds: following.share() >= FOLLOWED_SHARE, following }
+        Self { holds: following.holds(), following }
     }
 }
 
@@ -225,6 +250,19 @@ mod tests {
         assert_eq!(weakest(&all), Some(2));
         assert_eq!(weakest(&all[..1]), None);
         assert_eq!(weakest(&[]), None);
+    }
+
+    #[test]
+    fn of_what_is_refuted_together_the_one_goes_that_does_least_by_the_measure_that_refutes() {
+        let of = |likelihood: f64, improvement: f64| {
+            let w = weight(Grade::Confirmed, likelihood);
+            Weight {
+                tests: FindingTests { prediction: Some(GainTest { gain: improvement, ci95: None }), ..w.tests },
+                ..w
+            }
+        };
+        let all = [of(50.0, 0.1), of(5.0, 0.3), of(20.0, -0.1)];
+        assert_eq!((does_least(&all, true), does_least(&all, false), does_least(&[], true)), (Some(2), Some(1), None));
     }
 
     #[test]

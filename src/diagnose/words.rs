@@ -126,18 +126,15 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
     match verdict {
         Verdict::Named | Verdict::Sensor => named(said.findings) + &together(said.worse),
         Verdict::OneOf => first.map_or(String::new(), one_of),
-        Verdict::NotInCatalogue => match (said.missing, withdrawn(Grade::Refuted)) {
+        Verdict::NotInCatalogue => match (said.missing, withdrawn(Grade::Refuted).or(withdrawn(Grade::RefutedTogether))) {
             (Some(missing), None) => missing.headline(),
-            (Some(missing), Some(tried)) => format!(
-                "{} {} was tried, and unseen runs refute it{}.",
-                missing.headline(),
-                sentence(&tried.title),
-                proof(tried)
-            ),
+            (Some(missing), Some(tried)) => {
+                format!("{} {} was tried, and unseen runs refute it{}.", missing.headline(), sentence(&tried.title), refuted(tried))
+            }
             (None, Some(tried)) => format!(
                 "Something is missing, and no law of the catalogue is it: {} fits the training runs best, and unseen runs refute it{}.",
                 tried.title,
-                proof(tried)
+                refuted(tried)
             ),
             (None, None) => format!(
                 "Something is missing, and no law of the catalogue is it: {} gains most, but only with coefficients of its own that no \
@@ -240,6 +237,14 @@ fn proof(f: &Finding) -> String {
     }
     parts.push(number_of(h.recordings, "unseen recording"));
     format!(" ({})", parts.join(", "))
+}
+
+/// What unseen runs say against a finding.
+fn refuted(f: &Finding) -> String {
+    match f.grade {
+        Grade::RefutedTogether => " together with what else was found".into(),
+        _ => proof(f),
+    }
 }
 
 /// The parameters of a finding; a vector fixed on the earth by its size and direction.

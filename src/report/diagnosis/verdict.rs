@@ -121,6 +121,7 @@ pub(super) fn grade_label(grade: Grade) -> (&'static str, &'static str) {
 fn withdrawn_because(f: &Finding) -> &'static str {
     match f.grade {
         Grade::Refuted => "unseen runs refute it",
+        Grade::RefutedTogether => "with it, what was found predicts unseen runs worse beyond chance, all together",
         Grade::Immaterial if f.is_unresolved_clock() => "it is measurable, and less than half a sample period",
         Grade::Immaterial => "it is measurable, and too small to matter",
         Grade::NotIsolated => {
