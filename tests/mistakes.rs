@@ -1,7 +1,7 @@
 //! The natural mistakes of a new user, one table of them all: each is told with its place and with what mends it, and what the message
 //! says is done here word for word, after which the command succeeds. Faults of single modules have tests of their own.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 #[path = "support/study.rs"]
 mod study;
