@@ -2,8 +2,8 @@
 //! It compares numbers of the score tests with the settings; it estimates nothing.
 
 use super::candidate::{Candidate, Extent};
-use super::compete::Selected;
 use super::screen::{Row, Screen};
+use super::selected::Selected;
 use super::settings::{BEYOND_DOUBT, REMAINDER, Settings};
 use crate::physics::{Kind, Mechanism};
 

@@ -3,7 +3,7 @@
 
 use super::base::{BaseFit, Question};
 use super::candidate::{Candidate, applies, candidates};
-use super::compete::{Selected, compete};
+use super::compete::compete;
 use super::decide::{Chance, PushTest, form_holds, is_euler};
 use super::eligible::{eligible, may_be_named};
 use super::estimate::{Estimate, calm_noise};
@@ -13,6 +13,7 @@ use super::noise::{Noise, NoisePrior};
 use super::problem::Problem;
 use super::push::Push;
 use super::screen::{Screen, screen};
+use super::selected::Selected;
 use super::settings::{SETTLE, Settings};
 use super::together::leading;
 use crate::audit::Issue;

@@ -72,6 +72,7 @@ mod residual;
 pub mod sailed;
 pub mod screen;
 mod select;
+mod selected;
 mod set_aside;
 pub mod settings;
 mod side_by_side;

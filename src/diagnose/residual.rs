@@ -3,7 +3,6 @@
 
 use super::alike::class;
 use super::base::Question;
-use super::compete::Selected;
 use super::decide::{Decision, MechanismTest, PlaceTest, PushTest, ResidualTests, TestTable};
 use super::estimate::Estimate;
 use super::finding::PUSH;
@@ -12,6 +11,7 @@ use super::place::Place;
 use super::push::{Push, sharpened};
 use super::screen::{Screen, screen};
 use super::select::Selection;
+use super::selected::Selected;
 use crate::recording::Run;
 
 /// The tests of what the selected mechanisms leave.

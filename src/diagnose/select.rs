@@ -3,7 +3,7 @@
 
 use super::admit::followed;
 use super::base::Question;
-use super::compete::{Rejected, Selected, amplitudes, compare, compete, form_tolerance};
+use super::compete::{Rejected, amplitudes, compare, compete, form_tolerance};
 use super::decide::is_euler;
 use super::eligible::{Further, eligible, is_worth_naming, may_be_further, may_be_named};
 use super::estimate::{Estimate, passes};
@@ -14,6 +14,7 @@ use super::push::Push;
 #[cfg(feature = "ipopt")]
 use super::refit::refit;
 use super::screen::{Row, Screen, screen};
+use super::selected::Selected;
 use super::settings::{PARAMETER_PRICE, REFIT, SETTLE, Settings};
 use super::together::leading;
 use super::wald::Wald;

@@ -3,13 +3,13 @@
 //! What is named, and whether a refit confirms it, is decided elsewhere.
 
 use super::candidate::{Candidate, Extent};
-use super::compete::Selected;
 use super::eligible::{Further, is_worth_naming, may_be_further};
 use super::estimate::{Estimate, FreeParameter, log_posterior};
 use super::evidence::chi_squared_p;
 use super::kinematic::{Disagreement, disagreements};
 use super::noise::Noise;
 use super::problem::Problem;
+use super::selected::Selected;
 use super::settings::{SENSOR_SPREAD, TOGETHER_EFFORT};
 use super::wald::Wald;
 use crate::model::{Model, Prior};

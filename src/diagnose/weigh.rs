@@ -2,7 +2,6 @@
 //! and on unseen ones. It computes the tests of a finding; the grade is a pure function of them.
 
 use super::base::Question;
-use super::compete::Selected;
 use super::describe::{Intervals, mechanism_finding, push_finding, sensor_findings};
 use super::estimate::Estimate;
 use super::event::BaseTests;
@@ -11,6 +10,7 @@ use super::grade::{FindingTests, Grade, grade};
 use super::influence::{Following, change};
 use super::problem::Problem;
 use super::residual::{Kept, Left};
+use super::selected::Selected;
 use super::settings::{REFIT, SETTLE};
 use super::unseen::FindingProof;
 use crate::evaluate::predict_all;

@@ -369,23 +369,27 @@ impl Recording {
         self.get(a).zip(self.get(b))
     }
 
+    /// Rows of `segment` within `span` seconds, centred on `t0`, moved inside where the segment ends.
+    fn rows_around(&self, segment: &Range<usize>, t0: f64, span: f64) -> Range<usize> {
+        let t = self.time();
+        let (first, last) = (t[segment.start], t[segment.end - 1]);
+        let from = (t0 - 0.5 * span).min(last - span).max(first);
+        let slack = 1e-9 * span;
+        let inside = &t[segment.clone()];
+        segment.start + inside.partition_point(|ti| *ti < from - slack)
+            ..segment.start + inside.partition_point(|ti| *ti <= from + span + slack)
+    }
+
     /// State at `t0` of the local motion that fits all state channels of `segment` best over `span` seconds: u, v and r linear in
     /// time, x, y and psi their integrals. What a channel's own rows tell of its value at `t0` beside that motion is added, so that the
     /// state is what the sensors report. Channels that were not recorded come out of the others, or as 0 (position, and heading without
     /// one). `None` when fewer than three rows are covered.
     fn local_motion(&self, segment: &Range<usize>, t0: f64, span: f64) -> Option<[f64; STATES]> {
-        let t = self.time();
-        // Centred on t0, moved inside where the segment ends.
-        let (first, last) = (t[segment.start], t[segment.end - 1]);
-        let from = (t0 - 0.5 * span).min(last - span).max(first);
-        let slack = 1e-9 * span;
-        let inside = &t[segment.clone()];
-        let rows = segment.start + inside.partition_point(|ti| *ti < from - slack)
-            ..segment.start + inside.partition_point(|ti| *ti <= from + span + slack);
+        let rows = self.rows_around(segment, t0, span);
         if rows.len() < 3 {
             return None;
         }
-        let tau: Vec<f64> = t[rows.clone()].iter().map(|ti| ti - t0).collect();
+        let tau: Vec<f64> = self.time()[rows.clone()].iter().map(|ti| ti - t0).collect();
         let channel = |c: Channel| self.get(c).map(|v| &v[rows.clone()]);
         let [x, y, psi, u, v, r] = STATE_CHANNELS.map(channel);
 
@@ -398,28 +402,8 @@ impl Recording {
         }
         let heading = turn.solve(3)?;
         let psi_at = |s: f64| heading[0] + heading[1] * s + 0.5 * heading[2] * s * s;
-        // Integrals from 0 to s of cos psi, sin psi, and of both times the running time, by Simpson's rule.
-        let integrals = |s: f64| {
-            const PANELS: usize = 8;
-            let mut sum = [0.0; 4];
-            for i in 0..=2 * PANELS {
-                let at = s * i as f64 / (2 * PANELS) as f64;
-                let weight = if i == 0 || i == 2 * PANELS {
-                    1.0
-                } else if i % 2 == 1 {
-                    4.0
-                } else {
-                    2.0
-                };
-                let (sin, cos) = psi_at(at).sin_cos();
-                for (sum, value) in sum.iter_mut().zip([cos, sin, at * cos, at * sin]) {
-                    *sum += weight * value;
-                }
-            }
-            sum.map(|v| v * s / (6 * PANELS) as f64)
-        };
         let mut motion = Rows::default();
-        let table: Vec<[f64; 4]> = tau.iter().map(|&s| integrals(s)).collect();
+        let table: Vec<[f64; 4]> = tau.iter().map(|&s| integrals(psi_at, s)).collect();
         // Unknowns: x0, y0, u0, u', v0, v'. Without a heading the track cannot be told from drift, so it is left out.
         if psi.is_some() {
             if let Some(x) = x {
@@ -581,6 +565,27 @@ impl Rows {
         let solution = a.svd(true, true).solve(&nalgebra::DVector::from_vec(self.right), 1e-10).ok()?;
         Some((0..unknowns).map(|j| if scale[j] > 0.0 { solution[j] / scale[j] } else { 0.0 }).collect())
     }
+}
+
+/// Integrals from 0 to `s` of cos psi, sin psi, and of both times the running time, by Simpson's rule.
+fn integrals(psi_at: impl Fn(f64) -> f64, s: f64) -> [f64; 4] {
+    const PANELS: usize = 8;
+    let mut sum = [0.0; 4];
+    for i in 0..=2 * PANELS {
+        let at = s * i as f64 / (2 * PANELS) as f64;
+        let weight = if i == 0 || i == 2 * PANELS {
+            1.0
+        } else if i % 2 == 1 {
+            4.0
+        } else {
+            2.0
+        };
+        let (sin, cos) = psi_at(at).sin_cos();
+        for (sum, value) in sum.iter_mut().zip([cos, sin, at * cos, at * sin]) {
+            *sum += weight * value;
+        }
+    }
+    sum.map(|v| v * s / (6 * PANELS) as f64)
 }
 
 /// Integrals of cos psi and sin psi, and of both times the running time, times what each contributes ahead and its rate, and across.
