@@ -73,6 +73,15 @@ pub fn student_quantile(probability: f64, degrees: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees).map_or_else(|_| normal_quantile(probability), |t| t.inverse_cdf(probability))
 }
 
+/// Probability that Student's t is as far from zero as this, to either side; 1 of what is not a number. Underflows to the smallest positive
+/// number, not to zero.
+pub fn student_p(t: f64, degrees: f64) -> f64 {
+    if t.is_nan() {
+        return 1.0;
+    }
+    StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |d| (2.0 * d.sf(t.abs())).max(f64::MIN_POSITIVE))
+}
+
 /// A p-value once it is the least of so many that were looked at (Bonferroni).
 pub fn corrected(p: f64, tried: f64) -> f64 {
     (p * tried).min(1.0)
@@ -205,6 +214,8 @@ mod tests {
 
     #[test]
     fn tails_are_those_of_the_tables() {
+        assert!((student_p(-5.407_883, 7.0) - 1e-3).abs() < 1e-6 && student_p(1e300, 7.0) > 0.0);
+        assert_eq!((student_p(0.0, 4.0), student_p(f64::NAN, 4.0)), (1.0, 1.0));
         assert!((chi_squared_p(3.841_459, 1) - 0.05).abs() < 1e-6 && chi_squared_p(5.0, 0) == 1.0);
         assert!((normal_quantile(0.975) - 1.959_964).abs() < 1e-6);
         assert!((student_quantile(0.975, 4.0) - 2.776_445).abs() < 1e-5);

@@ -10,6 +10,7 @@ use super::event::{BaseTests, Opening};
 use super::finding::{Finding, PUSH};
 use super::grade::Grade;
 use super::improved::{inside_bounds, trimmed};
+use super::law::Law;
 use super::prove::HeldOut;
 use super::residual::{Kept, Residual};
 use super::select::Selection;
@@ -32,6 +33,8 @@ pub struct Answer {
     pub kept: Kept,
     /// Whether the model follows the recordings.
     pub base: Base,
+    /// A law for what the catalogue does not hold.
+    pub law: Option<Law>,
     decision: Decision,
 }
 
@@ -97,13 +100,32 @@ impl Answer {
             tried.append(&mut findings);
         }
         let verdict = lead(verdict, &mut findings);
-        Self { verdict, findings, withdrawn: tried, kept, base, decision }
+        Self { verdict, findings, withdrawn: tried, kept, base, law: None, decision }
     }
 
-    /// The estimate with what is named; that of the base model where nothing is.
+    /// This answer with a law for what is missing, where the catalogue does not hold it and it is no force in one part of the water.
+    pub fn with_law(mut self, question: &Question, held_out: &[Run]) -> Self {
+        if self.verdict == Verdict::NotInCatalogue && self.unlisted() != Some(Unlisted::Place) {
+            self.law = Law::new(question, &self.kept.selection.tests, held_out);
+        }
+        self
+    }
+
+    /// The law that unseen runs confirm, where nothing is named.
+    pub fn confirmed_law(&self) -> Option<&Law> {
+        self.law.as_ref().filter(|l| l.is_confirmed() && self.findings.is_empty())
+    }
+
+    /// Whether the improved model has more than the base model.
+    pub fn improves(&self) -> bool {
+        !self.findings.is_empty() || self.confirmed_law().is_some()
+    }
+
+    /// The estimate with what is named, or else with a law that unseen runs confirm; that of the base model where there is neither.
     pub fn improved(&self) -> &Estimate {
         let Selection { estimate, tests, .. } = &self.kept.selection;
-        if self.findings.is_empty() { &tests.fit.estimate } else { estimate }
+        let base = || self.confirmed_law().map_or(&tests.fit.estimate, |l| &l.estimate);
+        if self.findings.is_empty() { base() } else { estimate }
     }
 
     /// What the catalogue does not hold.

@@ -94,20 +94,50 @@ impl FindingTests {
     /// Whether unseen runs are worse with it beyond chance by one measure at least: what simulates them worse is no improvement, however
     /// likely it makes them, and nothing is named beside its refutation.
     pub fn is_refuted(&self) -> bool {
-        [self.likelihood, self.prediction].into_iter().flatten().any(|g| g.is_below_zero())
-    }
-
-    /// Whether unseen runs are better with it: by one measure beyond chance, and not worse by the other.
-    fn is_confirmed(&self) -> bool {
-        let confirms = |one: Option<GainTest>, other: Option<GainTest>| {
-            one.is_some_and(|g| g.is_above_zero()) && other.is_some_and(|g| g.gain >= 0.0)
-        };
-        confirms(self.likelihood, self.prediction) || confirms(self.prediction, self.likelihood)
+        refute(self.likelihood, self.prediction)
     }
 
     /// Whether it changes predictions by too little to matter, or a clock by less than is resolved.
     fn is_immaterial(&self) -> bool {
         self.change < MATERIAL_SHARE || self.shift.is_some_and(|s| s < RESOLVED_SAMPLES)
+    }
+}
+
+/// Whether unseen runs are worse beyond chance by log-likelihood or free simulation.
+fn refute(likelihood: Option<GainTest>, prediction: Option<GainTest>) -> bool {
+    [likelihood, prediction].into_iter().flatten().any(|g| g.is_below_zero())
+}
+
+/// Whether unseen runs are better: by one measure beyond chance, and not worse by the other.
+fn confirm(likelihood: Option<GainTest>, prediction: Option<GainTest>) -> bool {
+    let confirms = |one: Option<GainTest>, other: Option<GainTest>| {
+        one.is_some_and(|g| g.is_above_zero()) && other.is_some_and(|g| g.gain >= 0.0)
+    };
+    confirms(likelihood, prediction) || confirms(prediction, likelihood)
+}
+
+/// How well a law for what the catalogue does not hold is supported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LawGrade {
+    /// Unseen runs are better with it, as for [`Grade::Confirmed`].
+    Confirmed,
+    /// The training runs speak for it; unseen runs cannot tell, or there are none.
+    Exploratory,
+    /// Unseen runs are worse with it, as for [`Grade::Refuted`].
+    Refuted,
+}
+
+impl LawGrade {
+    /// The grade that gains on unseen runs give.
+    pub fn new(likelihood: Option<GainTest>, prediction: Option<GainTest>) -> Self {
+        if refute(likelihood, prediction) {
+            Self::Refuted
+        } else if confirm(likelihood, prediction) {
+            Self::Confirmed
+        } else {
+            Self::Exploratory
+        }
     }
 }
 
@@ -125,7 +155,7 @@ pub fn grade(tests: &FindingTests) -> Grade {
         Grade::NotIsolated
     } else if tests.by_steps > 1.0 - FORM_TOLERANCE {
         Grade::EulerSteps
-    } else if tests.is_confirmed() {
+    } else if confirm(tests.likelihood, tests.prediction) {
         Grade::Confirmed
     } else {
         Grade::Suspected
@@ -189,6 +219,23 @@ mod tests {
         ] {
             assert_eq!(grade(&tests), Grade::Refuted);
         }
+    }
+
+    #[test]
+    fn unseen_runs_grade_a_law_as_they_grade_a_finding() {
+        let little_worse = Some(GainTest { gain: -0.01, ci95: Some([-0.2, 0.1]) });
+        let all = [None, BETTER, UNDECIDED, WORSE, little_worse];
+        for (likelihood, prediction) in all.iter().flat_map(|a| all.map(|b| (*a, b))) {
+            let expected = match grade(&FindingTests { likelihood, prediction, ..sound() }) {
+                Grade::Confirmed => LawGrade::Confirmed,
+                Grade::Refuted => LawGrade::Refuted,
+                _ => LawGrade::Exploratory,
+            };
+            assert_eq!(LawGrade::new(likelihood, prediction), expected, "{likelihood:?} {prediction:?}");
+        }
+        assert_eq!(LawGrade::new(BETTER, UNDECIDED), LawGrade::Confirmed);
+        assert_eq!(LawGrade::new(BETTER, WORSE), LawGrade::Refuted);
+        assert_eq!(LawGrade::new(None, None), LawGrade::Exploratory);
     }
 
     #[test]

@@ -321,10 +321,8 @@ numbers! {
     PLACE_PARTS: usize = 3, CUSTOM;
     /// Share of the positions at either end that the parts leave out.
     PLACE_TAIL: f64 = 0.02, CUSTOM;
-    /// Most monomials of a surrogate law for what the catalogue does not hold.
-    SURROGATE_TERMS: usize = 4, CUSTOM;
-    /// p-value above which a surrogate law takes no further monomial.
-    SURROGATE_P: f64 = 0.01, CUSTOM;
+    /// Superfluous monomials that a law for what the catalogue does not hold may have on average.
+    LAW_P: f64 = 0.05, "one law in twenty; simulated nulls have fewer";
 }
 
 #[cfg(test)]
