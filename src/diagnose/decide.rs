@@ -2,7 +2,7 @@
 //! It estimates nothing and knows no runs; every number it compares with is in the settings.
 
 use super::settings::{
-    BEYOND_DOUBT, BEYOND_FORM, FEWEST_RECORDINGS, FEWEST_RUNS, FEWEST_SAMPLES, FORM_TOLERANCE, GUST_SHARE, REMAINDER,
+    BEYOND_DOUBT, BEYOND_FORM, FEWEST_RECORDINGS, FEWEST_RUNS, FEWEST_SAMPLES, GUST_SHARE, REMAINDER,
 };
 use crate::physics::Kind;
 use crate::statistics::{chi_squared_p, scattered_p};
@@ -54,9 +54,9 @@ pub struct Chance {
 
 impl PushTest {
     /// Chance of a statistic of three components whose scatter is known from the recordings in which they act alone: the same force
-    /// in many recordings is soon beyond chance, in one or two it must exceed a far higher statistic.
+    /// in many recordings is soon beyond chance, in two it must exceed a far higher statistic. One has no scatter and counts as two.
     fn by_chance(&self, statistic: f64) -> f64 {
-        scattered_p(statistic, COMPONENTS, self.recordings)
+        scattered_p(statistic, COMPONENTS, self.recordings.max(FEWEST_RECORDINGS - 1))
     }
 
     /// Whether such a force is an event and not the ship's own forces, which in another form make windows in manoeuvres like
@@ -66,7 +66,7 @@ impl PushTest {
         let Chance { alpha, form_holds } = chance;
         let certain = chi_squared_p(self.statistic, COMPONENTS) < if form_holds { alpha * alpha } else { BEYOND_FORM };
         if self.across > 1.0 - REMAINDER {
-            certain && self.by_chance(self.statistic) < alpha && self.mirrored < FORM_TOLERANCE
+            certain && self.by_chance(self.statistic) < alpha && self.mirrored < 0.5 * REMAINDER
         } else {
             certain && self.by_chance(REMAINDER * self.statistic) < alpha && form_holds
         }
@@ -389,10 +389,10 @@ mod tests {
             assert!(push_in(recordings, needed + 0.1).is_event(OF_FORM), "{recordings}");
             assert!(!push_in(recordings, needed - 0.1).is_event(OF_FORM), "{recordings}");
         }
-        assert!(!push_in(1, 5e3).is_event(OF_FORM));
+        assert!(push_in(1, 297.6).is_event(OF_FORM) && !push_in(1, 297.4).is_event(OF_FORM));
         // Beyond doubt on a ship of another form: chi-squared of 3 degrees at 1e-8.
         assert!(!push_in(5, 40.0).is_event(OF_ANOTHER) && push_in(5, 40.3).is_event(OF_ANOTHER));
-        assert!(!PushTest { mirrored: 0.1, ..push_in(5, 1e3) }.is_event(OF_FORM));
+        assert!(!PushTest { mirrored: 0.2, ..push_in(5, 1e3) }.is_event(OF_FORM));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::decide::{Chance, PushTest, form_holds, is_euler};
 use super::eligible::{eligible, may_be_named};
 use super::estimate::{Estimate, calm_noise};
 use super::finding::PUSH;
-use super::locate::{Location, locate};
+use super::locate::{Location, locate, pushes_left};
 use super::noise::{Noise, NoisePrior};
 use super::problem::Problem;
 use super::push::Push;
@@ -47,7 +47,7 @@ impl BaseTests {
         let alpha = question.settings.alpha;
         let chance = Chance { alpha, form_holds: form_holds(screen.symmetric_test.p, alpha) };
         let search = PushSearch { chance, integration: *integration, prior: *prior, noise: estimate.noise };
-        location.push = if chance.form_holds { search.push(estimate, runs) } else { search.event(&location) };
+        location.push = if chance.form_holds { search.push(estimate, runs) } else { search.event(&location.pushes) };
         Self { candidates, location, screen, search, fit }
     }
 
@@ -87,10 +87,10 @@ pub struct PushSearch {
 }
 
 impl PushSearch {
-    /// The strongest push of a location that is an event, or else the strongest.
-    pub fn event(&self, location: &Location) -> Option<Push> {
+    /// The strongest push that is an event, or else the strongest, of pushes of which the strongest is first.
+    pub fn event(&self, pushes: &[Push]) -> Option<Push> {
         let is_event = |p: &&Push| PushTest::from(*p).is_event(self.chance);
-        location.pushes.iter().find(is_event).or(location.pushes.first()).cloned()
+        pushes.iter().find(is_event).or(pushes.first()).cloned()
     }
 
     /// The push that an estimate leaves. An event inflates the noise that it is tested against; where the ship's own forces have
@@ -98,7 +98,7 @@ impl PushSearch {
     fn push(&self, found: &Estimate, runs: &[Run]) -> Option<Push> {
         let noise =
             if self.chance.form_holds { calm_noise(found, self.integration, runs, &self.prior) } else { self.noise };
-        self.event(&locate(&Estimate { noise, ..found.clone() }, self.integration, runs))
+        self.event(&pushes_left(&Estimate { noise, seen: None, ..found.clone() }, self.integration, runs))
     }
 }
 
@@ -198,14 +198,14 @@ mod tests {
             noise: noise(),
         };
         let model = model();
-        let found = Estimate { model, noise: noise(), free: Vec::new(), log_posterior: 0.0 };
+        let found = Estimate { model, noise: noise(), free: Vec::new(), log_posterior: 0.0, seen: None };
         let mut location = locate(&found, Integration::default(), &runs(&found.model, 2));
         location.pushes = vec![push(200.0, 2), push(60.0, 5)];
-        assert_eq!(search.event(&location).map(|p| p.statistic), Some(60.0));
+        assert_eq!(search.event(&location.pushes).map(|p| p.statistic), Some(60.0));
         location.pushes.pop();
-        assert_eq!(search.event(&location).map(|p| p.statistic), Some(200.0));
+        assert_eq!(search.event(&location.pushes).map(|p| p.statistic), Some(200.0));
         location.pushes.clear();
-        assert!(search.event(&location).is_none());
+        assert!(search.event(&location.pushes).is_none());
     }
 
     #[test]

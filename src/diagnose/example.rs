@@ -131,7 +131,7 @@ pub fn sailed(model: &Model, run: &Run, steps: Integration) -> Vec<[f64; 6]> {
 /// An estimate at a model's values with the noise above and its own free parameters.
 pub fn at(model: &Model) -> Estimate {
     let free = super::base::base_parameters(model, false);
-    Estimate { model: model.clone(), noise: noise(), free, log_posterior: 0.0 }
+    Estimate { model: model.clone(), noise: noise(), free, log_posterior: 0.0, seen: None }
 }
 
 /// A mechanism of the catalogue as a candidate.

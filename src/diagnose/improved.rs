@@ -2,8 +2,7 @@
 //! its bounds. It decides nothing.
 
 use super::algebra::pseudo_inverse;
-use super::estimate::{Estimate, FreeParameter, Sums};
-use super::filter::{Column, Filter};
+use super::estimate::{Estimate, FreeParameter};
 use super::problem::Problem;
 use super::settings::REFIT;
 use crate::model::Model;
@@ -86,14 +85,7 @@ fn put_inside(f: &FreeParameter, model: &mut Model) {
 /// The covariance of the parameters of `improved`, from the filter's information and the priors at an estimate. Additions in single
 /// sessions are profiled out.
 pub fn uncertainty(found: &Estimate, improved: &Model, integration: Integration, runs: &[Run]) -> Option<Uncertainty> {
-    let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
-    let sessions: Vec<_> = found.free.iter().map(|f| f.sessions.clone()).collect();
-    let filter = Filter::new(&found.model, integration, &columns);
-    let mut information = Sums::of(&filter, runs, &found.noise, &sessions, false).evidence.total.information;
-    for (i, free) in found.free.iter().enumerate() {
-        information[(i, i)] += free.prior_terms(&found.model).0;
-    }
-    let covariance = pseudo_inverse(&information);
+    let covariance = pseudo_inverse(&found.information(integration, runs));
     let name = |f: &FreeParameter| found.model.parameters[f.column.parameter].name.clone();
     let kept: Vec<usize> = (0..found.free.len())
         .filter(|i| found.free[*i].sessions.is_none() && improved.index(&name(&found.free[*i])).is_some())

@@ -10,7 +10,7 @@ use super::wald::Wald;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::recording::{Measured, Run};
-use crate::state::STATES;
+use crate::state::{Force, STATES, State};
 use crate::statistics::median;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -183,16 +183,26 @@ fn reports(
     candidates: &[&Candidate],
 ) -> Vec<Vec<[f64; STATES]>> {
     let values = model.values_in(&run.session);
-    let of = |values: Vec<f64>| -> Vec<[f64; STATES]> {
-        let dynamics = Dynamics::new(model, values);
-        let report = |(s, input): (&Option<[f64; STATES]>, _)| s.map_or([0.0; STATES], |s| dynamics.report(&s, input));
-        states.iter().zip(&run.inputs).map(report).collect()
+    let plain = Dynamics::new(model, values.clone());
+    // What moves the ship is the same whatever a sensor reports of it.
+    let moving = |(s, input): (&Option<[f64; STATES]>, _)| {
+        let state = State::from_array((*s)?);
+        let (rates, flow) = plain.rates(&state, input, &Force::zero());
+        Some((state, rates, flow))
     };
-    let plain = of(values.clone());
+    let moving: Vec<_> = states.iter().zip(&run.inputs).map(moving).collect();
+    let of = |dynamics: &Dynamics<f64>| -> Vec<[f64; STATES]> {
+        let report = |(moving, input): (&Option<(State<f64>, _, _)>, _)| {
+            moving.as_ref().map_or([0.0; STATES], |(state, rates, flow)| dynamics.measure(state, input, rates, flow))
+        };
+        moving.iter().zip(&run.inputs).map(report).collect()
+    };
+    let without = of(&plain);
     let column = |c: &Column| {
         let mut with = values.clone();
         with[c.parameter] += c.scale;
-        of(with).iter().zip(&plain).map(|(w, p)| std::array::from_fn(|j| w[j] - p[j])).collect()
+        let with = of(&Dynamics::new(model, with));
+        with.iter().zip(&without).map(|(w, p)| std::array::from_fn(|j| w[j] - p[j])).collect()
     };
     candidates.iter().flat_map(|c| &c.columns).map(column).collect()
 }

@@ -34,11 +34,13 @@ impl Residual {
     /// Tests what the selected mechanisms leave, as the base model was tested.
     pub fn new(question: &Question, mut selection: Selection) -> Self {
         (question.progress)("checking what is left");
+        let latest = selection.latest.take();
         let (tests, found) = (&selection.tests, &selection.estimate);
         let left = (!selection.mechanisms.is_empty()).then(|| {
-            let screen = screen(found, tests.fit.integration, &tests.fit.runs, &tests.candidates);
+            let again = || screen(found, tests.fit.integration, &tests.fit.runs, &tests.candidates);
+            let screen = latest.unwrap_or_else(again);
             let mut location = locate(found, tests.fit.integration, &tests.fit.runs);
-            location.push = tests.search.event(&location);
+            location.push = tests.search.event(&location.pushes);
             Left { screen, location }
         });
         let classes: Vec<_> =

@@ -32,13 +32,15 @@ pub struct Selection {
     pub rejected: Vec<Rejected>,
     /// The estimate with them; that of the base model without any.
     pub estimate: Estimate,
+    /// The score tests at that estimate, where they were made and none led to a further mechanism.
+    pub latest: Option<Screen>,
 }
 
 impl Selection {
     /// Selects mechanisms one after the other while a further one may be named. Recordings with a wrong unit or sign give none.
     pub fn new(question: &Question, Opening { tests, push, mut first }: Opening) -> Self {
         let estimate = tests.fit.estimate.clone();
-        let mut out = Self { tests, push, mechanisms: Vec::new(), rejected: Vec::new(), estimate };
+        let mut out = Self { tests, push, mechanisms: Vec::new(), rejected: Vec::new(), estimate, latest: None };
         if out.tests.is_blocked() {
             return out;
         }
@@ -71,8 +73,8 @@ impl Selection {
             (question.progress)("refitting the whole model through Ipopt");
             let fit = &self.tests.fit;
             // Without Ipopt's answer the estimate by Fisher scoring is kept.
-            if let Ok(refitted) = refit(&self.estimate, fit.integration, &fit.runs) {
-                self.estimate = refitted;
+            if let Ok(Some(refitted)) = refit(&self.estimate, fit.integration, &fit.runs) {
+                (self.estimate, self.latest) = (refitted, None);
             }
         }
         self
@@ -81,19 +83,19 @@ impl Selection {
     /// The best further mechanism, with the estimate that holds it.
     fn next(&mut self, question: &Question) -> Option<(Selected, Estimate)> {
         let problem = self.tests.problem(question.settings);
-        let latest;
-        let screen: &Screen = if self.mechanisms.is_empty() {
-            &self.tests.screen
-        } else {
-            latest = screen(&self.estimate, problem.integration, problem.runs, problem.candidates);
-            &latest
-        };
+        let latest = (!self.mechanisms.is_empty())
+            .then(|| screen(&self.estimate, problem.integration, problem.runs, problem.candidates));
+        let screen = latest.as_ref().unwrap_or(&self.tests.screen);
         // A push that was found first is a finding already, and so is a coarse step.
         let by_euler = is_euler(self.tests.fit.admission.euler_gain);
         let alone = self.mechanisms.is_empty() && self.push.is_none() && !by_euler;
         let leaders = eligible(screen, problem.candidates, &self.mechanisms, alone, question.settings);
         let sensor = leading(&self.estimate, problem, &self.mechanisms, alone);
-        compete(screen, leaders, sensor, &self.estimate, problem, &mut self.rejected, question.progress)
+        let next = compete(screen, leaders, sensor, &self.estimate, problem, &mut self.rejected, question.progress);
+        if next.is_none() {
+            self.latest = latest;
+        }
+        next
     }
 
     /// Removes a mechanism that a later one made needless.
@@ -138,7 +140,7 @@ impl Selection {
             let Some((entry, found)) = rival_of(&self.mechanisms, i, &self.estimate, problem) else { continue };
             self.mechanisms[i] = entry;
             if let Some(found) = found {
-                self.estimate = found;
+                (self.estimate, self.latest) = (found, None);
             }
         }
     }
