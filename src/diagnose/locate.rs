@@ -295,8 +295,9 @@ mod tests {
     #[test]
     fn the_pushes_that_are_left_are_those_of_the_location_to_the_bit() {
         let found = at(&model());
+        let turned = runs(&with(&[("asymmetric.N_0", 4e5)]), 5).swap_remove(1);
         let mut runs = runs(&model(), 5);
-        runs[1].measured.iter_mut().skip(20).take(15).for_each(|m| m[4] = m[4].map(|v| v + 0.3));
+        runs[1] = turned;
         let all = locate(&found, RK4, &runs).pushes;
         let alone = pushes_left(&found, RK4, &runs);
         assert!(!all.is_empty());

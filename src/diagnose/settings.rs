@@ -367,6 +367,7 @@ mod tests {
                 "PARTS:",
                 "NUDGE:",
                 "COMPONENTS:",
+                "WIDE:",
             ]
             .iter()
             .any(|n| l.contains(n))
