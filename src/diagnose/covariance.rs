@@ -42,7 +42,7 @@ fn row<S: Scalar>(p: &Square<S>, before: Option<&Told<S>>, place: usize, out: &m
     }
 }
 
-/// Writes the sum of two rows of the covariance, `one < two`, each as [`row`] has it.
+/// Writes the sum of two rows of the covariance, `one < two`, each as `row` has it.
 #[inline(always)]
 pub fn sum_of_rows<S: Scalar>(p: &Square<S>, before: Option<&Told<S>>, one: usize, two: usize, sum: &mut [S; Z]) {
     let Some(Told { gain, ph }) = before else {
@@ -57,7 +57,7 @@ pub fn sum_of_rows<S: Scalar>(p: &Square<S>, before: Option<&Told<S>>, one: usiz
     (two + 1..Z).for_each(|i| sum[i] = p[i][one] - gain[i] * ph_1 + (p[i][two] - gain[i] * ph_2));
 }
 
-/// Writes the sum of the first rows of the covariance, each times a slope, and of one more row, each as [`row`] has it.
+/// Writes the sum of the first rows of the covariance, each times a slope, and of one more row, each as `row` has it.
 #[inline(always)]
 pub fn sum_along<S: Scalar + PartialEq>(
     p: &Square<S>,
