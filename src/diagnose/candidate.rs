@@ -60,6 +60,31 @@ pub struct Candidate {
     pub columns: Vec<Column>,
     /// Its dotted parameter names.
     pub names: Vec<String>,
+    /// What the model already has of it.
+    pub held: Held,
+}
+
+/// What a model had of a mechanism before the diagnosis: a mechanism is missing by what it is more than that.
+#[derive(Clone, Debug, Default)]
+pub struct Held {
+    /// Values of its parameters in all sessions, by column, each in its unit.
+    common: Vec<f64>,
+    /// What single sessions add to them, by session and parameter.
+    sessions: Vec<(String, usize, f64)>,
+}
+
+impl Held {
+    fn new(model: &Model, columns: &[Column]) -> Self {
+        let own = |parameter: usize| columns.iter().any(|c| c.parameter == parameter);
+        let of = |(session, list): (&String, &Vec<(usize, f64)>)| {
+            let own = list.iter().filter(|(i, _)| own(*i));
+            own.map(|(i, value)| (session.clone(), *i, *value)).collect::<Vec<_>>()
+        };
+        Self {
+            common: columns.iter().map(|c| model.parameters[c.parameter].value).collect(),
+            sessions: model.sessions.iter().flat_map(of).collect(),
+        }
+    }
 }
 
 impl Candidate {
@@ -96,6 +121,23 @@ impl Candidate {
         extent.parts().into_iter().flat_map(of).collect()
     }
 
+    /// The values that the model already had of its parameters where it acts, in units of their columns: group of sessions by group.
+    pub fn held(&self, extent: &Extent) -> DVector<f64> {
+        let of = |(i, f): (usize, &FreeParameter)| {
+            let column = i % self.columns.len();
+            let value = match f.sessions.as_ref().and_then(|s| s.first()) {
+                None => self.held.common[column],
+                Some(session) => {
+                    let own = self.held.sessions.iter().filter(|(s, i, _)| s == session && *i == f.column.parameter);
+                    own.map(|(_, _, value)| value).sum()
+                }
+            };
+            value / f.column.scale
+        };
+        let parameters = self.parameters(extent);
+        DVector::from_iterator(parameters.len(), parameters.iter().enumerate().map(of))
+    }
+
     /// Where a model holds the coefficients that are not known exactly once it acts.
     pub fn companions(&self, model: &Model) -> Vec<usize> {
         self.mechanism.companions.iter().filter_map(|name| model.index(&format!("{}.{name}", self.term))).collect()
@@ -109,23 +151,24 @@ impl Candidate {
         self.parameters(extent).iter().filter_map(|own| free.iter().position(|f| same(f, own))).collect()
     }
 
-    /// Adds amplitudes in units of the columns' scales to its parameters; those of single sessions are set to them.
+    /// Adds amplitudes in units of the columns' scales to its parameters.
     pub fn add(&self, model: &mut Model, extent: &Extent, amplitude: &DVector<f64>) {
         for (p, a) in self.parameters(extent).iter().zip(amplitude.iter()) {
-            let value = a * p.column.scale;
-            p.set(model, value + if p.sessions.is_none() { p.value(model) } else { 0.0 });
+            p.set(model, a * p.column.scale + p.value(model));
         }
     }
 
-    /// The model of an estimate without it, and what is free then.
+    /// The model of an estimate without it beyond what the model already had, and what is free then.
     pub fn removed(&self, found: &Estimate, extent: &Extent) -> (Model, Vec<FreeParameter>) {
         let (mut model, mut free) = (found.model.clone(), found.free.clone());
+        let own = self.parameters(extent);
+        for (f, held) in own.iter().zip(self.held(extent).iter()) {
+            f.set(&mut model, held * f.column.scale);
+        }
         let mut places = self.positions(&free, extent);
         places.sort_unstable();
         for at in places.into_iter().rev() {
-            let f = free.remove(at);
-            let neutral = (model.parameters[f.column.parameter].info.default)(&model.ship);
-            f.set(&mut model, if f.sessions.is_some() { 0.0 } else { neutral });
+            free.remove(at);
         }
         (model, free)
     }
@@ -162,7 +205,8 @@ pub fn candidates(model: &Model, withhold: &[String]) -> Vec<Candidate> {
                 })
                 .collect();
             if let Some(columns) = columns {
-                out.push(Candidate { mechanism, term: info.name, group: info.group, columns, names });
+                let held = Held::new(model, &columns);
+                out.push(Candidate { mechanism, term: info.name, group: info.group, columns, names, held });
             }
         }
     }
@@ -222,6 +266,29 @@ mod tests {
             assert_eq!(places, (count..count + own.len()).collect::<Vec<_>>());
             let (bare, free) = c.removed(&found, &extent);
             assert_eq!(free.len(), count);
+            assert!(["a", "b", "c"].iter().all(|s| bare.values_in(s) == model.values_in(s)), "{extent:?}");
+        }
+    }
+
+    #[test]
+    fn what_a_model_already_has_is_where_a_mechanism_starts_and_where_it_returns_to() {
+        use crate::diagnose::example;
+        let mut model = example::with(&[("current.north", 0.3)]);
+        let north = model.find("current.north").unwrap();
+        model.sessions.insert("a".into(), vec![(north, 0.1)]);
+        let c = example::candidate(&model, "current");
+        let scale = c.columns[0].scale;
+        let each = Extent::Each(vec!["a".into(), "b".into()]);
+        for (extent, held) in [(Extent::All, vec![0.3, 0.0]), (each, vec![0.1, 0.0, 0.0, 0.0])] {
+            let expected = DVector::from_vec(held) / scale;
+            assert!((c.held(&extent) - &expected).amax() < 1e-12, "{extent:?}");
+            let mut found = example::at(&model);
+            found.free.extend(c.parameters(&extent));
+            let more = DVector::from_element(expected.len(), 0.2);
+            c.add(&mut found.model, &extent, &more);
+            let present = c.parameters(&extent).iter().map(|f| f.value(&found.model) / scale).collect::<Vec<_>>();
+            assert!((DVector::from_vec(present) - expected - more).amax() < 1e-12, "{extent:?}");
+            let (bare, _) = c.removed(&found, &extent);
             assert!(["a", "b", "c"].iter().all(|s| bare.values_in(s) == model.values_in(s)), "{extent:?}");
         }
     }

@@ -21,13 +21,14 @@ use crate::model::Model;
 use crate::physics::{Kind, Probe};
 use nalgebra::DVector;
 
-/// A candidate's amplitudes in an estimate, its companions held: an amplitude that only counts times a coefficient is as
-/// uncertain as that coefficient and yet not zero.
+/// A candidate's amplitudes in an estimate beyond what the model already had, its companions held: an amplitude that only counts times a
+/// coefficient is as uncertain as that coefficient and yet not zero.
 pub fn amplitudes(all: &Wald, found: &Estimate, c: &Candidate, extent: &Extent) -> Wald {
     let companions = c.companions(&found.model);
     let is_held = |i: &usize| companions.contains(&found.free[*i].column.parameter);
     let held: Vec<usize> = (0..found.free.len()).filter(is_held).collect();
-    all.given(&c.positions(&found.free, extent), &held)
+    let given = all.given(&c.positions(&found.free, extent), &held);
+    Wald { value: given.value - c.held(extent), ..given }
 }
 
 /// That a mechanism acts, where it acts, and how large a score test has it.

@@ -6,6 +6,7 @@ use super::candidate::{Candidate, Extent};
 use super::decide::PushTest;
 use super::estimate::Estimate;
 use super::evidence::Scatter;
+use super::filter::Column;
 use super::finding::{Amplitude, Equations, Finding, GENERIC, PUSH, PUSH_TITLE};
 use super::forces::forces_of;
 use super::grade::Grade;
@@ -18,6 +19,8 @@ use super::selected::Selected;
 use super::settings::SCATTER_GROUPS;
 use super::wald::Wald;
 use crate::audit::Issue;
+use crate::model::Model;
+use crate::numerals::sig;
 use crate::physics::Kind;
 use crate::recording::{Channel, Run};
 use std::collections::BTreeSet;
@@ -48,6 +51,7 @@ impl Intervals {
     pub(super) fn excludes_zero(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> bool {
         let places = c.positions(&found.free, extent);
         let mut part = self.wald.part(&places);
+        part.value -= c.held(extent);
         for (i, at) in places.iter().enumerate() {
             let factor = self.scatter.factors[*at];
             part.covariance.row_mut(i).scale_mut(factor);
@@ -56,10 +60,11 @@ impl Intervals {
         part.statistic() > self.scatter.reach().powi(2)
     }
 
-    /// A candidate's parameters with their intervals, session by session where each has its own.
+    /// A candidate's parameters beyond what the model already had of them, with their intervals, session by session where each has its own.
     pub(super) fn amplitudes(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> Vec<Amplitude> {
         let places = c.positions(&found.free, extent);
         let Wald { value, covariance } = self.wald.part(&places);
+        let value = value - c.held(extent);
         let k = c.columns.len();
         let amplitude = |i: usize| {
             let col = &c.columns[i % k];
@@ -88,7 +93,7 @@ pub(super) fn mechanism_finding(
         grade: Grade::Suspected,
         kind: c.mechanism.kind,
         confidence_set: a.set.iter().map(|i| tests.candidates[*i].mechanism.name.to_string()).collect(),
-        why: a.why.clone(),
+        why: [a.why.as_str(), &beyond(c, &a.extent, &estimate.model)].concat(),
         sessions: a.extent.sessions().to_vec(),
         by_session: matches!(a.extent, Extent::Each(_)),
         statistic: a.statistic,
@@ -101,6 +106,21 @@ pub(super) fn mechanism_finding(
         change: None,
         held_out: None,
     }
+}
+
+/// What the model already had of a mechanism that is found again, in words; blank if nothing.
+fn beyond(c: &Candidate, extent: &Extent, model: &Model) -> String {
+    let held = c.held(extent);
+    let mut own = c.names.iter().zip(&c.columns).cycle().zip(held.iter()).filter(|(_, a)| **a != 0.0).peekable();
+    if own.peek().is_none() {
+        return String::new();
+    }
+    let one = |((name, column), a): ((&String, &Column), &f64)| {
+        let unit = model.parameters[column.parameter].info.unit;
+        format!("{name} = {} {unit}", sig(a * column.scale, 3))
+    };
+    let list: Vec<String> = own.map(one).collect();
+    format!(" The model already had {}; what is found comes on top of it.", list.join(", "))
 }
 
 /// Mean square force that a mechanism brings, by equation: with it less without it, at the filtered states, in units in which

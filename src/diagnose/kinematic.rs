@@ -4,13 +4,13 @@
 use super::candidate::Candidate;
 use super::evidence::chi_squared_p;
 use super::filter::Column;
-use super::settings::{GATE, SENSOR_SPREAD, STRETCH};
+use super::settings::{CORRECTIONS, GATE, SENSOR_SPREAD, STRETCH};
 use super::unseen::interval_of_sum;
 use super::wald::Wald;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::recording::{Measured, Run};
-use crate::state::{Force, STATES, State};
+use crate::state::{Force, Inputs, STATES, State};
 use crate::statistics::median;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -22,7 +22,7 @@ type Equations = [f64; 3];
 /// A stretch of a run, half a ship length long.
 struct Stretch<'r> {
     recording: &'r str,
-    /// Recorded way and turn less those that the recorded velocities make.
+    /// Way and turn less those that the velocities make, of what was recorded without the errors that the model already has.
     left: Equations,
     /// The same of what a unit of each column adds to the reports.
     columns: Vec<Equations>,
@@ -151,7 +151,7 @@ fn solve(stretches: &[Stretch], columns: &[usize], scatter: &Equations, precisio
 
 /// The stretches of a run in which every channel was measured.
 fn stretches<'r>(model: &Model, run: &'r Run, candidates: &[&Candidate]) -> Vec<Stretch<'r>> {
-    let states: Vec<Option<[f64; STATES]>> = run.measured.iter().map(whole).collect();
+    let states: Vec<Option<[f64; STATES]>> = corrected(model, run);
     let reports = reports(model, run, &states, candidates);
     let speed = median(states.iter().flatten().map(|s| s[3].hypot(s[4]))).unwrap_or(0.0);
     let rows = (STRETCH * model.ship.hull.lpp / (speed * run.dt)).round();
@@ -173,6 +173,25 @@ fn whole(measured: &Measured) -> Option<[f64; STATES]> {
         *s = (*m)?;
     }
     Some(state)
+}
+
+/// The states that the sensors of a model report as was measured, where every channel has a value: what a model already knows of its
+/// sensors is no disagreement. By fixed-point iteration, as the errors are small beside what is measured.
+fn corrected(model: &Model, run: &Run) -> Vec<Option<[f64; STATES]>> {
+    let dynamics = Dynamics::new(model, model.values_in(&run.session));
+    let of = |(measured, input): (&Measured, &Inputs<f64>)| {
+        let measured = whole(measured)?;
+        let mut state = measured;
+        for _ in 0..CORRECTIONS {
+            let report = dynamics.report(&state, input);
+            if report == measured {
+                break;
+            }
+            (0..STATES).for_each(|j| state[j] += measured[j] - report[j]);
+        }
+        Some(state)
+    };
+    run.measured.iter().zip(&run.inputs).map(of).collect()
 }
 
 /// What a unit of each column adds to the report of each sample.
@@ -336,6 +355,21 @@ mod tests {
         let model = model();
         let list = candidates(&model, &[]);
         assert!(agreements(&model, &blind, &[&list[0]]).is_none());
+    }
+
+    #[test]
+    fn what_the_model_already_has_of_its_sensors_is_no_disagreement_and_what_comes_on_top_is() {
+        let errors = [("time_skew.yaw_rate", 2.0), ("time_skew.position", -1.5), ("log_scale.error", 0.08)];
+        let m = with(&errors);
+        let list = candidates(&m, &[]);
+        let asked = ["time_skew", "yaw_rate_skew", "log_scale"]
+            .map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
+        let of = |runs: &[Run]| disagreements(&m, runs, &asked).unwrap();
+        let known = of(&erring(&errors, 12));
+        assert!(known.iter().all(|d| d.p > 1e-3), "{:?}", known.iter().map(|d| d.p).collect::<Vec<_>>());
+        let more = of(&erring(&[errors[0], ("time_skew.position", -3.0), errors[2]], 12));
+        let scale = m.parameters[m.find("time_skew.position").unwrap()].scale;
+        assert!((more[0].amplitude[0] * scale + 1.5).abs() < 0.3 && more[0].p < 1e-6 && more[1].p > 1e-3);
     }
 
     #[test]

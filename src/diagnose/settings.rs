@@ -317,6 +317,8 @@ numbers! {
     PUSH_STARTS: usize = 12, COST;
     /// Rounds of that search.
     PUSH_ROUNDS: usize = 4, COST;
+    /// Steps by which recorded states are freed from the errors that a model's sensors have.
+    CORRECTIONS: usize = 3, COST;
     /// Parts into which the water sailed is divided each way.
     PLACE_PARTS: usize = 3, CUSTOM;
     /// Share of the positions at either end that the parts leave out.

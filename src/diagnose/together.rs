@@ -20,7 +20,7 @@ use nalgebra::DVector;
 pub struct Leading {
     /// Index into the candidates.
     pub candidate: usize,
-    /// Its amplitudes, in units of its columns.
+    /// Its amplitudes beyond what the model already has, in units of its columns.
     pub amplitude: DVector<f64>,
     /// Squared distance from zero in units of the covariance.
     pub statistic: f64,
@@ -70,7 +70,8 @@ pub fn leading(current: &Estimate, problem: Problem, selected: &[Selected], alon
         p < settings.alpha && (alone || may_be_further(&further, selected, candidates))
     };
     let row = |(i, own): (&usize, &Vec<usize>)| {
-        let part = wald.part(own);
+        let mut part = wald.part(own);
+        part.value -= candidates[*i].held(&Extent::All);
         let statistic = part.statistic();
         let p = chi_squared_p(statistic, own.len()) * sensors.len() as f64;
         let is_worth = is_worth_naming(candidates[*i].size(part.value.as_slice()));
@@ -143,6 +144,30 @@ mod tests {
         let runs = erring(&[("log_scale.error", 0.08)], 12);
         let (list, _, found) = of(&runs, &["log_scale"], None);
         assert!(found.is_none_or(|l| list[l.candidate].mechanism.name != "log_scale"));
+    }
+
+    #[test]
+    fn an_error_that_the_model_already_has_leads_no_more_and_one_twice_as_large_leads_by_what_it_is_more() {
+        let errors = |a: f64| [("time_skew.yaw_rate", a)];
+        let of = |a: f64| {
+            let (model, settings) = (crate::diagnose::example::with(&errors(2.0)), Settings::default());
+            let (list, runs) = (candidates(&model, &[]), erring(&errors(a), 12));
+            let prior = NoisePrior::around(&at(&model).noise);
+            let problem =
+                Problem { integration: RK4, runs: &runs, candidates: &list, prior: &prior, settings: &settings };
+            let base = problem.again(&at(&model), SETTLE);
+            leading(&base, problem, &[], true).map(|l| {
+                let c = &list[l.candidate];
+                (
+                    c.mechanism.name,
+                    l.amplitude[0] * c.columns[0].scale,
+                    l.model.parameters[c.columns[0].parameter].value,
+                )
+            })
+        };
+        assert!(of(2.0).is_none(), "{:?}", of(2.0));
+        let (name, more, value) = of(4.0).unwrap();
+        assert!(name == "yaw_rate_skew" && (more - 2.0).abs() < 0.3 && (value - 4.0).abs() < 0.3, "{more} {value}");
     }
 
     #[test]

@@ -92,10 +92,11 @@ impl Runner {
         process::run(command, self.limit).map_err(|source| InjectedError::file(&self.tool, source))
     }
 
-    /// The names in the diagnosis of the improved model; blank if there are none, `-` if there is no improved model.
+    /// The names in the diagnosis of the improved model; blank if there are none, `-` if there is no improved model or it is the base
+    /// model.
     fn again(&self, case: &Planned, study: &Path, said: &Said, out: &Path) -> Result<String, InjectedError> {
         let model = out.join("improved.toml");
-        if said.findings.is_empty() || !model.is_file() {
+        if said.findings.is_empty() || said.improved_is_base || !model.is_file() {
             return Ok("-".to_owned());
         }
         let ended = self.diagnose(case, study, None, Some(&model))?;

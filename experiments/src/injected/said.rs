@@ -13,6 +13,8 @@ pub struct Said {
     pub headline: String,
     /// What is named.
     pub findings: Vec<Finding>,
+    /// Whether the improved model is the base model, as unseen runs are simulated worse with what was found.
+    pub improved_is_base: bool,
     /// What was tried and is not named.
     pub withdrawn: Vec<Withdrawn>,
     /// The proof of all findings together.
