@@ -46,8 +46,8 @@ impl Intervals {
         Self { wald, scatter: s.evidence.scatter(&s.widened, &kinds(runs)) }
     }
 
-    /// Whether the interval of a candidate's size excludes zero: along the direction in which its parameters were estimated, by the same
-    /// variance as their single intervals.
+    /// Whether the region that holds all of a candidate's parameters together with 95 % leaves zero out, by the same variance as their single
+    /// intervals: of one parameter its interval, of several Hotelling's region, wider as few groups tell the scatter of many.
     pub(super) fn excludes_zero(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> bool {
         let places = c.positions(&found.free, extent);
         let mut part = self.wald.part(&places);
@@ -57,7 +57,7 @@ impl Intervals {
             part.covariance.row_mut(i).scale_mut(factor);
             part.covariance.column_mut(i).scale_mut(factor);
         }
-        part.statistic() > self.scatter.reach().powi(2)
+        self.scatter.excludes(part.statistic(), places.len())
     }
 
     /// A candidate's parameters beyond what the model already had of them, with their intervals, session by session where each has its own.

@@ -4,7 +4,7 @@
 use super::algebra::{pick, pseudo_inverse};
 use super::settings::{IDENTIFIABLE_SHARE, SCATTER_GROUPS};
 pub use crate::statistics::chi_squared_p;
-use crate::statistics::student_quantile;
+use crate::statistics::{scattered_p, student_quantile};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::collections::BTreeMap;
 
@@ -247,6 +247,12 @@ impl Scatter {
     pub fn reach(&self) -> f64 {
         student_quantile(0.975, self.degrees)
     }
+
+    /// Whether the 95 % region of some parameters leaves out a point at a squared distance in units of their covariance, multiplied by the
+    /// factors: for one parameter the interval of [`Scatter::reach`].
+    pub fn excludes(&self, statistic: f64, parameters: usize) -> bool {
+        parameters > 0 && scattered_p(statistic, parameters, self.degrees as usize) < 0.05
+    }
 }
 
 /// A block of columns that is always fitted along.
@@ -333,6 +339,16 @@ mod tests {
             score: DVector::from_column_slice(score),
             information: DMatrix::from_row_slice(n, n, information),
         }
+    }
+
+    #[test]
+    fn of_one_parameter_the_region_is_its_interval_and_of_several_it_is_wider() {
+        let scatter = Scatter { factors: Vec::new(), degrees: 5.0 };
+        let edge = scatter.reach().powi(2);
+        assert!(!scatter.excludes(0.999 * edge, 1) && scatter.excludes(1.001 * edge, 1));
+        // Six times the 95 % point of Fisher's F with 6 and 5 degrees, 4.950.
+        assert!(!scatter.excludes(6.0 * 4.94, 6) && scatter.excludes(6.0 * 4.96, 6));
+        assert!(!scatter.excludes(1e9, 0));
     }
 
     #[test]

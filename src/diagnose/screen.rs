@@ -9,12 +9,12 @@ use super::filter::{Column, Filter};
 use super::generic::{GenericLaw, widen};
 use super::settings::{DIVIDED_SESSIONS, EQUAL_STATISTICS, IDENTIFIABLE_SHARE, INDISTINGUISHABLE, PARAMETER_PRICE};
 use crate::model::Model;
-use crate::physics::Kind;
+use crate::physics::{Kind, Mechanism};
 use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rayon::prelude::*;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// One mechanism's row in the ranking.
 #[derive(Clone, Debug)]
@@ -176,6 +176,7 @@ pub fn screen_by_session(
     let base = base_of(&evidence, model, &found.free);
     let widened = widen(&evidence, &base, &law.symmetric);
     let sessions: Vec<String> = evidence.sessions.keys().cloned().collect();
+    let recordings = recordings(runs);
     // A sensor is judged by what no force law whatever can bring.
     let loosest = widen(&evidence, &base, &law.columns());
     let mut rows: Vec<Row> = (0..candidates.len())
@@ -190,6 +191,7 @@ pub fn screen_by_session(
                 candidate: &candidates[i],
                 columns: &groups[i],
                 sessions: &sessions,
+                recordings: &recordings,
             }
             .row(i)
         })
@@ -226,6 +228,8 @@ struct CandidateTests<'a> {
     candidate: &'a Candidate,
     columns: &'a [usize],
     sessions: &'a [String],
+    /// Recordings in each session.
+    recordings: &'a BTreeMap<&'a str, usize>,
 }
 
 impl CandidateTests<'_> {
@@ -275,6 +279,15 @@ impl CandidateTests<'_> {
         out
     }
 
+    /// Whether a group of sessions can be held against the rest. The ship is the same in all of them, and its own forces in another form
+    /// make each recording differ: so many parameters fit the differences of as many recordings, whatever they are.
+    fn is_told_from_the_rest(&self, group: &[String]) -> bool {
+        let Mechanism { needs_reference, kind, .. } = self.candidate.mechanism;
+        let of = |session: &str| self.recordings.get(session).copied().unwrap_or(0);
+        let (all, own): (usize, usize) = (self.recordings.values().sum(), group.iter().map(|s| of(s)).sum());
+        !(*needs_reference && *kind == Kind::Ship) || own.min(all - own) > self.columns.len()
+    }
+
     /// The group of sessions in which the candidate explains most.
     fn best_group(&self, contrast: &Test) -> Option<Tested> {
         // What is common to all sessions is projected out of a mechanism that needs some of them as a reference.
@@ -287,6 +300,7 @@ impl CandidateTests<'_> {
         };
         let reference = against(self.base);
         let mut parts = groups(contrast, self.sessions, self.columns.len());
+        parts.retain(|part| self.is_told_from_the_rest(part));
         // Where nothing else decides, what differs is what changed since the first recording.
         parts.sort_by_key(|part| self.evidence.runs.first().is_some_and(|r| part.contains(&r.session)));
         let in_group = |group: Vec<String>| {
@@ -303,6 +317,14 @@ impl CandidateTests<'_> {
             self.evidence.test_in(&against(self.widened), self.columns, &named(best.extent.sessions())).p;
         Some(Tested { second_opinion, ..best })
     }
+}
+
+/// Recordings in each session that runs are parts of: windows of one recording are no evidence apart.
+fn recordings(runs: &[Run]) -> BTreeMap<&str, usize> {
+    let distinct: BTreeSet<(&str, &str)> = runs.iter().map(|r| (r.session.as_str(), r.recording.as_str())).collect();
+    let mut count = BTreeMap::new();
+    distinct.into_iter().for_each(|(session, _)| *count.entry(session).or_default() += 1);
+    count
 }
 
 /// Ways to divide so many sessions into two groups, one of which may be empty of the effect.
@@ -412,6 +434,24 @@ mod tests {
         }
         let one = share(&runs);
         assert!(one < 0.5 * all_round && all_round > 0.1, "{one} {all_round}");
+    }
+
+    #[test]
+    fn a_difference_of_the_ships_own_forces_is_seen_in_more_recordings_than_it_has_parameters() {
+        let model = example::model();
+        let list = super::super::candidate::candidates(&model, &[]);
+        let visible = |name: &str, runs: &[Run]| {
+            let s = screen(&example::at(&model), example::RK4, runs, &list);
+            s.rows.iter().any(|r| list[r.candidate].mechanism.name == name && r.visible)
+        };
+        // Six and eight recordings in each of two sessions, for six parameters.
+        let [six, eight] = [12, 16].map(|count| example::runs(&model, count));
+        assert_eq!(["hull_nonlinear", "crossflow", "time_skew"].map(|n| visible(n, &six)), [false, true, true]);
+        assert!(visible("hull_nonlinear", &eight));
+        // Windows of one recording are no evidence apart.
+        let mut cut = eight;
+        cut.iter_mut().for_each(|r| r.recording = r.session.clone());
+        assert_eq!(["hull_nonlinear", "crossflow", "time_skew"].map(|n| visible(n, &cut)), [false, false, true]);
     }
 
     #[test]

@@ -70,9 +70,10 @@ pub struct Facts {
 /// Time between two rows of MARIN's recordings \[s\].
 const MARIN_ROW: f64 = 0.1353;
 
-/// What Esso Osaka's recordings carry: any name for the weather of the pond may be right, velocities lag the positions, and the rudder is
-/// recorded as ordered (it leaps by up to 60 deg in 0.1 s in every run), so that the steering gear is missing.
-const CARRIED_BY_ESSO: [&str; 10] = [
+/// What Esso Osaka's recordings carry: any name for the weather of the pond may be right, velocities lag the positions, and rudder and
+/// propeller are recorded as ordered (in every run the rudder leaps by up to 60 deg and the propeller by 8 to 20 rps in 0.1 s), so that the
+/// steering gear and the engine are missing.
+const CARRIED_BY_ESSO: [&str; 11] = [
     "time_skew",
     "mean_wind",
     "wind",
@@ -83,6 +84,7 @@ const CARRIED_BY_ESSO: [&str; 10] = [
     "water_log",
     "rudder_lag",
     "rudder_rate",
+    "engine_lag",
 ];
 
 impl Set {
