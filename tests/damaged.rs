@@ -280,6 +280,21 @@ fn what_the_audit_advises_mends_the_recording() {
     }
 }
 
+#[test]
+fn a_channel_that_one_run_lacks_is_an_error_and_one_that_all_lack_is_none() {
+    let lacking = |files: Files| {
+        let found = doubts(&files.audit());
+        found
+            .iter()
+            .filter(|(_, i)| i.fault == "not_recorded")
+            .map(|(r, i)| (r.clone(), i.severity))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(lacking(Files::sound().run(RUN, |t| t.remove("psi"))), [(RUN.to_owned(), Severity::Error)]);
+    let all = lacking(Files::sound().all(|t| t.remove("psi")));
+    assert!(all.len() == 40 && all.iter().all(|(_, severity)| *severity == Severity::Warning), "{all:?}");
+}
+
 /// Damaged samples, fill values, missing channels.
 fn samples() -> Vec<Case> {
     let one = |channel: &'static str, row: usize, change: fn(f64) -> f64| {
@@ -398,7 +413,7 @@ fn contradictions() -> Vec<Case> {
             scaled("delta", -1.0),
             "sign_error",
             Channel::Delta,
-            Where::Runs(10),
+            Where::Runs(9),
             "`sign = -1`",
         ),
         case("v turned in one run", turned("v"), "sign_error", Channel::V, here, "`sign = -1`"),
@@ -490,6 +505,45 @@ fn clocks() -> Vec<Case> {
             Channel::Delta,
             Where::Study,
             "SESSION",
+        ),
+    ]
+}
+
+/// What the runs show together: lags of a few rows, a unit.
+fn together() -> Vec<Case> {
+    let here = Where::Run(RUN);
+    vec![
+        case(
+            "v in knots read as m/s in one run",
+            Files::sound().run(RUN, |t| t.each("v", |_, v| 1.943_844 * v)),
+            "unit_error",
+            Channel::V,
+            here,
+            "`unit`",
+        ),
+        case(
+            "n 8 s late in one run",
+            Files::sound().run(RUN, |t| t.late("n", 4)),
+            "clock",
+            Channel::N,
+            here,
+            "`delay = 8",
+        ),
+        case(
+            "n 4 s late in all runs",
+            Files::sound().all(|t| t.late("n", 2)),
+            "clock",
+            Channel::N,
+            Where::Study,
+            "`delay = 4",
+        ),
+        case(
+            "yaw rate 4 s late in all runs",
+            Files::sound().all(|t| t.late("r", 2)),
+            "clock",
+            Channel::R,
+            Where::Study,
+            "`delay = 4",
         ),
     ]
 }
@@ -616,7 +670,7 @@ impl Files {
 fn every_fault_is_told_with_its_run_its_channel_and_what_to_do() {
     let mut missed = Vec::new();
     let cases: Vec<Case> =
-        samples().into_iter().chain(contradictions()).chain(clocks()).chain(places()).chain(shared()).collect();
+        [samples(), contradictions(), clocks(), together(), places(), shared()].into_iter().flatten().collect();
     assert!(cases.len() >= 30, "{}", cases.len());
     for Case { name, files, fault, channel, place, next } in cases {
         let found = doubts(&files.audit());

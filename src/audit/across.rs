@@ -5,23 +5,28 @@ use super::held::{Repeats, held, repeats};
 use super::issue::{Issue, Severity, Shared};
 use super::length::{Length, shorter};
 use super::limits::{
-    EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, SAME_LAG, SESSION_SHARE, SHARED_ROWS, SHARED_SHARE,
+    EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, LEVER_LAG, SAME_LAG, SESSION_SHARE, SHARED_ROWS,
+    SHARED_SHARE,
 };
 use super::orders::{Leap, ordered};
-use super::pooled::{Odd, odd};
+use super::pooled::{Odd, odd, shares_at_best};
 use super::propeller::{advance, advance_ratio, is_unpowered, unpowered};
+use super::reckoning::{Reckoned, reckoned};
 use super::record::Responses;
 use super::response::Curve;
 use super::scales::scales;
 use super::scatter::{Scatter, scatters};
 use crate::numerals::sig;
-use crate::recording::{Channel, Recording, Split};
+use crate::recording::{Channel, Recording, STATE_CHANNELS, Split};
 use crate::ship::Ship;
 use crate::study::Listed;
 use serde::{Deserialize, Serialize};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// Channels that dead reckoning compares.
+const TRACK: [Channel; 6] = [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R];
 
 /// What of a run is compared with other runs.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -36,6 +41,12 @@ pub struct Evidence {
     responses: Responses,
     /// Channels of the wrong sign.
     turned: Vec<Channel>,
+    /// Channels with damaged single values, from which no lag is told.
+    damaged: Vec<Channel>,
+    /// Channels of the motion that were not recorded, and not derived.
+    lacks: Vec<Channel>,
+    /// Whether something is told of its track by itself, so that dead reckoning has no more to say.
+    track_told: bool,
     /// Whether its propeller never turns though it sails.
     unpowered: bool,
     /// The largest leap of the rudder.
@@ -53,6 +64,7 @@ pub struct Evidence {
 impl Evidence {
     /// That of a run, from the part of its recording that the study uses.
     pub(super) fn of(run: &Listed, recording: &Recording, ship: &Ship, responses: Responses, issues: &[Issue]) -> Self {
+        let of_fault = |fault| issues.iter().filter(|i| i.fault == fault).filter_map(|i| i.channel).collect();
         let squares: Vec<f64> =
             recording.get(Channel::U).into_iter().flatten().filter(|u| u.is_finite()).map(|u| u * u).collect();
         Self {
@@ -62,7 +74,12 @@ impl Evidence {
             speed: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
             ratio: advance_ratio(recording, ship),
             responses,
-            turned: issues.iter().filter(|i| i.fault == "sign_error").filter_map(|i| i.channel).collect(),
+            turned: of_fault("sign_error"),
+            damaged: of_fault("outlier"),
+            lacks: STATE_CHANNELS.into_iter().filter(|c| !recording.has(*c)).collect(),
+            track_told: issues.iter().any(|i| {
+                i.severity > Severity::Note && i.fault != "lever" && i.channel.is_some_and(|c| TRACK.contains(&c))
+            }),
             unpowered: is_unpowered(recording, ship),
             leap: Leap::of(recording),
             scatter: Scatter::of(recording),
@@ -102,6 +119,7 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
         found.extend(late(runs, pair, time));
         found.extend(sessions(runs, pair, time));
     }
+    found.extend(lacking(runs));
     let leaps: Vec<Leap> = runs.iter().filter_map(|r| r.leap).collect();
     let every = || runs.iter().map(|r| r.run.clone()).collect::<Vec<_>>();
     if !runs.is_empty() && runs.iter().all(|r| r.unpowered) {
@@ -110,7 +128,11 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     found.extend(ordered(&leaps, time).map(|issue| Shared { runs: every(), issue }));
     let responses: Vec<(&str, &Responses)> = runs.iter().map(|r| (r.run.as_str(), &r.responses)).collect();
     let scattered: Vec<(&str, Scatter)> = runs.iter().map(|r| (r.run.as_str(), r.scatter)).collect();
-    for shared in scales(&responses).into_iter().chain(scatters(&scattered)) {
+    let clear = |r: &&Evidence| !r.track_told && !found.iter().any(|f| f.runs == [r.run.as_str()]);
+    let tracks = runs.iter().filter(clear).filter_map(|r| Some((r.run.as_str(), r.responses.reckoned.as_ref()?)));
+    let tracks: Vec<(&str, &Reckoned)> = tracks.collect();
+    let apart = reckoned(&tracks, ship.hull.lpp);
+    for shared in scales(&responses).into_iter().chain(scatters(&scattered)).chain(apart) {
         let same = |f: &Shared| f.runs == shared.runs && f.issue.channel == shared.issue.channel;
         if !found.iter().any(same) {
             found.push(shared);
@@ -124,20 +146,71 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     found
 }
 
+/// Channels that a few runs lack and most have: what is summed over channels is another number for these runs.
+fn lacking(runs: &[Evidence]) -> Vec<Shared> {
+    let few = |channel: &Channel| 2 * runs.iter().filter(|r| r.lacks.contains(channel)).count() < runs.len();
+    let told = |run: &Evidence, channel: Channel| {
+        let text = format!(
+            "{} was not recorded, as it was in most runs: cost and cVDM of this run are of fewer channels",
+            channel.info().words
+        );
+        let next = "name its column in a column map, `derive` it there, or leave the run out";
+        let issue = Issue::new(Severity::Error, "not_recorded", text, next).of(channel);
+        Shared { runs: vec![run.run.clone()], issue }
+    };
+    runs.iter().flat_map(|run| run.lacks.iter().filter(|c| few(c)).map(|c| told(run, *c))).collect()
+}
+
 /// A channel and the motion that it is held against.
 struct Pair {
     channel: Channel,
     of: fn(&Responses) -> Option<&Curve>,
     /// Whether the channel acts on the motion, and does not only tell of it.
     acts: bool,
+    /// Up to which lag behind and ahead of the motion, as shares of the time in which the ship sails its length, all runs may have another
+    /// cause than a clock.
+    excused: [f64; 2],
     motion: &'static str,
 }
 
+impl Pair {
+    /// The response of a run in which no value of the channel is damaged.
+    fn curve<'r>(&self, run: &'r Evidence) -> Option<&'r Curve> {
+        (self.of)(&run.responses).filter(|_| !run.damaged.contains(&self.channel))
+    }
+}
+
+/// Rudder and propeller cause the motion, so that only a wrong clock has them behind it; ahead of it they may be by the lag of steering
+/// gear and engines. An antenna off midship tells a position early or late.
 const PAIRS: [Pair; 4] = [
-    Pair { channel: Channel::Delta, of: |r| r.rudder.as_ref(), acts: true, motion: "the yaw of the ship" },
-    Pair { channel: Channel::N, of: |r| r.propeller.as_ref(), acts: true, motion: "the surge of the ship" },
-    Pair { channel: Channel::R, of: |r| r.gyro.as_ref(), acts: false, motion: "the heading" },
-    Pair { channel: Channel::X, of: |r| r.receiver.as_ref(), acts: false, motion: "velocity and heading" },
+    Pair {
+        channel: Channel::Delta,
+        of: |r| r.rudder.as_ref(),
+        acts: true,
+        excused: [SESSION_SHARE, LAG_SHARE],
+        motion: "the yaw of the ship",
+    },
+    Pair {
+        channel: Channel::N,
+        of: |r| r.propeller.as_ref(),
+        acts: true,
+        excused: [SESSION_SHARE, LAG_SHARE],
+        motion: "the surge of the ship",
+    },
+    Pair {
+        channel: Channel::R,
+        of: |r| r.gyro.as_ref(),
+        acts: false,
+        excused: [SESSION_SHARE; 2],
+        motion: "the heading",
+    },
+    Pair {
+        channel: Channel::X,
+        of: |r| r.receiver.as_ref(),
+        acts: false,
+        excused: [LEVER_LAG; 2],
+        motion: "velocity and heading",
+    },
 ];
 
 /// Curves of several runs as one: twice the negative log-likelihood at the lags that all have.
@@ -190,38 +263,49 @@ fn telling(curve: &Curve) -> bool {
     explained && curve.sign[best] > 0.0
 }
 
-/// Rudder or propeller later or earlier than the motion that they cause: in all runs together, and in those that differ from that. The
-/// lag of sensors is told run by run.
+/// What is late or early: in all runs together, and of rudder and propeller in those runs that differ from that; the lag of sensors is told
+/// run by run.
 fn late(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
-    if !pair.acts {
-        return Vec::new();
-    }
-    let worth = |seconds: f64, step: f64| seconds.abs() > (LAG_SHARE * time).max(LAG_STEPS[0] * step);
+    let beyond = |seconds: f64, share: f64, step: f64| seconds.abs() > (share * time).max(LAG_STEPS[0] * step);
+    let excused = |seconds: f64| pair.excused[usize::from(seconds < 0.0)];
     // What acts to the wrong side, or on a motion that is told to the wrong side, is as good as late by half a period.
     let sound = |r: &&Evidence| !r.turned.iter().any(|c| [pair.channel, Channel::R, Channel::U].contains(c));
-    let of_sound = runs.iter().filter(sound).filter_map(|r| Some((r, (pair.of)(&r.responses)?)));
+    let of_sound = runs.iter().filter(sound).filter_map(|r| Some((r, pair.curve(r)?)));
     let curves: Vec<(&Evidence, &Curve)> = of_sound.filter(|(_, c)| telling(c)).collect();
-    let all = Sum::of(curves.iter().map(|(_, c)| *c)).filter(|_| curves.len() > 1).and_then(|sum| {
+    // Where several runs show that the sign is turned, it may be so in the others.
+    let turned_in = runs.iter().filter(|r| r.turned.contains(&pair.channel)).count();
+    let all = Sum::of(curves.iter().map(|(_, c)| *c)).filter(|_| curves.len() > 1 && turned_in < 2).and_then(|sum| {
         let (best, zero) = (sum.best(), sum.lags.iter().position(|lag| *lag == 0)?);
         let sure = sum.total[zero] - sum.total[best] > LAG_EVIDENCE && !sum.at_end(best);
-        (sure && worth(sum.seconds(best), sum.step)).then(|| sum.seconds(best))
+        let seconds = sum.seconds(best);
+        (sure && beyond(seconds, excused(seconds), sum.step)).then_some(seconds)
     });
+    let known = |seconds: f64| all.is_some_and(|all| (seconds - all).abs() <= SAME_LAG * all.abs());
     let lag = |curve: &Curve| {
         let (best, zero) = (curve.best(), curve.zero());
         let seconds = curve.seconds(best);
         let better = curve.evidence(best, zero) > LAG_EVIDENCE && curve.left[best] <= LAG_LEAVES * curve.left[zero];
         let inside = best > 0 && best + 1 < curve.lags.len();
-        let known = all.is_some_and(|all| (seconds - all).abs() <= SAME_LAG * all.abs());
-        (worth(seconds, curve.step) && better && inside && !known).then_some(seconds)
+        // One run tells it by itself where it is beyond what gear, engines and filters do.
+        let long = beyond(seconds, excused(seconds).max(LAG_SHARE), curve.step);
+        (long && better && inside && !known(seconds)).then_some(seconds)
+    };
+    let among_others: Vec<Option<&Curve>> = runs.iter().map(|r| pair.curve(r)).collect();
+    let shares = shares_at_best(&among_others);
+    // What a run says by itself, the other runs must not contradict.
+    let agreed = |run: &Evidence| {
+        let share = runs.iter().zip(&shares).find(|(r, _)| std::ptr::eq(*r, run)).and_then(|(_, share)| *share);
+        share.is_none_or(|share| share <= LAG_LEAVES)
     };
     let told = |(run, curve): &(&Evidence, &Curve)| {
-        let issue = lagging(pair, lag(curve)?, "", pair.motion);
+        let issue = lagging(pair, lag(curve).filter(|_| pair.acts && agreed(run))?, "", pair.motion);
         Some(Shared { runs: vec![run.run.clone()], issue })
     };
-    let among_others: Vec<Option<&Curve>> = runs.iter().map(|r| (pair.of)(&r.responses)).collect();
-    let pooled = odd(&among_others, |seconds| worth(seconds, 0.0) && all.is_none());
+    let step = curves.first().map_or(0.0, |(_, c)| c.step);
+    let pooled = odd(&among_others, |seconds| beyond(seconds, SESSION_SHARE, step) && all.is_none());
     let told_by_others = |(run, odd): (&Evidence, Option<Odd>)| {
         let issue = match odd? {
+            _ if !pair.acts => return None,
             Odd::Turned => turned(pair),
             Odd::Late(seconds) => lagging(pair, seconds, "", pair.motion),
         };

@@ -22,6 +22,7 @@ mod orders;
 mod pooled;
 mod propeller;
 mod receiver;
+mod reckoning;
 mod record;
 mod response;
 mod runs;

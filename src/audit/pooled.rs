@@ -1,7 +1,7 @@
 //! One run against all others: whether rudder and propeller act in it as they do in the other runs, or to the other side, or later.
 //! The coefficients are those of the other runs, so that a short run says more than its own regression would.
 
-use super::limits::{EXPLAINS, POOLED_EVIDENCE, POOLED_RUNS, POOLED_SIZE, POOLED_UNUSUAL};
+use super::limits::{EXPLAINS, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE};
 use super::response::{Curve, Sums};
 use crate::statistics::median;
 use nalgebra::{DMatrix, DVector};
@@ -22,17 +22,14 @@ fn total<'c>(curves: impl Iterator<Item = &'c Curve>) -> Option<Sums> {
         let one = curve.at_zero();
         match &mut sum {
             None => sum = Some(one.clone()),
-            Some(sum) => {
-                sum.columns.iter_mut().zip(&one.columns).for_each(|(s, o)| *s += o);
-                sum.response.iter_mut().zip(&one.response).for_each(|(s, o)| *s += o);
-            }
+            Some(sum) => sum.add(one),
         }
     }
     sum
 }
 
 /// Coefficients from sums; `less` is taken out of them.
-fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
+pub(super) fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
     let n = sum.response.len();
     let of = |i: usize, all: &[f64], some: Option<&[f64]>| all[i] - some.map_or(0.0, |some| some[i]);
     let a = DMatrix::from_fn(n, n, |i, j| of(i * n + j, &sum.columns, less.map(|l| &l.columns[..])));
@@ -90,57 +87,65 @@ fn is_step(curve: &Curve, step: f64) -> bool {
 /// What is odd in each run, in their order. `worth` says which lags \\[s\\] matter.
 pub fn odd(curves: &[Option<&Curve>], worth: impl Fn(f64) -> bool) -> Vec<Option<Odd>> {
     let none = || vec![None; curves.len()];
-    let size = |c: &Curve| c.at_zero().columns.first().copied().unwrap_or(0.0) / c.samples;
-    let Some(pool) = Pool::new(curves, size, POOLED_SIZE) else { return none() };
-    // What the coefficients of the other runs leave, as a share of what is left without the channel.
-    let share = |c: &Curve| {
-        let others = pool.others(c)?;
-        Some(c.at_zero().left(&others) / without(c, &others))
-    };
-    let Some(usual) = median(pool.runs().filter_map(share)) else { return none() };
+    let Some(pool) = actuated(curves) else { return none() };
     let judged = |curve: &Option<&Curve>| {
-        let curve = curve.filter(|c| pool.has(c))?;
-        judged(curve, &pool.others(curve)?, usual, &worth)
+        let curve = curve.filter(|c| pool.is_alike(c))?;
+        judged(curve, &pool.others(curve)?, &worth)
     };
     curves.iter().map(judged).collect()
 }
 
-/// Squares left without the channel.
-fn without(curve: &Curve, coefficients: &[f64]) -> f64 {
-    let mut rest = coefficients.to_vec();
-    rest[..curve.own].fill(0.0);
-    curve.at_zero().left(&rest)
+/// The runs against which what an actuator does is held.
+fn actuated<'c>(curves: &[Option<&'c Curve>]) -> Option<Pool<'c>> {
+    let size = |c: &Curve| c.at_zero().columns.first().copied().unwrap_or(0.0) / c.rows;
+    Pool::new(curves, size, POOLED_SIZE)
 }
 
-/// What is odd in a run, given the coefficients of the others and the share of the squares that these usually leave.
-fn judged(curve: &Curve, others: &[f64], usual: f64, worth: &impl Fn(f64) -> bool) -> Option<Odd> {
+/// What the coefficients of the other runs leave of each run at the lag that its own regression finds, as a share of what they leave at
+/// none; `None` where there are too few others.
+pub fn shares_at_best(curves: &[Option<&Curve>]) -> Vec<Option<f64>> {
+    let Some(pool) = actuated(curves) else { return vec![None; curves.len()] };
+    let share = |curve: &Option<&Curve>| {
+        let curve = curve.filter(|c| pool.is_alike(c))?;
+        let (others, best) = (pool.others(curve)?, curve.best());
+        Some(curve.sums[best].left(&others) / curve.at_zero_beside(best).left(&others))
+    };
+    curves.iter().map(share).collect()
+}
+
+/// Squares left without the channel.
+fn without(sums: &Sums, own: usize, coefficients: &[f64]) -> f64 {
+    let mut rest = coefficients.to_vec();
+    rest[..own].fill(0.0);
+    sums.left(&rest)
+}
+
+/// What is odd in a run, given the coefficients of the others: what explains most more, over the windows that both explanations have.
+fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option<Odd> {
     let mut turned = others.to_vec();
     turned[..curve.own].iter_mut().for_each(|c| *c = -*c);
     let zero = curve.zero();
     // A run that shows by itself to which side the channel acts is believed before the others are.
     let own_side = curve.sign[zero] > 0.0 && curve.effect(zero) > POOLED_EVIDENCE;
-    let nothing = without(curve, others);
-    let as_others = curve.sums[zero].left(others);
     let mut best: Option<(f64, Odd)> = None;
     for (place, sums) in curve.sums.iter().enumerate() {
         let seconds = curve.seconds(place);
         let inside = place > 0 && place + 1 < curve.sums.len();
+        let as_it_is = curve.at_zero_beside(place);
+        let (before, nothing) = (as_it_is.left(others), without(as_it_is, curve.own, others));
         let candidates = [
             (worth(seconds) && inside).then(|| (sums.left(others), Odd::Late(seconds))),
             (place == zero && !own_side).then(|| (sums.left(&turned), Odd::Turned)),
         ];
         for (left, what) in candidates.into_iter().flatten() {
-            if best.is_none_or(|(least, _)| left < least) {
-                best = Some((left, what));
+            let evidence = curve.samples * (before - left) / left.max(f64::MIN_POSITIVE);
+            let told = left < POOLED_LEAVES * before && left < EXPLAINS * nothing && evidence > POOLED_EVIDENCE;
+            if told && best.is_none_or(|(most, _)| evidence > most) {
+                best = Some((evidence, what));
             }
         }
     }
-    let (left, what) = best?;
-    // Less than usual is luck.
-    let noise = left.max(usual * nothing);
-    let evidence = curve.samples * (as_others - left) / noise;
-    let unusual = as_others > POOLED_UNUSUAL * usual * nothing;
-    (unusual && left < EXPLAINS * nothing && evidence > POOLED_EVIDENCE).then_some(what)
+    best.map(|(_, what)| what)
 }
 
 #[cfg(test)]
@@ -159,6 +164,7 @@ mod tests {
             without: 3.0,
             samples: 40.0,
             rows: 40.0,
+            beside: [sums.clone(), sums.clone()],
             sums: vec![sums],
             own: 1,
         }
@@ -166,7 +172,7 @@ mod tests {
 
     #[test]
     fn a_run_that_shows_its_own_side_is_not_turned_by_what_the_others_say() {
-        let judged = |sign: f64| judged(&run(sign), &[-0.8], 0.1, &|_| false);
+        let judged = |sign: f64| judged(&run(sign), &[-0.8], &|_| false);
         assert_eq!((judged(-1.0), judged(1.0)), (Some(Odd::Turned), None));
     }
 }

@@ -8,6 +8,7 @@ use super::gaps::completeness;
 use super::issue::{Issue, Severity};
 use super::jumps::outliers;
 use super::kinematics::Kinematics;
+use super::reckoning::Reckoned;
 use super::response::{Curve, gyro, propeller, receiver, rudder, sway};
 use super::series::Series;
 use super::signs::{Actuators, Track};
@@ -98,6 +99,8 @@ pub struct Responses {
     pub gyro: Option<Curve>,
     /// Position to velocity and heading.
     pub receiver: Option<Curve>,
+    /// Track to dead reckoning.
+    pub reckoned: Option<Reckoned>,
 }
 
 impl Responses {
@@ -109,6 +112,7 @@ impl Responses {
             sway: sway(series),
             gyro: gyro(series),
             receiver: receiver(series),
+            reckoned: Reckoned::of(series),
         }
     }
 }

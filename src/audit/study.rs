@@ -49,8 +49,10 @@ pub fn audit_study(study: &Study, ship: &Ship) -> StudyAudit {
         match &runs[..] {
             [one] => {
                 let Some(audit) = result.recordings.iter_mut().find(|a| a.run == *one) else { continue };
-                // The run alone may have told it.
-                if !audit.issues.iter().any(|i| (i.fault, i.channel) == (issue.fault, issue.channel)) {
+                // The run alone may have told it, or noted it.
+                let same = |i: &Issue| (i.fault, i.channel) == (issue.fault, issue.channel);
+                if !audit.issues.iter().any(|i| same(i) && i.severity >= issue.severity) {
+                    audit.issues.retain(|i| !same(i));
                     audit.issues.push(issue);
                 }
                 audit.issues.sort_by_key(|i| std::cmp::Reverse(i.severity));
