@@ -9,7 +9,7 @@ use std::time::Duration;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
-use trimtab::files::{MANIFEST, Manifest, sha256_of};
+use trimtab::files::{MANIFEST, Manifest, TIMING, sha256_of};
 
 use crate::conceal::error::ConcealError;
 use crate::mutated::files::{Files, sound, write};
@@ -139,8 +139,7 @@ impl Killer {
             Ok::<_, ConcealError>((read(&results)?, time))
         };
         let ((first, slow), (files, time)) = (made()?, made()?);
-        let same = files.iter().filter(|(name, bytes)| first.get(*name) == Some(bytes)).map(|(name, _)| name.clone());
-        Ok(Expected { same: same.collect(), time: time.min(slow), files })
+        Ok(Expected { same: same(&first, &files), time: time.min(slow), files })
     }
 
     /// Kills a command at each of some [`instants`] after the first `done`, each time over the results that it made of the other study.
@@ -178,6 +177,12 @@ impl Killer {
         }
         Ok(())
     }
+}
+
+/// The files that are the same in two runs of a command. Its times are so by chance, where both ran within a second.
+fn same(first: &BTreeMap<String, Vec<u8>>, second: &BTreeMap<String, Vec<u8>>) -> BTreeSet<String> {
+    let alike = second.iter().filter(|(name, bytes)| *name != TIMING && first.get(*name) == Some(bytes));
+    alike.map(|(name, _)| name.clone()).collect()
 }
 
 /// Instants of so many kills, drawn with a seed: shares of the time that a command takes.
@@ -277,6 +282,14 @@ mod tests {
         let fewer = without_last(&all);
         assert_eq!(count(&fewer) + 1, count(&all));
         assert!(String::from_utf8_lossy(&fewer["study.toml"]).contains("[fit]"));
+    }
+
+    #[test]
+    fn times_that_are_alike_by_chance_are_no_files_that_are_always_the_same() {
+        let files = |fit: &str| -> BTreeMap<String, Vec<u8>> {
+            [("fit.json", fit), ("tracks.csv", "x"), (TIMING, "0.07 s")].map(|(n, t)| (n.to_owned(), t.into())).into()
+        };
+        assert_eq!(same(&files("a"), &files("b")), BTreeSet::from(["tracks.csv".to_owned()]));
     }
 
     #[test]
