@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::Serialize;
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 /// Mean of the finite values; `None` of nothing.
 pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
@@ -53,6 +53,16 @@ pub fn chi_squared_p(statistic: f64, degrees: usize) -> f64 {
     ChiSquared::new(degrees as f64).map_or(1.0, |d| d.sf(statistic.max(0.0)).max(f64::MIN_POSITIVE))
 }
 
+/// Upper tail of a quadratic form in `directions` standard normal values whose variance was estimated from `degrees` independent ones:
+/// of `directions` times Fisher's F. Tends to [`chi_squared_p`] for many degrees; 1 without directions or degrees.
+pub fn scattered_p(statistic: f64, directions: usize, degrees: usize) -> f64 {
+    if !statistic.is_finite() {
+        return 1.0;
+    }
+    let f = statistic.max(0.0) / directions.max(1) as f64;
+    FisherSnedecor::new(directions as f64, degrees as f64).map_or(1.0, |d| d.sf(f).max(f64::MIN_POSITIVE))
+}
+
 /// Value that a standard normal variable stays below with a probability.
 pub fn normal_quantile(probability: f64) -> f64 {
     Normal::standard().inverse_cdf(probability)
@@ -61,6 +71,15 @@ pub fn normal_quantile(probability: f64) -> f64 {
 /// Value that Student's t stays below with a probability.
 pub fn student_quantile(probability: f64, degrees: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees).map_or_else(|_| normal_quantile(probability), |t| t.inverse_cdf(probability))
+}
+
+/// Probability that Student's t is as far from zero as this, to either side; 1 of what is not a number. Underflows to the smallest positive
+/// number, not to zero.
+pub fn student_p(t: f64, degrees: f64) -> f64 {
+    if t.is_nan() {
+        return 1.0;
+    }
+    StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |d| (2.0 * d.sf(t.abs())).max(f64::MIN_POSITIVE))
 }
 
 /// A p-value once it is the least of so many that were looked at (Bonferroni).
@@ -195,6 +214,8 @@ mod tests {
 
     #[test]
     fn tails_are_those_of_the_tables() {
+        assert!((student_p(-5.407_883, 7.0) - 1e-3).abs() < 1e-6 && student_p(1e300, 7.0) > 0.0);
+        assert_eq!((student_p(0.0, 4.0), student_p(f64::NAN, 4.0)), (1.0, 1.0));
         assert!((chi_squared_p(3.841_459, 1) - 0.05).abs() < 1e-6 && chi_squared_p(5.0, 0) == 1.0);
         assert!((normal_quantile(0.975) - 1.959_964).abs() < 1e-6);
         assert!((student_quantile(0.975, 4.0) - 2.776_445).abs() < 1e-5);

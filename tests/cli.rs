@@ -395,7 +395,7 @@ fn the_demo_finds_and_confirms_what_is_concealed_in_its_study() {
     let run = |arguments: &[&str]| {
         Command::new(env!("CARGO_BIN_EXE_trimtab")).args(arguments).current_dir(folder.path()).output().unwrap()
     };
-    let output = run(&["demo", "--json"]);
+    let output = run(&["demo", "--json", "--format", "svg,pdf"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let value: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((at(&value, "result.check.runs"), at(&value, "result.check.errors")), (&40.into(), &0.into()));
@@ -412,13 +412,34 @@ fn the_demo_finds_and_confirms_what_is_concealed_in_its_study() {
     let proof = at(&value, "result.diagnosis.held_out");
     assert!(at(proof, "after").as_f64().unwrap() < 0.5 * at(proof, "before").as_f64().unwrap(), "{proof:#}");
     let demo = folder.path().join("trimtab-demo");
-    for file in ["study.toml", "results/tracks.png", "results/report.html", "results/improved.toml"] {
+    for file in [
+        "study.toml",
+        "results/tracks.svg",
+        "results/figures/tracks.pdf",
+        "results/report.html",
+        "results/improved.toml",
+    ] {
         assert!(demo.join(file).is_file(), "{file}");
     }
     // The study alone, checked as its own: it has no column map, so that each unit was read from a header.
     let output = run(&["check", "trimtab-demo/study.toml"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
     assert_eq!(demo.join("recordings").read_dir().unwrap().count(), 40);
+}
+
+#[test]
+fn the_option_frees_the_hull_as_the_model_file_does() {
+    let study = Study::new();
+    let estimates = |arguments: &[&str]| {
+        let output = study.run(&[&["fit", "study.toml", "--json"], arguments].concat());
+        assert!(output.status.code() < Some(2), "{}", text(&output.stderr));
+        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+        at(&value, "result.estimates").clone()
+    };
+    let (held, option) = (estimates(&[]), estimates(&["--free-hull"]));
+    study.edit("model.toml", "form = \"paper\"", "form = \"paper\"\nhull = \"free\"");
+    assert_eq!(option, estimates(&[]));
+    assert!(option.as_array().unwrap().len() > held.as_array().unwrap().len() + 10);
 }
 
 #[test]

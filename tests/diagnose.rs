@@ -5,6 +5,7 @@
 mod support;
 
 use support::{STAR, add, commanded, model, runs, truth_noise};
+use trimtab::diagnose::grade::LawGrade;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::model::Model;
 use trimtab::parameter::Parity;
@@ -38,6 +39,7 @@ fn value(d: &Diagnosis, name: &str) -> f64 {
 fn no_mechanism_is_named_where_nothing_is_missing() {
     let d = case(&[], &[], 101);
     assert_eq!(d.verdict, Verdict::NothingMissing, "{}", d.headline);
+    assert!(d.law.is_none() && d.improved_is_base);
     assert!(d.detectable.iter().any(|m| m.mechanism == "current" && m.size > 0.0 && m.size < 0.1));
 }
 
@@ -374,6 +376,64 @@ fn a_force_in_one_recording_alone_is_a_push_or_the_ship_in_a_state_of_its_own() 
 fn a_moment_outside_the_catalogue_is_not_named_a_sensor_error() {
     let d = case(&[("asymmetric.N_0", 3e5)], &[], 3);
     assert_eq!((d.verdict, d.findings.len()), (Verdict::NotInCatalogue, 0), "{}", d.headline);
+}
+
+#[test]
+fn a_law_that_unseen_runs_refute_is_not_in_the_headline_and_not_in_the_improved_model() {
+    let base = model();
+    let to_one_side = |moment: f64, count: usize, seed: u64| {
+        let mut truth = base.clone();
+        truth.add_term("asymmetric").unwrap();
+        let i = truth.find("asymmetric.N_0").unwrap();
+        truth.parameters[i].value = moment;
+        runs(&truth, &truth_noise(), count, seed)
+    };
+    // The moment turns before the test runs are sailed.
+    let (train, test) = (to_one_side(3e5, 30, 3), to_one_side(-3e5, 10, 4));
+    let d = diagnose(&base, &train, &test, &Settings::default(), &|_| ()).unwrap();
+    let law = d.law.as_ref().unwrap();
+    assert_eq!((d.verdict, law.grade), (Verdict::NotInCatalogue, LawGrade::Refuted), "{}", d.headline);
+    assert!(d.headline.contains("refuted by unseen runs") && !d.headline.contains("] ="), "{}", d.headline);
+    assert!(d.improved_is_base && d.model.find("asymmetric.N_0").is_err());
+    // Two recordings give no interval.
+    let d = diagnose(&base, &train, &test[..2], &Settings::default(), &|_| ()).unwrap();
+    assert_eq!(d.law.map(|l| l.grade), Some(LawGrade::Exploratory));
+    assert!(
+        d.headline.contains("exploratory") && d.headline.contains("N [N m] = ") && d.improved_is_base,
+        "{}",
+        d.headline
+    );
+}
+
+#[test]
+fn a_force_outside_the_catalogue_is_written_as_a_law_that_unseen_runs_confirm_and_that_leaves_nothing_to_name() {
+    let base = model();
+    let mut truth = base.clone();
+    truth.add_term("asymmetric").unwrap();
+    let side = truth.find("asymmetric.Y_u_absu").unwrap();
+    truth.parameters[side].value = 0.01;
+    let data = runs(&truth, &truth_noise(), 40, 3);
+    let (train, test) = data.split_at(30);
+    let settings = Settings { repeat: false, ..Settings::default() };
+    let d = diagnose(&base, train, test, &settings, &|_| ()).unwrap();
+    let law = d.law.as_ref().unwrap();
+    assert_eq!((d.verdict, law.grade), (Verdict::NotInCatalogue, LawGrade::Confirmed), "{}", d.headline);
+    let [term] = law.terms.as_slice() else { panic!("{:?}", law.terms) };
+    assert_eq!((term.name.as_str(), term.symbol.as_str(), term.mirror), ("asymmetric.Y_u_absu", "u|u|", "odd"));
+    // In SI units: 1/2 rho L d times the coefficient.
+    let hull = &base.ship.hull;
+    let true_value = 0.01 * 0.5 * hull.water_density * hull.lpp * hull.draught;
+    assert!(term.ci95[0] < true_value && true_value < term.ci95[1], "{true_value} {term:?}");
+    assert!(d.headline.contains("confirmed on unseen runs") && d.headline.contains(&law.equation[0]), "{}", d.headline);
+    let range = &law.range[0];
+    assert!(range.symbol == "u" && range.low < range.high && range.high < 12.0, "{range:?}");
+    assert!(d.adequacy_before.asymmetric < 1e-8 && d.adequacy_after.asymmetric > 0.01, "{:?}", d.adequacy_after);
+    // The improved model has it, and lacks nothing.
+    assert!(!d.improved_is_base && d.held_out.as_ref().is_some_and(|h| h.improvement > Some(0.2)), "{:?}", d.held_out);
+    let written = d.model.parameters[d.model.find("asymmetric.Y_u_absu").unwrap()].value;
+    assert!((written / 0.01 - 1.0).abs() < 0.2, "{written}");
+    let again = diagnose(&d.model, train, test, &settings, &|_| ()).unwrap();
+    assert_eq!((again.verdict, again.law.is_none()), (Verdict::NothingMissing, true), "{}", again.headline);
 }
 
 #[test]

@@ -4,6 +4,7 @@
 use super::answer::Answer;
 use super::diagnose::{prepared, write_diagnosis};
 use super::error::CliError;
+use super::figures::FigureArgs;
 use super::lines::filled;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Output, OutputArgs};
@@ -46,6 +47,8 @@ pub struct Args {
     /// Folder for study and results; created if absent.
     #[arg(long, value_name = "DIR", default_value = "trimtab-demo")]
     out: PathBuf,
+    #[command(flatten)]
+    figures: FigureArgs,
     /// Print the result as one JSON object, and nothing else, to standard output.
     #[arg(long)]
     json: bool,
@@ -91,7 +94,7 @@ struct Size {
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     let study = args.out.join("study.toml");
     let results = OutputArgs { out: Some(args.out.join("results")), json: args.json, tables: Vec::new() };
-    let mut output = Output::new("demo", &results)?;
+    let mut output = Output::new("demo", &results)?.drawn_as(&args.figures);
     let files = write_study(&args.out)?;
     let loaded = Loaded::new(&StudyArgs { study: study.clone(), model: None })?;
     output.reads(&loaded, true);

@@ -6,16 +6,15 @@ use super::audited::{AcceptArgs, examined};
 use super::error::CliError;
 use super::figures::FigureArgs;
 use super::fit::{fitted_text, model_text};
-use super::load::{Loaded, StudyArgs};
+use super::load::{Loaded, StudyArgs, no_mechanism};
 use super::output::{Output, OutputArgs, print, print_json};
 use super::progress::progress;
 use serde_json::Value;
 use trimtab::audit::Issue;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
-use trimtab::error::suggestion;
 use trimtab::evaluate::Judging;
-use trimtab::recording::{Run, Split};
-use trimtab::report::diagnosis::{document, keys_listing, mechanism_names, page, pictures, summary};
+use trimtab::recording::{Run, Runs, Split};
+use trimtab::report::diagnosis::{document, keys_listing, page, pictures, summary};
 
 const LONG: &str = "\
 Compares the recordings of a study with its model in four steps:
@@ -104,6 +103,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     if train.is_empty() {
         return Err(loaded.nothing(Split::Train));
     }
+    loaded.compare_yaw_rates(Runs::from(&train));
     let bar = progress("diagnosing");
     let diagnosis =
         diagnose(&loaded.model, train, &held_out, &settings, &|step| bar.set_message(format!("diagnosing: {step}")));
@@ -166,21 +166,16 @@ fn write_files(output: &mut Output, diagnosis: &Diagnosis, name: &str, json: &Va
     Ok(())
 }
 
-/// The study's settings, changed by the arguments, with every withheld name checked.
+/// The study's settings, changed by the arguments, with every name that these withhold checked.
 fn settings(args: &Args, mut settings: Settings) -> Result<Settings, CliError> {
-    settings.withhold.extend(args.withhold.iter().cloned());
     settings.seed = args.seed.unwrap_or(settings.seed);
     settings.repeat &= !args.once;
     settings.calibrate = args.calibrate.unwrap_or(settings.calibrate);
-    let known: Vec<&str> = mechanism_names().collect();
-    for name in &settings.withhold {
-        if !known.contains(&name.as_str()) {
-            return Err(CliError::Argument(format!(
-                "there is no mechanism `{name}` to withhold; they are {}{}",
-                known.join(", "),
-                suggestion(name, known.iter().copied())
-            )));
+    match args.withhold.iter().find_map(|name| no_mechanism(name)) {
+        Some(message) => Err(CliError::Argument(format!("--withhold: {message}"))),
+        None => {
+            settings.withhold.extend(args.withhold.iter().cloned());
+            Ok(settings)
         }
     }
-    Ok(settings)
 }

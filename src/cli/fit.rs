@@ -24,8 +24,8 @@ use trimtab::uncertainty::Uncertainty;
 const LONG: &str = "\
 Fits the free parameters of the model to the training runs of the study: weighted nonlinear least squares through the \
     simulation, with exact gradients, under the constraints of [fit.constraints]. Which parameters are free, their bounds and \
-    priors are in the model file; without any setting they are the paper's eleven (p0 to p10). There, `hull = \"free\"` at the top \
-    frees every hydrodynamic coefficient of the hull, and `prior = \"default\"` in [parameters.\"NAME\"] frees one: each with its \
+    priors are in the model file; without any setting they are the paper's eleven (p0 to p10). There, `hull = \"free\"` at the top, \
+    or --free-hull here, frees every hydrodynamic coefficient of the hull, and `prior = \"default\"` in [parameters.\"NAME\"] frees one: each with its \
     estimate as mean and the spread that its term knows (`trimtab terms`) as standard deviation.
 
 A fit returns the best feasible point of all that it evaluated, never one above a feasible start, and says what stopped the \
@@ -40,6 +40,7 @@ const AFTER: &str = "\
 Example:
   trimtab fit study.toml --out results
   trimtab evaluate study.toml --model results/fitted.toml
+  trimtab fit study.toml --model results/improved.toml --free-hull --out refined
 
 With --out: fitted.toml (a model file with the estimates and their covariance, which every command takes as --model), fit.json, fit.txt (the \
     report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end); with --starts also starts.csv (how each start \
@@ -66,6 +67,9 @@ pub struct Args {
     /// Fit from this many starts drawn around the model's values first, and then from the best of their ends.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     starts: Option<u16>,
+    /// Frees every hydrodynamic coefficient of the hull around its estimate, as `hull = "free"` in the model file does.
+    #[arg(long)]
+    free_hull: bool,
     #[command(flatten)]
     accept: AcceptArgs,
     #[command(flatten)]
@@ -77,7 +81,10 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
     let mut output = Output::of_rank(ranks, "fit", &args.output)?.drawn_as(&args.figures);
-    let loaded = Loaded::new(&args.study)?;
+    let mut loaded = Loaded::new(&args.study)?;
+    if args.free_hull {
+        loaded.model.free_hull();
+    }
     output.reads(&loaded, true);
     output.settings("fit", &loaded.fit_settings()?)?;
     output.recordings(audited_over(ranks, &loaded, &args.accept)?);
@@ -87,6 +94,9 @@ pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
     };
     let store = stored(ranks, &loaded)?;
     let windows = Runs::from(&store);
+    if ranks.is_first() {
+        loaded.compare_yaw_rates(windows);
+    }
     let fit = fit_windows(ranks, &loaded, &start, windows, output.kept(BEST));
     if let Some(source) = store.failure() {
         return Err(CliError::Write { path: std::env::temp_dir(), source });

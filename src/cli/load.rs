@@ -9,17 +9,23 @@ use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use trimtab::diagnose::Settings;
+use trimtab::error::suggestion;
 use trimtab::evaluate::EvaluationSettings;
 use trimtab::fit::{FitError, FitSettings};
 use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::{Model, ModelError};
+use trimtab::numerals::sig;
 use trimtab::plan::PlanSettings;
 use trimtab::ranges::Limited;
 use trimtab::ranks::Ranks;
-use trimtab::recording::{ColumnMap, Run, Split, Windows};
+use trimtab::recording::{ColumnMap, Run, Runs, Split, Windows};
+use trimtab::report::diagnosis::mechanism_names;
 use trimtab::ship::{Ship, parameter_line};
 use trimtab::study::{Listed, Study};
 use trimtab::uncertainty::Uncertainty;
+
+/// A largest yaw rate that is so many times the one recorded, or its inverse, was hardly meant: degrees for radians are 57 times.
+const FAR_YAW_RATE: f64 = 20.0;
 
 /// Arguments of every command on a study.
 #[derive(Clone, Debug, clap::Args)]
@@ -68,7 +74,7 @@ impl Loaded {
         let tables = [
             settings::<FitSettings>(&study, "fit").err(),
             settings::<EvaluationSettings>(&study, "evaluate").err(),
-            settings::<Settings>(&study, "diagnose").err(),
+            diagnose_settings(&study).err(),
             settings::<ManeuverSettings>(&study, "maneuver").err(),
             settings::<PlanSettings>(&study, "plan").err(),
         ];
@@ -117,6 +123,37 @@ impl Loaded {
         let windows = self.study.windows(self.model.ship.hull.draught);
         bar.finish_and_clear();
         Ok(windows?)
+    }
+
+    /// Warns of a largest yaw rate in the study that is far from all that were recorded in some runs.
+    pub fn compare_yaw_rates(&self, runs: Runs<'_>) {
+        if let Some(doubt) = self.yaw_rate_doubt(runs) {
+            tell(&format!("warning: {doubt}"));
+        }
+    }
+
+    fn yaw_rate_doubt(&self, runs: Runs<'_>) -> Option<String> {
+        self.study.fit.get("max_yaw_rate")?;
+        let set = self.fit_settings().ok()?.max_yaw_rate;
+        let largest = |run: &Run| run.measured.iter().filter_map(|m| m[5]).fold(0.0_f64, |most, r| most.max(r.abs()));
+        let recorded = runs.iter().map(|run| largest(&run)).fold(0.0, f64::max);
+        let times = set / recorded;
+        if recorded == 0.0 || (1.0 / FAR_YAW_RATE..FAR_YAW_RATE).contains(&times) {
+            return None;
+        }
+        let (path, line) = (self.study.path.display(), self.study.line_of("fit", "max_yaw_rate"));
+        let (far, effect) = if times > 1.0 {
+            (format!("{} times the largest", sig(times, 2)), "the yaw rate hardly counts in the cost")
+        } else {
+            (format!("1/{} of the largest", sig(1.0 / times, 2)), "the cost is of the yaw rate alone")
+        };
+        Some(format!(
+            "{path}:{line}: [fit] `max_yaw_rate` = {} rad/s is {far} yaw rate recorded, {} rad/s, so that {effect}; it is in rad/s: \
+             if deg/s are meant, write {}",
+            sig(set, 3),
+            sig(recorded, 3),
+            sig(set.to_radians(), 3)
+        ))
     }
 
     /// Reads the runs for which `wanted` says so and hands the windows of each to `work`, without keeping them; what `work`
@@ -198,7 +235,7 @@ impl Loaded {
 
     /// Table `[diagnose]`.
     pub fn diagnose_settings(&self) -> Result<Settings, CliError> {
-        settings(&self.study, "diagnose")
+        diagnose_settings(&self.study)
     }
 
     /// Table `[maneuver]`.
@@ -220,6 +257,31 @@ fn settings<T: DeserializeOwned + Limited>(study: &Study, table: &'static str) -
     })?;
     settings.limits().map_err(|outside| fail(study.line_of(table, outside.key), outside.to_string()))?;
     Ok(settings)
+}
+
+/// Table `[diagnose]`, with every name that it withholds checked.
+fn diagnose_settings(study: &Study) -> Result<Settings, CliError> {
+    let read: Settings = settings(study, "diagnose")?;
+    let fail = |message| CliError::Table {
+        path: study.path.clone(),
+        line: study.line_of("diagnose", "withhold"),
+        table: "diagnose",
+        message,
+    };
+    match read.withhold.iter().find_map(|name| no_mechanism(name)) {
+        Some(message) => Err(fail(message)),
+        None => Ok(read),
+    }
+}
+
+/// What is wrong with the name of a mechanism that is not to be considered, if anything.
+pub fn no_mechanism(name: &str) -> Option<String> {
+    let known: Vec<&str> = mechanism_names().collect();
+    let message = || {
+        let meant = suggestion(name, known.iter().copied());
+        format!("there is no mechanism `{name}` to withhold{meant}; they are {}", known.join(", "))
+    };
+    (!known.contains(&name)).then(message)
 }
 
 /// An error that a model raises over its ship, told of the ship file.

@@ -2,9 +2,9 @@
 //! It compares what the manoeuvres would show of each; how well each fits the recordings is compared elsewhere.
 
 use super::candidate::{Candidate, Extent};
-use super::compete::Selected;
 use super::estimate::Estimate;
 use super::screen::Screen;
+use super::selected::Selected;
 use super::settings::FORM_TOLERANCE;
 use nalgebra::DVector;
 

@@ -154,7 +154,7 @@ impl BaseFit {
             return self;
         }
         let coarse = Integration { method: Method::Euler, substeps: 1 };
-        let Estimate { model, noise, free, log_posterior: fine } = &self.estimate;
+        let Estimate { model, noise, free, log_posterior: fine, .. } = &self.estimate;
         self.admission.euler_gain = log_posterior(model, coarse, &self.runs, free, noise) - fine;
         if self.admission.euler_gain > -EULER_HOPELESS {
             // Both readings with parameters of their own: a fit bends them to hide the error of a step.

@@ -2,6 +2,7 @@
 //! them, and keeps every one that the data allow. What is tested, and what is said of the outcome, is decided elsewhere.
 
 use super::candidate::{Candidate, Extent};
+use super::eligible::is_worth_naming;
 use super::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
 use super::evidence::chi_squared_p;
 use super::forces::only_cancels;
@@ -9,48 +10,16 @@ use super::kinematic::agreements;
 use super::noise::Noise;
 use super::problem::Problem;
 use super::screen::{Row, Screen};
+use super::selected::Selected;
 use super::settings::{
-    Effort, FORM_TOLERANCE, IMPLAUSIBLE, INDISTINGUISHABLE, PARAMETER_PRICE, REFIT, RIVAL_GAP, RIVAL_LIKENESS,
-    RIVAL_SHARE, RIVALS, SETTLE, SMALLEST_SIZE, STARTS, STARTS_OF_SQUARES, UNRELATED_LIKENESS,
+    Effort, FORM_TOLERANCE, IMPLAUSIBLE, INDISTINGUISHABLE, LIKENESS, PARAMETER_PRICE, REFIT, REMAINDER, RIVAL_GAP,
+    RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES,
 };
+use super::together::Leading;
 use super::wald::Wald;
 use crate::model::Model;
 use crate::physics::{Kind, Probe};
 use nalgebra::DVector;
-
-/// A mechanism that was selected, with what it costs and brings.
-#[derive(Clone)]
-pub struct Selected {
-    /// Index into the candidates.
-    pub candidate: usize,
-    /// Where it acts.
-    pub extent: Extent,
-    /// Twice the gain in log-likelihood.
-    pub statistic: f64,
-    /// Corrected p-value.
-    pub p: f64,
-    /// Candidates that the data allow in its place, itself first.
-    pub set: Vec<usize>,
-    /// Why the set is what it is.
-    pub why: String,
-    /// Whether it is not named and yet stays in the model, so that what it does is not taken for something else.
-    pub carried: bool,
-}
-
-impl Selected {
-    /// Adds mechanisms whose effects are alike on these manoeuvres to the set, each with the share of the gain that it can take over.
-    pub fn widen(&mut self, class: Vec<(usize, f64)>, candidates: &[Candidate]) {
-        let new: Vec<(usize, f64)> = class.into_iter().filter(|(i, _)| !self.set.contains(i)).collect();
-        if new.is_empty() {
-            return;
-        }
-        let told = |(i, share): &(usize, f64)| format!("{} ({:.0} %)", candidates[*i].mechanism.title, 100.0 * share);
-        let told: Vec<String> = new.iter().map(told).collect();
-        self.why =
-            format!("{}; on these manoeuvres this takes over so much of its gain: {}", self.why, told.join(", "));
-        self.set.extend(new.iter().map(|(i, _)| *i));
-    }
-}
 
 /// A candidate's amplitudes in an estimate, its companions held: an amplitude that only counts times a coefficient is as
 /// uncertain as that coefficient and yet not zero.
@@ -117,12 +86,12 @@ fn rivals(s: &Screen, leaders: &[&Row], candidates: &[Candidate]) -> Vec<Hypothe
         out.extend(s.rows.iter().filter(alike).filter_map(|r| Hypothesis::in_place_of(r, leader, s, candidates)));
     }
     // A rival whose promised gain is far below the leader's does not overtake it.
-    let gain_needed = leader.test.statistic - f64::max(RIVAL_GAP, RIVAL_SHARE * leader.test.statistic);
+    let gain_needed = leader.test.statistic - f64::max(RIVAL_GAP, REMAINDER * leader.test.statistic);
     let near = leaders[1..]
         .iter()
         .filter(|r| r.test.statistic > gain_needed)
         // What acts in some sessions only is alike by what those sessions sailed.
-        .filter(|r| r.extent != Extent::All || s.likeness(leader.candidate, r.candidate) > RIVAL_LIKENESS);
+        .filter(|r| r.extent != Extent::All || s.likeness(leader.candidate, r.candidate) > LIKENESS);
     for r in near {
         if out.iter().all(|c| c.candidate != r.candidate) {
             out.push(Hypothesis::of(r));
@@ -265,7 +234,7 @@ impl Competition<'_> {
         let gain = 2.0 * (estimate.log_posterior - self.current.log_posterior);
         let statistic = w.statistic().min(gain.max(0.0));
         chi_squared_p(statistic, w.value.len()) * (self.tried.max(1) as f64) < settings.alpha
-            && c.size(w.value.as_slice()) >= SMALLEST_SIZE
+            && is_worth_naming(c.size(w.value.as_slice()))
             && !only_cancels(c, estimate, runs)
     }
 
@@ -277,22 +246,62 @@ impl Competition<'_> {
         estimate.free.iter().all(|f| !companions.contains(&f.column.parameter) || stayed(f))
     }
 
-    /// Refits the leader and its rivals, and returns the best with its confidence set.
-    fn best(&self, leaders: &[&Row]) -> Result<(Selected, Estimate), Rejection> {
-        let candidates = self.problem.candidates;
-        let leader = *leaders.first().ok_or(Rejection::Unconfirmed)?;
-        let mut rivals = rivals(self.screen, leaders, candidates);
-        let mut first = Hypothesis::of(leader);
-        let alike = self.told_by_sensors(&mut first, &mut rivals);
-        let first = self.refit(first, &self.current.noise, SETTLE, f64::NEG_INFINITY);
-        let noise = first.estimate.noise;
-        let confirmed = self.is_confirmed(&first);
-        // A rival that stays further behind a leader than any set is wide changes nothing.
-        let (least, mut refitted) = if confirmed && self.is_plausible(&first) {
-            (first.value - form_tolerance(first.value - self.current.log_posterior), vec![first])
-        } else {
-            (f64::NEG_INFINITY, Vec::new())
+    /// Refits the error of a sensor from where it stood beside those of all sensors: with one amplitude, and where sensors are made anew
+    /// every day with one a session, if that explains clearly more.
+    fn refit_from(&self, Leading { candidate, amplitude, statistic, p, model, free, noise }: Leading) -> Refit {
+        let refit = |extent: Extent, amplitude: DVector<f64>, model: &Model, free: &[FreeParameter]| {
+            let estimate = self.problem.estimate(model, free, &noise, SETTLE);
+            let hypothesis = Hypothesis { candidate, extent, amplitude, statistic, p };
+            let value = estimate.log_posterior - hypothesis.price();
+            Refit { hypothesis, estimate, value }
         };
+        let c = &self.problem.candidates[candidate];
+        let all = refit(Extent::All, amplitude.clone(), &model, &free);
+        let sessions: Vec<String> = self.screen.evidence.sessions.keys().cloned().collect();
+        if !c.mechanism.by_session || sessions.len() < 2 {
+            return all;
+        }
+        let (mut model, mut free) = c.removed(&all.estimate, &Extent::All);
+        let amplitudes = DVector::from_fn(amplitude.len() * sessions.len(), |i, _| amplitude[i % amplitude.len()]);
+        let each = Extent::Each(sessions);
+        c.add(&mut model, &each, &amplitudes);
+        free.extend(c.parameters(&each));
+        let each = refit(each, amplitudes, &model, &free);
+        if each.value > all.value + INDISTINGUISHABLE { each } else { all }
+    }
+
+    /// Refits the leader and its rivals, and returns the best with its confidence set. The leader is the best of the ranking or the
+    /// leading error of a sensor, whichever explains more.
+    fn best(&self, leaders: &[&Row], sensor: Option<Leading>) -> Result<(Selected, Estimate), Rejection> {
+        let candidates = self.problem.candidates;
+        let (mut rivals, mut alike) = (Vec::new(), Vec::new());
+        let ranked = leaders.first().map(|row| {
+            let mut first = Hypothesis::of(row);
+            rivals = self::rivals(self.screen, leaders, candidates);
+            alike = self.told_by_sensors(&mut first, &mut rivals);
+            self.refit(first, &self.current.noise, SETTLE, f64::NEG_INFINITY)
+        });
+        let sensor = sensor.map(|s| self.refit_from(s));
+        let mut leading: Vec<Refit> = sensor.into_iter().chain(ranked).collect();
+        leading.sort_by(|a, b| b.value.total_cmp(&a.value));
+        leading.dedup_by_key(|r| r.hypothesis.candidate);
+        rivals.retain(|r| leading.iter().all(|l| l.hypothesis.candidate != r.candidate));
+        let first = leading.first().ok_or(Rejection::Unconfirmed)?;
+        let (noise, p) = (first.estimate.noise, first.hypothesis.p);
+        let settled: Vec<usize> = leading.iter().map(|l| l.hypothesis.candidate).collect();
+        let confirmed = self.is_confirmed(first);
+        // A rival that stays further behind a leader than any set is wide changes nothing.
+        let least = if confirmed && self.is_plausible(first) {
+            first.value - form_tolerance(first.value - self.current.log_posterior)
+        } else {
+            f64::NEG_INFINITY
+        };
+        let mut refitted = Vec::new();
+        for r in leading {
+            if r.value < least || (self.is_plausible(&r) && self.is_confirmed(&r)) {
+                refitted.push(r);
+            }
+        }
         for rival in rivals {
             let rival = self.refit(rival, &noise, REFIT, least);
             if rival.value < least || (self.is_plausible(&rival) && self.is_confirmed(&rival)) {
@@ -326,7 +335,8 @@ impl Competition<'_> {
             }
         }
         let winner = refitted.swap_remove(ranking.entries[0].place);
-        Ok(self.selected(winner, leader, set, why))
+        let is_settled = settled.contains(&winner.hypothesis.candidate);
+        Ok(self.selected(winner, is_settled, p, set, why))
     }
 
     /// Why the confidence set is what it is.
@@ -352,11 +362,11 @@ impl Competition<'_> {
     }
 
     /// The winner, with the noise estimated along as the leader's was.
-    fn selected(&self, winner: Refit, leader: &Row, set: Vec<usize>, why: String) -> (Selected, Estimate) {
+    fn selected(&self, winner: Refit, is_settled: bool, p: f64, set: Vec<usize>, why: String) -> (Selected, Estimate) {
         let Refit { hypothesis: h, estimate, .. } = winner;
-        let estimate = if h.candidate == leader.candidate { estimate } else { self.problem.again(&estimate, SETTLE) };
+        let estimate = if is_settled { estimate } else { self.problem.again(&estimate, SETTLE) };
         let gain = (estimate.log_posterior - self.current.log_posterior).max(0.5 * h.statistic);
-        let p = h.p.min(leader.p);
+        let p = h.p.min(p);
         let statistic = 2.0 * gain;
         let entry = Selected { candidate: h.candidate, statistic, p, extent: h.extent, set, why, carried: false };
         (entry, estimate)
@@ -411,7 +421,7 @@ pub fn compare(
     current: &Estimate,
     problem: Problem,
 ) -> Option<(Selected, Estimate)> {
-    Competition { screen, current, problem, tried: leaders.len() }.best(leaders).ok()
+    Competition { screen, current, problem, tried: leaders.len() }.best(leaders, None).ok()
 }
 
 /// A mechanism whose gain the refit confirms, and whose own coefficients are not where such coefficients are: something acts, and not
@@ -424,25 +434,32 @@ pub struct Rejected {
     pub p: f64,
 }
 
-/// As [`compare`]; where the leader's own coefficients are implausible, it goes to `rejected` and the next mechanism that is unlike it
-/// leads.
+/// As [`compare`], the leading error of a sensor with them; where the leader's own coefficients are implausible, it goes to `rejected`
+/// and the next mechanism that is unlike it leads.
 pub fn compete(
     screen: &Screen,
     mut leaders: Vec<&Row>,
+    mut sensor: Option<Leading>,
     current: &Estimate,
     problem: Problem,
     rejected: &mut Vec<Rejected>,
     progress: &dyn Fn(&str),
 ) -> Option<(Selected, Estimate)> {
+    // Every mechanism that the data can see was tried where the sensors tell which of them leads.
+    let visible = screen.rows.iter().filter(|r| r.visible).count();
     loop {
-        let Row { candidate: leader, p, .. } = **leaders.first()?;
-        progress(&format!("refitting with {}", problem.candidates[leader].mechanism.title));
-        match (Competition { screen, current, problem, tried: leaders.len() }).best(&leaders) {
+        let leader = leaders.first().map(|r| (r.candidate, r.p));
+        let title = |i: usize| problem.candidates[i].mechanism.title;
+        progress(&format!("refitting with {}", title(leader.map(|l| l.0).or(sensor.as_ref().map(|s| s.candidate))?)));
+        let tried = if sensor.is_some() { visible } else { leaders.len() };
+        match (Competition { screen, current, problem, tried }).best(&leaders, sensor.take()) {
             Ok(outcome) => return Some(outcome),
             Err(Rejection::Unconfirmed) => return None,
-            Err(Rejection::Implausible) => rejected.push(Rejected { candidate: leader, p }),
+            Err(Rejection::Implausible) => {}
         }
-        leaders.retain(|r| r.candidate != leader && screen.likeness(leader, r.candidate) < UNRELATED_LIKENESS);
+        let (leader, p) = leader?;
+        rejected.push(Rejected { candidate: leader, p });
+        leaders.retain(|r| r.candidate != leader && screen.likeness(leader, r.candidate) < LIKENESS);
     }
 }
 

@@ -14,7 +14,9 @@ pub fn conclude(decided: Verdict, withdrawn: &[Grade], rejected: bool, base_hold
     match decided {
         Verdict::Sensor | Verdict::Numerics if base_holds => decided,
         _ if !base_holds => Verdict::Insufficient,
-        Verdict::NothingMissing | Verdict::Random if rejected || withdrawn.contains(&Grade::Refuted) => {
+        Verdict::NothingMissing | Verdict::Random
+            if rejected || withdrawn.iter().any(|g| matches!(g, Grade::Refuted | Grade::RefutedTogether)) =>
+        {
             Verdict::NotInCatalogue
         }
         // Something fixed on the earth or to one side, and no heading that tells which.

@@ -14,38 +14,70 @@ pub const Z: usize = 15;
 /// A symmetric matrix over the filter state, of which the entries `[i][j]` with `j <= i` are kept.
 pub type Square<S> = [[S; Z]; Z];
 
-/// A row of a symmetric matrix.
+/// What a measurement tells of the filter state.
+#[derive(Clone, Copy, Debug)]
+pub struct Told<S> {
+    /// The gain.
+    pub gain: [S; Z],
+    /// The covariance of the filter state with it.
+    pub ph: [S; Z],
+}
+
+impl<S: Scalar> Told<S> {
+    /// Nothing.
+    pub fn nothing() -> Self {
+        Self { gain: [S::zero(); Z], ph: [S::zero(); Z] }
+    }
+}
+
+/// Writes a row of the covariance as it is once a measurement is taken out that `before` holds and `p` does not know yet.
 #[inline(always)]
-pub fn row<S: Scalar>(p: &Square<S>, place: usize) -> [S; Z] {
-    let mut out = p[place];
+fn row<S: Scalar>(p: &Square<S>, before: Option<&Told<S>>, place: usize, out: &mut [S; Z]) {
+    (0..=place).for_each(|i| out[i] = p[place][i]);
     (place + 1..Z).for_each(|i| out[i] = p[i][place]);
-    out
+    if let Some(Told { gain, ph }) = before {
+        let (own_gain, own_ph) = (gain[place], ph[place]);
+        (0..=place).for_each(|i| out[i] -= own_gain * ph[i]);
+        (place + 1..Z).for_each(|i| out[i] -= gain[i] * own_ph);
+    }
 }
 
-/// The sum of two rows of a symmetric matrix, `first < second`.
+/// Writes the sum of two rows of the covariance, `one < two`, each as `row` has it.
 #[inline(always)]
-pub fn sum_of_rows<S: Scalar>(p: &Square<S>, first: usize, second: usize) -> [S; Z] {
-    let mut out = [S::zero(); Z];
-    (0..=first).for_each(|i| out[i] = p[first][i] + p[second][i]);
-    (first + 1..=second).for_each(|i| out[i] = p[i][first] + p[second][i]);
-    (second + 1..Z).for_each(|i| out[i] = p[i][first] + p[i][second]);
-    out
+pub fn sum_of_rows<S: Scalar>(p: &Square<S>, before: Option<&Told<S>>, one: usize, two: usize, sum: &mut [S; Z]) {
+    let Some(Told { gain, ph }) = before else {
+        (0..=one).for_each(|i| sum[i] = p[one][i] + p[two][i]);
+        (one + 1..=two).for_each(|i| sum[i] = p[i][one] + p[two][i]);
+        (two + 1..Z).for_each(|i| sum[i] = p[i][one] + p[i][two]);
+        return;
+    };
+    let ([gain_1, gain_2], [ph_1, ph_2]) = ([gain[one], gain[two]], [ph[one], ph[two]]);
+    (0..=one).for_each(|i| sum[i] = p[one][i] - gain_1 * ph[i] + (p[two][i] - gain_2 * ph[i]));
+    (one + 1..=two).for_each(|i| sum[i] = p[i][one] - gain[i] * ph_1 + (p[two][i] - gain_2 * ph[i]));
+    (two + 1..Z).for_each(|i| sum[i] = p[i][one] - gain[i] * ph_1 + (p[i][two] - gain[i] * ph_2));
 }
 
-/// The sum of the first rows of a symmetric matrix, each times a slope, and of one more row.
+/// Writes the sum of the first rows of the covariance, each times a slope, and of one more row, each as `row` has it.
 #[inline(always)]
-pub fn sum_along<S: Scalar>(p: &Square<S>, slopes: &[S; STATES], more: usize) -> [S; Z] {
-    let mut sum = row(p, more);
-    for (l, slope) in slopes.iter().enumerate() {
-        let of_state = row(p, l);
+pub fn sum_along<S: Scalar + PartialEq>(
+    p: &Square<S>,
+    before: Option<&Told<S>>,
+    slopes: &[S; STATES],
+    more: usize,
+    sum: &mut [S; Z],
+) {
+    let mut of_state = [S::zero(); Z];
+    row(p, before, more, sum);
+    // Most reports depend on one or two entries of the state.
+    for (l, slope) in slopes.iter().enumerate().filter(|(_, slope)| **slope != S::zero()) {
+        row(p, before, l, &mut of_state);
         (0..Z).for_each(|i| sum[i] += of_state[i] * *slope);
     }
-    sum
 }
 
-/// Takes `gain ph'` out of the covariance: what a measurement tells, `ph` being the covariance of the filter state with it.
+/// Takes `gain ph'` out of the covariance: what a measurement tells.
 #[inline(always)]
-pub fn correct<S: Scalar>(p: &mut Square<S>, gain: &[S; Z], ph: &[S; Z]) {
+pub fn correct<S: Scalar>(p: &mut Square<S>, Told { gain, ph }: &Told<S>) {
     // Each row by itself, so that the loop along it has a fixed length.
     macro_rules! rows {
         ($($i:literal)*) => { $((0..=$i).for_each(|l| p[$i][l] -= gain[$i] * ph[l]);)* };
@@ -53,11 +85,33 @@ pub fn correct<S: Scalar>(p: &mut Square<S>, gain: &[S; Z], ph: &[S; Z]) {
     rows!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14);
 }
 
-/// Adds a multiple of row `L` of a symmetric matrix.
+/// Corrects by two measurements, one after the other: each entry is loaded and stored once for both.
 #[inline(always)]
-fn add_row<S: Scalar, const L: usize>(p: &Square<S>, factor: S, sums: &mut [S; Z]) {
-    (0..=L).for_each(|c| sums[c] += p[L][c] * factor);
-    (L + 1..Z).for_each(|c| sums[c] += p[c][L] * factor);
+pub fn correct_twice<S: Scalar>(p: &mut Square<S>, [one, two]: &[Told<S>; 2]) {
+    // A few columns at a time, whose covariances with both measurements stay in registers.
+    columns::<S, 0>(p, one, two);
+    columns::<S, WIDE>(p, one, two);
+    columns::<S, { 2 * WIDE }>(p, one, two);
+}
+
+/// Columns that are worked on at a time.
+const WIDE: usize = Z / 3;
+
+/// Corrects the columns from `FROM` on by two measurements.
+#[inline(always)]
+fn columns<S: Scalar, const FROM: usize>(p: &mut Square<S>, one: &Told<S>, two: &Told<S>) {
+    let [a, b]: [[S; WIDE]; 2] = [one, two].map(|told| std::array::from_fn(|c| told.ph[FROM + c]));
+    macro_rules! rows {
+        ($($i:literal)*) => { $(
+            let (gain_1, gain_2) = (one.gain[$i], two.gain[$i]);
+            for c in 0..WIDE {
+                if FROM + c <= $i {
+                    p[$i][FROM + c] = p[$i][FROM + c] - gain_1 * a[c] - gain_2 * b[c];
+                }
+            }
+        )* };
+    }
+    rows!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14);
 }
 
 /// The noise over one sample period: variances, and what is left of a correlation after it.
@@ -133,6 +187,36 @@ pub fn initial<S: Scalar>(noise: &Discrete<S>, model: &Model) -> Square<S> {
     p
 }
 
+/// Writes the covariance of the ship's state one sample later with the filter state before.
+#[inline(always)]
+fn moved<S: Scalar>(p: &Square<S>, a: &[[S; STATES]; STATES], gamma: &[[S; 3]; STATES], out: &mut [[S; Z]; STATES]) {
+    // The rows that move the ship, whole: heading, velocities and unknown force.
+    let mut rows = [[S::zero(); Z]; 7];
+    macro_rules! whole {
+        ($($l:literal)*) => { $(
+            (0..=$l).for_each(|c| rows[$l - 2][c] = p[$l][c]);
+            ($l + 1..Z).for_each(|c| rows[$l - 2][c] = p[c][$l]);
+        )* };
+    }
+    whole!(2 3 4 5 6 7 8);
+    (0..Z).for_each(|c| out[0][c] = p[c][0]);
+    out[1][0] = p[1][0];
+    (1..Z).for_each(|c| out[1][c] = p[c][1]);
+    // Two rows and a few columns at a time, whose sums stay in registers.
+    for i in (0..STATES).step_by(2) {
+        for from in (0..Z).step_by(WIDE) {
+            let mut sums = [[S::zero(); WIDE]; 2];
+            (0..2).for_each(|r| (0..WIDE).for_each(|c| sums[r][c] = out[i + r][from + c]));
+            let mut add = |l: usize, factors: [S; 2]| {
+                (0..2).for_each(|r| (0..WIDE).for_each(|c| sums[r][c] += rows[l][from + c] * factors[r]));
+            };
+            (0..4).for_each(|l| add(l, [a[i][2 + l], a[i + 1][2 + l]]));
+            (0..3).for_each(|l| add(4 + l, [gamma[i][l], gamma[i + 1][l]]));
+            (0..2).for_each(|r| (0..WIDE).for_each(|c| out[i + r][from + c] = sums[r][c]));
+        }
+    }
+}
+
 /// `F P F' + Q` with the block structure of the filter state: `a` moves the ship, `gamma` lets the unknown force act on it,
 /// everything else fades on its own. The first two columns of `a` are those of the identity: the motion does not depend on the
 /// position. `boost` multiplies what the unknown force gains.
@@ -144,25 +228,7 @@ pub fn predict<S: Scalar>(
     boost: S,
 ) {
     let mut moved = [[S::zero(); Z]; STATES];
-    for (i, moved) in moved.iter_mut().enumerate() {
-        let mut sums = [S::zero(); Z];
-        match i {
-            0 => (0..Z).for_each(|c| sums[c] = p[c][0]),
-            1 => {
-                sums[0] = p[1][0];
-                (1..Z).for_each(|c| sums[c] = p[c][1]);
-            }
-            _ => (),
-        }
-        add_row::<S, 2>(p, a[i][2], &mut sums);
-        add_row::<S, 3>(p, a[i][3], &mut sums);
-        add_row::<S, 4>(p, a[i][4], &mut sums);
-        add_row::<S, 5>(p, a[i][5], &mut sums);
-        add_row::<S, 6>(p, gamma[i][0], &mut sums);
-        add_row::<S, 7>(p, gamma[i][1], &mut sums);
-        add_row::<S, 8>(p, gamma[i][2], &mut sums);
-        (0..Z).for_each(|c| moved[c] = sums[c]);
-    }
+    self::moved(p, a, gamma, &mut moved);
     for i in 0..STATES {
         for j in 0..=i {
             let mut sum = if j < 2 { moved[i][j] } else { S::zero() };
@@ -237,16 +303,41 @@ mod tests {
     fn a_correction_takes_a_product_out_of_the_lower_triangle_and_a_row_is_whole() {
         let mut p = full();
         (0..Z).for_each(|i| (i + 1..Z).for_each(|j| p[i][j] = f64::NAN));
-        assert!((0..Z).all(|i| row(&p, i) == full()[i]));
+        let mut sum = [f64::NAN; Z];
+        for (i, whole) in full().iter().enumerate() {
+            row(&p, None, i, &mut sum);
+            assert_eq!(sum, *whole);
+        }
         for (i, j) in [(0, 9), (3, 12), (5, 14)] {
-            let sum = sum_of_rows(&p, i, j);
+            sum_of_rows(&p, None, i, j, &mut sum);
             assert!((0..Z).all(|c| sum[c] == full()[i][c] + full()[j][c]));
         }
         let gain: [f64; Z] = std::array::from_fn(|i| 0.1 * i as f64);
-        correct(&mut p, &gain, &full()[4]);
+        correct(&mut p, &Told { gain, ph: full()[4] });
         for i in 0..Z {
             assert!((0..=i).all(|l| (p[i][l] - full()[i][l] + gain[i] * full()[4][l]).abs() < 1e-12));
         }
+    }
+
+    #[test]
+    fn two_corrections_at_once_have_the_bits_of_one_after_the_other() {
+        let told: [Told<f64>; 2] = [0.1, 0.7]
+            .map(|by| Told { gain: full()[5].map(|g| by / (1.0 + g * g)), ph: full()[8].map(|h| h / (3.0 + by)) });
+        let (mut each, mut both) = (full(), full());
+        correct(&mut each, &told[0]);
+        let slopes = [0.5, 0.0, 1.0, -2.0, 0.0, 0.1];
+        for more in 9..Z {
+            let [mut after, mut expected] = [[f64::NAN; Z]; 2];
+            sum_of_rows(&both, Some(&told[0]), more - 9, more, &mut after);
+            sum_of_rows(&each, None, more - 9, more, &mut expected);
+            assert_eq!(after, expected, "{more}");
+            sum_along(&both, Some(&told[0]), &slopes, more, &mut after);
+            sum_along(&each, None, &slopes, more, &mut expected);
+            assert_eq!(after, expected, "{more}");
+        }
+        correct(&mut each, &told[1]);
+        correct_twice(&mut both, &told);
+        assert_eq!(both, each);
     }
 
     #[test]

@@ -2,11 +2,10 @@
 //! It estimates nothing and knows no runs; every number it compares with is in the settings.
 
 use super::settings::{
-    EULER_GAIN, FEWEST_RUNS, FEWEST_SAMPLES, FORM_P, GUST_SHARE, PLACE_P, PLACE_SHARE, PUSH_ACROSS_SHARE, PUSH_ALONG,
-    PUSH_BESIDE, PUSH_EXPLAINED, PUSH_FEW_RECORDINGS, PUSH_FIRST, PUSH_IN_FOUR, PUSH_IN_MANY, PUSH_IN_MANY_OF_FORM,
-    PUSH_IN_THREE, PUSH_IN_TWO, PUSH_MANY_RECORDINGS, PUSH_MIRRORED, UNLISTED_P,
+    BEYOND_DOUBT, BEYOND_FORM, FEWEST_RECORDINGS, FEWEST_RUNS, FEWEST_SAMPLES, GUST_SHARE, REMAINDER,
 };
 use crate::physics::Kind;
+use crate::statistics::{chi_squared_p, scattered_p};
 use serde::Serialize;
 
 /// What a diagnosis concludes.
@@ -44,46 +43,59 @@ pub struct PushTest {
     pub recordings: usize,
 }
 
+/// What a push is held against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chance {
+    /// The chance of naming anything when nothing is missing.
+    pub alpha: f64,
+    /// Whether the ship's own forces have the form that the model gives them ([`form_holds`]).
+    pub form_holds: bool,
+}
+
 impl PushTest {
+    /// Chance of a statistic of three components whose scatter is known from the recordings in which they act alone: the same force
+    /// in many recordings is soon beyond chance, in two it must exceed a far higher statistic. One has no scatter and counts as two.
+    fn by_chance(&self, statistic: f64) -> f64 {
+        scattered_p(statistic, COMPONENTS, self.recordings.max(FEWEST_RECORDINGS - 1))
+    }
+
     /// Whether such a force is an event and not the ship's own forces, which in another form make windows in manoeuvres like
-    /// crash stops: the same force in many recordings is soon beyond chance, in one or two it must exceed a far higher statistic.
-    /// `form_holds` says whether the ship's own forces have the form that the model gives them.
-    pub fn is_event(&self, form_holds: bool) -> bool {
-        let needed = match self.recordings {
-            0..=2 => PUSH_IN_TWO,
-            3 => PUSH_IN_THREE,
-            4 => PUSH_IN_FOUR,
-            _ if form_holds => PUSH_IN_MANY_OF_FORM,
-            _ => PUSH_IN_MANY,
-        };
-        if self.across > PUSH_ACROSS_SHARE {
-            self.statistic > needed && self.mirrored < PUSH_MIRRORED
+    /// crash stops. Along the keel thrust and resistance of another form make windows too: only what a remainder of its
+    /// statistic shows counts there.
+    pub fn is_event(&self, chance: Chance) -> bool {
+        let Chance { alpha, form_holds } = chance;
+        let certain = chi_squared_p(self.statistic, COMPONENTS) < if form_holds { alpha * alpha } else { BEYOND_FORM };
+        if self.across > 1.0 - REMAINDER {
+            certain && self.by_chance(self.statistic) < alpha && self.mirrored < 0.5 * REMAINDER
         } else {
-            self.statistic > PUSH_ALONG * needed && form_holds
+            certain && self.by_chance(REMAINDER * self.statistic) < alpha && form_holds
         }
     }
 
-    /// Whether an event is put into the base model before any mechanism is refitted: it gains more than the best mechanism
-    /// (statistic `mechanism`) and more than any smooth force law (statistic less degrees `law`) could.
-    pub fn enters_first(&self, form_holds: bool, mechanism: f64, law: f64) -> bool {
-        self.is_event(form_holds) && self.statistic > (PUSH_FIRST * mechanism).max(law)
+    /// Whether an event is put into the base model before any mechanism is refitted: the best mechanism (statistic `mechanism`)
+    /// gains too little to explain it up to a remainder, and any smooth force law (statistic less degrees `law`) gains less.
+    pub fn enters_first(&self, chance: Chance, mechanism: f64, law: f64) -> bool {
+        self.is_event(chance) && mechanism < (1.0 - REMAINDER) * self.statistic && law < self.statistic
     }
 
     /// Whether a mechanism beside which a push has this statistic left explains the push.
     pub fn is_explained(&self, left: f64) -> bool {
-        left < PUSH_EXPLAINED * self.statistic
+        left < REMAINDER * self.statistic
     }
 
-    /// Whether the push may be named beside a mechanism: its statistic is beyond what the form of the mechanism leaves.
+    /// Whether the push may be named beside a mechanism, whose form leaves something too: not where it acts in few recordings.
     fn exceeds_form(&self) -> bool {
-        self.statistic > if self.recordings >= PUSH_MANY_RECORDINGS { PUSH_BESIDE } else { PUSH_IN_TWO }
+        chi_squared_p(self.statistic, COMPONENTS) < BEYOND_FORM && !self.in_few_recordings()
     }
 
     /// Whether it acts in so few recordings that the ship's own forces in a state of their own could be meant.
     pub fn in_few_recordings(&self) -> bool {
-        self.recordings <= PUSH_FEW_RECORDINGS
+        self.recordings < FEWEST_RECORDINGS
     }
 }
+
+/// Surge force, sway force and yaw moment.
+const COMPONENTS: usize = 3;
 
 /// The test of an earth-fixed force that differs between parts of the water.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,8 +149,8 @@ pub struct TestTable {
     pub unknown_force: f64,
     /// Force that turns the ship, m u^2 / L \[N\].
     pub turning_force: f64,
-    /// Whether the ship's own forces have the form that the model gives them ([`form_holds`]).
-    pub form_holds: bool,
+    /// What a push is held against.
+    pub chance: Chance,
     /// Whether a push may be named.
     pub push_allowed: bool,
     /// The push that was put into the base model before any mechanism was refitted.
@@ -174,13 +186,13 @@ pub struct Decision {
 }
 
 /// Whether the ship's own forces have the form that the model gives them, by the p-value of a free mirror-symmetric force law.
-pub fn form_holds(symmetric_p: f64) -> bool {
-    symmetric_p > FORM_P
+pub fn form_holds(symmetric_p: f64, alpha: f64) -> bool {
+    symmetric_p > alpha
 }
 
 /// Whether recordings are read as explicit Euler steps, by the gain in log-posterior.
 pub fn is_euler(gain: f64) -> bool {
-    gain > EULER_GAIN
+    gain > -BEYOND_DOUBT.ln()
 }
 
 /// The verdict on a table of tests.
@@ -196,7 +208,7 @@ pub fn decide(table: &TestTable) -> Decision {
     } else if refutation == Some(Unlisted::Place) {
         refutation
     } else {
-        (left.asymmetric_p < UNLISTED_P).then_some(Unlisted::Law)
+        (left.asymmetric_p < BEYOND_FORM).then_some(Unlisted::Law)
     };
     let verdict = if table.audit_blocks {
         Verdict::Sensor
@@ -215,20 +227,19 @@ pub fn decide(table: &TestTable) -> Decision {
 fn refutation(table: &TestTable) -> Option<Unlisted> {
     let left = table.selected.as_ref().filter(|_| !table.mechanisms.is_empty())?;
     let explained: f64 = table.mechanisms.iter().map(|m| m.statistic).sum();
-    if left.asymmetric_p < UNLISTED_P && left.asymmetric_gain > explained {
+    if left.asymmetric_p < BEYOND_FORM && left.asymmetric_gain > explained {
         return Some(Unlisted::Law);
     }
     let place = left.place.filter(|_| table.mechanisms.iter().any(|m| m.weather))?;
-    let local = place.p < PLACE_P && place.statistic - place.degrees as f64 > PLACE_SHARE * explained;
+    let local = place.p < BEYOND_DOUBT && place.statistic - place.degrees as f64 > REMAINDER * explained;
     local.then_some(Unlisted::Place)
 }
 
 /// The push that is named beside these mechanisms, which leave so much.
 fn push(table: &TestTable, mechanisms: &[MechanismTest], left: &ResidualTests) -> Option<PushTest> {
     let alone = mechanisms.is_empty();
-    let is_named = |p: &PushTest| {
-        p.is_event(table.form_holds) && p.statistic > left.asymmetric_gain && (alone || p.exceeds_form())
-    };
+    let is_named =
+        |p: &PushTest| p.is_event(table.chance) && p.statistic > left.asymmetric_gain && (alone || p.exceeds_form());
     let may = table.push_allowed && !table.audit_blocks;
     let push = table.push_in_base.or(left.push.filter(|p| may && is_named(p)));
     // Beside a mechanism a force in one or two recordings may be that mechanism's.
@@ -273,6 +284,10 @@ mod tests {
         ResidualTests { asymmetric_p: 0.4, asymmetric_gain: 2.0, push: None, place: None }
     }
 
+    /// Forces of the model's form, and another form.
+    const OF_FORM: Chance = Chance { alpha: 0.01, form_holds: true };
+    const OF_ANOTHER: Chance = Chance { form_holds: false, ..OF_FORM };
+
     /// Thirty runs in which no test finds anything.
     fn null() -> TestTable {
         TestTable {
@@ -282,7 +297,7 @@ mod tests {
             samples: 3600,
             unknown_force: 1.0e3,
             turning_force: 1.0e6,
-            form_holds: true,
+            chance: OF_FORM,
             push_allowed: true,
             push_in_base: None,
             base: quiet(),
@@ -313,12 +328,12 @@ mod tests {
 
     #[test]
     fn an_euler_reading_is_numerics_before_all_that_is_not_named() {
-        let euler = TestTable { euler_gain: 15.1, runs: 3, ..null() };
+        let euler = TestTable { euler_gain: 13.9, runs: 3, ..null() };
         assert_eq!(verdict(&euler), Verdict::Numerics);
         let base = ResidualTests { asymmetric_p: 1e-9, ..quiet() };
         let law = decide(&TestTable { base, ..euler });
         assert_eq!((law.verdict, law.unlisted), (Verdict::Numerics, Some(Unlisted::Law)));
-        assert_eq!(verdict(&TestTable { euler_gain: 15.0, ..null() }), Verdict::NothingMissing);
+        assert_eq!(verdict(&TestTable { euler_gain: 13.8, ..null() }), Verdict::NothingMissing);
         assert_eq!(verdict(&TestTable { euler_gain: 100.0, ..with(&[CURRENT]) }), Verdict::Named);
     }
 
@@ -357,52 +372,56 @@ mod tests {
 
     #[test]
     fn weather_that_differs_from_place_to_place_is_not_weather() {
-        let place = Some(PlaceTest { statistic: 50.0, degrees: 16, p: 1e-5 });
+        let place = Some(PlaceTest { statistic: 80.0, degrees: 16, p: 1e-7 });
         let table = TestTable { selected: Some(ResidualTests { place, ..quiet() }), ..with(&[CURRENT]) };
         let d = decide(&table);
         assert_eq!((d.verdict, d.unlisted), (Verdict::NotInCatalogue, Some(Unlisted::Place)));
         let stall = MechanismTest { kind: Kind::Ship, weather: false, ..CURRENT };
         assert_eq!(verdict(&TestTable { mechanisms: vec![stall], ..table.clone() }), Verdict::Named);
-        let larger = MechanismTest { statistic: 120.0, ..CURRENT };
+        let larger = MechanismTest { statistic: 161.0, ..CURRENT };
         assert_eq!(verdict(&TestTable { mechanisms: vec![larger], ..table }), Verdict::Named);
     }
 
     #[test]
     fn a_push_needs_a_higher_statistic_in_fewer_recordings() {
-        for (recordings, needed) in [(1, 250.0), (2, 250.0), (3, 120.0), (4, 50.0), (5, 25.0), (12, 25.0)] {
-            assert!(push_in(recordings, needed + 0.1).is_event(true), "{recordings}");
-            assert!(!push_in(recordings, needed).is_event(true), "{recordings}");
+        // Three times the 99 % points of F with 3 and so many degrees of freedom; in many recordings the 99.99 % point of chi-squared.
+        for (recordings, needed) in [(2, 297.5), (3, 88.4), (4, 50.1), (5, 36.2), (12, 21.1), (30, 21.1)] {
+            assert!(push_in(recordings, needed + 0.1).is_event(OF_FORM), "{recordings}");
+            assert!(!push_in(recordings, needed - 0.1).is_event(OF_FORM), "{recordings}");
         }
-        assert!(!push_in(5, 40.0).is_event(false) && push_in(5, 40.1).is_event(false));
-        assert!(!PushTest { mirrored: 0.2, ..push_in(5, 1e3) }.is_event(true));
+        assert!(push_in(1, 297.6).is_event(OF_FORM) && !push_in(1, 297.4).is_event(OF_FORM));
+        // Beyond doubt on a ship of another form: chi-squared of 3 degrees at 1e-8.
+        assert!(!push_in(5, 40.0).is_event(OF_ANOTHER) && push_in(5, 40.3).is_event(OF_ANOTHER));
+        assert!(!PushTest { mirrored: 0.2, ..push_in(5, 1e3) }.is_event(OF_FORM));
     }
 
     #[test]
     fn a_push_along_the_keel_needs_two_and_a_half_times_as_much_and_forces_of_the_models_form() {
-        let along = |statistic: f64| PushTest { across: 0.7, mirrored: 0.9, ..push_in(5, statistic) };
-        assert!(along(62.6).is_event(true) && !along(62.5).is_event(true) && !along(1e4).is_event(false));
+        let along = |statistic: f64| PushTest { across: 0.6, mirrored: 0.9, ..push_in(5, statistic) };
+        assert!(along(90.8).is_event(OF_FORM) && !along(90.2).is_event(OF_FORM) && !along(1e4).is_event(OF_ANOTHER));
     }
 
     #[test]
-    fn a_push_enters_first_where_it_gains_more_than_any_mechanism_and_law_and_is_explained_below_half_its_statistic() {
+    fn a_push_enters_first_where_no_mechanism_gains_enough_to_explain_it_and_is_explained_where_less_than_a_remainder_is_left()
+     {
         let push = push_in(5, 100.0);
-        assert!(push.enters_first(true, 49.0, 99.0));
-        assert!(!push.enters_first(true, 51.0, 99.0) && !push.enters_first(true, 49.0, 101.0));
-        assert!(!push_in(2, 100.0).enters_first(true, 0.0, 0.0));
-        assert!(push.is_explained(49.0) && !push.is_explained(50.0));
+        assert!(push.enters_first(OF_FORM, 59.0, 99.0));
+        assert!(!push.enters_first(OF_FORM, 61.0, 99.0) && !push.enters_first(OF_FORM, 59.0, 101.0));
+        assert!(!push_in(2, 100.0).enters_first(OF_FORM, 0.0, 0.0));
+        assert!(push.is_explained(39.0) && !push.is_explained(40.0));
     }
 
     #[test]
     fn a_push_alone_is_named_and_in_one_or_two_recordings_it_is_one_of_two() {
         let base = |push| ResidualTests { push: Some(push), ..quiet() };
-        let d = decide(&TestTable { base: base(push_in(5, 30.0)), ..null() });
+        let d = decide(&TestTable { base: base(push_in(5, 40.0)), ..null() });
         assert_eq!((d.verdict, d.names_push), (Verdict::Named, true));
         assert_eq!(verdict(&TestTable { base: base(push_in(2, 300.0)), ..null() }), Verdict::OneOf);
-        assert_eq!(verdict(&TestTable { base: base(push_in(5, 24.0)), ..null() }), Verdict::NothingMissing);
+        assert_eq!(verdict(&TestTable { base: base(push_in(5, 34.0)), ..null() }), Verdict::NothingMissing);
         // A smooth force law gains more, or the user does not want pushes.
-        let law = ResidualTests { asymmetric_gain: 31.0, ..base(push_in(5, 30.0)) };
+        let law = ResidualTests { asymmetric_gain: 41.0, ..base(push_in(5, 40.0)) };
         assert_eq!(verdict(&TestTable { base: law, ..null() }), Verdict::NothingMissing);
-        let withheld = TestTable { base: base(push_in(5, 30.0)), push_allowed: false, ..null() };
+        let withheld = TestTable { base: base(push_in(5, 40.0)), push_allowed: false, ..null() };
         assert_eq!(verdict(&withheld), Verdict::NothingMissing);
         // In the base model it was weighed before.
         assert_eq!(verdict(&TestTable { push_in_base: Some(push_in(2, 10.0)), ..null() }), Verdict::OneOf);
@@ -414,8 +433,9 @@ mod tests {
             let selected = Some(ResidualTests { push: Some(push), ..quiet() });
             decide(&TestTable { selected, ..with(&[CURRENT]) }).names_push
         };
-        assert!(beside(push_in(5, 60.1)) && !beside(push_in(5, 60.0)));
-        assert!(beside(push_in(4, 250.1)) && !beside(push_in(4, 249.0)));
+        // Beyond chance by the scatter over the recordings, and beyond what another form makes.
+        assert!(beside(push_in(3, 88.5)) && !beside(push_in(3, 88.2)));
+        assert!(beside(push_in(10, 40.3)) && !beside(push_in(10, 40.0)));
         assert!(!beside(push_in(2, 1e4)));
         let in_base = TestTable { push_in_base: Some(push_in(2, 1e4)), ..with(&[CURRENT]) };
         assert!(!decide(&in_base).names_push);

@@ -3,7 +3,6 @@
 
 use super::admit::Admission;
 use super::candidate::{Candidate, Extent};
-use super::compete::Selected;
 use super::decide::PushTest;
 use super::estimate::Estimate;
 use super::evidence::Scatter;
@@ -15,6 +14,7 @@ use super::push::Push;
 use super::region::RegionTest;
 use super::screen::Screen;
 use super::select::Selection;
+use super::selected::Selected;
 use super::settings::SCATTER_GROUPS;
 use super::wald::Wald;
 use crate::audit::Issue;

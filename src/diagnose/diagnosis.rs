@@ -5,8 +5,8 @@ use super::admit::Admission;
 use super::calibrate::ErrorRates;
 use super::decide::Verdict;
 use super::finding::Finding;
-use super::generic::SurrogateTerm;
 use super::influence::Following;
+use super::law::Law;
 use super::locate::Location;
 use super::noise::Noise;
 use super::prove::HeldOut;
@@ -175,7 +175,8 @@ pub struct Diagnosis {
     pub following: Following,
     /// Recordings that the diagnosis set aside for the proof, because the user marked none.
     pub set_aside: usize,
-    /// Whether the improved model is the base model, refitted: nothing was found, or unseen runs are predicted worse with it.
+    /// Whether the improved model is the base model, refitted: nothing was found and no law confirmed, or unseen runs are predicted
+    /// worse with it.
     pub improved_is_base: bool,
     /// Audit of recordings and numerics.
     pub admission: Admission,
@@ -199,8 +200,9 @@ pub struct Diagnosis {
     pub adequacy_before: Adequacy,
     /// Generic tests with the findings.
     pub adequacy_after: Adequacy,
-    /// A sparse surrogate for what the catalogue does not hold.
-    pub surrogate: Vec<SurrogateTerm>,
+    /// A law for what the catalogue does not hold; absent where no monomial is worth its price.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub law: Option<Law>,
     /// How far the model's own parameters moved.
     pub moves: Vec<Move>,
     /// Whether the ship's own two sides differ.
@@ -231,4 +233,11 @@ pub struct Diagnosis {
     /// The base model, refitted.
     #[serde(skip)]
     pub base: Model,
+}
+
+impl Diagnosis {
+    /// Whether something was added to the base model and compared with it: a finding, or a law that unseen runs confirm.
+    pub fn adds(&self) -> bool {
+        !self.findings.is_empty() || self.law.as_ref().is_some_and(Law::is_confirmed)
+    }
 }

@@ -2,9 +2,9 @@
 //! It compares numbers of the score tests with the settings; it estimates nothing.
 
 use super::candidate::{Candidate, Extent};
-use super::compete::Selected;
 use super::screen::{Row, Screen};
-use super::settings::{FURTHER_P, FURTHER_SHARE, OWN_PHYSICS_ALPHA, SECOND_OPINION_P, SMALLEST_SIZE, Settings};
+use super::selected::Selected;
+use super::settings::{BEYOND_DOUBT, REMAINDER, Settings};
 use crate::physics::{Kind, Mechanism};
 
 /// The mechanisms that may be named beside those that were selected, the most significant first. `alone` says that nothing was
@@ -16,7 +16,9 @@ pub fn eligible<'s>(
     alone: bool,
     settings: &Settings,
 ) -> Vec<&'s Row> {
-    let may = |r: &&Row| may_be_named(r, candidates, settings) && (alone || may_be_further(r, selected, candidates));
+    let may = |r: &&Row| {
+        may_be_named(r, candidates, settings) && (alone || may_be_further(&Further::from(*r), selected, candidates))
+    };
     s.rows.iter().filter(may).collect()
 }
 
@@ -27,29 +29,52 @@ pub fn may_be_named(r: &Row, candidates: &[Candidate], settings: &Settings) -> b
     r.visible
         && r.admissible
         && r.p < significance(m, settings)
-        && r.size >= SMALLEST_SIZE
-        && r.second_opinion < SECOND_OPINION_P
+        && is_worth_naming(r.size)
+        && r.second_opinion < settings.alpha
+}
+
+/// Whether a size, in units of the mechanism's own floor, is worth naming.
+pub fn is_worth_naming(size: f64) -> bool {
+    size >= 1.0
 }
 
 /// The chance of a false name that a mechanism's test is allowed. Sessions differ in what was sailed, and a ship's forces in
 /// another form then differ between them: the ship's own physics must be more significant.
 fn significance(m: &Mechanism, settings: &Settings) -> f64 {
     let own = m.needs_reference && m.kind == Kind::Ship;
-    if own { OWN_PHYSICS_ALPHA * settings.alpha } else { settings.alpha }
+    if own { settings.strict() } else { settings.alpha }
+}
+
+/// What a mechanism that may be named beside others is judged by.
+pub struct Further<'a> {
+    /// Index into the candidates.
+    pub candidate: usize,
+    /// Where it acts.
+    pub extent: &'a Extent,
+    /// The statistic of its test.
+    pub statistic: f64,
+    /// The corrected p-value.
+    pub p: f64,
+}
+
+impl<'a> From<&'a Row> for Further<'a> {
+    fn from(r: &'a Row) -> Self {
+        Self { candidate: r.candidate, extent: &r.extent, statistic: r.test.statistic, p: r.p }
+    }
 }
 
 /// Whether a further mechanism may be named beside those that were selected: it must be beyond doubt, and more than what an
 /// imperfect form of an earlier one leaves behind.
-pub fn may_be_further(r: &Row, selected: &[Selected], candidates: &[Candidate]) -> bool {
-    let m = candidates[r.candidate].mechanism;
+pub fn may_be_further(f: &Further, selected: &[Selected], candidates: &[Candidate]) -> bool {
+    let m = candidates[f.candidate].mechanism;
     let left_by = |a: &Selected| {
         let first = candidates[a.candidate].mechanism;
         // Changes of the ship's own forces between sessions: the form of the first cannot be told from a second.
-        let between_sessions = a.extent != Extent::All && r.extent != Extent::All;
+        let between_sessions = a.extent != Extent::All && *f.extent != Extent::All;
         (between_sessions && m.needs_reference && first.needs_reference)
-            || (m.looks_like(first) && r.test.statistic < FURTHER_SHARE * a.statistic)
+            || (m.looks_like(first) && f.statistic < REMAINDER * a.statistic)
     };
-    r.p < FURTHER_P && selected.iter().all(|a| a.candidate != r.candidate && !left_by(a))
+    f.p < BEYOND_DOUBT && selected.iter().all(|a| a.candidate != f.candidate && !left_by(a))
 }
 
 #[cfg(test)]
@@ -105,19 +130,19 @@ mod tests {
     }
 
     #[test]
-    fn physics_of_the_ship_that_needs_a_reference_session_must_be_fifty_times_as_significant() {
+    fn physics_of_the_ship_that_needs_a_reference_session_must_be_a_hundred_times_as_significant() {
         let model = example::model();
         let all = super::super::candidate::candidates(&model, &[]);
         let own = |c: &Candidate| c.mechanism.needs_reference && c.mechanism.kind == Kind::Ship;
         let (settings, index) = (Settings::default(), all.iter().position(own).unwrap());
         let may = |p: f64| may_be_named(&Row { p, ..row(index, 60.0) }, &all, &settings);
-        assert!(may(0.00019) && !may(0.0002));
+        assert!(may(0.000099) && !may(0.000101));
     }
 
     #[test]
     fn a_further_mechanism_must_be_beyond_doubt_another_and_no_remainder_of_a_look_alike() {
         let list = list();
-        let may = |r: &Row, taken: &[Selected]| may_be_further(r, taken, &list);
+        let may = |r: &Row, taken: &[Selected]| may_be_further(&Further::from(r), taken, &list);
         assert!(may(&row(0, 60.0), &[]) && !may(&Row { p: 1e-6, ..row(0, 60.0) }, &[]));
         assert!(!may(&row(0, 60.0), &[selected(0, 10.0)]));
         // Mean wind and a force fixed on the earth look alike, a compass looks like neither.

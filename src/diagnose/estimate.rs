@@ -118,6 +118,24 @@ pub struct Estimate {
     pub free: Vec<FreeParameter>,
     /// Log-likelihood plus log-prior at the estimate.
     pub log_posterior: f64,
+    /// Information of the free parameters in the runs that it was estimated from, where the last pass over them gave it.
+    pub seen: Option<DMatrix<f64>>,
+}
+
+impl Estimate {
+    /// Information of the free parameters in the runs that it was estimated from, and of their priors, in units of their columns.
+    pub fn information(&self, integration: Integration, runs: &[Run]) -> DMatrix<f64> {
+        let by_a_pass = || {
+            let columns: Vec<Column> = self.free.iter().map(|f| f.column).collect();
+            let filter = Filter::new(&self.model, integration, &columns);
+            Sums::of(&filter, runs, &self.noise, &restrictions(&self.free), false).evidence.total.information
+        };
+        let mut information = self.seen.clone().unwrap_or_else(by_a_pass);
+        for (i, free) in self.free.iter().enumerate() {
+            information[(i, i)] += free.prior_terms(&self.model).0;
+        }
+        information
+    }
 }
 
 /// One pass over all runs, for scores, information and innovations; filtered states are dropped.
@@ -297,7 +315,7 @@ pub fn estimate_above(
     let columns = free.iter().map(|f| f.column).collect();
     let fit = Fit { integration, runs, free, columns, prior, effort };
     let mut point = fit.at(start.clone(), *noise, effort.rounds > 0);
-    let (mut damping, mut sparse_serves) = (0.0, false);
+    let (mut damping, mut sparse_serves, mut refused) = (0.0, false, false);
     for round in 0..effort.rounds {
         point = fit.differentiated(point);
         let quadratic = quadratic(&point.sums.evidence, &point.model, free);
@@ -311,14 +329,22 @@ pub fn estimate_above(
             None => true,
             Some(next) => length < STEP_SHORTEST || next.value - point.value < STEP_GAIN,
         };
+        // A noise that was refused at this very point would be refused again.
+        refused &= next.is_none();
         point = next.unwrap_or(point);
-        if fits_noise {
-            point = fit.with_noise(point, &mut sparse_serves, !last);
-        } else if settled {
-            break;
+        if !fits_noise {
+            if settled {
+                break;
+            }
+        } else if !refused {
+            let better = fit.better_noise(&point, &mut sparse_serves, !last);
+            refused = better.is_none();
+            point = better.unwrap_or(point);
         }
     }
-    Estimate { model: point.model, noise: point.noise, free: free.to_vec(), log_posterior: point.value }
+    let Point { model, noise, sums, value, differentiated } = point;
+    let seen = differentiated.then_some(sums.evidence.total.information);
+    Estimate { model, noise, free: free.to_vec(), log_posterior: value, seen }
 }
 
 /// A fit of free parameters and noise to runs.
@@ -388,26 +414,27 @@ impl Fit<'_> {
         (taken.map(|(point, _)| point), last.map_or(0.0, |(_, length)| length))
     }
 
-    /// The point with the noise fitted to some runs, linearised; where that noise does not serve all runs, to all of them.
+    /// The point with the noise fitted to some runs, linearised; where that noise does not serve all runs, to all of them. `None` where
+    /// that serves no better than the noise of the point.
     ///
     /// `sparse_serves` says whether the noise of some runs did last, and `goes_on` whether the point is stepped from.
-    fn with_noise(&self, point: Point, sparse_serves: &mut bool, goes_on: bool) -> Point {
+    fn better_noise(&self, point: &Point, sparse_serves: &mut bool, goes_on: bool) -> Option<Point> {
         let sparse = self.runs.len().div_ceil(self.effort.noise_runs.max(1)).max(1);
         let mut strides = vec![sparse, 1];
         strides.dedup();
         for stride in strides {
             let differentiated = goes_on && (stride == 1 || *sparse_serves);
-            let trial = self.at(point.model.clone(), self.noise(&point, stride), differentiated);
+            let trial = self.at(point.model.clone(), self.noise(point, stride), differentiated);
             let serves = trial.value > point.value;
             *sparse_serves = serves && stride > 1;
             if serves {
-                return trial;
+                return Some(trial);
             }
             if point.value - trial.value < NOISE_REFUSED {
                 break;
             }
         }
-        point
+        None
     }
 
     /// The noise of every `stride`-th run at a point.
@@ -506,6 +533,17 @@ mod tests {
             let off = (f.value(&found.model) - f.value(&truth)) / (f.column.scale * base.inverse[(i, i)].sqrt());
             assert!(off.abs() < 4.0, "{}: {off}", truth.parameters[f.column.parameter].name);
         }
+    }
+
+    #[test]
+    fn the_information_of_the_last_pass_is_that_of_a_pass_of_its_own() {
+        let truth = model();
+        let runs = runs(&truth, 5);
+        let (free, prior) = (at(&truth).free, NoisePrior::around(&noise()));
+        let found = estimate(&truth, RK4, &runs, &free, &noise(), &prior, REFIT);
+        let again = Estimate { seen: None, ..found.clone() };
+        assert!(found.seen.is_some());
+        assert_eq!(found.information(RK4, &runs), again.information(RK4, &runs));
     }
 
     #[test]

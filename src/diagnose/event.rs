@@ -3,17 +3,19 @@
 
 use super::base::{BaseFit, Question};
 use super::candidate::{Candidate, applies, candidates};
-use super::compete::{Selected, compete};
-use super::decide::{PushTest, form_holds, is_euler};
+use super::compete::compete;
+use super::decide::{Chance, PushTest, form_holds, is_euler};
 use super::eligible::{eligible, may_be_named};
 use super::estimate::{Estimate, calm_noise};
 use super::finding::PUSH;
-use super::locate::{Location, locate};
+use super::locate::{Location, locate, pushes_left};
 use super::noise::{Noise, NoisePrior};
 use super::problem::Problem;
 use super::push::Push;
 use super::screen::{Screen, screen};
+use super::selected::Selected;
 use super::settings::{SETTLE, Settings};
+use super::together::leading;
 use crate::audit::Issue;
 use crate::recording::Run;
 use crate::simulate::Integration;
@@ -42,9 +44,10 @@ impl BaseTests {
         let mut location = locate(estimate, *integration, runs);
         (question.progress)("testing every mechanism");
         let screen = screen(estimate, *integration, runs, &candidates);
-        let form_holds = form_holds(screen.symmetric_test.p);
-        let search = PushSearch { form_holds, integration: *integration, prior: *prior, noise: estimate.noise };
-        location.push = if form_holds { search.push(estimate, runs) } else { search.event(&location) };
+        let alpha = question.settings.alpha;
+        let chance = Chance { alpha, form_holds: form_holds(screen.symmetric_test.p, alpha) };
+        let search = PushSearch { chance, integration: *integration, prior: *prior, noise: estimate.noise };
+        location.push = if chance.form_holds { search.push(estimate, runs) } else { search.event(&location.pushes) };
         Self { candidates, location, screen, search, fit }
     }
 
@@ -75,8 +78,8 @@ impl BaseTests {
 /// How pushes are sought in what a model leaves.
 #[derive(Clone, Copy)]
 pub struct PushSearch {
-    /// Whether the ship's own forces have the form that the model gives them.
-    pub form_holds: bool,
+    /// What a push is held against.
+    pub chance: Chance,
     integration: Integration,
     prior: NoisePrior,
     /// Noise of the base model before any push.
@@ -84,17 +87,18 @@ pub struct PushSearch {
 }
 
 impl PushSearch {
-    /// The strongest push of a location that is an event, or else the strongest.
-    pub fn event(&self, location: &Location) -> Option<Push> {
-        let is_event = |p: &&Push| PushTest::from(*p).is_event(self.form_holds);
-        location.pushes.iter().find(is_event).or(location.pushes.first()).cloned()
+    /// The strongest push that is an event, or else the strongest, of pushes of which the strongest is first.
+    pub fn event(&self, pushes: &[Push]) -> Option<Push> {
+        let is_event = |p: &&Push| PushTest::from(*p).is_event(self.chance);
+        pushes.iter().find(is_event).or(pushes.first()).cloned()
     }
 
     /// The push that an estimate leaves. An event inflates the noise that it is tested against; where the ship's own forces have
     /// the model's form, calmer runs tell the noise better.
     fn push(&self, found: &Estimate, runs: &[Run]) -> Option<Push> {
-        let noise = if self.form_holds { calm_noise(found, self.integration, runs, &self.prior) } else { self.noise };
-        self.event(&locate(&Estimate { noise, ..found.clone() }, self.integration, runs))
+        let noise =
+            if self.chance.form_holds { calm_noise(found, self.integration, runs, &self.prior) } else { self.noise };
+        self.event(&pushes_left(&Estimate { noise, seen: None, ..found.clone() }, self.integration, runs))
     }
 }
 
@@ -121,9 +125,8 @@ impl Opening {
         let settings = question.settings;
         let may_be = |r: &&_| may_be_named(r, &tests.candidates, settings);
         let mechanism = tests.screen.rows.iter().find(may_be).map_or(0.0, |r| r.test.statistic);
-        let enters = |p: &&Push| {
-            PushTest::from(*p).enters_first(tests.search.form_holds, mechanism, tests.screen.asymmetric_gain())
-        };
+        let enters =
+            |p: &&Push| PushTest::from(*p).enters_first(tests.search.chance, mechanism, tests.screen.asymmetric_gain());
         let may_push = !tests.is_blocked() && settings.allows(PUSH);
         let Some(push) = tests.location.push.as_ref().filter(|p| may_push && enters(p)).cloned() else {
             return Self { tests, push: None, first: None };
@@ -134,7 +137,8 @@ impl Opening {
         } else {
             let leaders = eligible(&tests.screen, &tests.candidates, &[], true, settings);
             // What is rejected here is tried again by the selection.
-            compete(&tests.screen, leaders, &tests.fit.estimate, problem, &mut Vec::new(), question.progress)
+            let (estimate, sensor) = (&tests.fit.estimate, leading(&tests.fit.estimate, problem, &[], true));
+            compete(&tests.screen, leaders, sensor, estimate, problem, &mut Vec::new(), question.progress)
         };
         let left =
             |(_, found): &(Selected, Estimate)| tests.search.push(found, problem.runs).map_or(0.0, |p| p.statistic);
@@ -188,20 +192,20 @@ mod tests {
     #[test]
     fn an_event_comes_before_a_stronger_push_that_cannot_be_one() {
         let search = PushSearch {
-            form_holds: true,
+            chance: Chance { alpha: 0.01, form_holds: true },
             integration: Integration::default(),
             prior: NoisePrior::around(&noise()),
             noise: noise(),
         };
         let model = model();
-        let found = Estimate { model, noise: noise(), free: Vec::new(), log_posterior: 0.0 };
+        let found = Estimate { model, noise: noise(), free: Vec::new(), log_posterior: 0.0, seen: None };
         let mut location = locate(&found, Integration::default(), &runs(&found.model, 2));
         location.pushes = vec![push(200.0, 2), push(60.0, 5)];
-        assert_eq!(search.event(&location).map(|p| p.statistic), Some(60.0));
+        assert_eq!(search.event(&location.pushes).map(|p| p.statistic), Some(60.0));
         location.pushes.pop();
-        assert_eq!(search.event(&location).map(|p| p.statistic), Some(200.0));
+        assert_eq!(search.event(&location.pushes).map(|p| p.statistic), Some(200.0));
         location.pushes.clear();
-        assert!(search.event(&location).is_none());
+        assert!(search.event(&location.pushes).is_none());
     }
 
     #[test]

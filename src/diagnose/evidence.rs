@@ -118,25 +118,18 @@ impl Evidence {
     /// mean g)(g_c - mean g)^T` and `g_c` the scores summed over the runs of group c of C (Liang & Zeger 1986, Biometrika 73,
     /// eq. 2.7). A model whose form is not the ship's errs alike in all runs of a kind.
     pub fn scatter(&self, base: &Base, groups: &[&str]) -> Scatter {
-        let n = base.columns.len();
+        let of_base = |g: DVector<f64>| DVector::from_fn(base.columns.len(), |i, _| g[base.columns[i]]);
+        let sums: Vec<DVector<f64>> = self.sums_of(groups).into_iter().map(of_base).collect();
+        Scatter { factors: excess(&base.inverse, &sums), degrees: degrees_of(sums.len()) }
+    }
+
+    /// The scores summed over the runs of each group, `groups` naming that of each run.
+    pub fn sums_of(&self, groups: &[&str]) -> Vec<DVector<f64>> {
         let mut sums: BTreeMap<&str, DVector<f64>> = BTreeMap::new();
         for (group, run) in groups.iter().zip(&self.runs) {
-            let score = DVector::from_fn(n, |i, _| run.score[base.columns[i]]);
-            *sums.entry(group).or_insert_with(|| DVector::zeros(n)) += score;
+            *sums.entry(group).or_insert_with(|| DVector::zeros(run.score.len())) += &run.score;
         }
-        let count = sums.len() as f64;
-        let degrees = (sums.len().max(SCATTER_GROUPS) - 1) as f64;
-        if sums.len() < 2 {
-            return Scatter { factors: vec![1.0; n], degrees };
-        }
-        let mean = sums.values().fold(DVector::zeros(n), |a: DVector<f64>, g| a + g) / count;
-        let mut variances = DVector::zeros(n);
-        for g in sums.values() {
-            let step = &base.inverse * (g - &mean);
-            variances += step.component_mul(&step) * (count / (count - 1.0));
-        }
-        let factor = |i: usize| (variances[i] / base.inverse[(i, i)]).sqrt();
-        Scatter { factors: (0..n).map(factor).map(|f| if f > 1.0 { f } else { 1.0 }).collect(), degrees }
+        sums.into_values().collect()
     }
 
     /// Tests a group of columns, common to all runs, the base profiled out.
@@ -216,6 +209,27 @@ impl Evidence {
 /// Whether so many sessions of so many runs can be held against each other: a session of one run is a run, not a reference.
 pub fn are_references(sessions: usize, runs: usize) -> bool {
     2 * sessions <= runs
+}
+
+/// The factors of [`Evidence::scatter`] for an inverse information and the scores of each group; 1 of fewer than two groups.
+pub fn excess(inverse: &DMatrix<f64>, sums: &[DVector<f64>]) -> Vec<f64> {
+    let (n, count) = (inverse.nrows(), sums.len() as f64);
+    if sums.len() < 2 {
+        return vec![1.0; n];
+    }
+    let mean = sums.iter().fold(DVector::zeros(n), |a: DVector<f64>, g| a + g) / count;
+    let mut variances = DVector::zeros(n);
+    for g in sums {
+        let step = inverse * (g - &mean);
+        variances += step.component_mul(&step) * (count / (count - 1.0));
+    }
+    let factor = |i: usize| (variances[i] / inverse[(i, i)]).sqrt();
+    (0..n).map(factor).map(|f| if f > 1.0 { f } else { 1.0 }).collect()
+}
+
+/// Degrees of freedom of a scatter between so many groups of runs.
+pub fn degrees_of(groups: usize) -> f64 {
+    (groups.max(SCATTER_GROUPS) - 1) as f64
 }
 
 /// How far estimates scatter beyond their information.

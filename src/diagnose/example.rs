@@ -9,6 +9,7 @@ use super::filter::Column;
 use super::finding::{Amplitude, Equations, Finding};
 use super::grade::Grade;
 use super::noise::{Noise, SensorNoise};
+use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::physics::{Form, Kind};
 use crate::recording::{Run, Split, measured};
@@ -96,6 +97,19 @@ fn run(model: &Model, i: usize, rng: &mut ChaCha8Rng) -> Run {
     }
 }
 
+/// Runs of [`runs`] whose sensors err.
+pub fn erring(errors: &[(&str, f64)], count: usize) -> Vec<Run> {
+    let with = with(errors);
+    let dynamics = Dynamics::new(&with, with.values_in(""));
+    let mut runs = runs(&model(), count);
+    for run in &mut runs {
+        for (m, input) in run.measured.iter_mut().zip(&run.inputs) {
+            *m = dynamics.report(&m.map(Option::unwrap), input).map(Some);
+        }
+    }
+    runs
+}
+
 /// Runs of [`runs`] as a program with explicit Euler steps of one sample period makes them, with the same errors of the sensors.
 pub fn made_by_euler(model: &Model, count: usize) -> Vec<Run> {
     let mut runs = runs(model, count);
@@ -117,7 +131,7 @@ pub fn sailed(model: &Model, run: &Run, steps: Integration) -> Vec<[f64; 6]> {
 /// An estimate at a model's values with the noise above and its own free parameters.
 pub fn at(model: &Model) -> Estimate {
     let free = super::base::base_parameters(model, false);
-    Estimate { model: model.clone(), noise: noise(), free, log_posterior: 0.0 }
+    Estimate { model: model.clone(), noise: noise(), free, log_posterior: 0.0, seen: None }
 }
 
 /// A mechanism of the catalogue as a candidate.

@@ -3,7 +3,7 @@
 
 use super::candidate::Candidate;
 use super::estimate::Estimate;
-use super::settings::{CANCELLED_SHARE, FORCE_STRIDE};
+use super::settings::{FORCE_STRIDE, REMAINDER};
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::parameter::Parity;
@@ -70,7 +70,7 @@ pub fn only_cancels(c: &Candidate, found: &Estimate, runs: &[Run]) -> bool {
         gross += b[1] * b[1];
         left += n[1] * n[1];
     }
-    left < CANCELLED_SHARE * CANCELLED_SHARE * gross
+    left < REMAINDER * REMAINDER * gross
 }
 
 #[cfg(test)]

@@ -4,21 +4,9 @@
 use super::algebra::pick;
 use super::evidence::{Base, Evidence};
 use super::filter::Column;
-use super::settings::{GENERIC_GAIN, SURROGATE_P, SURROGATE_TERMS};
+use super::settings::PARAMETER_PRICE;
 use crate::model::Model;
 use nalgebra::{DVector, SymmetricEigen};
-use serde::Serialize;
-
-/// One monomial of a sparse surrogate force law.
-#[derive(Clone, Debug, Serialize)]
-pub struct SurrogateTerm {
-    /// Dotted name of the monomial.
-    pub name: String,
-    /// Coefficient.
-    pub value: f64,
-    /// Standard error.
-    pub error: f64,
-}
 
 /// Where the basis of a generic force law is among the columns.
 #[derive(Clone, Debug)]
@@ -52,9 +40,9 @@ impl GenericLaw {
         self.symmetric.iter().chain(&self.asymmetric).copied().collect()
     }
 
-    /// Name of one of its columns.
-    fn name(&self, column: usize) -> &str {
-        self.columns().iter().position(|c| *c == column).map_or("", |i| self.names[i].as_str())
+    /// Dotted name of one of its columns.
+    pub fn name(&self, column: usize) -> Option<&str> {
+        self.columns().iter().position(|c| *c == column).map(|i| self.names[i].as_str())
     }
 }
 
@@ -92,7 +80,7 @@ fn shrinkage(information: &DVector<f64>, score: &DVector<f64>) -> Option<f64> {
     for i in 0..=40 {
         let v = 10f64.powf(-8.0 + 0.25 * f64::from(i));
         let value = log_marginal(v);
-        if value > best + GENERIC_GAIN {
+        if value > best + PARAMETER_PRICE {
             (best, variance) = (value, Some(v));
         }
     }
@@ -114,36 +102,6 @@ pub fn corrected(law: &GenericLaw, evidence: &Evidence, base: &Base, model: &Mod
         }
     }
     model
-}
-
-/// A sparse law by forward selection of a few monomials, for physics that the catalogue does not hold.
-pub fn surrogate(law: &GenericLaw, evidence: &Evidence, base: &Base, model: &Model) -> Vec<SurrogateTerm> {
-    let columns: Vec<usize> = law.asymmetric.iter().chain(&law.symmetric).copied().collect();
-    let mut with_chosen = base.clone();
-    let mut chosen: Vec<usize> = Vec::new();
-    for _ in 0..SURROGATE_TERMS {
-        let best = columns
-            .iter()
-            .filter(|c| !chosen.contains(c))
-            .map(|c| (evidence.test(&with_chosen, &[*c]), *c))
-            .max_by(|a, b| a.0.statistic.total_cmp(&b.0.statistic));
-        let Some((test, c)) = best else { break };
-        if test.p * columns.len() as f64 > SURROGATE_P {
-            break;
-        }
-        chosen.push(c);
-        with_chosen = evidence.extend(base, &chosen);
-    }
-    if chosen.is_empty() {
-        return Vec::new();
-    }
-    let test = evidence.test(base, &chosen);
-    let term = |(i, c): (usize, &usize)| {
-        let name = law.name(*c).to_owned();
-        let scale = model.index(&name).map_or(1.0, |j| model.parameters[j].scale);
-        SurrogateTerm { value: test.amplitude[i] * scale, error: test.covariance[(i, i)].max(0.0).sqrt() * scale, name }
-    };
-    chosen.iter().enumerate().map(term).collect()
 }
 
 #[cfg(test)]

@@ -15,14 +15,18 @@ pub enum Grade {
     /// Unseen runs are worse with it by log-likelihood or free simulation, the interval below zero: it is not named and not written to the
     /// improved model.
     Refuted,
+    /// Unseen runs are not worse with it by itself, but with all that was found together, and it does least for them of what was found: it is
+    /// neither named nor written.
+    RefutedTogether,
     /// Significant, but it changes predictions by less than matters, or a clock by less than is resolved.
     Immaterial,
     /// The interval of its size does not exclude zero.
     Undetermined,
-    /// Weather nearly all of whose effect the ship's own parameters can take over, on the headings that were sailed.
+    /// Weather nearly all of whose effect the ship's own parameters and the zeros and scales of its sensors can take over, on the headings
+    /// that were sailed.
     NotIsolated,
-    /// A clock or an actuator that is late, and explicit Euler steps of one sample period explain it as well: these recordings cannot tell
-    /// it from a coarse simulation or from values held until the next sample.
+    /// A clock, a point of the positions or an actuator that is late, and explicit Euler steps of one sample period explain it as well:
+    /// these recordings cannot tell it from a coarse simulation or from values held until the next sample.
     EulerSteps,
     /// Most repetitions on the same recordings told otherwise do not find it.
     Unstable,
@@ -55,7 +59,7 @@ impl GainTest {
         self.ci95.is_some_and(|[low, _]| low > 0.0)
     }
 
-    fn is_below_zero(&self) -> bool {
+    pub(super) fn is_below_zero(&self) -> bool {
         self.ci95.is_some_and(|[_, high]| high < 0.0)
     }
 }
@@ -65,7 +69,8 @@ impl GainTest {
 pub struct FindingTests {
     /// Whether the interval of its size excludes zero, whichever of its parameters brings it.
     pub excludes_zero: bool,
-    /// For weather, the share of its information that is left beside the ship's own parameters, in the worst direction; 1 for all else.
+    /// For weather, the share of its information that is left beside the ship's own parameters and the errors of its sensors, in the worst
+    /// direction; 1 for all else.
     pub isolated: f64,
     /// By how much it changes predictions of the training runs, as a share of the error there is, in the channel where that is most.
     pub change: f64,
@@ -89,20 +94,50 @@ impl FindingTests {
     /// Whether unseen runs are worse with it beyond chance by one measure at least: what simulates them worse is no improvement, however
     /// likely it makes them, and nothing is named beside its refutation.
     pub fn is_refuted(&self) -> bool {
-        [self.likelihood, self.prediction].into_iter().flatten().any(|g| g.is_below_zero())
-    }
-
-    /// Whether unseen runs are better with it: by one measure beyond chance, and not worse by the other.
-    fn is_confirmed(&self) -> bool {
-        let confirms = |one: Option<GainTest>, other: Option<GainTest>| {
-            one.is_some_and(|g| g.is_above_zero()) && other.is_some_and(|g| g.gain >= 0.0)
-        };
-        confirms(self.likelihood, self.prediction) || confirms(self.prediction, self.likelihood)
+        refute(self.likelihood, self.prediction)
     }
 
     /// Whether it changes predictions by too little to matter, or a clock by less than is resolved.
     fn is_immaterial(&self) -> bool {
         self.change < MATERIAL_SHARE || self.shift.is_some_and(|s| s < RESOLVED_SAMPLES)
+    }
+}
+
+/// Whether unseen runs are worse beyond chance by log-likelihood or free simulation.
+fn refute(likelihood: Option<GainTest>, prediction: Option<GainTest>) -> bool {
+    [likelihood, prediction].into_iter().flatten().any(|g| g.is_below_zero())
+}
+
+/// Whether unseen runs are better: by one measure beyond chance, and not worse by the other.
+fn confirm(likelihood: Option<GainTest>, prediction: Option<GainTest>) -> bool {
+    let confirms = |one: Option<GainTest>, other: Option<GainTest>| {
+        one.is_some_and(|g| g.is_above_zero()) && other.is_some_and(|g| g.gain >= 0.0)
+    };
+    confirms(likelihood, prediction) || confirms(prediction, likelihood)
+}
+
+/// How well a law for what the catalogue does not hold is supported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LawGrade {
+    /// Unseen runs are better with it, as for [`Grade::Confirmed`].
+    Confirmed,
+    /// The training runs speak for it; unseen runs cannot tell, or there are none.
+    Exploratory,
+    /// Unseen runs are worse with it, as for [`Grade::Refuted`].
+    Refuted,
+}
+
+impl LawGrade {
+    /// The grade that gains on unseen runs give.
+    pub fn new(likelihood: Option<GainTest>, prediction: Option<GainTest>) -> Self {
+        if refute(likelihood, prediction) {
+            Self::Refuted
+        } else if confirm(likelihood, prediction) {
+            Self::Confirmed
+        } else {
+            Self::Exploratory
+        }
     }
 }
 
@@ -120,7 +155,7 @@ pub fn grade(tests: &FindingTests) -> Grade {
         Grade::NotIsolated
     } else if tests.by_steps > 1.0 - FORM_TOLERANCE {
         Grade::EulerSteps
-    } else if tests.is_confirmed() {
+    } else if confirm(tests.likelihood, tests.prediction) {
         Grade::Confirmed
     } else {
         Grade::Suspected
@@ -184,6 +219,23 @@ mod tests {
         ] {
             assert_eq!(grade(&tests), Grade::Refuted);
         }
+    }
+
+    #[test]
+    fn unseen_runs_grade_a_law_as_they_grade_a_finding() {
+        let little_worse = Some(GainTest { gain: -0.01, ci95: Some([-0.2, 0.1]) });
+        let all = [None, BETTER, UNDECIDED, WORSE, little_worse];
+        for (likelihood, prediction) in all.iter().flat_map(|a| all.map(|b| (*a, b))) {
+            let expected = match grade(&FindingTests { likelihood, prediction, ..sound() }) {
+                Grade::Confirmed => LawGrade::Confirmed,
+                Grade::Refuted => LawGrade::Refuted,
+                _ => LawGrade::Exploratory,
+            };
+            assert_eq!(LawGrade::new(likelihood, prediction), expected, "{likelihood:?} {prediction:?}");
+        }
+        assert_eq!(LawGrade::new(BETTER, UNDECIDED), LawGrade::Confirmed);
+        assert_eq!(LawGrade::new(BETTER, WORSE), LawGrade::Refuted);
+        assert_eq!(LawGrade::new(None, None), LawGrade::Exploratory);
     }
 
     #[test]

@@ -1,9 +1,10 @@
-//! The model as a file should hold it: the user's terms and those of the mechanisms that act, without neutral ones.
-//! It takes values from an estimate and changes none.
+//! The model as a file should hold it: the user's terms and those of the mechanisms that act, without neutral ones, each parameter inside
+//! its bounds. It decides nothing.
 
 use super::algebra::pseudo_inverse;
-use super::estimate::{Estimate, FreeParameter, Sums};
-use super::filter::{Column, Filter};
+use super::estimate::{Estimate, FreeParameter};
+use super::problem::Problem;
+use super::settings::REFIT;
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;
@@ -47,17 +48,44 @@ pub fn trimmed(found: &Model, user: &Model, free: &[FreeParameter]) -> Model {
     model
 }
 
+/// An estimate that every command reads. A carried hull coefficient is held by its prior alone, which knows no sign: where it ends outside
+/// its bounds (a damping that drives) it is put at the bound, and the rest is estimated again, until none is outside.
+pub fn inside_bounds(estimate: &Estimate, problem: Problem) -> Estimate {
+    let mut found = estimate.clone();
+    loop {
+        let (held, free): (Vec<FreeParameter>, Vec<FreeParameter>) =
+            found.free.iter().cloned().partition(|f| is_outside(f, &found.model));
+        if held.is_empty() {
+            return found;
+        }
+        let mut model = found.model.clone();
+        held.iter().for_each(|f| put_inside(f, &mut model));
+        found = problem.estimate(&model, &free, &found.noise, REFIT);
+    }
+}
+
+/// The parameter with what is added to it where it acts.
+fn total(f: &FreeParameter, model: &Model) -> f64 {
+    let addition = if f.sessions.is_some() { f.value(model) } else { 0.0 };
+    model.parameters[f.column.parameter].value + addition
+}
+
+fn is_outside(f: &FreeParameter, model: &Model) -> bool {
+    let p = &model.parameters[f.column.parameter];
+    !(p.lower..=p.upper).contains(&total(f, model))
+}
+
+fn put_inside(f: &FreeParameter, model: &mut Model) {
+    let p = &model.parameters[f.column.parameter];
+    let inside = total(f, model).clamp(p.lower, p.upper);
+    let value = if f.sessions.is_some() { inside - p.value } else { inside };
+    f.set(model, value);
+}
+
 /// The covariance of the parameters of `improved`, from the filter's information and the priors at an estimate. Additions in single
 /// sessions are profiled out.
 pub fn uncertainty(found: &Estimate, improved: &Model, integration: Integration, runs: &[Run]) -> Option<Uncertainty> {
-    let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
-    let sessions: Vec<_> = found.free.iter().map(|f| f.sessions.clone()).collect();
-    let filter = Filter::new(&found.model, integration, &columns);
-    let mut information = Sums::of(&filter, runs, &found.noise, &sessions, false).evidence.total.information;
-    for (i, free) in found.free.iter().enumerate() {
-        information[(i, i)] += free.prior_terms(&found.model).0;
-    }
-    let covariance = pseudo_inverse(&information);
+    let covariance = pseudo_inverse(&found.information(integration, runs));
     let name = |f: &FreeParameter| found.model.parameters[f.column.parameter].name.clone();
     let kept: Vec<usize> = (0..found.free.len())
         .filter(|i| found.free[*i].sessions.is_none() && improved.index(&name(&found.free[*i])).is_some())
@@ -76,8 +104,34 @@ pub fn uncertainty(found: &Estimate, improved: &Model, integration: Integration,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::estimate::FreeParameter;
-    use crate::diagnose::example::{column, model, with};
+    use crate::diagnose::candidate::candidates;
+    use crate::diagnose::example::{RK4, at, column, model, runs, with};
+    use crate::diagnose::noise::NoisePrior;
+    use crate::diagnose::settings::{SETTLE, Settings};
+    use crate::model::Prior;
+
+    #[test]
+    fn a_carried_coefficient_that_ends_outside_its_bounds_is_written_at_the_bound_and_the_rest_is_estimated_again() {
+        let (m, settings) = (model(), Settings::default());
+        let (list, prior, runs) = (candidates(&m, &[]), NoisePrior::around(&at(&m).noise), runs(&m, 6));
+        let problem = Problem { integration: RK4, runs: &runs, candidates: &list, prior: &prior, settings: &settings };
+        let damping = column(&m, "hull.Nrr");
+        let p = &m.parameters[damping.parameter];
+        // Sure that the damping drives, against the runs.
+        let sure = Prior { mean: p.upper + 3.0 * p.scale, sd: 1e-3 * p.scale };
+        let free =
+            [FreeParameter::common(damping, Some(sure)), FreeParameter::common(column(&m, "rudder.lift1"), None)];
+        let mut start = m.clone();
+        start.parameters[damping.parameter].value = sure.mean;
+        let outside = problem.estimate(&start, &free, &at(&m).noise, SETTLE);
+        assert!(free[0].value(&outside.model) > p.upper);
+        let inside = inside_bounds(&outside, problem);
+        assert_eq!((inside.model.parameters[damping.parameter].value, inside.free.len()), (p.upper, 1));
+        assert!(inside.log_posterior > outside.log_posterior, "{} {}", inside.log_posterior, outside.log_posterior);
+        // What is inside stays as it is.
+        let again = inside_bounds(&inside, problem);
+        assert_eq!((again.log_posterior, again.free.len()), (inside.log_posterior, 1));
+    }
 
     #[test]
     fn a_file_holds_the_terms_that_act_and_those_that_differ_between_sessions_and_no_neutral_one() {

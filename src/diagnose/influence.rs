@@ -72,6 +72,11 @@ impl Following {
     pub fn share(&self) -> f64 {
         if self.runs == 0 { 1.0 } else { self.better_than_steady as f64 / self.runs as f64 }
     }
+
+    /// Whether the model is better than steady motion on half of the runs, so that it is a base on which anything may be named.
+    pub fn holds(&self) -> bool {
+        2 * self.better_than_steady >= self.runs
+    }
 }
 
 /// Steady motion from a run's first state: `x' = u cos psi - v sin psi`, `y' = u sin psi + v cos psi`, `psi' = r` with u, v and r kept.

@@ -2,13 +2,15 @@
 //! that of the yaw rate. Errors of sensors are compared by it without a model of the ship; which are compared is decided elsewhere.
 
 use super::candidate::Candidate;
+use super::evidence::chi_squared_p;
 use super::filter::Column;
-use super::settings::{GATE, STRETCH};
+use super::settings::{GATE, SENSOR_SPREAD, STRETCH};
 use super::unseen::interval_of_sum;
+use super::wald::Wald;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::recording::{Measured, Run};
-use crate::state::STATES;
+use crate::state::{Force, STATES, State};
 use crate::statistics::median;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -49,18 +51,12 @@ impl Agreement {
 /// counts by the scatter that all errors together leave in it, with outliers at the filter's gate.
 pub fn agreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> Option<Vec<Agreement>> {
     let stretches: Vec<Stretch> = runs.iter().flat_map(|run| stretches(model, run, candidates)).collect();
-    let all: Vec<usize> = (0..stretches.first()?.columns.len()).collect();
-    let mut scatter = scatter_of(stretches.iter().map(|s| s.left));
-    // Without what the errors explain, and then by what is left without outliers.
-    for _ in 0..2 {
-        let fitted = solve(&stretches, &all, &scatter)?;
-        scatter = scatter_of(stretches.iter().map(|s| less(s, &all, &fitted)));
-    }
+    let (scatter, _) = all_at_once(&stretches)?;
     let mut from = 0;
     let each = candidates.iter().map(|c| {
         let own: Vec<usize> = (from..from + c.columns.len()).collect();
         from += c.columns.len();
-        let amplitude = solve(&stretches, &own, &scatter)?;
+        let Solution { amplitude, .. } = solve(&stretches, &own, &scatter, 0.0)?;
         let mut by_recording = BTreeMap::new();
         for stretch in &stretches {
             let of = |(e, s): (f64, f64)| -0.5 * (e / s).powi(2).min(GATE * GATE);
@@ -70,6 +66,49 @@ pub fn agreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> Opt
         Some(Agreement { amplitude, by_recording })
     });
     each.collect()
+}
+
+/// An error of a sensor beside those of all sensors, by what the sensors say of each other alone.
+pub struct Disagreement {
+    /// Its amplitudes, in units of the candidate's columns.
+    pub amplitude: DVector<f64>,
+    /// Its p-value.
+    pub p: f64,
+}
+
+/// All candidates together at the amplitudes at which the sensors agree best, each with the weak prior of [`SENSOR_SPREAD`]; `None`
+/// where no stretch has every channel. What the sensors cannot show of each other (an antenna that carries its velocities with it) is
+/// not significant, whatever it does.
+pub fn disagreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> Option<Vec<Disagreement>> {
+    let stretches: Vec<Stretch> = runs.iter().flat_map(|run| stretches(model, run, candidates)).collect();
+    let (_, Solution { amplitude, information }) = all_at_once(&stretches)?;
+    let all = Wald { covariance: information.try_inverse()?, value: amplitude };
+    let mut from = 0;
+    let each = candidates.iter().map(|c| {
+        let own: Vec<usize> = (from..from + c.columns.len()).collect();
+        from += own.len();
+        let part = all.part(&own);
+        Disagreement { p: chi_squared_p(part.statistic(), own.len()), amplitude: part.value }
+    });
+    Some(each.collect())
+}
+
+/// The scatter of each equation beside the errors of all sensors, and these errors.
+fn all_at_once(stretches: &[Stretch]) -> Option<(Equations, Solution)> {
+    let all: Vec<usize> = (0..stretches.first()?.columns.len()).collect();
+    let scatter = scatter_of(stretches.iter().map(|s| s.left));
+    // Without what the errors explain, and then by what is left without outliers.
+    let next = |scatter: Equations| {
+        let fitted = solve(stretches, &all, &scatter, SENSOR_SPREAD.powi(-2))?;
+        Some((scatter_of(stretches.iter().map(|s| less(s, &all, &fitted.amplitude))), fitted))
+    };
+    next(next(scatter)?.0)
+}
+
+/// Amplitudes, with their information.
+struct Solution {
+    amplitude: DVector<f64>,
+    information: DMatrix<f64>,
 }
 
 /// What some columns at these amplitudes leave of a stretch.
@@ -86,25 +125,28 @@ fn scatter_of(left: impl Iterator<Item = Equations> + Clone) -> Equations {
     std::array::from_fn(|q| (1.4826 * of(q)).max(f64::MIN_POSITIVE.sqrt()))
 }
 
-/// Amplitudes of some columns by least squares over the stretches that are no outliers; `None` where they are no numbers.
-fn solve(stretches: &[Stretch], columns: &[usize], scatter: &Equations) -> Option<DVector<f64>> {
+/// Amplitudes of some columns by least squares over the stretches that are no outliers, with a prior of this precision around zero;
+/// `None` where they are no numbers.
+fn solve(stretches: &[Stretch], columns: &[usize], scatter: &Equations, precision: f64) -> Option<Solution> {
     let n = columns.len();
     let mut amplitude = DVector::zeros(n);
+    let mut information = DMatrix::zeros(n, n);
     // What lies far from a first solution is left out of the second.
     for round in 0..2 {
-        let (mut h, mut g) = (DMatrix::zeros(n, n), DVector::zeros(n));
+        information = DMatrix::from_diagonal_element(n, n, precision);
+        let mut g = DVector::zeros(n);
         for s in stretches {
             let left = less(s, columns, &amplitude);
             for q in (0..3).filter(|q| round == 0 || left[*q].abs() < GATE * scatter[*q]) {
                 let row = DVector::from_fn(n, |i, _| s.columns[columns[i]][q] / scatter[q]);
                 g += &row * (s.left[q] / scatter[q]);
-                h += &row * row.transpose();
+                information += &row * row.transpose();
             }
         }
-        let least = f64::EPSILON * f64::max(h.amax(), f64::MIN_POSITIVE);
-        amplitude = h.pseudo_inverse(least).ok()? * g;
+        let least = f64::EPSILON * f64::max(information.amax(), f64::MIN_POSITIVE);
+        amplitude = information.clone().pseudo_inverse(least).ok()? * g;
     }
-    amplitude.iter().all(|a| a.is_finite()).then_some(amplitude)
+    amplitude.iter().all(|a| a.is_finite()).then_some(Solution { amplitude, information })
 }
 
 /// The stretches of a run in which every channel was measured.
@@ -141,16 +183,26 @@ fn reports(
     candidates: &[&Candidate],
 ) -> Vec<Vec<[f64; STATES]>> {
     let values = model.values_in(&run.session);
-    let of = |values: Vec<f64>| -> Vec<[f64; STATES]> {
-        let dynamics = Dynamics::new(model, values);
-        let report = |(s, input): (&Option<[f64; STATES]>, _)| s.map_or([0.0; STATES], |s| dynamics.report(&s, input));
-        states.iter().zip(&run.inputs).map(report).collect()
+    let plain = Dynamics::new(model, values.clone());
+    // What moves the ship is the same whatever a sensor reports of it.
+    let moving = |(s, input): (&Option<[f64; STATES]>, _)| {
+        let state = State::from_array((*s)?);
+        let (rates, flow) = plain.rates(&state, input, &Force::zero());
+        Some((state, rates, flow))
     };
-    let plain = of(values.clone());
+    let moving: Vec<_> = states.iter().zip(&run.inputs).map(moving).collect();
+    let of = |dynamics: &Dynamics<f64>| -> Vec<[f64; STATES]> {
+        let report = |(moving, input): (&Option<(State<f64>, _, _)>, _)| {
+            moving.as_ref().map_or([0.0; STATES], |(state, rates, flow)| dynamics.measure(state, input, rates, flow))
+        };
+        moving.iter().zip(&run.inputs).map(report).collect()
+    };
+    let without = of(&plain);
     let column = |c: &Column| {
         let mut with = values.clone();
         with[c.parameter] += c.scale;
-        of(with).iter().zip(&plain).map(|(w, p)| std::array::from_fn(|j| w[j] - p[j])).collect()
+        let with = of(&Dynamics::new(model, with));
+        with.iter().zip(&without).map(|(w, p)| std::array::from_fn(|j| w[j] - p[j])).collect()
     };
     candidates.iter().flat_map(|c| &c.columns).map(column).collect()
 }
@@ -203,20 +255,7 @@ fn along(states: &[[f64; STATES]], [north, east, turn]: Equations) -> Equations 
 mod tests {
     use super::*;
     use crate::diagnose::candidate::candidates;
-    use crate::diagnose::example::{model, runs, with};
-
-    /// Runs of a ship whose sensors err.
-    fn erring(errors: &[(&str, f64)], count: usize) -> Vec<Run> {
-        let with = with(errors);
-        let dynamics = Dynamics::new(&with, with.values_in(""));
-        let mut runs = runs(&model(), count);
-        for run in &mut runs {
-            for (m, input) in run.measured.iter_mut().zip(&run.inputs) {
-                *m = dynamics.report(&whole(m).unwrap(), input).map(Some);
-            }
-        }
-        runs
-    }
+    use crate::diagnose::example::{erring, model, runs, with};
 
     /// Agreements under a late clock, a lever arm of the positions and a bias of the gyro.
     fn of(runs: &[Run]) -> Vec<Agreement> {
@@ -245,6 +284,39 @@ mod tests {
         assert!(off[1].over(&off[0]).is_some_and(|[low, _]| low > 0.0), "{:?}", off[1].over(&off[0]));
         let biased = of(&erring(&[("yaw_rate_bias.bias", 0.002)], 12));
         assert!((value(&biased[2], 0, "yaw_rate_bias.bias") - 0.002).abs() < 2e-4);
+    }
+
+    #[test]
+    fn all_errors_together_are_found_each_at_its_size() {
+        let m = model();
+        let list = candidates(&m, &[]);
+        let names = ["time_skew", "log_scale", "yaw_rate_bias", "position_lever"];
+        let asked = names.map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
+        let errors = [("time_skew.position", -1.5), ("log_scale.error", 0.08)];
+        let runs = erring(&[&errors[..], &[("yaw_rate_bias.bias", 0.001)]].concat(), 12);
+        let all = disagreements(&m, &runs, &asked).unwrap();
+        // The log's error as a share of what it reads.
+        let expected = [(-1.5, 0.3), (0.0, 0.3), (0.08 / 1.08, 0.004), (0.001, 2e-4), (0.0, 2.0), (0.0, 2.0)];
+        let columns = asked.iter().flat_map(|c| &c.columns);
+        for ((c, a), (value, near)) in columns.zip(all.iter().flat_map(|d| d.amplitude.iter())).zip(expected) {
+            assert!((a * c.scale - value).abs() < near, "{}: {}", m.parameters[c.parameter].name, a * c.scale);
+        }
+    }
+
+    #[test]
+    fn only_what_the_sensors_show_of_each_other_is_significant() {
+        let m = model();
+        let list = candidates(&m, &[]);
+        let asked =
+            ["time_skew", "log_scale", "antenna"].map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
+        let of = |errors: &[(&str, f64)]| {
+            disagreements(&m, &erring(errors, 12), &asked).unwrap().iter().map(|d| d.p < 1e-6).collect::<Vec<_>>()
+        };
+        assert_eq!(of(&[("time_skew.position", -1.5)]), [true, false, false]);
+        assert_eq!(of(&[("log_scale.error", 0.08)]), [false, true, false]);
+        // Positions and velocities of one other point agree with each other.
+        assert_eq!(of(&[("antenna.x", 20.0)]), [false, false, false]);
+        assert_eq!(of(&[]), [false, false, false]);
     }
 
     #[test]

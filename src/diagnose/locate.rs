@@ -58,13 +58,26 @@ struct Layout<'a> {
     /// Blocks in the longest run.
     blocks: usize,
     chart: Option<Chart>,
+    /// Whether there are forces in blocks alone.
+    in_time: bool,
 }
 
 impl<'a> Layout<'a> {
-    fn new(found: &'a Estimate, runs: &[Run]) -> Self {
+    fn new(found: &'a Estimate, runs: &[Run], in_time: bool) -> Self {
         let length = block_length(runs);
         let blocks = runs.iter().map(|r| r.measured.len().div_ceil(length)).max().unwrap_or(0);
-        Self { model: &found.model, unit: found.noise.force, length, blocks, chart: Chart::of(runs) }
+        let chart = if in_time { None } else { Chart::of(runs) };
+        Self { model: &found.model, unit: found.noise.force, length, blocks, chart, in_time }
+    }
+
+    /// Blocks in a run.
+    fn blocks_in(&self, run: &Run) -> usize {
+        run.measured.len().div_ceil(self.length)
+    }
+
+    /// Windows of all runs.
+    fn choices(&self, runs: &[Run]) -> f64 {
+        runs.iter().map(|run| choices(self.blocks_in(run))).sum()
     }
 
     /// First of the regions' forces.
@@ -79,7 +92,7 @@ impl<'a> Layout<'a> {
 
     /// How many forces there are.
     fn count(&self) -> usize {
-        self.parts() + 2 * PARTS + 2
+        if self.in_time { self.regions() } else { self.parts() + 2 * PARTS + 2 }
     }
 
     /// The forces at a sample: X, Y, N of each.
@@ -90,7 +103,7 @@ impl<'a> Layout<'a> {
             f[e] = self.unit[e];
             out[3 * (sample / self.length) + e] = f;
             for (j, (_, inside)) in REGIONS.iter().enumerate() {
-                if inside(self.model, s, i) {
+                if !self.in_time && inside(self.model, s, i) {
                     out[self.regions() + 3 * j + e] = f;
                 }
             }
@@ -107,34 +120,69 @@ impl<'a> Layout<'a> {
     }
 }
 
+/// What constant forces are tested beside.
+struct Beside<'a> {
+    /// A pass gives its columns, those of the force law and those of constant forces.
+    filter: Filter<'a>,
+    restrictions: Vec<Option<Vec<String>>>,
+    /// The free parameters of an estimate.
+    base: Base,
+    /// These and a smooth force law: a force that comes back with the ship's state is no event, and what the law can mimic is taken out
+    /// of the windows.
+    widened: Base,
+    /// First of the constant forces.
+    first: usize,
+}
+
+impl<'a> Beside<'a> {
+    /// By a first pass, so that a second one needs to keep no more of a run than the evidence for a force in each span of its time.
+    fn new(found: &'a Estimate, integration: Integration, runs: &[Run]) -> Self {
+        let model = &found.model;
+        let mut columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
+        let law = GenericLaw::append(&mut columns, model);
+        let (first, filter) = (columns.len(), Filter::new(model, integration, &columns));
+        let restrictions = restrictions(&found.free);
+        let parameters = Sums::of(&filter, runs, &found.noise, &restrictions, false).evidence;
+        let base = base_of(&parameters, model, &found.free);
+        let widened = widen(&parameters, &base, &law.columns());
+        Self { filter, restrictions, base, widened, first }
+    }
+}
+
+/// The pushes that an estimate leaves, the strongest first, as [`locate`] has them.
+pub fn pushes_left(found: &Estimate, integration: Integration, runs: &[Run]) -> Vec<Push> {
+    let Beside { filter, restrictions, widened, first, .. } = Beside::new(found, integration, runs);
+    let layout = Layout::new(found, runs, true);
+    let basis = |(_, k): (usize, usize), s: &State<f64>, i: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
+        layout.forces(k, s, i, out);
+    };
+    let wanted = Wanted { basis: Some((layout.count(), &basis)), ..Wanted::default() };
+    let step = widened.step();
+    let of_run = |run: &Run, Pass { score, information, .. }: Pass| {
+        let one = run_evidence(run, score, information, &restrictions);
+        Blocks::new(layout.length, layout.blocks_in(run), &one, &widened, &step, first)
+    };
+    let mut blocks = Vec::with_capacity(runs.len());
+    filter.each(runs, &found.noise, wanted, of_run, |one| blocks.push(one));
+    pushes(runs, &blocks, &layout.unit, layout.choices(runs))
+}
+
 /// Tests constant forces in every window of every run, in every region and in every part of the water.
-///
-/// The base and the smooth force law beside it come from a first pass, so that a second one needs to keep no more of a run than
-/// the evidence for a force in each span of its time.
 pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Location {
     let model = &found.model;
-    let mut columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
-    let law = GenericLaw::append(&mut columns, model);
-    let (first, filter) = (columns.len(), Filter::new(model, integration, &columns));
-    let restrictions = restrictions(&found.free);
-    let parameters = Sums::of(&filter, runs, &found.noise, &restrictions, false).evidence;
-    let base = base_of(&parameters, model, &found.free);
-    // A force that comes back with the ship's state is no event: what a smooth force law can mimic is taken out of the windows.
-    let widened = widen(&parameters, &base, &law.columns());
-    drop(parameters);
-    let layout = Layout::new(found, runs);
+    let Beside { filter, restrictions, base, widened, first } = Beside::new(found, integration, runs);
+    let layout = Layout::new(found, runs, false);
     let unit = &layout.unit;
     let basis = |(_, k): (usize, usize), s: &State<f64>, i: &Inputs<f64>, out: &mut Vec<[f64; 3]>| {
         layout.forces(k, s, i, out);
     };
     let wanted = Wanted { basis: Some((layout.count(), &basis)), ..Wanted::default() };
     let (step, widened_step) = (base.step(), widened.step());
-    let blocks_in = |r: &Run| r.measured.len().div_ceil(layout.length);
     let of_run = |run: &Run, pass: Pass| {
         let Pass { score, information, filtered, .. } = pass;
         let one = run_evidence(run, score, information, &restrictions);
         RunForces {
-            blocks: Blocks::new(layout.length, blocks_in(run), &one, &widened, &widened_step, first),
+            blocks: Blocks::new(layout.length, layout.blocks_in(run), &one, &widened, &widened_step, first),
             excess: excess(&one, &base, &step, first, layout.blocks),
             squares: filtered.iter().map(|z| std::array::from_fn(|eq| z[6 + eq] * z[6 + eq])).collect(),
             visited: visited(run, &filtered, model),
@@ -149,7 +197,7 @@ pub fn locate(found: &Estimate, integration: Integration, runs: &[Run]) -> Locat
         forces.add(&one.excess, &one.squares);
         samples.add(&one.visited);
     });
-    let looked_at: f64 = runs.iter().map(|r| choices(blocks_in(r))).sum();
+    let looked_at = layout.choices(runs);
     let pushes = pushes(runs, &blocks, unit, looked_at);
     Location {
         equations: forces.shares(unit),
@@ -245,10 +293,23 @@ mod tests {
     }
 
     #[test]
+    fn the_pushes_that_are_left_are_those_of_the_location_to_the_bit() {
+        let found = at(&model());
+        let turned = runs(&with(&[("asymmetric.N_0", 4e5)]), 5).swap_remove(1);
+        let mut runs = runs(&model(), 5);
+        runs[1] = turned;
+        let all = locate(&found, RK4, &runs).pushes;
+        let alone = pushes_left(&found, RK4, &runs);
+        assert!(!all.is_empty());
+        let told = |pushes: &[Push]| format!("{pushes:?}");
+        assert_eq!(told(&all), told(&alone));
+    }
+
+    #[test]
     fn every_force_of_the_layout_has_a_column_of_its_own() {
         let model = model();
         let (found, runs) = (at(&model), runs(&model, 3));
-        let layout = Layout::new(&found, &runs);
+        let layout = Layout::new(&found, &runs, false);
         let mut forces = Vec::new();
         let state = State { x: 10.0, y: 20.0, psi: 0.5, u: 4.0, v: 0.0, r: 0.0 };
         layout.forces(7, &state, &Inputs::actuators(0.0, 1.0, 0.0), &mut forces);

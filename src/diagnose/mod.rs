@@ -17,6 +17,7 @@
 //! | its grade, a pure function of these | [`grade::Grade`] |
 //! | verdict and what is named, withdrawn findings taken out | `answer::Answer` |
 //! | the same analysis on recordings told otherwise | [`stability::Stability`] |
+//! | where the catalogue does not hold what is missing, a law for it | [`law::Law`] |
 //! | the same analysis on simulated recordings | [`calibrate::ErrorRates`] |
 //! | proof of all findings on held-out runs | [`prove::HeldOut`] |
 //! | document | [`diagnosis::Diagnosis`] |
@@ -55,7 +56,9 @@ pub mod grade;
 mod improved;
 pub mod influence;
 mod kinematic;
+pub mod law;
 pub mod locate;
+mod monomial;
 pub mod noise;
 pub mod noise_fit;
 mod optimise;
@@ -72,14 +75,17 @@ mod residual;
 pub mod sailed;
 pub mod screen;
 mod select;
+mod selected;
 mod set_aside;
 pub mod settings;
 mod side_by_side;
 pub mod sides;
 pub mod signal;
+mod sparse;
 pub mod stability;
 mod step_map;
 pub(crate) mod summary;
+mod together;
 pub mod unseen;
 mod wald;
 mod weigh;

@@ -1,7 +1,7 @@
 //! The estimate of the noise by maximum likelihood on linearised runs, and a first guess of it from the recordings alone.
 //! The ship's parameters are held: they are estimated elsewhere, in turn with the noise.
 
-use super::covariance::{Discrete, Z, correct, initial, predict, sum_along, sum_of_rows};
+use super::covariance::{Discrete, Told, Z, correct, correct_twice, initial, predict, sum_along, sum_of_rows};
 use super::filter::{Tangent, boost};
 use super::noise::{GROUP_OF, NOISE_PARAMETERS, Noise, NoisePrior, NoiseScore, SensorNoise};
 use super::optimise::{Outcome, Proposal};
@@ -32,8 +32,8 @@ trait Linearised {
     fn measured(&self, sample: usize, channel: usize) -> Option<(Lanes, Lanes)>;
     /// How the report of a channel changes with the state; `None` where it is the state.
     fn report(&self, sample: usize, channel: usize) -> Option<[Lanes; STATES]>;
-    /// The step from a sample to the next.
-    fn step(&self, sample: usize) -> Step;
+    /// Writes the step from a sample to the next.
+    fn step(&self, sample: usize, out: &mut Step);
 }
 
 /// A linearised step, with the factor on what the unknown force gains in it.
@@ -43,6 +43,20 @@ struct Step {
     a: [[Lanes; STATES]; STATES],
     gamma: [[Lanes; 3]; STATES],
     boost: Lanes,
+}
+
+impl Step {
+    /// Of zeros.
+    fn zero() -> Self {
+        let zero = Lanes::zero();
+        Self {
+            state: [zero; STATES],
+            image: [zero; STATES],
+            a: [[zero; STATES]; STATES],
+            gamma: [[zero; 3]; STATES],
+            boost: zero,
+        }
+    }
 }
 
 /// A run with its step maps, the same in every lane.
@@ -65,16 +79,16 @@ impl Linearised for One<'_> {
         Some(self.1.report.get(sample)?[channel].map(Lanes::from_f64))
     }
     #[inline(always)]
-    fn step(&self, sample: usize) -> Step {
+    fn step(&self, sample: usize, out: &mut Step) {
         let lift = Lanes::from_f64;
-        let Self(run, tangent) = self;
-        Step {
-            state: tangent.state[sample].map(lift),
-            image: tangent.image[sample].map(lift),
-            a: tangent.a[sample].map(|row| row.map(lift)),
-            gamma: tangent.gamma[sample].map(|row| row.map(lift)),
-            boost: lift(boost(run, sample)),
+        let Self(run, Tangent { state, image, a, gamma, .. }) = self;
+        for i in 0..STATES {
+            out.state[i] = lift(state[sample][i]);
+            out.image[i] = lift(image[sample][i]);
+            (0..STATES).for_each(|l| out.a[i][l] = lift(a[sample][i][l]));
+            (0..3).for_each(|l| out.gamma[i][l] = lift(gamma[sample][i][l]));
         }
+        out.boost = lift(boost(run, sample));
     }
 }
 
@@ -105,17 +119,26 @@ impl Linearised for Four<'_> {
         let senses = self.0.iter().any(|(_, t)| !t.report.is_empty());
         senses.then(|| std::array::from_fn(|l| self.gather(|_, t| Some(t.report.get(sample)?[channel][l]))))
     }
-    fn step(&self, sample: usize) -> Step {
-        Step {
-            state: std::array::from_fn(|i| self.gather(|_, t| Some(t.state.get(sample)?[i]))),
-            image: std::array::from_fn(|i| self.gather(|_, t| Some(t.image.get(sample)?[i]))),
-            a: std::array::from_fn(|i| std::array::from_fn(|l| self.gather(|_, t| Some(t.a.get(sample)?[i][l])))),
-            gamma: std::array::from_fn(|i| {
-                std::array::from_fn(|l| self.gather(|_, t| Some(t.gamma.get(sample)?[i][l])))
-            }),
-            boost: self.gather(|run, _| Some(boost(run, sample))),
+    fn step(&self, sample: usize, out: &mut Step) {
+        let (none, nowhere, no_force) = ([0.0; STATES], [[0.0; STATES]; STATES], [[0.0; 3]; STATES]);
+        let tangent = |lane: usize| self.0.get(lane).map(|(_, tangent)| tangent);
+        let state = each_lane(|lane| tangent(lane)?.state.get(sample), &none);
+        let image = each_lane(|lane| tangent(lane)?.image.get(sample), &none);
+        let a = each_lane(|lane| tangent(lane)?.a.get(sample), &nowhere);
+        let gamma = each_lane(|lane| tangent(lane)?.gamma.get(sample), &no_force);
+        for i in 0..STATES {
+            out.state[i] = Lanes::from_fn(|lane| state[lane][i]);
+            out.image[i] = Lanes::from_fn(|lane| image[lane][i]);
+            (0..STATES).for_each(|l| out.a[i][l] = Lanes::from_fn(|lane| a[lane][i][l]));
+            (0..3).for_each(|l| out.gamma[i][l] = Lanes::from_fn(|lane| gamma[lane][i][l]));
         }
+        out.boost = self.gather(|run, _| Some(boost(run, sample)));
     }
+}
+
+/// What each lane has, or else `none`.
+fn each_lane<'a, T>(of: impl Fn(usize) -> Option<&'a T>, none: &'a T) -> [&'a T; Lanes::LANES] {
+    std::array::from_fn(|lane| of(lane).unwrap_or(none))
 }
 
 /// Innovations under the linearised step maps, each with a flag by lane, 1 where the lane has one: a Kalman filter without
@@ -132,34 +155,45 @@ fn innovations<L: Linearised>(
     z[..STATES].copy_from_slice(&along.start());
     let mut p = initial(noise, model);
     let samples = along.samples();
+    let mut step = Step::zero();
+    // What measurements of a sample tell: the covariance is corrected by two at a time, so that one may wait for the next.
+    let mut told = [Told::nothing(); 2];
     for k in 0..samples {
+        let mut waiting = false;
         for j in 0..STATES {
             let Some((y, present)) = along.measured(k, j) else { continue };
-            let (ph, reported, spread) = match along.report(k, j) {
-                None => {
-                    let ph = sum_of_rows(&p, j, 9 + j);
-                    (ph, z[j], ph[j])
-                }
-                Some(slopes) => {
-                    let ph = sum_along(&p, &slopes, 9 + j);
-                    (ph, product(&slopes, &z), product(&slopes, &ph))
-                }
-            };
+            let slopes = along.report(k, j);
+            let [first, second] = &mut told;
+            let (before, own) = if waiting { (Some(&*first), second) } else { (None, first) };
+            match &slopes {
+                Some(slopes) => sum_along(&p, before, slopes, 9 + j, &mut own.ph),
+                None => sum_of_rows(&p, before, j, 9 + j, &mut own.ph),
+            }
+            let seen = |of: &[Lanes; Z]| slopes.as_ref().map_or(of[j], |slopes| product(slopes, of));
+            let (reported, spread) = (seen(&z), seen(&own.ph));
             let mut error = -(reported + z[9 + j]) + y;
             if j == 2 {
                 error = trimtab_ad::smooth::wrap_angle(error);
             }
-            let variance = noise.white[j] + spread + ph[9 + j];
+            let variance = noise.white[j] + spread + own.ph[9 + j];
             let outlier = (gate * variance).less(error * error);
             let inverse = Lanes::select(outlier, Lanes::zero(), present / variance);
-            let gain = ph.map(|ph| ph * inverse);
-            (0..Z).for_each(|i| z[i] += gain[i] * error);
-            correct(&mut p, &gain, &ph);
+            for i in 0..Z {
+                own.gain[i] = own.ph[i] * inverse;
+                z[i] += own.gain[i] * error;
+            }
+            if waiting {
+                correct_twice(&mut p, &told);
+            }
+            waiting = !waiting;
             take(Innovation { error, variance }, present);
         }
+        if waiting {
+            correct(&mut p, &told[0]);
+        }
         if k + 1 < samples {
-            let step = along.step(k);
-            z = move_mean(&z, &step, noise);
+            along.step(k, &mut step);
+            move_mean(&mut z, &step, noise);
             predict(&mut p, &step.a, &step.gamma, noise, step.boost);
         }
     }
@@ -177,25 +211,22 @@ fn log_likelihood(innovations: &[Innovation<f64>], gate: f64) -> f64 {
     -0.5 * innovations.iter().map(one).sum::<f64>()
 }
 
-/// The mean one sample later under the linearised step map.
-fn move_mean(z: &[Lanes; Z], step: &Step, noise: &Discrete<Lanes>) -> [Lanes; Z] {
-    let mut next = [Lanes::zero(); Z];
+/// Moves the mean by a sample under the linearised step map.
+#[inline(always)]
+fn move_mean(z: &mut [Lanes; Z], step: &Step, noise: &Discrete<Lanes>) {
+    let mut away = [Lanes::zero(); STATES];
+    (0..STATES).for_each(|l| away[l] = z[l] - step.state[l]);
     for i in 0..STATES {
-        next[i] = step.image[i];
-        for l in 0..STATES {
-            next[i] += (z[l] - step.state[l]) * step.a[i][l];
-        }
-        for l in 0..3 {
-            next[i] += z[6 + l] * step.gamma[i][l];
-        }
+        z[i] = step.image[i];
+        (0..STATES).for_each(|l| z[i] += away[l] * step.a[i][l]);
+        (0..3).for_each(|l| z[i] += z[6 + l] * step.gamma[i][l]);
     }
     for i in 0..3 {
-        next[6 + i] = noise.fade * z[6 + i];
+        z[6 + i] = noise.fade * z[6 + i];
     }
     for j in 0..STATES {
-        next[9 + j] = noise.rho[j] * z[9 + j];
+        z[9 + j] = noise.rho[j] * z[9 + j];
     }
-    next
 }
 
 /// Score and information of the noise's logarithms in one run, from innovations at a noise and at noises nudged by [`NUDGE`]:

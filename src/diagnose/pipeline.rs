@@ -6,12 +6,15 @@ use super::base::Question;
 use super::calibrate::ErrorRates;
 use super::decide::Unlisted;
 use super::describe::kinds;
-use super::diagnosis::Diagnosis;
+use super::diagnosis::{Diagnosis, Trace};
 use super::error::DiagnoseError;
-use super::generic::{corrected, surrogate};
-use super::improved::{trimmed, uncertainty};
+use super::estimate::Estimate;
+use super::generic::corrected;
+use super::improved::{inside_bounds, trimmed, uncertainty};
+use super::law::Law;
 use super::prove::{HeldOut, prove};
 use super::sailed::{Sailed, sailed};
+use super::screen::screen;
 use super::set_aside::Divided;
 use super::settings::Settings;
 use super::sides::sides;
@@ -47,31 +50,50 @@ pub fn diagnose<'r>(
     let given: Vec<Run> = if settings.repeat || settings.calibrate > 0 { training.to_vec() } else { Vec::new() };
     let answer: Answer = Answer::new(&question, training, &held_out);
     let (answer, stability): (Answer, Option<Stability>) = answer.repeated(&question, &given, &held_out)?;
+    let answer: Answer = answer.with_law(&question, &held_out);
     let rates: Option<ErrorRates> = ErrorRates::new(&question, &answer, &given, &held_out, settings.calibrate)?;
-    let proof: Option<HeldOut> = proof(&question, &answer, &held_out);
+    let written: Written = Written::new(&question, &answer);
+    let proof: Option<HeldOut> = proof(&question, &answer, &written, &held_out);
     let answer: Answer = answer.capped(proof.as_ref());
-    let sailed: Vec<Sailed> = pictured(&question, &answer, &held_out);
-    Ok(Diagnosis { set_aside, stability, error_rates: rates, sailed, ..report(&question, answer, proof) })
+    let sailed: Vec<Sailed> = pictured(&question, &answer, &written, &held_out);
+    Ok(Diagnosis { set_aside, stability, error_rates: rates, sailed, ..report(&question, answer, &written, proof) })
+}
+
+/// The models that a diagnosis writes, which every command reads, and which the proof compares.
+struct Written {
+    base: Estimate,
+    found: Estimate,
+}
+
+impl Written {
+    fn new(question: &Question, answer: &Answer) -> Self {
+        let tests = &answer.kept.selection.tests;
+        let inside = |estimate| inside_bounds(estimate, tests.problem(question.settings));
+        let base = inside(&tests.fit.estimate);
+        let found = if answer.improves() { inside(answer.improved()) } else { base.clone() };
+        Self { base, found }
+    }
 }
 
 /// The runs that a report shows with their simulations: those of the proof, or else those of the training.
-fn pictured(question: &Question, answer: &Answer, held_out: &[Run]) -> Vec<Sailed> {
+fn pictured(question: &Question, answer: &Answer, written: &Written, held_out: &[Run]) -> Vec<Sailed> {
     let fit = &answer.kept.selection.tests.fit;
     let runs = if held_out.is_empty() { &fit.runs[..] } else { held_out };
-    let found = (!answer.findings.is_empty()).then(|| &answer.improved().model);
-    sailed(runs, &fit.estimate.model, found, question.settings.judging.integration)
+    let found = answer.improves().then_some(&written.found.model);
+    sailed(runs, &written.base.model, found, question.settings.judging.integration)
 }
 
 /// The base model against the model with the findings, and against a generic correction, on runs that no step before has used.
-fn proof(question: &Question, answer: &Answer, held_out: &[Run]) -> Option<HeldOut> {
+fn proof(question: &Question, answer: &Answer, written: &Written, held_out: &[Run]) -> Option<HeldOut> {
     if held_out.is_empty() {
         return None;
     }
     (question.progress)("proving on held-out runs");
     let tests = &answer.kept.selection.tests;
-    let (base, screen) = (&tests.fit.estimate, &tests.screen);
-    let generic = corrected(&screen.law, &screen.evidence, &screen.base, &base.model);
-    let (before, after) = ((&base.model, &base.noise), (&answer.improved().model, &base.noise));
+    let screen = &tests.screen;
+    let generic = corrected(&screen.law, &screen.evidence, &screen.base, &tests.fit.estimate.model);
+    let Written { base, found } = written;
+    let [before, after] = [&base.model, &found.model].map(|m| (m, &found.noise));
     Some(prove(before, after, Some(&generic), tests.fit.integration, held_out, &question.settings.judging))
 }
 
@@ -80,23 +102,30 @@ fn coverage(model: &Model, runs: &[Run]) -> Coverage {
     validity::outside(model, runs.iter().flat_map(validity::samples))
 }
 
+/// A law with the values of states and inputs that the training runs visit.
+fn visited(law: Law, traces: &[Trace]) -> Law {
+    law.over(traces.iter().flat_map(|t| t.state.iter().zip(&t.inputs)))
+}
+
 /// Everything that the diagnosis says of one analysis.
-fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagnosis {
+fn report(question: &Question, answer: Answer, written: &Written, proof: Option<HeldOut>) -> Diagnosis {
     let (tests, found) = (&answer.kept.selection.tests, answer.improved());
     let (fit, first) = (&tests.fit, &tests.screen);
     let base = &fit.estimate;
     let last = answer.kept.left_by_named().filter(|_| answer.base.holds).map(|l| &l.screen);
-    let missing = match (answer.unlisted(), &answer.kept.place) {
-        (Some(Unlisted::Place), Some(place)) => Some(Missing::Place(place)),
-        (Some(Unlisted::Law), _) => {
-            Some(Missing::Law(surrogate(&first.law, &first.evidence, &first.base, &base.model)))
-        }
+    let beside_law = answer.confirmed_law().map(|law| screen(&law.estimate, fit.integration, &fit.runs, &[]));
+    let left = last.or(beside_law.as_ref());
+    let missing = match (answer.unlisted(), &answer.kept.place, &answer.law) {
+        (Some(Unlisted::Place), Some(place), _) => Some(Missing::Place(place)),
+        (Some(Unlisted::Law), _, law) => Some(Missing::Law(law.as_ref())),
+        (_, _, Some(law)) => Some(Missing::Law(Some(law))),
         _ => None,
     };
     // What predicts unseen runs worse than the base model is no improvement, however sure its parts are.
     let worse = proof.as_ref().is_some_and(HeldOut::is_worse);
-    let written = if worse { base } else { found };
-    let improved = trimmed(&written.model, question.model, &written.free);
+    let kept = if worse { &written.base } else { &written.found };
+    let improved = trimmed(&kept.model, question.model, &kept.free);
+    let traces = traces(&fit.runs, fit.integration, base, last.map(|_| found));
     let verdict = answer.verdict;
     let said = Said {
         findings: &answer.findings,
@@ -104,7 +133,7 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
         rejected: answer.kept.selection.rejected.first().map(|r| tests.candidates[r.candidate].mechanism.title),
         following: &answer.base.following,
         holds: answer.base.holds,
-        form_holds: tests.search.form_holds,
+        form_holds: tests.search.chance.form_holds,
         missing: missing.as_ref(),
         worse: proof.as_ref().filter(|p| p.is_worse()).and_then(|p| Some([p.before?, p.after?])),
     };
@@ -116,7 +145,7 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
             .as_ref()
             .map(Missing::next_trial)
             .or_else(|| next_trial(verdict, &answer.findings, &tests.candidates)),
-        surrogate: missing.map(Missing::into_surrogate).unwrap_or_default(),
+        law: answer.law.clone().map(|law| visited(law, &traces)),
         admission: fit.admission.clone(),
         noise_before: base.noise,
         noise_after: found.noise,
@@ -127,23 +156,23 @@ fn report(question: &Question, answer: Answer, proof: Option<HeldOut>) -> Diagno
         detectable: detectable(first, &tests.candidates, question.settings, &question.full),
         confusable: confusable(first, &tests.candidates),
         adequacy_before: adequacy(first),
-        adequacy_after: adequacy(last.unwrap_or(first)),
+        adequacy_after: adequacy(left.unwrap_or(first)),
         moves: moves(base, found, fit.integration, &fit.runs, question.model),
-        sides: sides(last.unwrap_or(first), found, base.free.len(), &kinds(&fit.runs)),
+        sides: sides(left.unwrap_or(first), left.map_or(base, |_| found), base.free.len(), &kinds(&fit.runs)),
         hull_budget: budget(found),
         held_out: proof,
         set_aside: 0,
         stability: None,
         error_rates: None,
         following: answer.base.following.clone(),
-        improved_is_base: worse || answer.findings.is_empty(),
+        improved_is_base: worse || !answer.improves(),
         settings: question.settings.clone(),
         sailed: Vec::new(),
-        traces: traces(&fit.runs, fit.integration, base, last.map(|_| found)),
+        traces,
         validity: coverage(&improved, &fit.runs),
-        uncertainty: uncertainty(written, &improved, fit.integration, &fit.runs),
+        uncertainty: uncertainty(kept, &improved, fit.integration, &fit.runs),
         model: improved,
-        base: trimmed(&base.model, question.model, &base.free),
+        base: trimmed(&written.base.model, question.model, &written.base.free),
         findings: answer.findings,
         withdrawn: answer.withdrawn,
     }
@@ -166,7 +195,7 @@ mod tests {
         let d = diagnose(&model(), &truth[..12], &truth[12..], &settings, &note)?;
         assert_eq!((d.verdict, d.findings[0].mechanism.as_str()), (Verdict::Named, "current"), "{}", d.headline);
         assert_eq!(d.held_out.as_ref().map(|h| h.runs), Some(3));
-        assert!(d.findings[0].held_out.is_some() && d.location_after.is_some() && d.surrogate.is_empty());
+        assert!(d.findings[0].held_out.is_some() && d.location_after.is_some() && d.law.is_none());
         let steps = steps.into_inner().unwrap();
         assert_eq!(d.findings[0].grade, Grade::Confirmed, "{:?} {:?}", d.findings[0].held_out, d.stability);
         assert!(d.stability.as_ref().is_some_and(|s| s.same == s.of && s.further.is_empty()), "{:?}", d.stability);

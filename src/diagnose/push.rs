@@ -331,7 +331,7 @@ mod tests {
         let (runs, blocks) = measured([0.0, 3.0, 2.0], |i| i == 3, 1);
         let push = pushes(&runs, &blocks, &[1.0; 3], 1.0).swap_remove(0);
         let noise = guess(&runs, &model);
-        let found = Estimate { model, noise, free: Vec::new(), log_posterior: 0.0 };
+        let found = Estimate { model, noise, free: Vec::new(), log_posterior: 0.0, seen: None };
         let windows = |runs: &[Run]| {
             let sharp = sharpened(&push, &found, Integration::default(), runs);
             sharp.windows.iter().map(|w| w.samples).collect::<Vec<_>>()

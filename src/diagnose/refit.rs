@@ -20,6 +20,8 @@ struct Refit<'a> {
     gains: &'a [Gains],
     columns: Vec<Column>,
     cached: Option<Point>,
+    /// Where the objective alone was evaluated: a line search comes back to its steps.
+    tried: Vec<(Vec<f64>, f64)>,
 }
 
 /// Objective, gradient and Gauss-Newton Hessian at a point.
@@ -64,15 +66,19 @@ impl Refit<'_> {
     }
 
     /// The objective alone, without sensitivities: most of what a line search asks for.
-    fn value_at(&self, x: &[f64]) -> Option<f64> {
+    fn value_at(&mut self, x: &[f64]) -> Option<f64> {
         if let Some(known) = self.cached.as_ref().filter(|c| c.x == x) {
             return Some(known.value);
+        }
+        if let Some((_, known)) = self.tried.iter().find(|(tried, _)| tried == x) {
+            return Some(*known).filter(|value| value.is_finite());
         }
         let model = self.model_at(x);
         let (_, mut value) = self.passes(&model, &[]);
         for f in &self.found.free {
             value -= f.log_prior(&model);
         }
+        self.tried.push((x.to_vec(), value));
         value.is_finite().then_some(value)
     }
 
@@ -170,24 +176,22 @@ fn options() -> Options {
 
 /// Refits the free parameters of an estimate through Ipopt, with gains computed once at its values.
 ///
-/// The estimate comes back with the refitted model and its likelihood when Ipopt improved it, and unchanged otherwise.
+/// The estimate comes back with the refitted model and its likelihood; `None` where Ipopt did not improve it.
 ///
 /// # Errors
 /// When Ipopt cannot be started at all; a solve that does not converge is not an error but changes nothing.
-pub fn refit(found: &Estimate, integration: Integration, runs: &[Run]) -> Result<Estimate, IpoptError> {
+pub fn refit(found: &Estimate, integration: Integration, runs: &[Run]) -> Result<Option<Estimate>, IpoptError> {
     let filter = Filter::new(&found.model, integration, &[]);
     let wanted = Wanted { gains: true, ..Wanted::default() };
     let passes = filter.passes(runs, &found.noise, wanted);
     let gains: Vec<Gains> = passes.into_iter().map(|pass| pass.gains.unwrap_or_default()).collect();
     let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
-    let mut problem = Refit { found, integration, runs, gains: &gains, columns, cached: None };
+    let mut problem = Refit { found, integration, runs, gains: &gains, columns, cached: None, tried: Vec::new() };
     let Solution { x, .. } = solve(&mut problem, &options())?;
     let model = problem.model_at(&x);
     let log_posterior = log_posterior(&model, integration, runs, &found.free, &found.noise);
-    if log_posterior.is_nan() || log_posterior < found.log_posterior {
-        return Ok(found.clone());
-    }
-    Ok(Estimate { model, log_posterior, ..found.clone() })
+    let improved = log_posterior >= found.log_posterior;
+    Ok(improved.then(|| Estimate { model, log_posterior, seen: None, ..found.clone() }))
 }
 
 #[cfg(test)]
@@ -214,11 +218,19 @@ mod tests {
         let wanted = Wanted { gains: true, ..Wanted::default() };
         let gains: Vec<Gains> = runs.iter().filter_map(|r| filter.pass(r, &found.noise, wanted).gains).collect();
         let columns = found.free.iter().map(|f| f.column).collect();
-        let mut problem = Refit { found: &found, integration: RK4, runs: &runs, gains: &gains, columns, cached: None };
+        let mut problem = Refit {
+            found: &found,
+            integration: RK4,
+            runs: &runs,
+            gains: &gains,
+            columns,
+            cached: None,
+            tried: Vec::new(),
+        };
         let x: Vec<f64> = found.free.iter().map(|f| f.value(&found.model) / f.column.scale).collect();
         let gradient = problem.at(&x).map(|p| p.gradient.clone()).unwrap_or_default();
         for i in 0..x.len() {
-            let value = |d: f64| {
+            let mut value = |d: f64| {
                 let mut y = x.clone();
                 y[i] += d;
                 problem.value_at(&y).unwrap_or(f64::NAN)
@@ -231,10 +243,10 @@ mod tests {
     #[test]
     fn a_refit_raises_the_likelihood_or_changes_nothing() -> Result<(), IpoptError> {
         let (found, runs) = off();
-        let refitted = refit(&found, RK4, &runs)?;
+        let refitted = refit(&found, RK4, &runs)?.unwrap();
         assert!(refitted.log_posterior > found.log_posterior + 1.0);
         let again = refit(&refitted, RK4, &runs)?;
-        assert!(again.log_posterior >= refitted.log_posterior);
+        assert!(again.is_none_or(|again| again.log_posterior >= refitted.log_posterior));
         Ok(())
     }
 }

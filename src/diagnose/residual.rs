@@ -3,7 +3,6 @@
 
 use super::alike::class;
 use super::base::Question;
-use super::compete::Selected;
 use super::decide::{Decision, MechanismTest, PlaceTest, PushTest, ResidualTests, TestTable};
 use super::estimate::Estimate;
 use super::finding::PUSH;
@@ -12,6 +11,7 @@ use super::place::Place;
 use super::push::{Push, sharpened};
 use super::screen::{Screen, screen};
 use super::select::Selection;
+use super::selected::Selected;
 use crate::recording::Run;
 
 /// The tests of what the selected mechanisms leave.
@@ -34,11 +34,13 @@ impl Residual {
     /// Tests what the selected mechanisms leave, as the base model was tested.
     pub fn new(question: &Question, mut selection: Selection) -> Self {
         (question.progress)("checking what is left");
+        let latest = selection.latest.take();
         let (tests, found) = (&selection.tests, &selection.estimate);
         let left = (!selection.mechanisms.is_empty()).then(|| {
-            let screen = screen(found, tests.fit.integration, &tests.fit.runs, &tests.candidates);
+            let again = || screen(found, tests.fit.integration, &tests.fit.runs, &tests.candidates);
+            let screen = latest.unwrap_or_else(again);
             let mut location = locate(found, tests.fit.integration, &tests.fit.runs);
-            location.push = tests.search.event(&location);
+            location.push = tests.search.event(&location.pushes);
             Left { screen, location }
         });
         let classes: Vec<_> =
@@ -65,7 +67,7 @@ impl Residual {
             samples: admission.samples,
             unknown_force: surge.max(sway),
             turning_force: turning_force(&tests.fit.estimate, &tests.fit.runs),
-            form_holds: tests.search.form_holds,
+            chance: tests.search.chance,
             push_allowed: question.settings.allows(PUSH),
             push_in_base: push.as_ref().map(PushTest::from),
             base: residual_tests(&tests.screen, &tests.location),

@@ -7,7 +7,7 @@ use super::estimate::{Estimate, Sums, base_of, restrictions};
 use super::evidence::{Base, Evidence, Test, are_references};
 use super::filter::{Column, Filter};
 use super::generic::{GenericLaw, widen};
-use super::settings::{AMPLITUDE_GAIN, DIVIDED_SESSIONS, EQUAL_STATISTICS, IDENTIFIABLE_SHARE, SESSIONS_GAIN};
+use super::settings::{DIVIDED_SESSIONS, EQUAL_STATISTICS, IDENTIFIABLE_SHARE, INDISTINGUISHABLE, PARAMETER_PRICE};
 use crate::model::Model;
 use crate::physics::Kind;
 use crate::recording::Run;
@@ -91,11 +91,23 @@ impl Screen {
 
     /// Tests a candidate where it is taken to act, the base profiled out.
     pub fn test(&self, index: usize, extent: &Extent) -> Test {
+        self.test_beside(&self.base, index, extent)
+    }
+
+    /// Share of a candidate's information that neither the base nor any error of a sensor can take over, in the worst direction.
+    pub fn isolated(&self, index: usize, extent: &Extent, candidates: &[Candidate]) -> f64 {
+        let is_sensor = |i: &usize| candidates[*i].mechanism.kind == Kind::Sensor && *i != index;
+        let errors: Vec<usize> =
+            (0..candidates.len()).filter(is_sensor).flat_map(|i| self.columns(i)).copied().collect();
+        self.test_beside(&self.evidence.extend(&self.base, &errors), index, extent).retained
+    }
+
+    fn test_beside(&self, base: &Base, index: usize, extent: &Extent) -> Test {
         let columns = self.columns(index);
         match extent {
-            Extent::All => self.evidence.test(&self.base, columns),
-            Extent::In(sessions) => self.evidence.test_in(&self.base, columns, &named(sessions)),
-            Extent::Each(_) => self.evidence.test_each(&self.base, columns),
+            Extent::All => self.evidence.test(base, columns),
+            Extent::In(sessions) => self.evidence.test_in(base, columns, &named(sessions)),
+            Extent::Each(_) => self.evidence.test_each(base, columns),
         }
     }
 
@@ -313,8 +325,8 @@ fn corrected(p: f64, extent: &Extent, options: usize, by_session: bool, division
 /// differ beyond doubt; what is possible comes before what is not.
 fn choose(options: Vec<Tested>, divisions: f64) -> Option<Tested> {
     let price = |extent: &Extent, more: usize| match extent {
-        Extent::All | Extent::In(_) => SESSIONS_GAIN + 2.0 * divisions.ln(),
-        Extent::Each(_) => SESSIONS_GAIN + AMPLITUDE_GAIN * more as f64,
+        Extent::All | Extent::In(_) => 2.0 * (INDISTINGUISHABLE + divisions.ln()),
+        Extent::Each(_) => 2.0 * INDISTINGUISHABLE + PARAMETER_PRICE * more as f64,
     };
     let gain = |t: &Tested| t.test.statistic - t.test.degrees as f64;
     options.into_iter().reduce(|best, next| {
@@ -355,6 +367,7 @@ fn groups(contrast: &Test, sessions: &[String], k: usize) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::example;
 
     fn test(statistic: f64, degrees: usize) -> Test {
         Test {
@@ -373,6 +386,32 @@ mod tests {
 
     fn sessions(names: &[&str]) -> Vec<String> {
         names.iter().map(|s| (*s).to_owned()).collect()
+    }
+
+    #[test]
+    fn a_current_is_isolated_on_headings_all_round_and_hardly_from_a_log_and_a_compass_on_one() {
+        let model = example::model();
+        let list = super::super::candidate::candidates(&model, &[]);
+        let current = list.iter().position(|c| c.mechanism.name == "current").unwrap();
+        let share = |runs: &[Run]| {
+            let s = screen(&example::at(&model), example::RK4, runs, &list);
+            let (isolated, beside_the_ship) =
+                (s.isolated(current, &Extent::All, &list), s.test(current, &Extent::All).retained);
+            assert!(isolated < beside_the_ship, "{isolated} {beside_the_ship}");
+            isolated
+        };
+        let mut runs = example::runs(&model, 12);
+        let all_round = share(&runs);
+        for r in &mut runs {
+            let (sin, cos) = r.initial[2].sin_cos();
+            for m in &mut r.measured {
+                let [x, y, psi, ..] = m.map(Option::unwrap);
+                (m[0], m[1], m[2]) = (Some(x * cos + y * sin), Some(y * cos - x * sin), Some(psi - r.initial[2]));
+            }
+            r.initial[2] = 0.0;
+        }
+        let one = share(&runs);
+        assert!(one < 0.5 * all_round && all_round > 0.1, "{one} {all_round}");
     }
 
     #[test]

@@ -3,9 +3,9 @@
 
 use super::admit::followed;
 use super::base::Question;
-use super::compete::{Rejected, Selected, amplitudes, compare, compete, form_tolerance};
+use super::compete::{Rejected, amplitudes, compare, compete, form_tolerance};
 use super::decide::is_euler;
-use super::eligible::{eligible, may_be_further, may_be_named};
+use super::eligible::{Further, eligible, is_worth_naming, may_be_further, may_be_named};
 use super::estimate::{Estimate, passes};
 use super::event::{BaseTests, Opening};
 use super::evidence::chi_squared_p;
@@ -14,7 +14,9 @@ use super::push::Push;
 #[cfg(feature = "ipopt")]
 use super::refit::refit;
 use super::screen::{Row, Screen, screen};
-use super::settings::{PARAMETER_PRICE, REFIT, REMOVAL_ALPHA, SETTLE, SMALLEST_SIZE, Settings};
+use super::selected::Selected;
+use super::settings::{PARAMETER_PRICE, REFIT, SETTLE, Settings};
+use super::together::leading;
 use super::wald::Wald;
 use crate::physics::Kind;
 
@@ -30,13 +32,15 @@ pub struct Selection {
     pub rejected: Vec<Rejected>,
     /// The estimate with them; that of the base model without any.
     pub estimate: Estimate,
+    /// The score tests at that estimate, where they were made and none led to a further mechanism.
+    pub latest: Option<Screen>,
 }
 
 impl Selection {
     /// Selects mechanisms one after the other while a further one may be named. Recordings with a wrong unit or sign give none.
     pub fn new(question: &Question, Opening { tests, push, mut first }: Opening) -> Self {
         let estimate = tests.fit.estimate.clone();
-        let mut out = Self { tests, push, mechanisms: Vec::new(), rejected: Vec::new(), estimate };
+        let mut out = Self { tests, push, mechanisms: Vec::new(), rejected: Vec::new(), estimate, latest: None };
         if out.tests.is_blocked() {
             return out;
         }
@@ -69,8 +73,8 @@ impl Selection {
             (question.progress)("refitting the whole model through Ipopt");
             let fit = &self.tests.fit;
             // Without Ipopt's answer the estimate by Fisher scoring is kept.
-            if let Ok(refitted) = refit(&self.estimate, fit.integration, &fit.runs) {
-                self.estimate = refitted;
+            if let Ok(Some(refitted)) = refit(&self.estimate, fit.integration, &fit.runs) {
+                (self.estimate, self.latest) = (refitted, None);
             }
         }
         self
@@ -79,18 +83,19 @@ impl Selection {
     /// The best further mechanism, with the estimate that holds it.
     fn next(&mut self, question: &Question) -> Option<(Selected, Estimate)> {
         let problem = self.tests.problem(question.settings);
-        let latest;
-        let screen: &Screen = if self.mechanisms.is_empty() {
-            &self.tests.screen
-        } else {
-            latest = screen(&self.estimate, problem.integration, problem.runs, problem.candidates);
-            &latest
-        };
+        let latest = (!self.mechanisms.is_empty())
+            .then(|| screen(&self.estimate, problem.integration, problem.runs, problem.candidates));
+        let screen = latest.as_ref().unwrap_or(&self.tests.screen);
         // A push that was found first is a finding already, and so is a coarse step.
         let by_euler = is_euler(self.tests.fit.admission.euler_gain);
         let alone = self.mechanisms.is_empty() && self.push.is_none() && !by_euler;
         let leaders = eligible(screen, problem.candidates, &self.mechanisms, alone, question.settings);
-        compete(screen, leaders, &self.estimate, problem, &mut self.rejected, question.progress)
+        let sensor = leading(&self.estimate, problem, &self.mechanisms, alone);
+        let next = compete(screen, leaders, sensor, &self.estimate, problem, &mut self.rejected, question.progress);
+        if next.is_none() {
+            self.latest = latest;
+        }
+        next
     }
 
     /// Removes a mechanism that a later one made needless.
@@ -103,8 +108,8 @@ impl Selection {
         let needless = earlier.iter().position(|a| {
             let c = &problem.candidates[a.candidate];
             let w = amplitudes(&all, &self.estimate, c, &a.extent);
-            chi_squared_p(w.statistic(), w.value.len()) > REMOVAL_ALPHA * settings.alpha
-                || c.size(w.value.as_slice()) < SMALLEST_SIZE
+            chi_squared_p(w.statistic(), w.value.len()) > settings.strict()
+                || !is_worth_naming(c.size(w.value.as_slice()))
         });
         let Some(i) = needless else { return };
         let needless = self.mechanisms.remove(i);
@@ -135,7 +140,7 @@ impl Selection {
             let Some((entry, found)) = rival_of(&self.mechanisms, i, &self.estimate, problem) else { continue };
             self.mechanisms[i] = entry;
             if let Some(found) = found {
-                self.estimate = found;
+                (self.estimate, self.latest) = (found, None);
             }
         }
     }
@@ -160,7 +165,9 @@ fn rival_of(
     let others: Vec<Selected> = selected.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, a)| a.clone()).collect();
     let s = screen(&rest, integration, runs, candidates);
     let may = |r: &&Row| {
-        outside(r.candidate) && may_be_named(r, candidates, settings) && may_be_further(r, &others, candidates)
+        outside(r.candidate)
+            && may_be_named(r, candidates, settings)
+            && may_be_further(&Further::from(*r), &others, candidates)
     };
     let leaders: Vec<&Row> = s.rows.iter().filter(may).collect();
     let (entry, found) = compare(&s, &leaders, &rest, problem)?;

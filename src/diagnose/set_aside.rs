@@ -1,7 +1,7 @@
 //! Runs that only prove: those that the user marked, or a part of the recordings that is set aside where none is marked.
 //! It divides recordings and looks at no value in them.
 
-use super::settings::{FEWEST_SET_ASIDE, FEWEST_TO_DIVIDE, SET_ASIDE_EVERY};
+use super::settings::{FEWEST_RECORDINGS, FEWEST_RUNS};
 use crate::recording::Run;
 use std::borrow::Cow;
 
@@ -28,10 +28,10 @@ impl<'r> Divided<'r> {
                 recordings.push(&run.recording);
             }
         }
-        if recordings.len() < FEWEST_TO_DIVIDE {
+        if recordings.len() < 2 * FEWEST_RUNS {
             return Self { training, held_out: Cow::Owned(Vec::new()), set_aside: 0 };
         }
-        let count = FEWEST_SET_ASIDE.max(recordings.len() / SET_ASIDE_EVERY);
+        let count = FEWEST_RECORDINGS.max(recordings.len() / FEWEST_RUNS);
         let aside: Vec<String> = (1..=count).map(|i| recordings[i * recordings.len() / count - 1].to_owned()).collect();
         let (held_out, kept): (Vec<Run>, Vec<Run>) =
             training.into_owned().into_iter().partition(|r| aside.contains(&r.recording));

@@ -1,7 +1,7 @@
 //! The filter over a few runs of one sample period side by side: correction by the measurements, sensitivities, prediction.
 //! What a step or a column does to the ship is computed elsewhere; how runs are put together is the filter's affair.
 
-use super::covariance::{self, Discrete, Square, Z, initial, predict, sum_along, sum_of_rows};
+use super::covariance::{self, Discrete, Square, Told, Z, initial, predict, sum_along, sum_of_rows};
 use super::directions::{Directions, Prepared};
 use super::noise::Noise;
 use super::pass::{GATE, Gains, Pass, Tangent, Wanted, boost};
@@ -75,6 +75,10 @@ struct Filtering<'f, P: Plain> {
     smooth: bool,
     mean: [P; Z],
     covariance: Square<P>,
+    /// What two measurements tell, by which the covariance is corrected at once.
+    told: [Told<P>; 2],
+    /// Whether it is still to be corrected by the first of them.
+    waits: bool,
     /// The Jacobian of the rates at the last sample, where it is carried, and room for the next.
     ends: Box<[Slope<P>; 2]>,
     /// Which of the two is that of the last sample.
@@ -130,6 +134,50 @@ fn along<P: Plain>(senses: bool, report: &[[P; STATES]; STATES], channel: usize,
     }
 }
 
+/// Carries a derivative of the mean through the correction by sensors that report the state, and gives the derivatives of the reports;
+/// `seen` makes them of those of a channel's state and coloured noise. An entry is loaded and stored once for all channels but those
+/// before its own.
+#[inline(always)]
+fn corrected<P: Plain>(d: &mut [P; Z], gain: &[[P; Z]; STATES], seen: impl Fn(usize, P, P) -> P) -> [P; STATES] {
+    let mut rows = [P::zero(); STATES];
+    macro_rules! channels {
+        ($($j:literal)*) => { $(
+            for i in [$j, 9 + $j] {
+                let mut entry = d[i];
+                (0..$j).for_each(|m| entry = (-gain[m][i]).mul_add(rows[m], entry));
+                d[i] = entry;
+            }
+            rows[$j] = seen($j, d[$j], d[9 + $j]);
+        )* };
+    }
+    channels!(0 1 2 3 4 5);
+    macro_rules! entries {
+        ($($i:literal from $first:literal)*) => { $(
+            let mut entry = d[$i];
+            ($first..STATES).for_each(|m| entry = (-gain[m][$i]).mul_add(rows[m], entry));
+            d[$i] = entry;
+        )* };
+    }
+    entries!(0 from 0 1 from 1 2 from 2 3 from 3 4 from 4 5 from 5 6 from 0 7 from 0 8 from 0);
+    entries!(9 from 0 10 from 1 11 from 2 12 from 3 13 from 4 14 from 5);
+    rows
+}
+
+/// As [`corrected`], where each channel reports a function of the whole state.
+fn corrected_by_reports<P: Plain>(
+    d: &mut [P; Z],
+    gain: &[[P; Z]; STATES],
+    report: &[[P; STATES]; STATES],
+    seen: impl Fn(usize, P, P) -> P,
+) -> [P; STATES] {
+    let mut rows = [P::zero(); STATES];
+    for (j, gain) in gain.iter().enumerate() {
+        rows[j] = seen(j, along(true, report, j, |l| d[l]), d[9 + j]);
+        (0..Z).for_each(|i| d[i] = (-gain[i]).mul_add(rows[j], d[i]));
+    }
+    rows
+}
+
 impl<'f, P: Plain> Filtering<'f, P> {
     fn new(
         directions: &'f Directions<'f>,
@@ -183,6 +231,8 @@ impl<'f, P: Plain> Filtering<'f, P> {
             smooth: directions.integration == Integration { method: Method::Rk4, substeps: 1 } && !wanted.exact,
             mean,
             covariance: initial(&noise, directions.model),
+            told: [Told::nothing(); 2],
+            waits: false,
             noise,
             ends,
             last: 0,
@@ -267,6 +317,9 @@ impl<'f, P: Plain> Filtering<'f, P> {
             out.all[j] = (0..P::WIDTH).all(|lane| used.in_lane(lane) > 0.0);
             self.apply(k, j, &ph, used, out);
         }
+        if std::mem::take(&mut self.waits) {
+            covariance::correct(&mut self.covariance, &self.told[0]);
+        }
         let linear = |j: usize| along(senses, &out.report, j, |l| reference[l]);
         let offset = std::array::from_fn(|j| report[j] - linear(j));
         self.note(k, &innovation, &variance, &offset, out);
@@ -274,12 +327,16 @@ impl<'f, P: Plain> Filtering<'f, P> {
 
     /// The covariance of the filter state with what a channel reports.
     #[inline(always)]
-    fn covariance_with(&self, channel: usize, report: &[[P; STATES]; STATES]) -> [P; Z] {
+    fn covariance_with(&mut self, channel: usize, report: &[[P; STATES]; STATES]) -> [P; Z] {
         let p = &self.covariance;
-        if !self.directions.senses {
-            return sum_of_rows(p, channel, 9 + channel);
+        let [first, second] = &mut self.told;
+        let (before, own) = if self.waits { (Some(&*first), second) } else { (None, first) };
+        if self.directions.senses {
+            sum_along(p, before, &report[channel], 9 + channel, &mut own.ph);
+        } else {
+            sum_of_rows(p, before, channel, 9 + channel, &mut own.ph);
         }
-        sum_along(p, &report[channel], 9 + channel)
+        own.ph
     }
 
     /// Notes what the measurements of a sample brought: standardised innovations, their variances, and the linearised report.
@@ -313,16 +370,21 @@ impl<'f, P: Plain> Filtering<'f, P> {
 
     /// Applies the gain of one channel, from the covariance `ph` of its innovation with the filter state.
     fn apply(&mut self, k: usize, j: usize, ph: &[P; Z], used: P, out: &mut Correction<P>) {
+        let frozen = self.wanted.frozen;
         for i in 0..Z {
-            let gain = match self.wanted.frozen {
+            let gain = match frozen {
                 None => where_set(used, ph[i] * out.inverse[j]),
                 Some(frozen) => where_set(used, self.given(frozen, |g| Some(g.gain.get(k)?[j][i]))),
             };
             out.gain[j][i] = gain;
             self.mean[i] += gain * out.error[j];
         }
-        if self.wanted.frozen.is_none() {
-            covariance::correct(&mut self.covariance, &out.gain[j], ph);
+        if frozen.is_none() {
+            self.told[usize::from(self.waits)].gain = out.gain[j];
+            if self.waits {
+                covariance::correct_twice(&mut self.covariance, &self.told);
+            }
+            self.waits = !self.waits;
         }
     }
 
@@ -340,24 +402,19 @@ impl<'f, P: Plain> Filtering<'f, P> {
         let root = inverse.map(|inverse| inverse.sqrt());
         let senses = self.directions.senses;
         for (c, slope) in self.slopes.iter_mut().enumerate() {
-            let mut d = *slope;
-            let mut rows = [P::zero(); STATES];
-            for j in (0..STATES).filter(|j| some[*j]) {
-                let mut row = d[9 + j] + along(senses, report, j, |l| d[l]);
+            let seen = |j: usize, of_state: P, coloured: P| {
+                let mut row = coloured + of_state;
                 if let Some(sensed) = sensed.get(c) {
                     row += sensed[j];
                 }
-                if !all[j] {
-                    row = where_set(inverse[j], row);
-                }
-                self.score[c] = (error[j] * inverse[j]).mul_add(row, self.score[c]);
-                rows[j] = row * root[j];
-                for i in 0..Z {
-                    d[i] = (-gain[j][i]).mul_add(row, d[i]);
-                }
+                if all[j] { row } else { where_set(inverse[j], row) }
+            };
+            let rows =
+                if senses { corrected_by_reports(slope, gain, report, seen) } else { corrected(slope, gain, seen) };
+            for j in (0..STATES).filter(|j| some[*j]) {
+                self.score[c] = (error[j] * inverse[j]).mul_add(rows[j], self.score[c]);
             }
-            *slope = d;
-            self.information.set(c, &rows);
+            self.information.set(c, &std::array::from_fn(|j| rows[j] * root[j]));
         }
         self.information.next_sample();
     }

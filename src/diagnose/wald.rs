@@ -1,9 +1,8 @@
 //! Wald's test: how far estimated parameters are from zero, in units of their covariance.
 //! It takes estimate and covariance as they are; whether a parameter is worth naming is decided elsewhere.
 
-use super::algebra::pick;
-use super::estimate::{Estimate, FreeParameter, Sums, base_of, restrictions};
-use super::filter::{Column, Filter};
+use super::algebra::{pick, pseudo_inverse};
+use super::estimate::{Estimate, FreeParameter};
 use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
@@ -19,10 +18,7 @@ pub struct Wald {
 impl Wald {
     /// All free parameters of an estimate, with the inverse of the information at it.
     pub fn at(found: &Estimate, integration: Integration, runs: &[Run]) -> Self {
-        let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
-        let filter = Filter::new(&found.model, integration, &columns);
-        let e = Sums::of(&filter, runs, &found.noise, &restrictions(&found.free), false).evidence;
-        Self::of(found, base_of(&e, &found.model, &found.free).inverse)
+        Self::of(found, pseudo_inverse(&found.information(integration, runs)))
     }
 
     /// All free parameters of an estimate, with a given covariance.

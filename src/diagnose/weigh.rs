@@ -2,21 +2,25 @@
 //! and on unseen ones. It computes the tests of a finding; the grade is a pure function of them.
 
 use super::base::Question;
-use super::compete::Selected;
 use super::describe::{Intervals, mechanism_finding, push_finding, sensor_findings};
 use super::estimate::Estimate;
+use super::event::BaseTests;
 use super::finding::{Amplitude, Finding};
 use super::grade::{FindingTests, Grade, grade};
 use super::influence::{Following, change};
 use super::problem::Problem;
 use super::residual::{Kept, Left};
-use super::settings::{FOLLOWED_SHARE, REFIT, SETTLE};
+use super::selected::Selected;
+use super::settings::{REFIT, SETTLE};
 use super::unseen::FindingProof;
 use crate::evaluate::predict_all;
-use crate::physics::Kind;
+use crate::physics::{Kind, Mechanism};
 use crate::recording::Run;
 use crate::simulate::{Integration, MOST_SUBSTEPS, Method, Trajectory};
 use crate::statistics::median;
+
+/// Clocks that differ, in the catalogue.
+const CLOCKS: &str = "time_skew";
 
 /// A selected mechanism with what speaks for and against it.
 pub struct Weight {
@@ -72,15 +76,11 @@ fn weight(
     let amplitudes = intervals.amplitudes(found, candidate, &of.extent);
     let proof = (!held_out.is_empty()).then(|| {
         let judging = &question.settings.judging;
-        FindingProof::new(&without.model, &found.model, &fit.estimate.noise, fit.integration, held_out, judging)
+        FindingProof::new(&without.model, &found.model, &found.noise, fit.integration, held_out, judging)
     });
     let mut tests = FindingTests {
         excludes_zero: intervals.excludes_zero(found, candidate, &of.extent),
-        isolated: if candidate.mechanism.is_weather() {
-            tests.screen.test(of.candidate, &of.extent).retained
-        } else {
-            1.0
-        },
+        isolated: isolated(tests, of),
         change: change(&fit.runs, &predict_all(&without.model, &fit.runs, fit.integration), with),
         shift: (candidate.mechanism.kind == Kind::Sensor).then(|| shift(&amplitudes, &fit.runs)).flatten(),
         by_steps: 0.0,
@@ -88,16 +88,25 @@ fn weight(
         prediction: proof.as_ref().and_then(FindingProof::prediction),
     };
     // Costs an estimate, and only what would be named needs it.
-    let may_be_steps = tests.shift.is_some() || candidate.mechanism.kind == Kind::Actuator;
+    let like_a_clock = |m: &Mechanism| m.kind == Kind::Sensor && (m.name == CLOCKS || m.look_alikes.contains(&CLOCKS));
+    let may_be_steps = like_a_clock(candidate.mechanism) || candidate.mechanism.kind == Kind::Actuator;
     if may_be_steps && grade(&tests).is_named() {
         tests.by_steps = by_steps(question, kept, &without);
     }
     Weight { grade: grade(&tests), tests, proof, without }
 }
 
-/// The share of what a clock or an actuator's lag gains over the model `without` it that explicit Euler steps of one sample period of the
-/// recordings gain in its place: with such steps positions are late by a sample and the ship answers its actuators late, and so it is
-/// where values are held until the next.
+/// The least share of its information that is left to the weather of a set: what cannot be told from a member that the ship takes over is
+/// taken over with it. 1 for what is no weather.
+fn isolated(tests: &BaseTests, of: &Selected) -> f64 {
+    let is_weather = |i: &&usize| tests.candidates[**i].mechanism.is_weather();
+    let left = of.set.iter().filter(is_weather).map(|i| tests.screen.isolated(*i, &of.extent, &tests.candidates));
+    left.fold(1.0, f64::min)
+}
+
+/// The share of what a clock, a sensor's error like it or an actuator's lag gains over the model `without` it that explicit Euler steps of
+/// one sample period of the recordings gain in its place: with such steps positions are late by a sample and the ship answers its
+/// actuators late, and so it is where values are held until the next.
 fn by_steps(question: &Question, kept: &Kept, without: &Estimate) -> f64 {
     let steps = median(kept.selection.tests.fit.runs.iter().map(|r| r.dt / r.recorded_dt)).unwrap_or(1.0);
     let substeps = (steps.round() as usize).clamp(1, MOST_SUBSTEPS);
@@ -126,6 +135,31 @@ pub fn weakest(weights: &[Weight]) -> Option<usize> {
     let goes = |w: &Weight| !w.grade.is_named() && !w.is_carried();
     let going = weights.iter().enumerate().filter(|(_, w)| goes(w));
     going.min_by(|a, b| a.1.gain().total_cmp(&b.1.gain())).map(|(i, _)| i)
+}
+
+/// Where all that is kept makes unseen runs worse beyond chance, and no part does so by itself, the part that does least for them: it is
+/// withdrawn first. What stands beside a name must not refute it.
+pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight], held_out: &[Run]) -> Option<usize> {
+    // A single mechanism was weighed against the base model already.
+    if weights.len() < 2 || held_out.is_empty() {
+        return None;
+    }
+    let (fit, found) = (&kept.selection.tests.fit, &kept.selection.estimate);
+    let judging = &question.settings.judging;
+    let proof = FindingProof::new(&fit.estimate.model, &found.model, &found.noise, fit.integration, held_out, judging);
+    let simulated = proof.prediction().is_some_and(|g| g.is_below_zero());
+    if !simulated && !proof.likelihood().is_below_zero() {
+        return None;
+    }
+    let index = does_least(weights, simulated)?;
+    weights[index].grade = Grade::RefutedTogether;
+    Some(index)
+}
+
+/// The mechanism that gains least on unseen runs, in free simulation or in log-likelihood.
+fn does_least(weights: &[Weight], simulated: bool) -> Option<usize> {
+    let gain = |w: &Weight| if simulated { w.tests.prediction.map_or(0.0, |g| g.gain) } else { w.gain() };
+    weights.iter().enumerate().min_by(|a, b| gain(a.1).total_cmp(&gain(b.1))).map(|(i, _)| i)
 }
 
 /// A mechanism with its weight, as a finding.
@@ -181,7 +215,7 @@ impl Base {
         };
         let (base, found) = (of(&fit.estimate), of(&kept.selection.estimate));
         let following = if found.share() > base.share() { found } else { base };
-        Self { holds: following.share() >= FOLLOWED_SHARE, following }
+        Self { holds: following.holds(), following }
     }
 }
 
@@ -216,6 +250,19 @@ mod tests {
         assert_eq!(weakest(&all), Some(2));
         assert_eq!(weakest(&all[..1]), None);
         assert_eq!(weakest(&[]), None);
+    }
+
+    #[test]
+    fn of_what_is_refuted_together_the_one_goes_that_does_least_by_the_measure_that_refutes() {
+        let of = |likelihood: f64, improvement: f64| {
+            let w = weight(Grade::Confirmed, likelihood);
+            Weight {
+                tests: FindingTests { prediction: Some(GainTest { gain: improvement, ci95: None }), ..w.tests },
+                ..w
+            }
+        };
+        let all = [of(50.0, 0.1), of(5.0, 0.3), of(20.0, -0.1)];
+        assert_eq!((does_least(&all, true), does_least(&all, false), does_least(&[], true)), (Some(2), Some(1), None));
     }
 
     #[test]

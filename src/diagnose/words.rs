@@ -5,18 +5,19 @@ use super::candidate::Candidate;
 use super::decide::Verdict;
 use super::diagnosis::NextTrial;
 use super::finding::{Amplitude, Finding, GENERIC, PUSH};
-use super::generic::SurrogateTerm;
-use super::grade::Grade;
+use super::grade::{Grade, LawGrade};
 use super::influence::Following;
+use super::law::Law;
 use super::place::Place;
 use super::push::Window;
+use super::unseen::FindingProof;
 use crate::numerals::{number_of, sig};
 use crate::physics::Kind;
 
 /// What is missing and not in the catalogue, as far as the tests show it.
 pub enum Missing<'a> {
-    /// A law of state and inputs, with a surrogate for it.
-    Law(Vec<SurrogateTerm>),
+    /// A law of state and inputs, as far as one was found.
+    Law(Option<&'a Law>),
     /// A force in one part of the water.
     Place(&'a Place),
 }
@@ -25,13 +26,7 @@ impl Missing<'_> {
     /// The verdict in one sentence.
     pub fn headline(&self) -> String {
         match self {
-            Self::Law(surrogate) => {
-                let terms: Vec<&str> = surrogate.iter().map(|t| t.name.as_str()).collect();
-                let terms = terms.join(", ");
-                format!(
-                    "Something is missing that the catalogue does not hold; a surrogate for it (not physics): {terms}."
-                )
-            }
+            Self::Law(law) => format!("Something is missing that the catalogue does not hold{}.", law_words(*law)),
             Self::Place(place) => {
                 let [south, north] = place.north.map(|v| v.round());
                 let [west, east] = place.east.map(|v| v.round());
@@ -42,14 +37,6 @@ impl Missing<'_> {
                      are added to the force that acts everywhere."
                 )
             }
-        }
-    }
-
-    /// The surrogate law; empty for a force in one part of the water.
-    pub fn into_surrogate(self) -> Vec<SurrogateTerm> {
-        match self {
-            Self::Law(terms) => terms,
-            Self::Place(_) => Vec::new(),
         }
     }
 
@@ -66,6 +53,22 @@ impl Missing<'_> {
             ),
         };
         NextTrial { trial: trial.into(), why: why.into() }
+    }
+}
+
+/// The law for what is missing, with its grade; a law that unseen runs refute is not repeated.
+fn law_words(law: Option<&Law>) -> String {
+    let Some(law) = law else {
+        return ": a force to one side or fixed on the earth, for which no law of few terms is significant".into();
+    };
+    let proof = law.held_out.as_ref().map_or(String::new(), on_unseen);
+    let equation = law.equation.join("; ");
+    match law.grade {
+        LawGrade::Confirmed => format!(". A law that describes it is confirmed on unseen runs{proof}: {equation}"),
+        LawGrade::Exploratory => {
+            format!(". A candidate law, exploratory and not confirmed on unseen runs{proof}: {equation}")
+        }
+        LawGrade::Refuted => format!(". The law that fits the training runs best is refuted by unseen runs{proof}"),
     }
 }
 
@@ -126,18 +129,15 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
     match verdict {
         Verdict::Named | Verdict::Sensor => named(said.findings) + &together(said.worse),
         Verdict::OneOf => first.map_or(String::new(), one_of),
-        Verdict::NotInCatalogue => match (said.missing, withdrawn(Grade::Refuted)) {
+        Verdict::NotInCatalogue => match (said.missing, withdrawn(Grade::Refuted).or(withdrawn(Grade::RefutedTogether))) {
             (Some(missing), None) => missing.headline(),
-            (Some(missing), Some(tried)) => format!(
-                "{} {} was tried, and unseen runs refute it{}.",
-                missing.headline(),
-                sentence(&tried.title),
-                proof(tried)
-            ),
+            (Some(missing), Some(tried)) => {
+                format!("{} {} was tried, and unseen runs refute it{}.", missing.headline(), sentence(&tried.title), refuted(tried))
+            }
             (None, Some(tried)) => format!(
                 "Something is missing, and no law of the catalogue is it: {} fits the training runs best, and unseen runs refute it{}.",
                 tried.title,
-                proof(tried)
+                refuted(tried)
             ),
             (None, None) => format!(
                 "Something is missing, and no law of the catalogue is it: {} gains most, but only with coefficients of its own that no \
@@ -163,8 +163,9 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
 /// That weather cannot be told from the ship itself.
 fn not_isolated(f: &Finding) -> String {
     format!(
-        "These recordings cannot tell: {} is significant, but on the headings that were sailed the ship's own parameters (a side force, \
-         trim, resistance, the compass zero) can take over nearly all of its effect; the same runs on opposite headings would part them.",
+        "These recordings cannot tell: {} is significant, but on the headings that were sailed the ship's own parameters and its sensors \
+         (a side force, trim, resistance, the zero of the compass, the scale of the log) can take over nearly all of its effect; \
+         the same runs on opposite headings would part them.",
         f.title
     )
 }
@@ -229,7 +230,11 @@ fn titled(f: &Finding) -> String {
 
 /// What a finding does on unseen runs, in brackets.
 fn proof(f: &Finding) -> String {
-    let Some(h) = &f.held_out else { return String::new() };
+    f.held_out.as_ref().map_or(String::new(), on_unseen)
+}
+
+/// Errors on unseen runs without and with a finding or a law, in brackets.
+fn on_unseen(h: &FindingProof) -> String {
     let mut parts = Vec::new();
     if let Some([before, after]) = h.position {
         parts.push(format!("position error {} m to {} m", sig(before, 3), sig(after, 3)));
@@ -239,6 +244,14 @@ fn proof(f: &Finding) -> String {
     }
     parts.push(number_of(h.recordings, "unseen recording"));
     format!(" ({})", parts.join(", "))
+}
+
+/// What unseen runs say against a finding.
+fn refuted(f: &Finding) -> String {
+    match f.grade {
+        Grade::RefutedTogether => " together with what else was found".into(),
+        _ => proof(f),
+    }
 }
 
 /// The parameters of a finding; a vector fixed on the earth by its size and direction.
@@ -357,8 +370,6 @@ mod tests {
         );
         assert!(together(Some([76.5, 89.4])).contains("worse than the base model (cVDM 76.5 % to 89.4 %)"));
         assert_eq!(together(None), "");
-        let law = Missing::Law(vec![SurrogateTerm { name: "asymmetric.N_0".into(), value: 1.0, error: 0.1 }]);
-        assert!(headline(Verdict::NotInCatalogue, &[], Some(&law)).contains("asymmetric.N_0"));
         let with = |grade| Finding { grade, change: Some(0.02), ..current() };
         let refuted = said(Verdict::NotInCatalogue, &[], &[with(Grade::Refuted)], None);
         assert!(refuted.contains("steady current") && refuted.contains("refute"), "{refuted}");
@@ -377,6 +388,25 @@ mod tests {
         for verdict in [Verdict::Numerics, Verdict::Random, Verdict::Insufficient, Verdict::NothingMissing] {
             assert!(headline(verdict, &[], None).ends_with('.'), "{verdict:?}");
         }
+    }
+
+    #[test]
+    fn a_law_is_told_with_its_grade_and_a_refuted_one_without_its_equation() {
+        let of = |grade| Law {
+            grade,
+            equation: vec!["N [N m] = 3.00e5".into(), "Y [N] = 12 v|v|".into()],
+            terms: Vec::new(),
+            range: Vec::new(),
+            held_out: None,
+            estimate: example::at(&example::model()),
+        };
+        let said = |grade| Missing::Law(Some(&of(grade))).headline();
+        let (confirmed, candidate) = (said(LawGrade::Confirmed), said(LawGrade::Exploratory));
+        assert!(confirmed.contains("confirmed on unseen runs: N [N m] = 3.00e5; Y [N] = 12 v|v|."), "{confirmed}");
+        assert!(candidate.contains("exploratory and not confirmed") && candidate.contains("= 3.00e5"), "{candidate}");
+        let refuted = said(LawGrade::Refuted);
+        assert!(refuted.ends_with("refuted by unseen runs.") && !refuted.contains('='), "{refuted}");
+        assert!(Missing::Law(None).headline().ends_with("no law of few terms is significant."));
     }
 
     #[test]

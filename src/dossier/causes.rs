@@ -67,7 +67,9 @@ impl Causes {
     pub fn new(model: &Model, document: &Value, source: String) -> Self {
         let list = |key: &str| document[key].as_array().cloned().unwrap_or_default();
         let (found, withdrawn) = (list("findings"), list("withdrawn"));
-        let (refuted, not_named) = withdrawn.into_iter().partition::<Vec<Value>, _>(|f| f["grade"] == "refuted");
+        let (refuted, not_named) = withdrawn
+            .into_iter()
+            .partition::<Vec<Value>, _>(|f| f["grade"] == "refuted" || f["grade"] == "refuted_together");
         let settled: BTreeSet<String> =
             found.iter().chain(&refuted).filter_map(|f| f["mechanism"].as_str().map(str::to_owned)).collect();
         let named = |entry: &Value| entry["mechanism"].as_str().unwrap_or("").to_owned();

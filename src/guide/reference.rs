@@ -2,6 +2,7 @@
 //! A test compares them with what the chapters hold, and can write them there; the readers themselves are elsewhere.
 
 use super::schema::schema;
+use crate::diagnose::settings::{Number, VERDICT};
 use crate::recording::{CHANNELS, ChannelInfo, Quantity, UNITS};
 use crate::report::diagnosis::keys;
 use serde_json::{Map, Value};
@@ -49,9 +50,23 @@ pub fn tables(chapter: &str) -> Vec<Table> {
 pub fn listing(chapter: &str) -> String {
     match chapter {
         "channels" => channels(),
-        "diagnosis" => keys().map(|(key, meaning)| format!("- `{key}`: {}\n", escaped(meaning))).collect(),
+        "diagnosis" => {
+            let keys: String = keys().map(|(key, meaning)| format!("- `{key}`: {}\n", escaped(meaning))).collect();
+            format!("{keys}\n## The numbers on which a verdict turns\n\n{}", numbers())
+        }
         _ => tables(chapter).iter().map(markdown).collect::<Vec<_>>().join("\n"),
     }
+}
+
+/// The numbers with which a diagnosis compares its tests: value, meaning, and how each was set.
+fn numbers() -> String {
+    let line = |n: &Number| format!("- `{}` = {}: {} Set by: {}.\n", n.name, plain(n.value), n.meaning, n.origin);
+    VERDICT.iter().map(line).collect()
+}
+
+/// A number as it is written in the source: small ones with an exponent.
+fn plain(value: f64) -> String {
+    if value < 1e-3 { format!("{value:e}") } else { value.to_string() }
 }
 
 /// Adds the table that a schema describes, and those inside it.

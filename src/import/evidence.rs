@@ -243,7 +243,7 @@ pub fn yaw_rate(
         |gain: f64| if gain < 0.0 { (-1.0, "anticlockwise positive, turned") } else { (1.0, "clockwise positive") };
     match (found, given_by_user.or(given)) {
         (Some(ratio), given) => {
-            let near = nearest_unit(Quantity::AngularRate, &["deg/min", "deg/s", "rad/s"], ratio.gain, NEAR);
+            let near = nearest_unit(Quantity::AngularRate, &["deg/min", "deg/s", "rad/s", "mrad/s"], ratio.gain, NEAR);
             let (sign, words) = sense(ratio.gain);
             match (near, given) {
                 (_, Some(given)) if given.by_user => {

@@ -19,15 +19,22 @@ fn words(name: &str) -> Vec<String> {
 }
 
 /// Spellings of units at the end of a name, as in `sog_kn`, and the unit.
-const ENDINGS: [(&[&str], &str); 26] = [
+const ENDINGS: [(&[&str], &str); 33] = [
     (&["ms"], "ms"),
     (&["deg", "per", "min"], "deg/min"),
     (&["deg", "min"], "deg/min"),
     (&["deg", "s"], "deg/s"),
+    (&["deg", "sec"], "deg/s"),
+    (&["deg", "per", "s"], "deg/s"),
+    (&["deg", "per", "sec"], "deg/s"),
     (&["degps"], "deg/s"),
     (&["dps"], "deg/s"),
     (&["rad", "s"], "rad/s"),
+    (&["rad", "sec"], "rad/s"),
+    (&["mrad", "s"], "mrad/s"),
+    (&["mrad"], "mrad"),
     (&["m", "s"], "m/s"),
+    (&["m", "sec"], "m/s"),
     (&["mps"], "m/s"),
     (&["km", "h"], "km/h"),
     (&["kmh"], "km/h"),

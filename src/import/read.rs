@@ -8,6 +8,7 @@ use super::log::Log;
 use super::nmea::{is_nmea, read_nmea};
 use super::parquet::{is_parquet, read_parquet};
 use super::text::read_text;
+use crate::written::bytes_of;
 use std::path::Path;
 
 /// Reads a file, its time as the user says. A file whose own clock starts again several times is as many logs.
@@ -19,7 +20,7 @@ pub fn read(path: &Path, choices: &Choices) -> Result<Vec<Log>, ImportError> {
         let message = "is a folder; give the files in it".to_owned();
         return Err(ImportError::File { path: path.to_owned(), message });
     }
-    let bytes = std::fs::read(path).map_err(|source| ImportError::Read { path: path.to_owned(), source })?;
+    let bytes = bytes_of(path).map_err(|source| ImportError::Read { path: path.to_owned(), source })?;
     read_bytes(path, &bytes, choices)
 }
 

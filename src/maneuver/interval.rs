@@ -16,14 +16,23 @@ pub const SEED: u64 = 1;
 const REACHED: f64 = 0.95;
 
 /// Parameter vectors drawn around the values of a model, each inside the bounds of its parameters. Equal seeds give equal draws.
+///
+/// A parameter that a bound of zero keeps positive or negative, and whose standard deviation is at most its size, is drawn by its logarithm,
+/// `p exp(step / p)`, which is `p + step` for small steps. Forces are products of such parameters, and recordings that determine a
+/// product leave its factors uncertain with opposite signs: `(1 + a)(1 - a)` is always below one, and circles were too wide, where
+/// `exp(a) exp(-a)` is one.
 pub fn drawn(model: &Model, uncertainty: &Uncertainty, count: usize, seed: u64) -> Vec<Vec<f64>> {
     let places: Vec<Option<usize>> = uncertainty.parameters.iter().map(|name| model.index(name)).collect();
     let vector = |deviation: Vec<f64>| {
         let mut theta = model.values();
-        for (i, step) in places.iter().zip(deviation).filter_map(|(i, step)| Some(((*i)?, step))) {
+        let steps = places.iter().zip(deviation).enumerate();
+        for (i, step, sd) in steps.filter_map(|(k, (i, step))| Some(((*i)?, step, uncertainty.matrix[k][k].sqrt()))) {
             let p = &model.parameters[i];
+            let one_sided = (p.lower == 0.0 && p.value > 0.0) || (p.upper == 0.0 && p.value < 0.0);
+            let moved =
+                if one_sided && sd <= p.value.abs() { p.value * (step / p.value).exp() } else { p.value + step };
             // An estimate at its bound, or beyond one that was set later, stays where it is.
-            theta[i] = (p.value + step).clamp(p.lower.min(p.value), p.upper.max(p.value));
+            theta[i] = moved.clamp(p.lower.min(p.value), p.upper.max(p.value));
         }
         theta
     };

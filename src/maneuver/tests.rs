@@ -5,6 +5,8 @@ use super::*;
 use crate::model::Model;
 use crate::physics::Form;
 use crate::ship::Ship;
+use crate::statistics::median;
+use crate::uncertainty::Uncertainty;
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -231,4 +233,29 @@ fn imo_limits_follow_length_over_speed_and_bind_from_100_m() {
     };
     assert_eq!(verdict(-35.0), [imo::Verdict::Met, imo::Verdict::NotApplicable]);
     assert_eq!(verdict(20.0), [imo::Verdict::NotApplicable; 2]);
+}
+
+#[test]
+fn drawn_factors_of_a_known_product_keep_the_product_and_their_signs() {
+    // Recordings tell the product of the lift slope and the wake, not the two: opposite relative errors of 40 %.
+    let model = model(Form::Regular);
+    let at = |name: &str| model.index(name).unwrap();
+    let places = [at("rudder.lift1"), at("flow.wake")];
+    let [lift, wake] = places.map(|i| model.parameters[i].value);
+    let matrix = vec![vec![0.16 * lift * lift, -0.16 * lift * wake], vec![-0.16 * lift * wake, 0.16 * wake * wake]];
+    let uncertainty = Uncertainty {
+        kind: "test".to_owned(),
+        freedom: None,
+        parameters: vec!["rudder.lift1".to_owned(), "flow.wake".to_owned()],
+        undetermined: Vec::new(),
+        matrix,
+    };
+    let draws = drawn(&model, &uncertainty, 400, 3);
+    let products = draws.iter().map(|theta| theta[places[0]] * theta[places[1]] / (lift * wake));
+    let kept = products.clone().filter(|p| (p - 1.0).abs() < 1e-6).count();
+    assert!(kept > 390, "{kept} of 400: the others are at the upper bound of the wake");
+    assert!((median(products).unwrap() - 1.0).abs() < 1e-6);
+    let lifts: Vec<f64> = draws.iter().map(|theta| theta[places[0]] / lift).collect();
+    assert!(lifts.iter().all(|l| *l > 0.0) && lifts.iter().any(|l| *l > 2.0) && lifts.iter().any(|l| *l < 0.5));
+    assert!((median(lifts).unwrap() - 1.0).abs() < 0.1);
 }

@@ -83,7 +83,7 @@ pub fn plan(question: &Question, pair: Option<[&str; 2]>, progress: &(dyn Fn(&st
     let runs: Vec<Run> = trials.iter().map(|t| t.run.clone()).collect();
     let (noise, level) = plan.sensors.noise(&full, &runs, step);
     let free = base_parameters(&full, diagnose.nuisance);
-    let found = Estimate { model: full, noise, free, log_posterior: 0.0 };
+    let found = Estimate { model: full, noise, free, log_posterior: 0.0, seen: None };
     let list: Vec<Candidate> = all.into_iter().filter(|c| applies(c.mechanism, &runs)).collect();
     let screen = screen(&found, basin.integration, &runs, &list);
     let parting = match &pair {

@@ -127,7 +127,7 @@ pub enum RecordingError {
         found: usize,
     },
     /// A field is not a number.
-    #[error("{path}:{line}: column `{column}` holds `{found}`, which is not a number; correct it, or leave the field empty for a missing value", path = path.display())]
+    #[error("{path}:{line}: column `{column}` holds `{found}`, which is not a number; {next}", path = path.display())]
     NotANumber {
         /// The file.
         path: PathBuf,
@@ -137,6 +137,8 @@ pub enum RecordingError {
         column: String,
         /// What is there.
         found: String,
+        /// What to do.
+        next: &'static str,
     },
     /// A value no ship reaches.
     #[error("{path}:{line}: {} {found} {unit} is outside {limits}; {hint}", channel.info().words, path = path.display())]

@@ -236,11 +236,10 @@ impl Rows {
             return Err(RecordingError::Ragged { path, line, expected: least, found: fields.len() });
         }
         for (source, column) in sources.iter().zip(&mut self.columns) {
-            let value = source.value(&fields, map.decimal).ok_or_else(|| RecordingError::NotANumber {
-                path: path.to_owned(),
-                line,
-                column: source.label.clone(),
-                found: source.field.map(|f| fields[f].to_string()).unwrap_or_default(),
+            let value = source.value(&fields, map.decimal).ok_or_else(|| {
+                let found = source.field.map(|f| fields[f].to_string()).unwrap_or_default();
+                let next = after_no_number(&found, source.channel, map.decimal);
+                RecordingError::NotANumber { path: path.to_owned(), line, column: source.label.clone(), found, next }
             })?;
             column.push(value);
         }
@@ -453,6 +452,18 @@ fn find(
         }
     }
     Ok(None)
+}
+
+/// What to do about a field that is no number: what it looks like says which.
+fn after_no_number(found: &str, channel: Channel, decimal: Decimal) -> &'static str {
+    let comma = found.matches(',').count() == 1 && found.trim().replace(',', ".").parse::<f64>().is_ok();
+    if channel == Channel::T && found.contains([':', '-', '/']) && found.contains(|c: char| c.is_ascii_digit()) {
+        "times of day and dates are read by `trimtab import`, which makes a study of such logs; here a time is a number of seconds"
+    } else if decimal == Decimal::Point && comma {
+        "set `decimal = \"comma\"` in a column map if numbers are written 1,5"
+    } else {
+        "correct it, or leave the field empty for a missing value"
+    }
 }
 
 fn missing_column(

@@ -60,16 +60,27 @@ pub const UNITS: &[Unit] = &[
     unit(Quantity::Length, &["ft", "feet"], 0.3048),
     unit(Quantity::Angle, &["rad", "radian", "radians"], 1.0),
     unit(Quantity::Angle, &["deg", "degree", "degrees", "°"], DEGREE),
-    unit(Quantity::Speed, &["m/s", "ms-1", "m s-1", "mps"], 1.0),
+    unit(Quantity::Angle, &["mrad", "milliradian", "milliradians"], 1e-3),
+    unit(Quantity::Speed, &["m/s", "ms-1", "m s-1", "m/sec", "mps"], 1.0),
     unit(Quantity::Speed, &["kn", "kt", "kts", "knot", "knots"], KNOT),
-    unit(Quantity::Speed, &["km/h", "kmh", "kph"], 1.0 / 3.6),
-    unit(Quantity::Speed, &["cm/s"], 0.01),
-    unit(Quantity::AngularRate, &["rad/s", "rad s-1"], 1.0),
-    unit(Quantity::AngularRate, &["deg/s", "°/s"], DEGREE),
-    unit(Quantity::AngularRate, &["deg/min", "°/min"], DEGREE / 60.0),
-    unit(Quantity::AngularRate, &["rad/min"], 1.0 / 60.0),
-    unit(Quantity::Rotation, &["rps", "1/s", "s-1", "Hz", "rev/s"], 1.0),
-    unit(Quantity::Rotation, &["rpm", "1/min", "min-1", "rev/min"], 1.0 / 60.0),
+    unit(Quantity::Speed, &["km/h", "kmh", "kph", "kmph", "km/hr"], 1.0 / 3.6),
+    unit(Quantity::Speed, &["cm/s", "cm/sec"], 0.01),
+    unit(Quantity::Speed, &["mm/s", "mm/sec"], 0.001),
+    unit(Quantity::AngularRate, &["rad/s", "rad s-1", "rad/sec"], 1.0),
+    unit(
+        Quantity::AngularRate,
+        &["deg/s", "deg s-1", "°/s", "deg/sec", "°/sec", "degree/s", "degrees/s", "degps", "dps"],
+        DEGREE,
+    ),
+    unit(
+        Quantity::AngularRate,
+        &["deg/min", "deg min-1", "°/min", "deg/minute", "degree/min", "degrees/min"],
+        DEGREE / 60.0,
+    ),
+    unit(Quantity::AngularRate, &["rad/min", "rad min-1"], 1.0 / 60.0),
+    unit(Quantity::AngularRate, &["mrad/s", "mrad s-1", "mrad/sec"], 1e-3),
+    unit(Quantity::Rotation, &["rps", "1/s", "s-1", "Hz", "rev/s", "rev/sec", "r/s"], 1.0),
+    unit(Quantity::Rotation, &["rpm", "1/min", "min-1", "rev/min", "r/min"], 1.0 / 60.0),
     unit(Quantity::Rotation, &["rad/s"], 1.0 / TURN),
     unit(Quantity::Number, &["-", "1", ""], 1.0),
     unit(Quantity::Number, &["%", "percent"], 0.01),
@@ -131,6 +142,10 @@ mod tests {
         close(Quantity::Speed.factor("KM/H"), 1.0 / 3.6);
         close(Quantity::Angle.factor("deg"), std::f64::consts::PI / 180.0);
         close(Quantity::AngularRate.factor("deg/min"), std::f64::consts::PI / 180.0 / 60.0);
+        close(Quantity::AngularRate.factor("deg/sec"), std::f64::consts::PI / 180.0);
+        close(Quantity::AngularRate.factor("Degrees/s"), std::f64::consts::PI / 180.0);
+        close(Quantity::AngularRate.factor("mrad/s"), 1e-3);
+        close(Quantity::Angle.factor("mrad"), 1e-3);
         close(Quantity::Rotation.factor("rpm"), 1.0 / 60.0);
         close(Quantity::Rotation.factor("rad/s"), 1.0 / std::f64::consts::TAU);
         close(Quantity::Number.factor("%"), 0.01);

@@ -8,6 +8,7 @@ use super::local::local_fit;
 use super::record::Recording;
 use super::run::{Measured, Run, Split};
 use crate::state::{Inputs, STATES};
+use crate::statistics::mean;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -368,22 +369,27 @@ impl Recording {
         self.get(a).zip(self.get(b))
     }
 
-    /// State at `t0` of the local motion that fits all state channels of `segment` best over `span` seconds: u, v and r linear in
-    /// time, x, y and psi their integrals. Channels that were not recorded come out of the others, or as 0 (position, and heading
-    /// without one). `None` when fewer than three rows are covered.
-    fn local_motion(&self, segment: &Range<usize>, t0: f64, span: f64) -> Option<[f64; STATES]> {
+    /// Rows of `segment` within `span` seconds, centred on `t0`, moved inside where the segment ends.
+    fn rows_around(&self, segment: &Range<usize>, t0: f64, span: f64) -> Range<usize> {
         let t = self.time();
-        // Centred on t0, moved inside where the segment ends.
         let (first, last) = (t[segment.start], t[segment.end - 1]);
         let from = (t0 - 0.5 * span).min(last - span).max(first);
         let slack = 1e-9 * span;
         let inside = &t[segment.clone()];
-        let rows = segment.start + inside.partition_point(|ti| *ti < from - slack)
-            ..segment.start + inside.partition_point(|ti| *ti <= from + span + slack);
+        segment.start + inside.partition_point(|ti| *ti < from - slack)
+            ..segment.start + inside.partition_point(|ti| *ti <= from + span + slack)
+    }
+
+    /// State at `t0` of the local motion that fits all state channels of `segment` best over `span` seconds: u, v and r linear in
+    /// time, x, y and psi their integrals. What a channel's own rows tell of its value at `t0` beside that motion is added, so that the
+    /// state is what the sensors report. Channels that were not recorded come out of the others, or as 0 (position, and heading without
+    /// one). `None` when fewer than three rows are covered.
+    fn local_motion(&self, segment: &Range<usize>, t0: f64, span: f64) -> Option<[f64; STATES]> {
+        let rows = self.rows_around(segment, t0, span);
         if rows.len() < 3 {
             return None;
         }
-        let tau: Vec<f64> = t[rows.clone()].iter().map(|ti| ti - t0).collect();
+        let tau: Vec<f64> = self.time()[rows.clone()].iter().map(|ti| ti - t0).collect();
         let channel = |c: Channel| self.get(c).map(|v| &v[rows.clone()]);
         let [x, y, psi, u, v, r] = STATE_CHANNELS.map(channel);
 
@@ -396,30 +402,10 @@ impl Recording {
         }
         let heading = turn.solve(3)?;
         let psi_at = |s: f64| heading[0] + heading[1] * s + 0.5 * heading[2] * s * s;
-        // Integrals from 0 to s of cos psi, sin psi, and of both times the running time, by Simpson's rule.
-        let integrals = |s: f64| {
-            const PANELS: usize = 8;
-            let mut sum = [0.0; 4];
-            for i in 0..=2 * PANELS {
-                let at = s * i as f64 / (2 * PANELS) as f64;
-                let weight = if i == 0 || i == 2 * PANELS {
-                    1.0
-                } else if i % 2 == 1 {
-                    4.0
-                } else {
-                    2.0
-                };
-                let (sin, cos) = psi_at(at).sin_cos();
-                for (sum, value) in sum.iter_mut().zip([cos, sin, at * cos, at * sin]) {
-                    *sum += weight * value;
-                }
-            }
-            sum.map(|v| v * s / (6 * PANELS) as f64)
-        };
         let mut motion = Rows::default();
+        let table: Vec<[f64; 4]> = tau.iter().map(|&s| integrals(psi_at, s)).collect();
         // Unknowns: x0, y0, u0, u', v0, v'. Without a heading the track cannot be told from drift, so it is left out.
         if psi.is_some() {
-            let table: Vec<[f64; 4]> = tau.iter().map(|&s| integrals(s)).collect();
             if let Some(x) = x {
                 motion.push(&tau, x, |i, _| {
                     let [c, s, ct, st] = table[i];
@@ -441,6 +427,22 @@ impl Recording {
         }
         let m = motion.solve(6)?;
         let mut state = [m[0], m[1], heading[0], m[2], m[4], heading[1]];
+        // A sensor that errs disagrees with the motion that all of them share: a simulation starts from what it reports itself. A velocity
+        // is off by a constant, and the integrals of the others' errors are lines.
+        let line = |value: f64, slope: f64, s: f64| value + slope * s;
+        let shared: [&dyn Fn(usize) -> f64; STATES] = [
+            &|i| m[0] + along(table[i], [m[2], m[3], -m[4], -m[5]]),
+            &|i| m[1] + along(table[i], [m[4], m[5], m[2], m[3]]),
+            &|i| psi_at(tau[i]),
+            &|i| line(m[2], m[3], tau[i]),
+            &|i| line(m[4], m[5], tau[i]),
+            &|i| line(heading[1], heading[2], tau[i]),
+        ];
+        for (c, values) in [x, y, psi, u, v, r].into_iter().enumerate().filter(|(c, _)| *c > 1 || psi.is_some()) {
+            let Some(values) = values else { continue };
+            let rest: Vec<f64> = (0..tau.len()).map(|i| values[i] - shared[c](i)).collect();
+            state[c] += if c < 3 { at_zero(&tau, &rest) } else { mean(rest) }.unwrap_or(0.0);
+        }
         if psi.is_none() {
             for (i, values) in [x, y].into_iter().enumerate() {
                 state[i] = values.and_then(|v| local_fit(&tau, v, 0.0)).map_or(0.0, |c| c[0]);
@@ -563,6 +565,40 @@ impl Rows {
         let solution = a.svd(true, true).solve(&nalgebra::DVector::from_vec(self.right), 1e-10).ok()?;
         Some((0..unknowns).map(|j| if scale[j] > 0.0 { solution[j] / scale[j] } else { 0.0 }).collect())
     }
+}
+
+/// Integrals from 0 to `s` of cos psi, sin psi, and of both times the running time, by Simpson's rule.
+fn integrals(psi_at: impl Fn(f64) -> f64, s: f64) -> [f64; 4] {
+    const PANELS: usize = 8;
+    let mut sum = [0.0; 4];
+    for i in 0..=2 * PANELS {
+        let at = s * i as f64 / (2 * PANELS) as f64;
+        let weight = if i == 0 || i == 2 * PANELS {
+            1.0
+        } else if i % 2 == 1 {
+            4.0
+        } else {
+            2.0
+        };
+        let (sin, cos) = psi_at(at).sin_cos();
+        for (sum, value) in sum.iter_mut().zip([cos, sin, at * cos, at * sin]) {
+            *sum += weight * value;
+        }
+    }
+    sum.map(|v| v * s / (6 * PANELS) as f64)
+}
+
+/// Integrals of cos psi and sin psi, and of both times the running time, times what each contributes ahead and its rate, and across.
+fn along([c, s, ct, st]: [f64; 4], [a, rate, b, other]: [f64; 4]) -> f64 {
+    c * a + ct * rate + s * b + st * other
+}
+
+/// Value at 0 of the line through samples by least squares; their mean where they are all at one time.
+fn at_zero(tau: &[f64], values: &[f64]) -> Option<f64> {
+    let (middle, centre) = (mean(tau.iter().copied())?, mean(values.iter().copied())?);
+    let spread: f64 = tau.iter().map(|s| (s - middle).powi(2)).sum();
+    let pull: f64 = tau.iter().zip(values).map(|(s, v)| (s - middle) * (v - centre)).sum();
+    Some(if spread > 0.0 { centre - pull / spread * middle } else { centre })
 }
 
 /// Root mean square distance of samples from their own quadratic, with a floor for samples without noise.
@@ -763,6 +799,35 @@ mod tests {
         for (a, b) in w.windows[0].initial.iter().zip(truth) {
             assert!((a - b).abs() < 1e-6, "{a} {b}");
         }
+    }
+
+    #[test]
+    fn a_smoothed_initial_state_is_what_each_sensor_reports_of_itself() {
+        // The log reads 8 % too much, the gyro has a bias: positions and heading are exact.
+        let mut channels = straight(100, 0.1);
+        let speed = 2.0_f64.hypot(0.5);
+        let all = |value: f64| vec![value; 100];
+        for (channel, values) in &mut channels {
+            match channel {
+                Channel::Psi => *values = all(0.5_f64.atan2(2.0)),
+                Channel::U => *values = all(1.08 * speed),
+                Channel::V => *values = all(0.0),
+                Channel::R => *values = all(0.003),
+                _ => {}
+            }
+        }
+        let initial = Initial::Smoothed { span: 3.0 };
+        let start = |channels| {
+            let recording = Recording::from_channels("run", channels).unwrap();
+            recording.windows(&labels(), &WindowSettings { initial, ..settings() }).unwrap().windows[0].initial
+        };
+        for (a, b) in start(channels.clone()).into_iter().zip([3.0, -1.0, 0.5_f64.atan2(2.0), 1.08 * speed, 0.0, 0.003])
+        {
+            assert!((a - b).abs() < 5e-3, "{a} {b}");
+        }
+        // Without a log the speed is that of the track.
+        channels.retain(|(c, _)| *c != Channel::U);
+        assert!((start(channels)[3] - speed).abs() < 0.02);
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub struct Local<P> {
 }
 
 /// A number without derivatives, for one run or for several side by side, that simulations are differentiated over.
-pub trait Plain: Number<Coefficient = Self> {
+pub trait Plain: Number<Coefficient = Self> + PartialEq {
     /// The number with [`FEW`] derivatives by parameters.
     type Few: Number<Coefficient = Self::Few>;
     /// How many runs it holds.

@@ -4,10 +4,11 @@
 use super::blocks::stretches;
 use super::controls::{Controls, time_scale};
 use super::session::{Sessions, USUAL_GAP};
-use super::sides::{TestBy, sides};
+use super::sides::{Reach, TestBy, sides};
 use super::stretch::{Kind, Stretch};
 use crate::files::plain_cell;
 use crate::recording::{Recording, Split};
+use crate::statistics::quantile;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -63,6 +64,9 @@ pub struct SplitRun {
     /// Runs of one block come to one side.
     #[serde(skip)]
     block: usize,
+    /// How far the rudder goes in the block.
+    #[serde(skip)]
+    reach: Reach,
 }
 
 /// Why recordings could not be split.
@@ -155,6 +159,7 @@ impl Numbers {
         *number += 1;
         self.block += 1;
         let rows = stretch.rows.clone();
+        let reach = reach(&c.delta[rows.clone()]);
         let lasts = c.t[rows.end - 1] - c.t[rows.start];
         let most = rows.len() / FEWEST;
         // A manoeuvre that is a little longer stays whole.
@@ -173,9 +178,17 @@ impl Numbers {
                 to,
                 seen: stretch.why.clone(),
                 block: self.block,
+                reach,
             });
         }
     }
+}
+
+/// The rudder angles that are exceeded to either side for a twentieth of the time: a single sample tells nothing.
+fn reach(delta: &[f64]) -> Reach {
+    let mut angles: Vec<f64> = delta.iter().copied().filter(|d| d.is_finite()).collect();
+    angles.sort_unstable_by(f64::total_cmp);
+    [0.05, 0.95].map(|share| quantile(&angles, share).unwrap_or(0.0))
 }
 
 /// Gives every run its side.
@@ -192,21 +205,22 @@ fn assign(runs: &mut Vec<SplitRun>, settings: &SplitSettings) -> Result<(), Spli
             let text = "--by session: there is only one session, so that nothing would be left to test on; use --by block, or tell sessions apart with --sessions";
             return Err(SplitError(text.to_owned()));
         }
-        let sides = sides(&vec![0; names.len()], settings.test);
+        let sides = sides(&vec![0; names.len()], &vec![[0.0; 2]; names.len()], settings.test);
         for run in runs.iter_mut() {
             let at = names.binary_search(&run.session).unwrap_or(0);
             run.split = sides[at];
         }
         return Ok(());
     }
-    let mut kinds: BTreeMap<usize, Kind> = BTreeMap::new();
-    kinds.extend(runs.iter().map(|r| (r.block, r.manoeuvre)));
-    if kinds.len() == 1 {
+    let mut blocks: BTreeMap<usize, (Kind, Reach)> = BTreeMap::new();
+    blocks.extend(runs.iter().map(|r| (r.block, (r.manoeuvre, r.reach))));
+    if blocks.len() == 1 {
         last_tests(runs, settings.test);
         return Ok(());
     }
-    let sides = sides(&kinds.values().copied().collect::<Vec<_>>(), settings.test);
-    let of: BTreeMap<usize, Split> = kinds.keys().copied().zip(sides).collect();
+    let (kinds, reaches): (Vec<Kind>, Vec<Reach>) = blocks.values().copied().unzip();
+    let sides = sides(&kinds, &reaches, settings.test);
+    let of: BTreeMap<usize, Split> = blocks.keys().copied().zip(sides).collect();
     runs.iter_mut().for_each(|r| r.split = of.get(&r.block).copied().unwrap_or(Split::Train));
     Ok(())
 }

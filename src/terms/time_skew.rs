@@ -1,4 +1,4 @@
-//! Delays of the position channels and of the heading channel.
+//! Delays of the position channels, of the heading channel and of the yaw rate channel.
 //! First order in the delay, accurate while the rates change little over it; velocities are taken to be on time.
 
 use super::size;
@@ -22,26 +22,46 @@ static INFO: TermInfo = TermInfo {
     source: "first-order expansion of a delay",
     needs: &[],
     validity: Validity::any("first order in the delay: good while rates change little over it"),
-    mechanisms: &[Mechanism {
-        name: "time_skew",
-        title: "channels recorded at different times",
-        kind: Kind::Sensor,
-        parameters: &["position", "heading"],
-        companions: &[],
-        probe: Probe::Tangent,
-        needs_reference: false,
-        by_session: true,
-        floor: 0.02,
-        stand_in: false,
-        look_alikes: &["antenna", "position_lever", "rudder_lag"],
-        trial: "zigzags after a check of the clocks",
-    }],
+    mechanisms: &[
+        Mechanism {
+            name: "time_skew",
+            title: "channels recorded at different times",
+            kind: Kind::Sensor,
+            parameters: &["position", "heading"],
+            companions: &[],
+            probe: Probe::Tangent,
+            needs_reference: false,
+            by_session: true,
+            floor: 0.02,
+            stand_in: false,
+            look_alikes: &["antenna", "position_lever", "rudder_lag", "yaw_rate_skew"],
+            trial: "zigzags after a check of the clocks",
+        },
+        Mechanism {
+            name: "yaw_rate_skew",
+            title: "yaw rate recorded at another time than the heading",
+            kind: Kind::Sensor,
+            parameters: &["yaw_rate"],
+            companions: &[],
+            probe: Probe::Tangent,
+            needs_reference: false,
+            by_session: true,
+            floor: 0.02,
+            stand_in: false,
+            look_alikes: &["time_skew", "rudder_lag"],
+            trial: "zigzags after a check of the clocks",
+        },
+    ],
     parameters: &[
         ParameterInfo::new("position", "tau_p", "s", "delay of the position channels")
             .scale(|s| 0.2 * size::time(s))
             .spread(size::time)
             .bounds(-20.0, 20.0),
         ParameterInfo::new("heading", "tau_h", "s", "delay of the heading channel")
+            .scale(|s| 0.2 * size::time(s))
+            .spread(size::time)
+            .bounds(-20.0, 20.0),
+        ParameterInfo::new("yaw_rate", "tau_r", "s", "delay of the yaw rate channel")
             .scale(|s| 0.2 * size::time(s))
             .spread(size::time)
             .bounds(-20.0, 20.0),
@@ -66,5 +86,6 @@ impl<S: Scalar> Physics<S> for TimeSkew {
         y[0] -= rate[0] * p[0];
         y[1] -= rate[1] * p[0];
         y[2] -= rate[2] * p[1];
+        y[5] -= rate[5] * p[2];
     }
 }

@@ -12,4 +12,4 @@ mod words;
 pub use kind::Kind;
 pub use mistake::{Mistake, line_at, told};
 pub use table::{read_tables, read_toml, section};
-pub use text::{near_file, read_text};
+pub use text::{bytes_of, near_file, read_text};

@@ -13,7 +13,7 @@ const LISTED: usize = 3;
 /// # Errors
 /// Those of the file system and of text that is not UTF-8, worded for whoever wrote the path or the file.
 pub fn read_text(path: &Path) -> Result<String, Error> {
-    let bytes = std::fs::read(path).map_err(|source| explained(path, source))?;
+    let bytes = bytes_of(path)?;
     if [[0xff, 0xfe], [0xfe, 0xff]].iter().any(|mark| bytes.starts_with(mark)) {
         return Err(Error::new(ErrorKind::InvalidData, "its text is UTF-16; save it as UTF-8"));
     }
@@ -26,6 +26,14 @@ pub fn read_text(path: &Path) -> Result<String, Error> {
         Some(rest) => rest.to_owned(),
         None => text,
     })
+}
+
+/// The bytes of a file.
+///
+/// # Errors
+/// Those of the file system, worded for whoever wrote the path.
+pub fn bytes_of(path: &Path) -> Result<Vec<u8>, Error> {
+    std::fs::read(path).map_err(|source| explained(path, source))
 }
 
 /// What the system says of a path, in words that lead on.

@@ -216,6 +216,7 @@ pub const EFFECTS: [Effect; 19] = [
         unit: "s",
         reference: |set| LATE * set.time(),
         accepted: &["time_skew"],
+        near: &["yaw_rate_skew"],
         make: |m| m.clock(Instrument::Velocity),
         ..PLAIN
     },
@@ -223,7 +224,7 @@ pub const EFFECTS: [Effect; 19] = [
         name: "clock_yaw_rate",
         unit: "s",
         reference: |set| LATE * set.time(),
-        accepted: &["time_skew"],
+        accepted: &["yaw_rate_skew", "time_skew"],
         make: |m| m.clock(Instrument::YawRate),
         ..PLAIN
     },

@@ -1,6 +1,7 @@
 //! The third part of a diagnosis: what was added to the model, and what that did to the parameters it had.
 //! How sure the findings are is in the verdict, and what they gain in the proof.
 
+use super::law::law;
 use super::names::about;
 use super::phrases::{UNDECIDED, adequacy_words, amplitude, p_value};
 use crate::diagnose::Diagnosis;
@@ -25,17 +26,10 @@ pub(super) fn model(d: &Diagnosis) -> Vec<String> {
         let list = further.join(", ");
         lines.push(format!("beside the findings improved.toml has {list}: terms of the study's model, and the ship's own kept near their priors"));
     }
-    for t in &d.surrogate {
-        lines.push(format!(
-            "sparse force law (a description, not physics): {} = {} +- {}",
-            t.name,
-            sig(t.value, 3),
-            sig(1.96 * t.error, 2)
-        ));
-    }
+    lines.extend(d.law.iter().flat_map(law));
     let mut moved: Vec<_> = d.moves.iter().filter(|m| m.moved.abs() >= 1.0).collect();
     moved.sort_by(|a, b| b.moved.abs().total_cmp(&a.moved.abs()));
-    lines.push(if lines.is_empty() {
+    lines.push(if !d.adds() {
         "nothing was added; the improved model is the base model, refitted".to_owned()
     } else if moved.is_empty() {
         "none of the model's own parameters moved by more than its standard error".to_owned()

@@ -14,6 +14,7 @@ mod finding;
 mod findings;
 #[cfg(feature = "plot")]
 mod force;
+mod law;
 mod limits;
 mod location;
 mod names;

@@ -76,7 +76,7 @@ fn cvdm(d: &Diagnosis) -> Option<Number> {
     let percent = |key: &str, v: f64| quantity(&format!("held_out.{key}"), v, 100.0, &fixed(100.0 * v, 0));
     let mean = |key: &str, v: f64| quantity(&format!("held_out.{key}"), v, 1.0, &sig(v, 3));
     let before = h.before?;
-    let (Some(after), Some(gain), false) = (h.after, h.improvement, d.findings.is_empty()) else {
+    let (Some(after), Some(gain), false) = (h.after, h.improvement, !d.adds()) else {
         return Some(Number {
             value: html! { (mean("before", before)) "\u{a0}%" },
             meaning: html! { "error (cVDM) of the base model, refitted, on " (count("held_out.runs", h.runs)) " " (plural(h.runs, "test run")) },
@@ -105,10 +105,10 @@ fn stable(d: &Diagnosis) -> Option<Number> {
 
 /// How many test runs are simulated better.
 fn better(d: &Diagnosis) -> Option<Number> {
-    let h = d.held_out.as_ref().filter(|_| !d.findings.is_empty())?;
+    let h = d.held_out.as_ref().filter(|_| d.adds())?;
     Some(Number {
         value: html! { (count("held_out.better", h.better)) " of " (count("held_out.runs", h.runs)) },
-        meaning: html! { "test runs are simulated better with the findings" },
+        meaning: html! { "test runs are simulated better with " @if d.findings.is_empty() { "the law" } @else { "the findings" } },
     })
 }
 

@@ -32,6 +32,7 @@ pub fn page(d: &Diagnosis, study: &str, pictures: &[Picture], from: &Provenance)
         page = page.numbers("runs", numbers);
     }
     let mut sections: Vec<Section> = (0..d.findings.len()).filter_map(|i| section(d, i)).collect();
+    sections.extend(super::law::section(d));
     sections.extend(withdrawn_section(d));
     sections.extend(body(d, pictures));
     sections.extend([glossary(), ship(d), data(d, from), command(d, from)]);

@@ -2,7 +2,8 @@
 //! It repeats the numbers of the proof and draws no conclusion beyond them.
 
 use super::phrases::percent;
-use crate::diagnose::{Diagnosis, Finding};
+use crate::diagnose::Diagnosis;
+use crate::diagnose::unseen::FindingProof;
 use crate::numerals::{DASH, fixed, number_of, sig};
 
 /// A cVDM in words.
@@ -10,9 +11,8 @@ fn percentage(cvdm: Option<f64>) -> String {
     cvdm.map_or(DASH.to_owned(), |v| sig(v, 3))
 }
 
-/// What one finding by itself does on the test runs, everything else refitted without it.
-fn alone(f: &Finding) -> Option<String> {
-    let h = f.held_out.as_ref()?;
+/// What one finding or law by itself does on the test runs, everything else refitted without it.
+pub(super) fn alone(title: &str, h: &FindingProof) -> String {
     let interval = |ci: Option<[f64; 2]>, of: &dyn Fn(f64) -> String| {
         ci.map_or(String::new(), |[low, high]| format!(" [{}, {}]", of(low), of(high)))
     };
@@ -32,7 +32,7 @@ fn alone(f: &Finding) -> Option<String> {
     parts.extend(distance(h.position, 1.0, "position error", "m"));
     parts.extend(distance(h.heading, 1f64.to_degrees(), "heading error", "deg"));
     parts.extend(distance(h.speed, 1.0, "speed error", "m/s"));
-    Some(format!("{} by itself, on {}: {}", f.title, number_of(h.recordings, "recording"), parts.join(", ")))
+    format!("{title} by itself, on {}: {}", number_of(h.recordings, "recording"), parts.join(", "))
 }
 
 /// What the findings gain on the test runs.
@@ -43,12 +43,14 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
                 .to_owned(),
         ];
     };
-    if d.findings.is_empty() {
-        return vec![format!(
+    let alone_of_law = d.law.as_ref().and_then(|l| Some(alone("the law", l.held_out.as_ref()?)));
+    if !d.adds() {
+        let base = format!(
             "no finding to prove; base model, refitted, on {}: cVDM {} %",
             number_of(h.runs, "test run"),
             percentage(h.before)
-        )];
+        );
+        return std::iter::once(base).chain(alone_of_law).collect();
     }
     let gain = h.improvement.map_or(DASH.to_owned(), percent);
     let interval = h.ci95.map_or("no interval with fewer than three recordings".to_owned(), |[low, high]| {
@@ -69,14 +71,16 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
         let word = if change < 0.0 { "worse" } else { "better" };
         lines.push(format!("worst run: {run}, {} {word}", percent(change.abs())));
     }
-    lines.extend(d.findings.iter().filter_map(alone));
+    lines.extend(d.findings.iter().filter_map(|f| Some(alone(&f.title, f.held_out.as_ref()?))));
+    lines.extend(alone_of_law);
     if d.improved_is_base {
         lines.push(
             "improved.toml is the base model, refitted: with the findings unseen runs are simulated worse".to_owned(),
         );
     }
     if let Some(g) = h.generic {
-        lines.push(format!("with a generic force law in place of the findings: cVDM {} %", sig(g, 3)));
+        let what = if d.findings.is_empty() { "law" } else { "findings" };
+        lines.push(format!("with a generic force law in place of the {what}: cVDM {} %", sig(g, 3)));
     }
     lines.push(format!(
         "log-likelihood gained: {}; mean square of standardised innovations (1 agrees with the noise model): {} before, {} after",

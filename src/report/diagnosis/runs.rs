@@ -88,13 +88,13 @@ pub(super) fn picture(d: &Diagnosis, all: usize) -> Result<Option<Markup>, Figur
     let which = if s.train { "training run" } else { "test run" };
     let of = if d.sailed.len() < all {
         format!(
-            "{} of {all} {which}s can be chosen, at equal distances in their list (at most {MOST_RUNS})",
+            "On a screen {} of {all} {which}s can be chosen, at equal distances in their list (at most {MOST_RUNS}).",
             d.sailed.len()
         )
     } else if all == 1 {
-        format!("it is the only {which}")
+        format!("It is the only {which}.")
     } else {
-        format!("all {all} {which}s can be chosen")
+        format!("On a screen all {all} {which}s can be chosen.")
     };
     let models = if s.improved.is_some() {
         "the base model and the improved model simulate"
@@ -107,8 +107,8 @@ pub(super) fn picture(d: &Diagnosis, all: usize) -> Result<Option<Markup>, Figur
             div id="run-picture" { p { (s.run) ", " (note(d, s)) } (PreEscaped(svg)) }
             figcaption {
                 "A " (which) " as recorded and as " (models) " it from its first sample on, without correction. The run shown first has "
-                "the median " @if s.improved.is_some() { "improvement" } @else { "error" } "; " (of)
-                ". Point at a curve for its values, draw a frame to zoom, click twice to see all again."
+                "the median " @if s.improved.is_some() { "improvement" } @else { "error" } ". " (of)
+                span class="screen" { " Point at a curve for its values, draw a frame to zoom, click twice to see all again." }
             }
         }
     }))

@@ -121,11 +121,12 @@ pub(super) fn grade_label(grade: Grade) -> (&'static str, &'static str) {
 fn withdrawn_because(f: &Finding) -> &'static str {
     match f.grade {
         Grade::Refuted => "unseen runs refute it",
+        Grade::RefutedTogether => "with it, what was found predicts unseen runs worse beyond chance, all together",
         Grade::Immaterial if f.is_unresolved_clock() => "it is measurable, and less than half a sample period",
         Grade::Immaterial => "it is measurable, and too small to matter",
         Grade::NotIsolated => {
-            "on the headings that were sailed the ship's own parameters (a side force, trim, resistance, the compass zero) can take over \
-             nearly all of its effect; the same runs on opposite headings would part them"
+            "on the headings that were sailed the ship's own parameters and its sensors (a side force, trim, resistance, the zero \
+             of the compass, the scale of the log) can take over nearly all of its effect; the same runs on opposite headings would part them"
         }
         Grade::EulerSteps => {
             "explicit Euler steps of one sample period in the program that made the recordings, or values held until the next sample, \
