@@ -5,8 +5,8 @@ use super::held::{Repeats, held, repeats};
 use super::issue::{Issue, Severity, Shared};
 use super::length::{Length, shorter};
 use super::limits::{
-    EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, LEVER_LAG, SAME_LAG, SESSION_SHARE, SHARED_ROWS,
-    SHARED_SHARE,
+    EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, LEVER_LAG, POOLED_EVIDENCE, SAME_LAG, SESSION_SHARE,
+    SHARED_ROWS, SHARED_SHARE,
 };
 use super::orders::{Leap, ordered};
 use super::pooled::{Odd, odd, shares_at_best};
@@ -16,6 +16,7 @@ use super::record::Responses;
 use super::response::Curve;
 use super::scales::scales;
 use super::scatter::{Scatter, scatters};
+use super::sources::Sources;
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording, STATE_CHANNELS, Split};
 use crate::ship::Ship;
@@ -24,6 +25,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::PathBuf;
 
 /// Channels that dead reckoning compares.
 const TRACK: [Channel; 6] = [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R];
@@ -32,6 +34,8 @@ const TRACK: [Channel; 6] = [Channel::X, Channel::Y, Channel::Psi, Channel::U, C
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Evidence {
     run: String,
+    /// The file from which it is cut, and the column map by which it is read.
+    source: (PathBuf, Option<PathBuf>),
     session: String,
     split: Split,
     /// Root mean square speed \[m/s\]; 0 where none was recorded.
@@ -69,6 +73,7 @@ impl Evidence {
             recording.get(Channel::U).into_iter().flatten().filter(|u| u.is_finite()).map(|u| u * u).collect();
         Self {
             run: run.labels.run.clone(),
+            source: (run.file.clone(), run.column_map.clone()),
             session: run.labels.session.clone(),
             split: run.labels.split,
             speed: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
@@ -108,7 +113,8 @@ fn fingerprints(recording: &Recording) -> Vec<u64> {
 /// Everything that a comparison of the runs shows.
 pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     let mut found = Vec::new();
-    let ratios: Vec<Option<f64>> = runs.iter().map(|r| r.ratio).collect();
+    let sources = Sources::of(runs.iter().map(|r| &r.source));
+    let ratios = sources.medians(&runs.iter().map(|r| r.ratio).collect::<Vec<_>>());
     for (run, issue) in runs.iter().zip(advance(&ratios, ship)) {
         found.extend(issue.map(|issue| Shared { runs: vec![run.run.clone()], issue }));
     }
@@ -116,7 +122,7 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     let speed = (sailing.iter().sum::<f64>() / sailing.len().max(1) as f64).sqrt();
     let time = ship.hull.lpp / speed.max(ship.small_speed());
     for pair in &PAIRS {
-        found.extend(late(runs, pair, time));
+        found.extend(late(runs, &sources, pair, time));
         found.extend(sessions(runs, pair, time));
     }
     found.extend(lacking(runs));
@@ -129,10 +135,11 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     let responses: Vec<(&str, &Responses)> = runs.iter().map(|r| (r.run.as_str(), &r.responses)).collect();
     let scattered: Vec<(&str, Scatter)> = runs.iter().map(|r| (r.run.as_str(), r.scatter)).collect();
     let clear = |r: &&Evidence| !r.track_told && !found.iter().any(|f| f.runs == [r.run.as_str()]);
-    let tracks = runs.iter().filter(clear).filter_map(|r| Some((r.run.as_str(), r.responses.reckoned.as_ref()?)));
-    let tracks: Vec<(&str, &Reckoned)> = tracks.collect();
-    let apart = reckoned(&tracks, ship.hull.lpp);
-    for shared in scales(&responses).into_iter().chain(scatters(&scattered)).chain(apart) {
+    let tracked: Vec<(&Evidence, &Reckoned)> =
+        runs.iter().filter(clear).filter_map(|r| Some((r, r.responses.reckoned.as_ref()?))).collect();
+    let tracks: Vec<(&str, &Reckoned)> = tracked.iter().map(|(r, track)| (r.run.as_str(), *track)).collect();
+    let apart = reckoned(&tracks, &Sources::of(tracked.iter().map(|(r, _)| &r.source)), ship.hull.lpp);
+    for shared in scales(&responses, &sources).into_iter().chain(scatters(&scattered, &sources)).chain(apart) {
         let same = |f: &Shared| f.runs == shared.runs && f.issue.channel == shared.issue.channel;
         if !found.iter().any(same) {
             found.push(shared);
@@ -265,7 +272,7 @@ fn telling(curve: &Curve) -> bool {
 
 /// What is late or early: in all runs together, and of rudder and propeller in those runs that differ from that; the lag of sensors is told
 /// run by run.
-fn late(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
+fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Shared> {
     let beyond = |seconds: f64, share: f64, step: f64| seconds.abs() > (share * time).max(LAG_STEPS[0] * step);
     let excused = |seconds: f64| pair.excused[usize::from(seconds < 0.0)];
     // What acts to the wrong side, or on a motion that is told to the wrong side, is as good as late by half a period.
@@ -292,21 +299,25 @@ fn late(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
     };
     let among_others: Vec<Option<&Curve>> = runs.iter().map(|r| pair.curve(r)).collect();
     let shares = shares_at_best(&among_others);
-    // What a run says by itself, the other runs must not contradict.
-    let agreed = |run: &Evidence| {
-        let share = runs.iter().zip(&shares).find(|(r, _)| std::ptr::eq(*r, run)).and_then(|(_, share)| *share);
-        share.is_none_or(|share| share <= LAG_LEAVES)
+    // What a run says by itself, the other runs must not contradict, nor those that are cut from the same recording.
+    let agreed = |run: &Evidence, seconds: f64| {
+        let Some(place) = runs.iter().position(|r| std::ptr::eq(r, run)) else { return false };
+        let losses = |other: usize| {
+            let curve: &Curve = among_others[other]?;
+            Some([curve.zero(), curve.at(seconds)?].map(|lag| curve.samples * curve.left[lag].ln()))
+        };
+        shares[place].is_none_or(|share| share <= LAG_LEAVES) && sources.agree(place, losses)
     };
     let told = |(run, curve): &(&Evidence, &Curve)| {
-        let issue = lagging(pair, lag(curve).filter(|_| pair.acts && agreed(run))?, "", pair.motion);
+        let issue = lagging(pair, lag(curve).filter(|lag| pair.acts && agreed(run, *lag))?, "", pair.motion);
         Some(Shared { runs: vec![run.run.clone()], issue })
     };
     let step = curves.first().map_or(0.0, |(_, c)| c.step);
-    let pooled = odd(&among_others, |seconds| beyond(seconds, SESSION_SHARE, step) && all.is_none());
+    let pooled = odd(&among_others, sources, |seconds| beyond(seconds, SESSION_SHARE, step) && all.is_none());
     let told_by_others = |(run, odd): (&Evidence, Option<Odd>)| {
         let issue = match odd? {
             _ if !pair.acts => return None,
-            Odd::Turned => turned(pair),
+            Odd::Turned => turned(pair, "than in the other runs"),
             Odd::Late(seconds) => lagging(pair, seconds, "", pair.motion),
         };
         Some(Shared { runs: vec![run.run.clone()], issue })
@@ -316,7 +327,8 @@ fn late(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
         issue: lagging(pair, seconds, "", pair.motion),
     });
     let mut found: Vec<Shared> = together.into_iter().chain(curves.iter().filter_map(told)).collect();
-    for shared in runs.iter().zip(pooled).filter_map(told_by_others) {
+    let also = turned_as_others(runs, pair);
+    for shared in also.into_iter().chain(runs.iter().zip(pooled).filter_map(told_by_others)) {
         if !found.iter().any(|f| f.runs == shared.runs) {
             found.push(shared);
         }
@@ -324,9 +336,25 @@ fn late(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
     found
 }
 
-/// The doubt about an actuator of the wrong sign.
-fn turned(pair: &Pair) -> Issue {
-    let text = format!("acts on {} to the other side than in the other runs", pair.motion);
+/// Runs that show an actuator of the wrong sign less clearly than is needed for one run by itself, where several others show it.
+fn turned_as_others(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
+    let known = runs.iter().filter(|r| r.turned.contains(&pair.channel)).count();
+    let turns = |run: &&Evidence| {
+        let none = !run.turned.iter().any(|c| [pair.channel, Channel::R, Channel::U].contains(c));
+        none && pair.curve(run).is_some_and(|curve| {
+            let zero = curve.zero();
+            let effect = curve.sign[zero] * curve.effect(zero);
+            effect < -POOLED_EVIDENCE && curve.left[zero] < EXPLAINS * curve.without
+        })
+    };
+    let also = runs.iter().filter(|_| pair.acts && known > 1).filter(turns);
+    let issue = || turned(pair, &format!("than it must, as in {known} other runs"));
+    also.map(|run| Shared { runs: vec![run.run.clone()], issue: issue() }).collect()
+}
+
+/// The doubt about an actuator of the wrong sign; `than` says what it is compared with.
+fn turned(pair: &Pair, than: &str) -> Issue {
+    let text = format!("acts on {} to the other side {than}", pair.motion);
     let next = format!(
         "is its sign that of the other runs? set `sign = -1` for `{}` in a column map of this run",
         pair.channel

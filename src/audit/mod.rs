@@ -30,6 +30,7 @@ mod scales;
 mod scatter;
 mod series;
 mod signs;
+mod sources;
 mod study;
 mod units;
 

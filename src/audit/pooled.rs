@@ -1,8 +1,9 @@
 //! One run against all others: whether rudder and propeller act in it as they do in the other runs, or to the other side, or later.
 //! The coefficients are those of the other runs, so that a short run says more than its own regression would.
 
-use super::limits::{EXPLAINS, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE};
+use super::limits::{EXPLAINS, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE};
 use super::response::{Curve, Sums};
+use super::sources::Sources;
 use crate::statistics::median;
 use nalgebra::{DMatrix, DVector};
 
@@ -84,15 +85,34 @@ fn is_step(curve: &Curve, step: f64) -> bool {
     (curve.step / step - 1.0).abs() < 0.01
 }
 
-/// What is odd in each run, in their order. `worth` says which lags \\[s\\] matter.
-pub fn odd(curves: &[Option<&Curve>], worth: impl Fn(f64) -> bool) -> Vec<Option<Odd>> {
+/// What is odd in each run, in their order, and in the recording from which it is cut. `worth` says which lags \\[s\\] matter.
+pub fn odd(curves: &[Option<&Curve>], sources: &Sources, worth: impl Fn(f64) -> bool) -> Vec<Option<Odd>> {
     let none = || vec![None; curves.len()];
     let Some(pool) = actuated(curves) else { return none() };
-    let judged = |curve: &Option<&Curve>| {
-        let curve = curve.filter(|c| pool.is_alike(c))?;
-        judged(curve, &pool.others(curve)?, &worth)
+    let alike = |run: usize| curves[run].filter(|c| pool.is_alike(c));
+    let judged = |run: usize| {
+        let curve = alike(run)?;
+        let others = pool.others(curve)?;
+        let found = judged(curve, &others, &worth)?;
+        sources.agree(run, |other| losses(alike(other)?, &others, found)).then_some(found)
     };
-    curves.iter().map(judged).collect()
+    (0..curves.len()).map(judged).collect()
+}
+
+/// Squares that coefficients leave of a run as it is, and with what is odd; `None` where it does not have the lag.
+fn losses(curve: &Curve, others: &[f64], odd: Odd) -> Option<[f64; 2]> {
+    match odd {
+        Odd::Turned => Some([curve.at_zero().left(others), curve.at_zero().left(&to_the_other_side(curve, others))]),
+        Odd::Late(seconds) => {
+            let place = curve.at(seconds)?;
+            Some([curve.at_zero_beside(place).left(others), curve.sums[place].left(others)])
+        }
+    }
+}
+
+/// The coefficients of a channel that acts to the other side.
+fn to_the_other_side(curve: &Curve, others: &[f64]) -> Vec<f64> {
+    others.iter().enumerate().map(|(i, c)| if i < curve.own { -c } else { *c }).collect()
 }
 
 /// The runs against which what an actuator does is held.
@@ -122,8 +142,7 @@ fn without(sums: &Sums, own: usize, coefficients: &[f64]) -> f64 {
 
 /// What is odd in a run, given the coefficients of the others: what explains most more, over the windows that both explanations have.
 fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option<Odd> {
-    let mut turned = others.to_vec();
-    turned[..curve.own].iter_mut().for_each(|c| *c = -*c);
+    let turned = to_the_other_side(curve, others);
     let zero = curve.zero();
     // A run that shows by itself to which side the channel acts is believed before the others are.
     let own_side = curve.sign[zero] > 0.0 && curve.effect(zero) > POOLED_EVIDENCE;
@@ -139,7 +158,9 @@ fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option
         ];
         for (left, what) in candidates.into_iter().flatten() {
             let evidence = curve.samples * (before - left) / left.max(f64::MIN_POSITIVE);
-            let told = left < POOLED_LEAVES * before && left < EXPLAINS * nothing && evidence > POOLED_EVIDENCE;
+            // Where the run by itself is explained best by this lag, it is not the best of many.
+            let least = if inside && place == curve.best() { POOLED_AGREED } else { POOLED_EVIDENCE };
+            let told = left < POOLED_LEAVES * before && left < EXPLAINS * nothing && evidence > least;
             if told && best.is_none_or(|(most, _)| evidence > most) {
                 best = Some((evidence, what));
             }

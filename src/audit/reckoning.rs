@@ -8,6 +8,7 @@ use super::limits::{
 use super::pooled::coefficients;
 use super::response::{Sums, integral};
 use super::series::Series;
+use super::sources::Sources;
 use crate::numerals::sig;
 use crate::recording::Channel;
 use crate::statistics::median;
@@ -111,7 +112,7 @@ fn add(sums: &mut Sums, (a, x): &([f64; COLUMNS], f64), (b, y): &([f64; COLUMNS]
 }
 
 /// Runs whose dead reckoning leads elsewhere than in the other runs, in terms of what these leave, for a ship of some length \[m\].
-pub fn reckoned(known: &[(&str, &Reckoned)], length: f64) -> Vec<Shared> {
+pub fn reckoned(known: &[(&str, &Reckoned)], sources: &Sources, length: f64) -> Vec<Shared> {
     if known.len() < POOLED_RUNS {
         return Vec::new();
     }
@@ -124,11 +125,16 @@ pub fn reckoned(known: &[(&str, &Reckoned)], length: f64) -> Vec<Shared> {
         .map(|((_, one), others)| others.as_ref().is_some_and(|o| one.mean_square(o) < RECKONED_UNUSUAL * usual))
         .collect();
     let Some((others, usual)) = pooled(known, &near) else { return Vec::new() };
-    let told = |((run, one), others): (&(&str, &Reckoned), &Option<Vec<f64>>)| {
-        let issue = judged(one, others.as_ref()?, usual, length)?;
-        Some(Shared { runs: vec![(*run).to_owned()], issue })
+    let told = |place: usize| {
+        let ((run, one), others) = (known[place], others[place].as_deref()?);
+        let in_all = |factor: f64| {
+            let own = divided(others, factor);
+            sources.agree(place, |other| Some([others, &own].map(|c| known[other].1.sums.left(c))))
+        };
+        let issue = judged(one, others, usual, length, in_all)?;
+        Some(Shared { runs: vec![run.to_owned()], issue })
     };
-    known.iter().zip(&others).filter_map(told).collect()
+    (0..known.len()).filter_map(told).collect()
 }
 
 /// For each run the coefficients of the others among those that count, each as much as any other, and the median of the mean squares
@@ -150,22 +156,32 @@ fn pooled(known: &[(&str, &Reckoned)], counts: &[bool]) -> Option<(Vec<Option<Ve
     (kept().count() >= POOLED_RUNS && usual > 0.0).then_some((others, usual))
 }
 
+/// Coefficients for a sway that is recorded so many times too large.
+fn divided(others: &[f64], factor: f64) -> Vec<f64> {
+    let mut own = others.to_vec();
+    own[0] /= factor;
+    own
+}
+
 /// What is told of a run of a ship of some length \[m\], given the coefficients of the others and the mean square \[m2\] that they usually
-/// leave.
-fn judged(one: &Reckoned, others: &[f64], usual: f64, length: f64) -> Option<Issue> {
+/// leave; `in_all` says whether all runs of its recording agree on a factor of the sway.
+fn judged(one: &Reckoned, others: &[f64], usual: f64, length: f64, in_all: impl Fn(f64) -> bool) -> Option<Issue> {
     let as_it_is = one.mean_square(others);
     if as_it_is < RECKONED_UNUSUAL * usual {
         return None;
     }
     let with = |factor: f64| {
-        let mut own = others.to_vec();
-        own[0] /= factor;
+        let own = divided(others, factor);
         (one.mean_square(&own), one.samples(&own), factor)
     };
     let best = FACTORS.into_iter().map(with).min_by(|a, b| a.0.total_cmp(&b.0));
     if let Some((left, samples, factor)) = best {
         let evidence = samples * (as_it_is / left.max(0.25 * usual)).ln();
-        if left < RECKONED_LEAVES * as_it_is && left < RECKONED_UNUSUAL * usual && evidence > RECKONED_EVIDENCE {
+        if left < RECKONED_LEAVES * as_it_is
+            && left < RECKONED_UNUSUAL * usual
+            && evidence > RECKONED_EVIDENCE
+            && in_all(factor)
+        {
             return Some(scaled(factor));
         }
     }
@@ -222,12 +238,17 @@ mod tests {
         Reckoned::of(&Series::from(&Recording::from_channels("run", all).unwrap())).unwrap()
     }
 
+    fn told(runs: &[(String, Reckoned)], speed: f64) -> Vec<Shared> {
+        let known: Vec<(&str, &Reckoned)> = runs.iter().map(|(name, one)| (name.as_str(), one)).collect();
+        reckoned(&known, &Sources::of(0..runs.len()), 85.0 * speed / 4.0)
+    }
+
     /// What is told of nine runs of a ship, of which the first is damaged.
     fn study(speed: f64, change: impl Fn(&mut [Vec<f64>; 5])) -> Vec<Shared> {
         let runs: Vec<(String, Reckoned)> = (0..9)
             .map(|i| (format!("r{i}"), if i == 0 { run(1, speed, &change) } else { run(i + 1, speed, |_| ()) }))
             .collect();
-        reckoned(&runs.iter().map(|(name, one)| (name.as_str(), one)).collect::<Vec<_>>(), 85.0 * speed / 4.0)
+        told(&runs, speed)
     }
 
     #[test]
@@ -238,10 +259,7 @@ mod tests {
             let offset: Vec<(String, Reckoned)> = (0..9)
                 .map(|i| (format!("r{i}"), run(i + 1, speed, |c| c[2].iter_mut().for_each(|psi| *psi += 0.05))))
                 .collect();
-            assert_eq!(
-                reckoned(&offset.iter().map(|(n, o)| (n.as_str(), o)).collect::<Vec<_>>(), 85.0 * speed / 4.0),
-                []
-            );
+            assert_eq!(told(&offset, speed), []);
         }
     }
 

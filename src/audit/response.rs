@@ -106,6 +106,11 @@ impl Curve {
         self.samples * (self.without / self.left[lag]).ln()
     }
 
+    /// Place of a lag \[s\]; `None` where it was not tried.
+    pub fn at(&self, seconds: f64) -> Option<usize> {
+        (0..self.lags.len()).find(|place| (self.seconds(*place) - seconds).abs() < 0.5 * self.step)
+    }
+
     /// A lag \[s\].
     pub fn seconds(&self, lag: usize) -> f64 {
         self.lags[lag] as f64 * self.step
