@@ -359,16 +359,10 @@ fn samples() -> Vec<Case> {
     ]
 }
 
-/// Units, signs and axes, in all runs and in one.
-fn contradictions() -> Vec<Case> {
+/// Units, in all runs and in one.
+fn units() -> Vec<Case> {
     let here = Where::Run(RUN);
     let scaled = |channel: &'static str, factor: f64| Files::sound().all(move |t| t.each(channel, |_, v| factor * v));
-    let turned = |channel: &'static str| Files::sound().run(RUN, move |t| t.each(channel, |_, v| -v));
-    let exchange = |t: &mut Table| {
-        let (x, y) = (t.get("x"), t.get("y"));
-        t.set("x", &y);
-        t.set("y", &x);
-    };
     vec![
         case("t in ms", scaled("t", 1000.0), "unit_error", Channel::R, Where::Runs(30), "column map"),
         case(
@@ -407,17 +401,31 @@ fn contradictions() -> Vec<Case> {
             Where::Runs(20),
             "rad",
         ),
+    ]
+}
+
+/// Signs and axes, in all runs and in one.
+fn sides() -> Vec<Case> {
+    let here = Where::Run(RUN);
+    let turned_in_all = |channel: &'static str| Files::sound().all(move |t| t.each(channel, |_, v| -v));
+    let turned = |channel: &'static str| Files::sound().run(RUN, move |t| t.each(channel, |_, v| -v));
+    let exchange = |t: &mut Table| {
+        let (x, y) = (t.get("x"), t.get("y"));
+        t.set("x", &y);
+        t.set("y", &x);
+    };
+    vec![
         case("rudder sign in one run of 32", turned("delta"), "sign_error", Channel::Delta, here, "`sign = -1`"),
         case(
             "rudder sign in all runs",
-            scaled("delta", -1.0),
+            turned_in_all("delta"),
             "sign_error",
             Channel::Delta,
-            Where::Runs(9),
+            Where::Runs(10),
             "`sign = -1`",
         ),
         case("v turned in one run", turned("v"), "sign_error", Channel::V, here, "`sign = -1`"),
-        case("v turned in all runs", scaled("v", -1.0), "sign_error", Channel::V, Where::Runs(30), "`sign = -1`"),
+        case("v turned in all runs", turned_in_all("v"), "sign_error", Channel::V, Where::Runs(30), "`sign = -1`"),
         case("r turned in one run", turned("r"), "sign_error", Channel::R, here, "`sign`"),
         case(
             "x and y exchanged",
@@ -520,6 +528,14 @@ fn together() -> Vec<Case> {
             Channel::V,
             here,
             "`unit`",
+        ),
+        case(
+            "n 6 s late in one run",
+            Files::sound().run(RUN, |t| t.late("n", 3)),
+            "clock",
+            Channel::N,
+            here,
+            "`delay = 6",
         ),
         case(
             "n 8 s late in one run",
@@ -670,7 +686,7 @@ impl Files {
 fn every_fault_is_told_with_its_run_its_channel_and_what_to_do() {
     let mut missed = Vec::new();
     let cases: Vec<Case> =
-        [samples(), contradictions(), clocks(), together(), places(), shared()].into_iter().flatten().collect();
+        [samples(), units(), sides(), clocks(), together(), places(), shared()].into_iter().flatten().collect();
     assert!(cases.len() >= 30, "{}", cases.len());
     for Case { name, files, fault, channel, place, next } in cases {
         let found = doubts(&files.audit());
