@@ -564,6 +564,39 @@ fn together() -> Vec<Case> {
     ]
 }
 
+/// Names, units and conventions of a foreign layout.
+fn foreign() -> Vec<Case> {
+    let all = Where::Runs(30);
+    let kilometres = |t: &mut Table| ["x", "y"].iter().for_each(|c| t.rename(c, &format!("{c} [km]")));
+    let in_kilometres = |t: &mut Table| ["x", "y"].iter().for_each(|c| t.each(c, |_, v| 1e-3 * v));
+    let geographic = |t: &mut Table| {
+        t.rename("x", "lat [deg]");
+        t.rename("y", "lon [deg]");
+    };
+    let mathematical = |t: &mut Table| t.each("psi", |_, p| std::f64::consts::FRAC_PI_2 - p);
+    let no_velocity = |t: &mut Table| {
+        mathematical(t);
+        ["u", "v", "r"].iter().for_each(|c| t.remove(c));
+    };
+    let derived = Files::sound().all(no_velocity).map("derive = [\"u\", \"v\", \"r\"]\n");
+    let minutes = |t: &mut Table| t.each("t", |_, v| v / 60.0);
+    let heading = Files::sound().run(RUN, |t| t.rename("psi", "heading"));
+    let (unit, axes) = ("unit_error", "axes_error");
+    let (x, psi, r, u) = (Channel::X, Channel::Psi, Channel::R, Channel::U);
+    let east = "anticlockwise from east";
+    vec![
+        case("x and y in m read as km", Files::sound().all(kilometres), unit, u, all, "of x and y"),
+        case("x and y in km read as m", Files::sound().all(in_kilometres), unit, u, all, "of x and y"),
+        case("t in min read as s", Files::sound().all(minutes), unit, r, all, "`unit` of t"),
+        case("t in min read as s, by the track", Files::sound().all(minutes), unit, u, all, "`unit` of t"),
+        case("t in s read as min", Files::sound().all(|t| t.rename("t", "t [min]")), unit, u, all, "`unit` of t"),
+        case("psi as `heading`", heading, "not_recorded", psi, Where::Run(RUN), "column `heading` looks like psi"),
+        case("lat and lon", Files::sound().all(geographic), "not_recorded", x, Where::Runs(40), "`trimtab import`"),
+        case("a mathematical heading", Files::sound().all(mathematical), axes, psi, all, east),
+        case("a mathematical heading and no velocity", derived, axes, psi, Where::Runs(20), "anticlockwise, from east"),
+    ]
+}
+
 /// Headings and fixes.
 fn places() -> Vec<Case> {
     let here = Where::Run(RUN);
@@ -685,8 +718,10 @@ impl Files {
 #[test]
 fn every_fault_is_told_with_its_run_its_channel_and_what_to_do() {
     let mut missed = Vec::new();
-    let cases: Vec<Case> =
-        [samples(), units(), sides(), clocks(), together(), places(), shared()].into_iter().flatten().collect();
+    let cases: Vec<Case> = [samples(), units(), sides(), clocks(), together(), foreign(), places(), shared()]
+        .into_iter()
+        .flatten()
+        .collect();
     assert!(cases.len() >= 30, "{}", cases.len());
     for Case { name, files, fault, channel, place, next } in cases {
         let found = doubts(&files.audit());

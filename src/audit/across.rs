@@ -18,7 +18,7 @@ use super::scales::scales;
 use super::scatter::{Scatter, scatters};
 use super::sources::Sources;
 use crate::numerals::sig;
-use crate::recording::{Channel, Recording, STATE_CHANNELS, Split};
+use crate::recording::{Channel, Recording, Split};
 use crate::ship::Ship;
 use crate::study::Listed;
 use serde::{Deserialize, Serialize};
@@ -47,8 +47,8 @@ pub struct Evidence {
     turned: Vec<Channel>,
     /// Channels with damaged single values, from which no lag is told.
     damaged: Vec<Channel>,
-    /// Channels of the motion that were not recorded, and not derived.
-    lacks: Vec<Channel>,
+    /// Channels of the motion that were not recorded, and not derived, and what to do.
+    lacks: Vec<(Channel, String)>,
     /// Whether something is told of its track by itself, so that dead reckoning has no more to say.
     track_told: bool,
     /// Whether its propeller never turns though it sails.
@@ -81,7 +81,11 @@ impl Evidence {
             responses,
             turned: of_fault("sign_error"),
             damaged: of_fault("outlier"),
-            lacks: STATE_CHANNELS.into_iter().filter(|c| !recording.has(*c)).collect(),
+            lacks: issues
+                .iter()
+                .filter(|i| i.fault == "not_recorded")
+                .filter_map(|i| Some((i.channel?, i.next_step.clone())))
+                .collect(),
             track_told: issues.iter().any(|i| {
                 i.severity > Severity::Note && i.fault != "lever" && i.channel.is_some_and(|c| TRACK.contains(&c))
             }),
@@ -155,17 +159,19 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
 
 /// Channels that a few runs lack and most have: what is summed over channels is another number for these runs.
 fn lacking(runs: &[Evidence]) -> Vec<Shared> {
-    let few = |channel: &Channel| 2 * runs.iter().filter(|r| r.lacks.contains(channel)).count() < runs.len();
-    let told = |run: &Evidence, channel: Channel| {
+    let lacks = |run: &Evidence, channel: Channel| run.lacks.iter().any(|(c, _)| *c == channel);
+    let few = |channel: Channel| 2 * runs.iter().filter(|r| lacks(r, channel)).count() < runs.len();
+    let told = |run: &Evidence, channel: Channel, next: &str| {
         let text = format!(
             "{} was not recorded, as it was in most runs: cost and cVDM of this run are of fewer channels",
             channel.info().words
         );
-        let next = "name its column in a column map, `derive` it there, or leave the run out";
+        let next = format!("{next}; or leave the run out");
         let issue = Issue::new(Severity::Error, "not_recorded", text, next).of(channel);
         Shared { runs: vec![run.run.clone()], issue }
     };
-    runs.iter().flat_map(|run| run.lacks.iter().filter(|c| few(c)).map(|c| told(run, *c))).collect()
+    let of = |run| move |(channel, next): &(Channel, String)| few(*channel).then(|| told(run, *channel, next));
+    runs.iter().flat_map(|run| run.lacks.iter().filter_map(of(run))).collect()
 }
 
 /// A channel and the motion that it is held against.
@@ -317,7 +323,7 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
     let told_by_others = |(run, odd): (&Evidence, Option<Odd>)| {
         let issue = match odd? {
             _ if !pair.acts => return None,
-            Odd::Turned => turned(pair, "than in the other runs"),
+            Odd::Turned => turned(pair),
             Odd::Late(seconds) => lagging(pair, seconds, "", pair.motion),
         };
         Some(Shared { runs: vec![run.run.clone()], issue })
@@ -348,13 +354,15 @@ fn turned_as_others(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
         })
     };
     let also = runs.iter().filter(|_| pair.acts && known > 1).filter(turns);
-    let issue = || turned(pair, &format!("than it must, as in {known} other runs"));
-    also.map(|run| Shared { runs: vec![run.run.clone()], issue: issue() }).collect()
+    let text = format!("acts on {} to the other side than it must, as in other runs", pair.motion);
+    let next = format!("set `sign = -1` for `{}` in a column map", pair.channel);
+    let issue = Issue::new(Severity::Error, "sign_error", text, next).of(pair.channel);
+    also.map(|run| Shared { runs: vec![run.run.clone()], issue: issue.clone() }).collect()
 }
 
-/// The doubt about an actuator of the wrong sign; `than` says what it is compared with.
-fn turned(pair: &Pair, than: &str) -> Issue {
-    let text = format!("acts on {} to the other side {than}", pair.motion);
+/// The doubt about an actuator of the wrong sign.
+fn turned(pair: &Pair) -> Issue {
+    let text = format!("acts on {} to the other side than in the other runs", pair.motion);
     let next = format!(
         "is its sign that of the other runs? set `sign = -1` for `{}` in a column map of this run",
         pair.channel

@@ -133,6 +133,10 @@ pub const SWAY_LEAVES: f64 = 0.3;
 pub const SWAY_COHERENCE: f64 = -0.8;
 /// A lever arm between position and velocity: slide in turns at least this share of the sway.
 pub const LEVER_SHARE: f64 = 0.2;
+/// where the heading turns as fast as the yaw rate says, but for this share,
+pub const LEVER_TURN: f64 = 0.5;
+/// and at most this share of the ship's length: no antenna stands farther from midship.
+pub const LEVER_LONGEST: f64 = 0.75;
 
 // --- Propeller and speed ---
 

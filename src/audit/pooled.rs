@@ -192,6 +192,24 @@ mod tests {
     }
 
     #[test]
+    fn a_run_of_a_recording_whose_other_runs_are_sound_is_not_turned() {
+        // The last one answers to the other side, and does not say so beyond doubt by itself.
+        let curves: Vec<Curve> = (0..9).map(|i| run(if i < 8 { 1.0 } else { -1.0 })).collect();
+        let mut curves = curves;
+        curves[8].sums[0].response[0] *= -1.0;
+        let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
+        let odd = |sources: Sources| odd(&all, &sources, |_| false);
+        let told = odd(Sources::of(0..9));
+        assert!(told[..8].iter().all(Option::is_none) && told[8] == Some(Odd::Turned), "{told:?}");
+        assert_eq!(odd(Sources::of(std::iter::repeat_n("log", 9))), [None; 9]);
+        // A file that is turned is turned in all of its runs.
+        curves[7] = curves[8].clone();
+        let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
+        let told = super::odd(&all, &Sources::of((0..9).map(|i| i.min(7))), |_| false);
+        assert!(told[..7].iter().all(Option::is_none) && told[7..] == [Some(Odd::Turned); 2], "{told:?}");
+    }
+
+    #[test]
     fn a_run_that_shows_its_own_side_is_not_turned_by_what_the_others_say() {
         let judged = |sign: f64| judged(&run(sign), &[-0.8], &|_| false);
         assert_eq!((judged(-1.0), judged(1.0)), (Some(Odd::Turned), None));
