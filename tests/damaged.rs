@@ -280,6 +280,21 @@ fn what_the_audit_advises_mends_the_recording() {
     }
 }
 
+#[test]
+fn a_channel_that_one_run_lacks_is_an_error_and_one_that_all_lack_is_none() {
+    let lacking = |files: Files| {
+        let found = doubts(&files.audit());
+        found
+            .iter()
+            .filter(|(_, i)| i.fault == "not_recorded")
+            .map(|(r, i)| (r.clone(), i.severity))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(lacking(Files::sound().run(RUN, |t| t.remove("psi"))), [(RUN.to_owned(), Severity::Error)]);
+    let all = lacking(Files::sound().all(|t| t.remove("psi")));
+    assert!(all.len() == 40 && all.iter().all(|(_, severity)| *severity == Severity::Warning), "{all:?}");
+}
+
 /// Damaged samples, fill values, missing channels.
 fn samples() -> Vec<Case> {
     let one = |channel: &'static str, row: usize, change: fn(f64) -> f64| {
@@ -344,16 +359,10 @@ fn samples() -> Vec<Case> {
     ]
 }
 
-/// Units, signs and axes, in all runs and in one.
-fn contradictions() -> Vec<Case> {
+/// Units, in all runs and in one.
+fn units() -> Vec<Case> {
     let here = Where::Run(RUN);
     let scaled = |channel: &'static str, factor: f64| Files::sound().all(move |t| t.each(channel, |_, v| factor * v));
-    let turned = |channel: &'static str| Files::sound().run(RUN, move |t| t.each(channel, |_, v| -v));
-    let exchange = |t: &mut Table| {
-        let (x, y) = (t.get("x"), t.get("y"));
-        t.set("x", &y);
-        t.set("y", &x);
-    };
     vec![
         case("t in ms", scaled("t", 1000.0), "unit_error", Channel::R, Where::Runs(30), "column map"),
         case(
@@ -392,17 +401,31 @@ fn contradictions() -> Vec<Case> {
             Where::Runs(20),
             "rad",
         ),
+    ]
+}
+
+/// Signs and axes, in all runs and in one.
+fn sides() -> Vec<Case> {
+    let here = Where::Run(RUN);
+    let turned_in_all = |channel: &'static str| Files::sound().all(move |t| t.each(channel, |_, v| -v));
+    let turned = |channel: &'static str| Files::sound().run(RUN, move |t| t.each(channel, |_, v| -v));
+    let exchange = |t: &mut Table| {
+        let (x, y) = (t.get("x"), t.get("y"));
+        t.set("x", &y);
+        t.set("y", &x);
+    };
+    vec![
         case("rudder sign in one run of 32", turned("delta"), "sign_error", Channel::Delta, here, "`sign = -1`"),
         case(
             "rudder sign in all runs",
-            scaled("delta", -1.0),
+            turned_in_all("delta"),
             "sign_error",
             Channel::Delta,
             Where::Runs(10),
             "`sign = -1`",
         ),
         case("v turned in one run", turned("v"), "sign_error", Channel::V, here, "`sign = -1`"),
-        case("v turned in all runs", scaled("v", -1.0), "sign_error", Channel::V, Where::Runs(30), "`sign = -1`"),
+        case("v turned in all runs", turned_in_all("v"), "sign_error", Channel::V, Where::Runs(30), "`sign = -1`"),
         case("r turned in one run", turned("r"), "sign_error", Channel::R, here, "`sign`"),
         case(
             "x and y exchanged",
@@ -491,6 +514,86 @@ fn clocks() -> Vec<Case> {
             Where::Study,
             "SESSION",
         ),
+    ]
+}
+
+/// What the runs show together: lags of a few rows, a unit.
+fn together() -> Vec<Case> {
+    let here = Where::Run(RUN);
+    vec![
+        case(
+            "v in knots read as m/s in one run",
+            Files::sound().run(RUN, |t| t.each("v", |_, v| 1.943_844 * v)),
+            "unit_error",
+            Channel::V,
+            here,
+            "`unit`",
+        ),
+        case(
+            "n 6 s late in one run",
+            Files::sound().run(RUN, |t| t.late("n", 3)),
+            "clock",
+            Channel::N,
+            here,
+            "`delay = 6",
+        ),
+        case(
+            "n 8 s late in one run",
+            Files::sound().run(RUN, |t| t.late("n", 4)),
+            "clock",
+            Channel::N,
+            here,
+            "`delay = 8",
+        ),
+        case(
+            "n 4 s late in all runs",
+            Files::sound().all(|t| t.late("n", 2)),
+            "clock",
+            Channel::N,
+            Where::Study,
+            "`delay = 4",
+        ),
+        case(
+            "yaw rate 4 s late in all runs",
+            Files::sound().all(|t| t.late("r", 2)),
+            "clock",
+            Channel::R,
+            Where::Study,
+            "`delay = 4",
+        ),
+    ]
+}
+
+/// Names, units and conventions of a foreign layout.
+fn foreign() -> Vec<Case> {
+    let all = Where::Runs(30);
+    let kilometres = |t: &mut Table| ["x", "y"].iter().for_each(|c| t.rename(c, &format!("{c} [km]")));
+    let in_kilometres = |t: &mut Table| ["x", "y"].iter().for_each(|c| t.each(c, |_, v| 1e-3 * v));
+    let geographic = |t: &mut Table| {
+        t.rename("x", "lat [deg]");
+        t.rename("y", "lon [deg]");
+    };
+    let mathematical = |t: &mut Table| t.each("psi", |_, p| std::f64::consts::FRAC_PI_2 - p);
+    let no_velocity = |t: &mut Table| {
+        mathematical(t);
+        ["u", "v", "r"].iter().for_each(|c| t.remove(c));
+    };
+    let derived = Files::sound().all(no_velocity).map("derive = [\"u\", \"v\", \"r\"]\n");
+    let minutes = |t: &mut Table| t.each("t", |_, v| v / 60.0);
+    let heading = Files::sound().run(RUN, |t| t.rename("psi", "heading"));
+    let (unit, axes) = ("unit_error", "axes_error");
+    let (x, psi, r, u) = (Channel::X, Channel::Psi, Channel::R, Channel::U);
+    let east = "anticlockwise from east";
+    vec![
+        case("x and y in m read as km", Files::sound().all(kilometres), unit, u, all, "of x and y"),
+        case("x and y in km read as m", Files::sound().all(in_kilometres), unit, u, all, "of x and y"),
+        case("t in min read as s", Files::sound().all(minutes), unit, r, all, "`unit` of t"),
+        case("t in min read as s, by the track", Files::sound().all(minutes), unit, u, all, "`unit` of t"),
+        case("t in s read as min", Files::sound().all(|t| t.rename("t", "t [min]")), unit, u, all, "`unit` of t"),
+        case("psi as `heading`", heading, "not_recorded", psi, Where::Run(RUN), "column `heading` looks like psi"),
+        case("lat and lon", Files::sound().all(geographic), "not_recorded", x, Where::Runs(40), "`trimtab import`"),
+        case("a mathematical heading", Files::sound().all(mathematical), axes, psi, all, east),
+        case("a mathematical heading and no velocity", derived, axes, psi, Where::Runs(20), "anticlockwise, from east"),
     ]
 }
 
@@ -615,8 +718,10 @@ impl Files {
 #[test]
 fn every_fault_is_told_with_its_run_its_channel_and_what_to_do() {
     let mut missed = Vec::new();
-    let cases: Vec<Case> =
-        samples().into_iter().chain(contradictions()).chain(clocks()).chain(places()).chain(shared()).collect();
+    let cases: Vec<Case> = [samples(), units(), sides(), clocks(), together(), foreign(), places(), shared()]
+        .into_iter()
+        .flatten()
+        .collect();
     assert!(cases.len() >= 30, "{}", cases.len());
     for Case { name, files, fault, channel, place, next } in cases {
         let found = doubts(&files.audit());

@@ -79,7 +79,15 @@ impl<R: Serialize + DeserializeOwned + Default> Rows<R> {
     /// # Errors
     /// [`ConcealError`] if it cannot be written.
     pub fn append(&self, row: &R) -> Result<(), ConcealError> {
-        let text = text(row, false)?;
+        self.append_all(std::slice::from_ref(row))
+    }
+
+    /// Appends the rows of a case in one piece, and waits until they are on the disk.
+    ///
+    /// # Errors
+    /// [`ConcealError`] if they cannot be written.
+    pub fn append_all(&self, rows: &[R]) -> Result<(), ConcealError> {
+        let text = rows.iter().map(|row| text(row, false)).collect::<Result<String, _>>()?;
         let fail = |source| ConcealError::file(&self.path, source);
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         file.write_all(text.as_bytes()).map_err(fail)?;

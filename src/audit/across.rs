@@ -5,15 +5,18 @@ use super::held::{Repeats, held, repeats};
 use super::issue::{Issue, Severity, Shared};
 use super::length::{Length, shorter};
 use super::limits::{
-    EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, SAME_LAG, SESSION_SHARE, SHARED_ROWS, SHARED_SHARE,
+    EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, LEVER_LAG, POOLED_EVIDENCE, SAME_LAG, SESSION_SHARE,
+    SHARED_ROWS, SHARED_SHARE,
 };
 use super::orders::{Leap, ordered};
-use super::pooled::{Odd, odd};
+use super::pooled::{Odd, odd, shares_at_best};
 use super::propeller::{advance, advance_ratio, is_unpowered, unpowered};
+use super::reckoning::{Reckoned, reckoned};
 use super::record::Responses;
 use super::response::Curve;
 use super::scales::scales;
 use super::scatter::{Scatter, scatters};
+use super::sources::Sources;
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording, Split};
 use crate::ship::Ship;
@@ -22,11 +25,17 @@ use serde::{Deserialize, Serialize};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::PathBuf;
+
+/// Channels that dead reckoning compares.
+const TRACK: [Channel; 6] = [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R];
 
 /// What of a run is compared with other runs.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Evidence {
     run: String,
+    /// The file from which it is cut, and the column map by which it is read.
+    source: (PathBuf, Option<PathBuf>),
     session: String,
     split: Split,
     /// Root mean square speed \[m/s\]; 0 where none was recorded.
@@ -36,6 +45,12 @@ pub struct Evidence {
     responses: Responses,
     /// Channels of the wrong sign.
     turned: Vec<Channel>,
+    /// Channels with damaged single values, from which no lag is told.
+    damaged: Vec<Channel>,
+    /// Channels of the motion that were not recorded, and not derived, and what to do.
+    lacks: Vec<(Channel, String)>,
+    /// Whether something is told of its track by itself, so that dead reckoning has no more to say.
+    track_told: bool,
     /// Whether its propeller never turns though it sails.
     unpowered: bool,
     /// The largest leap of the rudder.
@@ -53,16 +68,27 @@ pub struct Evidence {
 impl Evidence {
     /// That of a run, from the part of its recording that the study uses.
     pub(super) fn of(run: &Listed, recording: &Recording, ship: &Ship, responses: Responses, issues: &[Issue]) -> Self {
+        let of_fault = |fault| issues.iter().filter(|i| i.fault == fault).filter_map(|i| i.channel).collect();
         let squares: Vec<f64> =
             recording.get(Channel::U).into_iter().flatten().filter(|u| u.is_finite()).map(|u| u * u).collect();
         Self {
             run: run.labels.run.clone(),
+            source: (run.file.clone(), run.column_map.clone()),
             session: run.labels.session.clone(),
             split: run.labels.split,
             speed: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
             ratio: advance_ratio(recording, ship),
             responses,
-            turned: issues.iter().filter(|i| i.fault == "sign_error").filter_map(|i| i.channel).collect(),
+            turned: of_fault("sign_error"),
+            damaged: of_fault("outlier"),
+            lacks: issues
+                .iter()
+                .filter(|i| i.fault == "not_recorded")
+                .filter_map(|i| Some((i.channel?, i.next_step.clone())))
+                .collect(),
+            track_told: issues.iter().any(|i| {
+                i.severity > Severity::Note && i.fault != "lever" && i.channel.is_some_and(|c| TRACK.contains(&c))
+            }),
             unpowered: is_unpowered(recording, ship),
             leap: Leap::of(recording),
             scatter: Scatter::of(recording),
@@ -91,7 +117,8 @@ fn fingerprints(recording: &Recording) -> Vec<u64> {
 /// Everything that a comparison of the runs shows.
 pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     let mut found = Vec::new();
-    let ratios: Vec<Option<f64>> = runs.iter().map(|r| r.ratio).collect();
+    let sources = Sources::of(runs.iter().map(|r| &r.source));
+    let ratios = sources.medians(&runs.iter().map(|r| r.ratio).collect::<Vec<_>>());
     for (run, issue) in runs.iter().zip(advance(&ratios, ship)) {
         found.extend(issue.map(|issue| Shared { runs: vec![run.run.clone()], issue }));
     }
@@ -99,9 +126,10 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     let speed = (sailing.iter().sum::<f64>() / sailing.len().max(1) as f64).sqrt();
     let time = ship.hull.lpp / speed.max(ship.small_speed());
     for pair in &PAIRS {
-        found.extend(late(runs, pair, time));
+        found.extend(late(runs, &sources, pair, time));
         found.extend(sessions(runs, pair, time));
     }
+    found.extend(lacking(runs));
     let leaps: Vec<Leap> = runs.iter().filter_map(|r| r.leap).collect();
     let every = || runs.iter().map(|r| r.run.clone()).collect::<Vec<_>>();
     if !runs.is_empty() && runs.iter().all(|r| r.unpowered) {
@@ -110,7 +138,12 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     found.extend(ordered(&leaps, time).map(|issue| Shared { runs: every(), issue }));
     let responses: Vec<(&str, &Responses)> = runs.iter().map(|r| (r.run.as_str(), &r.responses)).collect();
     let scattered: Vec<(&str, Scatter)> = runs.iter().map(|r| (r.run.as_str(), r.scatter)).collect();
-    for shared in scales(&responses).into_iter().chain(scatters(&scattered)) {
+    let clear = |r: &&Evidence| !r.track_told && !found.iter().any(|f| f.runs == [r.run.as_str()]);
+    let tracked: Vec<(&Evidence, &Reckoned)> =
+        runs.iter().filter(clear).filter_map(|r| Some((r, r.responses.reckoned.as_ref()?))).collect();
+    let tracks: Vec<(&str, &Reckoned)> = tracked.iter().map(|(r, track)| (r.run.as_str(), *track)).collect();
+    let apart = reckoned(&tracks, &Sources::of(tracked.iter().map(|(r, _)| &r.source)), ship.hull.lpp);
+    for shared in scales(&responses, &sources).into_iter().chain(scatters(&scattered, &sources)).chain(apart) {
         let same = |f: &Shared| f.runs == shared.runs && f.issue.channel == shared.issue.channel;
         if !found.iter().any(same) {
             found.push(shared);
@@ -124,20 +157,73 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     found
 }
 
+/// Channels that a few runs lack and most have: what is summed over channels is another number for these runs.
+fn lacking(runs: &[Evidence]) -> Vec<Shared> {
+    let lacks = |run: &Evidence, channel: Channel| run.lacks.iter().any(|(c, _)| *c == channel);
+    let few = |channel: Channel| 2 * runs.iter().filter(|r| lacks(r, channel)).count() < runs.len();
+    let told = |run: &Evidence, channel: Channel, next: &str| {
+        let text = format!(
+            "{} was not recorded, as it was in most runs: cost and cVDM of this run are of fewer channels",
+            channel.info().words
+        );
+        let next = format!("{next}; or leave the run out");
+        let issue = Issue::new(Severity::Error, "not_recorded", text, next).of(channel);
+        Shared { runs: vec![run.run.clone()], issue }
+    };
+    let of = |run| move |(channel, next): &(Channel, String)| few(*channel).then(|| told(run, *channel, next));
+    runs.iter().flat_map(|run| run.lacks.iter().filter_map(of(run))).collect()
+}
+
 /// A channel and the motion that it is held against.
 struct Pair {
     channel: Channel,
     of: fn(&Responses) -> Option<&Curve>,
     /// Whether the channel acts on the motion, and does not only tell of it.
     acts: bool,
+    /// Up to which lag behind and ahead of the motion, as shares of the time in which the ship sails its length, all runs may have another
+    /// cause than a clock.
+    excused: [f64; 2],
     motion: &'static str,
 }
 
+impl Pair {
+    /// The response of a run in which no value of the channel is damaged.
+    fn curve<'r>(&self, run: &'r Evidence) -> Option<&'r Curve> {
+        (self.of)(&run.responses).filter(|_| !run.damaged.contains(&self.channel))
+    }
+}
+
+/// Rudder and propeller cause the motion, so that only a wrong clock has them behind it; ahead of it they may be by the lag of steering
+/// gear and engines. An antenna off midship tells a position early or late.
 const PAIRS: [Pair; 4] = [
-    Pair { channel: Channel::Delta, of: |r| r.rudder.as_ref(), acts: true, motion: "the yaw of the ship" },
-    Pair { channel: Channel::N, of: |r| r.propeller.as_ref(), acts: true, motion: "the surge of the ship" },
-    Pair { channel: Channel::R, of: |r| r.gyro.as_ref(), acts: false, motion: "the heading" },
-    Pair { channel: Channel::X, of: |r| r.receiver.as_ref(), acts: false, motion: "velocity and heading" },
+    Pair {
+        channel: Channel::Delta,
+        of: |r| r.rudder.as_ref(),
+        acts: true,
+        excused: [SESSION_SHARE, LAG_SHARE],
+        motion: "the yaw of the ship",
+    },
+    Pair {
+        channel: Channel::N,
+        of: |r| r.propeller.as_ref(),
+        acts: true,
+        excused: [SESSION_SHARE, LAG_SHARE],
+        motion: "the surge of the ship",
+    },
+    Pair {
+        channel: Channel::R,
+        of: |r| r.gyro.as_ref(),
+        acts: false,
+        excused: [SESSION_SHARE; 2],
+        motion: "the heading",
+    },
+    Pair {
+        channel: Channel::X,
+        of: |r| r.receiver.as_ref(),
+        acts: false,
+        excused: [LEVER_LAG; 2],
+        motion: "velocity and heading",
+    },
 ];
 
 /// Curves of several runs as one: twice the negative log-likelihood at the lags that all have.
@@ -190,38 +276,53 @@ fn telling(curve: &Curve) -> bool {
     explained && curve.sign[best] > 0.0
 }
 
-/// Rudder or propeller later or earlier than the motion that they cause: in all runs together, and in those that differ from that. The
-/// lag of sensors is told run by run.
-fn late(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
-    if !pair.acts {
-        return Vec::new();
-    }
-    let worth = |seconds: f64, step: f64| seconds.abs() > (LAG_SHARE * time).max(LAG_STEPS[0] * step);
+/// What is late or early: in all runs together, and of rudder and propeller in those runs that differ from that; the lag of sensors is told
+/// run by run.
+fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Shared> {
+    let beyond = |seconds: f64, share: f64, step: f64| seconds.abs() > (share * time).max(LAG_STEPS[0] * step);
+    let excused = |seconds: f64| pair.excused[usize::from(seconds < 0.0)];
     // What acts to the wrong side, or on a motion that is told to the wrong side, is as good as late by half a period.
     let sound = |r: &&Evidence| !r.turned.iter().any(|c| [pair.channel, Channel::R, Channel::U].contains(c));
-    let of_sound = runs.iter().filter(sound).filter_map(|r| Some((r, (pair.of)(&r.responses)?)));
+    let of_sound = runs.iter().filter(sound).filter_map(|r| Some((r, pair.curve(r)?)));
     let curves: Vec<(&Evidence, &Curve)> = of_sound.filter(|(_, c)| telling(c)).collect();
-    let all = Sum::of(curves.iter().map(|(_, c)| *c)).filter(|_| curves.len() > 1).and_then(|sum| {
+    // Where several runs show that the sign is turned, it may be so in the others.
+    let turned_in = runs.iter().filter(|r| r.turned.contains(&pair.channel)).count();
+    let all = Sum::of(curves.iter().map(|(_, c)| *c)).filter(|_| curves.len() > 1 && turned_in < 2).and_then(|sum| {
         let (best, zero) = (sum.best(), sum.lags.iter().position(|lag| *lag == 0)?);
         let sure = sum.total[zero] - sum.total[best] > LAG_EVIDENCE && !sum.at_end(best);
-        (sure && worth(sum.seconds(best), sum.step)).then(|| sum.seconds(best))
+        let seconds = sum.seconds(best);
+        (sure && beyond(seconds, excused(seconds), sum.step)).then_some(seconds)
     });
+    let known = |seconds: f64| all.is_some_and(|all| (seconds - all).abs() <= SAME_LAG * all.abs());
     let lag = |curve: &Curve| {
         let (best, zero) = (curve.best(), curve.zero());
         let seconds = curve.seconds(best);
         let better = curve.evidence(best, zero) > LAG_EVIDENCE && curve.left[best] <= LAG_LEAVES * curve.left[zero];
         let inside = best > 0 && best + 1 < curve.lags.len();
-        let known = all.is_some_and(|all| (seconds - all).abs() <= SAME_LAG * all.abs());
-        (worth(seconds, curve.step) && better && inside && !known).then_some(seconds)
+        // One run tells it by itself where it is beyond what gear, engines and filters do.
+        let long = beyond(seconds, excused(seconds).max(LAG_SHARE), curve.step);
+        (long && better && inside && !known(seconds)).then_some(seconds)
+    };
+    let among_others: Vec<Option<&Curve>> = runs.iter().map(|r| pair.curve(r)).collect();
+    let shares = shares_at_best(&among_others);
+    // What a run says by itself, the other runs must not contradict, nor those that are cut from the same recording.
+    let agreed = |run: &Evidence, seconds: f64| {
+        let Some(place) = runs.iter().position(|r| std::ptr::eq(r, run)) else { return false };
+        let losses = |other: usize| {
+            let curve: &Curve = among_others[other]?;
+            Some([curve.zero(), curve.at(seconds)?].map(|lag| curve.samples * curve.left[lag].ln()))
+        };
+        shares[place].is_none_or(|share| share <= LAG_LEAVES) && sources.agree(place, losses)
     };
     let told = |(run, curve): &(&Evidence, &Curve)| {
-        let issue = lagging(pair, lag(curve)?, "", pair.motion);
+        let issue = lagging(pair, lag(curve).filter(|lag| pair.acts && agreed(run, *lag))?, "", pair.motion);
         Some(Shared { runs: vec![run.run.clone()], issue })
     };
-    let among_others: Vec<Option<&Curve>> = runs.iter().map(|r| (pair.of)(&r.responses)).collect();
-    let pooled = odd(&among_others, |seconds| worth(seconds, 0.0) && all.is_none());
+    let step = curves.first().map_or(0.0, |(_, c)| c.step);
+    let pooled = odd(&among_others, sources, |seconds| beyond(seconds, SESSION_SHARE, step) && all.is_none());
     let told_by_others = |(run, odd): (&Evidence, Option<Odd>)| {
         let issue = match odd? {
+            _ if !pair.acts => return None,
             Odd::Turned => turned(pair),
             Odd::Late(seconds) => lagging(pair, seconds, "", pair.motion),
         };
@@ -232,12 +333,31 @@ fn late(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
         issue: lagging(pair, seconds, "", pair.motion),
     });
     let mut found: Vec<Shared> = together.into_iter().chain(curves.iter().filter_map(told)).collect();
-    for shared in runs.iter().zip(pooled).filter_map(told_by_others) {
+    let also = turned_as_others(runs, pair);
+    for shared in also.into_iter().chain(runs.iter().zip(pooled).filter_map(told_by_others)) {
         if !found.iter().any(|f| f.runs == shared.runs) {
             found.push(shared);
         }
     }
     found
+}
+
+/// Runs that show an actuator of the wrong sign less clearly than is needed for one run by itself, where several others show it.
+fn turned_as_others(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
+    let known = runs.iter().filter(|r| r.turned.contains(&pair.channel)).count();
+    let turns = |run: &&Evidence| {
+        let none = !run.turned.iter().any(|c| [pair.channel, Channel::R, Channel::U].contains(c));
+        none && pair.curve(run).is_some_and(|curve| {
+            let zero = curve.zero();
+            let effect = curve.sign[zero] * curve.effect(zero);
+            effect < -POOLED_EVIDENCE && curve.left[zero] < EXPLAINS * curve.without
+        })
+    };
+    let also = runs.iter().filter(|_| pair.acts && known > 1).filter(turns);
+    let text = format!("acts on {} to the other side than it must, as in other runs", pair.motion);
+    let next = format!("set `sign = -1` for `{}` in a column map", pair.channel);
+    let issue = Issue::new(Severity::Error, "sign_error", text, next).of(pair.channel);
+    also.map(|run| Shared { runs: vec![run.run.clone()], issue: issue.clone() }).collect()
 }
 
 /// The doubt about an actuator of the wrong sign.

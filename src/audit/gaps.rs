@@ -82,21 +82,30 @@ fn time(recording: &Recording, issues: &mut Vec<Issue>) {
 /// Names of columns that hold geographic positions.
 const GEOGRAPHIC: [&str; 6] = ["lat", "latitude", "lon", "long", "lng", "longitude"];
 
+/// Name of a column, without its unit.
+fn name(column: &str) -> &str {
+    column.split(['[', '(']).next().unwrap_or_default().trim()
+}
+
+/// Whether a column holds geographic positions, by its name.
+fn is_geographic(column: &str) -> bool {
+    GEOGRAPHIC.contains(&name(column).to_lowercase().as_str())
+}
+
 /// Columns that became no channel: those that may have been meant for an absent one, each; the others in one note.
 fn columns(recording: &Recording, issues: &mut Vec<Issue>) {
-    let name = |column: &str| column.split(['[', '(']).next().unwrap_or_default().trim().to_lowercase();
     let (geographic, unused): (Vec<&String>, Vec<&String>) =
-        recording.unused().iter().partition(|column| GEOGRAPHIC.contains(&name(column).as_str()));
+        recording.unused().iter().partition(|column| is_geographic(column));
     if let (Some(first), false) = (geographic.first(), recording.has(Channel::X)) {
         let more = geographic.get(1).map_or(String::new(), |second| format!(" and `{second}`"));
         let text = format!("the positions of columns `{first}`{more} are not used, and x and y are missing");
-        let next = "give x = 111120 (lat - lat0) and y = 111120 cos(lat0) (lon - lon0), degrees to m: `x = { column = \"lat\", unit = \"m\", scale = 111120, offset = ... }` in a column map";
+        let next = "`trimtab import` makes a study with x and y of them; or give x = 111120 (lat - lat0) and y = 111120 cos(lat0) (lon - lon0), degrees to m: `x = { column = \"lat\", unit = \"m\", scale = 111120, offset = ... }` in a column map";
         issues.push(Issue::new(Severity::Warning, "not_used", text, next).of(Channel::X));
     }
     let mut others = Vec::new();
     for column in unused {
         let absent = CHANNELS.iter().filter(|c| !recording.has(c.channel)).map(|c| c.name);
-        let name = name(column);
+        let name = name(column).to_lowercase();
         let near = if name.len() > 2 { suggestion(&name, absent) } else { String::new() };
         if near.is_empty() {
             others.push(format!("`{column}`"));
@@ -138,11 +147,20 @@ fn channels(recording: &Recording, issues: &mut Vec<Issue>) {
     }
     for channel in STATE_CHANNELS.into_iter().filter(|c| !recording.has(*c)) {
         let text = format!("{} was not recorded", channel.info().words);
-        let next = match channel {
-            Channel::U | Channel::V | Channel::R => {
-                "the cost carries no weight for it; `derive` in a column map takes it from the others"
+        let meant = recording.unused().iter().find(|c| Channel::meant_by(name(c)) == Some(channel));
+        let geographic = recording.unused().iter().any(|c| is_geographic(c));
+        let next = match (meant, channel) {
+            (Some(column), _) => format!(
+                "column `{column}` looks like {channel}: name its column in a column map, `{channel} = {{ column = \"{}\", unit = ... }}` under `[columns]`",
+                name(column)
+            ),
+            (None, Channel::X | Channel::Y) if geographic => {
+                "`trimtab import` makes a study with x and y of latitude and longitude".into()
             }
-            _ => "the cost carries no weight for it; name its column in a column map, if there is one",
+            (None, Channel::U | Channel::V | Channel::R) => {
+                "the cost carries no weight for it: `derive` in a column map takes it from the others".into()
+            }
+            (None, _) => "the cost carries no weight for it: name its column in a column map, if there is one".into(),
         };
         issues.push(Issue::new(Severity::Warning, "not_recorded", text, next).of(channel));
     }

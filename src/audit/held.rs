@@ -99,7 +99,11 @@ fn of_channel(recording: &Recording, channel: Channel, state: &[Channel]) -> Opt
 /// The last digit with which values are written in a unit of that factor; 0 where they have more than [`HELD_DIGITS`] decimals.
 fn digits(values: &[f64], factor: f64) -> f64 {
     let written = |power: &f64| {
-        let whole = |v: &f64| (v / factor * power - (v / factor * power).round()).abs() < HELD_SAME;
+        // A small value is no multiple of a digit that it does not reach.
+        let whole = |v: &f64| {
+            let steps = v / factor * power;
+            (steps - steps.round()).abs() < HELD_SAME && (*v == 0.0 || steps.round() != 0.0)
+        };
         values.iter().filter(|v| v.is_finite()).all(whole)
     };
     let mut powers = (0..=HELD_DIGITS).map(|d| 10_f64.powi(d));
@@ -222,6 +226,27 @@ mod tests {
         assert!(told.len() == 1 && told[0].runs == ["r0"], "{told:?}");
         assert_eq!(told[0].issue.lines, Some((42, 81)));
         assert!(study(1e6, 1, late)[0].issue.next_step.contains("`delay`"));
+    }
+
+    #[test]
+    fn a_frozen_value_is_told_wherever_it_begins() {
+        // Beside some of these the channel happens to move little.
+        for at in 15..75 {
+            let told = study(1e4, 1, |r| (at + 1..at + 40).for_each(|i| r[i] = r[at]));
+            assert!(told.len() == 1 && told[0].runs == ["r0"], "{at}: {told:?}");
+        }
+    }
+
+    #[test]
+    fn a_frozen_yaw_rate_of_thousandths_of_a_radian_is_told() {
+        for size in [1e-2, 1e-3, 1e-4] {
+            let frozen = |r: &mut Vec<f64>| {
+                r.iter_mut().for_each(|r| *r = (size * *r * 1e8).round() / 1e8);
+                (41..80).for_each(|i| r[i] = r[40]);
+            };
+            let told = study(1e6, 1, frozen);
+            assert!(told.len() == 1 && told[0].runs == ["r0"], "{size}: {told:?}");
+        }
     }
 
     #[test]

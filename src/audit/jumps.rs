@@ -9,6 +9,10 @@ use super::limits::{
 use crate::recording::{Channel, Recording, STATE_CHANNELS};
 use crate::statistics::median;
 
+/// Rows of a window, and pairs of them but one.
+const WINDOW: usize = 2 * MEDIAN_ROWS + 1;
+const PAIRS: usize = (WINDOW - 1) * (WINDOW - 2) / 2;
+
 /// Channels that are set and not moved: they may change for one sample and change back.
 const SET: [Channel; 9] = [
     Channel::N,
@@ -120,16 +124,15 @@ fn set_at_ends(values: &[f64]) -> Vec<usize> {
 
 /// Rows at the ends that are far from the line through the other rows of their window, by what such rows are all along the run.
 fn far_at_ends(t: &[f64], rows: &[usize], values: &[f64], least: impl Fn(f64) -> f64) -> Vec<usize> {
-    const WINDOW: usize = 2 * MEDIAN_ROWS + 1;
     let windows = values.len() + 1 - WINDOW;
     let stride = windows.div_ceil(END_WINDOWS);
     let off = |start: usize, j: usize| {
-        let others: Vec<usize> = (start..start + WINDOW).filter(|k| *k != start + j).collect();
+        let others: [usize; WINDOW - 1] = std::array::from_fn(|k| start + k + usize::from(k >= j));
         let slope = |a: usize, b: usize| (values[b] - values[a]) / (t[rows[b]] - t[rows[a]]);
         let slopes = others.iter().enumerate().flat_map(|(i, a)| others[i + 1..].iter().map(move |b| slope(*a, *b)));
-        let slope = median(slopes).unwrap_or(0.0);
+        let slope = middle(slopes).unwrap_or(0.0);
         let at = start + j;
-        let level = median(others.iter().map(|k| values[*k] - slope * (t[rows[*k]] - t[rows[at]]))).unwrap_or(0.0);
+        let level = middle(others.iter().map(|k| values[*k] - slope * (t[rows[*k]] - t[rows[at]]))).unwrap_or(0.0);
         values[at] - level
     };
     let mut far = Vec::new();
@@ -149,7 +152,23 @@ fn far_at_ends(t: &[f64], rows: &[usize], values: &[f64], least: impl Fn(f64) ->
 /// The median of a row's neighbours. The row itself does not count: where a value rises it would be the median, and the scatter 0.
 fn neighbours(values: &[f64], k: usize) -> f64 {
     let (before, after) = (k.saturating_sub(MEDIAN_ROWS)..k, k + 1..(k + 1 + MEDIAN_ROWS).min(values.len()));
-    median(before.chain(after).map(|i| values[i])).unwrap_or(values[k])
+    middle(before.chain(after).map(|i| values[i])).unwrap_or(values[k])
+}
+
+/// The median of the values of a window, or of the slopes between them, kept where no memory is asked for: windows are many.
+fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (mut few, mut count) = ([0.0; PAIRS], 0);
+    for value in values.filter(|v| v.is_finite()).take(PAIRS) {
+        few[count] = value;
+        count += 1;
+    }
+    let (few, half) = (&mut few[..count], count / 2);
+    few.sort_unstable_by(f64::total_cmp);
+    match count {
+        0 => None,
+        odd if odd % 2 == 1 => Some(few[half]),
+        _ => Some(0.5 * (few[half - 1] + few[half])),
+    }
 }
 
 /// Standard deviation of values around 0 by their median size, which single large ones do not change.
@@ -174,6 +193,15 @@ mod tests {
     fn speed(seed: u32) -> Vec<f64> {
         let mut noise = noise(seed);
         (0..121).map(|i| 4.0 + 1.5 * (0.05 * f64::from(i)).sin() + 0.1 * noise()).collect()
+    }
+
+    #[test]
+    fn the_middle_of_a_window_is_its_median() {
+        let mut noise = noise(5);
+        for count in 0..=PAIRS {
+            let values: Vec<f64> = (0..count).map(|_| noise()).collect();
+            assert_eq!(middle(values.iter().copied()), median(values));
+        }
     }
 
     #[test]

@@ -22,6 +22,7 @@ mod orders;
 mod pooled;
 mod propeller;
 mod receiver;
+mod reckoning;
 mod record;
 mod response;
 mod runs;
@@ -29,6 +30,7 @@ mod scales;
 mod scatter;
 mod series;
 mod signs;
+mod sources;
 mod study;
 mod units;
 

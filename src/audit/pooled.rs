@@ -1,8 +1,9 @@
 //! One run against all others: whether rudder and propeller act in it as they do in the other runs, or to the other side, or later.
 //! The coefficients are those of the other runs, so that a short run says more than its own regression would.
 
-use super::limits::{EXPLAINS, POOLED_EVIDENCE, POOLED_RUNS, POOLED_SIZE, POOLED_UNUSUAL};
+use super::limits::{EXPLAINS, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE};
 use super::response::{Curve, Sums};
+use super::sources::Sources;
 use crate::statistics::median;
 use nalgebra::{DMatrix, DVector};
 
@@ -22,17 +23,14 @@ fn total<'c>(curves: impl Iterator<Item = &'c Curve>) -> Option<Sums> {
         let one = curve.at_zero();
         match &mut sum {
             None => sum = Some(one.clone()),
-            Some(sum) => {
-                sum.columns.iter_mut().zip(&one.columns).for_each(|(s, o)| *s += o);
-                sum.response.iter_mut().zip(&one.response).for_each(|(s, o)| *s += o);
-            }
+            Some(sum) => sum.add(one),
         }
     }
     sum
 }
 
 /// Coefficients from sums; `less` is taken out of them.
-fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
+pub(super) fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
     let n = sum.response.len();
     let of = |i: usize, all: &[f64], some: Option<&[f64]>| all[i] - some.map_or(0.0, |some| some[i]);
     let a = DMatrix::from_fn(n, n, |i, j| of(i * n + j, &sum.columns, less.map(|l| &l.columns[..])));
@@ -87,60 +85,88 @@ fn is_step(curve: &Curve, step: f64) -> bool {
     (curve.step / step - 1.0).abs() < 0.01
 }
 
-/// What is odd in each run, in their order. `worth` says which lags \\[s\\] matter.
-pub fn odd(curves: &[Option<&Curve>], worth: impl Fn(f64) -> bool) -> Vec<Option<Odd>> {
+/// What is odd in each run, in their order, and in the recording from which it is cut. `worth` says which lags \\[s\\] matter.
+pub fn odd(curves: &[Option<&Curve>], sources: &Sources, worth: impl Fn(f64) -> bool) -> Vec<Option<Odd>> {
     let none = || vec![None; curves.len()];
-    let size = |c: &Curve| c.at_zero().columns.first().copied().unwrap_or(0.0) / c.samples;
-    let Some(pool) = Pool::new(curves, size, POOLED_SIZE) else { return none() };
-    // What the coefficients of the other runs leave, as a share of what is left without the channel.
-    let share = |c: &Curve| {
-        let others = pool.others(c)?;
-        Some(c.at_zero().left(&others) / without(c, &others))
+    let Some(pool) = actuated(curves) else { return none() };
+    let alike = |run: usize| curves[run].filter(|c| pool.is_alike(c));
+    let judged = |run: usize| {
+        let curve = alike(run)?;
+        let others = pool.others(curve)?;
+        let found = judged(curve, &others, &worth)?;
+        sources.agree(run, |other| losses(alike(other)?, &others, found)).then_some(found)
     };
-    let Some(usual) = median(pool.runs().filter_map(share)) else { return none() };
-    let judged = |curve: &Option<&Curve>| {
-        let curve = curve.filter(|c| pool.has(c))?;
-        judged(curve, &pool.others(curve)?, usual, &worth)
+    (0..curves.len()).map(judged).collect()
+}
+
+/// Squares that coefficients leave of a run as it is, and with what is odd; `None` where it does not have the lag.
+fn losses(curve: &Curve, others: &[f64], odd: Odd) -> Option<[f64; 2]> {
+    match odd {
+        Odd::Turned => Some([curve.at_zero().left(others), curve.at_zero().left(&to_the_other_side(curve, others))]),
+        Odd::Late(seconds) => {
+            let place = curve.at(seconds)?;
+            Some([curve.at_zero_beside(place).left(others), curve.sums[place].left(others)])
+        }
+    }
+}
+
+/// The coefficients of a channel that acts to the other side.
+fn to_the_other_side(curve: &Curve, others: &[f64]) -> Vec<f64> {
+    others.iter().enumerate().map(|(i, c)| if i < curve.own { -c } else { *c }).collect()
+}
+
+/// The runs against which what an actuator does is held.
+fn actuated<'c>(curves: &[Option<&'c Curve>]) -> Option<Pool<'c>> {
+    let size = |c: &Curve| c.at_zero().columns.first().copied().unwrap_or(0.0) / c.rows;
+    Pool::new(curves, size, POOLED_SIZE)
+}
+
+/// What the coefficients of the other runs leave of each run at the lag that its own regression finds, as a share of what they leave at
+/// none; `None` where there are too few others.
+pub fn shares_at_best(curves: &[Option<&Curve>]) -> Vec<Option<f64>> {
+    let Some(pool) = actuated(curves) else { return vec![None; curves.len()] };
+    let share = |curve: &Option<&Curve>| {
+        let curve = curve.filter(|c| pool.is_alike(c))?;
+        let (others, best) = (pool.others(curve)?, curve.best());
+        Some(curve.sums[best].left(&others) / curve.at_zero_beside(best).left(&others))
     };
-    curves.iter().map(judged).collect()
+    curves.iter().map(share).collect()
 }
 
 /// Squares left without the channel.
-fn without(curve: &Curve, coefficients: &[f64]) -> f64 {
+fn without(sums: &Sums, own: usize, coefficients: &[f64]) -> f64 {
     let mut rest = coefficients.to_vec();
-    rest[..curve.own].fill(0.0);
-    curve.at_zero().left(&rest)
+    rest[..own].fill(0.0);
+    sums.left(&rest)
 }
 
-/// What is odd in a run, given the coefficients of the others and the share of the squares that these usually leave.
-fn judged(curve: &Curve, others: &[f64], usual: f64, worth: &impl Fn(f64) -> bool) -> Option<Odd> {
-    let mut turned = others.to_vec();
-    turned[..curve.own].iter_mut().for_each(|c| *c = -*c);
+/// What is odd in a run, given the coefficients of the others: what explains most more, over the windows that both explanations have.
+fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option<Odd> {
+    let turned = to_the_other_side(curve, others);
     let zero = curve.zero();
     // A run that shows by itself to which side the channel acts is believed before the others are.
     let own_side = curve.sign[zero] > 0.0 && curve.effect(zero) > POOLED_EVIDENCE;
-    let nothing = without(curve, others);
-    let as_others = curve.sums[zero].left(others);
     let mut best: Option<(f64, Odd)> = None;
     for (place, sums) in curve.sums.iter().enumerate() {
         let seconds = curve.seconds(place);
         let inside = place > 0 && place + 1 < curve.sums.len();
+        let as_it_is = curve.at_zero_beside(place);
+        let (before, nothing) = (as_it_is.left(others), without(as_it_is, curve.own, others));
         let candidates = [
             (worth(seconds) && inside).then(|| (sums.left(others), Odd::Late(seconds))),
             (place == zero && !own_side).then(|| (sums.left(&turned), Odd::Turned)),
         ];
         for (left, what) in candidates.into_iter().flatten() {
-            if best.is_none_or(|(least, _)| left < least) {
-                best = Some((left, what));
+            let evidence = curve.samples * (before - left) / left.max(f64::MIN_POSITIVE);
+            // Where the run by itself is explained best by this lag, it is not the best of many.
+            let least = if inside && place == curve.best() { POOLED_AGREED } else { POOLED_EVIDENCE };
+            let told = left < POOLED_LEAVES * before && left < EXPLAINS * nothing && evidence > least;
+            if told && best.is_none_or(|(most, _)| evidence > most) {
+                best = Some((evidence, what));
             }
         }
     }
-    let (left, what) = best?;
-    // Less than usual is luck.
-    let noise = left.max(usual * nothing);
-    let evidence = curve.samples * (as_others - left) / noise;
-    let unusual = as_others > POOLED_UNUSUAL * usual * nothing;
-    (unusual && left < EXPLAINS * nothing && evidence > POOLED_EVIDENCE).then_some(what)
+    best.map(|(_, what)| what)
 }
 
 #[cfg(test)]
@@ -159,14 +185,33 @@ mod tests {
             without: 3.0,
             samples: 40.0,
             rows: 40.0,
+            beside: [sums.clone(), sums.clone()],
             sums: vec![sums],
             own: 1,
         }
     }
 
     #[test]
+    fn a_run_of_a_recording_whose_other_runs_are_sound_is_not_turned() {
+        // The last one answers to the other side, and does not say so beyond doubt by itself.
+        let curves: Vec<Curve> = (0..9).map(|i| run(if i < 8 { 1.0 } else { -1.0 })).collect();
+        let mut curves = curves;
+        curves[8].sums[0].response[0] *= -1.0;
+        let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
+        let odd = |sources: Sources| odd(&all, &sources, |_| false);
+        let told = odd(Sources::of(0..9));
+        assert!(told[..8].iter().all(Option::is_none) && told[8] == Some(Odd::Turned), "{told:?}");
+        assert_eq!(odd(Sources::of(std::iter::repeat_n("log", 9))), [None; 9]);
+        // A file that is turned is turned in all of its runs.
+        curves[7] = curves[8].clone();
+        let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
+        let told = super::odd(&all, &Sources::of((0..9).map(|i| i.min(7))), |_| false);
+        assert!(told[..7].iter().all(Option::is_none) && told[7..] == [Some(Odd::Turned); 2], "{told:?}");
+    }
+
+    #[test]
     fn a_run_that_shows_its_own_side_is_not_turned_by_what_the_others_say() {
-        let judged = |sign: f64| judged(&run(sign), &[-0.8], 0.1, &|_| false);
+        let judged = |sign: f64| judged(&run(sign), &[-0.8], &|_| false);
         assert_eq!((judged(-1.0), judged(1.0)), (Some(Odd::Turned), None));
     }
 }

@@ -8,6 +8,7 @@ use super::gaps::completeness;
 use super::issue::{Issue, Severity};
 use super::jumps::outliers;
 use super::kinematics::Kinematics;
+use super::reckoning::Reckoned;
 use super::response::{Curve, gyro, propeller, receiver, rudder, sway};
 use super::series::Series;
 use super::signs::{Actuators, Track};
@@ -98,6 +99,8 @@ pub struct Responses {
     pub gyro: Option<Curve>,
     /// Position to velocity and heading.
     pub receiver: Option<Curve>,
+    /// Track to dead reckoning.
+    pub reckoned: Option<Reckoned>,
 }
 
 impl Responses {
@@ -109,6 +112,7 @@ impl Responses {
             sway: sway(series),
             gyro: gyro(series),
             receiver: receiver(series),
+            reckoned: Reckoned::of(series),
         }
     }
 }
@@ -162,20 +166,27 @@ pub fn agreement<'a>(
     issues: &mut Vec<Issue>,
 ) -> Kinematics {
     let (mut turning, mut track, mut actuators) = (Turning::default(), Track::default(), Actuators::default());
+    let mut course = Track::default();
     let mut kinematics = Kinematics::default();
     for (one, responses) in series {
         kinematics.span = kinematics.span.max(one.span);
         turning.add(one);
         track.add(one);
+        course.add_course(one);
         actuators.add(one, responses.rudder.as_ref());
     }
-    turning.tell(&mut kinematics, issues);
-    track.tell(&mut kinematics, issues);
+    let (turn, speed) = (turning.gain(), track.gain());
+    let axes = issues.len();
+    turning.tell(&mut kinematics, speed, issues);
+    track.tell(&mut kinematics, turn, issues);
+    issues.extend(course.mirrored(turn));
+    // A mirror image turns against every rudder.
+    let mirrored = issues[axes..].iter().any(|i| i.fault == "axes_error" && i.blocking());
     // Where r itself has the wrong sign, what the rudder does to it says nothing.
     let of = |issues: &[Issue], channels: &[Channel]| {
         issues.iter().any(|i| i.fault == "sign_error" && i.channel.is_some_and(|c| channels.contains(&c)))
     };
-    if !of(issues, &[Channel::R, Channel::U]) {
+    if !mirrored && !of(issues, &[Channel::R, Channel::U]) {
         actuators.tell(issues);
     }
     kinematics

@@ -27,6 +27,8 @@ pub struct Curve {
     pub rows: f64,
     /// The sums of the regression at each lag, the mean taken out, for a comparison with other runs.
     pub sums: Vec<Sums>,
+    /// The same at lag 0, over the windows that a channel that is early has, and over those that a late one has.
+    pub beside: [Sums; 2],
     /// Columns of the regression that belong to the channel: the first ones.
     pub own: usize,
 }
@@ -43,6 +45,13 @@ pub struct Sums {
 }
 
 impl Sums {
+    /// Adds those of another run.
+    pub fn add(&mut self, other: &Self) {
+        self.columns.iter_mut().zip(&other.columns).for_each(|(s, o)| *s += o);
+        self.response.iter_mut().zip(&other.response).for_each(|(s, o)| *s += o);
+        self.squares += other.squares;
+    }
+
     /// Squares that coefficients of other runs leave.
     pub fn left(&self, coefficients: &[f64]) -> f64 {
         let n = coefficients.len();
@@ -54,6 +63,7 @@ impl Sums {
 }
 
 /// A regression at one lag: what is left, the sign of the effect.
+#[derive(Clone)]
 struct Solved<const N: usize> {
     left: f64,
     sign: f64,
@@ -72,6 +82,15 @@ impl Curve {
         &self.sums[self.zero()]
     }
 
+    /// The sums at lag 0 over the windows of a lag.
+    pub fn at_zero_beside(&self, lag: usize) -> &Sums {
+        match self.lags[lag] {
+            0 => self.at_zero(),
+            lag if lag < 0 => &self.beside[0],
+            _ => &self.beside[1],
+        }
+    }
+
     /// Place of the lag that leaves least.
     pub fn best(&self) -> usize {
         (0..self.left.len()).min_by(|i, j| self.left[*i].total_cmp(&self.left[*j])).unwrap_or(0)
@@ -87,6 +106,11 @@ impl Curve {
         self.samples * (self.without / self.left[lag]).ln()
     }
 
+    /// Place of a lag \[s\]; `None` where it was not tried.
+    pub fn at(&self, seconds: f64) -> Option<usize> {
+        (0..self.lags.len()).find(|place| (self.seconds(*place) - seconds).abs() < 0.5 * self.step)
+    }
+
     /// A lag \[s\].
     pub fn seconds(&self, lag: usize) -> f64 {
         self.lags[lag] as f64 * self.step
@@ -94,7 +118,7 @@ impl Curve {
 }
 
 /// Running integrals of a channel over time, by the trapezoidal rule.
-fn integral(t: &[f64], values: impl Fn(usize) -> f64) -> Vec<f64> {
+pub fn integral(t: &[f64], values: impl Fn(usize) -> f64) -> Vec<f64> {
     let mut sum = 0.0;
     let mut sums = Vec::with_capacity(t.len());
     for row in 0..t.len() {
@@ -215,6 +239,9 @@ pub fn receiver(series: &Series<'_>) -> Option<Curve> {
 
 /// The curve of a regression on `N` columns, the first `P` of which belong to the channel, with `E` equations a row, over the windows
 /// that are `usable` by their first row.
+///
+/// A lag has the windows that every lag of its sign has, and is compared with lag 0 over the same: how a ship starts from rest is in
+/// the first rows, where a late channel still has its value.
 fn curve<const N: usize, const P: usize, const E: usize>(
     series: &Series<'_>,
     usable: impl Fn(usize) -> bool,
@@ -224,35 +251,57 @@ fn curve<const N: usize, const P: usize, const E: usize>(
     let longest = ((LAG_LONGEST.0 * rows as f64) as usize).min((LAG_LONGEST.1 / series.step) as usize);
     let lags = lags(longest);
     let reach = lags.last().map_or(0, |lag| lag.unsigned_abs());
-    let inner = |s: &Range<usize>| s.start + reach..s.end.saturating_sub(reach + RESPONSE_STEPS);
-    let every = series.stretches.iter().flat_map(|s| inner(s).step_by(RESPONSE_STEPS / 2));
-    let starts: Vec<usize> = every.filter(|start| usable(*start)).collect();
-    if longest < 2 || starts.len() < 4 * N {
+    let windows = |before: usize, after: usize| {
+        let inner = |s: &Range<usize>| s.start + before..s.end.saturating_sub(after + RESPONSE_STEPS);
+        let every = series.stretches.iter().flat_map(|s| inner(s).step_by(RESPONSE_STEPS / 2));
+        every.filter(|start| usable(*start)).collect::<Vec<usize>>()
+    };
+    let [early, whole, late] = [windows(reach, 0), windows(0, 0), windows(0, reach)];
+    if longest < 2 || early.len().min(late.len()) < 2 * N || whole.len() < 4 * N {
         return None;
     }
-    let solve = |lag: isize| normal::<N, P, E>(&starts, lag, &equations);
-    let solved: Vec<Solved<N>> = lags.iter().map(|lag| solve(*lag).map(|(s, _)| s)).collect::<Option<_>>()?;
+    let of_sign = |lag: isize| if lag < 0 { &early } else { &late };
+    let solve = |starts: &[usize], lag: isize| normal::<N, P, E>(starts, lag, &equations);
+    let (zero, without) = solve(&whole, 0)?;
+    let (before, after) = (solve(&early, 0)?.0, solve(&late, 0)?.0);
+    let mut solved: Vec<Solved<N>> = Vec::with_capacity(lags.len());
+    for lag in &lags {
+        let mut one = if *lag == 0 { zero.clone() } else { solve(of_sign(*lag), *lag)?.0 };
+        if *lag != 0 {
+            // As many squares as there are at lag 0 over all windows.
+            one.left *= zero.left / if *lag < 0 { before.left } else { after.left };
+        }
+        solved.push(one);
+    }
     let best = (0..lags.len()).min_by(|i, j| solved[*i].left.total_cmp(&solved[*j].left))?;
-    let (_, without) = solve(0)?;
-    // Successive residuals are alike: they are worth as many independent ones as their correlation leaves.
-    let residual = |i: usize, e: usize| {
-        let (columns, y) = equations(i, lags[best])[e];
-        y - SVector::from(columns).dot(&solved[best].coefficients)
-    };
+    let starts = if lags[best] == 0 { &whole } else { of_sign(lags[best]) };
+    let correlation = likeness(
+        starts,
+        |i, e| {
+            let (columns, y) = equations(i, lags[best])[e];
+            y - SVector::from(columns).dot(&solved[best].coefficients)
+        },
+        E,
+    );
+    let samples = whole.len() as f64 * (1.0 - correlation) / (1.0 + correlation);
+    let (left, sign) = solved.iter().map(|s| (s.left, s.sign)).unzip();
+    let sums = solved.into_iter().map(|s| s.sums).collect();
+    let rows = (E * whole.len()) as f64;
+    let beside = [before.sums, after.sums];
+    Some(Curve { step: series.step, lags, left, sign, without, samples, rows, sums, beside, own: P })
+}
+
+/// Correlation of the residuals of successive windows, of so many equations each: they are worth as many independent ones as it leaves.
+fn likeness(starts: &[usize], residual: impl Fn(usize, usize) -> f64, equations: usize) -> f64 {
     let (mut squares, mut products) = (0.0, 0.0);
     for pair in starts.windows(2).filter(|p| p[1] - p[0] == RESPONSE_STEPS / 2) {
-        for e in 0..E {
+        for e in 0..equations {
             let (a, b) = (residual(pair[0], e), residual(pair[1], e));
             squares += 0.5 * (a * a + b * b);
             products += a * b;
         }
     }
-    let correlation = if squares > 0.0 { (products / squares).clamp(0.0, 0.99) } else { 0.0 };
-    let samples = starts.len() as f64 * (1.0 - correlation) / (1.0 + correlation);
-    let (left, sign) = solved.iter().map(|s| (s.left, s.sign)).unzip();
-    let sums = solved.into_iter().map(|s| s.sums).collect();
-    let rows = (E * starts.len()) as f64;
-    Some(Curve { step: series.step, lags, left, sign, without, samples, rows, sums, own: P })
+    if squares > 0.0 { (products / squares).clamp(0.0, 0.99) } else { 0.0 }
 }
 
 /// The regression at one lag, and what is left without the channel. `None` where nothing moves.
@@ -310,5 +359,43 @@ fn centred<const N: usize>(a: &SMatrix<f64, N, N>, b: &SVector<f64, N>, squares:
         columns: columns.collect(),
         response: (0..constant).map(|i| b[i] - share(i) * b[constant]).collect(),
         squares: squares - if own > 0.0 { b[constant] * b[constant] / own } else { 0.0 },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::audit::example::noise;
+    use crate::audit::limits::LAG_EVIDENCE;
+    use crate::recording::Recording;
+
+    /// A ship that gathers way under a propeller that turns faster in the fourth row, and is recorded so many rows late.
+    fn gathering(seed: u32, late: usize) -> Curve {
+        let mut noise = noise(seed);
+        let (mut u, mut speeds) = (1.0_f64, Vec::new());
+        let n: Vec<f64> = (0..120_usize).map(|i| if i < 3 { 0.5 } else { 2.0 }).collect();
+        for n in &n {
+            speeds.push(u + 0.02 * noise());
+            u += 2.0 * (0.03 * n * n - 0.01 * u * u);
+        }
+        let recorded = (0..120).map(|i: usize| n[i.saturating_sub(late)]).collect();
+        let t = (0..120).map(|i| 2.0 * f64::from(i)).collect();
+        let columns = vec![(Channel::T, t), (Channel::U, speeds), (Channel::N, recorded)];
+        propeller(&Series::from(&Recording::from_channels("run", columns).unwrap())).unwrap()
+    }
+
+    #[test]
+    fn a_channel_that_acts_in_the_first_rows_alone_shows_how_late_it_is() {
+        for seed in 1..6 {
+            for late in [3, 6] {
+                let curve = gathering(seed, late);
+                let (best, zero) = (curve.best(), curve.zero());
+                assert!(curve.lags[best].abs_diff(late as isize) <= 1, "{seed} {late}: {}", curve.lags[best]);
+                assert!(curve.evidence(best, zero) > LAG_EVIDENCE, "{seed} {late}: {}", curve.evidence(best, zero));
+            }
+            // A sound one is explained better by another lag only as far as chance goes.
+            let sound = gathering(seed, 0);
+            assert!(sound.evidence(sound.best(), sound.zero()) < LAG_EVIDENCE, "{seed}");
+        }
     }
 }

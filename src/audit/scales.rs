@@ -6,6 +6,7 @@ use super::limits::{POOLED_UNUSUAL, SCALE_COHERENCE, SCALE_EVIDENCE, SCALE_LEAVE
 use super::pooled::Pool;
 use super::record::Responses;
 use super::response::{Curve, Sums};
+use super::sources::Sources;
 use crate::numerals::sig;
 use crate::recording::Channel;
 use crate::statistics::median;
@@ -64,7 +65,7 @@ impl Asked {
     }
 
     /// The factor of each run, in their order; `None` where its channel is as in the other runs, or that cannot be told.
-    fn factors(&self, curves: &[Option<&Curve>]) -> Vec<Option<f64>> {
+    fn factors(&self, curves: &[Option<&Curve>], sources: &Sources) -> Vec<Option<f64>> {
         let none = || vec![None; curves.len()];
         let size = |c: &Curve| {
             let sums = c.at_zero();
@@ -74,11 +75,15 @@ impl Asked {
         let Some(pool) = Pool::new(curves, size, SCALE_SIZE) else { return none() };
         let square = |c: &Curve| Some(c.at_zero().left(&pool.others(c)?) / c.rows);
         let Some(usual) = median(pool.runs().filter_map(square)).filter(|u| *u > 0.0) else { return none() };
-        let judged = |curve: &Option<&Curve>| {
-            let curve = curve.filter(|c| pool.is_alike(c))?;
-            self.judged(curve, &pool.others(curve)?, usual)
+        let alike = |run: usize| curves[run].filter(|c| pool.is_alike(c));
+        let judged = |run: usize| {
+            let curve = alike(run)?;
+            let others = pool.others(curve)?;
+            let factor = self.judged(curve, &others, usual)?;
+            let losses = |c: &Curve| [1.0, factor].map(|f| self.left(c, c.at_zero(), &others, f));
+            sources.agree(run, |other| alike(other).map(losses)).then_some(factor)
         };
-        curves.iter().map(judged).collect()
+        (0..curves.len()).map(judged).collect()
     }
 
     /// The factor of one run, given the coefficients of the others and the mean square that these usually leave.
@@ -121,11 +126,11 @@ fn proportional(sums: &Sums, others: &[f64], factor: f64) -> bool {
 }
 
 /// The channels of single runs that are in another unit, or of another sign, than in the other runs.
-pub fn scales(runs: &[(&str, &Responses)]) -> Vec<Shared> {
+pub fn scales(runs: &[(&str, &Responses)], sources: &Sources) -> Vec<Shared> {
     let mut found = Vec::new();
     for asked in &ASKED {
         let curves: Vec<Option<&Curve>> = runs.iter().map(|(_, r)| (asked.of)(r)).collect();
-        for ((run, _), factor) in runs.iter().zip(asked.factors(&curves)) {
+        for ((run, _), factor) in runs.iter().zip(asked.factors(&curves, sources)) {
             found.extend(factor.map(|f| Shared { runs: vec![(*run).to_owned()], issue: asked.issue(f) }));
         }
     }
@@ -162,7 +167,7 @@ mod tests {
     fn study(factors: [f64; 2]) -> Vec<Shared> {
         let runs: Vec<(String, Responses)> =
             (0..8).map(|i| (format!("r{i}"), run(i + 1, if i == 0 { factors } else { [1.0; 2] }))).collect();
-        scales(&runs.iter().map(|(name, r)| (name.as_str(), r)).collect::<Vec<_>>())
+        scales(&runs.iter().map(|(name, r)| (name.as_str(), r)).collect::<Vec<_>>(), &Sources::of(0..8))
     }
 
     #[test]

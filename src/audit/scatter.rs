@@ -3,6 +3,7 @@
 
 use super::issue::{Issue, Severity, Shared};
 use super::limits::{ENOUGH, POOLED_RUNS, SCATTER_ALIKE, SCATTER_SAME};
+use super::sources::Sources;
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording};
 use crate::statistics::median;
@@ -32,10 +33,14 @@ impl Scatter {
 }
 
 /// Velocities of single runs that scatter by the factor between two units as much as those of all other runs, which scatter alike.
-pub fn scatters(runs: &[(&str, Scatter)]) -> Vec<Shared> {
+pub fn scatters(runs: &[(&str, Scatter)], sources: &Sources) -> Vec<Shared> {
     let mut found = Vec::new();
     for (at, channel) in ASKED.into_iter().enumerate() {
-        let known: Vec<(&str, f64)> = runs.iter().filter_map(|(run, s)| Some((*run, s.0[at]?))).collect();
+        let values = sources.medians(&runs.iter().map(|(_, s)| s.0[at]).collect::<Vec<_>>());
+        // What is so in a recording is told in the first of its runs.
+        let first = |run: usize| sources.beside(run).find(|other| values[*other].is_some()) == Some(run);
+        let of = |run: usize| Some((runs[run].0, values[run].filter(|_| first(run))?));
+        let known: Vec<(&str, f64)> = (0..runs.len()).filter_map(of).collect();
         let Some(usual) = median(known.iter().map(|(_, s)| *s)).filter(|_| known.len() > POOLED_RUNS) else { continue };
         let apart = |s: f64, than: f64| (s / than).max(than / s);
         let unlike: Vec<&(&str, f64)> = known.iter().filter(|(_, s)| apart(*s, usual) > SCATTER_ALIKE).collect();
@@ -72,7 +77,7 @@ mod tests {
             Scatter::of(&Recording::from_channels("run", columns).unwrap())
         };
         let runs: Vec<(String, Scatter)> = (1..9).map(|i| (format!("r{i}"), run(i))).collect();
-        scatters(&runs.iter().map(|(name, s)| (name.as_str(), *s)).collect::<Vec<_>>())
+        scatters(&runs.iter().map(|(name, s)| (name.as_str(), *s)).collect::<Vec<_>>(), &Sources::of(0..8))
     }
 
     #[test]

@@ -6,7 +6,8 @@ use super::issue::{Issue, Severity};
 use super::kinematics::{Kinematics, Proportion};
 use super::limits::{
     AGAINST, AGAINST_RUDDER, AGAINST_TURN, ASTERN_SHARE, ASTERN_SPEED, CALIBRATED, COHERENT, EXPLAINS, LEVER_SHARE,
-    MIRROR_LEAVES, MIRRORED, NOT_MIRRORED, SIGN_EVIDENCE, SWAY_COHERENCE, SWAY_LEAVES, TRACK_ANGLES, TURNED, UNTURNED,
+    LEVER_TURN, MIRROR_LEAVES, MIRRORED, NOT_MIRRORED, SIGN_EVIDENCE, SWAY_COHERENCE, SWAY_LEAVES, TRACK_ANGLES,
+    TURNED, UNTURNED,
 };
 use super::response::Curve;
 use super::series::Series;
@@ -93,8 +94,14 @@ impl Track {
         }
     }
 
-    /// What all rows say.
-    pub fn tell(&self, kinematics: &mut Kinematics, issues: &mut Vec<Issue>) {
+    /// Speed of the track as a multiple of the velocity, where the two go together.
+    pub fn gain(&self) -> Option<f64> {
+        let both = self.along.hypot(self.across);
+        (self.earth > 0.0 && both > COHERENT * (self.track * self.earth).sqrt()).then(|| both / self.earth)
+    }
+
+    /// What all rows say; `turn` is the gain of the heading on the yaw rate.
+    pub fn tell(&self, kinematics: &mut Kinematics, turn: Option<f64>, issues: &mut Vec<Issue>) {
         if self.track <= 0.0 || self.earth <= 0.0 {
             return;
         }
@@ -105,12 +112,12 @@ impl Track {
         kinematics.velocity_gain = Some(self.along.hypot(self.across) / self.earth);
         kinematics.track_angle = Some(angle);
         kinematics.velocity_coherence = Some(coherence);
-        if let Some(axes) = self.wrong_axes(coherence, size) {
+        if let Some(axes) = self.wrong_frame(size).or_else(|| self.mirrored(turn)) {
             issues.push(axes);
             return;
         }
         if coherence > COHERENT {
-            if self.wrong_velocity(angle.to_degrees(), self.along.hypot(self.across) / self.earth, issues) {
+            if self.wrong_velocity(angle.to_degrees(), self.along.hypot(self.across) / self.earth, turn, issues) {
                 return;
             }
         } else if !self.sway_turned() {
@@ -120,30 +127,64 @@ impl Track {
             let next = "check axes, units and reference point of x, y, u and v";
             issues.push(Issue::new(Severity::Warning, "disagreement", text, next).of(Channel::U));
         }
-        self.tell_sway(kinematics, issues);
+        self.tell_sway(kinematics, turn, issues);
         kinematics.velocity_lag = self.longest.lag();
         self.longest.tell(kinematics.velocity_lag, Channel::U, "the position", issues);
     }
 
-    /// Velocities along other axes than the ship's, or a mirror image.
-    fn wrong_axes(&self, coherence: f64, size: f64) -> Option<Issue> {
+    /// Velocities along other axes than the ship's.
+    fn wrong_frame(&self, size: f64) -> Option<Issue> {
         if self.unturned / size > UNTURNED && self.along / size < TURNED {
             let text = "u and v follow the track along the earth's axes, not the ship's";
             let next = "set `velocity_frame = \"earth\"` in a column map";
             return Some(Issue::new(Severity::Error, "axes_error", text, next).of(Channel::U));
         }
+        None
+    }
+
+    /// Adds the course of a track whose velocity was not recorded, as if the ship sailed where it heads.
+    pub fn add_course(&mut self, series: &Series<'_>) {
+        let track = [Channel::X, Channel::Y, Channel::Psi].map(|c| series.recorded(c));
+        let ([Some(x), Some(y), Some(psi)], None) = (track, series.recorded(Channel::U)) else { return };
+        for s in &series.stretches {
+            for ((dx, dy), psi) in series.slope(x, s).into_iter().zip(series.slope(y, s)).zip(&psi[s.clone()]) {
+                let speed = dx.hypot(dy);
+                self.add_row([dx, dy], [speed * psi.cos(), speed * psi.sin()], [speed, 0.0], *psi, 0.0, false);
+            }
+        }
+    }
+
+    /// A mirror image; `turn` is the gain of the heading on the yaw rate.
+    pub fn mirrored(&self, turn: Option<f64>) -> Option<Issue> {
+        let size = (self.track * self.earth).sqrt();
+        let coherence = self.along.hypot(self.across) / size;
         let mirrored = self.mirror_along.hypot(self.mirror_across) / size;
         // On a straight course a mirror image and a turned one are the same; heading must vary for the two to differ.
         if mirrored > MIRRORED && coherence < NOT_MIRRORED && 1.0 - mirrored < MIRROR_LEAVES * (1.0 - coherence) {
             let text = "the track is the mirror image of what heading and velocity say";
-            let next = "are x and y exchanged, y positive to port, or heading counted anticlockwise? exchange them, or set `sign = -1`, in a column map";
+            // Where the mirror lies between north and east, the two are exchanged, or the heading counts from east.
+            let diagonal = self.mirror_across.abs() > self.mirror_along.abs();
+            let next = match (turn.is_some_and(|turn| turn < 0.0), diagonal) {
+                (true, true) => {
+                    "is the heading counted anticlockwise from east? `psi = { sign = -1, offset = 90 }`, for one in deg, in a column map makes it clockwise from north"
+                }
+                (true, false) => {
+                    "is y positive to port, or heading counted anticlockwise? The yaw rate speaks for the heading: set `sign = -1` for `psi` in a column map"
+                }
+                (false, true) => {
+                    "are x and y exchanged, or heading and yaw rate counted anticlockwise, from east? exchange them, or set `sign = -1` for `r` and `psi = { sign = -1, offset = 90 }`, for one in deg, in a column map"
+                }
+                (false, false) => {
+                    "is y positive to port, or are heading and yaw rate counted anticlockwise? set `sign = -1`, for `y` or for `psi` and `r`, in a column map"
+                }
+            };
             return Some(Issue::new(Severity::Error, "axes_error", text, next).of(Channel::Psi));
         }
         None
     }
 
     /// Direction and speed of the track against the velocity's; true when a unit or a sign is plainly wrong.
-    fn wrong_velocity(&self, degrees: f64, gain: f64, issues: &mut Vec<Issue>) -> bool {
+    fn wrong_velocity(&self, degrees: f64, gain: f64, turn: Option<f64>, issues: &mut Vec<Issue>) -> bool {
         let mut push = |severity, fault, channel, text: String, next: &str| {
             issues.push(Issue::new(severity, fault, text, next).of(channel));
         };
@@ -161,9 +202,10 @@ impl Track {
             let next = "is the heading offset, or a current left out? `offset` in a column map corrects a heading";
             push(severity, "axes_error", Channel::Psi, text, next);
         }
-        if let Some((fault, meaning)) = known_gain(gain, &SPEED_GAINS) {
-            let text = format!("the track is {} times as fast as the velocity: {meaning}", sig(gain, 3));
-            push(Severity::Error, fault, Channel::U, text, "correct `unit` of u and v, or of x and y, in a column map");
+        let next = "correct `unit` of u and v, or of x and y, in a column map";
+        if let Some(told) = known_gain(gain, turn, &SPEED_GAINS, next) {
+            let text = format!("the track is {} times as fast as the velocity: {}", sig(gain, 3), told.text);
+            push(Severity::Error, told.fault, Channel::U, text, told.next);
             return true;
         }
         // Noise in either pulls the gain the one way or the other: it lies between the two bounds of Frisch.
@@ -183,7 +225,9 @@ impl Track {
     }
 
     /// Sway of the track against recorded sway: a lever arm between the two points, or a turned sign.
-    fn tell_sway(&self, kinematics: &mut Kinematics, issues: &mut Vec<Issue>) {
+    fn tell_sway(&self, kinematics: &mut Kinematics, turn: Option<f64>, issues: &mut Vec<Issue>) {
+        // Where r itself is wrong, what is in proportion to it says nothing of a lever.
+        let sound = turn.is_none_or(|turn| (turn - 1.0).abs() < LEVER_TURN);
         if !self.lever.known() {
             return;
         }
@@ -195,7 +239,10 @@ impl Track {
             let text = format!("sway of the track is {:.2} times the recorded v", self.sway.gain());
             let next = "is v positive to port? set `sign = -1` for `v` in a column map";
             issues.push(Issue::new(Severity::Error, "sign_error", text, next).of(Channel::V));
-        } else if self.lever.coherence().abs() > COHERENT && self.lever.rms_a() > LEVER_SHARE * self.sway.rms_b() {
+        } else if sound
+            && self.lever.coherence().abs() > COHERENT
+            && self.lever.rms_a() > LEVER_SHARE * self.sway.rms_b()
+        {
             let lever = self.lever.gain();
             let text = format!(
                 "in turns the track slides as if positions were taken {:.2} m {} of the point whose velocity is recorded",

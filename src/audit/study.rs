@@ -3,6 +3,7 @@
 
 use super::across::{Evidence, across};
 use super::issue::{Issue, Severity, Shared};
+use super::limits::LEVER_LONGEST;
 use super::receiver::settled;
 use super::record::{Audit, examined};
 use crate::recording::{Recording, Split, WindowSettings};
@@ -49,8 +50,10 @@ pub fn audit_study(study: &Study, ship: &Ship) -> StudyAudit {
         match &runs[..] {
             [one] => {
                 let Some(audit) = result.recordings.iter_mut().find(|a| a.run == *one) else { continue };
-                // The run alone may have told it.
-                if !audit.issues.iter().any(|i| (i.fault, i.channel) == (issue.fault, issue.channel)) {
+                // The run alone may have told it, or noted it.
+                let same = |i: &Issue| (i.fault, i.channel) == (issue.fault, issue.channel);
+                if !audit.issues.iter().any(|i| same(i) && i.severity >= issue.severity) {
+                    audit.issues.retain(|i| !same(i));
                     audit.issues.push(issue);
                 }
                 audit.issues.sort_by_key(|i| std::cmp::Reverse(i.severity));
@@ -105,6 +108,7 @@ fn audited(study: &Study, ship: &Ship, run: &Listed) -> Audited {
     let settings = study.settings(run, ship.hull.draught);
     let part = used(&recording, &settings);
     let (mut audit, responses) = examined(part.as_ref().unwrap_or(&recording));
+    off_the_ship(&mut audit, ship);
     let evidence = Evidence::of(run, part.as_ref().unwrap_or(&recording), ship, responses, &audit.issues);
     let (mut train, mut test) = (0, 0);
     match recording.windows(&run.labels, &settings) {
@@ -121,6 +125,21 @@ fn audited(study: &Study, ship: &Ship, run: &Listed) -> Audited {
         Err(error) => audit.issues.insert(0, failure(&error.into())),
     }
     Audited { audit, evidence: Some(evidence), train, test }
+}
+
+/// Where a lever is longer than the ship, it is none.
+fn off_the_ship(audit: &mut Audit, ship: &Ship) {
+    let Some(lever) = audit.kinematics.and_then(|k| k.lever) else { return };
+    if lever.abs() <= LEVER_LONGEST * ship.hull.lpp {
+        return;
+    }
+    for issue in audit.issues.iter_mut().filter(|i| i.fault == "lever") {
+        issue.fault = "disagreement";
+        issue.text = "in turns the track slides beside heading and velocity as no point of the ship does".into();
+        issue.next_step =
+            "is the heading offset, or counted anticlockwise from east (`psi = { sign = -1, offset = 90 }`, for one in deg, in a column map)? Else check axes and units of x, y and v"
+                .into();
+    }
 }
 
 /// The part of a recording that the study uses; `None` where that is all of it, or nothing.

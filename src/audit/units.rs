@@ -56,8 +56,8 @@ fn turned(recording: &Recording) -> Option<f64> {
 
 /// Known wrong units and signs by the gain they cause on a speed, and what each means.
 pub const SPEED_GAINS: [(f64, &str); 11] = [
-    (1e-3, "the time is in ms and was declared s, or the position is in km and was declared m"),
-    (1e3, "the time is in s and was declared ms"),
+    (1e-3, "the position is in km and was declared m"),
+    (1e3, "the position is in m and was declared km"),
     (-1.0, "the sign is turned"),
     (1852.0 / 3600.0, "the column is in knots and was declared m/s"),
     (3600.0 / 1852.0, "the column is in m/s and was declared kn"),
@@ -70,9 +70,7 @@ pub const SPEED_GAINS: [(f64, &str); 11] = [
 ];
 
 /// The same on a yaw rate.
-pub const TURN_GAINS: [(f64, &str); 9] = [
-    (1e-3, "the time is in ms and was declared s"),
-    (1e3, "the time is in s and was declared ms"),
+pub const TURN_GAINS: [(f64, &str); 7] = [
     (-1.0, "the sign is turned"),
     (1.0 / 57.295_779_5, "the yaw rate is in deg/s and was declared rad/s, or the heading in rad and declared deg"),
     (57.295_779_5, "the yaw rate is in rad/s and was declared deg/s, or the heading in deg and declared rad"),
@@ -82,12 +80,42 @@ pub const TURN_GAINS: [(f64, &str); 9] = [
     (-57.295_779_5, "the yaw rate is in rad/s, was declared deg/s, and its sign is turned"),
 ];
 
-/// The fault that a gain tells, and what it means; `None` for a gain that is none of the known ones.
-pub fn known_gain(gain: f64, known: &[(f64, &'static str)]) -> Option<(&'static str, &'static str)> {
-    let off = |g: &f64| (gain / g - 1.0).abs();
-    let nearest = known.iter().min_by(|a, b| off(&a.0).total_cmp(&off(&b.0)))?;
-    let fault = if nearest.0 < 0.0 { "sign_error" } else { "unit_error" };
-    (off(&nearest.0) < SAME_GAIN).then_some((fault, nearest.1))
+/// The same on whatever is differentiated, speed and turn alike.
+const TIME_GAINS: [(f64, &str); 6] = [
+    (1e-3, "the time is in ms and was declared s"),
+    (1e3, "the time is in s and was declared ms"),
+    (60.0, "the time is in min and was declared s"),
+    (1.0 / 60.0, "the time is in s and was declared min"),
+    (3600.0, "the time is in h and was declared s"),
+    (1.0 / 3600.0, "the time is in s and was declared h"),
+];
+
+/// What a gain tells: the fault, its meaning, and what to do.
+pub struct Meaning {
+    pub fault: &'static str,
+    pub text: String,
+    pub next: &'static str,
+}
+
+/// What a gain on a speed or on a turn tells, beside that on the other of the two, if it is known; `None` for a gain that is none of the
+/// known ones. A time in another unit changes both alike. `next` says what mends the units of the channels.
+pub fn known_gain(gain: f64, other: Option<f64>, known: &[(f64, &'static str)], next: &'static str) -> Option<Meaning> {
+    let of = |known: &[(f64, &'static str)]| {
+        let off = |g: &f64| (gain / g - 1.0).abs();
+        let nearest = known.iter().min_by(|a, b| off(&a.0).total_cmp(&off(&b.0))).copied();
+        nearest.filter(|(g, _)| off(g) < SAME_GAIN)
+    };
+    let (time, own) = (of(&TIME_GAINS), of(known));
+    let alike = other.is_none_or(|other| (gain / other - 1.0).abs() < SAME_GAIN);
+    let unit = |text: String, next| Meaning { fault: "unit_error", text, next };
+    const OF_TIME: &str = "correct `unit` of t in a column map";
+    match (time.filter(|_| alike), own) {
+        (Some((_, time)), Some((_, own))) if other.is_none() => Some(unit(format!("{time}, or {own}"), next)),
+        (Some((_, time)), _) => Some(unit(time.to_owned(), OF_TIME)),
+        (None, Some((gain, own))) if gain < 0.0 => Some(Meaning { fault: "sign_error", text: own.to_owned(), next }),
+        (None, Some((_, own))) => Some(unit(own.to_owned(), next)),
+        (None, None) => None,
+    }
 }
 
 /// Root mean square differences of a heading and the integral of a yaw rate \[rad\].
@@ -146,8 +174,13 @@ impl Turning {
         }
     }
 
-    /// What all rows say.
-    pub fn tell(&self, kinematics: &mut Kinematics, issues: &mut Vec<Issue>) {
+    /// Turn of the heading as a multiple of the yaw rate, where the two move together.
+    pub fn gain(&self) -> Option<f64> {
+        (self.sums.known() && self.sums.coherence().abs() > COHERENT).then(|| self.sums.gain())
+    }
+
+    /// What all rows say; `speed` is the gain of the track on the velocity.
+    pub fn tell(&self, kinematics: &mut Kinematics, speed: Option<f64>, issues: &mut Vec<Issue>) {
         if !self.sums.known() {
             return;
         }
@@ -158,9 +191,10 @@ impl Turning {
             issues.push(Issue::new(severity, fault, text, next).of(Channel::R));
         };
         if coherence.abs() > COHERENT {
-            if let Some((fault, meaning)) = known_gain(gain, &TURN_GAINS) {
-                let text = format!("heading turns {gain:.4} times as fast as r says: {meaning}");
-                push(Severity::Error, fault, text, "correct `unit` or `sign` of `r` or `psi` in a column map");
+            let next = "correct `unit` or `sign` of `r` or `psi` in a column map";
+            if let Some(told) = known_gain(gain, speed, &TURN_GAINS, next) {
+                let text = format!("heading turns {gain:.4} times as fast as r says: {}", told.text);
+                push(Severity::Error, told.fault, text, told.next);
                 return;
             }
             if self.sums.is_off(CALIBRATED) && self.apart.all > APART {

@@ -46,8 +46,8 @@ pub struct Audited {
 }
 
 /// Faults that can be accepted: the recordings can be read and say what they say.
-const CONTRADICTIONS: [&str; 6] =
-    ["unit_error", "sign_error", "axes_error", "fill_value", "heading_wrap", "shared_data"];
+const CONTRADICTIONS: [&str; 7] =
+    ["unit_error", "sign_error", "axes_error", "fill_value", "heading_wrap", "shared_data", "not_recorded"];
 
 /// Audits the recordings of a study for a command that computes with what they say.
 ///
@@ -138,10 +138,21 @@ fn told(runs: &[String], issue: &Issue) -> Option<Doubt> {
     })
 }
 
-/// Doubts of one run each by fault and channel, the gravest first, then in the order found.
+/// Doubts of one run each by fault and channel, the gravest first, then in the order found; of a fault that is told of a run twice, the
+/// graver.
 fn grouped(found: impl Iterator<Item = Doubt>) -> Vec<Doubt> {
+    let mut found: Vec<Doubt> = found.collect();
+    found.sort_by_key(|d| std::cmp::Reverse(d.severity));
     let mut doubts: Vec<Doubt> = Vec::new();
     for one in found {
+        let graver = |d: &Doubt| {
+            d.severity > one.severity
+                && (&d.fault, d.channel) == (&one.fault, one.channel)
+                && one.runs.iter().all(|run| d.runs.contains(run))
+        };
+        if doubts.iter().any(graver) {
+            continue;
+        }
         let same = |d: &&mut Doubt| (d.severity, &d.fault, d.channel) == (one.severity, &one.fault, one.channel);
         match doubts.iter_mut().find(same) {
             Some(doubt) => {
@@ -151,7 +162,6 @@ fn grouped(found: impl Iterator<Item = Doubt>) -> Vec<Doubt> {
             None => doubts.push(one),
         }
     }
-    doubts.sort_by_key(|d| std::cmp::Reverse(d.severity));
     doubts
 }
 
@@ -208,6 +218,18 @@ mod tests {
 
     fn issue(severity: Severity, fault: &'static str, channel: Channel, text: &str) -> Issue {
         Issue::new(severity, fault, text, "look at it").of(channel)
+    }
+
+    #[test]
+    fn of_a_fault_that_is_told_of_a_run_twice_the_graver_is_kept() {
+        let told =
+            |run: &str, severity| told(&[run.to_owned()], &issue(severity, "not_recorded", Channel::Psi, "none"));
+        let found = [("a", Severity::Warning), ("b", Severity::Warning), ("a", Severity::Error)];
+        let sign = super::told(&["a".to_owned()], &issue(Severity::Error, "sign_error", Channel::R, "turned"));
+        let doubts = grouped(found.into_iter().filter_map(|(run, severity)| told(run, severity)).chain(sign));
+        let of: Vec<(Severity, &[String])> = doubts.iter().map(|d| (d.severity, &d.runs[..])).collect();
+        let [a, b] = [["a".to_owned()], ["b".to_owned()]];
+        assert_eq!(of, [(Severity::Error, &a[..]), (Severity::Error, &a[..]), (Severity::Warning, &b[..])]);
     }
 
     #[test]

@@ -7,9 +7,10 @@ use super::error::CliError;
 use super::figures::FigureArgs;
 use super::load::{Loaded, StudyArgs};
 use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;
-use trimtab::evaluate::{Outcome, outcome, predict_all};
+use trimtab::evaluate::{Outcome, outcome, predict_all, start_error};
 use trimtab::files::Names;
 use trimtab::fit::FitSettings;
 use trimtab::model::Model;
@@ -30,14 +31,15 @@ Example:
   trimtab simulate study.toml --model results/fitted.toml --out simulated
 
 cVDM is the mean deviation over position, heading and velocities, each relative to the size of the motion, in percent \
-    (`trimtab evaluate` compares two models by it).
+    (`trimtab evaluate` compares two models by it). The number after it, ±, is its standard error by the noise of the recorded \
+    start, from row to row: a simulation begins where the sensors say, and they err. What the model lacks is not in it.
 
 With --out: simulate.json, simulations.csv, tracks.png and .csv, and trajectories/RUN.csv (see column `file` of \
     simulations.csv), each in the layout of a recording, so that a simulation can be read like a measurement.
 JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
     result.model, result.runs[] with run, split, start_time [s], duration [s], steps, md (x, y [m], psi [rad], u, v [m/s], \
-    r [rad/s]) and cvdm [%], or diverged_after [s]; result.validity (share_outside of the recorded samples; outside[] with term, \
-    quantity, range, share, met).
+    r [rad/s]), cvdm [%] and cvdm_standard_error [%], or diverged_after [s]; result.validity (share_outside of the recorded \
+    samples; outside[] with term, quantity, range, share, met).
 
 Exit code 2 if a simulation diverges, after everything else was written.";
 
@@ -72,6 +74,9 @@ struct Row {
     steps: usize,
     #[serde(flatten)]
     outcome: Outcome,
+    /// Of cVDM \[%\], by the noise of the recorded start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cvdm_standard_error: Option<f64>,
 }
 
 fn as_text<S: serde::Serializer>(text: &Arc<str>, serializer: S) -> Result<S::Ok, S::Error> {
@@ -80,6 +85,9 @@ fn as_text<S: serde::Serializer>(text: &Arc<str>, serializer: S) -> Result<S::Ok
 
 /// Windows in the table that is printed; the files and the JSON have all of them.
 const PRINTED: usize = 2000;
+
+/// Heading of the standard error beside cVDM in a terminal.
+const ERROR: &str = "± [%]";
 
 /// Tracks in the figure.
 const PANELS: usize = 12;
@@ -129,7 +137,10 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         },
     )?;
     let header = table(&[]);
-    let header: Vec<&str> = header.header().iter().map(String::as_str).chain(["diverged_after [s]", "file"]).collect();
+    let words = |name: &String| if name == ERROR { "cVDM std. error [%]".to_owned() } else { name.clone() };
+    let more = ["diverged_after [s]", "file"].map(str::to_owned);
+    let header: Vec<String> = header.header().iter().map(words).chain(more).collect();
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
     if written {
         let cells = rows.iter().zip(files).map(|(row, file)| tidy(row).into_iter().chain([file]));
         output.table("simulations.csv", &csv_text(&header, cells)?);
@@ -185,8 +196,9 @@ fn simulated<'a>(model: &'a Model, settings: &FitSettings, windows: Vec<Run>, wr
         duration: w.duration(),
         steps: w.steps(),
         outcome: outcome(w, t, &model.ship, settings.max_yaw_rate),
+        cvdm_standard_error: start_error(model, w, settings.integration, t, settings.max_yaw_rate),
     };
-    let rows = windows.iter().zip(&trajectories).map(row).collect();
+    let rows = windows.par_iter().zip(&trajectories).map(row).collect();
     let mut validity = Count::new(model);
     validity.add(windows.iter().flat_map(validity::samples));
     let (mut files, mut tracks) = (Vec::new(), Vec::new());
@@ -231,6 +243,7 @@ fn table(rows: &[Row]) -> Table {
         "v [m/s]",
         "r [deg/s]",
         "cVDM [%]",
+        ERROR,
     ]);
     for r in rows {
         table.row(cells(r));
@@ -254,10 +267,11 @@ fn cells(r: &Row) -> Vec<String> {
                     .map(|(i, v)| v.map_or_else(|| "–".into(), |v| sig_above(v * degrees(i), 3, 1e-6)));
             cells.extend(md);
             cells.push(sig_above(d.cvdm, 3, 1e-6));
+            cells.push(r.cvdm_standard_error.map_or_else(|| DASH.to_owned(), |e| sig_above(e, 2, 1e-6)));
         }
         Outcome::Diverged { .. } => {
             cells.extend(std::iter::repeat_n("–".to_owned(), 6));
-            cells.push("diverged".to_owned());
+            cells.extend(["diverged", DASH].map(str::to_owned));
         }
     }
     cells
@@ -271,9 +285,9 @@ fn tidy(r: &Row) -> Vec<String> {
     };
     let mut cells = cells(r);
     if diverged.is_some() {
-        // The words that stand in the place of cVDM in a terminal.
-        cells.pop();
-        cells.push(String::new());
+        // The word that is in the place of cVDM in a terminal.
+        let cvdm = cells.len() - 2;
+        cells[cvdm].clear();
     }
     let empty = |cell: String| if cell == DASH { String::new() } else { cell };
     cells.into_iter().map(empty).chain([diverged.unwrap_or_default()]).collect()

@@ -5,6 +5,7 @@ use super::cvdm::{Outcome, outcome};
 use crate::model::Model;
 use crate::recording::{Run, Split};
 use crate::simulate::{Integration, Scenario, Trajectory, reported};
+use crate::state::STATES;
 use crate::statistics::mean;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -58,8 +59,19 @@ impl From<&Run> for Scenario {
 /// What a model predicts the sensors to report over a window that starts where they report its initial state, with the parameter
 /// additions of the window's session.
 pub fn predict(model: &Model, window: &Run, integration: Integration) -> Trajectory {
+    predict_from(model, window, integration, window.initial)
+}
+
+/// As [`predict`], from another initial state that the sensors report.
+pub(super) fn predict_from(
+    model: &Model,
+    window: &Run,
+    integration: Integration,
+    initial: [f64; STATES],
+) -> Trajectory {
     let theta = model.values_in(&window.session);
-    reported(model, &theta, integration, &Scenario::from(window), &window.channels())
+    let scenario = Scenario { initial, ..Scenario::from(window) };
+    reported(model, &theta, integration, &scenario, &window.channels())
 }
 
 /// Predictions of every window, in order.

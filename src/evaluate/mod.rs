@@ -26,6 +26,7 @@ mod cvdm;
 mod prove;
 mod ranking;
 mod settings;
+mod start;
 mod summary;
 
 pub use compare::{Comparison, compare, predict, predict_all};
@@ -33,6 +34,7 @@ pub use cvdm::{Deviation, Outcome, outcome};
 pub use prove::{Evaluation, Judging, Part, Proof, prove};
 pub use ranking::{Ranked, Ranking, rank};
 pub use settings::EvaluationSettings;
+pub use start::start_error;
 pub use summary::{Estimate, Named, Summary, summarise};
 
 #[cfg(test)]
@@ -46,6 +48,10 @@ mod tests {
     use crate::ship::Ship;
     use crate::simulate::Integration;
     use crate::state::Inputs;
+    use crate::statistics::{median, variance};
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
     use std::f64::consts::PI;
     use std::path::Path;
 
@@ -138,6 +144,33 @@ mod tests {
         let mut model = model();
         model.set(&[("rudder.lift1", 3.193 * (1.0 + by)), ("resistance.linear", 34187.0 * (1.0 + by))]).unwrap();
         model
+    }
+
+    #[test]
+    fn the_standard_error_of_cvdm_is_how_it_scatters_with_the_noise_of_the_start() {
+        let (truth, off) = (model(), changed(0.1));
+        let noise = [2.0, 2.0, 0.01, 0.03, 0.03, 2e-4];
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        for sound in windows(&truth, 3) {
+            let (mut cvdms, mut errors) = (Vec::new(), Vec::new());
+            for _ in 0..60 {
+                let mut window = sound.clone();
+                for sample in &mut window.measured {
+                    for (value, noise) in sample.iter_mut().zip(noise) {
+                        let white: f64 = StandardNormal.sample(&mut rng);
+                        *value = value.map(|v| v + noise * white);
+                    }
+                }
+                window.initial = or_nan(&window.measured[0]);
+                let predicted = predict(&off, &window, Integration::default());
+                cvdms.push(outcome(&window, &predicted, &off.ship, R_MAX).deviation().unwrap().cvdm);
+                errors.push(start_error(&off, &window, Integration::default(), &predicted, R_MAX).unwrap());
+            }
+            let (scatter, error) = (variance(&cvdms).unwrap().sqrt(), median(errors).unwrap());
+            assert!((0.6..1.6).contains(&(error / scatter)), "{error} {scatter}");
+            let exact = predict(&truth, &sound, Integration::default());
+            assert_eq!(start_error(&truth, &sound, Integration::default(), &exact, R_MAX), Some(0.0));
+        }
     }
 
     fn judging(seed: u64) -> Judging {

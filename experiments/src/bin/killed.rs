@@ -1,15 +1,15 @@
 //! Kills commands at random instants while they write over earlier results, a row a kill, and counts what was lost or mixed.
+//! A kill that has a row is not done again, so that a campaign that was itself killed continues.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use trimtab::files::write_whole;
 use trimtab::report::Table;
 use trimtab_experiments::conceal::error::ConcealError;
 use trimtab_experiments::folders::exit;
-use trimtab_experiments::killed::{COMMANDS, Killer, Left, Row};
+use trimtab_experiments::killed::{COMMANDS, Killer, Left, Row, done, instants};
 use trimtab_experiments::rows::Rows;
 
 /// Kills commands at random instants and judges the folders that they leave.
@@ -36,18 +36,20 @@ fn main() -> ExitCode {
 fn run(a: &Arguments) -> Result<(), ConcealError> {
     let studies = a.out.join("studies");
     std::fs::create_dir_all(&studies).map_err(|source| ConcealError::file(&studies, source))?;
-    let killer = Killer::new(a.tool.clone(), studies.clone())?;
-    eprintln!("seed {}: {} kills of {} commands", a.seed, a.kills, COMMANDS.len());
-    let mut rows: Vec<Row> = Vec::new();
-    for (i, command) in COMMANDS.into_iter().enumerate() {
-        let mut each = |row: Row| {
-            rows.push(row);
-            Ok(())
-        };
-        killer.all(command, a.seed + i as u64, a.kills.div_ceil(COMMANDS.len()), &mut each)?;
-    }
     let path = a.out.join("kills.csv");
-    write_whole(&path, Rows::table(&rows)?.as_bytes()).map_err(|source| ConcealError::file(&path, source))?;
+    let results: Rows<Row> = Rows::open(&path)?;
+    let count = a.kills.div_ceil(COMMANDS.len());
+    eprintln!("seed {}: {} kills of {} commands, {} done", a.seed, a.kills, COMMANDS.len(), results.rows.len());
+    let killer = Killer::new(a.tool.clone(), studies.clone())?;
+    for (i, command) in COMMANDS.into_iter().enumerate() {
+        let instants = instants(a.seed + i as u64, count);
+        let Some(done) = done(&results.rows, command.0, &instants) else {
+            let message = "its kills are those of another seed, or more; give another folder with --out";
+            return Err(ConcealError::content(&path, &message));
+        };
+        killer.all(command, &instants, done, &mut |row| results.append(&row))?;
+    }
+    let rows: Vec<Row> = Rows::read(&path)?;
     println!("{}", table(&rows));
     // Studies that cannot be removed do no harm.
     let _ = std::fs::remove_dir_all(&studies);

@@ -69,7 +69,7 @@ fn run(a: &Arguments) -> Result<(), ConcealError> {
     }
     runner.all(&cases, a.workers, &|rows| {
         bar.inc(1);
-        rows.iter().try_for_each(|row| results.append(row))
+        results.append_all(&rows)
     })?;
     bar.finish_and_clear();
     // A folder of studies that cannot be removed does no harm.

@@ -9,7 +9,7 @@ use std::time::Duration;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
-use trimtab::files::{MANIFEST, Manifest, sha256_of};
+use trimtab::files::{MANIFEST, Manifest, TIMING, sha256_of};
 
 use crate::conceal::error::ConcealError;
 use crate::mutated::files::{Files, sound, write};
@@ -139,26 +139,26 @@ impl Killer {
             Ok::<_, ConcealError>((read(&results)?, time))
         };
         let ((first, slow), (files, time)) = (made()?, made()?);
-        let same = files.iter().filter(|(name, bytes)| first.get(*name) == Some(bytes)).map(|(name, _)| name.clone());
-        Ok(Expected { same: same.collect(), time: time.min(slow), files })
+        Ok(Expected { same: same(&first, &files), time: time.min(slow), files })
     }
 
-    /// Kills a command `count` times, at instants drawn with a seed, each time over the results that it made of the other study.
+    /// Kills a command at each of some [`instants`] after the first `done`, each time over the results that it made of the other study.
     ///
     /// # Errors
     /// A folder that cannot be written, or a command that fails without a kill.
     pub fn all(
         &self,
         command: (&str, &[&str]),
-        seed: u64,
-        count: usize,
+        instants: &[f64],
+        done: usize,
         each: &mut dyn FnMut(Row) -> Result<(), ConcealError>,
     ) -> Result<(), ConcealError> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        if done >= instants.len() {
+            return Ok(());
+        }
         let [one, other] = [self.expected("one", command)?, self.expected("other", command)?];
         let results = self.results("one");
-        for kill in 1..=count {
-            let at = SPREAD * random.random::<f64>();
+        for (kill, at) in (1..).zip(instants.iter().copied()).skip(done) {
             empty(&results)?;
             write(&other.files, &results).map_err(|source| ConcealError::file(&results, source))?;
             let fail = |source| ConcealError::file(&self.tool, source);
@@ -177,6 +177,26 @@ impl Killer {
         }
         Ok(())
     }
+}
+
+/// The files that are the same in two runs of a command. Its times are so by chance, where both ran within a second.
+fn same(first: &BTreeMap<String, Vec<u8>>, second: &BTreeMap<String, Vec<u8>>) -> BTreeSet<String> {
+    let alike = second.iter().filter(|(name, bytes)| *name != TIMING && first.get(*name) == Some(bytes));
+    alike.map(|(name, _)| name.clone()).collect()
+}
+
+/// Instants of so many kills, drawn with a seed: shares of the time that a command takes.
+pub fn instants(seed: u64, count: usize) -> Vec<f64> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    (0..count).map(|_| SPREAD * random.random::<f64>()).collect()
+}
+
+/// How many of a command's kills are done: those in the rows, which must be its first ones at these instants. `None` where they are of
+/// another campaign.
+pub fn done(rows: &[Row], command: &str, instants: &[f64]) -> Option<usize> {
+    let of_command: Vec<&Row> = rows.iter().filter(|row| row.command == command).collect();
+    let fits = |(i, row): (usize, &&Row)| row.kill == i + 1 && instants.get(i) == Some(&row.at);
+    of_command.iter().enumerate().all(fits).then_some(of_command.len())
 }
 
 /// The same study without its last run; the settings, which stand behind it, are kept.
@@ -262,6 +282,27 @@ mod tests {
         let fewer = without_last(&all);
         assert_eq!(count(&fewer) + 1, count(&all));
         assert!(String::from_utf8_lossy(&fewer["study.toml"]).contains("[fit]"));
+    }
+
+    #[test]
+    fn times_that_are_alike_by_chance_are_no_files_that_are_always_the_same() {
+        let files = |fit: &str| -> BTreeMap<String, Vec<u8>> {
+            [("fit.json", fit), ("tracks.csv", "x"), (TIMING, "0.07 s")].map(|(n, t)| (n.to_owned(), t.into())).into()
+        };
+        assert_eq!(same(&files("a"), &files("b")), BTreeSet::from(["tracks.csv".to_owned()]));
+    }
+
+    #[test]
+    fn kills_go_on_after_those_that_are_done_and_not_after_those_of_another_seed() {
+        let (these, others) = (instants(3, 6), instants(4, 6));
+        let rows = |at: &[f64]| -> Vec<Row> {
+            let row = |(i, at): (usize, &f64)| Row { kill: i + 1, command: "fit".into(), at: *at, ..Row::default() };
+            at.iter().enumerate().map(row).collect()
+        };
+        assert_eq!(done(&rows(&these[..4]), "fit", &these), Some(4));
+        assert_eq!(done(&rows(&these[..4]), "simulate", &these), Some(0));
+        assert_eq!(done(&rows(&others[..4]), "fit", &these), None);
+        assert_eq!(done(&rows(&these), "fit", &these[..5]), None);
     }
 
     #[test]

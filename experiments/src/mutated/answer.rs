@@ -42,7 +42,16 @@ impl Answer {
             "fit" => list(result, "estimates").for_each(|e| {
                 answer.number(e["name"].as_str(), &e["value"], e["standard_error"].as_f64());
             }),
-            "simulate" => list(result, "runs").for_each(|run| answer.number(run["run"].as_str(), &run["cvdm"], None)),
+            "simulate" => {
+                let mut windows: BTreeMap<&str, usize> = BTreeMap::new();
+                for run in list(result, "runs") {
+                    let name = run["run"].as_str().unwrap_or_default();
+                    let window = windows.entry(name).or_default();
+                    *window += 1;
+                    let error = run["cvdm_standard_error"].as_f64();
+                    answer.number(Some(&format!("{name}, window {window}")), &run["cvdm"], error);
+                }
+            }
             "evaluate" => list(result, "summaries").for_each(|group| {
                 let measure = &group["cvdm_fitted"];
                 let ends = [0, 1].map(|i| measure["ci95"][i].as_f64());

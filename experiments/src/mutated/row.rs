@@ -13,6 +13,13 @@ const MOVED: f64 = 1.0;
 /// A harmless edit leaves every number within this share of its standard error: what rounding makes of other text.
 const ROUNDING: f64 = 1e-3;
 
+impl Class {
+    /// By how many standard errors an answer may differ from the sound one without having moved.
+    pub fn limit(self) -> f64 {
+        if self == Self::Harmless { ROUNDING } else { MOVED }
+    }
+}
+
 /// What a command did.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -73,7 +80,7 @@ impl Row {
     ) -> Self {
         let moved = answer.map(|answer| answer.moved(sound));
         let panicked = ended.code.is_none() || ended.code == Some(101) || ended.messages.contains("panicked at");
-        let limit = if planned.class == Class::Harmless { ROUNDING } else { MOVED };
+        let limit = planned.class.limit();
         let outcome = match (ended.code, answer, moved) {
             _ if ended.stopped => Outcome::Hung,
             _ if panicked => Outcome::Panicked,

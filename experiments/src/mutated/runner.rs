@@ -51,7 +51,7 @@ impl Runner {
         runner.sound.insert("fitted.toml".to_owned(), fitted);
         write(&runner.sound, &study).map_err(io)?;
         for command in COMMANDS {
-            let (ended, answer) = runner.ask(&study, command)?;
+            let (ended, answer) = runner.ask(&study, command, 0.0)?;
             let Some(answer) = answer else {
                 let message = format!("{command} refuses the sound study: {}", ended.messages.trim());
                 return Err(ConcealError::content(&study, &message));
@@ -84,7 +84,7 @@ impl Runner {
         write(&files, &folder).map_err(|source| ConcealError::file(&folder, source))?;
         let asked = COMMANDS.iter().filter(|command| planned.diagnosed || **command != "diagnose");
         let rows = asked.map(|command| {
-            let (ended, answer) = self.ask(&folder, command)?;
+            let (ended, answer) = self.ask(&folder, command, planned.class.limit())?;
             Ok(Row::new(planned, &what, command, &ended, answer.as_ref(), &self.answers[command]))
         });
         let rows = rows.collect();
@@ -113,15 +113,15 @@ impl Runner {
     }
 
     /// What became of a command on the study in a folder, and what it answered, if it did: the numbers from its JSON, and where they
-    /// differ from the sound answer what its text tells.
-    fn ask(&self, folder: &Path, command: &'static str) -> Result<(Ended, Option<Answer>), ConcealError> {
+    /// differ from the sound answer by more than `limit` standard errors what its text tells.
+    fn ask(&self, folder: &Path, command: &'static str, limit: f64) -> Result<(Ended, Option<Answer>), ConcealError> {
         let run = |command| process::run(command, self.limit).map_err(|source| ConcealError::file(&self.tool, source));
         let mut asked = self.command(folder, command);
         asked.arg("--json");
         let ended = run(asked)?;
         let json = serde_json::from_str::<Value>(&ended.output).ok().filter(|_| matches!(ended.code, Some(0 | 1)));
         let Some(mut answer) = json.map(|json| Answer::new(command, &json)) else { return Ok((ended, None)) };
-        if self.answers.get(command).is_none_or(|sound| answer.moved(sound) > 0.0) {
+        if self.answers.get(command).is_none_or(|sound| answer.moved(sound) > limit) {
             let said = run(self.command(folder, command))?;
             answer.told = told(&format!("{}{}", said.messages, said.output));
         }
