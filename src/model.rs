@@ -614,6 +614,36 @@ impl Model {
         }
     }
 
+    /// Frees a parameter (`flow.asymmetry`), or all of a term (`wake_drift`), each with its default prior: what `prior = "default"` in a
+    /// model file does. A term that the model lacks is added; of the hull the hydrodynamic coefficients are freed.
+    ///
+    /// # Errors
+    /// No term or no parameter has this name.
+    pub fn release(&mut self, name: &str) -> Result<(), ModelError> {
+        if name == "hull" {
+            self.free_hull();
+            return Ok(());
+        }
+        if self.find(name).is_err() {
+            match name.split_once('.') {
+                None => self.add_term(name)?,
+                Some((term, _)) if self.catalogue.find(term).is_some() => self.add_term(term)?,
+                Some(_) => {}
+            }
+        }
+        let all = |p: &Parameter| p.name.split_once('.').is_some_and(|(term, _)| term == name);
+        let mut freed: Vec<usize> = (0..self.parameters.len()).filter(|i| all(&self.parameters[*i])).collect();
+        if freed.is_empty() {
+            freed.push(self.find(name)?);
+        }
+        for i in freed {
+            let prior = self.default_prior(i);
+            let p = &mut self.parameters[i];
+            (p.free, p.prior) = (true, prior.sd.is_finite().then_some(prior));
+        }
+        Ok(())
+    }
+
     /// Indices of the hydrodynamic coefficients of the hull.
     fn hull_coefficients(&self) -> Vec<usize> {
         COEFFICIENTS.iter().filter_map(|(name, _)| self.index(&format!("hull.{name}"))).collect()

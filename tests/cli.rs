@@ -443,6 +443,27 @@ fn the_option_frees_the_hull_as_the_model_file_does() {
 }
 
 #[test]
+fn an_option_frees_a_parameter_or_a_term_as_the_model_file_does_and_tells_a_misspelt_one() {
+    let study = Study::new();
+    let names = |arguments: &[&str]| {
+        let output = study.run(&[&["fit", "study.toml", "--json"], arguments].concat());
+        assert!(output.status.code() < Some(2), "{}", text(&output.stderr));
+        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let estimates = at(&value, "result.estimates").as_array().unwrap().clone();
+        estimates.iter().map(|e| e["name"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    let freed = names(&["--free", "wake_drift,flow.asymmetry"]);
+    for name in ["wake_drift.relief", "wake_drift.asymmetry", "flow.asymmetry"] {
+        assert!(freed.iter().any(|f| f == name), "{freed:?}");
+    }
+    contains_all(
+        &study.refuses(&["fit", "study.toml", "--free", "flow.asymetry"]),
+        &["did you mean `flow.asymmetry`?"],
+    );
+    contains_all(&study.refuses(&["fit", "study.toml", "--free", "wake_drit"]), &["did you mean `wake_drift`?"]);
+}
+
+#[test]
 fn mistakes_in_several_files_are_told_in_one_go() {
     let study = Study::new();
     study.edit("study.toml", "[evaluate]", "[evaluate]\nwindow = 60.0");

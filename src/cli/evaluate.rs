@@ -483,7 +483,9 @@ fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Run], integra
             ("fitted", FITTED, predict(models[1], w, integration).states),
         ];
         let mut track = Panel::track(format!("{word}: {}, {}", w.recording, cvdm(&trajectory.fitted)));
-        let mut heading = Panel::new("", Axis::new("time [s]"), Axis::new("heading psi [deg]"));
+        let mut heading = Panel::new("", Axis::new("time [s]"), Axis::new("heading psi [deg]").angle());
+        // Headings of a long log are unwrapped: whole turns before this run say nothing of it.
+        let turns = (w.initial[2].to_degrees() / 360.0).floor() * 360.0;
         for (name, color, states) in shown {
             let stride = (states.len() / 6).max(1);
             let poses = states.iter().step_by(stride).map(|s| [s[0], s[1], s[2]]).collect::<Vec<_>>();
@@ -492,7 +494,7 @@ fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Run], integra
             track = track
                 .with(styled(Layer::line(name, color, states.iter().map(|s| east_north(s[0], s[1])))))
                 .with(Layer::hulls(name, color, poses, ship.hull.lpp, ship.hull.breadth).unlisted().width(1.5));
-            let psi = states.iter().enumerate().map(|(k, s)| (k as f64 * w.dt, s[2].to_degrees()));
+            let psi = states.iter().enumerate().map(|(k, s)| (k as f64 * w.dt, s[2].to_degrees() - turns));
             heading = heading.with(styled(Layer::line(name, color, psi)));
         }
         figure = figure.with(track);

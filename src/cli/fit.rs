@@ -25,7 +25,8 @@ const LONG: &str = "\
 Fits the free parameters of the model to the training runs of the study: weighted nonlinear least squares through the \
     simulation, with exact gradients, under the constraints of [fit.constraints]. Which parameters are free, their bounds and \
     priors are in the model file; without any setting they are the paper's eleven (p0 to p10). There, `hull = \"free\"` at the top, \
-    or --free-hull here, frees every hydrodynamic coefficient of the hull, and `prior = \"default\"` in [parameters.\"NAME\"] frees one: each with its \
+    or --free-hull here, frees every hydrodynamic coefficient of the hull, and `prior = \"default\"` in [parameters.\"NAME\"], \
+    or --free NAME, frees one: each with its \
     estimate as mean and the spread that its term knows (`trimtab terms`) as standard deviation.
 
 A fit returns the best feasible point of all that it evaluated, never one above a feasible start, and says what stopped the \
@@ -41,6 +42,7 @@ Example:
   trimtab fit study.toml --out results
   trimtab evaluate study.toml --model results/fitted.toml
   trimtab fit study.toml --model results/improved.toml --free-hull --out refined
+  trimtab fit study.toml --model results/improved.toml --free-hull --free wake_drift,flow.asymmetry --out refined
 
 With --out: fitted.toml (a model file with the estimates and their covariance, which every command takes as --model), fit.json, fit.txt (the \
     report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end); with --starts also starts.csv (how each start \
@@ -70,6 +72,10 @@ pub struct Args {
     /// Frees every hydrodynamic coefficient of the hull around its estimate, as `hull = "free"` in the model file does.
     #[arg(long)]
     free_hull: bool,
+    /// Frees this parameter (`flow.asymmetry`) or all of this term (`wake_drift`), which is added where the model lacks it, as
+    /// `prior = "default"` in the model file does; several with commas between.
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    free: Vec<String>,
     #[command(flatten)]
     accept: AcceptArgs,
     #[command(flatten)]
@@ -84,6 +90,9 @@ pub fn run(args: &Args, ranks: &Ranks) -> Result<Answer, CliError> {
     let mut loaded = Loaded::new(&args.study)?;
     if args.free_hull {
         loaded.model.free_hull();
+    }
+    for name in &args.free {
+        loaded.model.release(name).map_err(|error| CliError::Model { path: None, error })?;
     }
     output.reads(&loaded, true);
     output.settings("fit", &loaded.fit_settings()?)?;

@@ -4,6 +4,7 @@
 use super::algebra::pseudo_inverse;
 use super::estimate::{Estimate, FreeParameter};
 use super::problem::Problem;
+use super::resistance::resisting;
 use super::settings::REFIT;
 use crate::model::Model;
 use crate::recording::Run;
@@ -49,14 +50,15 @@ pub fn trimmed(found: &Model, user: &Model, free: &[FreeParameter]) -> Model {
 }
 
 /// An estimate that every command reads. A carried hull coefficient is held by its prior alone, which knows no sign: where it ends outside
-/// its bounds (a damping that drives) it is put at the bound, and the rest is estimated again, until none is outside.
+/// its bounds (a damping that drives) it is put at the bound, and the rest is estimated again, until none is outside. The resistance then
+/// drives the ship at no speed that was sailed.
 pub fn inside_bounds(estimate: &Estimate, problem: Problem) -> Estimate {
     let mut found = estimate.clone();
     loop {
         let (held, free): (Vec<FreeParameter>, Vec<FreeParameter>) =
             found.free.iter().cloned().partition(|f| is_outside(f, &found.model));
         if held.is_empty() {
-            return found;
+            return resisting(found, problem);
         }
         let mut model = found.model.clone();
         held.iter().for_each(|f| put_inside(f, &mut model));

@@ -33,8 +33,7 @@ mod evaluations;
 pub mod multistart;
 #[cfg(feature = "ipopt")]
 mod problem;
-#[cfg(feature = "ipopt")]
-mod quadratic_program;
+pub(crate) mod quadratic_program;
 mod settings;
 #[cfg(feature = "ipopt")]
 mod solve;

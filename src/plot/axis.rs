@@ -37,6 +37,8 @@ pub struct Axis {
     pub include: Vec<f64>,
     /// Distance between ticks on a linear axis (90 for a heading in degrees); `None` chooses a 1-2-5 step.
     pub every: Option<f64>,
+    /// An angle in degrees: steps beyond 10 are those of a compass, 15, 30, 45, 90, 180 and so on.
+    pub angle: bool,
 }
 
 impl Axis {
@@ -70,6 +72,11 @@ impl Axis {
     /// The same axis with a tick every `step`.
     pub fn every(self, step: f64) -> Self {
         Self { every: Some(step), ..self }
+    }
+
+    /// The same axis as one of an angle in degrees, with ticks at parts of a right angle.
+    pub fn angle(self) -> Self {
+        Self { angle: true, ..self }
     }
 
     pub(super) fn labels(&self) -> Option<&[String]> {

@@ -44,7 +44,7 @@ fn axis(a: &Axis, (lo, hi): (f64, f64)) -> Value {
     };
     // On a range fitted to the data a step counts where it divides it.
     let every = a.every.filter(|step| a.range.is_some() || (hi - lo) / step >= 2.0);
-    json!({ "l": a.label, "k": kind, "r": [lo, hi], "c": a.labels(), "e": every })
+    json!({ "l": a.label, "k": kind, "r": [lo, hi], "c": a.labels(), "e": every, "g": a.angle.then_some(1) })
 }
 
 /// A number with as many digits as a screen can show; `None` where there is none.

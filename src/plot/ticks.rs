@@ -76,7 +76,7 @@ pub(super) fn ruler(
                 {
                     step
                 }
-                _ => nice_step((hi - lo) * (spacing / length).min(1.0)),
+                _ => step_of(axis, (hi - lo) * (spacing / length).min(1.0)),
             };
             // Coarser until the labels stand clear of one another.
             for _ in 0..6 {
@@ -85,7 +85,7 @@ pub(super) fn ruler(
                 if ruler.ticks.len() < 3 || widest <= step / (hi - lo) * length {
                     break;
                 }
-                step = nice_step(step * 1.01);
+                step = step_of(axis, step * 1.01);
             }
             // Two ticks hardly tell a scale: finer again, if the labels then do not touch. A step beyond a range that was given asks
             // for no ticks.
@@ -94,7 +94,7 @@ pub(super) fn ruler(
                 if ruler.ticks.len() >= FEWEST || !asked {
                     break;
                 }
-                step = nice_step(step * 0.39);
+                step = step_of(axis, step * 0.39);
                 let (ticks, factor) = linear_ticks(lo, hi, step);
                 let widest = ticks.iter().map(|(_, label)| room(label)).fold(0.0, f64::max);
                 if widest - SPARE > step / (hi - lo) * length {
@@ -112,6 +112,15 @@ pub(super) fn ruler(
 pub fn nice_step(at_least: f64) -> f64 {
     let magnitude = 10f64.powf(at_least.log10().floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * magnitude).find(|&s| s >= at_least * (1.0 - 1e-9)).unwrap_or(at_least)
+}
+
+/// The steps of an angle in degrees beyond 10.
+const COMPASS: [f64; 6] = [15.0, 30.0, 45.0, 90.0, 180.0, 360.0];
+
+/// The smallest step of an axis that is at least `at_least`.
+fn step_of(axis: &Axis, at_least: f64) -> f64 {
+    let compass = COMPASS.into_iter().find(|&s| s >= at_least * (1.0 - 1e-9));
+    compass.filter(|_| axis.angle && at_least > 10.0).unwrap_or_else(|| nice_step(at_least))
 }
 
 fn linear_ticks(lo: f64, hi: f64, step: f64) -> (Vec<(f64, String)>, Option<String>) {
@@ -220,6 +229,14 @@ mod tests {
     #[test]
     fn ticks_can_be_asked_for_at_every_ninety_degrees() {
         assert_eq!(labels(&Axis::new("psi").every(90.0), (-180.0, 180.0)), ["−180", "−90", "0", "90", "180"]);
+    }
+
+    #[test]
+    fn an_angle_has_ticks_at_parts_of_a_right_angle() {
+        let psi = Axis::new("psi").angle();
+        assert_eq!(labels(&psi, (0.0, 545.0)), ["0", "90", "180", "270", "360", "450", "540"]);
+        assert_eq!(labels(&psi, (-790.0, 790.0)), ["−720", "−360", "0", "360", "720"]);
+        assert_eq!(labels(&psi, (281.0, 352.0)), ["290", "300", "310", "320", "330", "340", "350"]);
     }
 
     #[test]

@@ -49,6 +49,9 @@
     const power = 10 ** Math.floor(Math.log10(atLeast));
     return [1, 2, 5, 10].map((m) => m * power).find((s) => s >= atLeast * (1 - 1e-9)) || atLeast;
   };
+  // The smallest step of an axis that is at least `atLeast`: those of a compass for angles beyond 10 deg.
+  const stepOf = (axis, atLeast) =>
+    (axis.g && atLeast > 10 && [15, 30, 45, 90, 180, 360].find((s) => s >= atLeast * (1 - 1e-9))) || nice(atLeast);
   // Ticks of an axis over a range `length` px long: values, labels, and the power of ten they share.
   const ticks = (axis, [lo, hi], length, room) => {
     if (axis.k === 'cat') return { at: axis.c.map((label, i) => [i, label]), power: 0 };
@@ -66,13 +69,15 @@
     }
     // An axis with a tick step beyond its range is to have no ticks.
     if (axis.e > axis.r[1] - axis.r[0]) return { at: [], power: 0 };
-    let step = axis.e && (hi - lo) / axis.e < 40 && (hi - lo) / axis.e >= 2 ? axis.e : nice(((hi - lo) * room) / length);
+    let step = axis.e && (hi - lo) / axis.e < 40 && (hi - lo) / axis.e >= 2 ? axis.e : stepOf(axis, ((hi - lo) * room) / length);
     const values = (by) => {
       const first = Math.ceil(lo / by - 1e-9);
       const count = Math.floor(hi / by + 1e-9) - first;
       return Array.from({ length: Math.max(0, Math.min(60, count + 1)) }, (_, i) => (first + i) * by);
     };
-    for (let k = 0; k < 4 && values(step).length < 3; k++) step = nice(step / 2.6);
+    for (let k = 0; k < 4 && values(step).length < 3; k++) step = stepOf(axis, step / 2.6);
+    // Of ticks that are finer than their labels have room, every second one where three are left.
+    if (values(step).length * room > 1.25 * length && values(2 * step).length >= 3) step *= 2;
     const all = values(step);
     const largest = Math.max(...all.map(Math.abs), 0);
     const power = largest >= 1e5 || (largest > 0 && largest < 1e-3) ? 3 * Math.floor(Math.log10(largest) / 3 + 1e-12) : 0;
@@ -540,10 +545,15 @@
     };
     const scaled = (values, k) => values.map((v) => (v === null ? null : v * k));
     const axis = (l, r, e) => ({ l, k: 'lin', r, e });
+    // Room for the whole outline wherever a ship is: half a length about each of its positions.
+    const about = (values) => values.flatMap((v) => (v === null ? [] : [v - data.runs.length / 2, v + data.runs.length / 2]));
+    // Headings of a long log are unwrapped: whole turns before this run say nothing of it.
+    const first = series[0].z[2].find((v) => v !== null) || 0;
+    const turns = Math.floor(first / (2 * Math.PI)) * 360;
     const track = {
       t: run.name, q: true, large: true,
-      x: axis('east y [m]', range(series.map((s) => s.z[1]), 0.06)),
-      y: axis('north x [m]', range(series.map((s) => s.z[0]), 0.06)),
+      x: axis('east y [m]', range(series.map((s) => about(s.z[1])), 0.03)),
+      y: axis('north x [m]', range(series.map((s) => about(s.z[0])), 0.03)),
       s: [
         ...series.map((s) => line(s, s.z[1], s.z[0])),
         ...series.map((s) => {
@@ -553,11 +563,12 @@
         }),
       ],
     };
-    const over = (label, of) => {
+    const over = (label, of, angle) => {
       const drawn = of();
-      return { t: '', q: false, x: axis('time [s]', range([run.t], 0.02)), y: axis(label, range(drawn.map((l) => l.p[1]), 0.06)), s: drawn };
+      return { t: '', q: false, x: axis('time [s]', range([run.t], 0.02)), y: { ...axis(label, range(drawn.map((l) => l.p[1]), 0.06)), g: angle }, s: drawn };
     };
     const state = (c, k) => () => series.map((s) => line(s, run.t, scaled(s.z[c], k)));
+    const heading = () => series.map((s) => line(s, run.t, s.z[2].map((v) => (v === null ? null : v * DEGREES - turns))));
     const recorded = series[0].z;
     const apart = () =>
       series.slice(1).map((s) => line(s, run.t, s.z[0].map((x, i) => (x === null || recorded[0][i] === null || recorded[1][i] === null ? null : Math.hypot(x - recorded[0][i], s.z[1][i] - recorded[1][i])))));
@@ -567,7 +578,7 @@
       panels: [
         track,
         over('position error [m]', apart),
-        over('heading psi [deg]', state(2, DEGREES)),
+        over('heading psi [deg]', heading, true),
         over('surge velocity u [m/s]', state(3, 1)),
         over('sway velocity v [m/s]', state(4, 1)),
         over('yaw rate r [deg/s]', state(5, DEGREES)),

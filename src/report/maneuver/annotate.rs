@@ -94,6 +94,8 @@ pub(super) fn overshoots(trial: &Trial<Zigzag>, color: Color) -> Vec<Layer> {
     let (m, track) = (&trial.measures, &trial.track);
     let start = track.t.first().copied().unwrap_or(0.0);
     let mut layers = Vec::new();
+    // Height of the words at the last peaks to either side.
+    let mut words = [f64::NAN; 2];
     for (i, overshoot) in m.overshoots.iter().enumerate() {
         let Some(from) = m.executes.get(i + 1).map(|t| start + t) else { continue };
         let to = m.executes.get(i + 2).map_or(f64::INFINITY, |t| start + t);
@@ -102,7 +104,13 @@ pub(super) fn overshoots(trial: &Trial<Zigzag>, color: Color) -> Vec<Layer> {
         let height = |k: &usize| sign * track.states[*k][2];
         let Some(peak) = between.max_by(|a, b| height(a).total_cmp(&height(b))) else { continue };
         let at = (track.t[peak], track.states[peak][2].to_degrees());
-        let above = (at.0, at.1 + 0.12 * sign * m.heading.to_degrees().max(1.0) + 1.4 * sign);
+        let size = m.heading.to_degrees().max(1.0);
+        let mut above = (at.0, at.1 + 0.12 * sign * size + 1.4 * sign);
+        // Words as high as those of the peak before to this side would run into them: a line further out.
+        if (above.1 - words[i % 2]).abs() < 0.3 * size {
+            above.1 = words[i % 2] + 0.36 * sign * size;
+        }
+        words[i % 2] = above.1;
         layers.push(Layer::scatter("overshoot", color, [at]).marker(Marker::Diamond));
         let degrees = |v: f64| fixed(v.to_degrees(), 1);
         let interval = within(&trial.intervals, &format!("overshoot_{}", i + 1), degrees);

@@ -75,6 +75,11 @@ fn time_panel<M>(label: &str, trials: &[Trial<M>], value: impl Fn(&Track, usize)
     Panel::new("", Axis::new("time [s]"), Axis::new(label).including(0.0)).with_all(layers)
 }
 
+fn heading_panel<M>(trials: &[Trial<M>]) -> Panel {
+    let panel = time_panel("heading psi [deg]", trials, |t, k| t.states[k][2].to_degrees());
+    Panel { y: panel.y.clone().angle(), ..panel }
+}
+
 /// What the brackets in a figure are; nothing where no trial has intervals.
 fn in_brackets<M>(trials: &[Trial<M>]) -> &'static str {
     if trials.iter().any(|t| !t.intervals.is_empty()) { " In brackets: 95 % intervals." } else { "" }
@@ -97,7 +102,7 @@ pub fn turning_figure(ship: &Ship, trials: &[Trial<Turning>]) -> Figure {
         .panel_size(900, 760)
         .caption(caption)
         .with(circles)
-        .with(time_panel("heading psi [deg]", trials, |t, k| t.states[k][2].to_degrees()))
+        .with(heading_panel(trials))
         .with(time_panel("rudder delta [deg]", trials, |t, k| t.delta[k].to_degrees()))
         .with(time_panel("speed U [m/s]", trials, Track::speed))
         .with(time_panel("yaw rate r [deg/s]", trials, |t, k| t.states[k][5].to_degrees()))
@@ -145,5 +150,5 @@ pub fn stopping_figure(ship: &Ship, trial: &Trial<Stopping>) -> Figure {
         .with(track_panel("", ship, one.iter()))
         .with(time_panel("surge velocity u [m/s]", one, |t, k| t.states[k][3]))
         .with(time_panel("propeller rate n [rpm]", one, |t, k| t.n[k] * 60.0))
-        .with(time_panel("heading psi [deg]", one, |t, k| t.states[k][2].to_degrees()))
+        .with(heading_panel(one))
 }
