@@ -7,6 +7,7 @@ use super::estimate::Estimate;
 use super::event::BaseTests;
 use super::finding::{Amplitude, Finding};
 use super::grade::{FindingTests, Grade, grade};
+use super::improved::inside_bounds;
 use super::influence::{Following, change};
 use super::problem::Problem;
 use super::residual::{Kept, Left};
@@ -137,16 +138,17 @@ pub fn weakest(weights: &[Weight]) -> Option<usize> {
     going.min_by(|a, b| a.1.gain().total_cmp(&b.1.gain())).map(|(i, _)| i)
 }
 
-/// Where all that is kept makes unseen runs worse beyond chance, and no part does so by itself, the part that does least for them: it is
-/// withdrawn first. What stands beside a name must not refute it.
+/// Where all that is kept makes unseen runs worse beyond chance, in the models that are written, and no part does so by itself, the part
+/// that does least for them: it is withdrawn first. What stands beside a name must not refute it.
 pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight], held_out: &[Run]) -> Option<usize> {
     // A single mechanism was weighed against the base model already.
     if weights.len() < 2 || held_out.is_empty() {
         return None;
     }
-    let (fit, found) = (&kept.selection.tests.fit, &kept.selection.estimate);
-    let judging = &question.settings.judging;
-    let proof = FindingProof::new(&fit.estimate.model, &found.model, &found.noise, fit.integration, held_out, judging);
+    let (tests, judging) = (&kept.selection.tests, &question.settings.judging);
+    let written = |e: &Estimate| inside_bounds(e, tests.problem(question.settings));
+    let [base, found] = [&tests.fit.estimate, &kept.selection.estimate].map(written);
+    let proof = FindingProof::new(&base.model, &found.model, &found.noise, tests.fit.integration, held_out, judging);
     let simulated = proof.prediction().is_some_and(|g| g.is_below_zero());
     if !simulated && !proof.likelihood().is_below_zero() {
         return None;
