@@ -107,14 +107,6 @@ impl FreeParameter {
     }
 }
 
-/// The quadratic model of the log-posterior at an estimate, in units of its columns.
-pub fn around(found: &Estimate, integration: Integration, runs: &[Run]) -> Quadratic {
-    let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
-    let filter = Filter::new(&found.model, integration, &columns);
-    let sums = Sums::of(&filter, runs, &found.noise, &restrictions(&found.free), false);
-    quadratic(&sums.evidence, &found.model, &found.free)
-}
-
 /// A fitted structure.
 #[derive(Clone, Debug)]
 pub struct Estimate {

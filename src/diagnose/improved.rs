@@ -4,7 +4,6 @@
 use super::algebra::pseudo_inverse;
 use super::estimate::{Estimate, FreeParameter};
 use super::problem::Problem;
-use super::resistance::resisting;
 use super::settings::REFIT;
 use crate::model::Model;
 use crate::recording::Run;
@@ -50,15 +49,14 @@ pub fn trimmed(found: &Model, user: &Model, free: &[FreeParameter]) -> Model {
 }
 
 /// An estimate that every command reads. A carried hull coefficient is held by its prior alone, which knows no sign: where it ends outside
-/// its bounds (a damping that drives) it is put at the bound, and the rest is estimated again, until none is outside. The resistance then
-/// drives the ship at no speed that was sailed.
+/// its bounds (a damping that drives) it is put at the bound, and the rest is estimated again, until none is outside.
 pub fn inside_bounds(estimate: &Estimate, problem: Problem) -> Estimate {
     let mut found = estimate.clone();
     loop {
         let (held, free): (Vec<FreeParameter>, Vec<FreeParameter>) =
             found.free.iter().cloned().partition(|f| is_outside(f, &found.model));
         if held.is_empty() {
-            return resisting(found, problem);
+            return found;
         }
         let mut model = found.model.clone();
         held.iter().for_each(|f| put_inside(f, &mut model));

@@ -72,7 +72,6 @@ pub mod push;
 pub mod refit;
 pub mod region;
 mod residual;
-mod resistance;
 pub mod sailed;
 pub mod screen;
 mod select;

@@ -325,14 +325,6 @@ numbers! {
     PLACE_TAIL: f64 = 0.02, CUSTOM;
     /// Superfluous monomials that a law for what the catalogue does not hold may have on average.
     LAW_P: f64 = 0.05, "one law in twenty; simulated nulls have fewer";
-    /// Speeds above 0 at which the resistance that is written must not drive the ship.
-    RESISTANCE_SPEEDS: usize = 54, "the grid of the same rule in a fit";
-    /// Steps to the best estimate under that rule; near an estimate the quadratic model is all but exact.
-    RESISTANCE_STEPS: usize = 3, COST;
-    /// Precision that holds each parameter where it is meanwhile, as a share of the largest: what the runs do not determine stays.
-    RESISTANCE_HELD: f64 = 1e-10, "far below every precision that the runs or a prior give";
-    /// Share of the resistance that is rounding.
-    RESISTANCE_ROUNDING: f64 = 1e-9, "rounding of sums of three powers";
 }
 
 #[cfg(test)]

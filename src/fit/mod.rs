@@ -33,7 +33,8 @@ mod evaluations;
 pub mod multistart;
 #[cfg(feature = "ipopt")]
 mod problem;
-pub(crate) mod quadratic_program;
+#[cfg(feature = "ipopt")]
+mod quadratic_program;
 mod settings;
 #[cfg(feature = "ipopt")]
 mod solve;

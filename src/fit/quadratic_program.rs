@@ -23,7 +23,7 @@ const DEPENDENT: f64 = 1e-18;
 const MOST_CHANGES: usize = 10;
 
 /// Where a quadratic function is least under the limits.
-pub(crate) struct Minimum {
+pub(super) struct Minimum {
     /// The point.
     pub x: DVector<f64>,
     /// `H x + g = sum_k multiplier_k n_k`, none below 0, by the index of the limit; a limit that is not named has 0.
@@ -50,7 +50,7 @@ struct Direction {
 
 /// The minimum under the limits `normals^T x >= bounds`, one column a limit. `None` where H is not positive definite or no point
 /// is within all limits.
-pub(crate) fn minimise(
+pub(super) fn minimise(
     h: &DMatrix<f64>,
     g: &DVector<f64>,
     normals: &DMatrix<f64>,
