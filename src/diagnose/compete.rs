@@ -27,8 +27,7 @@ pub fn amplitudes(all: &Wald, found: &Estimate, c: &Candidate, extent: &Extent) 
     let companions = c.companions(&found.model);
     let is_held = |i: &usize| companions.contains(&found.free[*i].column.parameter);
     let held: Vec<usize> = (0..found.free.len()).filter(is_held).collect();
-    let given = all.given(&c.positions(&found.free, extent), &held);
-    Wald { value: given.value - c.held(extent), ..given }
+    all.given(&c.positions(&found.free, extent), &held).less(&c.held(extent))
 }
 
 /// That a mechanism acts, where it acts, and how large a score test has it.

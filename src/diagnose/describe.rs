@@ -50,8 +50,7 @@ impl Intervals {
     /// intervals: of one parameter its interval, of several Hotelling's region, wider as few groups tell the scatter of many.
     pub(super) fn excludes_zero(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> bool {
         let places = c.positions(&found.free, extent);
-        let mut part = self.wald.part(&places);
-        part.value -= c.held(extent);
+        let mut part = self.wald.part(&places).less(&c.held(extent));
         for (i, at) in places.iter().enumerate() {
             let factor = self.scatter.factors[*at];
             part.covariance.row_mut(i).scale_mut(factor);
@@ -63,8 +62,7 @@ impl Intervals {
     /// A candidate's parameters beyond what the model already had of them, with their intervals, session by session where each has its own.
     pub(super) fn amplitudes(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> Vec<Amplitude> {
         let places = c.positions(&found.free, extent);
-        let Wald { value, covariance } = self.wald.part(&places);
-        let value = value - c.held(extent);
+        let Wald { value, covariance } = self.wald.part(&places).less(&c.held(extent));
         let k = c.columns.len();
         let amplitude = |i: usize| {
             let col = &c.columns[i % k];

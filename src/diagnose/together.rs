@@ -70,8 +70,7 @@ pub fn leading(current: &Estimate, problem: Problem, selected: &[Selected], alon
         p < settings.alpha && (alone || may_be_further(&further, selected, candidates))
     };
     let row = |(i, own): (&usize, &Vec<usize>)| {
-        let mut part = wald.part(own);
-        part.value -= candidates[*i].held(&Extent::All);
+        let part = wald.part(own).less(&candidates[*i].held(&Extent::All));
         let statistic = part.statistic();
         let p = chi_squared_p(statistic, own.len()) * sensors.len() as f64;
         let is_worth = is_worth_naming(candidates[*i].size(part.value.as_slice()));

@@ -38,6 +38,11 @@ impl Wald {
         Self { value: DVector::from_fn(of.len(), |i, _| self.value[of[i]]), covariance: pick(&self.covariance, of, of) }
     }
 
+    /// How far they are from other values than zero.
+    pub fn less(self, values: &DVector<f64>) -> Self {
+        Self { value: self.value - values, ..self }
+    }
+
     /// Some of the parameters, with others held at their estimates: their covariance is conditional on these.
     pub fn given(&self, of: &[usize], held: &[usize]) -> Self {
         let mut part = self.part(of);
