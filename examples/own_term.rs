@@ -33,7 +33,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: false,
-        floor: 0.05,
         stand_in: false,
         look_alikes: &["wind"],
         trial: "the same courses with the rotor stopped",

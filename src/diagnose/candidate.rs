@@ -88,13 +88,6 @@ impl Held {
 }
 
 impl Candidate {
-    /// Amplitude (root mean square over the sessions, where each has its own) in units of the floor: below 1 it is not worth
-    /// naming.
-    pub fn size(&self, amplitude: &[f64]) -> f64 {
-        let parts = amplitude.len() as f64 / self.columns.len().max(1) as f64;
-        (amplitude.iter().map(|a| a * a).sum::<f64>() / parts).sqrt() / self.mechanism.floor
-    }
-
     /// Whether the amplitudes of a test, added to the present values, are possible: kept inside the parameters' bounds they
     /// hold most of what they promise. A law that bends may well promise more than there can be.
     pub fn admissible(&self, model: &Model, test: &Test) -> bool {
@@ -291,16 +284,6 @@ mod tests {
             let (bare, _) = c.removed(&found, &extent);
             assert!(["a", "b", "c"].iter().all(|s| bare.values_in(s) == model.values_in(s)), "{extent:?}");
         }
-    }
-
-    #[test]
-    fn the_size_is_the_amplitude_over_the_floor_by_the_mean_square_over_sessions() {
-        let model = crate::diagnose::example::model();
-        let c = crate::diagnose::example::candidate(&model, "current");
-        let floor = c.mechanism.floor;
-        assert!((c.size(&[3.0 * floor, 4.0 * floor]) - 5.0).abs() < 1e-12);
-        let each = [3.0, 4.0, 0.0, 5.0].map(|a| a * floor);
-        assert!((c.size(&each) - 5.0).abs() < 1e-12);
     }
 
     #[test]

@@ -2,7 +2,6 @@
 //! them, and keeps every one that the data allow. What is tested, and what is said of the outcome, is decided elsewhere.
 
 use super::candidate::{Candidate, Extent};
-use super::eligible::is_worth_naming;
 use super::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
 use super::evidence::chi_squared_p;
 use super::forces::only_cancels;
@@ -226,7 +225,7 @@ impl Competition<'_> {
         alike
     }
 
-    /// Whether the refit confirms the mechanism: significant by Wald's test and by the likelihood itself, and large enough.
+    /// Whether the refit confirms the mechanism: significant by Wald's test and by the likelihood itself.
     fn is_confirmed(&self, Refit { hypothesis, estimate, .. }: &Refit) -> bool {
         let Problem { integration, runs, candidates, settings, .. } = self.problem;
         let c = &candidates[hypothesis.candidate];
@@ -234,7 +233,6 @@ impl Competition<'_> {
         let gain = 2.0 * (estimate.log_posterior - self.current.log_posterior);
         let statistic = w.statistic().min(gain.max(0.0));
         chi_squared_p(statistic, w.value.len()) * (self.tried.max(1) as f64) < settings.alpha
-            && is_worth_naming(c.size(w.value.as_slice()))
             && !only_cancels(c, estimate, runs)
     }
 

@@ -47,7 +47,8 @@ impl Intervals {
     }
 
     /// Whether the region that holds all of a candidate's parameters together with 95 % leaves zero out, by the same variance as their single
-    /// intervals: of one parameter its interval, of several Hotelling's region, wider as few groups tell the scatter of many.
+    /// intervals: of one parameter its interval, of several Hotelling's region, wider as few groups tell the scatter of many. Where each
+    /// session has a size of its own, that of one session by itself may leave it out too.
     pub(super) fn excludes_zero(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> bool {
         let places = c.positions(&found.free, extent);
         let mut part = self.wald.part(&places).less(&c.held(extent));
@@ -56,7 +57,15 @@ impl Intervals {
             part.covariance.row_mut(i).scale_mut(factor);
             part.covariance.column_mut(i).scale_mut(factor);
         }
-        self.scatter.excludes(part.statistic(), places.len())
+        match extent {
+            Extent::All | Extent::In(_) => self.scatter.excludes(part.statistic(), places.len()),
+            Extent::Each(sessions) => {
+                let parameters = c.columns.len();
+                let of = |i: usize| part.part(&(i * parameters..(i + 1) * parameters).collect::<Vec<_>>()).statistic();
+                let one_by_one: Vec<f64> = (0..sessions.len()).map(of).collect();
+                self.scatter.excludes_in_some(part.statistic(), &one_by_one, parameters)
+            }
+        }
     }
 
     /// A candidate's parameters beyond what the model already had of them, with their intervals, session by session where each has its own.

@@ -34,8 +34,6 @@ pub struct Ranked {
     pub p: f64,
     /// Amplitudes \[units of the parameters\]; one session after the other where each has its own.
     pub amplitude: Vec<f64>,
-    /// Size over the smallest size worth naming.
-    pub size: f64,
     /// Whether the sign is possible.
     pub admissible: bool,
     /// Share of information left after base parameters and nuisances.

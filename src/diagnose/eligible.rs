@@ -22,20 +22,11 @@ pub fn eligible<'s>(
     s.rows.iter().filter(may).collect()
 }
 
-/// Whether a mechanism may be named: identifiable, significant, of possible sign and worthwhile size, and not just the ship's own
-/// forces in another form.
+/// Whether a mechanism may be named: identifiable, significant, of possible sign, and not just the ship's own forces in another
+/// form. Whether it is large enough to matter is asked of what it changes in predictions, once it is in a model.
 pub fn may_be_named(r: &Row, candidates: &[Candidate], settings: &Settings) -> bool {
     let m = candidates[r.candidate].mechanism;
-    r.visible
-        && r.admissible
-        && r.p < significance(m, settings)
-        && is_worth_naming(r.size)
-        && r.second_opinion < settings.alpha
-}
-
-/// Whether a size, in units of the mechanism's own floor, is worth naming.
-pub fn is_worth_naming(size: f64) -> bool {
-    size >= 1.0
+    r.visible && r.admissible && r.p < significance(m, settings) && r.second_opinion < settings.alpha
 }
 
 /// The chance of a false name that a mechanism's test is allowed. Sessions differ in what was sailed, and a ship's forces in
@@ -105,7 +96,6 @@ mod tests {
             extent: Extent::All,
             test,
             p: 1e-12,
-            size: 2.0,
             admissible: true,
             visible: true,
             second_opinion: 1e-6,
@@ -118,12 +108,11 @@ mod tests {
     }
 
     #[test]
-    fn a_mechanism_must_be_identifiable_significant_possible_large_and_more_than_another_form() {
+    fn a_mechanism_must_be_identifiable_significant_possible_and_more_than_another_form() {
         let (list, settings) = (list(), Settings::default());
         let may = |r: &Row| may_be_named(r, &list, &settings);
         assert!(may(&row(0, 60.0)));
         assert!(may(&Row { p: 0.0099, ..row(0, 60.0) }) && !may(&Row { p: 0.01, ..row(0, 60.0) }));
-        assert!(!may(&Row { size: 0.99, ..row(0, 60.0) }));
         assert!(!may(&Row { admissible: false, ..row(0, 60.0) }));
         assert!(!may(&Row { visible: false, ..row(0, 60.0) }));
         assert!(!may(&Row { second_opinion: 0.01, ..row(0, 60.0) }));

@@ -4,7 +4,7 @@
 use super::algebra::{pick, pseudo_inverse};
 use super::settings::{IDENTIFIABLE_SHARE, SCATTER_GROUPS};
 pub use crate::statistics::chi_squared_p;
-use crate::statistics::{scattered_p, student_quantile};
+use crate::statistics::{corrected, scattered_p, student_quantile};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::collections::BTreeMap;
 
@@ -251,7 +251,21 @@ impl Scatter {
     /// Whether the 95 % region of some parameters leaves out a point at a squared distance in units of their covariance, multiplied by the
     /// factors: for one parameter the interval of [`Scatter::reach`].
     pub fn excludes(&self, statistic: f64, parameters: usize) -> bool {
-        parameters > 0 && scattered_p(statistic, parameters, self.degrees as usize) < 0.05
+        self.p(statistic, parameters) < 0.05
+    }
+
+    /// Whether zero is left out of the region of all parameters of an effect that has its own size in each session, or of those of one
+    /// session by itself, each at half of 5 %: `together` is the squared distance of all of them, `one_by_one` that of each session's.
+    /// Sizes that are alike show together, and one that stands out shows alone, where the region of all is wide for their number.
+    pub fn excludes_in_some(&self, together: f64, one_by_one: &[f64], parameters: usize) -> bool {
+        let sessions = one_by_one.len();
+        let least = one_by_one.iter().map(|s| self.p(*s, parameters)).fold(1.0, f64::min);
+        2.0 * self.p(together, sessions * parameters).min(corrected(least, sessions.max(1) as f64)) < 0.05
+    }
+
+    /// Chance of a squared distance as large as this, by Fisher's F; 1 without parameters.
+    fn p(&self, statistic: f64, parameters: usize) -> f64 {
+        if parameters == 0 { 1.0 } else { scattered_p(statistic, parameters, self.degrees as usize) }
     }
 }
 
@@ -349,6 +363,19 @@ mod tests {
         // Six times the 95 % point of Fisher's F with 6 and 5 degrees, 4.950.
         assert!(!scatter.excludes(6.0 * 4.94, 6) && scatter.excludes(6.0 * 4.96, 6));
         assert!(!scatter.excludes(1e9, 0));
+    }
+
+    #[test]
+    fn an_effect_with_its_own_size_in_each_session_shows_in_all_together_or_in_one_that_stands_out() {
+        let scatter = Scatter { factors: Vec::new(), degrees: 5.0 };
+        // Of six sessions with two parameters each: 12 times the 97.5 % point of F(12, 5), 6.525; and twice the point of F(2, 5) beyond
+        // which lies 0.025/6, 18.65 by (1 + 2 F / 5)^(-5/2) = 0.025/6.
+        let (together, alone) = (12.0 * 6.525, 5.0 * ((6.0 / 0.025_f64).powf(0.4) - 1.0));
+        let even = |all: f64| scatter.excludes_in_some(all, &[all / 6.0; 6], 2);
+        assert!(!even(0.99 * together) && even(1.01 * together));
+        let one = |s: f64| scatter.excludes_in_some(s, &[0.0, s, 0.0, 0.0, 0.0, 0.0], 2);
+        assert!(!one(0.99 * alone) && one(1.01 * alone) && alone < 0.6 * together);
+        assert!(!scatter.excludes_in_some(1e9, &[], 2));
     }
 
     #[test]

@@ -29,8 +29,6 @@ pub struct Row {
     pub test: Test,
     /// Corrected p-value of the test that counts.
     pub p: f64,
-    /// Size of the amplitude over the floor below which it is not worth naming.
-    pub size: f64,
     /// Whether the amplitude's sign is physically possible.
     pub admissible: bool,
     /// Whether the data can see it at all.
@@ -242,11 +240,9 @@ impl CandidateTests<'_> {
         let Tested { extent, test, second_opinion, possible } = choose(options, divisions).unwrap_or_else(none);
         let visible = test.degrees > 0 && test.retained > IDENTIFIABLE_SHARE;
         let mechanism = self.candidate.mechanism;
-        let amplitude: Vec<f64> = test.amplitude.iter().copied().collect();
         Row {
             candidate: index,
             p: if visible { corrected(test.p, &extent, count, mechanism.by_session, divisions) } else { 1.0 },
-            size: self.candidate.size(&amplitude),
             admissible: possible,
             visible: visible && (extent != Extent::All || !mechanism.needs_reference),
             extent,

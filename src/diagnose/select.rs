@@ -5,7 +5,7 @@ use super::admit::followed;
 use super::base::Question;
 use super::compete::{Rejected, amplitudes, compare, compete, form_tolerance};
 use super::decide::is_euler;
-use super::eligible::{Further, eligible, is_worth_naming, may_be_further, may_be_named};
+use super::eligible::{Further, eligible, may_be_further, may_be_named};
 use super::estimate::{Estimate, passes};
 use super::event::{BaseTests, Opening};
 use super::evidence::chi_squared_p;
@@ -109,7 +109,6 @@ impl Selection {
             let c = &problem.candidates[a.candidate];
             let w = amplitudes(&all, &self.estimate, c, &a.extent);
             chi_squared_p(w.statistic(), w.value.len()) > settings.strict()
-                || !is_worth_naming(c.size(w.value.as_slice()))
         });
         let Some(i) = needless else { return };
         let needless = self.mechanisms.remove(i);

@@ -1,6 +1,5 @@
 //! Every number of the diagnosis: those with which tests are compared, those by which tests are made, and the settings that a user may
 //! change; each with its name, value, meaning, and how it was set.
-//! The smallest size worth naming of each mechanism is not here: it is a `floor` of the mechanism, in its term's file.
 
 use super::optimise::Damping;
 use crate::evaluate::{EvaluationSettings, Judging};

@@ -41,7 +41,6 @@ fn ranked(r: &Row, list: &[Candidate]) -> Ranked {
         degrees: r.test.degrees,
         p: r.p,
         amplitude: r.test.amplitude.iter().zip(c.columns.iter().cycle()).map(|(a, col)| a * col.scale).collect(),
-        size: r.size,
         admissible: r.admissible,
         retained: r.test.retained,
         second_opinion: r.second_opinion,

@@ -3,7 +3,7 @@
 //! What is named, and whether a refit confirms it, is decided elsewhere.
 
 use super::candidate::{Candidate, Extent};
-use super::eligible::{Further, is_worth_naming, may_be_further};
+use super::eligible::{Further, may_be_further};
 use super::estimate::{Estimate, FreeParameter, log_posterior};
 use super::evidence::chi_squared_p;
 use super::kinematic::{Disagreement, disagreements};
@@ -37,7 +37,7 @@ pub struct Leading {
 /// The leading error of a sensor that may be named beside the mechanisms that were selected. What the sensors show of each other beyond
 /// chance is free, with a weak prior and one amplitude in all sessions; it starts where they agree best, and parameters and noise are
 /// estimated in turn. `None` where the sensors agree, where they cannot be held against each other, and where no error is both
-/// significant and worth naming.
+/// significant.
 pub fn leading(current: &Estimate, problem: Problem, selected: &[Selected], alone: bool) -> Option<Leading> {
     let Problem { integration, runs, candidates, settings, .. } = problem;
     let is_free = |parameter: usize| current.free.iter().any(|f| f.column.parameter == parameter);
@@ -73,8 +73,7 @@ pub fn leading(current: &Estimate, problem: Problem, selected: &[Selected], alon
         let part = wald.part(own).less(&candidates[*i].held(&Extent::All));
         let statistic = part.statistic();
         let p = chi_squared_p(statistic, own.len()) * sensors.len() as f64;
-        let is_worth = is_worth_naming(candidates[*i].size(part.value.as_slice()));
-        (is_worth && may_lead(*i, statistic, p)).then_some((*i, part.value, statistic, p))
+        may_lead(*i, statistic, p).then_some((*i, part.value, statistic, p))
     };
     let (candidate, amplitude, statistic, p) =
         asked.iter().zip(&places).filter_map(row).max_by(|a, b| a.2.total_cmp(&b.2))?;

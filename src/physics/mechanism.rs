@@ -48,8 +48,6 @@ pub struct Mechanism {
     /// Whether its amplitudes may differ from session to session, as those of weather, which is new every day, and of clocks, which are set
     /// when a logger starts. Coefficients of the ship and what is mounted on it stay.
     pub by_session: bool,
-    /// Smallest amplitude worth naming, in units of the parameters' scales.
-    pub floor: f64,
     /// True for a force without a cause, which stands in for physics of some other form: named when no cause comes near.
     pub stand_in: bool,
     /// Names of mechanisms that look alike on some data.

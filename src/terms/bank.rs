@@ -31,7 +31,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: false,
-        floor: 0.003,
         stand_in: false,
         look_alikes: &[],
         trial: "the same track close to the bank and in midstream",

@@ -55,7 +55,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.05,
         stand_in: false,
         look_alikes: &["shallow", "hull_nonlinear"],
         trial: "drifting sideways and turning on the spot",

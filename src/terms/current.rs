@@ -32,7 +32,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: true,
-        floor: 0.02,
         stand_in: false,
         look_alikes: &["tide", "mean_wind", "earth_force", "log_scale", "water_log"],
         trial: "a stop and drift, then slow turns through all headings",

@@ -31,7 +31,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: true,
-        floor: 0.02,
         stand_in: true,
         look_alikes: &["mean_wind", "wave_drift", "current"],
         trial: "drifting stopped on several headings",

@@ -32,7 +32,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: false,
-        floor: 0.03,
         stand_in: false,
         look_alikes: &["loading", "thrust_loss"],
         trial: "quick changes of propeller rate with the shaft rate recorded",

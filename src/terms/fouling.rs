@@ -31,7 +31,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.075,
         stand_in: false,
         look_alikes: &["thrust_loss"],
         trial: "speed runs before and after docking",

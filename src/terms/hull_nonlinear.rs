@@ -37,7 +37,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.125,
         stand_in: false,
         look_alikes: &["crossflow"],
         trial: "turning circles at several rudder angles",

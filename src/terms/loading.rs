@@ -31,7 +31,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.125,
         stand_in: false,
         look_alikes: &["munk", "fouling", "engine_lag"],
         trial: "accelerations at known thrust",

@@ -37,7 +37,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Odd,
         needs_reference: false,
         by_session: true,
-        floor: 0.01,
         stand_in: false,
         look_alikes: &["earth_force", "wave_drift", "current"],
         trial: "drifting stopped on several headings with the wind recorded",

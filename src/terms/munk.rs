@@ -35,7 +35,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.075,
         stand_in: false,
         look_alikes: &["loading", "shallow"],
         trial: "pull-out from a turn with rudder amidships",

@@ -30,7 +30,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: false,
-        floor: 0.02,
         stand_in: false,
         look_alikes: &["time_skew", "antenna"],
         trial: "a turn on the spot",

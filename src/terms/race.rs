@@ -35,7 +35,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.075,
         stand_in: false,
         look_alikes: &["rudder_stall", "wake_drift"],
         trial: "rudder steps at rest with the propeller ahead, and coasting",

@@ -38,7 +38,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.125,
         stand_in: false,
         look_alikes: &["munk", "loading"],
         trial: "zigzags at high speed with the roll recorded",

@@ -54,7 +54,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: false,
-        floor: 0.05,
         stand_in: false,
         look_alikes: &["rudder_rate", "time_skew"],
         trial: "zigzags with quick rudder orders, with order and rudder angle recorded",

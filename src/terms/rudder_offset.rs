@@ -30,7 +30,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.05,
         stand_in: false,
         look_alikes: &["propeller_walk_ahead"],
         trial: "straight runs before and after the rudder is set",

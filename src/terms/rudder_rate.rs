@@ -31,7 +31,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Forward,
         needs_reference: false,
         by_session: false,
-        floor: 0.03,
         stand_in: false,
         look_alikes: &["rudder_lag"],
         trial: "rudder from hard over to hard over, with order and rudder angle recorded",

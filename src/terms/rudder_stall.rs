@@ -35,7 +35,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.075,
         stand_in: false,
         look_alikes: &["crossflow", "rudder_rate"],
         trial: "turning circles at 20, 30 and 35 degrees of rudder",

@@ -46,7 +46,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.025,
         stand_in: false,
         look_alikes: &["crossflow", "munk", "loading"],
         trial: "the same turning circle in deep and in shallow water",

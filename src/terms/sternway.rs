@@ -36,7 +36,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.05,
         stand_in: false,
         look_alikes: &["propeller_walk_astern"],
         trial: "steering with sternway",

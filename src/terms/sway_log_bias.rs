@@ -30,7 +30,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: false,
-        floor: 0.01,
         stand_in: false,
         look_alikes: &["heading_bias", "current"],
         trial: "reciprocal straight runs",

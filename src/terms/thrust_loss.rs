@@ -31,7 +31,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.05,
         stand_in: false,
         look_alikes: &["fouling"],
         trial: "bollard pull and speed runs before and after",

@@ -36,7 +36,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: false,
-        floor: 0.01,
         stand_in: false,
         look_alikes: &["push"],
         trial: "thruster alone, at rest and at slow speed",

@@ -36,7 +36,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: false,
-        floor: 0.02,
         stand_in: false,
         look_alikes: &["current"],
         trial: "the same runs again three and six hours later",

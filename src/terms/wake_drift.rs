@@ -35,7 +35,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
-        floor: 0.05,
         stand_in: false,
         look_alikes: &["race", "hull_nonlinear"],
         trial: "turning circles at several propeller rates",

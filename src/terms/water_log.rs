@@ -30,7 +30,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: false,
-        floor: 0.03,
         stand_in: false,
         look_alikes: &["current", "log_scale"],
         trial: "reciprocal runs in the current",

@@ -38,7 +38,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: true,
-        floor: 0.02,
         stand_in: false,
         look_alikes: &["mean_wind", "earth_force", "current"],
         trial: "drifting stopped on several headings with the waves recorded",

@@ -44,7 +44,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: false,
-        floor: 0.01,
         stand_in: false,
         look_alikes: &["wave_drift", "wind"],
         trial: "slow runs on all headings in higher waves",

@@ -70,7 +70,6 @@ static INFO: TermInfo = TermInfo {
         probe: Probe::Tangent,
         needs_reference: false,
         by_session: false,
-        floor: 0.01,
         stand_in: false,
         look_alikes: &["mean_wind", "earth_force", "wave_drift"],
         trial: "slow runs on all headings in more wind",

@@ -25,7 +25,7 @@ fn evidence(r: &Ranked) -> f64 {
 const OUTCOMES: [(&str, Color); 6] = [
     ("found", FITTED),
     ("not distinguishable from a finding", SKY),
-    ("impossible sign, or too small to matter", ORANGE),
+    ("impossible sign", ORANGE),
     ("the ship's own forces can explain it", PURPLE),
     ("explains the data less well", GREEN),
     ("not significant", GREY),
@@ -40,7 +40,7 @@ fn outcome(d: &Diagnosis, r: &Ranked) -> usize {
         1
     } else if r.p >= d.settings.alpha {
         5
-    } else if !r.admissible || r.size < 1.0 {
+    } else if !r.admissible {
         2
     } else if r.second_opinion >= 0.01 {
         3
