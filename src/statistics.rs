@@ -140,7 +140,9 @@ impl Share {
 impl std::fmt::Display for Share {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let [p, a, b] = [self.value(), self.low, self.high].map(|v| 100.0 * v);
-        write!(f, "{p:.0} % ({a:.0} to {b:.0}) of {}", self.of)
+        // A few of many are not none, and all but a few are not all.
+        let decimals = usize::from(self.hits > 0 && p < 0.5 || self.hits < self.of && p >= 99.5);
+        write!(f, "{p:.decimals$} % ({a:.0} to {b:.0}) of {}", self.of)
     }
 }
 
@@ -199,6 +201,14 @@ mod tests {
         let s = Share::of([Some(true), None, Some(false), None]).unwrap();
         assert_eq!((s.hits, s.of), (1, 2));
         assert!(Share::of([None]).is_none());
+    }
+
+    #[test]
+    fn a_few_of_many_are_not_shown_as_none_nor_all_but_a_few_as_all() {
+        let words = |hits| Share::new(hits, 298).to_string();
+        assert_eq!(words(0), "0 % (0 to 1) of 298");
+        assert_eq!([words(1), words(297)], ["0.3 % (0 to 2) of 298", "99.7 % (98 to 100) of 298"]);
+        assert_eq!([words(2), words(298)], ["1 % (0 to 2) of 298", "100 % (99 to 100) of 298"]);
     }
 
     #[test]
