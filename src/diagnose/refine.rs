@@ -2,11 +2,10 @@
 //! between port and starboard. It is read from the tests of the diagnosis; nothing is estimated here.
 
 use super::finding::Amplitude;
+use super::settings::SIDES_DIFFER;
 use super::sides::Sides;
 use crate::model::Model;
 
-/// p-value from which the sides of a ship are told apart.
-pub const SIDES_DIFFER: f64 = 0.01;
 /// The straightening of the flow at the rudder, to one side more than to the other.
 const STRAIGHTENING: &str = "flow.asymmetry";
 /// The wake at the propeller in drift, to one side more than to the other.
