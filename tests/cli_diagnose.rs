@@ -139,6 +139,23 @@ fn the_summary_has_seven_parts_in_order_and_no_missing_number() {
 }
 
 #[test]
+fn the_answer_ends_with_the_commands_to_run_next_and_they_run() {
+    let told = text(&CASE.output.stdout).replace(" \\\n      ", " ");
+    let commands = CASE.document["next_commands"].as_array().unwrap();
+    assert_eq!(commands.len(), 2);
+    for command in commands.iter().map(|c| c.as_str().unwrap()) {
+        assert!(told.contains(&format!("\n  {command}\n")), "{command}\n{told}");
+        let arguments: Vec<&str> = command.split(' ').skip(1).collect();
+        let output = trimtab(&CASE.folder, &arguments);
+        // A fit that did not converge has ended, and its model is there.
+        assert_ne!(output.status.code(), Some(2), "{command}: {}", text(&output.stderr));
+    }
+    assert!(commands[0].as_str().unwrap().contains("--model results/improved.toml --free-hull"), "{commands:?}");
+    let page = std::fs::read_to_string(CASE.folder.join("results/report.html")).unwrap();
+    assert!(page.contains("Commands to run next") && page.contains(commands[0].as_str().unwrap()));
+}
+
+#[test]
 fn other_commands_take_the_improved_model_and_it_is_better_than_the_base() {
     let evaluate = |model: &str| {
         let arguments = ["evaluate", "study.toml", "--model", model, "--baseline", "results/base.toml", "--json"];

@@ -243,6 +243,22 @@ mod tests {
     }
 
     #[test]
+    fn a_heading_from_east_on_a_course_near_north_is_not_taken_for_velocities_along_the_earth_axes() {
+        let mut run = swing();
+        let psi = values(&mut run, Channel::Psi).clone();
+        let mean = psi.iter().sum::<f64>() / psi.len() as f64;
+        let (x, y) = (values(&mut run, Channel::X).clone(), values(&mut run, Channel::Y).clone());
+        let (sin, cos) = mean.sin_cos();
+        // The run is turned so that it swings around north.
+        *values(&mut run, Channel::X) = x.iter().zip(&y).map(|(x, y)| x * cos + y * sin).collect();
+        *values(&mut run, Channel::Y) = x.iter().zip(&y).map(|(x, y)| y * cos - x * sin).collect();
+        *values(&mut run, Channel::Psi) = psi.iter().map(|p| std::f64::consts::FRAC_PI_2 - (p - mean)).collect();
+        let found = issues(run);
+        assert!(found.iter().all(|i| !i.next_step.contains("velocity_frame")), "{found:?}");
+        assert!(found.iter().any(|i| i.next_step.contains("anticlockwise from east")), "{found:?}");
+    }
+
+    #[test]
     fn a_yaw_rate_of_the_wrong_sign_does_not_accuse_the_rudder() {
         let found = scaled(&[Channel::R], -1.0);
         assert!(found.iter().any(|i| i.channel == Some(Channel::R) && i.fault == "sign_error"), "{found:?}");

@@ -134,7 +134,10 @@ impl Track {
 
     /// Velocities along other axes than the ship's.
     fn wrong_frame(&self, size: f64) -> Option<Issue> {
-        if self.unturned / size > UNTURNED && self.along / size < TURNED {
+        // On a course near due north a heading counted from east leaves the track along the ship's velocity, too; its mirror image leaves less.
+        let mirror = self.mirror_along.hypot(self.mirror_across);
+        let mirrored = 1.0 - mirror / size < MIRROR_LEAVES * (1.0 - self.unturned / size);
+        if self.unturned / size > UNTURNED && self.along / size < TURNED && !mirrored {
             let text = "u and v follow the track along the earth's axes, not the ship's";
             let next = "set `velocity_frame = \"earth\"` in a column map";
             return Some(Issue::new(Severity::Error, "axes_error", text, next).of(Channel::U));

@@ -20,6 +20,13 @@ pub struct AcceptArgs {
     accept: Vec<String>,
 }
 
+impl AcceptArgs {
+    /// The faults by name.
+    pub fn faults(&self) -> &[String] {
+        &self.accept
+    }
+}
+
 /// A warning, or an error that was accepted, in so many of the runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Doubt {

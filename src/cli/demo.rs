@@ -2,7 +2,7 @@
 //! It calls the other commands' functions, and writes the study so that a user can repeat each command on it.
 
 use super::answer::Answer;
-use super::diagnose::{prepared, write_diagnosis};
+use super::diagnose::{continued, prepared, write_diagnosis};
 use super::error::CliError;
 use super::figures::FigureArgs;
 use super::lines::filled;
@@ -22,6 +22,7 @@ use trimtab::fit::Fit;
 use trimtab::numerals::{DASH, number_of, sig};
 use trimtab::ranks::Ranks;
 use trimtab::recording::{Run, Runs, Split};
+use trimtab::report::diagnosis::next_commands;
 
 const LONG: &str = "\
 Runs the whole job on a built-in case: forty recordings of a coastal container ship of 85 m, with the noise of ordinary \
@@ -121,7 +122,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         section(3, "Judged the fit on runs it has not seen", &judged(&evaluation)),
         section(4, "Diagnosed what the model lacks", &diagnosis.headline),
         section(5, "Opened what was concealed", &revealed.sentence(&diagnosis)),
-        next(&args.out),
+        next(&args.out, &diagnosis),
     ];
     let report = Report {
         folder: &args.out,
@@ -240,13 +241,16 @@ fn judged(evaluation: &Evaluation) -> String {
     )
 }
 
-fn next(folder: &Path) -> String {
+fn next(folder: &Path, diagnosis: &Diagnosis) -> String {
     let dir = folder.display();
+    let [fit, turning] =
+        next_commands(diagnosis, &folder.join("study.toml"), &folder.join("results"), &[]).map(|c| continued(&c));
     format!(
         "Read {dir}/results/report.html first: the diagnosis on one page.\nTry next:\n  \
          trimtab check {dir}/study.toml\n  \
          trimtab diagnose {dir}/study.toml\n  \
-         trimtab maneuver turning {dir}/study.toml --model {dir}/results/improved.toml\n  \
+         {fit}\n  \
+         {turning}\n  \
          trimtab help tutorial\n\
          For your own ship copy {dir} and replace ship.toml, runs.csv and the recordings."
     )

@@ -6,15 +6,17 @@ use super::audited::{AcceptArgs, examined};
 use super::error::CliError;
 use super::figures::FigureArgs;
 use super::fit::{fitted_text, model_text};
+use super::lines::{WIDTH, filled};
 use super::load::{Loaded, StudyArgs, no_mechanism};
 use super::output::{Output, OutputArgs, print, print_json};
 use super::progress::progress;
 use serde_json::Value;
+use std::path::Path;
 use trimtab::audit::Issue;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::evaluate::Judging;
 use trimtab::recording::{Run, Runs, Split};
-use trimtab::report::diagnosis::{document, keys_listing, page, pictures, summary};
+use trimtab::report::diagnosis::{document, keys_listing, next_commands, next_words, page, pictures, summary};
 
 const LONG: &str = "\
 Compares the recordings of a study with its model in four steps:
@@ -51,7 +53,8 @@ Example:
 With --out: report.html (everything on one page, readable offline), diagnosis.json,
 improved.toml (a model file with the mechanisms found, which every command takes as --model),
 base.toml (the study's model, refitted alike), figures/ with the CSV behind each and
-figures.md with their captions.
+figures.md with their captions. The answer then ends with the commands to run next: the fit of
+improved.toml with the hull free, and with what differs between port and starboard, and a trial.
 
 Exit code 0 if any verdict was reached; 1 if the recordings cannot answer (verdict
 `insufficient`, or a fault in them that must be mended first or accepted); 2 if it could not run.
@@ -111,9 +114,17 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let diagnosis = diagnosis.map_err(|error| CliError::Diagnose { path: loaded.study.path.clone(), error })?;
 
     let name = &loaded.study.name;
+    let unanswered = diagnosis.verdict == Verdict::Insufficient
+        || audited.refused()
+        || diagnosis.admission.issues.iter().any(Issue::blocking);
+    let next = args.output.out.as_ref().filter(|_| !unanswered);
+    let next = next.map(|folder| Next::new(&diagnosis, &args.study.study, folder, args.accept.faults()));
     let mut json = document(&diagnosis, name)?;
     json["recordings"] = serde_json::to_value(&audited)?;
-    write_files(&mut output, &diagnosis, name, &json)?;
+    if let Some(next) = &next {
+        json["next_commands"] = serde_json::to_value(&next.commands)?;
+    }
+    write_files(&mut output, &diagnosis, name, &json, next.as_ref())?;
     let written = output.close();
     let told = if args.output.json {
         print_json(&json)
@@ -121,18 +132,54 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         let where_to = match (&args.output.out, written.is_there()) {
             (None, _) => "\nGive --out DIR to keep the improved model, the figures and the report.\n".to_owned(),
             (Some(folder), true) => format!(
-                "\nWritten to {}: report.html, diagnosis.json, improved.toml, base.toml, figures/\n",
-                folder.display()
+                "\nWritten to {}: report.html, diagnosis.json, improved.toml, base.toml, figures/\n{}",
+                folder.display(),
+                next.as_ref().map_or_else(String::new, Next::text)
             ),
             (Some(_), false) => String::new(),
         };
         print(&(audited.lines() + &summary(&diagnosis, name) + &where_to))
     };
     written.ended(told)?;
-    let unanswered = diagnosis.verdict == Verdict::Insufficient
-        || audited.refused()
-        || diagnosis.admission.issues.iter().any(Issue::blocking);
     Ok(if unanswered { Answer::No } else { Answer::Yes })
+}
+
+/// What to run after a diagnosis, and why.
+struct Next {
+    why: String,
+    commands: [String; 2],
+}
+
+impl Next {
+    fn new(diagnosis: &Diagnosis, study: &Path, folder: &Path, accepted: &[String]) -> Self {
+        Self { why: next_words(diagnosis), commands: next_commands(diagnosis, study, folder, accepted) }
+    }
+
+    /// The sentence and the commands, which a shell takes in several lines.
+    fn text(&self) -> String {
+        let lines = self.commands.iter().map(|command| format!("  {}\n", continued(command)));
+        format!("\n{}{}", filled(&self.why, 0), lines.collect::<String>())
+    }
+}
+
+/// A command in lines of at most 80 characters, each but the last ended as a shell wants it; an option stays with its value.
+pub fn continued(command: &str) -> String {
+    let mut text = String::new();
+    let mut column = 2;
+    for (i, part) in command.split(" --").enumerate() {
+        let part = if i == 0 { part.to_owned() } else { format!("--{part}") };
+        let length = part.chars().count();
+        if i > 0 && column + 1 + length + 2 > WIDTH {
+            text += " \\\n      ";
+            column = 6;
+        } else if i > 0 {
+            text.push(' ');
+            column += 1;
+        }
+        text += &part;
+        column += length;
+    }
+    text
 }
 
 /// Settings whose proof judges as the study's tables `[fit]` and `[evaluate]` say.
@@ -143,11 +190,17 @@ pub fn prepared(loaded: &Loaded, settings: Settings) -> Result<Settings, CliErro
 /// Writes the files of a diagnosis, as this command has them, for another command; gives its document.
 pub fn write_diagnosis(output: &mut Output, diagnosis: &Diagnosis, name: &str) -> Result<Value, CliError> {
     let json = document(diagnosis, name)?;
-    write_files(output, diagnosis, name, &json)?;
+    write_files(output, diagnosis, name, &json, None)?;
     Ok(json)
 }
 
-fn write_files(output: &mut Output, diagnosis: &Diagnosis, name: &str, json: &Value) -> Result<(), CliError> {
+fn write_files(
+    output: &mut Output,
+    diagnosis: &Diagnosis,
+    name: &str,
+    json: &Value,
+    next: Option<&Next>,
+) -> Result<(), CliError> {
     if output.has_folder() {
         output.file("diagnosis.json", (serde_json::to_string_pretty(json)? + "\n").as_bytes());
         let mut improved = diagnosis.model.clone();
@@ -157,7 +210,8 @@ fn write_files(output: &mut Output, diagnosis: &Diagnosis, name: &str, json: &Va
         base.name += ", refitted";
         output.file("improved.toml", improved.as_bytes());
         output.file("base.toml", model_text(&base)?.as_bytes());
-        let (pictures, from) = (pictures(diagnosis), output.provenance());
+        let (pictures, mut from) = (pictures(diagnosis), output.provenance());
+        from.next = next.map(|next| (next.why.clone(), next.commands.to_vec()));
         output.file("report.html", page(diagnosis, name, &pictures, &from)?.render().as_bytes());
         output.figures(
             pictures.into_iter().map(|p| (format!("figures/{}", p.stem), p.figure.caption(p.caption))).collect(),

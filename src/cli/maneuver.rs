@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::files::Names;
 use trimtab::maneuver::{
-    Approach, DRAWS, Ended, ManeuverSettings, Measured, SEED, Side, Trial, calm_water, drawn, set_intervals,
+    Approach, DRAWS, Drawn, Ended, ManeuverSettings, Measured, SEED, Side, Trial, calm_water, drawn, set_intervals,
     stopping_trial, turning_trial, zigzag_trial,
 };
 use trimtab::model::Model;
@@ -37,7 +37,8 @@ The trials are sailed in calm water: what the model has of wind, waves, current,
     out, and the answer says which. --as-found keeps it.
 
 A model file of `trimtab fit` or `trimtab diagnose` holds the covariance of its parameters. The measures then have 95 % \
-    intervals: 2.97 [2.85, 3.09] are the value with the estimates and the quantiles of the trials with drawn parameters.
+    intervals: 2.97 [2.85, 3.09] are the value with the estimates and what the covariance moves it by, to first order, from trials \
+    with drawn parameters.
 
 The approach is straight ahead at a speed that the propeller holds: give --speed or --rpm, or set them in [maneuver] of \
     the study with rudder rate, engine rate and angles; without either the approach is at Froude number 0.15.";
@@ -54,10 +55,10 @@ pub struct Args {
 enum Kind {
     /// Turning circles: advance, transfer, tactical and steady diameter, speed loss, drift
     #[command(after_long_help = TURNING)]
-    Turning(TrialArgs),
+    Turning(TurningArgs),
     /// Zigzags 10/10 and 20/20: overshoots, initial turning, period
     #[command(after_long_help = ZIGZAG)]
-    Zigzag(TrialArgs),
+    Zigzag(ZigzagArgs),
     /// A crash stop: track reach, head reach, lateral deviation, time
     #[command(after_long_help = STOPPING)]
     Stopping(TrialArgs),
@@ -95,6 +96,24 @@ JSON: as for turning, with measures track_reach, head_reach, lateral_deviation [
     absent: not reached.";
 
 #[derive(Debug, clap::Args)]
+struct TurningArgs {
+    /// Rudder angle [deg]; instead of `turning_deg` in [maneuver], 35 without either.
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    angle: Option<f64>,
+    #[command(flatten)]
+    trial: TrialArgs,
+}
+
+#[derive(Debug, clap::Args)]
+struct ZigzagArgs {
+    /// Rudder and heading angle [deg] of the one zigzag to sail; instead of `zigzag_deg` in [maneuver], 10 and 20 without either.
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    angle: Option<f64>,
+    #[command(flatten)]
+    trial: TrialArgs,
+}
+
+#[derive(Debug, clap::Args)]
 struct TrialArgs {
     #[command(flatten)]
     study: StudyArgs,
@@ -107,7 +126,7 @@ struct TrialArgs {
     /// Keep the environment and sensor terms of the model.
     #[arg(long)]
     as_found: bool,
-    /// Draws of the covariance for the 95 % intervals; 0 for none.
+    /// Draws of the covariance for the 95 % intervals, each sailed twice; 0 for none.
     #[arg(long, value_name = "N", default_value_t = DRAWS)]
     draws: usize,
     /// Seed of the draws.
@@ -155,19 +174,25 @@ struct Prepared {
     sessions: usize,
     model_path: PathBuf,
     uncertainty: Option<Uncertainty>,
-    /// Parameter vectors drawn from it.
-    drawn: Vec<Vec<f64>>,
+    /// Draws of it.
+    drawn: Vec<Drawn>,
     seed: u64,
 }
 
 impl Prepared {
-    fn new(args: &TrialArgs, output: &mut Output) -> Result<Self, CliError> {
+    /// `change` puts what only some trials have as an option into the settings of the study.
+    fn new(
+        args: &TrialArgs,
+        output: &mut Output,
+        change: impl FnOnce(&mut ManeuverSettings),
+    ) -> Result<Self, CliError> {
         let loaded = Loaded::new(&args.study)?;
         output.reads(&loaded, false);
         let mut settings = loaded.maneuver_settings()?;
         if args.speed.is_some() || args.rpm.is_some() {
             (settings.speed, settings.n_rpm) = (args.speed, args.rpm);
         }
+        change(&mut settings);
         output.settings("maneuver", &settings)?;
         let path = loaded.study.path.clone();
         let (calm, around) = calm_water(&loaded.model);
@@ -239,9 +264,9 @@ impl Prepared {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     match &args.trial {
-        Kind::Turning(args) => {
+        Kind::Turning(TurningArgs { angle, trial: args }) => {
             let mut output = Output::new("maneuver turning", &args.output)?.drawn_as(&args.figures);
-            let p = Prepared::new(args, &mut output)?;
+            let p = Prepared::new(args, &mut output, |settings| settings.turning_deg = angle.or(settings.turning_deg))?;
             let angle = p.settings.turning_angle();
             let sail = |approach: &Approach, theta: &[f64]| {
                 Side::BOTH.map(|side| turning_trial(&p.model, theta, approach, side, angle)).to_vec()
@@ -250,9 +275,11 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             finish(&mut output, &p, &trials, "turning", || turning_figure(&p.model.ship, &trials))?;
             output.finish(&text(&p, &trials), &report(&p, &trials))
         }
-        Kind::Zigzag(args) => {
+        Kind::Zigzag(ZigzagArgs { angle, trial: args }) => {
             let mut output = Output::new("maneuver zigzag", &args.output)?.drawn_as(&args.figures);
-            let p = Prepared::new(args, &mut output)?;
+            let one = angle.map(|a| vec![[a, a]]);
+            let p =
+                Prepared::new(args, &mut output, |settings| settings.zigzag_deg = one.or(settings.zigzag_deg.take()))?;
             let angles = p.settings.zigzag_angles();
             let sail = |approach: &Approach, theta: &[f64]| {
                 let both = |a: &[f64; 2]| Side::BOTH.map(|side| zigzag_trial(&p.model, theta, approach, side, *a));
@@ -264,7 +291,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         }
         Kind::Stopping(args) => {
             let mut output = Output::new("maneuver stopping", &args.output)?.drawn_as(&args.figures);
-            let p = Prepared::new(args, &mut output)?;
+            let p = Prepared::new(args, &mut output, |_| {})?;
             let sail = |approach: &Approach, theta: &[f64]| vec![stopping_trial(&p.model, theta, approach)];
             let trials = sailed(&p, "stopping", &sail);
             finish(&mut output, &p, &trials, "stopping", || stopping_figure(&p.model.ship, &trials[0]))?;

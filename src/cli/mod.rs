@@ -31,6 +31,7 @@ mod sweep;
 mod terminal;
 mod terms;
 mod unreached;
+mod wanted;
 
 use answer::Answer;
 use clap::error::ContextKind;
@@ -41,6 +42,7 @@ use std::process::ExitCode;
 use terminal::{plain, tell};
 use trimtab::ranks::{Ranks, Traffic};
 use trimtab::report::{USUAL, set_width};
+use wanted::wanted;
 
 const AFTER_HELP: &str = "\
 Begin with
@@ -116,6 +118,9 @@ fn program() -> clap::Command {
     signed(Cli::command())
 }
 
+/// Begin of the last line of a message about an argument.
+const MORE: &str = "For more information";
+
 /// A message about an argument with what a number must be said as to a user, not as the reader of numbers says it.
 fn in_words(message: &str) -> String {
     message
@@ -139,7 +144,13 @@ pub fn run() -> ExitCode {
         Err(mut wrong) if wrong.use_stderr() => {
             // How to pass what looks like an option as a file is no help to who misspelt an option.
             wrong.remove(ContextKind::Suggested);
-            tell(in_words(&wrong.render().to_string()).trim_end());
+            let arguments: Vec<String> =
+                std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()).collect();
+            let mut message = in_words(&wrong.render().to_string());
+            if let Some(words) = wanted(&wrong, &program(), &arguments) {
+                message = message.replace(MORE, &format!("{words}\n\n{MORE}"));
+            }
+            tell(message.trim_end());
             return ExitCode::from(2);
         }
         // Help, or the version.

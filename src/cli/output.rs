@@ -151,7 +151,7 @@ impl Output {
         let files = self.folder.iter().flat_map(ResultFolder::inputs).map(file).collect();
         let given = arguments(std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()));
         let doubts = self.audited.as_ref().map(Audited::told);
-        Provenance { command: format!("trimtab {}", given.join(" ")), files, doubts }
+        Provenance { command: format!("trimtab {}", given.join(" ")), next: None, files, doubts }
     }
 
     /// A file in the folder, if there is one, that can be seen while the command runs.

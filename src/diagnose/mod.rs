@@ -68,6 +68,7 @@ pub mod place;
 mod problem;
 pub mod prove;
 pub mod push;
+pub mod refine;
 #[cfg(feature = "ipopt")]
 pub mod refit;
 pub mod region;

@@ -137,6 +137,8 @@ pub const NOISE_DAMPING: Damping = Damping {
 pub const STARTS: [f64; 3] = [1.0, 0.3, 0.1];
 /// Multiples at which the refit of an effect that grows with the square of its amplitude may start, the others held.
 pub const STARTS_OF_SQUARES: [f64; 3] = [3.0, 10.0, 30.0];
+/// p-value below which port and starboard of the ship itself are told apart: the level at which a diagnosis names anything (`alpha`).
+pub const SIDES_DIFFER: f64 = 0.01;
 /// Standard deviations of a run's own start: x and y in ship lengths, heading \[rad\], u and v in units of the root of gravity
 /// times length, yaw rate in that unit over the length.
 pub const START_SPREAD: [f64; 6] = [0.5, 0.5, 0.2, 0.05, 0.05, 0.1];

@@ -2,8 +2,8 @@
 //! They are predictions of the model; none is compared with a recorded trial here.
 
 use crate::maneuver::{
-    Approach, DRAWS, ManeuverError, ManeuverSettings, Measured, SEED, Side, Trial, Turning, Zigzag, calm_water, drawn,
-    set_intervals, turning_trial, zigzag_trial,
+    Approach, DRAWS, Drawn, ManeuverError, ManeuverSettings, Measured, SEED, Side, Trial, Turning, Zigzag, calm_water,
+    drawn, set_intervals, turning_trial, zigzag_trial,
 };
 use crate::model::Model;
 use crate::uncertainty::Uncertainty;
@@ -63,7 +63,7 @@ fn with_intervals<M: Measured + Send>(
     settings: &ManeuverSettings,
     approach: &Approach,
     theta: &[f64],
-    draws: &[Vec<f64>],
+    draws: &[Drawn],
     sail: impl Fn(&Approach, &[f64]) -> Vec<Trial<M>> + Sync,
 ) -> Vec<Trial<M>> {
     let mut trials = sail(approach, theta);

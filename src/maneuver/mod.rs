@@ -17,7 +17,7 @@ mod zigzag;
 pub use approach::{Approach, ManeuverSettings};
 pub use calm::calm_water;
 pub use error::ManeuverError;
-pub use interval::{DRAWS, SEED, drawn, set_intervals};
+pub use interval::{DRAWS, Drawn, SEED, drawn, set_intervals};
 pub use measures::{Measured, Quantity, Steady, Stopping, Turning, Zigzag};
 pub use stopping::{stopping, stopping_trial};
 pub use track::Track;

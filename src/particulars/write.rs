@@ -8,15 +8,15 @@ use crate::ship::Ship;
 use toml::Value;
 
 /// Longest line of a comment.
-const WIDTH: usize = 120;
+const WIDTH: usize = 80;
 
 /// A ship as the text of a ship file, in SI units.
 pub(super) fn ship_text(kind: &str, speed: f64, outside: &[String], entries: &[Entry]) -> String {
-    let mut text = format!(
-        "# A ship file of `trimtab new`, type {kind}. Values without \"given\" are estimates for a service speed of {} m/s:\n# put what you know in their place. ",
+    let mut text = comment(&format!(
+        "A ship file of `trimtab new`, type {kind}. Values without \"given\" are estimates for a service speed of {} m/s: put what you know in \
+         their place. Hull coefficients are estimated whenever the file is read (Clarke 1982, Inoue 1981); a table [coefficients] replaces them.",
         sig(speed, 4)
-    );
-    text += "Hull coefficients are estimated whenever the file is read (Clarke 1982,\n# Inoue 1981); a table [coefficients] replaces them.\n";
+    ));
     for sentence in outside {
         text += &comment(&format!("Outside the range of the estimates: {sentence}."));
     }
@@ -53,11 +53,11 @@ impl Estimated {
     /// is set.
     pub fn model_file(&self) -> String {
         let ship = &self.ship;
-        let mut text = format!(
-            "# Model of {} by `trimtab new`. The priors are the spreads of the estimates in the ship file.\n",
+        let mut text = comment(&format!(
+            "Model of {} by `trimtab new`. The priors are the spreads of the estimates in the ship file. Free are the paper's eleven parameters \
+             (p0 to p10); `free = true` frees another with its prior, `hull = \"free\"` all coefficients of the hull.",
             serde_json::Value::from(ship.name.as_str())
-        );
-        text += "# Free are the paper's eleven parameters (p0 to p10); `free = true` frees another with its prior, `hull = \"free\"` all coefficients of the hull.\n";
+        ));
         text += &format!("name = {}\nform = \"regular\"\n\n[parameters]\n", Value::String(ship.name.clone()));
         for prior in self.priors() {
             let value = if prior.free { format!("value = {}, ", float(prior.mean)) } else { String::new() };

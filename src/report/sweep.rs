@@ -50,12 +50,16 @@ pub fn sensitivities_table(all: &[Sensitivity]) -> Table {
             names.push(name);
         }
     }
-    let header = ["parameter", "std. error", "position [m]", "heading [rad]"].into_iter().chain(names.iter().copied());
-    let mut table = Table::new(header);
+    // People read angles in degrees; the library has them in radians.
+    let degrees = |name: &str| name.replace("[rad]", "[deg]");
+    let header = ["parameter", "std. error", "position [m]", "heading [deg]"].map(str::to_owned);
+    let mut table = Table::new(header.into_iter().chain(names.iter().map(|name| degrees(name))));
     let number = |x: Option<f64>| x.map_or_else(|| DASH.to_owned(), |x| sig(x, 3));
     for s in all {
-        let trial = |name: &&str| s.trials.iter().find(|(n, _)| n == name).map(|(_, v)| *v);
-        let own = [s.parameter.clone(), sig(s.standard_error, 3), number(s.position), number(s.heading)];
+        let told = |name: &str, v: f64| if name.ends_with("[rad]") { v.to_degrees() } else { v };
+        let trial = |name: &&str| s.trials.iter().find(|(n, _)| n == name).map(|(n, v)| told(n, *v));
+        let heading = s.heading.map(f64::to_degrees);
+        let own = [s.parameter.clone(), sig(s.standard_error, 3), number(s.position), number(heading)];
         table.row(own.into_iter().chain(names.iter().map(|name| number(trial(name)))));
     }
     table
@@ -96,8 +100,11 @@ pub fn profiles_figure(profiles: &[Profile], limit: f64) -> Figure {
         let (low, high) =
             (p.points.first().map_or(p.estimate, |q| q.value), p.points.last().map_or(p.estimate, |q| q.value));
         let normal = (0..=40).map(|i| low + (high - low) * f64::from(i) / 40.0).map(|v| (v, quadratic(v)));
+        // A value that a constraint refuses costs any amount: the panel shows the fall as far as a standard error tells it.
+        let least = points.iter().map(|(_, fall)| *fall).fold(0.0_f64, f64::min);
+        let top = quadratic(low).max(quadratic(high)).max(1.3 * limit);
         let label = if p.unit == "-" { p.parameter.clone() } else { format!("{} [{}]", p.parameter, p.unit) };
-        Panel::new("", Axis::new(label), Axis::new("2 x fall of log-likelihood").including(0.0).including(1.3 * limit))
+        Panel::new("", Axis::new(label), Axis::new("2 x fall of log-likelihood").range(least - 0.05 * top, 1.1 * top))
             .with(Layer::line("profile", FITTED, points.clone()))
             .with(Layer::scatter("fits", FITTED, points).unlisted())
             .with(Layer::line("standard error", RECORDED, normal).dashed())
@@ -108,7 +115,8 @@ pub fn profiles_figure(profiles: &[Profile], limit: f64) -> Figure {
         .panel_size(660, 520)
         .caption(
             "Twice the fall of the log-likelihood with a parameter held at a value and all others fitted again; dashed: what its standard \
-             error alone says. The 95 % interval lies below the horizontal line.",
+             error alone says. The 95 % interval lies below the horizontal line. A profile that leaves its panel, or has no point, is at \
+             values that constraints or the other parameters refuse.",
         )
         .with_all(profiles.iter().map(panel))
 }

@@ -16,6 +16,8 @@ const MOST_FILES: usize = 400;
 pub struct Provenance {
     /// The command line.
     pub command: String,
+    /// What to run after a diagnosis, and why; nothing where no model was improved.
+    pub next: Option<(String, Vec<String>)>,
     /// The files.
     pub files: Vec<SourceFile>,
     /// What the audit of the recordings tells, a sentence each; absent where none was made.

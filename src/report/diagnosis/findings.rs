@@ -3,7 +3,7 @@
 
 use super::law::law;
 use super::names::about;
-use super::phrases::{UNDECIDED, adequacy_words, amplitude, p_value};
+use super::phrases::{adequacy_words, amplitude, p_value};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::finding::Amplitude;
 use crate::diagnose::sides::Sides;
@@ -48,9 +48,8 @@ pub(super) fn model(d: &Diagnosis) -> Vec<String> {
 /// Whether the ship's own two sides differ, and by what.
 fn own_sides(s: &Sides, units: Units) -> String {
     let differ = adequacy_words(s.p);
-    let clear = |a: &&Amplitude| s.p < UNDECIDED && a.value.abs() > 1.96 * a.error;
     let one = |a: &Amplitude| format!("{} = {}", a.name, amplitude(a, units));
-    let by: Vec<String> = s.parameters.iter().filter(clear).take(3).map(one).collect();
+    let by: Vec<String> = s.clear().take(3).map(one).collect();
     let by = if by.is_empty() { String::new() } else { format!(": {}", by.join(", ")) };
     let p = p_value(s.p);
     format!("port and starboard of the ship itself differ, as with a single screw: {differ} ({p}){by}")

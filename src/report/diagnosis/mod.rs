@@ -18,6 +18,7 @@ mod law;
 mod limits;
 mod location;
 mod names;
+mod next;
 #[cfg(feature = "plot")]
 mod opening;
 #[cfg(feature = "plot")]
@@ -44,6 +45,7 @@ mod verdict;
 pub use appendix::{Provenance, SourceFile};
 pub use document::{document, keys, keys_listing};
 pub use names::mechanism_names;
+pub use next::{next_commands, next_words};
 #[cfg(feature = "plot")]
 pub use page::page;
 pub use parts::{Part, parts};

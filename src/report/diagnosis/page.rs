@@ -17,6 +17,7 @@ use crate::plot::FigureError;
 use crate::report::html::{Page, Section};
 use crate::report::table::Table;
 use crate::report::units::Units;
+use maud::html;
 
 /// The diagnosis as one page that carries its figures.
 ///
@@ -34,14 +35,14 @@ pub fn page(d: &Diagnosis, study: &str, pictures: &[Picture], from: &Provenance)
     let mut sections: Vec<Section> = (0..d.findings.len()).filter_map(|i| section(d, i)).collect();
     sections.extend(super::law::section(d));
     sections.extend(withdrawn_section(d));
-    sections.extend(body(d, pictures));
+    sections.extend(body(d, pictures, from));
     sections.extend([glossary(), ship(d), data(d, from), command(d, from)]);
     let page = sections.into_iter().fold(page, Page::section);
     Ok(page.footer(format!("trimtab {}. This page needs nothing outside itself.", env!("CARGO_PKG_VERSION"))))
 }
 
 /// The sections on all findings together, each with its figures.
-fn body(d: &Diagnosis, pictures: &[Picture]) -> Vec<Section> {
+fn body(d: &Diagnosis, pictures: &[Picture], from: &Provenance) -> Vec<Section> {
     let with = |section: Section, part: &str| {
         pictures.iter().filter(|p| p.part == part).fold(section, |s, p| s.figure(p.stem, &p.figure, &p.caption))
     };
@@ -60,6 +61,7 @@ fn body(d: &Diagnosis, pictures: &[Picture]) -> Vec<Section> {
         cannot_show(d),
         Section::new("Trial to sail next").list(next_trial(d)),
     ];
+    out.extend(next_commands(from));
     out.extend(reliability(d));
     out
 }
@@ -92,6 +94,13 @@ fn cannot_show(d: &Diagnosis) -> Section {
         return section;
     }
     section.table(&table, "Smallest sizes that are detected with a probability of 80 % in such recordings.")
+}
+
+/// What to run next; nothing where no model was improved.
+fn next_commands(from: &Provenance) -> Option<Section> {
+    let (why, commands) = from.next.as_ref()?;
+    let lines = html! { @for command in commands { p { code { (command) } } } };
+    Some(Section::new("Commands to run next").text(why).markup(lines))
 }
 
 /// Repetitions, error rates and notes on the recordings; nothing where there are none.
