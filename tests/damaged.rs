@@ -241,6 +241,96 @@ fn sound_recordings_of_other_kinds_raise_nothing() {
     }
 }
 
+/// A ship of the same length that is steered by its heading, recorded each second over ground in a current, with the noise of sensors:
+/// `order` gives the rudder that is asked for from time, heading, yaw rate and rudder, which a gear of 2.5 deg/s follows.
+fn steered(t: &mut Table, seed: u64, order: impl Fn(f64, f64, f64, f64) -> f64) {
+    let (length, speed, gear) = (85.0, 5.0, 2.5_f64.to_radians());
+    let mut random = seed;
+    // Noise from -0.5 to 0.5 by a linear congruential generator (Knuth, MMIX).
+    let mut noise = || {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let [mut x, mut y, mut psi, mut v, mut r, mut delta, mut gust] =
+        [0.0, 0.0, 0.4 + seed as f64, 0.0, 0.0, 0.0, 0.0_f64];
+    let first = psi;
+    let mut rows = Vec::new();
+    for second in 0..300 {
+        let ground = [speed + 0.5 * psi.cos(), v - 0.5 * psi.sin()];
+        let place = [x + noise(), y + noise(), psi + 5e-3 * noise()];
+        rows.push([
+            place[0],
+            place[1],
+            place[2],
+            ground[0] + 0.1 * noise(),
+            ground[1] + 0.8 * noise(),
+            r + 5e-4 * noise(),
+            2.0,
+            delta,
+        ]);
+        gust = 0.95 * gust + 2e-4 * noise();
+        for k in 0..20 {
+            let (h, now) = (0.05, f64::from(second) + 0.05 * f64::from(k));
+            delta += (order(now, psi - first, r, delta) - delta).clamp(-gear * h, gear * h);
+            // A hull that is nearly unstable on its course, so that its sway has a long memory; rudder positive to starboard.
+            let (vs, rs, step) = (v / speed, r * length / speed, h * speed / length);
+            v += step * speed * (-0.5 * vs - 0.3 * rs - 0.18 * delta);
+            r += step * speed / length * (-2.75 * vs - 1.73 * rs + 1.45 * delta) + h * gust;
+            psi += h * r;
+            x += h * (speed * psi.cos() - v * psi.sin() + 0.5);
+            y += h * (speed * psi.sin() + v * psi.cos());
+        }
+    }
+    t.rows = (0..rows.len()).map(|_| t.rows[0].clone()).collect();
+    t.set("t", &(0..rows.len()).map(|i| i as f64).collect::<Vec<_>>());
+    for (i, name) in ["x", "y", "psi", "u", "v", "r", "n", "delta"].iter().enumerate() {
+        t.set(name, &rows.iter().map(|r| r[i]).collect::<Vec<_>>());
+    }
+}
+
+/// Every run steered, by an autopilot that changes course, or in a zigzag of 20 deg; the rudder is recorded so many rows late.
+fn closed_loop(zigzag: bool, late: usize) -> Files {
+    let mut files = Files::sound();
+    for (i, run) in files.runs().into_iter().enumerate() {
+        let course = |now: f64| if now < 40.0 { 0.0 } else { 0.3 + 0.1 * (i % 7) as f64 };
+        let autopilot = |now: f64, psi: f64, r: f64, _: f64| (1.2 * (course(now) - psi) - 12.0 * r).clamp(-0.35, 0.35);
+        let switch = |now: f64, psi: f64, _: f64, delta: f64| {
+            let side = if psi > 0.35 {
+                -1.0
+            } else if psi < -0.35 || delta == 0.0 {
+                1.0
+            } else {
+                delta.signum()
+            };
+            if now < 10.0 + i as f64 { 0.0 } else { 0.35 * side }
+        };
+        files = files.run(&run, |t| {
+            if zigzag {
+                steered(t, i as u64, switch)
+            } else {
+                steered(t, i as u64, autopilot)
+            }
+            t.late("delta", late);
+        });
+    }
+    files
+}
+
+#[test]
+fn a_rudder_that_is_steered_by_the_heading_is_not_late_and_one_that_is_late_is_told() {
+    for zigzag in [false, true] {
+        let sound = doubts(&closed_loop(zigzag, 0).audit());
+        assert!(sound.is_empty(), "{zigzag}: {sound:#?}");
+        for late in [4, 8] {
+            let told = doubts(&closed_loop(zigzag, late).audit());
+            let right = |(run, issue): &(String, Issue)| {
+                run == "study" && issue.fault == "clock" && issue.channel == Some(Channel::Delta)
+            };
+            assert!(told.iter().any(right), "{zigzag} {late}: {told:#?}");
+        }
+    }
+}
+
 #[test]
 fn of_a_run_that_is_cut_the_part_is_audited_and_each_thing_is_told_once() {
     // The damaged row is in the first part of three of one file; the unused column is told once a file.

@@ -127,6 +127,9 @@ pub const MIRROR_LEAVES: f64 = 0.25;
 /// Angle between track and velocity \[deg\] from which the ship moves against its velocity, from which the axes are wrong, and from
 /// which a heading may be offset.
 pub const TRACK_ANGLES: [f64; 3] = [170.0, 60.0, 3.0];
+/// Ratio and angle of track and velocity are off where they are beyond their limits by this many standard errors: a study has tens of
+/// runs, and of short ones the error is itself known to a third.
+pub const TRACK_ERRORS: f64 = 4.0;
 /// Sway of the wrong sign: with the sign turned it leaves less than this share of what is left without,
 pub const SWAY_LEAVES: f64 = 0.3;
 /// at a coherence below this.

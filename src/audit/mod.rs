@@ -5,6 +5,7 @@
 
 mod across;
 mod clocks;
+mod course;
 #[cfg(test)]
 mod example;
 mod fill;

@@ -2,12 +2,13 @@
 //! Wrong units of velocity show here too, by their gain; heading against yaw rate is in `units`.
 
 use super::clocks::Pair;
+use super::course::Course;
 use super::issue::{Issue, Severity};
 use super::kinematics::{Kinematics, Proportion};
 use super::limits::{
     AGAINST, AGAINST_RUDDER, AGAINST_TURN, ASTERN_SHARE, ASTERN_SPEED, CALIBRATED, COHERENT, EXPLAINS, LEVER_SHARE,
     LEVER_TURN, MIRROR_LEAVES, MIRRORED, NOT_MIRRORED, SIGN_EVIDENCE, SWAY_COHERENCE, SWAY_LEAVES, TRACK_ANGLES,
-    TURNED, UNTURNED,
+    TRACK_ERRORS, TURNED, UNTURNED,
 };
 use super::response::Curve;
 use super::series::Series;
@@ -38,6 +39,8 @@ pub struct Track {
     sway: Proportion,
     lever: Proportion,
     longest: Pair,
+    /// How surely ratio and angle are known.
+    course: Course,
 }
 
 impl Track {
@@ -57,6 +60,7 @@ impl Track {
         let rows = x.len();
         let north: Vec<f64> = (0..rows).map(|i| u[i] * psi[i].cos() - v[i] * psi[i].sin()).collect();
         let east: Vec<f64> = (0..rows).map(|i| u[i] * psi[i].sin() + v[i] * psi[i].cos()).collect();
+        self.course.add(series, [x, y], [&north, &east]);
         for s in &series.stretches {
             let smooth = |values: &[f64]| series.smooth(values, s);
             let (dx, dy) = (series.slope(x, s), series.slope(y, s));
@@ -198,8 +202,11 @@ impl Track {
             push(Severity::Error, "sign_error", Channel::U, text, next);
             return true;
         }
+        let [(ratio, ratio_error), (angle, angle_error)] =
+            self.course.ratio_and_angle().unwrap_or([(gain, 0.0), (degrees.to_radians(), 0.0)]);
+        let (degrees, uncertain) = (angle.to_degrees(), TRACK_ERRORS * angle_error.to_degrees());
         // Without v, a ship that drifts in turns seems to run beside its heading.
-        if degrees.abs() > offset && self.sway.known() && !self.sway_turned() {
+        if degrees.abs() > offset + uncertain && self.sway.known() && !self.sway_turned() {
             let severity = if degrees.abs() > wrong { Severity::Error } else { Severity::Warning };
             let text = format!("the track runs {degrees:.1} deg clockwise of heading and velocity");
             let next = "is the heading offset, or a current left out? `offset` in a column map corrects a heading";
@@ -211,10 +218,8 @@ impl Track {
             push(Severity::Error, told.fault, Channel::U, text, told.next);
             return true;
         }
-        // Noise in either pulls the gain the one way or the other: it lies between the two bounds of Frisch.
-        let most = self.track / self.along.hypot(self.across);
-        if gain > 1.0 + CALIBRATED || most < 1.0 - CALIBRATED {
-            let text = format!("the track is {gain:.3} times as fast as the velocity");
+        if (ratio - 1.0).abs() > CALIBRATED + TRACK_ERRORS * ratio_error {
+            let text = format!("the track is {ratio:.3} times as fast as the velocity");
             let next = "check the log (`scale` in a column map), through-water against over-ground speed, and the units of x and y";
             push(Severity::Warning, "calibration", Channel::U, text, next);
         }

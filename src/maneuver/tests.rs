@@ -5,7 +5,6 @@ use super::*;
 use crate::model::Model;
 use crate::physics::Form;
 use crate::ship::Ship;
-use crate::statistics::median;
 use crate::uncertainty::Uncertainty;
 use std::f64::consts::PI;
 use std::path::Path;
