@@ -348,7 +348,7 @@ fn signs_and_axes() -> Vec<Mistake> {
             "a heading that is 11 degrees off",
             |s| column(s, 3, "psi [rad]", |_, row| (row[3] + 0.2).to_string()),
             CHECK,
-            &["(channel psi): the track runs -11.4 deg clockwise of heading", "`offset` in a column map"],
+            &["(channel psi): the track runs -11.5 deg clockwise of heading", "`offset` in a column map"],
             |s| columns(s, "psi = { offset = -0.2 }"),
         ),
     ]
