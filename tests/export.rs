@@ -131,7 +131,11 @@ fn every_form_holds_the_same_numbers_and_octave_finds_the_same_force() {
     }
     assert_eq!(numbers["ship.resistance.linear"], 34187.03);
     assert_eq!(script.matches('(').count(), script.matches(')').count());
-    study.does(&["export", "model.toml", "--ship", "ship.toml", "--format", "matlab", "--out", "ship.m"]);
+    study.does(&["export", "model.toml", "--ship", "ship.toml", "--out", "ship.m"]);
+    assert_eq!(std::fs::read_to_string(study.path("ship.m")).unwrap(), script);
+    // The ship file of the study is an input, and is still there afterwards.
+    let taken = study.refuses(&["export", "model.toml", "--ship", "ship.toml", "--out", "ship.toml"]);
+    contains_all(&taken, &["ship.toml is there already and is not overwritten", "another name"]);
     contains_all(&study.refuses(&["export", "absent.toml", "--ship", "ship.toml"]), &["absent.toml", "cannot read"]);
 
     let ship = Ship::read(&study.path("ship.toml")).unwrap();

@@ -4,8 +4,8 @@
 use super::answer::Answer;
 use super::error::CliError;
 use super::load::read_model;
-use super::output::{print, print_file};
-use std::path::PathBuf;
+use super::output::{is_new, print, print_file};
+use std::path::{Path, PathBuf};
 use trimtab::export::export;
 use trimtab::files::write_whole;
 use trimtab::ship::Ship;
@@ -21,7 +21,7 @@ The ship is that of the study, or of --ship. Terms beyond hull, flow, resistance
 
 const AFTER: &str = "\
 Examples:
-  trimtab export results/fitted.toml --study study.toml --format matlab --out ship.m
+  trimtab export results/fitted.toml --study study.toml --out ship.m
   trimtab export results/fitted.toml --ship ship.toml --format json";
 
 /// Writes a fitted ship as HD and MMG coefficients for other programs
@@ -37,9 +37,9 @@ pub struct Args {
     /// Ship file, instead of that of a study.
     #[arg(long, value_name = "FILE", conflicts_with = "study")]
     ship: Option<PathBuf>,
-    /// Form of the file.
-    #[arg(long, value_name = "FORMAT", default_value = "toml")]
-    format: Format,
+    /// Form of the file; without, that of the ending of --out (.toml, .json, .m), and else TOML.
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<Format>,
     /// File to write; without, it is printed.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -56,15 +56,29 @@ enum Format {
     Matlab,
 }
 
+impl Format {
+    /// By the ending of a file's name.
+    fn by_ending(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()? {
+            "toml" => Some(Self::Toml),
+            "json" => Some(Self::Json),
+            "m" => Some(Self::Matlab),
+            _ => None,
+        }
+    }
+}
+
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
+    args.out.as_deref().map_or(Ok(()), is_new)?;
     let ship = match (&args.ship, &args.study) {
         (Some(ship), _) => ship.clone(),
         (None, Some(study)) => Study::read_without_runs(study)?.ship,
         (None, None) => return Err(CliError::Argument("give --study or --ship".into())),
     };
     let exported = export(&read_model(&args.model, Ship::read(&ship)?)?);
-    let text = match args.format {
+    let by_ending = || args.out.as_deref().and_then(Format::by_ending);
+    let text = match args.format.or_else(by_ending).unwrap_or(Format::Toml) {
         Format::Toml => {
             toml::to_string(&exported).map_err(|e| CliError::Format { format: "TOML", message: e.to_string() })?
         }

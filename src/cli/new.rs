@@ -3,7 +3,7 @@
 
 use super::answer::Answer;
 use super::error::CliError;
-use super::output::{print, print_file, print_json};
+use super::output::{is_new, print, print_file, print_json};
 use super::terminal::tell;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -105,10 +105,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     if let Some(speed) = args.speed.filter(|s| !(s.is_finite() && *s > 0.0)) {
         return Err(CliError::Argument(format!("--speed {speed} must be a positive number, in m/s")));
     }
-    if let Some(path) = [&args.out, &args.model].into_iter().flatten().find(|p| p.exists()) {
-        let path = path.display();
-        return Err(CliError::Argument(format!("{path} is there already and is not overwritten; give another name")));
-    }
+    [&args.out, &args.model].into_iter().flatten().try_for_each(|path| is_new(path))?;
     let given = given(args)?;
     let estimated = estimate(kind, &given, args.speed).map_err(|e| CliError::Argument(in_arguments(&e.to_string())))?;
     for sentence in &estimated.outside {

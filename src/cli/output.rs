@@ -416,6 +416,15 @@ pub fn print(text: &str) -> Result<(), CliError> {
     printed(stdout.write_all(shown(&plain(text)).as_bytes()).and_then(|()| stdout.flush()))
 }
 
+/// Refuses a file that is there already: it may be an input, or be edited.
+pub fn is_new(path: &Path) -> Result<(), CliError> {
+    if path.exists() {
+        let path = path.display();
+        return Err(CliError::Argument(format!("{path} is there already and is not overwritten; give another name")));
+    }
+    Ok(())
+}
+
 /// Prints the content of a file to standard output as it is, neither wrapped nor coloured.
 pub fn print_file(text: &str) -> Result<(), CliError> {
     let mut stdout = std::io::stdout().lock();
