@@ -136,11 +136,15 @@ impl Track {
         self.longest.tell(kinematics.velocity_lag, Channel::U, "the position", issues);
     }
 
+    /// How much of the track follows the mirror image of the velocity, turned by any angle.
+    fn along_mirror(&self) -> f64 {
+        self.mirror_along.hypot(self.mirror_across)
+    }
+
     /// Velocities along other axes than the ship's.
     fn wrong_frame(&self, size: f64) -> Option<Issue> {
         // On a course near due north a heading counted from east leaves the track along the ship's velocity, too; its mirror image leaves less.
-        let mirror = self.mirror_along.hypot(self.mirror_across);
-        let mirrored = 1.0 - mirror / size < MIRROR_LEAVES * (1.0 - self.unturned / size);
+        let mirrored = 1.0 - self.along_mirror() / size < MIRROR_LEAVES * (1.0 - self.unturned / size);
         if self.unturned / size > UNTURNED && self.along / size < TURNED && !mirrored {
             let text = "u and v follow the track along the earth's axes, not the ship's";
             let next = "set `velocity_frame = \"earth\"` in a column map";
@@ -165,7 +169,7 @@ impl Track {
     pub fn mirrored(&self, turn: Option<f64>) -> Option<Issue> {
         let size = (self.track * self.earth).sqrt();
         let coherence = self.along.hypot(self.across) / size;
-        let mirrored = self.mirror_along.hypot(self.mirror_across) / size;
+        let mirrored = self.along_mirror() / size;
         // On a straight course a mirror image and a turned one are the same; heading must vary for the two to differ.
         if mirrored > MIRRORED && coherence < NOT_MIRRORED && 1.0 - mirrored < MIRROR_LEAVES * (1.0 - coherence) {
             let text = "the track is the mirror image of what heading and velocity say";
