@@ -87,6 +87,22 @@ pub fn corrected(p: f64, tried: f64) -> f64 {
     (p * tried).min(1.0)
 }
 
+/// Chance that the largest of n normal values is as far above the others (Grubbs 1969, Technometrics 11, p. 1, one-sided):
+/// n times the upper tail of Student's t of its distance from the mean of the others, with n - 2 degrees of freedom. 1 for fewer than
+/// three values, and where one is not finite; the smallest positive number where the others are all alike.
+pub fn outlier_p(values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let Some(last) = (0..values.len()).max_by(|i, j| values[*i].total_cmp(&values[*j])) else { return 1.0 };
+    let others: Vec<f64> = (0..values.len()).filter(|i| *i != last).map(|i| values[i]).collect();
+    let (Some(centre), Some(variance)) = (mean(others.iter().copied()), variance(&others)) else { return 1.0 };
+    let far = values[last] - centre;
+    if !values.iter().all(|v| v.is_finite()) || far <= 0.0 {
+        return 1.0;
+    }
+    let t = far / (variance * n / (n - 1.0)).sqrt();
+    StudentsT::new(0.0, 1.0, n - 2.0).map_or(1.0, |d| corrected(d.sf(t).max(f64::MIN_POSITIVE), n))
+}
+
 /// The variance of a sum of scores over c clusters, `c/(c-1) sum_c g_c g_c^T` with `g_c` the sum of the scores of cluster c (Liang &
 /// Zeger 1986, Biometrika 73, p. 13), and c; `n` is the length of a score. The clusters are those of all ranks, each with whole
 /// ones. A score that is not finite leaves zeros.
@@ -194,6 +210,32 @@ mod tests {
         assert!((s.low - 0.2553).abs() < 1e-4 && (s.high - 0.3662).abs() < 1e-4, "{s:?}");
         let s = Share::new(0, 20);
         assert!(s.low == 0.0 && (s.high - 0.1611).abs() < 1e-4, "{s:?}");
+    }
+
+    #[test]
+    fn an_outlier_is_as_unlikely_as_the_published_table_says() {
+        // Grubbs 1969, table I, one-sided: (greatest - mean)/s that is exceeded by a share of samples of n.
+        for (n, share, critical) in
+            [(5, 0.05, 1.672), (8, 0.01, 2.221), (10, 0.05, 2.176), (10, 0.01, 2.410), (20, 0.01, 2.884)]
+        {
+            let sample = |last: f64| -> Vec<f64> {
+                let others = (0..n - 1).map(|i| if i % 2 == 0 { f64::from(i) } else { -f64::from(i) });
+                others.chain([last]).collect()
+            };
+            let apart = |last: f64| {
+                let all = sample(last);
+                (last - mean(all.iter().copied()).unwrap()) / variance(&all).unwrap().sqrt()
+            };
+            let (mut low, mut high) = (f64::from(n), 1e3 * f64::from(n));
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if apart(middle) < critical { low = middle } else { high = middle }
+            }
+            let p = outlier_p(&sample(low));
+            assert!((p / share - 1.0).abs() < 0.03, "{n} {critical}: {p}");
+        }
+        assert_eq!([&[][..], &[1.0], &[1.0, 9.0], &[1.0; 5], &[1.0, f64::NAN, 2.0, 9.0]].map(outlier_p), [1.0; 5]);
+        assert!(outlier_p(&[1.0, 1.0, 1.0, 2.0]) < 1e-300);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What only a comparison of runs shows: clocks that differ, one run in another unit, the same data on both sides of the split.
 //! The evidence of each run is gathered where the run is audited; no recording is read here.
 
+use super::gear::{Fastest, leaps as gear_leaps};
 use super::held::{Repeats, held, repeats};
 use super::issue::{Issue, Severity, Shared};
 use super::length::{Length, shorter};
@@ -26,6 +27,9 @@ use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
+
+/// What moves the ship.
+const ACTUATORS: [Channel; 2] = [Channel::Delta, Channel::N];
 
 /// Channels that dead reckoning compares.
 const TRACK: [Channel; 6] = [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R];
@@ -55,6 +59,8 @@ pub struct Evidence {
     unpowered: bool,
     /// The largest leap of the rudder.
     leap: Option<Leap>,
+    /// The fastest change of rudder and propeller.
+    fastest: [Option<Fastest>; 2],
     /// How its velocities scatter.
     scatter: Scatter,
     /// What its channels repeat.
@@ -91,6 +97,7 @@ impl Evidence {
             }),
             unpowered: is_unpowered(recording, ship),
             leap: Leap::of(recording),
+            fastest: ACTUATORS.map(|channel| Fastest::of(recording, channel)),
             scatter: Scatter::of(recording),
             repeats: repeats(recording),
             length: Length::of(recording).filter(|_| run.from.is_none() && run.to.is_none()),
@@ -148,6 +155,13 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
         if !found.iter().any(same) {
             found.push(shared);
         }
+    }
+    for (i, channel) in ACTUATORS.into_iter().enumerate() {
+        // A damaged value leaps too.
+        let moved = |r: &Evidence| !r.damaged.contains(&channel);
+        let of: Vec<(&str, Option<&Fastest>)> =
+            runs.iter().map(|r| (r.run.as_str(), r.fastest[i].as_ref().filter(|_| moved(r)))).collect();
+        found.extend(gear_leaps(channel, &of));
     }
     let repeated: Vec<(&str, &[Repeats])> = runs.iter().map(|r| (r.run.as_str(), &r.repeats[..])).collect();
     found.extend(held(&repeated));

@@ -1,9 +1,10 @@
 //! Held values: a channel that repeats its value to the last digit, where by chance it never does.
-//! Rudder and propeller are held by their nature, and coarse channels repeat; stretches that contradict other channels are in `frozen`.
+//! Coarse channels repeat; stretches that contradict other channels are in `frozen`. Rudder and propeller are held by their nature, and are
+//! asked only where they never are in the rest of the run, and leap from the value at last.
 
 use super::issue::{Issue, Severity, Shared};
 use super::limits::{
-    HELD_BESIDE, HELD_CHANCE, HELD_CHANGES, HELD_DIGITS, HELD_REST, HELD_ROWS, HELD_ROWS_MOVING, HELD_SAME,
+    HELD_BESIDE, HELD_CHANCE, HELD_CHANGES, HELD_DIGITS, HELD_LEAP, HELD_REST, HELD_ROWS, HELD_ROWS_MOVING, HELD_SAME,
     HELD_SELDOM, HELD_STEPS,
 };
 use super::series::{changes, constant};
@@ -11,6 +12,9 @@ use crate::recording::{Channel, Recording, STATE_CHANNELS};
 use crate::statistics::median;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+
+/// Channels that one run holds and another does not.
+const HELD_BY_NATURE: [Channel; 2] = [Channel::Delta, Channel::N];
 
 /// What a channel repeats in a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,6 +41,8 @@ struct Hold {
     value: String,
     /// Chance of a repetition by the resolution of the channel.
     coarse: f64,
+    /// Whether the channel comes to the value as it moves, and leaps from it.
+    leaps: bool,
 }
 
 impl Repeats {
@@ -52,11 +58,12 @@ impl Repeats {
     }
 }
 
-/// What every channel of the motion repeats in a recording.
+/// What every channel of the motion, the rudder and the propeller repeat in a recording.
 pub fn repeats(recording: &Recording) -> Vec<Repeats> {
     let recorded = |c: &Channel| recording.has(*c) && !recording.derived().contains(c);
     let state: Vec<Channel> = STATE_CHANNELS.into_iter().filter(recorded).collect();
-    state.iter().filter_map(|channel| of_channel(recording, *channel, &state)).collect()
+    let all = state.iter().chain(&HELD_BY_NATURE);
+    all.filter_map(|channel| of_channel(recording, *channel, &state)).collect()
 }
 
 fn of_channel(recording: &Recording, channel: Channel, state: &[Channel]) -> Option<Repeats> {
@@ -86,6 +93,7 @@ fn of_channel(recording: &Recording, channel: Channel, state: &[Channel]) -> Opt
         first: rows.start == 0,
         value: format!("{:.4} {}", values[rows.start] / factor, recording.unit(channel)),
         coarse: coarse(resolution, change_beside(values, &stretches, at), typical),
+        leaps: leaps(values, &stretches, at),
     };
     let long = stretches.iter().enumerate().filter(|(_, rows)| rows.len() >= HELD_ROWS && alone(rows));
     Some(Repeats {
@@ -135,12 +143,21 @@ fn change_beside(values: &[f64], stretches: &[Range<usize>], at: usize) -> f64 {
     before.into_iter().chain(after).reduce(f64::min).unwrap_or(0.0)
 }
 
+/// Whether a channel leaps from the value of stretch `at` by many times what brought it there: gear is held where it was moved to.
+fn leaps(values: &[f64], stretches: &[Range<usize>], at: usize) -> bool {
+    let step = |i: usize| (values[stretches[i].start] - values[stretches[i - 1].start]).abs();
+    let before = (1..=at).rev().take(HELD_BESIDE).map(step).fold(0.0, f64::max);
+    at > 0 && at + 1 < stretches.len() && step(at + 1) > HELD_LEAP * before
+}
+
 /// The values that are held in each run, one doubt a run and channel: by chance one is in less than one study of [`HELD_CHANCE`].
 pub fn held(runs: &[(&str, &[Repeats])]) -> Vec<Shared> {
     let mut found = Vec::new();
     for (run, repeats) in runs {
         for one in *repeats {
-            let all: Vec<&Repeats> = runs.iter().flat_map(|(_, r)| *r).filter(|r| r.channel == one.channel).collect();
+            let by_nature = HELD_BY_NATURE.contains(&one.channel);
+            let comparable = |r: &&Repeats| r.channel == one.channel && (!by_nature || std::ptr::eq(*r, one));
+            let all: Vec<&Repeats> = runs.iter().flat_map(|(_, r)| *r).filter(comparable).collect();
             if let Some(issue) = told(one, &all) {
                 found.push(Shared { runs: vec![(*run).to_owned()], issue });
             }
@@ -151,7 +168,7 @@ pub fn held(runs: &[(&str, &[Repeats])]) -> Vec<Shared> {
 
 /// The doubt about a channel of one run, with what it repeats in all runs: a late channel may begin each of them with one value.
 fn told(one: &Repeats, all: &[&Repeats]) -> Option<Issue> {
-    let hold = one.held.as_ref()?;
+    let hold = one.held.as_ref().filter(|h| h.leaps || !HELD_BY_NATURE.contains(&one.channel))?;
     // A lag is the same in all runs; the time that a model is held before it is released is not.
     let other = |r: &&&Repeats| r.held.as_ref().is_some_and(|h| h.first && h.rows != hold.rows);
     if hold.first && all.iter().any(|r| other(&r)) {
@@ -247,6 +264,33 @@ mod tests {
             let told = study(1e6, 1, frozen);
             assert!(told.len() == 1 && told[0].runs == ["r0"], "{size}: {told:?}");
         }
+    }
+
+    #[test]
+    fn a_rudder_is_frozen_where_it_never_rests_and_leaps_and_held_where_it_was_ordered() {
+        let study = |change: &dyn Fn(&mut Vec<f64>)| {
+            let mut noise = noise(9);
+            // A rudder that keeps a course, and channels that move.
+            let mut delta: Vec<f64> = (0..120).map(|i| 0.1 * (f64::from(i) * 0.07).sin() + 1e-3 * noise()).collect();
+            change(&mut delta);
+            let mut columns: Vec<(Channel, Vec<f64>)> =
+                STATE_CHANNELS.into_iter().map(|c| (c, (0..120).map(|_| noise()).collect())).collect();
+            columns.extend([(Channel::Delta, delta), (Channel::T, (0..120).map(f64::from).collect())]);
+            let repeats = repeats(&Recording::from_channels("run", columns).unwrap());
+            held(&[("a", &repeats)])
+        };
+        let told = study(&|d| (41..80).for_each(|i| d[i] = d[40]));
+        assert!(told.len() == 1 && told[0].issue.channel == Some(Channel::Delta), "{told:?}");
+        assert_eq!(study(&|_| ()), []);
+        let hard_over = |d: &mut Vec<f64>| {
+            let (from, to) = (d[40], d[90]);
+            let gear = |i: usize| (from + 0.1 * (i as f64 - 40.0)).min(0.6).min(to + 0.1 * (90.0 - i as f64));
+            (41..90).for_each(|i| d[i] = gear(i));
+        };
+        // Put hard over at the limit of the gear, and eased as fast.
+        assert_eq!(study(&|d| hard_over(d)), []);
+        // A zigzag holds its angles.
+        assert_eq!(study(&|d| d.iter_mut().enumerate().for_each(|(i, d)| *d = [0.17, -0.17][(i / 20) % 2])), []);
     }
 
     #[test]

@@ -94,6 +94,8 @@ pub const HELD_STEPS: f64 = 10.0;
 /// Elsewhere at most this share of the rows may repeat a value, in the run and in all runs. Recordings of models in basins, written to
 /// three or four digits (KVLCC2 of MARIN and of HSVA), repeat more than that near the ends of their swings.
 pub const HELD_SELDOM: f64 = 0.01;
+/// A rudder or a propeller leaps from a value that was lost to it by this many times what brought it there.
+pub const HELD_LEAP: f64 = 3.0;
 /// Rows in which the channel must move in the run.
 pub const HELD_ROWS_MOVING: usize = 30;
 
@@ -165,6 +167,18 @@ pub const RATIO_APART: f64 = 3.5;
 pub const ORDERED_DEGREES: f64 = 500.0;
 /// where it turns by more than this from one row to the next \[deg\]: a smaller step is a fast sampling of a gear that starts at once.
 pub const ORDERED_LEAP: f64 = 5.0;
+
+// --- Gear ---
+
+/// The limit of a gear is shown where so many runs
+pub const GEAR_RUNS: usize = 3;
+/// reach this share of the fastest change of all,
+pub const GEAR_REACHED: f64 = 0.9;
+/// and a run leaps where it is faster than that by this factor. It is no estimate: gear has one limit, and a channel that is recorded with
+/// noise reaches it to a few percent.
+pub const GEAR_BEYOND: f64 = 1.25;
+/// Longest time between two rows that are one step, in usual steps.
+pub const GEAR_STEP: f64 = 1.5;
 
 // --- Clocks ---
 

@@ -12,6 +12,7 @@ mod fill;
 mod fixes;
 mod frozen;
 mod gaps;
+mod gear;
 mod held;
 mod issue;
 mod jumps;

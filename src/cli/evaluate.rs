@@ -10,7 +10,7 @@ use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
 use super::progress::progress;
 use serde::Serialize;
 use std::path::PathBuf;
-use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Proof, Summary, predict, prove};
+use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Outlying, Proof, Summary, predict, prove};
 use trimtab::model::Model;
 use trimtab::numerals::{DASH, sig, sig_above};
 use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
@@ -46,7 +46,8 @@ JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, acce
     cvdm_fitted [%], cvdm_improvement, mari, consistency [-] (each value and ci95), better, worse, runs_better, runs_worse, \
     diverged_baseline, diverged_fitted, worst, most_worsened; result.trajectories[] with run, split, baseline and fitted (md, \
     cvdm, or diverged_after [s]); result.validity (share_outside of the samples; outside[] with term, quantity, range, share, \
-    met). A number that does not exist is absent.";
+    met); result.outlying, where one run is predicted far worse than all others: run, cvdm and others (least and largest of the \
+    other runs) [%], p (Grubbs's test). A number that does not exist is absent.";
 
 /// Judges a model on the test runs, against a baseline
 #[derive(Debug, clap::Args)]
@@ -103,6 +104,8 @@ struct Document<'a> {
     baseline: &'a str,
     fitted: &'a str,
     max_yaw_rate: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outlying: Option<&'a Outlying>,
     resamples: usize,
     seed: u64,
     summaries: Each<'a, Summary>,
@@ -112,11 +115,13 @@ struct Document<'a> {
 
 impl<'a> From<&'a Evaluation> for Document<'a> {
     fn from(e: &'a Evaluation) -> Self {
-        let Evaluation { baseline, fitted, trajectories, summaries, validity, max_yaw_rate, resamples, seed } = e;
+        let Evaluation { baseline, fitted, trajectories, summaries, outlying, validity, max_yaw_rate, resamples, seed } =
+            e;
         Self {
             baseline,
             fitted,
             max_yaw_rate: *max_yaw_rate,
+            outlying: outlying.as_ref(),
             resamples: *resamples,
             seed: *seed,
             summaries: Each(summaries),
@@ -182,8 +187,8 @@ pub fn text(study: &str, evaluation: &Evaluation) -> String {
         return format!("{study}: no trajectory to judge.");
     };
     let compared = main.md_baseline != main.md_fitted || main.cvdm_baseline != main.cvdm_fitted;
-    let mut text =
-        if compared { comparison(study, evaluation, main) } else { deviations(study, &evaluation.fitted, main) };
+    let mut text = evaluation.outlying.as_ref().map_or(String::new(), Outlying::line);
+    text += &if compared { comparison(study, evaluation, main) } else { deviations(study, &evaluation.fitted, main) };
     if let Some(w) = &main.worst {
         text += &format!("Worst run: {} ({}).\n", w.run, cvdm(&w.fitted));
     }

@@ -10,7 +10,7 @@ use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;
-use trimtab::evaluate::{Outcome, outcome, predict_all, start_error};
+use trimtab::evaluate::{Outcome, Outlying, outcome, outlying, predict_all, start_error};
 use trimtab::files::Names;
 use trimtab::fit::FitSettings;
 use trimtab::model::Model;
@@ -39,7 +39,8 @@ With --out: simulate.json, simulations.csv, tracks.png and .csv, and trajectorie
 JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
     result.model, result.runs[] with run, split, start_time [s], duration [s], steps, md (x, y [m], psi [rad], u, v [m/s], \
     r [rad/s]), cvdm [%] and cvdm_standard_error [%], or diverged_after [s]; result.validity (share_outside of the recorded \
-    samples; outside[] with term, quantity, range, share, met).
+    samples; outside[] with term, quantity, range, share, met); result.outlying, where one run is predicted far worse than all \
+    others: run, cvdm and others (least and largest of the other runs) [%], p (Grubbs's test).
 
 Exit code 2 if a simulation diverges, after everything else was written.";
 
@@ -60,6 +61,8 @@ pub struct Args {
 #[derive(Serialize)]
 struct Report<'a> {
     model: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outlying: Option<Outlying>,
     runs: Each<'a, Row>,
     validity: Pruned<'a, Coverage>,
 }
@@ -152,14 +155,16 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         0 => String::new(),
         more => format!("\nand {more} windows more (in --out and --json)\n"),
     };
+    let outlying = outlying(rows.iter().map(|r| (&*r.run, &r.outcome)));
     let text = format!(
-        "{} simulated with `{}`:\n\n{table}\n{more}{}\n{}",
+        "{}{} simulated with `{}`:\n\n{table}\n{more}{}\n{}",
+        outlying.as_ref().map_or(String::new(), Outlying::line),
         loaded.study.name,
         model.name,
         divergences(&rows),
         validity.line()
     );
-    let report = Report { model: &model.name, runs: Each(&rows), validity: Pruned(&validity) };
+    let report = Report { model: &model.name, outlying, runs: Each(&rows), validity: Pruned(&validity) };
     output.finish_long(&text, &report)?;
     let diverged = rows.iter().find_map(|r| match r.outcome {
         Outcome::Diverged { diverged_after } => Some((&r.run, diverged_after)),

@@ -23,6 +23,7 @@
 
 mod compare;
 mod cvdm;
+mod outlying;
 mod prove;
 mod ranking;
 mod settings;
@@ -31,6 +32,7 @@ mod summary;
 
 pub use compare::{Comparison, compare, predict, predict_all};
 pub use cvdm::{Deviation, Outcome, outcome};
+pub use outlying::{Outlying, outlying};
 pub use prove::{Evaluation, Judging, Part, Proof, prove};
 pub use ranking::{Ranked, Ranking, rank};
 pub use settings::EvaluationSettings;

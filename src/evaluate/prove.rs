@@ -2,6 +2,7 @@
 //! It fits nothing, and asks each model for nothing but its predictions.
 
 use super::compare::{Comparison, compare, predict};
+use super::outlying::{Outlying, outlying};
 use super::settings::EvaluationSettings;
 use super::summary::{Summary, summaries};
 use crate::fit::FitSettings;
@@ -42,6 +43,9 @@ pub struct Evaluation {
     pub trajectories: Vec<Comparison>,
     /// By split (`test`, `train`), then by manoeuvre and by session of the test trajectories where there are several.
     pub summaries: Vec<Summary>,
+    /// The run that the fitted model predicts far worse than all others.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outlying: Option<Outlying>,
     /// How much of the recordings lies outside the ranges over which the terms of the fitted model are valid.
     pub validity: Coverage,
     /// r_max \[rad/s\].
@@ -123,6 +127,7 @@ impl<'a> Proof<'a> {
             baseline: self.baseline.name.clone(),
             fitted: self.fitted.name.clone(),
             summaries: summaries(ranks, &trajectories, settings),
+            outlying: outlying(trajectories.iter().map(|t| (t.run.as_str(), &t.fitted))),
             trajectories,
             max_yaw_rate: *max_yaw_rate,
             resamples: settings.resamples,
