@@ -4,7 +4,6 @@
 use super::grade::Grade;
 use super::locate::EquationShare;
 use super::push::Window;
-use super::settings::MATERIAL_SHARE;
 use super::unseen::FindingProof;
 use crate::physics::Kind;
 use serde::Serialize;
@@ -96,10 +95,10 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Whether it was withdrawn as immaterial for a clock's sake, that it is off by less than is resolved: what changes predictions by as
-    /// much as matters was not withdrawn for its change.
+    /// Whether it was withdrawn as immaterial for a clock's sake, that it is off by less than is resolved.
     pub fn is_unresolved_clock(&self) -> bool {
-        self.grade == Grade::Immaterial && self.change.is_some_and(|c| c >= MATERIAL_SHARE)
+        let is_clock = !self.parameters.is_empty() && self.parameters.iter().all(|p| p.unit == "s");
+        self.grade == Grade::Immaterial && self.kind == Kind::Sensor && is_clock
     }
 }
 

@@ -97,9 +97,10 @@ impl FindingTests {
         refute(self.likelihood, self.prediction)
     }
 
-    /// Whether it changes predictions by too little to matter, or a clock by less than is resolved.
+    /// Whether it is too small to matter: a clock by the sensor's own resolution, all else by how little it changes predictions. A position
+    /// that is late by many samples is off by less than a free simulation is after a minute, and late all the same.
     fn is_immaterial(&self) -> bool {
-        self.change < MATERIAL_SHARE || self.shift.is_some_and(|s| s < RESOLVED_SAMPLES)
+        self.shift.map_or(self.change < MATERIAL_SHARE, |s| s < RESOLVED_SAMPLES)
     }
 }
 
@@ -190,6 +191,14 @@ mod tests {
         let little_worse = Some(GainTest { gain: -0.01, ci95: Some([-0.2, 0.1]) });
         assert_eq!(grade(&FindingTests { prediction: little_worse, ..sound() }), Grade::Suspected);
         assert_eq!(grade(&FindingTests { likelihood: little_worse, ..sound() }), Grade::Suspected);
+    }
+
+    #[test]
+    fn a_clock_matters_by_its_resolution_and_all_else_by_what_it_changes() {
+        let small = FindingTests { change: 0.01, ..sound() };
+        assert_eq!(grade(&small), Grade::Immaterial);
+        assert_eq!(grade(&FindingTests { shift: Some(6.0), ..small }), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { shift: Some(0.3), ..sound() }), Grade::Immaterial);
     }
 
     #[test]

@@ -339,6 +339,19 @@ mod tests {
     }
 
     #[test]
+    fn velocities_that_are_late_are_told_from_late_positions_and_from_a_lever_arm() {
+        let m = model();
+        let list = candidates(&m, &[]);
+        let asked = ["log_skew", "time_skew", "position_lever"]
+            .map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
+        let all = agreements(&m, &erring(&[("time_skew.velocity", 2.0)], 12), &asked).unwrap();
+        assert!((value(&all[0], 0, "time_skew.velocity") - 2.0).abs() < 0.2, "{all:?}");
+        assert!(all[1..].iter().all(|other| all[0].over(other).is_some_and(|[low, _]| low > 0.0)), "{all:?}");
+        let late = agreements(&m, &erring(&[("time_skew.position", -2.0)], 12), &asked).unwrap();
+        assert!(late[1].over(&late[0]).is_some_and(|[low, _]| low > 0.0), "{late:?}");
+    }
+
+    #[test]
     fn sensors_that_agree_tell_no_error_from_another() {
         let sound = of(&runs(&model(), 12));
         assert!(sound[0].over(&sound[1]).is_some_and(|[low, high]| low < 0.0 && high > 0.0), "{sound:?}");

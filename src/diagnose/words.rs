@@ -376,9 +376,10 @@ mod tests {
         assert!(said(Verdict::NotInCatalogue, &[], &[], None).contains("wave drift gains most"));
         let small = said(Verdict::NothingMissing, &[], &[with(Grade::Immaterial)], None);
         assert!(small.contains("steady current") && small.contains("2.0 % of their error"), "{small}");
-        let clock = Finding { change: Some(0.07), ..with(Grade::Immaterial) };
+        let times = vec![Amplitude::new("time_skew.position".into(), 0.2, "s", 0.01)];
+        let clock = Finding { kind: Kind::Sensor, parameters: times, ..with(Grade::Immaterial) };
         let clock = said(Verdict::NothingMissing, &[], &[clock], None);
-        assert!(clock.contains("less than half a sample period") && !clock.contains("7.0 %"), "{clock}");
+        assert!(clock.contains("less than half a sample period") && !clock.contains("of their error"), "{clock}");
         let bound = said(Verdict::NothingMissing, &[], &[with(Grade::NotIsolated)], None);
         assert!(bound.contains("opposite headings"), "{bound}");
         let lost = headline(Verdict::Insufficient, &[], None);

@@ -31,7 +31,7 @@ static INFO: TermInfo = TermInfo {
         needs_reference: false,
         by_session: false,
         stand_in: false,
-        look_alikes: &["time_skew", "antenna"],
+        look_alikes: &["time_skew", "log_skew", "antenna"],
         trial: "a turn on the spot",
     }],
     parameters: &[

@@ -1,5 +1,5 @@
-//! Delays of the position channels, of the heading channel and of the yaw rate channel.
-//! First order in the delay, accurate while the rates change little over it; velocities are taken to be on time.
+//! Delays of the position channels, of the heading channel, of the yaw rate channel and of the velocity channels.
+//! First order in the delay, accurate while the rates change little over it.
 
 use super::size;
 use crate::parameter::ParameterInfo;
@@ -33,7 +33,7 @@ static INFO: TermInfo = TermInfo {
             needs_reference: false,
             by_session: true,
             stand_in: false,
-            look_alikes: &["antenna", "position_lever", "rudder_lag", "yaw_rate_skew"],
+            look_alikes: &["antenna", "log_skew", "position_lever", "rudder_lag", "yaw_rate_skew"],
             trial: "zigzags after a check of the clocks",
         },
         Mechanism {
@@ -49,6 +49,19 @@ static INFO: TermInfo = TermInfo {
             look_alikes: &["time_skew", "rudder_lag"],
             trial: "zigzags after a check of the clocks",
         },
+        Mechanism {
+            name: "log_skew",
+            title: "velocities recorded at another time than the other channels",
+            kind: Kind::Sensor,
+            parameters: &["velocity"],
+            companions: &[],
+            probe: Probe::Tangent,
+            needs_reference: false,
+            by_session: true,
+            stand_in: false,
+            look_alikes: &["time_skew", "position_lever"],
+            trial: "zigzags at two speeds after a check of the clocks",
+        },
     ],
     parameters: &[
         ParameterInfo::new("position", "tau_p", "s", "delay of the position channels")
@@ -60,6 +73,10 @@ static INFO: TermInfo = TermInfo {
             .spread(size::time)
             .bounds(-20.0, 20.0),
         ParameterInfo::new("yaw_rate", "tau_r", "s", "delay of the yaw rate channel")
+            .scale(|s| 0.2 * size::time(s))
+            .spread(size::time)
+            .bounds(-20.0, 20.0),
+        ParameterInfo::new("velocity", "tau_u", "s", "delay of the velocity channels, u and v")
             .scale(|s| 0.2 * size::time(s))
             .spread(size::time)
             .bounds(-20.0, 20.0),
@@ -84,6 +101,8 @@ impl<S: Scalar> Physics<S> for TimeSkew {
         y[0] -= rate[0] * p[0];
         y[1] -= rate[1] * p[0];
         y[2] -= rate[2] * p[1];
+        y[3] -= rate[3] * p[3];
+        y[4] -= rate[4] * p[3];
         y[5] -= rate[5] * p[2];
     }
 }

@@ -215,7 +215,7 @@ pub const EFFECTS: [Effect; 19] = [
         name: "clock_velocity",
         unit: "s",
         reference: |set| LATE * set.time(),
-        accepted: &["time_skew"],
+        accepted: &["log_skew", "time_skew"],
         near: &["yaw_rate_skew"],
         make: |m| m.clock(Instrument::Velocity),
         ..PLAIN
