@@ -239,7 +239,7 @@ pub const EXPLAINS: f64 = 0.7;
 pub const SESSION_SHARE: f64 = 0.1;
 /// Longest lag looked for, as a share of the run, and in seconds.
 pub const LAG_LONGEST: (f64, f64) = (0.125, 60.0);
-/// Steps of the window over which a response is integrated.
+/// Fewest steps of the window over which a response is integrated; it lasts half the span of the local fits.
 pub const RESPONSE_STEPS: usize = 4;
 /// Equations of a track, two a row, from which dead reckoning is compared with that of the other runs.
 pub const RECKONED_ROWS: f64 = 60.0;

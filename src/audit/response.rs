@@ -145,8 +145,14 @@ fn lags(longest: usize) -> Vec<isize> {
 }
 
 /// What an integral gains from step `i` over some steps, `k` steps later.
-fn late(of: &[f64], i: usize, k: isize) -> f64 {
-    of[(i + RESPONSE_STEPS).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)]
+fn late(of: &[f64], i: usize, k: isize, steps: usize) -> f64 {
+    of[(i + steps).wrapping_add_signed(k)] - of[i.wrapping_add_signed(k)]
+}
+
+/// Steps over which a response is integrated: half the span of the local fits, so that a gyro that is read twenty times a second does not
+/// drown what a rudder does in a fifth of a second.
+fn response_steps(series: &Series<'_>) -> usize {
+    ((0.5 * series.span / series.step).round() as usize).max(RESPONSE_STEPS)
 }
 
 /// The rudder against the yaw: `dr/dt = a r + b r|r| + c v + d delta + e delta n|n| + f`, integrated over some steps in which the ship
@@ -162,10 +168,14 @@ pub fn rudder(series: &Series<'_>) -> Option<Curve> {
     let force = integral(t, |i| delta[i] * of(n, i) * of(n, i).abs());
     let u = series.get(Channel::U);
     let ahead = |row: usize| u.is_none_or(|u| u[row] > 0.0) && n.is_none_or(|n| n[row] >= 0.0);
-    let usable = |start: usize| (start..=start + RESPONSE_STEPS).all(ahead);
+    let steps = response_steps(series);
+    let usable = |start: usize| (start..=start + steps).all(ahead);
     curve::<6, 2, 1>(series, usable, |i, k| {
-        let over = |of: &[f64]| late(of, i, 0);
-        [([late(&angle, i, k), late(&force, i, k), over(&turn), over(&square), over(&sway), over(t)], over(r))]
+        let over = |of: &[f64]| late(of, i, 0, steps);
+        [(
+            [late(&angle, i, k, steps), late(&force, i, k, steps), over(&turn), over(&square), over(&sway), over(t)],
+            over(r),
+        )]
     })
 }
 
@@ -180,13 +190,25 @@ pub fn propeller(series: &Series<'_>) -> Option<Curve> {
     let (speed, square) = (integral(t, |i| u[i]), integral(t, |i| u[i] * u[i].abs()));
     let turning = integral(t, |i| of(v, i) * of(r, i));
     let drag = integral(t, |i| of(delta, i) * of(delta, i));
+    let steps = response_steps(series);
     curve::<7, 2, 1>(
         series,
         |_| true,
         |i, k| {
-            let over = |of: &[f64]| late(of, i, 0);
+            let over = |of: &[f64]| late(of, i, 0, steps);
             let fixed = [over(&speed), over(&square), over(&turning), over(&drag), over(t)];
-            [([late(&thrust, i, k), late(&rate, i, k), fixed[0], fixed[1], fixed[2], fixed[3], fixed[4]], over(u))]
+            [(
+                [
+                    late(&thrust, i, k, steps),
+                    late(&rate, i, k, steps),
+                    fixed[0],
+                    fixed[1],
+                    fixed[2],
+                    fixed[3],
+                    fixed[4],
+                ],
+                over(u),
+            )]
         },
     )
 }
@@ -204,19 +226,24 @@ pub fn sway(series: &Series<'_>) -> Option<Curve> {
     let angle = integral(t, |i| of(delta, i));
     let force = integral(t, |i| of(delta, i) * of(n, i) * of(n, i).abs());
     let ahead = |row: usize| u[row] > 0.0 && n.is_none_or(|n| n[row] >= 0.0);
-    let usable = |start: usize| (start..=start + RESPONSE_STEPS).all(ahead);
+    let steps = response_steps(series);
+    let usable = |start: usize| (start..=start + steps).all(ahead);
     curve::<6, 5, 1>(series, usable, |i, k| {
-        let over = |of: &[f64]| late(of, i, 0);
+        let over = |of: &[f64]| late(of, i, 0, steps);
         let columns = [over(&turn), over(&square), over(&centre), over(&angle), over(&force), over(t)];
-        [(columns, late(&slide, i, k))]
+        [(columns, late(&slide, i, k, steps))]
     })
 }
 
 /// The yaw rate against the heading: `d psi/dt = a r + b`.
 pub fn gyro(series: &Series<'_>) -> Option<Curve> {
     let (psi, r, t) = (series.get(Channel::Psi)?, series.recorded(Channel::R)?, &series.t);
-    let turn = integral(t, |i| r[i]);
-    curve::<2, 1, 1>(series, |_| true, |i, k| [([late(&turn, i, k), late(t, i, 0)], late(psi, i, 0))])
+    let (turn, steps) = (integral(t, |i| r[i]), response_steps(series));
+    curve::<2, 1, 1>(
+        series,
+        |_| true,
+        |i, k| [([late(&turn, i, k, steps), late(t, i, 0, steps)], late(psi, i, 0, steps))],
+    )
 }
 
 /// The position against velocity and heading: `d(x, y)/dt = a (u, v turned by psi) + (b, c)`.
@@ -227,12 +254,13 @@ pub fn receiver(series: &Series<'_>) -> Option<Curve> {
     let t = &series.t;
     let north = integral(t, |i| u[i] * psi[i].cos() - v[i] * psi[i].sin());
     let east = integral(t, |i| u[i] * psi[i].sin() + v[i] * psi[i].cos());
+    let steps = response_steps(series);
     curve::<3, 1, 2>(
         series,
         |_| true,
         |i, k| {
-            let (h, n, e) = (late(t, i, 0), late(&north, i, 0), late(&east, i, 0));
-            [([n, h, 0.0], late(x, i, k)), ([e, 0.0, h], late(y, i, k))]
+            let (h, n, e) = (late(t, i, 0, steps), late(&north, i, 0, steps), late(&east, i, 0, steps));
+            [([n, h, 0.0], late(x, i, k, steps)), ([e, 0.0, h], late(y, i, k, steps))]
         },
     )
 }
@@ -251,9 +279,10 @@ fn curve<const N: usize, const P: usize, const E: usize>(
     let longest = ((LAG_LONGEST.0 * rows as f64) as usize).min((LAG_LONGEST.1 / series.step) as usize);
     let lags = lags(longest);
     let reach = lags.last().map_or(0, |lag| lag.unsigned_abs());
+    let steps = response_steps(series);
     let windows = |before: usize, after: usize| {
-        let inner = |s: &Range<usize>| s.start + before..s.end.saturating_sub(after + RESPONSE_STEPS);
-        let every = series.stretches.iter().flat_map(|s| inner(s).step_by(RESPONSE_STEPS / 2));
+        let inner = |s: &Range<usize>| s.start + before..s.end.saturating_sub(after + steps);
+        let every = series.stretches.iter().flat_map(|s| inner(s).step_by(steps / 2));
         every.filter(|start| usable(*start)).collect::<Vec<usize>>()
     };
     let [early, whole, late] = [windows(reach, 0), windows(0, 0), windows(0, reach)];
@@ -282,6 +311,7 @@ fn curve<const N: usize, const P: usize, const E: usize>(
             y - SVector::from(columns).dot(&solved[best].coefficients)
         },
         E,
+        steps,
     );
     let samples = whole.len() as f64 * (1.0 - correlation) / (1.0 + correlation);
     let (left, sign) = solved.iter().map(|s| (s.left, s.sign)).unzip();
@@ -291,10 +321,10 @@ fn curve<const N: usize, const P: usize, const E: usize>(
     Some(Curve { step: series.step, lags, left, sign, without, samples, rows, sums, beside, own: P })
 }
 
-/// Correlation of the residuals of successive windows, of so many equations each: they are worth as many independent ones as it leaves.
-fn likeness(starts: &[usize], residual: impl Fn(usize, usize) -> f64, equations: usize) -> f64 {
+/// Correlation of the residuals of successive windows of some steps, of so many equations each: they are worth as many independent ones as it leaves.
+fn likeness(starts: &[usize], residual: impl Fn(usize, usize) -> f64, equations: usize, steps: usize) -> f64 {
     let (mut squares, mut products) = (0.0, 0.0);
-    for pair in starts.windows(2).filter(|p| p[1] - p[0] == RESPONSE_STEPS / 2) {
+    for pair in starts.windows(2).filter(|p| p[1] - p[0] == steps / 2) {
         for e in 0..equations {
             let (a, b) = (residual(pair[0], e), residual(pair[1], e));
             squares += 0.5 * (a * a + b * b);
@@ -366,7 +396,7 @@ fn centred<const N: usize>(a: &SMatrix<f64, N, N>, b: &SVector<f64, N>, squares:
 mod tests {
     use super::*;
     use crate::audit::example::noise;
-    use crate::audit::limits::LAG_EVIDENCE;
+    use crate::audit::limits::{LAG_EVIDENCE, SIGN_EVIDENCE};
     use crate::recording::Recording;
 
     /// A ship that gathers way under a propeller that turns faster in the fourth row, and is recorded so many rows late.
@@ -382,6 +412,26 @@ mod tests {
         let t = (0..120).map(|i| 2.0 * f64::from(i)).collect();
         let columns = vec![(Channel::T, t), (Channel::U, speeds), (Channel::N, recorded)];
         propeller(&Series::from(&Recording::from_channels("run", columns).unwrap())).unwrap()
+    }
+
+    #[test]
+    fn a_rudder_shows_its_side_however_often_a_noisy_gyro_is_read() {
+        for step in [0.05, 0.5] {
+            let mut noise = noise(3);
+            let rows = (120.0 / step) as usize;
+            let delta: Vec<f64> =
+                (0..rows).map(|i| if (i as f64 * step / 8.0) as usize % 2 == 0 { 0.35 } else { -0.35 }).collect();
+            let (mut r, mut rates) = (0.0_f64, Vec::new());
+            for delta in &delta {
+                rates.push(r + 0.045 * noise());
+                r += step * (0.1 * delta - 0.3 * r);
+            }
+            let t = (0..rows).map(|i| step * i as f64).collect();
+            let columns = vec![(Channel::T, t), (Channel::R, rates), (Channel::Delta, delta)];
+            let curve = rudder(&Series::from(&Recording::from_channels("run", columns).unwrap())).unwrap();
+            let (effect, sign) = (curve.effect(curve.zero()), curve.sign[curve.zero()]);
+            assert!(effect > SIGN_EVIDENCE && sign > 0.0, "{step}: {effect} {sign}");
+        }
     }
 
     #[test]
