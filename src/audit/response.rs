@@ -419,8 +419,7 @@ mod tests {
         for step in [0.05, 0.5] {
             let mut noise = noise(3);
             let rows = (120.0 / step) as usize;
-            let delta: Vec<f64> =
-                (0..rows).map(|i| if (i as f64 * step / 8.0) as usize % 2 == 0 { 0.35 } else { -0.35 }).collect();
+            let delta: Vec<f64> = (0..rows).map(|i| [0.35, -0.35][(i as f64 * step / 8.0) as usize % 2]).collect();
             let (mut r, mut rates) = (0.0_f64, Vec::new());
             for delta in &delta {
                 rates.push(r + 0.045 * noise());
