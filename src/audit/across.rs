@@ -1,7 +1,7 @@
 //! What only a comparison of runs shows: clocks that differ, one run in another unit, the same data on both sides of the split.
 //! The evidence of each run is gathered where the run is audited; no recording is read here.
 
-use super::gear::{Fastest, leaps as gear_leaps};
+use super::gear::{ACTUATORS, Fastest, leaps as gear_leaps};
 use super::held::{Repeats, held, repeats};
 use super::issue::{Issue, Severity, Shared};
 use super::length::{Length, shorter};
@@ -27,9 +27,6 @@ use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
-
-/// What moves the ship.
-const ACTUATORS: [Channel; 2] = [Channel::Delta, Channel::N];
 
 /// Channels that dead reckoning compares.
 const TRACK: [Channel; 6] = [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R];

@@ -7,6 +7,9 @@ use crate::numerals::sig;
 use crate::recording::{Channel, Recording};
 use serde::{Deserialize, Serialize};
 
+/// What moves the ship.
+pub const ACTUATORS: [Channel; 2] = [Channel::Delta, Channel::N];
+
 /// The fastest change of a channel from one row to the next.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fastest {

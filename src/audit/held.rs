@@ -2,6 +2,7 @@
 //! Coarse channels repeat; stretches that contradict other channels are in `frozen`. Rudder and propeller are held by their nature, and are
 //! asked only where they never are in the rest of the run, and leap from the value at last.
 
+use super::gear::ACTUATORS;
 use super::issue::{Issue, Severity, Shared};
 use super::limits::{
     HELD_BESIDE, HELD_CHANCE, HELD_CHANGES, HELD_DIGITS, HELD_LEAP, HELD_REST, HELD_ROWS, HELD_ROWS_MOVING, HELD_SAME,
@@ -12,9 +13,6 @@ use crate::recording::{Channel, Recording, STATE_CHANNELS};
 use crate::statistics::median;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
-
-/// Channels that one run holds and another does not.
-const HELD_BY_NATURE: [Channel; 2] = [Channel::Delta, Channel::N];
 
 /// What a channel repeats in a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,7 +60,7 @@ impl Repeats {
 pub fn repeats(recording: &Recording) -> Vec<Repeats> {
     let recorded = |c: &Channel| recording.has(*c) && !recording.derived().contains(c);
     let state: Vec<Channel> = STATE_CHANNELS.into_iter().filter(recorded).collect();
-    let all = state.iter().chain(&HELD_BY_NATURE);
+    let all = state.iter().chain(&ACTUATORS);
     all.filter_map(|channel| of_channel(recording, *channel, &state)).collect()
 }
 
@@ -155,7 +153,7 @@ pub fn held(runs: &[(&str, &[Repeats])]) -> Vec<Shared> {
     let mut found = Vec::new();
     for (run, repeats) in runs {
         for one in *repeats {
-            let by_nature = HELD_BY_NATURE.contains(&one.channel);
+            let by_nature = ACTUATORS.contains(&one.channel);
             let comparable = |r: &&Repeats| r.channel == one.channel && (!by_nature || std::ptr::eq(*r, one));
             let all: Vec<&Repeats> = runs.iter().flat_map(|(_, r)| *r).filter(comparable).collect();
             if let Some(issue) = told(one, &all) {
@@ -168,7 +166,7 @@ pub fn held(runs: &[(&str, &[Repeats])]) -> Vec<Shared> {
 
 /// The doubt about a channel of one run, with what it repeats in all runs: a late channel may begin each of them with one value.
 fn told(one: &Repeats, all: &[&Repeats]) -> Option<Issue> {
-    let hold = one.held.as_ref().filter(|h| h.leaps || !HELD_BY_NATURE.contains(&one.channel))?;
+    let hold = one.held.as_ref().filter(|h| h.leaps || !ACTUATORS.contains(&one.channel))?;
     // A lag is the same in all runs; the time that a model is held before it is released is not.
     let other = |r: &&&Repeats| r.held.as_ref().is_some_and(|h| h.first && h.rows != hold.rows);
     if hold.first && all.iter().any(|r| other(&r)) {

@@ -94,11 +94,15 @@ pub struct Finding {
     pub held_out: Option<FindingProof>,
 }
 
+/// Whether all of some amplitudes are times, as those of a clock are.
+pub fn are_times(amplitudes: &[Amplitude]) -> bool {
+    !amplitudes.is_empty() && amplitudes.iter().all(|a| a.unit == "s")
+}
+
 impl Finding {
     /// Whether it was withdrawn as immaterial for a clock's sake, that it is off by less than is resolved.
     pub fn is_unresolved_clock(&self) -> bool {
-        let is_clock = !self.parameters.is_empty() && self.parameters.iter().all(|p| p.unit == "s");
-        self.grade == Grade::Immaterial && self.kind == Kind::Sensor && is_clock
+        self.grade == Grade::Immaterial && self.kind == Kind::Sensor && are_times(&self.parameters)
     }
 }
 

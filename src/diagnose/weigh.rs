@@ -5,7 +5,7 @@ use super::base::Question;
 use super::describe::{Intervals, mechanism_finding, push_finding, sensor_findings};
 use super::estimate::Estimate;
 use super::event::BaseTests;
-use super::finding::{Amplitude, Finding};
+use super::finding::{Amplitude, Finding, are_times};
 use super::grade::{FindingTests, Grade, grade};
 use super::improved::inside_bounds;
 use super::influence::{Following, change};
@@ -125,9 +125,8 @@ fn by_steps(question: &Question, kept: &Kept, without: &Estimate) -> f64 {
 /// largest of its parameters; `None` for what is no time.
 fn shift(amplitudes: &[Amplitude], runs: &[Run]) -> Option<f64> {
     let period = median(runs.iter().map(|r| r.recorded_dt))?;
-    let times = !amplitudes.is_empty() && amplitudes.iter().all(|a| a.unit == "s");
     let least = |a: &Amplitude| f64::max(a.ci95[0], -a.ci95[1]).max(0.0);
-    times.then(|| amplitudes.iter().map(least).fold(0.0, f64::max) / period)
+    are_times(amplitudes).then(|| amplitudes.iter().map(least).fold(0.0, f64::max) / period)
 }
 
 /// The mechanism that is withdrawn first: of those that their grade neither names nor keeps in the model, the one that gains least on
