@@ -2,23 +2,38 @@
 //! It compares numbers of the score tests with the settings; it estimates nothing.
 
 use super::candidate::{Candidate, Extent};
+use super::present::Present;
 use super::screen::{Row, Screen};
 use super::selected::Selected;
 use super::settings::{BEYOND_DOUBT, REMAINDER, Settings};
 use crate::physics::{Kind, Mechanism};
 
-/// The mechanisms that may be named beside those that were selected, the most significant first. `alone` says that nothing was
-/// found yet, neither a mechanism nor a push nor a coarse integration step.
-pub fn eligible<'s>(
-    s: &'s Screen,
-    candidates: &[Candidate],
-    selected: &[Selected],
-    alone: bool,
-    settings: &Settings,
-) -> Vec<&'s Row> {
-    let may = |r: &&Row| {
-        may_be_named(r, candidates, settings) && (alone || may_be_further(&Further::from(*r), selected, candidates))
-    };
+/// What a mechanism would be named beside.
+#[derive(Clone, Copy)]
+pub struct Beside<'a> {
+    /// What the model had before.
+    pub present: &'a [Present],
+    /// The mechanisms that were selected.
+    pub selected: &'a [Selected],
+    /// Whether nothing else was found, neither a push nor a coarse integration step.
+    pub nothing_else: bool,
+}
+
+impl Beside<'_> {
+    /// Whether a mechanism would be the first that is named.
+    pub fn is_nothing(&self) -> bool {
+        self.nothing_else && self.present.is_empty() && self.selected.is_empty()
+    }
+
+    /// Whether a mechanism may be named beside all this, as far as that decides.
+    pub fn allows(&self, f: &Further, candidates: &[Candidate]) -> bool {
+        self.is_nothing() || may_be_further(f, self, candidates)
+    }
+}
+
+/// The mechanisms that may be named beside those that were selected, the most significant first.
+pub fn eligible<'s>(s: &'s Screen, candidates: &[Candidate], beside: Beside, settings: &Settings) -> Vec<&'s Row> {
+    let may = |r: &&Row| may_be_named(r, candidates, settings) && beside.allows(&Further::from(*r), candidates);
     s.rows.iter().filter(may).collect()
 }
 
@@ -54,18 +69,21 @@ impl<'a> From<&'a Row> for Further<'a> {
     }
 }
 
-/// Whether a further mechanism may be named beside those that were selected: it must be beyond doubt, and more than what an
-/// imperfect form of an earlier one leaves behind.
-pub fn may_be_further(f: &Further, selected: &[Selected], candidates: &[Candidate]) -> bool {
+/// Whether a further mechanism may be named beside those that the model had and those that were selected: it must be beyond doubt, and
+/// more than what an imperfect form of an earlier one leaves behind.
+pub fn may_be_further(f: &Further, beside: &Beside, candidates: &[Candidate]) -> bool {
     let m = candidates[f.candidate].mechanism;
+    let remainder =
+        |first: usize, statistic: f64| m.looks_like(candidates[first].mechanism) && f.statistic < REMAINDER * statistic;
     let left_by = |a: &Selected| {
-        let first = candidates[a.candidate].mechanism;
         // Changes of the ship's own forces between sessions: the form of the first cannot be told from a second.
         let between_sessions = a.extent != Extent::All && *f.extent != Extent::All;
-        (between_sessions && m.needs_reference && first.needs_reference)
-            || (m.looks_like(first) && f.statistic < REMAINDER * a.statistic)
+        (between_sessions && m.needs_reference && candidates[a.candidate].mechanism.needs_reference)
+            || remainder(a.candidate, a.statistic)
     };
-    f.p < BEYOND_DOUBT && selected.iter().all(|a| a.candidate != f.candidate && !left_by(a))
+    f.p < BEYOND_DOUBT
+        && beside.selected.iter().all(|a| a.candidate != f.candidate && !left_by(a))
+        && beside.present.iter().all(|p| !remainder(p.candidate, p.statistic))
 }
 
 #[cfg(test)]
@@ -131,11 +149,25 @@ mod tests {
     #[test]
     fn a_further_mechanism_must_be_beyond_doubt_another_and_no_remainder_of_a_look_alike() {
         let list = list();
-        let may = |r: &Row, taken: &[Selected]| may_be_further(&Further::from(r), taken, &list);
+        let may = |r: &Row, selected: &[Selected]| {
+            may_be_further(&Further::from(r), &Beside { present: &[], selected, nothing_else: true }, &list)
+        };
         assert!(may(&row(0, 60.0), &[]) && !may(&Row { p: 1e-6, ..row(0, 60.0) }, &[]));
         assert!(!may(&row(0, 60.0), &[selected(0, 10.0)]));
         // Mean wind and a force fixed on the earth look alike, a compass looks like neither.
         assert!(!may(&row(1, 39.0), &[selected(2, 100.0)]) && may(&row(1, 40.0), &[selected(2, 100.0)]));
         assert!(may(&row(3, 39.0), &[selected(2, 100.0)]));
+    }
+
+    #[test]
+    fn what_the_model_had_counts_as_selected_and_may_yet_be_more_than_it_had() {
+        let list = list();
+        let present = [Present { candidate: 2, statistic: 100.0 }];
+        let beside = Beside { present: &present, selected: &[], nothing_else: true };
+        let may = |r: &Row| beside.allows(&Further::from(r), &list);
+        assert!(!beside.is_nothing() && !may(&Row { p: 1e-6, ..row(3, 60.0) }));
+        assert!(!may(&row(1, 39.0)) && may(&row(1, 40.0)) && may(&row(3, 39.0)) && may(&row(2, 30.0)));
+        let none = Beside { present: &[], ..beside };
+        assert!(none.is_nothing() && none.allows(&Further::from(&Row { p: 1e-6, ..row(3, 60.0) }), &list));
     }
 }

@@ -5,11 +5,12 @@ use super::base::{BaseFit, Question};
 use super::candidate::{Candidate, applies, candidates};
 use super::compete::compete;
 use super::decide::{Chance, PushTest, form_holds, is_euler};
-use super::eligible::{eligible, may_be_named};
+use super::eligible::{Beside, eligible, may_be_named};
 use super::estimate::{Estimate, calm_noise};
 use super::finding::PUSH;
 use super::locate::{Location, locate, pushes_left};
 use super::noise::{Noise, NoisePrior};
+use super::present::{Present, present};
 use super::problem::Problem;
 use super::push::Push;
 use super::screen::{Screen, screen};
@@ -55,6 +56,11 @@ impl BaseTests {
     pub fn problem<'a>(&'a self, settings: &'a Settings) -> Problem<'a> {
         let BaseFit { runs, integration, prior, .. } = &self.fit;
         Problem { integration: *integration, runs, candidates: &self.candidates, prior, settings }
+    }
+
+    /// What the base model has of errors of sensors and actuators and of weather.
+    pub fn present(&self) -> Vec<Present> {
+        present(&self.screen, &self.fit.estimate, &self.candidates)
     }
 
     /// Whether the audit found a unit or a sign that is wrong.
@@ -135,9 +141,11 @@ impl Opening {
         let rival = if is_euler(tests.fit.admission.euler_gain) {
             None
         } else {
-            let leaders = eligible(&tests.screen, &tests.candidates, &[], true, settings);
+            let present = tests.present();
+            let beside = Beside { present: &present, selected: &[], nothing_else: true };
+            let leaders = eligible(&tests.screen, &tests.candidates, beside, settings);
             // What is rejected here is tried again by the selection.
-            let (estimate, sensor) = (&tests.fit.estimate, leading(&tests.fit.estimate, problem, &[], true));
+            let (estimate, sensor) = (&tests.fit.estimate, leading(&tests.fit.estimate, problem, beside));
             compete(&tests.screen, leaders, sensor, estimate, problem, &mut Vec::new(), question.progress)
         };
         let left =

@@ -65,6 +65,7 @@ mod optimise;
 mod pass;
 mod pipeline;
 pub mod place;
+pub mod present;
 mod problem;
 pub mod prove;
 pub mod push;

@@ -5,10 +5,11 @@ use super::admit::followed;
 use super::base::Question;
 use super::compete::{Rejected, amplitudes, compare, compete, form_tolerance};
 use super::decide::is_euler;
-use super::eligible::{Further, eligible, may_be_further, may_be_named};
+use super::eligible::{Beside, Further, eligible, may_be_further, may_be_named};
 use super::estimate::{Estimate, passes};
 use super::event::{BaseTests, Opening};
 use super::evidence::chi_squared_p;
+use super::present::Present;
 use super::problem::Problem;
 use super::push::Push;
 #[cfg(feature = "ipopt")]
@@ -88,9 +89,11 @@ impl Selection {
         let screen = latest.as_ref().unwrap_or(&self.tests.screen);
         // A push that was found first is a finding already, and so is a coarse step.
         let by_euler = is_euler(self.tests.fit.admission.euler_gain);
-        let alone = self.mechanisms.is_empty() && self.push.is_none() && !by_euler;
-        let leaders = eligible(screen, problem.candidates, &self.mechanisms, alone, question.settings);
-        let sensor = leading(&self.estimate, problem, &self.mechanisms, alone);
+        let present = self.tests.present();
+        let nothing_else = self.push.is_none() && !by_euler;
+        let beside = Beside { present: &present, selected: &self.mechanisms, nothing_else };
+        let leaders = eligible(screen, problem.candidates, beside, question.settings);
+        let sensor = leading(&self.estimate, problem, beside);
         let next = compete(screen, leaders, sensor, &self.estimate, problem, &mut self.rejected, question.progress);
         if next.is_none() {
             self.latest = latest;
@@ -134,9 +137,12 @@ impl Selection {
     /// Compares every mechanism from outside the ship again, beside those that were found after it: what it explained alone,
     /// another may explain better beside them.
     fn replace(&mut self, settings: &Settings) {
+        let present = self.tests.present();
         for i in 0..self.mechanisms.len().saturating_sub(1) {
             let problem = self.tests.problem(settings);
-            let Some((entry, found)) = rival_of(&self.mechanisms, i, &self.estimate, problem) else { continue };
+            let Some((entry, found)) = rival_of(&self.mechanisms, &present, i, &self.estimate, problem) else {
+                continue;
+            };
             self.mechanisms[i] = entry;
             if let Some(found) = found {
                 (self.estimate, self.latest) = (found, None);
@@ -149,28 +155,30 @@ impl Selection {
 /// better than the present one, without where it is the same; `None` where the present one is kept as it is.
 fn rival_of(
     selected: &[Selected],
+    present: &[Present],
     i: usize,
     current: &Estimate,
     problem: Problem,
 ) -> Option<(Selected, Option<Estimate>)> {
     let Problem { integration, runs, candidates, settings, .. } = problem;
     let outside = |candidate: usize| candidates[candidate].mechanism.kind == Kind::Environment;
-    let present = &selected[i];
-    if !outside(present.candidate) {
+    let own = &selected[i];
+    if !outside(own.candidate) {
         return None;
     }
-    let (model, free) = candidates[present.candidate].removed(current, &present.extent);
+    let (model, free) = candidates[own.candidate].removed(current, &own.extent);
     let rest = problem.estimate(&model, &free, &current.noise, REFIT);
     let others: Vec<Selected> = selected.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, a)| a.clone()).collect();
+    let beside = Beside { present, selected: &others, nothing_else: false };
     let s = screen(&rest, integration, runs, candidates);
     let may = |r: &&Row| {
         outside(r.candidate)
             && may_be_named(r, candidates, settings)
-            && may_be_further(&Further::from(*r), &others, candidates)
+            && may_be_further(&Further::from(*r), &beside, candidates)
     };
     let leaders: Vec<&Row> = s.rows.iter().filter(may).collect();
     let (entry, found) = compare(&s, &leaders, &rest, problem)?;
-    if entry.candidate == present.candidate && entry.extent == present.extent {
+    if entry.candidate == own.candidate && entry.extent == own.extent {
         return Some((entry, None));
     }
     // The present one was estimated to the end, beside what came after it: another must do better than that, and a force without
@@ -180,12 +188,12 @@ fn rival_of(
         e.log_posterior - PARAMETER_PRICE * parameters as f64
     };
     let is_stand_in = |a: &Selected| candidates[a.candidate].mechanism.stand_in;
-    let tolerance = if is_stand_in(&entry) && !is_stand_in(present) {
+    let tolerance = if is_stand_in(&entry) && !is_stand_in(own) {
         form_tolerance(found.log_posterior - rest.log_posterior)
     } else {
         0.0
     };
-    (value(&entry, &found) - value(present, current) > tolerance).then_some((entry, Some(found)))
+    (value(&entry, &found) - value(own, current) > tolerance).then_some((entry, Some(found)))
 }
 
 #[cfg(test)]

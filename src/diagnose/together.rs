@@ -3,13 +3,12 @@
 //! What is named, and whether a refit confirms it, is decided elsewhere.
 
 use super::candidate::{Candidate, Extent};
-use super::eligible::{Further, may_be_further};
+use super::eligible::{Beside, Further};
 use super::estimate::{Estimate, FreeParameter, log_posterior};
 use super::evidence::chi_squared_p;
 use super::kinematic::{Disagreement, disagreements};
 use super::noise::Noise;
 use super::problem::Problem;
-use super::selected::Selected;
 use super::settings::{SENSOR_SPREAD, TOGETHER_EFFORT};
 use super::wald::Wald;
 use crate::model::{Model, Prior};
@@ -34,11 +33,11 @@ pub struct Leading {
     pub noise: Noise,
 }
 
-/// The leading error of a sensor that may be named beside the mechanisms that were selected. What the sensors show of each other beyond
+/// The leading error of a sensor that may be named beside what the model had and what was selected. What the sensors show of each other beyond
 /// chance is free, with a weak prior and one amplitude in all sessions; it starts where they agree best, and parameters and noise are
 /// estimated in turn. `None` where the sensors agree, where they cannot be held against each other, and where no error is both
 /// significant.
-pub fn leading(current: &Estimate, problem: Problem, selected: &[Selected], alone: bool) -> Option<Leading> {
+pub fn leading(current: &Estimate, problem: Problem, beside: Beside) -> Option<Leading> {
     let Problem { integration, runs, candidates, settings, .. } = problem;
     let is_free = |parameter: usize| current.free.iter().any(|f| f.column.parameter == parameter);
     let may_be = |i: &usize| {
@@ -67,7 +66,7 @@ pub fn leading(current: &Estimate, problem: Problem, selected: &[Selected], alon
     let wald = Wald::at(&found, integration, runs);
     let may_lead = |candidate: usize, statistic: f64, p: f64| {
         let further = Further { candidate, extent: &Extent::All, statistic, p };
-        p < settings.alpha && (alone || may_be_further(&further, selected, candidates))
+        p < settings.alpha && beside.allows(&further, candidates)
     };
     let row = |(i, own): (&usize, &Vec<usize>)| {
         let part = wald.part(own).less(&candidates[*i].held(&Extent::All));
@@ -101,8 +100,11 @@ mod tests {
     use crate::diagnose::example::{RK4, at, erring, model};
     use crate::diagnose::noise::NoisePrior;
     use crate::diagnose::screen::screen;
+    use crate::diagnose::selected::Selected;
     use crate::diagnose::settings::{SETTLE, Settings};
     use crate::recording::Run;
+
+    const NOTHING: Beside = Beside { present: &[], selected: &[], nothing_else: true };
 
     /// What leads on runs, alone or beside clocks of some statistic, with the noise that the model alone has there.
     fn of(runs: &[Run], withhold: &[&str], taken: Option<f64>) -> (Vec<Candidate>, Estimate, Option<Leading>) {
@@ -116,7 +118,8 @@ mod tests {
             let (set, why) = (vec![clocks], String::new());
             Selected { candidate: clocks, extent: Extent::All, statistic, p: 0.0, set, why, carried: false }
         });
-        let found = leading(&base, problem, selected.as_slice(), selected.is_none());
+        let beside = Beside { present: &[], selected: selected.as_slice(), nothing_else: true };
+        let found = leading(&base, problem, beside);
         (list, base, found)
     }
 
@@ -154,7 +157,7 @@ mod tests {
             let problem =
                 Problem { integration: RK4, runs: &runs, candidates: &list, prior: &prior, settings: &settings };
             let base = problem.again(&at(&model), SETTLE);
-            leading(&base, problem, &[], true).map(|l| {
+            leading(&base, problem, NOTHING).map(|l| {
                 let c = &list[l.candidate];
                 (
                     c.mechanism.name,

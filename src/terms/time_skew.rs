@@ -59,7 +59,7 @@ static INFO: TermInfo = TermInfo {
             needs_reference: false,
             by_session: true,
             stand_in: false,
-            look_alikes: &["time_skew", "position_lever"],
+            look_alikes: &["time_skew", "position_lever", "yaw_rate_skew"],
             trial: "zigzags at two speeds after a check of the clocks",
         },
     ],
