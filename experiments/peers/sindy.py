@@ -7,7 +7,7 @@ It is not part of the product and no test needs it.
     python3 -m venv venv && venv/bin/pip install pysindy
     venv/bin/python experiments/peers/sindy.py CASE
 
-CASE is a folder with study/study.toml, as `conceal` and `campaign --keep` write it. Prints the name of the mechanism whose columns
+CASE is a folder with study/study.toml, as `conceal`, `campaign --keep` and `injected --keep` write it. Prints the name of the mechanism whose columns
 explain most of the part that STLSQ kept, or "nothing".
 """
 
@@ -21,24 +21,34 @@ import numpy as np
 import pysindy as ps
 from scipy.signal import savgol_filter
 
-WINDOW = 11  # rows of the Savitzky-Golay filter: 22 s
+WINDOW = 11  # rows of the Savitzky-Golay filter: 22 s at a step of 2 s
+EVERY = 4  # where the study names no runs for the test, every fourth takes their place
 THRESHOLDS = (0.05, 0.1, 0.2, 0.4)
 
 
-def read(path):
-    """Columns of a recording by name, on an even grid; short dropouts are bridged by straight lines."""
+def read(path, step, start, end):
+    """Columns of the part of a recording between two times by name, on an even grid of a step, or else of its own; a channel's missing
+    values are bridged by straight lines."""
     with open(path, newline="") as file:
         rows = list(csv.reader(file))
     names = [h.split(" ")[0] for h in rows[0]]
     data = np.array([[float(v) if v else np.nan for v in r] for r in rows[1:]])
     t = data[:, 0]
-    step = np.median(np.diff(t))
+    data = data[(t >= start) & (t <= end)]
+    t = data[:, 0]
+    step = step or np.median(np.diff(t))
     grid = np.arange(t[0], t[-1] + 0.5 * step, step)
-    return {name: np.interp(grid, t, data[:, i]) for i, name in enumerate(names)}
+    out = {}
+    for name, values in zip(names, data.T):
+        there = np.isfinite(values)
+        if there.any():
+            known = np.unwrap(values[there]) if name == "psi" else values[there]
+            out[name] = np.interp(grid, t[there], known)
+    return out
 
 
-def features(run):
-    """Targets, base columns and mechanism columns of one run, by equation."""
+def features(run, terms):
+    """Targets, base columns and mechanism columns of one run, by equation; the load of a term that the base model has is a base column."""
     t = run["t"]
     slope = ps.SmoothedFiniteDifference(smoother_kws={"window_length": WINDOW, "polyorder": 3})
     rate = {k: slope._differentiate(run[k][:, None], t)[:, 0] for k in ("x", "y", "psi", "u", "v", "r", "n", "delta")}
@@ -97,6 +107,9 @@ def features(run):
         angle = run["wave_direction"] - psi
         high = run["wave_height"] ** 2
         mechanisms["waves"] = {"X": [high * np.cos(angle)], "Y": [high * np.sin(angle)], "N": [high * np.sin(angle)]}
+    for term in [m for m in mechanisms if m in terms]:
+        for equation, columns in mechanisms.pop(term).items():
+            base[equation] = base[equation] + columns
     # What is compared with a smoothed derivative is smoothed alike, or whatever is fast is found to be missing.
     smooth = lambda columns: [savgol_filter(c, WINDOW, 3) for c in columns]
     base = {equation: smooth(columns) for equation, columns in base.items()}
@@ -168,10 +181,17 @@ def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     study = Path(sys.argv[1]) / "study" / "study.toml"
-    runs = tomllib.loads(study.read_text())["runs"]
+    content = tomllib.loads(study.read_text())
+    terms = tomllib.loads(study.with_name(content["model"]).read_text()).get("terms", [])
     sides = {"train": [], "test": []}
-    for run in runs:
-        sides[run["split"]].append(features(read(study.with_name(run["file"]))))
+    for run in content["runs"]:
+        part = read(study.with_name(run["file"]), content.get("step"), run.get("from", -np.inf), run.get("to", np.inf))
+        # Of fewer rows than the filter has there are no derivatives.
+        if len(part["t"]) > WINDOW:
+            sides[run["split"]].append(features(part, terms))
+    if not sides["test"]:
+        runs = sides["train"]
+        sides = {"train": [r for i, r in enumerate(runs) if i % EVERY], "test": runs[::EVERY]}
     print(name(sides["train"], sides["test"]))
 
 

@@ -11,6 +11,7 @@ pub mod mutated;
 pub mod paper;
 pub mod process;
 pub mod real;
+pub mod rivals;
 pub mod rows;
 pub mod truth;
 pub mod workers;

@@ -71,14 +71,47 @@ fn text(file: &mut File) -> io::Result<String> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
+/// As [`run`], where exit code 1 is an answer and everything else but 0 a failure.
+///
+/// # Errors
+/// [`ConcealError`] with the program's last message, or that it was stopped.
+pub fn answer(command: Command, program: &Path, limit: Duration) -> Result<Ended, ConcealError> {
+    let ended = run(command, limit).map_err(|source| ConcealError::file(program, source))?;
+    let message = match ended.code {
+        _ if ended.stopped => format!("stopped after {} s", limit.as_secs()),
+        Some(0 | 1) => return Ok(ended),
+        Some(code) => format!("exit status {code}: {}", ended.messages.lines().last().unwrap_or_default()),
+        None => "ended by a signal".to_owned(),
+    };
+    Err(ConcealError::content(program, &message))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn shell(script: &str, limit: Duration) -> Ended {
+    fn command(script: &str) -> Command {
         let mut command = Command::new("sh");
         command.arg("-c").arg(script);
-        run(command, limit).unwrap()
+        command
+    }
+
+    fn shell(script: &str, limit: Duration) -> Ended {
+        run(command(script), limit).unwrap()
+    }
+
+    #[test]
+    fn exit_code_1_is_an_answer_and_exit_code_2_an_error_with_its_message() {
+        let of = |script: &str| answer(command(script), Path::new("sh"), Duration::from_secs(20));
+        assert_eq!(of("echo no; exit 1").unwrap().output, "no\n");
+        let e = of("echo first >&2; echo last >&2; exit 2").unwrap_err().to_string();
+        assert!(e.contains("exit status 2") && e.ends_with("last"), "{e}");
+    }
+
+    #[test]
+    fn an_answer_that_does_not_come_in_time_is_an_error() {
+        let e = answer(command("exec sleep 60"), Path::new("sh"), Duration::ZERO).unwrap_err().to_string();
+        assert!(e.contains("stopped after"), "{e}");
     }
 
     #[test]

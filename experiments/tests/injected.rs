@@ -32,7 +32,8 @@ fn present() -> bool {
 }
 
 fn runner(folder: &std::path::Path) -> Runner {
-    Runner { tool: program(), limit: Duration::from_secs(120), folder: folder.join("cases"), keep: false }
+    let limit = Duration::from_secs(120);
+    Runner { tool: program(), limit, folder: folder.join("cases"), keep: false, rivals: true, sindy: None }
 }
 
 fn run(cases: &[Planned], runner: &Runner) -> Vec<Row> {
@@ -61,6 +62,8 @@ fn forty_injected_cases_are_answered_and_scored() {
         assert!(row.answered() || row.kind == "mistake", "{}: {}", row.case, row.error);
         let empty = matches!(row.kind.as_str(), "null" | "same" | "wind" | "load") || row.case.contains("/again/null/");
         assert_eq!(row.injected.is_empty(), empty, "{}", row.case);
+        let asked = cases.iter().any(|c| c.key == row.case && c.suits_rivals());
+        assert!(asked != row.bic.is_empty() && !row.bic.starts_with('('), "{}: {}", row.case, row.bic);
     }
     let scores = scored(&rows);
     // A program that names everything, or nothing, cannot have both.

@@ -185,8 +185,8 @@ impl Refitted {
     }
 
     /// Mean cVDM \[%\] on held-out runs, as the diagnosis' proof measures it.
-    pub fn held_out(&self, runs: &[Run]) -> f64 {
-        let judging = Judging { integration: self.integration, ..Settings::default().judging };
+    pub fn held_out(&self, runs: &[Run], judging: &Judging) -> f64 {
+        let judging = Judging { integration: self.integration, ..judging.clone() };
         mean_cvdm(&self.model, runs, &judging).unwrap_or(DIVERGED)
     }
 }

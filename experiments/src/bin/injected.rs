@@ -51,6 +51,12 @@ struct Arguments {
     /// Keep the folders of the cases, for inspection; they hold copies of recordings.
     #[arg(long)]
     keep: bool,
+    /// Ask the rivals too, where nothing or one effect of full strength is injected: a refit with the Bayesian information criterion.
+    #[arg(long)]
+    rivals: bool,
+    /// With --rivals: sparse regression too, with this Python, which has `PySINDy` (see experiments/peers).
+    #[arg(long, requires = "rivals")]
+    sindy: Option<PathBuf>,
     /// Print the plan and stop.
     #[arg(long)]
     list: bool,
@@ -126,8 +132,14 @@ fn counted(cases: &[Planned]) -> Table {
 }
 
 fn execute(a: &Arguments, cases: &[Planned], results: &Results) -> Result<(), InjectedError> {
-    let runner =
-        Runner { tool: a.tool.clone(), limit: Duration::from_secs(a.limit), folder: a.out.join("cases"), keep: a.keep };
+    let runner = Runner {
+        tool: a.tool.clone(),
+        limit: Duration::from_secs(a.limit),
+        folder: a.out.join("cases"),
+        keep: a.keep,
+        rivals: a.rivals,
+        sindy: a.sindy.clone(),
+    };
     let bar = ProgressBar::new(cases.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{pos}/{len} {wide_bar} {eta} {msg}") {
         bar.set_style(style);

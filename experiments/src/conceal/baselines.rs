@@ -3,13 +3,8 @@
 
 use std::path::Path;
 
-use trimtab::diagnose::Settings;
-use trimtab::diagnose::baseline::{Refitted, Told, oracle};
+use trimtab::diagnose::baseline::{Told, oracle};
 use trimtab::diagnose::candidate::Extent;
-use trimtab::model::Model;
-use trimtab::recording::{Run, Split};
-use trimtab::ship::Ship;
-use trimtab::study::Study;
 
 use super::campaign::plan::Planned;
 use super::error::ConcealError;
@@ -17,6 +12,7 @@ use super::judge::rules::baseline_right;
 use super::judge::score::Score;
 use super::seal::Manifest;
 use super::spec::Strength;
+use crate::rivals::{Content, Refit};
 
 /// Which baselines are run on a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,27 +49,20 @@ pub struct Baselines {
 /// # Errors
 /// [`ConcealError::Content`] when the library refuses the study.
 pub fn ask(study: &Path, manifest: &Manifest, wanted: Wanted) -> Result<Baselines, ConcealError> {
-    let fail = |e: &dyn std::fmt::Display| ConcealError::content(study, e);
     let mut said = Baselines::default();
     if !(wanted.rivals || wanted.oracle) {
         return Ok(said);
     }
-    let content = Study::read(study).map_err(|e| fail(&e))?;
-    let ship = Ship::read(&content.ship).map_err(|e| fail(&e))?;
-    let model = Model::read(&content.model, ship).map_err(|e| fail(&e))?;
-    let windows = content.windows(model.ship.hull.draught).map_err(|e| fail(&e))?.windows;
-    let (train, held_out): (Vec<Run>, Vec<Run>) = windows.into_iter().partition(|w| w.split == Split::Train);
-    let settings = Settings::default();
+    let content = Content::read(study)?;
     if wanted.rivals
-        && let Some(refitted) = Refitted::new(&model, &train, &settings).map_err(|e| fail(&e))?
+        && let Some(refit) = Refit::new(study, &content)?
     {
-        said.refit = Some(refitted.held_out(&held_out));
-        let ranking = refitted.ranking(&train, &settings.withhold);
-        let best = ranking.first().filter(|best| best.gain > 0.0);
-        said.bic = Some(best.map_or("nothing", |b| b.mechanism.as_str()).to_owned());
+        (said.refit, said.bic) = (refit.held_out, Some(refit.bic));
     }
     if wanted.oracle {
-        said.oracle = oracle(&model, &train, &held_out, &settings, &told(manifest)).map_err(|e| fail(&e))?;
+        let Content { model, train, held_out, settings } = &content;
+        said.oracle =
+            oracle(model, train, held_out, settings, &told(manifest)).map_err(|e| ConcealError::content(study, &e))?;
     }
     Ok(said)
 }

@@ -19,10 +19,7 @@ use super::seal;
 use super::spec::Strength;
 use super::strength::Meter;
 use crate::process::{self, Ended};
-use crate::workers;
-
-/// The script of sparse regression.
-const SINDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peers/sindy.py");
+use crate::{rivals, workers};
 
 /// How cases are run.
 #[derive(Debug, Clone)]
@@ -95,7 +92,7 @@ impl Runner {
         let answer = folder.join("diagnosis.json");
         let mut command = Command::new(&self.tool);
         command.args(["--threads", "1", "diagnose"]).arg(&study).args(["--json", "--once"]);
-        let Ended { output, seconds, .. } = finish(command, &self.tool, self.limit)?;
+        let Ended { output, seconds, .. } = process::answer(command, &self.tool, self.limit)?;
         write_whole(&answer, output.as_bytes()).map_err(|source| ConcealError::file(&answer, source))?;
         let diagnosis = Diagnosis::read(&answer)?;
         let manifest = seal::open(folder)?;
@@ -106,52 +103,16 @@ impl Runner {
             baselines::ask(&study, &manifest, wanted)?.add_to(&mut score, &manifest);
         }
         if let Some(python) = self.sindy.as_ref().filter(|_| wanted.rivals) {
-            // Otherwise numerical libraries start one thread a processor for each worker.
-            let mut command = Command::new(python);
-            command.arg(SINDY).arg(folder).env("OMP_NUM_THREADS", "1").env("OPENBLAS_NUM_THREADS", "1");
-            let said = finish(command, python, self.limit)?.output;
-            score.sindy_named = said.lines().last().unwrap_or_default().trim().to_owned();
+            score.sindy_named = rivals::sparse_regression(python, folder, self.limit)?;
             score.sindy_right = Some(baseline_right(&manifest, &score.sindy_named));
         }
         Ok(score)
     }
 }
 
-/// Runs a command to its end, at most `limit`, and gives what it leaves. Exit code 1 is an answer, not a failure.
-fn finish(command: Command, program: &Path, limit: Duration) -> Result<Ended, ConcealError> {
-    let ended = process::run(command, limit).map_err(|source| ConcealError::file(program, source))?;
-    let message = match ended.code {
-        _ if ended.stopped => format!("stopped after {} s", limit.as_secs()),
-        Some(0 | 1) => return Ok(ended),
-        Some(code) => format!("exit status {code}: {}", ended.messages.lines().last().unwrap_or_default()),
-        None => "ended by a signal".to_owned(),
-    };
-    Err(ConcealError::content(program, &message))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn shell(script: &str) -> Command {
-        let mut command = Command::new("sh");
-        command.arg("-c").arg(script);
-        command
-    }
-
-    #[test]
-    fn exit_code_1_is_an_answer_and_exit_code_2_an_error_with_its_message() {
-        let of = |script: &str| finish(shell(script), Path::new("sh"), Duration::from_secs(20));
-        assert_eq!(of("echo no; exit 1").unwrap().output, "no\n");
-        let e = of("echo first >&2; echo last >&2; exit 2").unwrap_err().to_string();
-        assert!(e.contains("exit status 2") && e.ends_with("last"), "{e}");
-    }
-
-    #[test]
-    fn a_program_that_does_not_end_is_stopped() {
-        let e = finish(shell("exec sleep 60"), Path::new("sh"), Duration::ZERO).unwrap_err().to_string();
-        assert!(e.contains("stopped after"), "{e}");
-    }
 
     #[test]
     fn every_case_of_the_plan_has_a_folder_of_its_own() {

@@ -94,6 +94,17 @@ pub struct Planned {
     pub seed: u64,
 }
 
+impl Planned {
+    /// Whether rivals are asked: nothing is injected, or one effect that is strong enough that a user would look for it.
+    pub fn suits_rivals(&self) -> bool {
+        match self.kind {
+            Kind::Null => true,
+            Kind::Single => self.strength.is_some_and(|s| s >= 1.0),
+            _ => false,
+        }
+    }
+}
+
 /// Nulls of each set; the other cases take their configurations from the first ones.
 const NULLS: usize = 130;
 /// Of these, how many configurations the injected cases use.

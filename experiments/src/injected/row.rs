@@ -7,7 +7,9 @@ use super::effect::{Expected, Injection};
 use super::plan::Planned;
 use super::said::{Finding, HeldOut, Interval, Said};
 use super::seal::{Manifest, Witness};
+use crate::conceal::error::ConcealError;
 use crate::process::Ended;
+use crate::rivals::Refit;
 
 /// A row of the results. Lists within a cell are joined by `+`, the names of a set by `|`; numbers with names are JSON.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -76,6 +78,14 @@ pub struct Row {
     pub faults: String,
     /// Names in the diagnosis of the improved model; `-` where it was not asked.
     pub again: String,
+    /// Mean cVDM of unseen runs with the model that was written \[%\].
+    pub unseen: Option<f64>,
+    /// The same of a refit of the base model to whole trajectories, where rivals were asked.
+    pub refit: Option<f64>,
+    /// The mechanism that the Bayesian information criterion takes from that refit; a message in brackets where it failed.
+    pub bic: String,
+    /// The mechanism that sparse regression names.
+    pub sindy: String,
     /// The verdict in a sentence.
     pub headline: String,
     /// Time of the diagnosis \[s\].
@@ -178,10 +188,28 @@ impl Row {
         self.proof = json(if each { &own } else { &all });
         (self.stable, self.stable_of) = (said.stability.map(|s| s.same), said.stability.map(|s| s.of));
         self.faults = said.faults().join("+");
+        self.unseen = said.held_out.as_ref().and_then(|h| if said.improved_is_base { h.before } else { h.after });
         let usable = |r: &&super::said::Ranked| !r.by_session && r.sessions.is_empty();
         let ranked: Vec<(&str, &[Option<f64>])> =
             said.ranking.iter().filter(usable).map(|r| (r.mechanism.as_str(), r.amplitude.as_slice())).collect();
         self.ranked = json(&ranked);
+    }
+
+    /// Adds what rivals say of the same study.
+    pub fn add_rivals(
+        &mut self,
+        refit: Result<Option<Refit>, ConcealError>,
+        sindy: Option<Result<String, ConcealError>>,
+    ) {
+        let failed = |e: ConcealError| format!("({})", line(&e.to_string()));
+        match refit {
+            Ok(refit) => {
+                self.refit = refit.as_ref().and_then(|r| r.held_out);
+                self.bic = refit.map_or_else(|| "(the base model diverges)".to_owned(), |r| r.bic);
+            }
+            Err(e) => self.bic = failed(e),
+        }
+        self.sindy = sindy.map_or_else(String::new, |said| said.unwrap_or_else(failed));
     }
 
     /// Adds the truth, once the seal is open.
@@ -242,6 +270,31 @@ mod tests {
         assert_eq!(proof, [[Some(3.0), None, None, None, None, None]]);
         let ranked: Vec<(String, Vec<Option<f64>>)> = cell(&row.ranked);
         assert_eq!(ranked, [("current".to_owned(), vec![Some(0.1), None])]);
+    }
+
+    #[test]
+    fn rivals_leave_a_name_an_error_of_unseen_runs_or_a_message() {
+        let mut row = Row::default();
+        let refit = Refit { held_out: Some(4.0), bic: "current".into() };
+        row.add_rivals(Ok(Some(refit)), Some(Ok("nothing".into())));
+        assert_eq!((row.refit, row.bic.as_str(), row.sindy.as_str()), (Some(4.0), "current", "nothing"));
+        row.add_rivals(Ok(None), Some(Err(ConcealError::content("case".as_ref(), &"no\nrows"))));
+        assert_eq!((row.refit, row.bic.as_str()), (None, "(the base model diverges)"));
+        assert!(row.sindy.starts_with('(') && row.sindy.ends_with("no rows)"), "{}", row.sindy);
+    }
+
+    #[test]
+    fn the_error_of_unseen_runs_is_that_of_the_model_that_was_written() {
+        let of = |is_base: bool| {
+            let said: Said = serde_json::from_str(&format!(
+                r#"{{"verdict": "named", "improved_is_base": {is_base}, "held_out": {{"before": 6.0, "after": 5.0}}}}"#
+            ))
+            .unwrap();
+            let mut row = Row::default();
+            row.add_said(&said);
+            row.unseen
+        };
+        assert_eq!((of(true), of(false)), (Some(6.0), Some(5.0)));
     }
 
     #[test]

@@ -11,6 +11,7 @@ use super::row::Row;
 use super::said::Said;
 use super::seal;
 use crate::process::{self, Ended};
+use crate::rivals::{Content, Refit, sparse_regression};
 use crate::workers;
 use trimtab::files::file_name;
 
@@ -25,6 +26,10 @@ pub struct Runner {
     pub folder: PathBuf,
     /// Keep them.
     pub keep: bool,
+    /// Ask the rivals too, where nothing or one effect of full strength is injected.
+    pub rivals: bool,
+    /// Run sparse regression too, with this Python.
+    pub sindy: Option<PathBuf>,
 }
 
 impl Runner {
@@ -59,6 +64,11 @@ impl Runner {
         let said = row.add_answer(&self.diagnose(case, &study, improved.as_deref(), None)?);
         if let (Some(said), Some(out)) = (said, improved) {
             row.again = self.again(case, &study, &said, &out)?;
+        }
+        if self.rivals && case.suits_rivals() {
+            let refit = Content::read(&study).and_then(|content| Refit::new(&study, &content));
+            let sindy = self.sindy.as_ref().map(|python| sparse_regression(python, &folder, self.limit));
+            row.add_rivals(refit, sindy);
         }
         row.add_truth(&seal::open(&folder)?);
         if !self.keep {

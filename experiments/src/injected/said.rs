@@ -107,6 +107,10 @@ pub struct HeldOut {
     pub improvement_ci95: Interval,
     /// The same in the proof of all findings together.
     pub ci95: Interval,
+    /// Mean cVDM of the base model \[%\], in the proof of all findings together.
+    pub before: Option<f64>,
+    /// The same with the findings.
+    pub after: Option<f64>,
 }
 
 /// The ends of an interval; one that is not finite is absent.

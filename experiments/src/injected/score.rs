@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::row::{Found, Proof, Row, cell};
 use super::set::Set;
+use crate::rivals::NOTHING;
 
 /// Mechanisms that a calm basin does not have.
 pub const WEATHER: [&str; 8] = ["wind", "mean_wind", "current", "tide", "waves", "wave_drift", "earth_force", "push"];
@@ -65,6 +66,12 @@ pub struct Score {
     pub directions: usize,
     /// Of these, within 20 degrees of the anemometer.
     pub near: usize,
+    /// The criterion's mechanism is right; where nothing is injected, that it names none or what the recordings carry.
+    pub bic: Option<bool>,
+    /// The same of sparse regression.
+    pub sindy: Option<bool>,
+    /// Unseen runs are predicted better with the model that was written than by a refit of the base model.
+    pub beats_refit: Option<bool>,
     /// Confirmed findings with a known improvement in free simulation.
     pub confirmed: usize,
     /// Of these, better.
@@ -104,6 +111,18 @@ impl Row {
     /// Whether there is an answer.
     pub fn answered(&self) -> bool {
         self.error.is_empty() && !self.verdict.is_empty()
+    }
+
+    /// Whether a rival's answer is right: an accepted name, or where nothing is injected none but what the recordings carry. `None` where
+    /// it was not asked or failed, and where a name is not expected.
+    fn rival(&self, said: &str) -> Option<bool> {
+        if said.is_empty() || said.starts_with('(') {
+            return None;
+        }
+        match self.kind.as_str() {
+            "null" => Some(said == NOTHING || self.carried().contains(&said)),
+            _ => (self.expected == "named").then(|| self.accepted.split(['+', '|']).any(|name| name == said)),
+        }
     }
 
     /// Names that the recordings of the set carry by themselves.
@@ -277,6 +296,8 @@ pub fn score(row: &Row, partner: Option<&Row>) -> Score {
         return score;
     }
     reading.proofs(&mut score);
+    (score.bic, score.sindy) = (row.rival(&row.bic), row.rival(&row.sindy));
+    score.beats_refit = row.unseen.zip(row.refit).map(|(own, refit)| own < refit);
     match row.kind.as_str() {
         "null" | "same" => {
             score.alarm = Some(reading.findings.iter().any(|f| !row.carried().contains(&f.mechanism)));
@@ -384,6 +405,20 @@ mod tests {
         let pond = Row { set: "esso".into(), kind: "null".into(), ..current() };
         let s = score(&pond, None);
         assert_eq!((s.weather, s.alarm), (None, Some(false)));
+    }
+
+    #[test]
+    fn a_rival_is_right_by_name_and_on_recordings_with_nothing_injected_by_none() {
+        let asked = |row: Row, bic: &str| score(&Row { bic: bic.into(), ..row }, None).bic;
+        assert_eq!([asked(current(), "current"), asked(current(), "roll")], [Some(true), Some(false)]);
+        assert_eq!([asked(null(), "nothing"), asked(null(), "roll")], [Some(true), Some(false)]);
+        assert_eq!([asked(current(), ""), asked(current(), "(no rows)")], [None, None]);
+        assert_eq!(asked(Row { expected: "either".into(), ..current() }, "current"), None);
+        let unseen = |own, refit| score(&Row { unseen: own, refit, ..current() }, None).beats_refit;
+        assert_eq!(
+            [unseen(Some(4.0), Some(5.0)), unseen(Some(4.0), Some(3.0)), unseen(None, Some(3.0))],
+            [Some(true), Some(false), None]
+        );
     }
 
     #[test]

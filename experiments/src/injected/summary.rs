@@ -153,6 +153,25 @@ impl Lines<'_> {
         self.add(what.to_owned(), Aim::Least(0.95), share(better, confirmed));
     }
 
+    /// The diagnosis and its rivals on the cases that the rivals were asked of.
+    fn rivals(&mut self) {
+        type Asked = fn(&Score) -> Option<bool>;
+        let rivals: [(&str, Asked); 2] =
+            [("BIC after a refit of trajectories", |s| s.bic), ("sparse regression", |s| s.sindy)];
+        for (name, of) in rivals {
+            for (what, kind) in [("named, strength 1 and 2", "single"), ("no false name, nothing injected", "null")] {
+                self.share(&format!("{name}: {what}"), Aim::None, |r| r.kind == kind, of);
+            }
+            let own = |s: &Score| of(s).and(s.right);
+            let share = Share::of(self.all.iter().filter(|(r, _)| r.kind == "single").map(|(_, s)| own(s)));
+            if share.is_some() {
+                self.add(format!("the diagnosis where {name} answers: named, strength 1 and 2"), Aim::None, share);
+            }
+        }
+        let what = "unseen runs predicted better than by a refit of trajectories, strength 1 and 2";
+        self.share(what, Aim::None, |r| r.kind == "single", |s| s.beats_refit);
+    }
+
     fn times(&mut self) {
         for set in SETS {
             let seconds = self.all.iter().filter(|(r, _)| r.set == set.name()).filter_map(|(r, _)| r.seconds);
@@ -193,6 +212,7 @@ pub fn summary(rows: &[Row]) -> Vec<Line> {
     lines.invariances();
     lines.effects();
     lines.winds();
+    lines.rivals();
     lines.times();
     lines.lines
 }
