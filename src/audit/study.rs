@@ -6,7 +6,7 @@ use super::issue::{Issue, Severity, Shared};
 use super::limits::LEVER_LONGEST;
 use super::receiver::settled;
 use super::record::{Audit, examined};
-use crate::recording::{Recording, Split, WindowSettings};
+use crate::recording::{Recording, RecordingError, Split, WindowSettings};
 use crate::ship::Ship;
 use crate::study::{Listed, Study, StudyError};
 use rayon::prelude::*;
@@ -183,11 +183,35 @@ fn unreadable(run: &Listed, error: &StudyError) -> Audit {
     }
 }
 
-/// An error as an issue; its text already says what to do.
+/// An error as an issue; its text already says what to do. A setting of the study is no fault of the file that it does not suit.
 fn failure(error: &StudyError) -> Issue {
-    let text = error.to_string();
+    let (fault, text) = match error {
+        StudyError::Recording(RecordingError::Setting { message, .. }) => ("setting", message.clone()),
+        _ => ("unreadable", error.to_string()),
+    };
     let (text, next_step) = text
         .rsplit_once("; ")
         .unwrap_or((&text, "correct the file, or say in a column map how to read it (`trimtab help columns`)"));
-    Issue::new(Severity::Error, "unreadable", text, next_step)
+    Issue::new(Severity::Error, fault, text, next_step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::RecordingError;
+
+    #[test]
+    fn a_setting_that_does_not_suit_is_told_without_a_file_and_a_file_that_cannot_be_read_with_it() {
+        let setting =
+            |path: &str| RecordingError::Setting { path: path.into(), message: "`window` is long; cut it".into() };
+        let of = |error: RecordingError| {
+            let issue = failure(&error.into());
+            (issue.fault, issue.text, issue.next_step)
+        };
+        let told = ("setting", "`window` is long".to_owned(), "cut it".to_owned());
+        assert_eq!([of(setting("a.csv")), of(setting("b.csv"))], [told.clone(), told]);
+        let source = std::io::Error::from(std::io::ErrorKind::NotFound);
+        let (fault, text, _) = of(RecordingError::Read { path: "a.csv".into(), source });
+        assert!(fault == "unreadable" && text.contains("a.csv"), "{text}");
+    }
 }

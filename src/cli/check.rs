@@ -205,23 +205,25 @@ mod tests {
         let sign = || Issue::new(Severity::Error, "sign_error", "turned", "turn it").of(Channel::R);
         let jump = |line| Issue::new(Severity::Warning, "jump", "far", "blank it").of(Channel::U).at((line, line));
         let note = Issue::new(Severity::Note, "clock", "late", "look");
+        let span = || Issue::new(Severity::Error, "setting", "too short", "set it longer");
         let runs = vec![
-            recording("a", vec![jump(3), note]),
+            recording("a", vec![jump(3), note, span()]),
             recording("b", vec![sign(), jump(4)]),
-            recording("c", vec![sign()]),
+            recording("c", vec![span(), sign()]),
         ];
         let text = told(runs);
         let lines: Vec<&str> = text.lines().filter(|l| l.starts_with("error") || l.starts_with("warning")).collect();
         assert_eq!(
             lines,
             [
+                "error: 2 of 3 runs, as a: too short; set it longer",
                 "error: 2 of 3 runs, as b (channel r): turned; turn it",
                 "warning: a (channel u, line 3): far; blank it",
                 "warning: b (channel u, line 4): far; blank it"
             ]
         );
         assert!(text.contains(": as listed; 1 window to train on, 2 to test on."), "{text}");
-        assert!(text.ends_with("\n\n2 errors, 2 warnings, 1 note (notes in --out and --json)."), "{text}");
+        assert!(text.ends_with("\n\n4 errors, 2 warnings, 1 note (notes in --out and --json)."), "{text}");
         assert!(text.contains("1 error, 1 warning"), "{text}");
     }
 

@@ -7,6 +7,7 @@ use super::error::RecordingError;
 use super::local::local_fit;
 use super::record::Recording;
 use super::run::{Measured, Run, Split};
+use crate::numerals::sig;
 use crate::state::{Inputs, STATES};
 use crate::statistics::mean;
 use serde::{Deserialize, Serialize};
@@ -279,7 +280,8 @@ impl Recording {
         }
         if step * FINEST < own {
             let text = format!(
-                "`step` = {step} s is less than a {FINEST}th of the recording's own step of {own} s; leave it out, or set it to that step or more"
+                "`step` = {} s is less than a {FINEST}th of the recording's own step of {own} s; leave it out, or set it to that step or more",
+                sig(step, 3)
             );
             return Err(fail(text));
         }
