@@ -806,6 +806,26 @@ impl Files {
 }
 
 #[test]
+fn the_runs_of_a_session_show_together_a_rudder_that_none_shows_by_itself() {
+    const FEW: [&str; 6] = ["ship_a_031", "ship_a_032", "ship_a_036", "ship_a_037", "ship_a_057", "ship_a_058"];
+    // Of these zigzags the recordings have the first rudder alone.
+    let mut short = closed_loop(true, 0).all(|t| t.rows.truncate(55));
+    let listed = short.0.get_mut("runs.csv").unwrap();
+    let kept = |(i, line): &(usize, &str)| *i == 0 || FEW.iter().any(|run| line.contains(run));
+    *listed = listed.lines().enumerate().filter(kept).map(|(_, line)| format!("{line}\n")).collect();
+    let turned = FEW.iter().fold(short.clone(), |files, run| files.run(run, |t| t.each("delta", |_, v| -v)));
+    let of_sign = |files: &Files| -> Vec<(String, Issue)> {
+        doubts(&files.audit()).into_iter().filter(|(_, i)| i.fault == "sign_error").collect()
+    };
+    assert!(of_sign(&short).is_empty(), "{:#?}", of_sign(&short));
+    let told = of_sign(&turned);
+    let together = |(run, i): &(String, Issue)| {
+        FEW.contains(&run.as_str()) && i.channel == Some(Channel::Delta) && i.text.contains("show together")
+    };
+    assert!(told.len() == FEW.len() && told.iter().all(together), "{told:#?}");
+}
+
+#[test]
 fn every_fault_is_told_with_its_run_its_channel_and_what_to_do() {
     let mut missed = Vec::new();
     let cases: Vec<Case> = [samples(), units(), sides(), clocks(), together(), foreign(), places(), shared()]

@@ -17,6 +17,7 @@ use super::record::Responses;
 use super::response::Curve;
 use super::scales::scales;
 use super::scatter::{Scatter, scatters};
+use super::signs::Effect;
 use super::sources::Sources;
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording, Split};
@@ -370,8 +371,8 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
         issue: lagging(pair, seconds, "", pair.motion),
     });
     let mut found: Vec<Shared> = together.into_iter().chain(curves.iter().filter_map(told)).collect();
-    let also = turned_as_others(runs, pair);
-    for shared in also.into_iter().chain(runs.iter().zip(pooled).filter_map(told_by_others)) {
+    let also = turned_as_others(runs, pair).into_iter().chain(turned_in_a_session(runs, pair));
+    for shared in also.chain(runs.iter().zip(pooled).filter_map(told_by_others)) {
         if !found.iter().any(|f| f.runs == shared.runs) {
             found.push(shared);
         }
@@ -395,6 +396,39 @@ fn turned_as_others(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
     let next = format!("set `sign = -1` for `{}` in a column map", pair.channel);
     let issue = Issue::new(Severity::Error, "sign_error", text, next).of(pair.channel);
     also.map(|run| Shared { runs: vec![run.run.clone()], issue: issue.clone() }).collect()
+}
+
+/// The runs of a session in which an actuator has the wrong sign, where all of them together show what these do not show for sure by
+/// themselves, and none shows that its sign is right.
+fn turned_in_a_session(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
+    // The motion itself must be told to its own side.
+    let sound = |r: &Evidence| !r.turned.iter().any(|c| [Channel::R, Channel::U].contains(c));
+    let mut sessions: BTreeMap<&str, Vec<(&Evidence, &Curve)>> = BTreeMap::new();
+    for run in runs.iter().filter(|r| pair.acts && sound(r)) {
+        if let Some(curve) = pair.curve(run) {
+            sessions.entry(&run.session).or_default().push((run, curve));
+        }
+    }
+    let contradicts = |curve: &Curve| {
+        let zero = curve.zero();
+        curve.sign[zero] > 0.0 && curve.effect(zero) > POOLED_EVIDENCE
+    };
+    sessions.retain(|_, of| {
+        let mut effect = Effect::default();
+        of.iter().for_each(|(_, curve)| effect.add(Some(curve)));
+        of.len() > 1 && effect.turned() && !of.iter().any(|(_, curve)| contradicts(curve))
+    });
+    let told = |session: &str, (run, _): &(&Evidence, &Curve)| {
+        let text = format!(
+            "acts on {} to the other side than it must, as the runs of session `{session}` show together",
+            pair.motion
+        );
+        let next = format!("set `sign = -1` for `{}` in a column map of these runs", pair.channel);
+        let issue = Issue::new(Severity::Error, "sign_error", text, next).of(pair.channel);
+        Shared { runs: vec![run.run.clone()], issue }
+    };
+    let untold = |(run, _): &&(&Evidence, &Curve)| !run.turned.contains(&pair.channel);
+    sessions.iter().flat_map(|(session, of)| of.iter().filter(untold).map(|run| told(session, run))).collect()
 }
 
 /// The doubt about an actuator of the wrong sign.

@@ -282,7 +282,7 @@ pub struct Actuators {
 
 /// The effect of an actuator over runs.
 #[derive(Default)]
-struct Effect {
+pub struct Effect {
     /// Evidence that it acts to its own side, less evidence that it acts to the other.
     evidence: f64,
     /// Shares of the squares of the response that are left with it, one a run.
@@ -294,7 +294,8 @@ struct Effect {
 }
 
 impl Effect {
-    fn add(&mut self, curve: Option<&Curve>) {
+    /// Adds what a run says.
+    pub fn add(&mut self, curve: Option<&Curve>) {
         let Some(curve) = curve else { return };
         let zero = curve.zero();
         self.evidence += curve.sign[zero] * curve.effect(zero);
@@ -307,7 +308,7 @@ impl Effect {
 
     /// Whether it acts to the other side in all runs together, and no lag that they share explains that as well: in one run a rudder that
     /// swings to and fro is as good as turned when it is half a period late.
-    fn turned(&self) -> bool {
+    pub fn turned(&self) -> bool {
         let is_late = self.late.values().any(|spared| self.runs - spared < self.left);
         self.evidence < -SIGN_EVIDENCE && self.left < EXPLAINS * self.runs && !is_late
     }
