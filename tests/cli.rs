@@ -283,7 +283,7 @@ fn settings_outside_their_range_are_named_with_line_and_range() {
     assert_eq!(output.status.code(), Some(2));
     contains_all(&text(&output.stderr), &["65535", "1..=1024"]);
     study.edit("study.toml", "name = ", "step = 1e-9\nname = ");
-    contains_all(&study.refuses(&["fit", "study.toml"]), &["`step` = 0.000000001 s is less than"]);
+    contains_all(&study.refuses(&["fit", "study.toml"]), &["`step` = 1.00e-9 s is less than"]);
 }
 
 #[test]
