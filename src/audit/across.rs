@@ -387,8 +387,7 @@ fn turned_as_others(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
         let none = !run.turned.iter().any(|c| [pair.channel, Channel::R, Channel::U].contains(c));
         none && pair.curve(run).is_some_and(|curve| {
             let zero = curve.zero();
-            let effect = curve.sign[zero] * curve.effect(zero);
-            effect < -POOLED_EVIDENCE && curve.left[zero] < EXPLAINS * curve.without
+            curve.side() < -POOLED_EVIDENCE && curve.left[zero] < EXPLAINS * curve.without
         })
     };
     let also = runs.iter().filter(|_| pair.acts && known > 1).filter(turns);
@@ -409,14 +408,10 @@ fn turned_in_a_session(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
             sessions.entry(&run.session).or_default().push((run, curve));
         }
     }
-    let contradicts = |curve: &Curve| {
-        let zero = curve.zero();
-        curve.sign[zero] > 0.0 && curve.effect(zero) > POOLED_EVIDENCE
-    };
     sessions.retain(|_, of| {
         let mut effect = Effect::default();
         of.iter().for_each(|(_, curve)| effect.add(Some(curve)));
-        of.len() > 1 && effect.turned() && !of.iter().any(|(_, curve)| contradicts(curve))
+        of.len() > 1 && effect.turned() && of.iter().all(|(_, curve)| curve.side() <= POOLED_EVIDENCE)
     });
     let told = |session: &str, (run, _): &(&Evidence, &Curve)| {
         let text = format!(

@@ -145,7 +145,7 @@ fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option
     let turned = to_the_other_side(curve, others);
     let zero = curve.zero();
     // A run that shows by itself to which side the channel acts is believed before the others are.
-    let own_side = curve.sign[zero] > 0.0 && curve.effect(zero) > POOLED_EVIDENCE;
+    let own_side = curve.side() > POOLED_EVIDENCE;
     let mut best: Option<(f64, Odd)> = None;
     for (place, sums) in curve.sums.iter().enumerate() {
         let seconds = curve.seconds(place);

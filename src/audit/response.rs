@@ -106,6 +106,12 @@ impl Curve {
         self.samples * (self.without / self.left[lag]).ln()
     }
 
+    /// The same at no lag, negative where the motion answers to the other side: to which side the channel acts, and how surely.
+    pub fn side(&self) -> f64 {
+        let zero = self.zero();
+        self.sign[zero] * self.effect(zero)
+    }
+
     /// Place of a lag \[s\]; `None` where it was not tried.
     pub fn at(&self, seconds: f64) -> Option<usize> {
         (0..self.lags.len()).find(|place| (self.seconds(*place) - seconds).abs() < 0.5 * self.step)

@@ -298,7 +298,7 @@ impl Effect {
     pub fn add(&mut self, curve: Option<&Curve>) {
         let Some(curve) = curve else { return };
         let zero = curve.zero();
-        self.evidence += curve.sign[zero] * curve.effect(zero);
+        self.evidence += curve.side();
         self.left += curve.left[zero] / curve.without;
         self.runs += 1.0;
         for (i, lag) in curve.lags.iter().enumerate().filter(|(i, _)| curve.sign[*i] > 0.0) {

@@ -94,12 +94,17 @@ pub struct Planned {
     pub seed: u64,
 }
 
+/// Whether a strength is that of a current of a tenth of the speed, or more.
+pub fn is_strong(strength: Option<f64>) -> bool {
+    strength.is_some_and(|s| s >= 1.0)
+}
+
 impl Planned {
     /// Whether rivals are asked: nothing is injected, or one effect that is strong enough that a user would look for it.
     pub fn suits_rivals(&self) -> bool {
         match self.kind {
             Kind::Null => true,
-            Kind::Single => self.strength.is_some_and(|s| s >= 1.0),
+            Kind::Single => is_strong(self.strength),
             _ => false,
         }
     }

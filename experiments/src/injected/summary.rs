@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use trimtab::report::Table;
 use trimtab::statistics::{Share, median};
 
+use super::plan::is_strong;
 use super::row::Row;
 use super::score::{Score, score};
 use super::set::SETS;
@@ -63,7 +64,7 @@ struct Lines<'a> {
 
 /// Whether a case has the strength of a current of a tenth of the speed, or more.
 pub fn strong(row: &Row) -> bool {
-    row.strength.is_some_and(|s| s >= 1.0)
+    is_strong(row.strength)
 }
 
 impl Lines<'_> {
