@@ -41,7 +41,7 @@ pub struct Answer {
 impl Answer {
     /// This answer under the proof of all findings together.
     pub fn capped(mut self, proof: Option<&HeldOut>) -> Self {
-        cap(&mut self.findings, proof.is_some_and(HeldOut::is_refuted));
+        cap(&mut self.findings, proof.is_some_and(HeldOut::is_worse));
         self
     }
 

@@ -37,10 +37,10 @@ pub fn lead(decided: Verdict, findings: &mut [Finding]) -> Verdict {
     }
 }
 
-/// What is confirmed by itself is suspected where all findings together make unseen runs worse beyond chance: each may then stand for a
-/// part of something else.
-pub fn cap(findings: &mut [Finding], refuted_together: bool) {
-    let confirmed = findings.iter_mut().filter(|f| refuted_together && f.grade == Grade::Confirmed);
+/// What is confirmed by itself is suspected where all findings together make unseen runs worse than the base model: each may then stand
+/// for a part of something else, and what is not written is not confirmed.
+pub fn cap(findings: &mut [Finding], worse_together: bool) {
+    let confirmed = findings.iter_mut().filter(|f| worse_together && f.grade == Grade::Confirmed);
     confirmed.for_each(|f| f.grade = Grade::Suspected);
 }
 

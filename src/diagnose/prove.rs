@@ -57,14 +57,10 @@ pub struct HeldOut {
 }
 
 impl HeldOut {
-    /// Whether free simulation of the held-out runs is worse after than before.
+    /// Whether free simulation of the held-out runs is worse after than before: then no part of what changed is written or confirmed, though
+    /// each by itself may predict better.
     pub fn is_worse(&self) -> bool {
         self.improvement.is_some_and(|i| i < 0.0)
-    }
-
-    /// Whether it is worse beyond chance: then no part of what changed is confirmed, though each by itself may predict better.
-    pub fn is_refuted(&self) -> bool {
-        self.ci95.is_some_and(|[_, high]| high < 0.0)
     }
 }
 

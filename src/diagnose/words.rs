@@ -295,12 +295,14 @@ fn named(findings: &[Finding]) -> String {
 
 /// That all findings together predict unseen runs worse, where they do.
 fn together(worse: Option<[f64; 2]>) -> String {
-    worse.map_or(String::new(), |[before, after]| {
-        format!(
-            " Together they predict unseen runs worse than the base model (cVDM {} % to {} %), so that none of them is in the improved model.",
-            sig(before, 3),
-            sig(after, 3)
-        )
+    worse.map_or(String::new(), |worse| {
+        let [before, after] = worse.map(|cvdm| sig(cvdm, 3));
+        let than = if before == after {
+            format!("no better than the base model (cVDM {before} %)")
+        } else {
+            format!("worse than the base model (cVDM {before} % to {after} %)")
+        };
+        format!(" Together they predict unseen runs {than}, so that none of them is in the improved model.")
     })
 }
 
@@ -369,6 +371,7 @@ mod tests {
             "{both}"
         );
         assert!(together(Some([76.5, 89.4])).contains("worse than the base model (cVDM 76.5 % to 89.4 %)"));
+        assert!(together(Some([3.301, 3.302])).contains("no better than the base model (cVDM 3.30 %)"));
         assert_eq!(together(None), "");
         let with = |grade| Finding { grade, change: Some(0.02), ..current() };
         let refuted = said(Verdict::NotInCatalogue, &[], &[with(Grade::Refuted)], None);
