@@ -87,11 +87,11 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_confirmed_where_all_findings_together_are_refuted() {
+    fn nothing_is_confirmed_where_all_findings_together_make_unseen_runs_worse() {
         let of = |grade: Grade| Finding { grade, ..finding("current", "current", &["current"]) };
-        for (refuted, left) in [(true, Grade::Suspected), (false, Grade::Confirmed)] {
+        for (worse, left) in [(true, Grade::Suspected), (false, Grade::Confirmed)] {
             let mut findings = [of(Grade::Confirmed), of(Grade::Suspected)];
-            cap(&mut findings, refuted);
+            cap(&mut findings, worse);
             assert_eq!(findings.map(|f| f.grade), [left, Grade::Suspected]);
         }
     }
