@@ -170,7 +170,7 @@ fn noise_is_recovered_from_a_start_that_is_far_too_small() {
         data.iter().map(|r| filter.pass(r, noise, Wanted::default()).outliers).sum()
     };
     assert!(aside(&start) > 1000, "{}", aside(&start));
-    let effort = Effort { rounds: 4, noise_rounds: 4, noise_iterations: 14, noise_runs: 12 };
+    let effort = Effort { rounds: 4, noise_rounds: 4, noise_iterations: 14 };
     let found = estimate(&model, RK4, &data, &[], &start, &NoisePrior::around(&start), effort).noise;
     assert!(aside(&found) < 10, "{}", aside(&found));
     for (found, truth) in found.sensors.iter().zip(truth.sensors) {
@@ -194,7 +194,7 @@ fn an_estimate_at_a_bound_is_the_optimum_within_the_bound() {
     names.extend(["flow.wake_ratio", "flow.straightening", "crossflow.drag"]);
     let free: Vec<FreeParameter> =
         names.iter().map(|n| FreeParameter::uncertain(&model, model.index(n).unwrap())).collect();
-    let effort = Effort { rounds: 20, noise_rounds: 0, noise_iterations: 0, noise_runs: 1 };
+    let effort = Effort { rounds: 20, noise_rounds: 0, noise_iterations: 0 };
     let from = |start: &Model| estimate(start, RK4, &data, &free, &noise, &NoisePrior::around(&noise), effort);
     let found = from(&model);
     assert_eq!(found.model.parameters[drag].value, 0.0);

@@ -8,7 +8,7 @@ use super::noise_fit::fit_noise;
 use super::optimise::{Outcome, Proposal, Quadratic};
 pub use super::settings::Effort;
 use super::settings::{
-    CALM_ITERATIONS, CALM_SHARE, NOISE_REFUSED, OUTLIER_SHARE, STEP_DAMPING, STEP_GAIN, STEP_LONGEST, STEP_SHORTEST,
+    CALM_ITERATIONS, CALM_SHARE, OUTLIER_SHARE, STEP_DAMPING, STEP_GAIN, STEP_LONGEST, STEP_SHORTEST,
 };
 use crate::model::{Model, Prior};
 use crate::recording::Run;
@@ -315,7 +315,7 @@ pub fn estimate_above(
     let columns = free.iter().map(|f| f.column).collect();
     let fit = Fit { integration, runs, free, columns, prior, effort };
     let mut point = fit.at(start.clone(), *noise, effort.rounds > 0);
-    let (mut damping, mut sparse_serves, mut refused) = (0.0, false, false);
+    let (mut damping, mut refused) = (0.0, false);
     for round in 0..effort.rounds {
         point = fit.differentiated(point);
         let quadratic = quadratic(&point.sums.evidence, &point.model, free);
@@ -332,14 +332,14 @@ pub fn estimate_above(
         // A noise that was refused at this very point would be refused again.
         refused &= next.is_none();
         point = next.unwrap_or(point);
-        if !fits_noise {
-            if settled {
-                break;
-            }
-        } else if !refused {
-            let better = fit.better_noise(&point, &mut sparse_serves, !last);
+        let before = point.value;
+        if fits_noise && !refused {
+            let better = fit.better_noise(&point, !last);
             refused = better.is_none();
             point = better.unwrap_or(point);
+        }
+        if settled && point.value - before < STEP_GAIN {
+            break;
         }
     }
     let Point { model, noise, sums, value, differentiated } = point;
@@ -414,38 +414,23 @@ impl Fit<'_> {
         (taken.map(|(point, _)| point), last.map_or(0.0, |(_, length)| length))
     }
 
-    /// The point with the noise fitted to some runs, linearised; where that noise does not serve all runs, to all of them. `None` where
-    /// that serves no better than the noise of the point.
+    /// The point with the noise fitted to all runs, linearised; `None` where that serves no better than the noise of the point.
     ///
-    /// `sparse_serves` says whether the noise of some runs did last, and `goes_on` whether the point is stepped from.
-    fn better_noise(&self, point: &Point, sparse_serves: &mut bool, goes_on: bool) -> Option<Point> {
-        let sparse = self.runs.len().div_ceil(self.effort.noise_runs.max(1)).max(1);
-        let mut strides = vec![sparse, 1];
-        strides.dedup();
-        for stride in strides {
-            let differentiated = goes_on && (stride == 1 || *sparse_serves);
-            let trial = self.at(point.model.clone(), self.noise(point, stride), differentiated);
-            let serves = trial.value > point.value;
-            *sparse_serves = serves && stride > 1;
-            if serves {
-                return Some(trial);
-            }
-            if point.value - trial.value < NOISE_REFUSED {
-                break;
-            }
-        }
-        None
+    /// `goes_on` says whether the point is stepped from.
+    fn better_noise(&self, point: &Point, goes_on: bool) -> Option<Point> {
+        let trial = self.at(point.model.clone(), self.noise(point), goes_on);
+        (trial.value > point.value).then_some(trial)
     }
 
-    /// The noise of every `stride`-th run at a point.
-    fn noise(&self, Point { model, noise, sums, .. }: &Point, stride: usize) -> Noise {
-        let some: Vec<&Run> = self.runs.iter().step_by(stride).collect();
-        let tangents = tangents(model, self.integration, &some, noise);
+    /// The noise of the runs at a point. Of all of them: a part of them makes the answer a matter of their order.
+    fn noise(&self, Point { model, noise, sums, .. }: &Point) -> Noise {
+        let all: Vec<&Run> = self.runs.iter().collect();
+        let tangents = tangents(model, self.integration, &all, noise);
         let tangents: Vec<&Tangent> = tangents.iter().collect();
         // Where many measurements are set aside the noise is too small by far, and a gate hides that: everything counts first.
         let gates = if sums.outlier_share() > OUTLIER_SHARE { &[f64::INFINITY, GATE][..] } else { &[GATE] };
         gates.iter().fold(*noise, |noise, gate| {
-            fit_noise(&some, &tangents, model, &noise, self.prior, *gate, self.effort.noise_iterations)
+            fit_noise(&all, &tangents, model, &noise, self.prior, *gate, self.effort.noise_iterations)
         })
     }
 }

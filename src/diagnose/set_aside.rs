@@ -1,5 +1,5 @@
 //! Runs that only prove: those that the user marked, or a part of the recordings that is set aside where none is marked.
-//! It divides recordings and looks at no value in them.
+//! It divides and orders recordings and looks at no value in them.
 
 use super::settings::{FEWEST_RECORDINGS, FEWEST_RUNS};
 use crate::recording::Run;
@@ -15,10 +15,22 @@ pub struct Divided<'r> {
     pub set_aside: usize,
 }
 
+/// Runs in the order of their sessions, recordings and names: the order in which a user lists them is no part of an answer.
+fn ordered(mut runs: Cow<[Run]>) -> Cow<[Run]> {
+    fn key(run: &Run) -> (&str, &str, &str) {
+        (&run.session, &run.recording, &run.name)
+    }
+    if !runs.is_sorted_by_key(key) {
+        runs.to_mut().sort_by(|a, b| key(a).cmp(&key(b)));
+    }
+    runs
+}
+
 impl<'r> Divided<'r> {
     /// Keeps the user's division; without held-out runs every fourth recording, and at least three, are set aside, where there are enough. Recordings stay
     /// whole: runs of one share what is unknown.
     pub fn new(training: Cow<'r, [Run]>, held_out: &'r [Run]) -> Self {
+        let training = ordered(training);
         if !held_out.is_empty() {
             return Self { training, held_out: Cow::Borrowed(held_out), set_aside: 0 };
         }
@@ -52,12 +64,30 @@ mod tests {
         // Windows of one recording go together.
         for (i, r) in all.iter_mut().enumerate() {
             r.recording = format!("recording {}", i / 2);
+            r.session = "a".into();
         }
         let divided = Divided::new(Cow::Borrowed(&all), &[]);
         assert_eq!((divided.training.len(), divided.held_out.len(), divided.set_aside), (10, 6, 3));
         let of = |runs: &[Run]| -> Vec<String> { runs.iter().map(|r| r.recording.clone()).collect() };
         assert_eq!(of(&divided.held_out)[0], "recording 1");
         assert!(of(&divided.training).iter().all(|r| !of(&divided.held_out).contains(r)));
+    }
+
+    #[test]
+    fn the_order_in_which_runs_are_listed_is_no_part_of_the_division() {
+        let all = runs(&model(), 16);
+        let mut turned = all.clone();
+        turned.reverse();
+        turned.swap(3, 11);
+        let names = |runs: &[Run]| -> Vec<String> { runs.iter().map(|r| r.name.clone()).collect() };
+        for held_out in [0, 4] {
+            let of = |all: &[Run], some: &[Run]| {
+                let Divided { training, held_out, set_aside } = Divided::new(Cow::Borrowed(all), some);
+                (names(&training), names(&held_out), set_aside)
+            };
+            let some = &all[..held_out];
+            assert_eq!(of(&turned, some), of(&all, some));
+        }
     }
 
     #[test]

@@ -91,24 +91,22 @@ pub struct Effort {
     pub noise_rounds: usize,
     /// Fisher scoring iterations in a noise estimate.
     pub noise_iterations: usize,
-    /// Runs used for the noise estimate, evenly spread.
-    pub noise_runs: usize,
 }
 
 /// The first estimate of the base model, from the values of the model file.
-pub const FIRST: Effort = Effort { rounds: 12, noise_rounds: 4, noise_iterations: 14, noise_runs: 12 };
+pub const FIRST: Effort = Effort { rounds: 12, noise_rounds: 4, noise_iterations: 14 };
 /// A refit at given noise.
-pub const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0, noise_runs: 10 };
+pub const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0 };
 /// A refit with the noise estimated along.
-pub const SETTLE: Effort = Effort { rounds: 10, noise_rounds: 1, noise_iterations: 4, noise_runs: 10 };
+pub const SETTLE: Effort = Effort { rounds: 20, noise_rounds: 20, noise_iterations: 8 };
 /// The errors of all sensors at once.
-pub const TOGETHER_EFFORT: Effort = Effort { rounds: 8, noise_rounds: 3, noise_iterations: 6, noise_runs: 10 };
+pub const TOGETHER_EFFORT: Effort = Effort { rounds: 8, noise_rounds: 3, noise_iterations: 6 };
 /// The base model of a signal-to-noise ratio: noise within a few per cent.
-pub const SIGNAL: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
+pub const SIGNAL: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6 };
 /// The start of a model that is given its mechanisms: parameters and noise are estimated again with them.
-pub const GIVEN_START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_iterations: 6, noise_runs: 6 };
+pub const GIVEN_START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_iterations: 6 };
 /// The one fit of a model that is given its mechanisms.
-pub const GIVEN_FINISH: Effort = Effort { rounds: 8, noise_rounds: 2, noise_iterations: 6, noise_runs: 10 };
+pub const GIVEN_FINISH: Effort = Effort { rounds: 8, noise_rounds: 2, noise_iterations: 6 };
 
 /// How a step of the parameters is damped, in units of the columns' scales: parameters that the data hardly determine ask for
 /// steps on which the others would fail. It stays while the valley bends.
@@ -254,8 +252,6 @@ numbers! {
 
     /// Share of measurements beyond the outlier gate above which the noise is taken as too small and everything counts first.
     OUTLIER_SHARE: f64 = 0.03, "recordings of Esso Osaka, where a quarter lay beyond the gate of the first guess";
-    /// Loss in log-posterior above which a noise that was fitted to some runs is fitted to all of them.
-    NOISE_REFUSED: f64 = 10.0, "recordings of Esso Osaka and KVLCC2";
     /// Share of the runs, those of the highest likelihood, that tell the noise without what disturbs some runs only.
     CALM_SHARE: f64 = 0.6, SEEDS;
     /// Iterations of the noise estimate on those runs.

@@ -118,7 +118,7 @@ impl Frame {
         test.amplitude = DVector::from_fn(further.len(), |i, _| test.amplitude[i] * scale(i));
         test.covariance =
             DMatrix::from_fn(further.len(), further.len(), |i, j| test.covariance[(i, j)] * scale(i) * scale(j));
-        let effort = Effort { rounds: 6, noise_rounds: 0, noise_iterations: 0, noise_runs: 1 };
+        let effort = Effort { rounds: 6, noise_rounds: 0, noise_iterations: 0 };
         let prior = NoisePrior::around(&self.noise);
         let found = estimate(model, self.integration, runs, further, &self.noise, &prior, effort);
         Answer { test, model: found.model }
