@@ -439,7 +439,7 @@ impl Fit<'_> {
 mod tests {
     use super::*;
     use crate::diagnose::example::{RK4, at, column, model, noise, runs, with};
-    use crate::diagnose::settings::REFIT;
+    use crate::diagnose::settings::{REFIT, SETTLE};
 
     #[test]
     fn a_value_stays_inside_its_bounds_and_so_does_its_sum_with_the_addition_of_a_session() {
@@ -529,6 +529,20 @@ mod tests {
         let again = Estimate { seen: None, ..found.clone() };
         assert!(found.seen.is_some());
         assert_eq!(found.information(RK4, &runs), again.information(RK4, &runs));
+    }
+
+    #[test]
+    fn a_noise_that_had_taken_over_a_force_settles_where_one_that_had_not_does() {
+        let truth = model();
+        let runs = runs(&truth, 9);
+        let (free, prior) = (at(&truth).free, NoisePrior::around(&noise()));
+        let settled = |start: &Noise| estimate(&truth, RK4, &runs, &free, start, &prior, SETTLE);
+        let taken = Noise { force: noise().force.map(|f| 15.0 * f), force_time: 10.0 * noise().force_time, ..noise() };
+        let (near, far) = (settled(&noise()), settled(&taken));
+        for (a, b) in near.noise.force.into_iter().zip(far.noise.force) {
+            assert!((a / b).ln().abs() < 0.4, "{:?} {:?}", near.noise, far.noise);
+        }
+        assert!((near.log_posterior - far.log_posterior).abs() < 0.5, "{} {}", near.log_posterior, far.log_posterior);
     }
 
     #[test]

@@ -97,7 +97,8 @@ pub struct Effort {
 pub const FIRST: Effort = Effort { rounds: 12, noise_rounds: 4, noise_iterations: 14 };
 /// A refit at given noise.
 pub const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0 };
-/// A refit with the noise estimated along.
+/// A refit with the noise estimated along, to convergence: a noise that had taken over a force gives it back when the force is in the
+/// model. The rounds only bound it.
 pub const SETTLE: Effort = Effort { rounds: 20, noise_rounds: 20, noise_iterations: 8 };
 /// The errors of all sensors at once.
 pub const TOGETHER_EFFORT: Effort = Effort { rounds: 8, noise_rounds: 3, noise_iterations: 6 };
