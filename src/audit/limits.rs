@@ -206,6 +206,8 @@ pub const POOLED_AGREED: f64 = 10.0;
 /// and at most this share of the squares is left. Of 1094 sound runs (27 concealed cases, seeds 8101 to 8129, and one of 14 runs) the least
 /// share for a lag of two rows or more was 0.44, and for the other side 0.83.
 pub const POOLED_LEAVES: f64 = 0.4;
+/// A channel that is less than this share, squared and by window, of what it is in the run in which it moves most rests, but for rounding.
+pub const POOLED_STILL: f64 = 1e-9;
 /// Runs in which a channel is this many times as large, squared and by window, as in the middle one do not count among the others.
 pub const POOLED_SIZE: f64 = 5.0;
 /// A unit or a sign is asked of a run of which the others' coefficients leave at least this many times what they usually leave.

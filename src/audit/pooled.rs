@@ -1,7 +1,7 @@
 //! One run against all others: whether rudder and propeller act in it as they do in the other runs, or to the other side, or later.
 //! The coefficients are those of the other runs, so that a short run says more than its own regression would.
 
-use super::limits::{EXPLAINS, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE};
+use super::limits::{EXPLAINS, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE, POOLED_STILL};
 use super::response::{Curve, Sums};
 use super::sources::Sources;
 use crate::statistics::median;
@@ -50,10 +50,13 @@ pub(super) struct Pool<'c> {
 
 impl<'c> Pool<'c> {
     /// Those of some runs in which the `size` of the channel is at most so many times that of the middle one: a run with a damaged
-    /// sample would outweigh all others. `None` for fewer than [`POOLED_RUNS`].
+    /// sample would outweigh all others. The middle one is of those in which the channel moves: where most runs are sailed at one rate of
+    /// the propeller, what it does is in the others. `None` for fewer than [`POOLED_RUNS`].
     pub(super) fn new(curves: &[Option<&'c Curve>], size: impl Fn(&Curve) -> f64, most: f64) -> Option<Self> {
         let step = curves.iter().flatten().next()?.step;
-        let middle = median(curves.iter().flatten().map(|c| size(c)))?;
+        let sizes = || curves.iter().flatten().map(|c| size(c));
+        let largest = sizes().fold(0.0, f64::max);
+        let middle = median(sizes().filter(|size| *size > POOLED_STILL * largest))?;
         let usual = |c: &&Curve| is_step(c, step) && size(c) <= most * middle;
         let known: Vec<&Curve> = curves.iter().flatten().copied().filter(usual).collect();
         let sum = total(known.iter().copied()).filter(|_| known.len() >= POOLED_RUNS)?;
@@ -207,6 +210,21 @@ mod tests {
         let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
         let told = super::odd(&all, &Sources::of((0..9).map(|i| i.min(7))), |_| false);
         assert!(told[..7].iter().all(Option::is_none) && told[7..] == [Some(Odd::Turned); 2], "{told:?}");
+    }
+
+    #[test]
+    fn runs_in_which_the_channel_rests_do_not_outvote_those_that_show_what_it_does() {
+        let mut curves: Vec<Curve> = (0..29).map(|i| run(if i == 28 { -1.0 } else { 1.0 })).collect();
+        for still in &mut curves[..20] {
+            // But for rounding.
+            (still.sums[0].columns, still.sums[0].response) = (vec![1e-18], vec![1e-19]);
+            still.sums[0].squares = 1.0;
+            still.beside = [still.sums[0].clone(), still.sums[0].clone()];
+        }
+        curves[28].sums[0].response[0] *= -1.0;
+        let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
+        let told = odd(&all, &Sources::of(0..29), |_| false);
+        assert!(told[..28].iter().all(Option::is_none) && told[28] == Some(Odd::Turned), "{told:?}");
     }
 
     #[test]
