@@ -218,8 +218,6 @@ mod tests {
         for still in &mut curves[..20] {
             // But for rounding.
             (still.sums[0].columns, still.sums[0].response) = (vec![1e-18], vec![1e-19]);
-            still.sums[0].squares = 1.0;
-            still.beside = [still.sums[0].clone(), still.sums[0].clone()];
         }
         curves[28].sums[0].response[0] *= -1.0;
         let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
