@@ -17,6 +17,7 @@ use super::record::Responses;
 use super::response::Curve;
 use super::scales::scales;
 use super::scatter::{Scatter, scatters};
+use super::series::mean_square;
 use super::signs::Effect;
 use super::sources::Sources;
 use crate::numerals::sig;
@@ -73,14 +74,12 @@ impl Evidence {
     /// That of a run, from the part of its recording that the study uses.
     pub(super) fn of(run: &Listed, recording: &Recording, ship: &Ship, responses: Responses, issues: &[Issue]) -> Self {
         let of_fault = |fault| issues.iter().filter(|i| i.fault == fault).filter_map(|i| i.channel).collect();
-        let squares: Vec<f64> =
-            recording.get(Channel::U).into_iter().flatten().filter(|u| u.is_finite()).map(|u| u * u).collect();
         Self {
             run: run.labels.run.clone(),
             source: (run.file.clone(), run.column_map.clone()),
             session: run.labels.session.clone(),
             split: run.labels.split,
-            speed: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
+            speed: recording.get(Channel::U).and_then(mean_square).unwrap_or(0.0).sqrt(),
             ratio: advance_ratio(recording, ship),
             responses,
             turned: of_fault("sign_error"),
@@ -363,6 +362,7 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
             _ if !pair.acts => return None,
             Odd::Turned => turned(pair),
             Odd::Late(seconds) => lagging(pair, seconds, "", pair.motion),
+            Odd::Unanswered => unanswered(pair),
         };
         Some(Shared { runs: vec![run.run.clone()], issue })
     };
@@ -434,6 +434,13 @@ fn turned(pair: &Pair) -> Issue {
         pair.channel
     );
     Issue::new(Severity::Error, "sign_error", text, next).of(pair.channel)
+}
+
+/// The doubt about an actuator that the motion does not answer.
+fn unanswered(pair: &Pair) -> Issue {
+    let text = format!("moves, and {} does not answer it as in the other runs", pair.motion);
+    let next = "is it of this run, in its unit and at its time? compare it with the log, or leave the run out";
+    Issue::new(Severity::Warning, "unanswered", text, next.to_owned()).of(pair.channel)
 }
 
 /// The doubt about a lag \[s\]: `whose` begins the text, `than` is what it is compared with.

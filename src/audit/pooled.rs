@@ -1,7 +1,10 @@
-//! One run against all others: whether rudder and propeller act in it as they do in the other runs, or to the other side, or later.
+//! One run against all others: whether rudder and propeller act in it as they do in the other runs, or to the other side, later, or not.
 //! The coefficients are those of the other runs, so that a short run says more than its own regression would.
 
-use super::limits::{EXPLAINS, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE, POOLED_STILL};
+use super::limits::{
+    EXPLAINS, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE, POOLED_STILL, POOLED_UNUSUAL,
+    SCALE_EVIDENCE,
+};
 use super::response::{Curve, Sums};
 use super::sources::Sources;
 use crate::statistics::median;
@@ -14,6 +17,8 @@ pub enum Odd {
     Turned,
     /// The channel tells so much later than the motion \\[s\\].
     Late(f64),
+    /// The motion does not answer the channel.
+    Unanswered,
 }
 
 /// The sums of several runs at lag 0, added.
@@ -82,6 +87,12 @@ impl<'c> Pool<'c> {
     pub(super) fn others(&self, curve: &Curve) -> Option<Vec<f64>> {
         coefficients(&self.sum, self.has(curve).then(|| curve.at_zero()))
     }
+
+    /// What the coefficients of the others usually leave of a run, squared and by window; `None` where they leave nothing.
+    pub(super) fn usual(&self) -> Option<f64> {
+        let square = |c: &Curve| Some(c.at_zero().left(&self.others(c)?) / c.rows);
+        median(self.runs().filter_map(square)).filter(|u| *u > 0.0)
+    }
 }
 
 fn is_step(curve: &Curve, step: f64) -> bool {
@@ -92,11 +103,13 @@ fn is_step(curve: &Curve, step: f64) -> bool {
 pub fn odd(curves: &[Option<&Curve>], sources: &Sources, worth: impl Fn(f64) -> bool) -> Vec<Option<Odd>> {
     let none = || vec![None; curves.len()];
     let Some(pool) = actuated(curves) else { return none() };
+    let usual = pool.usual();
     let alike = |run: usize| curves[run].filter(|c| pool.is_alike(c));
     let judged = |run: usize| {
         let curve = alike(run)?;
         let others = pool.others(curve)?;
-        let found = judged(curve, &others, &worth)?;
+        let unanswered = || is_unanswered(curve, &others, usual?).then_some(Odd::Unanswered);
+        let found = judged(curve, &others, &worth).or_else(unanswered)?;
         sources.agree(run, |other| losses(alike(other)?, &others, found)).then_some(found)
     };
     (0..curves.len()).map(judged).collect()
@@ -110,6 +123,7 @@ fn losses(curve: &Curve, others: &[f64], odd: Odd) -> Option<[f64; 2]> {
             let place = curve.at(seconds)?;
             Some([curve.at_zero_beside(place).left(others), curve.sums[place].left(others)])
         }
+        Odd::Unanswered => Some([curve.at_zero().left(others), without(curve.at_zero(), curve.own, others)]),
     }
 }
 
@@ -141,6 +155,16 @@ fn without(sums: &Sums, own: usize, coefficients: &[f64]) -> f64 {
     let mut rest = coefficients.to_vec();
     rest[..own].fill(0.0);
     sums.left(&rest)
+}
+
+/// Whether a run shows by itself nothing that the channel does, and is explained better without it than by what it does in the others,
+/// which leaves more than usual.
+fn is_unanswered(curve: &Curve, others: &[f64], usual: f64) -> bool {
+    let sums = curve.at_zero();
+    let (as_it_is, nothing) = (sums.left(others), without(sums, curve.own, others));
+    let usual = usual * curve.rows;
+    let evidence = curve.samples * (as_it_is - nothing) / nothing.max(usual);
+    curve.side().abs() < POOLED_EVIDENCE && as_it_is > POOLED_UNUSUAL * usual && evidence > SCALE_EVIDENCE
 }
 
 /// What is odd in a run, given the coefficients of the others: what explains most more, over the windows that both explanations have.
@@ -175,6 +199,10 @@ fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::audit::example::noise;
+    use crate::audit::response::rudder;
+    use crate::audit::series::Series;
+    use crate::recording::{Channel, Recording};
 
     /// A run that answers to its channel with 0.8, against 0.8 to the other side in the other runs; `sign` is what its own regression
     /// says, with other columns of its own.
@@ -223,6 +251,53 @@ mod tests {
         let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
         let told = odd(&all, &Sources::of(0..29), |_| false);
         assert!(told[..28].iter().all(Option::is_none) && told[28] == Some(Odd::Turned), "{told:?}");
+    }
+
+    #[test]
+    fn a_channel_that_a_run_does_not_answer_is_told_where_the_others_would_answer_it() {
+        // `moves` is how much the channel moves in the last run, which does not answer it; `shows` whether it says something else by itself.
+        let told = |moves: f64, shows: bool| {
+            let mut curves = vec![run(1.0); 9];
+            curves[8].sums[0] = Sums { columns: vec![moves], response: vec![0.0], squares: 0.4 };
+            curves[8].without = if shows { 3.0 } else { curves[8].left[0] };
+            let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
+            odd(&all, &Sources::of(0..9), |_| false)
+        };
+        let unanswered = told(4.0, false);
+        assert!(
+            unanswered[..8].iter().all(Option::is_none) && unanswered[8] == Some(Odd::Unanswered),
+            "{unanswered:?}"
+        );
+        for (moves, shows) in [(0.1, false), (4.0, true)] {
+            assert_eq!(told(moves, shows), [None; 9]);
+        }
+    }
+
+    #[test]
+    fn a_rudder_does_less_in_a_slow_run_and_that_is_not_odd() {
+        // A ship at this speed under a rudder that swings, and of which this share acts.
+        let swung = |seed: u32, speed: f64, acts: f64| {
+            let mut unit = noise(seed);
+            let mut columns: [Vec<f64>; 4] = Default::default();
+            let mut r = 0.0;
+            for i in 0..160 {
+                let delta = 0.3 * (f64::from(i) * (0.06 + 0.01 * f64::from(seed))).sin().signum();
+                let row = [2.0 * f64::from(i), speed + 0.02 * unit(), r + 2e-3 * unit(), delta];
+                columns.iter_mut().zip(row).for_each(|(c, value)| c.push(value));
+                r += (3e-3 * speed * speed * acts * delta - r) / 8.0;
+            }
+            let names = [Channel::T, Channel::U, Channel::R, Channel::Delta];
+            let recording = Recording::from_channels("run", names.into_iter().zip(columns).collect()).unwrap();
+            rudder(&Series::from(&recording)).unwrap()
+        };
+        let told = |speed: f64, acts: f64| {
+            let curves: Vec<Curve> = (0..8).map(|i| swung(i + 1, 4.0, 1.0)).chain([swung(9, speed, acts)]).collect();
+            odd(&curves.iter().map(Some).collect::<Vec<_>>(), &Sources::of(0..9), |_| false)
+        };
+        assert_eq!(told(0.5, 1.0), [None; 9]);
+        // As one in degrees that counts as radians does at the usual speed.
+        let small = told(4.0, 0.02);
+        assert!(small[..8].iter().all(Option::is_none) && small[8] == Some(Odd::Unanswered), "{small:?}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! It gives evidence on lag and sign, run by run; what is told of it is decided in `signs` and `across`.
 
 use super::limits::{LAG_LONGEST, RESPONSE_STEPS};
-use super::series::Series;
+use super::series::{Series, mean_square};
 use crate::recording::Channel;
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -161,8 +161,9 @@ fn response_steps(series: &Series<'_>) -> usize {
     ((0.5 * series.span / series.step).round() as usize).max(RESPONSE_STEPS)
 }
 
-/// The rudder against the yaw: `dr/dt = a r + b r|r| + c v + d delta + e delta n|n| + f`, integrated over some steps in which the ship
-/// sails ahead with its propeller ahead: a rudder in a flow from astern acts to the other side, or not at all.
+/// The rudder against the yaw: `dr/dt = a r + b r|r| + c v + d delta U^2 + e delta n|n| + f` with the mean square speed `U^2` of the run,
+/// integrated over some steps in which the ship sails ahead with its propeller ahead: a rudder in a flow from astern acts to the other
+/// side, or not at all.
 pub fn rudder(series: &Series<'_>) -> Option<Curve> {
     let (delta, r) = (series.delta.as_deref()?, series.get(Channel::R)?);
     let (t, v, n) = (&series.t, series.get(Channel::V), series.n.as_deref());
@@ -170,9 +171,11 @@ pub fn rudder(series: &Series<'_>) -> Option<Curve> {
     let turn = integral(t, |i| r[i]);
     let square = integral(t, |i| r[i] * r[i].abs());
     let sway = integral(t, |i| of(v, i));
-    let angle = integral(t, |i| delta[i]);
-    let force = integral(t, |i| delta[i] * of(n, i) * of(n, i).abs());
     let u = series.get(Channel::U);
+    // That of each row would be as good between runs, but in a single turn it also stands for the speed that is lost there.
+    let flow = u.and_then(mean_square).unwrap_or(1.0);
+    let angle = integral(t, |i| delta[i] * flow);
+    let force = integral(t, |i| delta[i] * of(n, i) * of(n, i).abs());
     let ahead = |row: usize| u.is_none_or(|u| u[row] > 0.0) && n.is_none_or(|n| n[row] >= 0.0);
     let steps = response_steps(series);
     let usable = |start: usize| (start..=start + steps).all(ahead);

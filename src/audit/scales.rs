@@ -9,7 +9,6 @@ use super::response::{Curve, Sums};
 use super::sources::Sources;
 use crate::numerals::sig;
 use crate::recording::Channel;
-use crate::statistics::median;
 
 /// A channel that may be a multiple of what it is in the other runs.
 struct Asked {
@@ -73,8 +72,7 @@ impl Asked {
             size / c.rows
         };
         let Some(pool) = Pool::new(curves, size, SCALE_SIZE) else { return none() };
-        let square = |c: &Curve| Some(c.at_zero().left(&pool.others(c)?) / c.rows);
-        let Some(usual) = median(pool.runs().filter_map(square)).filter(|u| *u > 0.0) else { return none() };
+        let Some(usual) = pool.usual() else { return none() };
         let alike = |run: usize| curves[run].filter(|c| pool.is_alike(c));
         let judged = |run: usize| {
             let curve = alike(run)?;

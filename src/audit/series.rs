@@ -4,6 +4,7 @@
 use super::limits::SPAN;
 use crate::recording::{Channel, Recording, Run, STATE_CHANNELS, local, slope};
 use crate::state::STATES;
+use crate::statistics::mean;
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -24,6 +25,11 @@ pub struct Series<'a> {
     pub n: Option<Cow<'a, [f64]>>,
     /// Rudder angle \[rad\].
     pub delta: Option<Cow<'a, [f64]>>,
+}
+
+/// Mean square of the values that are there; `None` without any.
+pub fn mean_square(values: &[f64]) -> Option<f64> {
+    mean(values.iter().filter(|v| v.is_finite()).map(|v| v * v))
 }
 
 /// Stretches of one value within `rows`.
