@@ -145,7 +145,8 @@ pub struct TestTable {
     pub runs: usize,
     /// Their samples.
     pub samples: usize,
-    /// Standard deviation of the unknown force under the model with what was selected, the larger of surge and sway \[N\].
+    /// Standard deviation of the unknown force under the model with what was selected, in the mean over the time in which the ship sails its
+    /// length, the larger of surge and sway \[N\]: what changes faster hardly moves the ship, and its size hangs on the step.
     pub unknown_force: f64,
     /// Force that turns the ship, m u^2 / L \[N\].
     pub turning_force: f64,

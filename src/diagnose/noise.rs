@@ -52,6 +52,15 @@ impl Noise {
         v
     }
 
+    /// Standard deviation of the mean of the unknown force over a time `t` \[s\], in X, Y \[N\] and N \[N m\]: `s sqrt(2 x (1 - x (1 -
+    /// exp(-1 / x))))` where its correlation time is `x t`, the integral of its correlation.
+    pub fn mean_force(&self, t: f64) -> [f64; 3] {
+        let x = self.force_time / t;
+        // What is left of two large numbers is all rounding.
+        let share = if x < 1e4 { 2.0 * x * (1.0 - x * (1.0 - (-x.recip()).exp())) } else { 1.0 };
+        self.force.map(|f| f * share.sqrt())
+    }
+
     /// Back from logarithms.
     pub fn from_log(v: &[f64; NOISE_PARAMETERS]) -> Self {
         Self {
@@ -121,6 +130,20 @@ mod tests {
     fn noise() -> Noise {
         let sensor = |size: f64| SensorNoise { white: size, coloured: 0.7 * size, time: 4.0 };
         Noise { sensors: [1.0, 0.01, 0.1, 0.001].map(sensor), force: [1e3, 2e3, 1e5], force_time: 20.0 }
+    }
+
+    #[test]
+    fn a_force_that_changes_fast_is_small_in_the_mean_and_a_lasting_one_is_not() {
+        let of = |force_time: f64, t: f64| Noise { force_time, ..noise() }.mean_force(t)[1] / 2e3;
+        // A white force of the same spectrum is one mean, whatever its correlation time: s sqrt(2 x).
+        for x in [1e-4_f64, 1e-3] {
+            assert!((of(x * 40.0, 40.0) / (2.0 * x).sqrt() - 1.0).abs() < x);
+        }
+        assert!((of(40.0, 40.0) - (2.0 * (-1.0_f64).exp()).sqrt()).abs() < 1e-12);
+        for x in [9.9e3, 1e5, 1e12] {
+            assert!((of(x, 1.0) - 1.0).abs() < 1e-4);
+        }
+        assert!(of(20.0, f64::INFINITY) < 1e-12);
     }
 
     #[test]

@@ -59,14 +59,16 @@ impl Residual {
             let m = tests.candidates[a.candidate].mechanism;
             MechanismTest { kind: m.kind, weather: m.is_weather(), statistic: a.statistic, set_size: a.set.len() }
         };
-        let [surge, sway, _] = self.selection.estimate.noise.force;
+        let hull = &tests.fit.estimate.model.ship.hull;
+        let speed = mean_speed(&tests.fit.runs);
+        let [surge, sway, _] = self.selection.estimate.noise.mean_force(hull.lpp / speed);
         TestTable {
             audit_blocks: tests.is_blocked(),
             euler_gain: admission.euler_gain,
             runs: tests.fit.runs.len(),
             samples: admission.samples,
             unknown_force: surge.max(sway),
-            turning_force: turning_force(&tests.fit.estimate, &tests.fit.runs),
+            turning_force: hull.mass * speed * speed / hull.lpp,
             chance: tests.search.chance,
             push_allowed: question.settings.allows(PUSH),
             push_in_base: push.as_ref().map(PushTest::from),
@@ -144,9 +146,8 @@ fn residual_tests(s: &Screen, location: &Location) -> ResidualTests {
     }
 }
 
-/// The force that turns a ship at its mean speed, m u^2 / L \[N\].
-fn turning_force(found: &Estimate, runs: &[Run]) -> f64 {
-    let hull = &found.model.ship.hull;
+/// Mean speed of the ship through all samples \[m/s\].
+fn mean_speed(runs: &[Run]) -> f64 {
     let (mut speed, mut count) = (0.0, 0.0);
     for r in runs {
         let mut surge = r.measured.iter().filter_map(|s| s[3]).peekable();
@@ -159,8 +160,7 @@ fn turning_force(found: &Estimate, runs: &[Run]) -> f64 {
             count += 1.0;
         }
     }
-    let u = speed / f64::max(count, 1.0);
-    hull.mass * u * u / hull.lpp
+    speed / f64::max(count, 1.0)
 }
 
 #[cfg(test)]
@@ -169,18 +169,16 @@ mod tests {
     use crate::diagnose::base::{AuditedRuns, BaseFit};
     use crate::diagnose::decide::{Verdict, decide};
     use crate::diagnose::event::{BaseTests, Opening};
-    use crate::diagnose::example::{SAMPLES, at, model, runs, with};
+    use crate::diagnose::example::{SAMPLES, model, runs, with};
     use crate::diagnose::settings::Settings;
     use crate::model::Model;
 
     #[test]
-    fn the_turning_force_is_mass_times_speed_squared_over_length() {
-        let found = at(&model());
-        let mut runs = runs(&found.model, 2);
+    fn the_mean_speed_is_that_of_all_samples_whatever_its_sign() {
+        let mut runs = runs(&model(), 2);
         runs.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[3] = Some(-2.0));
         runs[0].measured[3][3] = None;
-        let hull = &found.model.ship.hull;
-        assert!((turning_force(&found, &runs) / (4.0 * hull.mass / hull.lpp) - 1.0).abs() < 1e-12);
+        assert!((mean_speed(&runs) / 2.0 - 1.0).abs() < 1e-12);
     }
 
     fn residual(question: &Question, truth: &Model) -> Residual {

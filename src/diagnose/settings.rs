@@ -223,7 +223,7 @@ numbers! {
     MATERIAL_SHARE: f64 = 0.05, "the default share of the users' requirement; not tuned";
     /// Sample periods of the recordings that a clock must be off by to be resolved.
     RESOLVED_SAMPLES: f64 = 0.5, "half of it, as a resolution is counted; not tuned";
-    /// Share of the force that turns the ship, m u^2 / L, above which the unknown force is gusts.
+    /// Share of the force that turns the ship, m u^2 / L, above which the unknown force is gusts: in the mean over the time L / u.
     GUST_SHARE: f64 = 0.02, SEEDS;
     /// Root mean square error of explicit Euler steps, as a share of that of steps of second order, below which they reproduce
     /// recorded positions to rounding.

@@ -10,6 +10,7 @@ use super::influence::Following;
 use super::law::Law;
 use super::place::Place;
 use super::push::Window;
+use super::settings::GUST_SHARE;
 use super::unseen::FindingProof;
 use crate::numerals::{number_of, sig};
 use crate::physics::Kind;
@@ -156,7 +157,7 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
         Verdict::Insufficient if !said.holds => not_followed(said.following),
         Verdict::Insufficient => withdrawn(Grade::NotIsolated)
             .map_or_else(|| "These recordings cannot answer: too few runs.".into(), not_isolated),
-        Verdict::NothingMissing => nothing(said),
+        Verdict::NothingMissing => nothing(said) + &of_another_form(said.form_holds),
     }
 }
 
@@ -194,6 +195,17 @@ fn nothing(said: &Said) -> String {
         );
     }
     "Nothing is missing that these data could show.".into()
+}
+
+/// That the ship's own forces have another form than the model's, where they are too small to be called unknown forces.
+fn of_another_form(form_holds: bool) -> String {
+    let told = || {
+        format!(
+            " The ship's own forces have another form than the model gives them, by less than {} % of the force that turns it.",
+            sig(100.0 * GUST_SHARE, 2)
+        )
+    };
+    if form_holds { String::new() } else { told() }
 }
 
 /// Words at the start of a sentence.
@@ -389,6 +401,8 @@ mod tests {
         assert!(lost.contains("1 of 4 runs") && lost.contains("40.0 %"), "{lost}");
         let confirmed = headline(Verdict::Named, &[with(Grade::Confirmed)], None);
         assert!(named.contains("suspected") && !confirmed.contains("suspected"), "{named} {confirmed}");
+        assert_eq!(of_another_form(true), "");
+        assert!(of_another_form(false).contains("less than 2.0 % of the force that turns it"));
         for verdict in [Verdict::Numerics, Verdict::Random, Verdict::Insufficient, Verdict::NothingMissing] {
             assert!(headline(verdict, &[], None).ends_with('.'), "{verdict:?}");
         }
