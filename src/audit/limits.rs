@@ -211,8 +211,8 @@ pub const POOLED_STILL: f64 = 1e-9;
 /// Runs in which a channel is this many times as large, squared and by window, as in the middle one do not count among the others.
 pub const POOLED_SIZE: f64 = 5.0;
 /// A unit or a sign, or whether the motion answers at all, is asked of a run of which the others' coefficients leave at least this many
-/// times what they usually leave. Of 3501 sound runs (96 concealed cases, seeds 8601 to 8624, and the three studies) that show nothing by
-/// themselves none left 1.5 times as much and was explained better without its rudder, with evidence of 15 or more.
+/// times what they usually leave. Of 3501 sound runs (96 concealed cases, seeds 8601 to 8624, and the three studies) none that shows nothing
+/// of its rudder by itself was explained better without it, with evidence of 15 or more, and left 1.5 times as much as usual.
 pub const POOLED_UNUSUAL: f64 = 2.5;
 /// A channel in another unit, or of another sign, than in the other runs: undone it leaves at most this share of the squares,
 pub const SCALE_LEAVES: f64 = 0.25;

@@ -172,7 +172,7 @@ pub fn rudder(series: &Series<'_>) -> Option<Curve> {
     let square = integral(t, |i| r[i] * r[i].abs());
     let sway = integral(t, |i| of(v, i));
     let u = series.get(Channel::U);
-    // That of each row would be as good between runs, but in a single turn it also stands for the speed that is lost there.
+    // The square of each row would tell runs apart as well, but within a turn it also stands for the speed that is lost there.
     let flow = u.and_then(mean_square).unwrap_or(1.0);
     let angle = integral(t, |i| delta[i] * flow);
     let force = integral(t, |i| delta[i] * of(n, i) * of(n, i).abs());
