@@ -33,6 +33,9 @@ pub struct FindingProof {
     pub improvement: Option<f64>,
     /// Its 95 % interval, by Student's t over recordings; absent with fewer than three.
     pub improvement_ci95: Option<[f64; 2]>,
+    /// The same by bootstrap over recordings, as it is told of all findings together.
+    #[serde(skip)]
+    resampled_ci95: Option<[f64; 2]>,
     /// Mean distance of the simulated from the measured position \[m\], without and with it; absent where none was measured.
     pub position: Option<[f64; 2]>,
     /// Mean difference of the heading \[rad\], without and with it.
@@ -71,6 +74,7 @@ impl FindingProof {
             after: summary.cvdm_fitted.map(|e| e.value),
             improvement: summary.cvdm_improvement.map(|e| e.value),
             improvement_ci95: improvement_over(&all, runs),
+            resampled_ci95: summary.cvdm_improvement.and_then(|e| e.ci95),
             position,
             heading: of(2),
             speed: of(3),
@@ -85,6 +89,18 @@ impl FindingProof {
     /// The improvement of the free simulation.
     pub fn prediction(&self) -> Option<GainTest> {
         Some(GainTest { gain: self.improvement?, ci95: self.improvement_ci95 })
+    }
+
+    /// The proof with the interval of the improvement that is told of all findings together, where that one refutes.
+    pub fn as_told(self) -> Self {
+        let refutes = self.resampled_ci95.filter(|[_, high]| *high < 0.0);
+        Self { improvement_ci95: refutes.or(self.improvement_ci95), ..self }
+    }
+
+    /// Whether the free simulation is worse beyond chance by either interval: that of a few recordings is wider by Student's t, and the
+    /// other one stands beside what is named.
+    pub fn simulates_worse(&self) -> bool {
+        [self.improvement_ci95, self.resampled_ci95].into_iter().flatten().any(|[_, high]| high < 0.0)
     }
 }
 
@@ -201,6 +217,24 @@ mod tests {
         }
         let proof = FindingProof::new(&model(), &truth, &noise(), RK4, &held_out, &Settings::default().judging);
         assert_eq!(proof.improvement_ci95.map(|[_, high]| high), Some(1.0), "{proof:?}");
+    }
+
+    #[test]
+    fn what_is_worse_on_each_of_a_few_recordings_by_other_amounts_simulates_worse() {
+        let truth = with(&[("current.north", 0.4)]);
+        let mut held_out = runs(&truth, 3);
+        for (i, run) in held_out.iter_mut().enumerate() {
+            let steps = [4, 20, 100][i];
+            run.inputs.truncate(steps + 1);
+            run.measured.truncate(steps + 1);
+        }
+        let judging = Settings::default().judging;
+        let against = |m: &Model, other: &Model| FindingProof::new(m, other, &noise(), RK4, &held_out, &judging);
+        let worse = against(&truth, &model());
+        assert!(worse.prediction().is_some_and(|p| p.gain < 0.0 && !p.is_below_zero()), "{worse:?}");
+        assert!(worse.simulates_worse() && !against(&model(), &truth).simulates_worse());
+        assert!(worse.as_told().prediction().is_some_and(|p| p.is_below_zero()));
+        assert!(!against(&truth, &truth).simulates_worse());
     }
 
     #[test]

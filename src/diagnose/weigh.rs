@@ -137,23 +137,27 @@ pub fn weakest(weights: &[Weight]) -> Option<usize> {
     going.min_by(|a, b| a.1.gain().total_cmp(&b.1.gain())).map(|(i, _)| i)
 }
 
-/// Where all that is kept makes unseen runs worse beyond chance, in the models that are written, and no part does so by itself, the part
-/// that does least for them: it is withdrawn first. What stands beside a name must not refute it.
+/// Where all that is kept makes unseen runs worse beyond chance, in the models that are written, and no part did so by itself, the part
+/// that does least for them: it is withdrawn first. What stands beside a name, a push too, must not refute it.
 pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight], held_out: &[Run]) -> Option<usize> {
-    // A single mechanism was weighed against the base model already.
-    if weights.len() < 2 || held_out.is_empty() {
+    if weights.is_empty() || held_out.is_empty() {
         return None;
     }
     let (tests, judging) = (&kept.selection.tests, &question.settings.judging);
     let written = |e: &Estimate| inside_bounds(e, tests.problem(question.settings));
     let [base, found] = [&tests.fit.estimate, &kept.selection.estimate].map(written);
     let proof = FindingProof::new(&base.model, &found.model, &found.noise, tests.fit.integration, held_out, judging);
-    let simulated = proof.prediction().is_some_and(|g| g.is_below_zero());
+    let simulated = proof.simulates_worse();
     if !simulated && !proof.likelihood().is_below_zero() {
         return None;
     }
     let index = does_least(weights, simulated)?;
-    weights[index].grade = Grade::RefutedTogether;
+    if let [alone] = weights {
+        // It was weighed before, by models that need not keep inside their bounds.
+        (alone.grade, alone.proof) = (Grade::Refuted, Some(proof.as_told()));
+    } else {
+        weights[index].grade = Grade::RefutedTogether;
+    }
     Some(index)
 }
 
