@@ -20,6 +20,7 @@ use super::scatter::{Scatter, scatters};
 use super::series::mean_square;
 use super::signs::Effect;
 use super::sources::Sources;
+use super::stuck::{Stretch, stuck};
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording, Split};
 use crate::ship::Ship;
@@ -372,7 +373,10 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
     });
     let mut found: Vec<Shared> = together.into_iter().chain(curves.iter().filter_map(told)).collect();
     let also = turned_as_others(runs, pair).into_iter().chain(turned_in_a_session(runs, pair));
-    for shared in also.chain(runs.iter().zip(pooled).filter_map(told_by_others)) {
+    let held = runs.iter().zip(stuck(&among_others)).filter(|_| pair.acts);
+    let told_stuck = held.filter_map(|(run, stretch)| Some((run, stands_still(pair, stretch?))));
+    let stuck = told_stuck.map(|(run, issue)| Shared { runs: vec![run.run.clone()], issue });
+    for shared in also.chain(runs.iter().zip(pooled).filter_map(told_by_others)).chain(stuck) {
         if !found.iter().any(|f| f.runs == shared.runs) {
             found.push(shared);
         }
@@ -441,6 +445,22 @@ fn unanswered(pair: &Pair) -> Issue {
     let text = format!("moves, and {} does not answer it as in the other runs", pair.motion);
     let next = "is it of this run, in its unit and at its time? compare it with the log, or leave the run out";
     Issue::new(Severity::Warning, "unanswered", text, next.to_owned()).of(pair.channel)
+}
+
+/// The doubt about an actuator that is stuck.
+fn stands_still(pair: &Pair, stretch: &Stretch) -> Issue {
+    let text = format!(
+        "holds one value for {} s, and {} there is not what it is with such a value in the other runs",
+        sig(stretch.seconds, 3),
+        pair.motion
+    );
+    let next = "did its log stand still, or did something else push the ship (a tug, a hand)? leave the fields blank, so that they count \
+                as a dropout, or cut the run there with `from` or `to`";
+    let issue = Issue::new(Severity::Warning, "frozen", text, next.to_owned()).of(pair.channel);
+    match stretch.lines {
+        Some(lines) => issue.at(lines),
+        None => issue,
+    }
 }
 
 /// The doubt about a lag \[s\]: `whose` begins the text, `than` is what it is compared with.

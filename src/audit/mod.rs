@@ -33,6 +33,7 @@ mod scatter;
 mod series;
 mod signs;
 mod sources;
+mod stuck;
 mod study;
 mod units;
 

@@ -133,7 +133,7 @@ fn to_the_other_side(curve: &Curve, others: &[f64]) -> Vec<f64> {
 }
 
 /// The runs against which what an actuator does is held.
-fn actuated<'c>(curves: &[Option<&'c Curve>]) -> Option<Pool<'c>> {
+pub(super) fn actuated<'c>(curves: &[Option<&'c Curve>]) -> Option<Pool<'c>> {
     let size = |c: &Curve| c.at_zero().columns.first().copied().unwrap_or(0.0) / c.rows;
     Pool::new(curves, size, POOLED_SIZE)
 }
@@ -219,6 +219,7 @@ mod tests {
             beside: [sums.clone(), sums.clone()],
             sums: vec![sums],
             own: 1,
+            stretches: Vec::new(),
         }
     }
 

@@ -3,6 +3,7 @@
 
 use super::limits::{LAG_LONGEST, RESPONSE_STEPS};
 use super::series::{Series, mean_square};
+use super::stuck::{Stretch, stretches};
 use crate::recording::Channel;
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -31,6 +32,8 @@ pub struct Curve {
     pub beside: [Sums; 2],
     /// Columns of the regression that belong to the channel: the first ones.
     pub own: usize,
+    /// Stretches over which a rudder or a propeller holds one value.
+    pub stretches: Vec<Stretch>,
 }
 
 /// Sums of a regression: of products of columns, of columns with the response, and of its squares.
@@ -179,7 +182,7 @@ pub fn rudder(series: &Series<'_>) -> Option<Curve> {
     let ahead = |row: usize| u.is_none_or(|u| u[row] > 0.0) && n.is_none_or(|n| n[row] >= 0.0);
     let steps = response_steps(series);
     let usable = |start: usize| (start..=start + steps).all(ahead);
-    curve::<6, 2, 1>(series, usable, |i, k| {
+    curve::<6, 2, 1>(series, Some(delta), usable, |i, k| {
         let over = |of: &[f64]| late(of, i, 0, steps);
         [(
             [late(&angle, i, k, steps), late(&force, i, k, steps), over(&turn), over(&square), over(&sway), over(t)],
@@ -202,6 +205,7 @@ pub fn propeller(series: &Series<'_>) -> Option<Curve> {
     let steps = response_steps(series);
     curve::<7, 2, 1>(
         series,
+        Some(n),
         |_| true,
         |i, k| {
             let over = |of: &[f64]| late(of, i, 0, steps);
@@ -237,7 +241,7 @@ pub fn sway(series: &Series<'_>) -> Option<Curve> {
     let ahead = |row: usize| u[row] > 0.0 && n.is_none_or(|n| n[row] >= 0.0);
     let steps = response_steps(series);
     let usable = |start: usize| (start..=start + steps).all(ahead);
-    curve::<6, 5, 1>(series, usable, |i, k| {
+    curve::<6, 5, 1>(series, None, usable, |i, k| {
         let over = |of: &[f64]| late(of, i, 0, steps);
         let columns = [over(&turn), over(&square), over(&centre), over(&angle), over(&force), over(t)];
         [(columns, late(&slide, i, k, steps))]
@@ -250,6 +254,7 @@ pub fn gyro(series: &Series<'_>) -> Option<Curve> {
     let (turn, steps) = (integral(t, |i| r[i]), response_steps(series));
     curve::<2, 1, 1>(
         series,
+        None,
         |_| true,
         |i, k| [([late(&turn, i, k, steps), late(t, i, 0, steps)], late(psi, i, 0, steps))],
     )
@@ -266,6 +271,7 @@ pub fn receiver(series: &Series<'_>) -> Option<Curve> {
     let steps = response_steps(series);
     curve::<3, 1, 2>(
         series,
+        None,
         |_| true,
         |i, k| {
             let (h, n, e) = (late(t, i, 0, steps), late(&north, i, 0, steps), late(&east, i, 0, steps));
@@ -281,6 +287,7 @@ pub fn receiver(series: &Series<'_>) -> Option<Curve> {
 /// the first rows, where a late channel still has its value.
 fn curve<const N: usize, const P: usize, const E: usize>(
     series: &Series<'_>,
+    held: Option<&[f64]>,
     usable: impl Fn(usize) -> bool,
     equations: impl Fn(usize, isize) -> [([f64; N], f64); E],
 ) -> Option<Curve> {
@@ -327,7 +334,9 @@ fn curve<const N: usize, const P: usize, const E: usize>(
     let sums = solved.into_iter().map(|s| s.sums).collect();
     let rows = (E * whole.len()) as f64;
     let beside = [before.sums, after.sums];
-    Some(Curve { step: series.step, lags, left, sign, without, samples, rows, sums, beside, own: P })
+    let of_windows = |starts: &[usize]| Some(Gathered::new(starts, 0, &equations)?.whole());
+    let stretches = held.map_or_else(Vec::new, |values| stretches(series, values, &whole, steps, of_windows));
+    Some(Curve { step: series.step, lags, left, sign, without, samples, rows, sums, beside, own: P, stretches })
 }
 
 /// Correlation of the residuals of successive windows of some steps, of so many equations each: they are worth as many independent ones as it leaves.
@@ -343,27 +352,67 @@ fn likeness(starts: &[usize], residual: impl Fn(usize, usize) -> f64, equations:
     if squares > 0.0 { (products / squares).clamp(0.0, 0.99) } else { 0.0 }
 }
 
+/// Sums of a regression on `N` columns.
+struct Gathered<const N: usize> {
+    a: SMatrix<f64, N, N>,
+    b: SVector<f64, N>,
+    squares: f64,
+    /// Of the columns.
+    sums: SVector<f64, N>,
+    count: f64,
+}
+
+impl<const N: usize> Gathered<N> {
+    /// Those of the windows that begin at some rows. `None` where nothing moves.
+    fn new<const E: usize>(
+        starts: &[usize],
+        lag: isize,
+        equations: &impl Fn(usize, isize) -> [([f64; N], f64); E],
+    ) -> Option<Self> {
+        let (a, b) = (SMatrix::zeros(), SVector::zeros());
+        let mut of = Self { a, b, squares: 0.0, sums: SVector::zeros(), count: 0.0 };
+        for &start in starts {
+            for (columns, y) in equations(start, lag) {
+                let columns = SVector::from(columns);
+                of.a += columns * columns.transpose();
+                of.b += columns * y;
+                of.sums += columns;
+                of.squares += y * y;
+                of.count += 1.0;
+            }
+        }
+        (of.squares > 0.0 && of.squares.is_finite()).then_some(of)
+    }
+
+    /// All of them, the constant among the columns.
+    fn whole(&self) -> Sums {
+        let columns = self.a.transpose().as_slice().to_vec();
+        Sums { columns, response: self.b.as_slice().to_vec(), squares: self.squares }
+    }
+
+    /// Those without the last column, the constant, and what it explains.
+    fn centred(&self) -> Sums {
+        let Self { a, b, squares, .. } = self;
+        let constant = N - 1;
+        let own = a[(constant, constant)];
+        let share = |i: usize| if own > 0.0 { a[(i, constant)] / own } else { 0.0 };
+        let columns = (0..constant).flat_map(|i| (0..constant).map(move |j| a[(i, j)] - share(i) * a[(constant, j)]));
+        Sums {
+            columns: columns.collect(),
+            response: (0..constant).map(|i| b[i] - share(i) * b[constant]).collect(),
+            squares: squares - if own > 0.0 { b[constant] * b[constant] / own } else { 0.0 },
+        }
+    }
+}
+
 /// The regression at one lag, and what is left without the channel. `None` where nothing moves.
 fn normal<const N: usize, const P: usize, const E: usize>(
     starts: &[usize],
     lag: isize,
     equations: &impl Fn(usize, isize) -> [([f64; N], f64); E],
 ) -> Option<(Solved<N>, f64)> {
-    let (mut a, mut b, mut squares) = (SMatrix::<f64, N, N>::zeros(), SVector::<f64, N>::zeros(), 0.0);
-    let (mut sums, mut count) = (SVector::<f64, N>::zeros(), 0.0);
-    for &start in starts {
-        for (columns, y) in equations(start, lag) {
-            let columns = SVector::from(columns);
-            a += columns * columns.transpose();
-            b += columns * y;
-            sums += columns;
-            squares += y * y;
-            count += 1.0;
-        }
-    }
-    if !(squares > 0.0 && squares.is_finite()) {
-        return None;
-    }
+    let gathered = Gathered::new(starts, lag, equations)?;
+    let Gathered { a, b, squares, sums, count } = &gathered;
     // Columns of one size; a little is added to the diagonal, since columns may be alike (a propeller at one rate) or nothing.
     let scale = a.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
     let scaled =
@@ -385,20 +434,7 @@ fn normal<const N: usize, const P: usize, const E: usize>(
     let coefficients = full.component_mul(&scale);
     let together = |j: usize| a[(j, 0)] - sums[j] * sums[0] / count;
     let sign = (0..P).map(|j| coefficients[j] * together(j)).sum::<f64>().signum();
-    Some((Solved { left, sign, coefficients, sums: centred(&a, &b, squares) }, without))
-}
-
-/// The sums without the last column, the constant, and what it explains.
-fn centred<const N: usize>(a: &SMatrix<f64, N, N>, b: &SVector<f64, N>, squares: f64) -> Sums {
-    let constant = N - 1;
-    let own = a[(constant, constant)];
-    let share = |i: usize| if own > 0.0 { a[(i, constant)] / own } else { 0.0 };
-    let columns = (0..constant).flat_map(|i| (0..constant).map(move |j| a[(i, j)] - share(i) * a[(constant, j)]));
-    Sums {
-        columns: columns.collect(),
-        response: (0..constant).map(|i| b[i] - share(i) * b[constant]).collect(),
-        squares: squares - if own > 0.0 { b[constant] * b[constant] / own } else { 0.0 },
-    }
+    Some((Solved { left, sign, coefficients, sums: gathered.centred() }, without))
 }
 
 #[cfg(test)]

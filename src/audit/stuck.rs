@@ -1,0 +1,133 @@
+//! A rudder or a propeller whose log stood still: it holds one value over a stretch in which the motion is not what it does with that value
+//! in the other runs, while the rest of the run is. Channels of the motion that stand still are in `frozen` and `held`.
+
+use super::limits::{STUCK_UNLIKE, STUCK_WINDOWS};
+use super::pooled::{Pool, actuated};
+use super::response::{Curve, Sums};
+use super::series::{Series, constant};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// A stretch of one value: the regression at lag 0 inside it and beside it, the constant among the columns.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stretch {
+    /// First and last line, where the rows were read from a file.
+    pub lines: Option<(usize, usize)>,
+    /// How long it lasts \[s\].
+    pub seconds: f64,
+    inside: Part,
+    beside: Part,
+}
+
+/// Sums over some windows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Part {
+    sums: Sums,
+    windows: f64,
+}
+
+impl Part {
+    /// Mean square that coefficients leave, the last one that of the constant.
+    fn left(&self, coefficients: &[f64]) -> f64 {
+        self.sums.left(coefficients) / self.windows
+    }
+
+    /// The constant that fits best beside the other coefficients.
+    fn constant(&self, others: &[f64]) -> f64 {
+        let n = others.len() + 1;
+        let explained: f64 = others.iter().enumerate().map(|(i, c)| c * self.sums.columns[i * n + n - 1]).sum();
+        (self.sums.response[n - 1] - explained) / self.sums.columns[n * n - 1]
+    }
+}
+
+/// The stretches in which a channel holds one value, with [`STUCK_WINDOWS`] windows of some steps or more in them and beside them.
+/// `sums` are those of the windows that begin at some rows.
+pub fn stretches(
+    series: &Series<'_>,
+    values: &[f64],
+    starts: &[usize],
+    steps: usize,
+    sums: impl Fn(&[usize]) -> Option<Sums>,
+) -> Vec<Stretch> {
+    let of = |rows: &Range<usize>| {
+        let (inside, others): (Vec<usize>, Vec<usize>) =
+            starts.iter().partition(|start| **start >= rows.start && **start + steps < rows.end);
+        let beside: Vec<usize> = others.into_iter().filter(|s| s + steps < rows.start || *s >= rows.end).collect();
+        let part = |starts: &[usize]| {
+            let enough = starts.len() >= STUCK_WINDOWS;
+            enough.then(|| Some(Part { sums: sums(starts)?, windows: starts.len() as f64 })).flatten()
+        };
+        let seconds = series.t[rows.end - 1] - series.t[rows.start];
+        Some(Stretch { lines: series.lines(rows), seconds, inside: part(&inside)?, beside: part(&beside)? })
+    };
+    let all = series.stretches.iter().flat_map(|s| constant(values, s.clone()));
+    all.filter(|rows| rows.len() > steps).filter_map(|rows| of(&rows)).collect()
+}
+
+/// The stretch of each run over which the channel is stuck, the one that the motion contradicts most.
+pub fn stuck<'c>(curves: &[Option<&'c Curve>]) -> Vec<Option<&'c Stretch>> {
+    let none = || vec![None; curves.len()];
+    let Some((pool, usual)) = actuated(curves).and_then(|pool| pool.usual().map(|usual| (pool, usual))) else {
+        return none();
+    };
+    let most = |curve: &&'c Curve| {
+        let (share, stretch) = unlike(curve, &pool, usual)?;
+        (share > STUCK_UNLIKE).then_some(stretch)
+    };
+    curves.iter().map(|curve| curve.as_ref().and_then(most)).collect()
+}
+
+/// The stretch of a run that is least like the other runs, and how many times as much they leave there, squared and by window, as they do
+/// usually and beside it.
+fn unlike<'c>(curve: &'c Curve, pool: &Pool<'c>, usual: f64) -> Option<(f64, &'c Stretch)> {
+    let others = pool.others(curve).filter(|_| pool.is_alike(curve))?;
+    let share = |stretch: &'c Stretch| {
+        let mut with_constant = others.clone();
+        with_constant.push(stretch.beside.constant(&others));
+        (stretch.inside.left(&with_constant) / usual.max(stretch.beside.left(&with_constant)), stretch)
+    };
+    curve.stretches.iter().map(share).max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::audit::example::noise;
+    use crate::audit::response::rudder;
+    use crate::recording::{Channel, Recording};
+
+    /// A ship that turns with its rudder, which holds an angle for 40 s at a time, and whose log stands still over some rows.
+    fn turning(seed: u32, still: Range<usize>) -> Curve {
+        let mut noise = noise(seed);
+        let mut angles: Vec<f64> = (0..200).map(|i| 0.3 * f64::from(noise_of(seed, i / 20))).collect();
+        let (mut r, mut rates) = (0.0_f64, Vec::new());
+        for delta in &angles {
+            rates.push(r + 0.002 * noise());
+            r += 2.0 * (0.02 * delta - 0.05 * r - 0.3 * r * r.abs());
+        }
+        let held = angles[still.start];
+        angles[still].fill(held);
+        let t = (0..200).map(|i| 2.0 * f64::from(i)).collect();
+        let columns = vec![(Channel::T, t), (Channel::R, rates), (Channel::Delta, angles)];
+        rudder(&Series::from(&Recording::from_channels("run", columns).unwrap())).unwrap()
+    }
+
+    /// One of three angles.
+    fn noise_of(seed: u32, place: u32) -> i32 {
+        (seed.wrapping_mul(7919) + place.wrapping_mul(104_729)).rotate_left(7) as i32 % 3 - 1
+    }
+
+    #[test]
+    fn a_rudder_whose_log_stands_still_while_the_ship_turns_is_told_with_its_lines_and_a_held_rudder_is_not() {
+        let of = |still: Range<usize>| -> Vec<Option<(usize, usize)>> {
+            let curves: Vec<Curve> = (0..8).map(|i| turning(i, if i == 3 { still.clone() } else { 0..1 })).collect();
+            let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
+            stuck(&all).into_iter().map(|s| s.and_then(|s| s.lines)).collect()
+        };
+        assert_eq!(of(0..1), [None; 8]);
+        let told = of(60..130);
+        assert!(told.iter().enumerate().all(|(run, lines)| lines.is_some() == (run == 3)), "{told:?}");
+        let lines = told[3].unwrap();
+        assert!(lines.0 <= 62 && lines.1 >= 131, "{lines:?}");
+    }
+}
