@@ -82,6 +82,22 @@ pub fn student_p(t: f64, degrees: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |d| (2.0 * d.sf(t.abs())).max(f64::MIN_POSITIVE))
 }
 
+/// Share of the ranks that belongs to differences above zero, of all differences ranked by their size (Wilcoxon 1945, Biometrics Bulletin 1,
+/// p. 80): above a half where these prevail, in number and size. Differences of one size share their ranks, those of zero have none; `None`
+/// where all are zero.
+pub fn positive_rank_share(differences: &[f64]) -> Option<f64> {
+    let mut sorted: Vec<f64> = differences.iter().copied().filter(|d| *d != 0.0).collect();
+    sorted.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let (mut positive, mut all, mut before) = (0.0, 0.0, 0);
+    for alike in sorted.chunk_by(|a, b| a.abs() == b.abs()) {
+        let rank = before as f64 + 0.5 * (alike.len() + 1) as f64;
+        positive += rank * alike.iter().filter(|d| **d > 0.0).count() as f64;
+        all += rank * alike.len() as f64;
+        before += alike.len();
+    }
+    (all > 0.0).then(|| positive / all)
+}
+
 /// A p-value once it is the least of so many that were looked at (Bonferroni).
 pub fn corrected(p: f64, tried: f64) -> f64 {
     (p * tried).min(1.0)
@@ -202,6 +218,17 @@ impl<'a> Bootstrap<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_ranks_of_what_prevails_are_more_than_half() {
+        assert_eq!(positive_rank_share(&[]), None);
+        assert_eq!(positive_rank_share(&[0.0, 0.0]), None);
+        // Ranks 1, 2 and 3; the two smaller ones are lost.
+        assert_eq!(positive_rank_share(&[-1.0, 5.0, -2.0, 0.0]), Some(0.5));
+        assert_eq!(positive_rank_share(&[-1.0, f64::NEG_INFINITY, 2.0]), Some(2.0 / 6.0));
+        // Ties: each has the rank 1.5.
+        assert_eq!(positive_rank_share(&[3.0, -3.0, 4.0]), Some(4.5 / 6.0));
+    }
 
     #[test]
     fn wilson_interval_is_the_published_one() {

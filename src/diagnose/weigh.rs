@@ -201,8 +201,8 @@ pub fn findings(kept: &Kept, weights: &[Weight]) -> Vec<Finding> {
     out
 }
 
-/// Whether the model that is kept, or else the base model, follows the recordings: most runs, or beyond chance the mean of them, are
-/// simulated better than by steady motion. Without this nothing that is added to a model means anything.
+/// Whether the model that is kept, or else the base model, follows the recordings: the runs that are simulated better than by
+/// steady motion outweigh the others. Without this nothing that is added to a model means anything.
 pub struct Base {
     /// The better of the two.
     pub following: Following,
@@ -219,8 +219,7 @@ impl Base {
             Following::new(&e.model, &fit.runs, &predicted, question.settings.judging.max_yaw_rate)
         };
         let (base, found) = (of(&fit.estimate), of(&kept.selection.estimate));
-        let rank = |f: &Following| (f.holds(), f.share());
-        let following = if rank(&found) > rank(&base) { found } else { base };
+        let following = if found.rank_share > base.rank_share { found } else { base };
         Self { holds: following.holds(), following }
     }
 }

@@ -222,7 +222,7 @@ fn not_followed(f: &Following) -> String {
     };
     format!(
         "These recordings cannot answer, because the model does not follow them: it simulates {} of {} runs better than motion that \
-         stays as it was at the start, and is not better in the mean beyond chance{cvdm}. Free the hull coefficients (hull = \"free\"), check units, signs and the inputs that act on \
+         stays as it was at the start, and these do not outweigh the others{cvdm}. Free the hull coefficients (hull = \"free\"), check units, signs and the inputs that act on \
          the ship, or divide the recordings into shorter windows.",
         f.better_than_steady, f.runs
     )
@@ -345,7 +345,7 @@ mod tests {
     fn every_verdict_has_a_sentence_with_the_values_it_names() {
         let current = || finding("current", "steady current", &["current"]);
         let following =
-            Following { runs: 4, better_than_steady: 1, cvdm: Some(40.0), steady: Some(21.0), gain_ci95: None };
+            Following { runs: 4, better_than_steady: 1, cvdm: Some(40.0), steady: Some(21.0), rank_share: 0.2 };
         let said = |verdict, findings: &[Finding], withdrawn: &[Finding], missing: Option<&Missing>| {
             headline(
                 verdict,
