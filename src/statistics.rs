@@ -82,6 +82,18 @@ pub fn student_p(t: f64, degrees: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |d| (2.0 * d.sf(t.abs())).max(f64::MIN_POSITIVE))
 }
 
+/// The 95 % interval of a sum of independent values, by Student's t; `None` of fewer than three. Few clusters are resampled to too narrow an
+/// interval (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI).
+pub fn interval_of_sum(values: &[f64]) -> Option<[f64; 2]> {
+    let count = values.len();
+    if count < FEWEST_CLUSTERS {
+        return None;
+    }
+    let (mean, variance) = (mean(values.iter().copied())?, variance(values)?);
+    let half = student_quantile(0.975, (count - 1) as f64) * (variance / count as f64).sqrt();
+    Some([mean - half, mean + half].map(|v| v * count as f64))
+}
+
 /// Share of the ranks that belongs to differences above zero, of all differences ranked by their size (Wilcoxon 1945, Biometrics Bulletin 1,
 /// p. 80): above a half where these prevail, in number and size. Differences of one size share their ranks, those of zero have none; `None`
 /// where all are zero.
@@ -187,7 +199,7 @@ pub struct Bootstrap<'a> {
 
 /// Fewest draws from which the ends of an interval are told: of fewer they are single draws.
 const FEWEST_DRAWS: usize = 100;
-/// Fewest clusters that are resampled: of fewer an interval would only seem to say something.
+/// Fewest clusters that have an interval: of fewer it would only seem to say something.
 const FEWEST_CLUSTERS: usize = 3;
 
 impl<'a> Bootstrap<'a> {
@@ -218,6 +230,15 @@ impl<'a> Bootstrap<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_interval_of_a_sum_is_that_of_students_t() {
+        // Mean 2, standard deviation 1, three values: t = 4.3027.
+        let [low, high] = interval_of_sum(&[1.0, 2.0, 3.0]).unwrap();
+        let half = 4.302_652_73 * 3f64.sqrt();
+        assert!((low - (6.0 - half)).abs() < 1e-6 && (high - (6.0 + half)).abs() < 1e-6, "{low} {high}");
+        assert!(interval_of_sum(&[1.0, 2.0]).is_none());
+    }
 
     #[test]
     fn the_ranks_of_what_prevails_are_more_than_half() {

@@ -10,6 +10,7 @@ use super::limits::{
     SHARED_ROWS, SHARED_SHARE,
 };
 use super::orders::{Leap, ordered};
+use super::plateau::Plateau;
 use super::pooled::{Odd, odd, shares_at_best};
 use super::propeller::{advance, advance_ratio, is_unpowered, unpowered};
 use super::reckoning::{Reckoned, reckoned};
@@ -20,7 +21,7 @@ use super::scatter::{Scatter, scatters};
 use super::series::mean_square;
 use super::signs::Effect;
 use super::sources::Sources;
-use super::stuck::{Stretch, stuck};
+use super::stuck::stuck;
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording, Split};
 use crate::ship::Ship;
@@ -374,7 +375,7 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
     let mut found: Vec<Shared> = together.into_iter().chain(curves.iter().filter_map(told)).collect();
     let also = turned_as_others(runs, pair).into_iter().chain(turned_in_a_session(runs, pair));
     let held = runs.iter().zip(stuck(&among_others)).filter(|_| pair.acts);
-    let told_stuck = held.filter_map(|(run, stretch)| Some((run, stands_still(pair, stretch?))));
+    let told_stuck = held.filter_map(|(run, plateau)| Some((run, stands_still(pair, plateau?))));
     let stuck = told_stuck.map(|(run, issue)| Shared { runs: vec![run.run.clone()], issue });
     for shared in also.chain(runs.iter().zip(pooled).filter_map(told_by_others)).chain(stuck) {
         if !found.iter().any(|f| f.runs == shared.runs) {
@@ -448,16 +449,16 @@ fn unanswered(pair: &Pair) -> Issue {
 }
 
 /// The doubt about an actuator that is stuck.
-fn stands_still(pair: &Pair, stretch: &Stretch) -> Issue {
+fn stands_still(pair: &Pair, plateau: &Plateau) -> Issue {
     let text = format!(
         "holds one value for {} s, and {} there is not what it is with such a value in the other runs",
-        sig(stretch.seconds, 3),
+        sig(plateau.seconds, 3),
         pair.motion
     );
     let next = "did its log stand still, or did something else push the ship (a tug, a hand)? leave the fields blank, so that they count \
                 as a dropout, or cut the run there with `from` or `to`";
     let issue = Issue::new(Severity::Warning, "frozen", text, next.to_owned()).of(pair.channel);
-    match stretch.lines {
+    match plateau.lines {
         Some(lines) => issue.at(lines),
         None => issue,
     }

@@ -21,6 +21,7 @@ mod length;
 mod limits;
 mod model;
 mod orders;
+mod plateau;
 mod pooled;
 mod propeller;
 mod receiver;
@@ -35,17 +36,20 @@ mod signs;
 mod sources;
 mod stuck;
 mod study;
+mod sums;
 mod units;
 
 pub use across::{Evidence, across};
 pub use issue::{Issue, Severity, Shared};
 pub use kinematics::Kinematics;
 pub use model::audit_model;
+pub use plateau::{Part, Plateau};
 pub use receiver::{Jump, jumps, piece, settled};
 pub use record::{Audit, ChannelSummary, Responses, Stretch, audit};
-pub use response::{Curve, Sums};
+pub use response::Curve;
 pub use runs::audit_runs;
 pub use study::{StudyAudit, audit_each, audit_study};
+pub use sums::Sums;
 
 #[cfg(test)]
 mod tests {

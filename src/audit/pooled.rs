@@ -5,8 +5,9 @@ use super::limits::{
     EXPLAINS, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE, POOLED_STILL, POOLED_UNUSUAL,
     SCALE_EVIDENCE,
 };
-use super::response::{Curve, Sums};
+use super::response::Curve;
 use super::sources::Sources;
+use super::sums::Sums;
 use crate::statistics::median;
 use nalgebra::{DMatrix, DVector};
 
@@ -219,7 +220,7 @@ mod tests {
             beside: [sums.clone(), sums.clone()],
             sums: vec![sums],
             own: 1,
-            stretches: Vec::new(),
+            plateaus: Vec::new(),
         }
     }
 

@@ -6,9 +6,10 @@ use super::limits::{
     POOLED_RUNS, RECKONED_EVIDENCE, RECKONED_LEAVES, RECKONED_LENGTH, RECKONED_ROWS, RECKONED_UNLIKE, RECKONED_UNUSUAL,
 };
 use super::pooled::coefficients;
-use super::response::{Sums, integral};
+use super::response::integral;
 use super::series::Series;
 use super::sources::Sources;
+use super::sums::Sums;
 use crate::numerals::sig;
 use crate::recording::Channel;
 use crate::statistics::median;

@@ -2,8 +2,9 @@
 //! It gives evidence on lag and sign, run by run; what is told of it is decided in `signs` and `across`.
 
 use super::limits::{LAG_LONGEST, RESPONSE_STEPS};
+use super::plateau::{Plateau, plateaus};
 use super::series::{Series, mean_square};
-use super::stuck::{Stretch, stretches};
+use super::sums::{Gathered, Sums};
 use crate::recording::Channel;
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -33,36 +34,7 @@ pub struct Curve {
     /// Columns of the regression that belong to the channel: the first ones.
     pub own: usize,
     /// Stretches over which a rudder or a propeller holds one value.
-    pub stretches: Vec<Stretch>,
-}
-
-/// Sums of a regression: of products of columns, of columns with the response, and of its squares.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Sums {
-    /// Row by row, without the constant.
-    pub columns: Vec<f64>,
-    /// With the response.
-    pub response: Vec<f64>,
-    /// Of the response.
-    pub squares: f64,
-}
-
-impl Sums {
-    /// Adds those of another run.
-    pub fn add(&mut self, other: &Self) {
-        self.columns.iter_mut().zip(&other.columns).for_each(|(s, o)| *s += o);
-        self.response.iter_mut().zip(&other.response).for_each(|(s, o)| *s += o);
-        self.squares += other.squares;
-    }
-
-    /// Squares that coefficients of other runs leave.
-    pub fn left(&self, coefficients: &[f64]) -> f64 {
-        let n = coefficients.len();
-        let linear: f64 = coefficients.iter().zip(&self.response).map(|(c, b)| c * b).sum();
-        let of = |i: usize| -> f64 { (0..n).map(|j| self.columns[i * n + j] * coefficients[j]).sum() };
-        let square: f64 = (0..n).map(|i| coefficients[i] * of(i)).sum();
-        self.squares - 2.0 * linear + square
-    }
+    pub plateaus: Vec<Plateau>,
 }
 
 /// A regression at one lag: what is left, the sign of the effect.
@@ -335,8 +307,8 @@ fn curve<const N: usize, const P: usize, const E: usize>(
     let rows = (E * whole.len()) as f64;
     let beside = [before.sums, after.sums];
     let of_windows = |starts: &[usize]| Some(Gathered::new(starts, 0, &equations)?.whole());
-    let stretches = held.map_or_else(Vec::new, |values| stretches(series, values, &whole, steps, of_windows));
-    Some(Curve { step: series.step, lags, left, sign, without, samples, rows, sums, beside, own: P, stretches })
+    let plateaus = held.map_or_else(Vec::new, |values| plateaus(series, values, &whole, steps, of_windows));
+    Some(Curve { step: series.step, lags, left, sign, without, samples, rows, sums, beside, own: P, plateaus })
 }
 
 /// Correlation of the residuals of successive windows of some steps, of so many equations each: they are worth as many independent ones as it leaves.
@@ -350,59 +322,6 @@ fn likeness(starts: &[usize], residual: impl Fn(usize, usize) -> f64, equations:
         }
     }
     if squares > 0.0 { (products / squares).clamp(0.0, 0.99) } else { 0.0 }
-}
-
-/// Sums of a regression on `N` columns.
-struct Gathered<const N: usize> {
-    a: SMatrix<f64, N, N>,
-    b: SVector<f64, N>,
-    squares: f64,
-    /// Of the columns.
-    sums: SVector<f64, N>,
-    count: f64,
-}
-
-impl<const N: usize> Gathered<N> {
-    /// Those of the windows that begin at some rows. `None` where nothing moves.
-    fn new<const E: usize>(
-        starts: &[usize],
-        lag: isize,
-        equations: &impl Fn(usize, isize) -> [([f64; N], f64); E],
-    ) -> Option<Self> {
-        let (a, b) = (SMatrix::zeros(), SVector::zeros());
-        let mut of = Self { a, b, squares: 0.0, sums: SVector::zeros(), count: 0.0 };
-        for &start in starts {
-            for (columns, y) in equations(start, lag) {
-                let columns = SVector::from(columns);
-                of.a += columns * columns.transpose();
-                of.b += columns * y;
-                of.sums += columns;
-                of.squares += y * y;
-                of.count += 1.0;
-            }
-        }
-        (of.squares > 0.0 && of.squares.is_finite()).then_some(of)
-    }
-
-    /// All of them, the constant among the columns.
-    fn whole(&self) -> Sums {
-        let columns = self.a.transpose().as_slice().to_vec();
-        Sums { columns, response: self.b.as_slice().to_vec(), squares: self.squares }
-    }
-
-    /// Those without the last column, the constant, and what it explains.
-    fn centred(&self) -> Sums {
-        let Self { a, b, squares, .. } = self;
-        let constant = N - 1;
-        let own = a[(constant, constant)];
-        let share = |i: usize| if own > 0.0 { a[(i, constant)] / own } else { 0.0 };
-        let columns = (0..constant).flat_map(|i| (0..constant).map(move |j| a[(i, j)] - share(i) * a[(constant, j)]));
-        Sums {
-            columns: columns.collect(),
-            response: (0..constant).map(|i| b[i] - share(i) * b[constant]).collect(),
-            squares: squares - if own > 0.0 { b[constant] * b[constant] / own } else { 0.0 },
-        }
-    }
 }
 
 /// The regression at one lag, and what is left without the channel. `None` where nothing moves.

@@ -5,8 +5,9 @@ use super::issue::{Issue, Severity, Shared};
 use super::limits::{POOLED_UNUSUAL, SCALE_COHERENCE, SCALE_EVIDENCE, SCALE_LEAVES, SCALE_SAME, SCALE_SIZE};
 use super::pooled::Pool;
 use super::record::Responses;
-use super::response::{Curve, Sums};
+use super::response::Curve;
 use super::sources::Sources;
+use super::sums::Sums;
 use crate::numerals::sig;
 use crate::recording::Channel;
 

@@ -1,92 +1,38 @@
 //! A rudder or a propeller whose log stood still: it holds one value over a stretch in which the motion is not what it does with that value
 //! in the other runs, while the rest of the run is. Channels of the motion that stand still are in `frozen` and `held`.
 
-use super::limits::{STUCK_UNLIKE, STUCK_WINDOWS};
+use super::limits::{EXPLAINS, STUCK_UNLIKE};
+use super::plateau::Plateau;
 use super::pooled::{Pool, actuated};
-use super::response::{Curve, Sums};
-use super::series::{Series, constant};
-use serde::{Deserialize, Serialize};
-use std::ops::Range;
+use super::response::Curve;
 
-/// A stretch of one value: the regression at lag 0 inside it and beside it, the constant among the columns.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Stretch {
-    /// First and last line, where the rows were read from a file.
-    pub lines: Option<(usize, usize)>,
-    /// How long it lasts \[s\].
-    pub seconds: f64,
-    inside: Part,
-    beside: Part,
-}
-
-/// Sums over some windows.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Part {
-    sums: Sums,
-    windows: f64,
-}
-
-impl Part {
-    /// Mean square that coefficients leave, the last one that of the constant.
-    fn left(&self, coefficients: &[f64]) -> f64 {
-        self.sums.left(coefficients) / self.windows
-    }
-
-    /// The constant that fits best beside the other coefficients.
-    fn constant(&self, others: &[f64]) -> f64 {
-        let n = others.len() + 1;
-        let explained: f64 = others.iter().enumerate().map(|(i, c)| c * self.sums.columns[i * n + n - 1]).sum();
-        (self.sums.response[n - 1] - explained) / self.sums.columns[n * n - 1]
-    }
-}
-
-/// The stretches in which a channel holds one value, with [`STUCK_WINDOWS`] windows of some steps or more in them and beside them.
-/// `sums` are those of the windows that begin at some rows.
-pub fn stretches(
-    series: &Series<'_>,
-    values: &[f64],
-    starts: &[usize],
-    steps: usize,
-    sums: impl Fn(&[usize]) -> Option<Sums>,
-) -> Vec<Stretch> {
-    let of = |rows: &Range<usize>| {
-        let (inside, others): (Vec<usize>, Vec<usize>) =
-            starts.iter().partition(|start| **start >= rows.start && **start + steps < rows.end);
-        let beside: Vec<usize> = others.into_iter().filter(|s| s + steps < rows.start || *s >= rows.end).collect();
-        let part = |starts: &[usize]| {
-            let enough = starts.len() >= STUCK_WINDOWS;
-            enough.then(|| Some(Part { sums: sums(starts)?, windows: starts.len() as f64 })).flatten()
-        };
-        let seconds = series.t[rows.end - 1] - series.t[rows.start];
-        Some(Stretch { lines: series.lines(rows), seconds, inside: part(&inside)?, beside: part(&beside)? })
-    };
-    let all = series.stretches.iter().flat_map(|s| constant(values, s.clone()));
-    all.filter(|rows| rows.len() > steps).filter_map(|rows| of(&rows)).collect()
-}
-
-/// The stretch of each run over which the channel is stuck, the one that the motion contradicts most.
-pub fn stuck<'c>(curves: &[Option<&'c Curve>]) -> Vec<Option<&'c Stretch>> {
+/// The plateau of each run over which the channel is stuck, the one that the motion contradicts most.
+pub fn stuck<'c>(curves: &[Option<&'c Curve>]) -> Vec<Option<&'c Plateau>> {
     let none = || vec![None; curves.len()];
     let Some((pool, usual)) = actuated(curves).and_then(|pool| pool.usual().map(|usual| (pool, usual))) else {
         return none();
     };
     let most = |curve: &&'c Curve| {
-        let (share, stretch) = unlike(curve, &pool, usual)?;
-        (share > STUCK_UNLIKE).then_some(stretch)
+        let (share, plateau) = unlike(curve, &pool, usual)?;
+        (share > STUCK_UNLIKE).then_some(plateau)
     };
     curves.iter().map(|curve| curve.as_ref().and_then(most)).collect()
 }
 
-/// The stretch of a run that is least like the other runs, and how many times as much they leave there, squared and by window, as they do
-/// usually and beside it.
-fn unlike<'c>(curve: &'c Curve, pool: &Pool<'c>, usual: f64) -> Option<(f64, &'c Stretch)> {
+/// The plateau of a run that is least like the other runs, of those in which the held value explains nothing, and how many times as much
+/// they leave there, squared and by window, as they do usually and beside it.
+fn unlike<'c>(curve: &'c Curve, pool: &Pool<'c>, usual: f64) -> Option<(f64, &'c Plateau)> {
     let others = pool.others(curve).filter(|_| pool.is_alike(curve))?;
-    let share = |stretch: &'c Stretch| {
+    let share = |plateau: &'c Plateau| {
         let mut with_constant = others.clone();
-        with_constant.push(stretch.beside.constant(&others));
-        (stretch.inside.left(&with_constant) / usual.max(stretch.beside.left(&with_constant)), stretch)
+        with_constant.push(plateau.beside.constant(&others));
+        let [left, beside] = [&plateau.inside, &plateau.beside].map(|part| part.left(&with_constant));
+        with_constant[..curve.own].fill(0.0);
+        // In a hard turn the other runs' coefficients leave much, and the rudder explains far more.
+        let nothing = plateau.inside.left(&with_constant);
+        (left > EXPLAINS * nothing).then_some((left / usual.max(beside), plateau))
     };
-    curve.stretches.iter().map(share).max_by(|a, b| a.0.total_cmp(&b.0))
+    curve.plateaus.iter().filter_map(share).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 #[cfg(test)]
@@ -94,7 +40,9 @@ mod tests {
     use super::*;
     use crate::audit::example::noise;
     use crate::audit::response::rudder;
+    use crate::audit::series::Series;
     use crate::recording::{Channel, Recording};
+    use std::ops::Range;
 
     /// A ship that turns with its rudder, which holds an angle for 40 s at a time, and whose log stands still over some rows.
     fn turning(seed: u32, still: Range<usize>) -> Curve {

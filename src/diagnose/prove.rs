@@ -34,7 +34,7 @@ pub struct HeldOut {
     pub after: Option<f64>,
     /// Relative improvement of the mean cVDM, `1 - after/before`.
     pub improvement: Option<f64>,
-    /// Its 95 % bootstrap interval over recordings; absent with fewer than three.
+    /// Its 95 % interval, by Student's t over recordings, as a finding has it; absent with fewer than three.
     pub ci95: Option<[f64; 2]>,
     /// Runs that got better.
     pub better: usize,

@@ -147,14 +147,14 @@ pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight]
     let written = |e: &Estimate| inside_bounds(e, tests.problem(question.settings));
     let [base, found] = [&tests.fit.estimate, &kept.selection.estimate].map(written);
     let proof = FindingProof::new(&base.model, &found.model, &found.noise, tests.fit.integration, held_out, judging);
-    let simulated = proof.simulates_worse();
+    let simulated = proof.prediction().is_some_and(|g| g.is_below_zero());
     if !simulated && !proof.likelihood().is_below_zero() {
         return None;
     }
     let index = does_least(weights, simulated)?;
     if let [alone] = weights {
         // It was weighed before, by models that need not keep inside their bounds.
-        (alone.grade, alone.proof) = (Grade::Refuted, Some(proof.as_told()));
+        (alone.grade, alone.proof) = (Grade::Refuted, Some(proof));
     } else {
         weights[index].grade = Grade::RefutedTogether;
     }
