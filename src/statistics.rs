@@ -82,8 +82,7 @@ pub fn student_p(t: f64, degrees: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |d| (2.0 * d.sf(t.abs())).max(f64::MIN_POSITIVE))
 }
 
-/// The 95 % interval of a sum of independent values, by Student's t; `None` of fewer than three. Few clusters are resampled to too narrow an
-/// interval (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI).
+/// The 95 % interval of a sum of independent values, by Student's t; `None` of fewer than three.
 pub fn interval_of_sum(values: &[f64]) -> Option<[f64; 2]> {
     let count = values.len();
     if count < FEWEST_CLUSTERS {

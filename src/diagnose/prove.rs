@@ -3,6 +3,7 @@
 
 use super::filter::{Filter, GATE, Pass, Wanted};
 use super::noise::Noise;
+use super::unseen::improvement_over;
 use crate::audit::settled;
 use crate::evaluate::{Comparison, Judging, Outcome, outcome, predict_all, summarise};
 use crate::model::Model;
@@ -23,7 +24,8 @@ pub struct RunScore {
     pub mean_distance: Option<[Option<f64>; STATES]>,
 }
 
-/// Before against after on held-out runs. The numbers of free simulation are those that `trimtab evaluate` prints.
+/// Before against after on held-out runs. The numbers of free simulation are those that `trimtab evaluate` prints, but for
+/// the interval of the improvement: it is that of a finding, since a verdict turns on it.
 #[derive(Clone, Debug, Serialize)]
 pub struct HeldOut {
     /// Number of held-out runs.
@@ -114,7 +116,7 @@ pub fn prove(
         before: summary.cvdm_baseline.map(|e| e.value),
         after: summary.cvdm_fitted.map(|e| e.value),
         improvement: summary.cvdm_improvement.map(|e| e.value),
-        ci95: summary.cvdm_improvement.and_then(|e| e.ci95),
+        ci95: improvement_over(&all, runs),
         better: summary.better,
         worse: summary.worse,
         worst_run: worst.map(|(name, _)| name.clone()),

@@ -7,7 +7,7 @@ use super::settings::EvaluationSettings;
 use crate::ranks::Ranks;
 use crate::recording::Split;
 use crate::state::STATES;
-use crate::statistics::{Bootstrap, interval_of_sum, mean, median, variance};
+use crate::statistics::{Bootstrap, mean, median, variance};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -141,9 +141,7 @@ fn summarise_over(ranks: &Ranks, group: String, members: &[&Comparison], setting
     // Trajectories that both models run through, by run.
     let sound = |t: &&Comparison| t.baseline.deviation().is_some() && t.fitted.deviation().is_some();
     let clusters = runs.values().map(|of_run| of_run.iter().copied().filter(sound).collect::<Vec<_>>());
-    let clusters: Vec<Vec<&Comparison>> = clusters.filter(|c| !c.is_empty()).collect();
-    let cvdm_improvement = improvement(&clusters);
-    let resampled = Resampled::new(ranks, clusters, settings);
+    let resampled = Resampled::new(ranks, clusters.filter(|c| !c.is_empty()).collect(), settings);
     let diverged = |f: Which| members.iter().filter(|t| f(t).deviation().is_none()).count();
     let lower = |a: f64, b: f64| usize::from(a < b);
     let mean_order =
@@ -170,7 +168,8 @@ fn summarise_over(ranks: &Ranks, group: String, members: &[&Comparison], setting
         }),
         cvdm_baseline: resampled.estimate(|d| mean(d.column(BEFORE + STATES))),
         cvdm_fitted: resampled.estimate(|d| mean(d.column(AFTER + STATES))),
-        cvdm_improvement,
+        cvdm_improvement: resampled
+            .estimate(|d| gain(mean(d.column(BEFORE + STATES))?, mean(d.column(AFTER + STATES))?)),
         mari: resampled.estimate(|d| median(d.column(RELATIVE))),
         consistency: resampled.estimate(|d| {
             let spread = |c: usize| variance(&d.column(c).collect::<Vec<_>>());
@@ -183,19 +182,6 @@ fn summarise_over(ranks: &Ranks, group: String, members: &[&Comparison], setting
         worst: members.iter().max_by(|a, b| a.fitted.order().total_cmp(&b.fitted.order())).map(named),
         most_worsened: lost.max_by(|a, b| loss(a).total_cmp(&loss(b))).map(named),
     }
-}
-
-/// Improvement of the mean cVDM over trajectories that neither model diverges on, by run. Its interval is by Student's t of what the runs
-/// gain, and ends at 1, an exact prediction: a verdict turns on it, and a few runs are resampled to too narrow an interval.
-fn improvement(runs: &[Vec<&Comparison>]) -> Option<Estimate> {
-    let of = |f: Which, run: &[&Comparison]| run.iter().filter_map(|t| Some(f(t).deviation()?.cvdm)).sum::<f64>();
-    let sums = |f: Which| runs.iter().map(|run| of(f, run)).collect::<Vec<f64>>();
-    let [before, after] = [sums(|t| &t.baseline), sums(|t| &t.fitted)];
-    let total = before.iter().sum::<f64>();
-    let value = gain(total, after.iter().sum())?;
-    let gains: Vec<f64> = before.iter().zip(&after).map(|(before, after)| before - after).collect();
-    let ci95 = interval_of_sum(&gains).map(|ends| ends.map(|end| (end / total).min(1.0)));
-    Some(Estimate { value, ci95 })
 }
 
 /// `1 - after/before`; `None` where there was nothing to gain.

@@ -255,7 +255,7 @@ pub(super) fn validation(v: &Reader) -> Markup {
             p {
                 "Model `" (v.at("model").text()) "` against the baseline `" (v.at("baseline").text()) "` on " (t.at("runs").count())
                 " test runs (" (t.at("trajectories").count()) " trajectories). Intervals are 95 % bootstrap intervals over runs ("
-                (v.at("resamples").count()) " resamples, seed " (v.at("seed").count()) "), that of the improvement of cVDM by Student's t. Better than the baseline on "
+                (v.at("resamples").count()) " resamples, seed " (v.at("seed").count()) "). Better than the baseline on "
                 (t.at("runs_better").count()) " runs, worse on " (t.at("runs_worse").count()) "; diverged on "
                 (t.at("diverged_fitted").count()) " trajectories."
             }
