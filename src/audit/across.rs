@@ -11,7 +11,7 @@ use super::limits::{
 };
 use super::orders::{Leap, ordered};
 use super::plateau::Plateau;
-use super::pooled::{Odd, odd, shares_at_best};
+use super::pooled::{Odd, actuated, odd, shares_at_best};
 use super::propeller::{advance, advance_ratio, is_unpowered, unpowered};
 use super::reckoning::{Reckoned, reckoned};
 use super::record::Responses;
@@ -343,7 +343,9 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
         (long && better && inside && !known(seconds)).then_some(seconds)
     };
     let among_others: Vec<Option<&Curve>> = runs.iter().map(|r| pair.curve(r)).collect();
-    let shares = shares_at_best(&among_others);
+    // Only an actuator acts on the motion in the same way in all runs.
+    let pool = actuated(&among_others).filter(|_| pair.acts);
+    let shares = pool.as_ref().map(|pool| shares_at_best(&among_others, pool));
     // What a run says by itself, the other runs must not contradict, nor those that are cut from the same recording.
     let agreed = |run: &Evidence, seconds: f64| {
         let Some(place) = runs.iter().position(|r| std::ptr::eq(r, run)) else { return false };
@@ -351,33 +353,34 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
             let curve: &Curve = among_others[other]?;
             Some([curve.zero(), curve.at(seconds)?].map(|lag| curve.samples * curve.left[lag].ln()))
         };
-        shares[place].is_none_or(|share| share <= LAG_LEAVES) && sources.agree(place, losses)
+        let share = shares.as_ref().and_then(|shares| shares[place]);
+        share.is_none_or(|share| share <= LAG_LEAVES) && sources.agree(place, losses)
     };
     let told = |(run, curve): &(&Evidence, &Curve)| {
         let issue = lagging(pair, lag(curve).filter(|lag| pair.acts && agreed(run, *lag))?, "", pair.motion);
         Some(Shared { runs: vec![run.run.clone()], issue })
     };
     let step = curves.first().map_or(0.0, |(_, c)| c.step);
-    let pooled = odd(&among_others, sources, |seconds| beyond(seconds, SESSION_SHARE, step) && all.is_none());
-    let told_by_others = |(run, odd): (&Evidence, Option<Odd>)| {
-        let issue = match odd? {
-            _ if !pair.acts => return None,
-            Odd::Turned => turned(pair),
-            Odd::Late(seconds) => lagging(pair, seconds, "", pair.motion),
-            Odd::Unanswered => unanswered(pair),
-        };
-        Some(Shared { runs: vec![run.run.clone()], issue })
+    let worth = |seconds: f64| beyond(seconds, SESSION_SHARE, step) && all.is_none();
+    let odd_told = |odd: Odd| match odd {
+        Odd::Turned => turned(pair),
+        Odd::Late(seconds) => lagging(pair, seconds, "", pair.motion),
+        Odd::Unanswered => unanswered(pair),
     };
+    let by_others = pool.as_ref().map_or_else(Vec::new, |pool| {
+        let odd = odd(&among_others, pool, sources, worth).into_iter().map(|odd| odd.map(odd_told));
+        let stuck = stuck(&among_others, pool).into_iter().map(|plateau| plateau.map(|p| stands_still(pair, p)));
+        let of_run =
+            |(run, issue): (&Evidence, Option<Issue>)| Some(Shared { runs: vec![run.run.clone()], issue: issue? });
+        runs.iter().zip(odd).chain(runs.iter().zip(stuck)).filter_map(of_run).collect()
+    });
     let together = all.map(|seconds| Shared {
         runs: curves.iter().map(|(run, _)| run.run.clone()).collect(),
         issue: lagging(pair, seconds, "", pair.motion),
     });
     let mut found: Vec<Shared> = together.into_iter().chain(curves.iter().filter_map(told)).collect();
     let also = turned_as_others(runs, pair).into_iter().chain(turned_in_a_session(runs, pair));
-    let held = runs.iter().zip(stuck(&among_others)).filter(|_| pair.acts);
-    let told_stuck = held.filter_map(|(run, plateau)| Some((run, stands_still(pair, plateau?))));
-    let stuck = told_stuck.map(|(run, issue)| Shared { runs: vec![run.run.clone()], issue });
-    for shared in also.chain(runs.iter().zip(pooled).filter_map(told_by_others)).chain(stuck) {
+    for shared in also.chain(by_others) {
         if !found.iter().any(|f| f.runs == shared.runs) {
             found.push(shared);
         }
@@ -457,11 +460,7 @@ fn stands_still(pair: &Pair, plateau: &Plateau) -> Issue {
     );
     let next = "did its log stand still, or did something else push the ship (a tug, a hand)? leave the fields blank, so that they count \
                 as a dropout, or cut the run there with `from` or `to`";
-    let issue = Issue::new(Severity::Warning, "frozen", text, next.to_owned()).of(pair.channel);
-    match plateau.lines {
-        Some(lines) => issue.at(lines),
-        None => issue,
-    }
+    Issue::new(Severity::Warning, "frozen", text, next).of(pair.channel).at(plateau.lines)
 }
 
 /// The doubt about a lag \[s\]: `whose` begins the text, `than` is what it is compared with.

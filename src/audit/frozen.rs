@@ -25,13 +25,9 @@ pub fn frozen(series: &Series<'_>, issues: &mut Vec<Issue>) {
             still.iter().map(duration).sum::<f64>(),
             values[longest.start],
         );
-        let issue =
-            Issue::new(Severity::Warning, "frozen", text, "leave the fields blank, so that it counts as a dropout")
-                .of(channel);
-        issues.push(match series.lines(longest) {
-            Some(lines) => issue.at(lines),
-            None => issue,
-        });
+        let next = "leave the fields blank, so that it counts as a dropout";
+        let issue = Issue::new(Severity::Warning, "frozen", text, next).of(channel);
+        issues.push(issue.at(series.lines(longest)));
     }
 }
 

@@ -55,10 +55,10 @@ impl Issue {
         self
     }
 
-    /// The same about some lines of the file, first and last.
+    /// The same about some lines of the file, first and last, where they are known.
     #[must_use]
-    pub fn at(mut self, lines: (usize, usize)) -> Self {
-        self.lines = Some(lines);
+    pub fn at(mut self, lines: impl Into<Option<(usize, usize)>>) -> Self {
+        self.lines = lines.into();
         self
     }
 

@@ -217,7 +217,7 @@ pub const POOLED_UNUSUAL: f64 = 2.5;
 /// A rudder or a propeller that holds one value is held against the other runs where so many windows are in the stretch and beside it,
 pub const STUCK_WINDOWS: usize = 10;
 /// and is stuck where it explains nothing ([`EXPLAINS`]) and the others' coefficients leave this many times as much, squared and by window,
-/// as they do usually and beside it. In 72 concealed cases (seeds 8801 to 8818) and KVLCC2 at MARIN and HSVA no sound stretch left both; one
+/// as they do usually and beside it. In 168 concealed cases (seeds 8801 to 8842) and KVLCC2 at MARIN and HSVA no sound stretch left both; one
 /// in a hard turn left 16 times as much, and the rudder explained two thirds. At Esso Osaka two recordings that go on after their trial are
 /// told: one of a ship that is turned about with rudder and propeller at 0, one of a ship that is stopped within 4 s with its propeller at 0.
 pub const STUCK_UNLIKE: f64 = 15.0;

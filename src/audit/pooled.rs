@@ -100,10 +100,13 @@ fn is_step(curve: &Curve, step: f64) -> bool {
     (curve.step / step - 1.0).abs() < 0.01
 }
 
-/// What is odd in each run, in their order, and in the recording from which it is cut. `worth` says which lags \\[s\\] matter.
-pub fn odd(curves: &[Option<&Curve>], sources: &Sources, worth: impl Fn(f64) -> bool) -> Vec<Option<Odd>> {
-    let none = || vec![None; curves.len()];
-    let Some(pool) = actuated(curves) else { return none() };
+/// What is odd in each run, in their order, against the pool, and in the recording from which it is cut. `worth` says which lags \\[s\\] matter.
+pub(super) fn odd(
+    curves: &[Option<&Curve>],
+    pool: &Pool,
+    sources: &Sources,
+    worth: impl Fn(f64) -> bool,
+) -> Vec<Option<Odd>> {
     let usual = pool.usual();
     let alike = |run: usize| curves[run].filter(|c| pool.is_alike(c));
     let judged = |run: usize| {
@@ -124,7 +127,7 @@ fn losses(curve: &Curve, others: &[f64], odd: Odd) -> Option<[f64; 2]> {
             let place = curve.at(seconds)?;
             Some([curve.at_zero_beside(place).left(others), curve.sums[place].left(others)])
         }
-        Odd::Unanswered => Some([curve.at_zero().left(others), without(curve.at_zero(), curve.own, others)]),
+        Odd::Unanswered => Some([curve.at_zero().left(others), curve.at_zero().left_without(curve.own, others)]),
     }
 }
 
@@ -141,8 +144,7 @@ pub(super) fn actuated<'c>(curves: &[Option<&'c Curve>]) -> Option<Pool<'c>> {
 
 /// What the coefficients of the other runs leave of each run at the lag that its own regression finds, as a share of what they leave at
 /// none; `None` where there are too few others.
-pub fn shares_at_best(curves: &[Option<&Curve>]) -> Vec<Option<f64>> {
-    let Some(pool) = actuated(curves) else { return vec![None; curves.len()] };
+pub(super) fn shares_at_best(curves: &[Option<&Curve>], pool: &Pool) -> Vec<Option<f64>> {
     let share = |curve: &Option<&Curve>| {
         let curve = curve.filter(|c| pool.is_alike(c))?;
         let (others, best) = (pool.others(curve)?, curve.best());
@@ -151,18 +153,11 @@ pub fn shares_at_best(curves: &[Option<&Curve>]) -> Vec<Option<f64>> {
     curves.iter().map(share).collect()
 }
 
-/// Squares left without the channel.
-fn without(sums: &Sums, own: usize, coefficients: &[f64]) -> f64 {
-    let mut rest = coefficients.to_vec();
-    rest[..own].fill(0.0);
-    sums.left(&rest)
-}
-
 /// Whether a run shows by itself nothing that the channel does, and is explained better without it than by what it does in the others,
 /// which leaves more than usual.
 fn is_unanswered(curve: &Curve, others: &[f64], usual: f64) -> bool {
     let sums = curve.at_zero();
-    let (as_it_is, nothing) = (sums.left(others), without(sums, curve.own, others));
+    let (as_it_is, nothing) = (sums.left(others), sums.left_without(curve.own, others));
     let usual = usual * curve.rows;
     let evidence = curve.samples * (as_it_is - nothing) / nothing.max(usual);
     curve.side().abs() < POOLED_EVIDENCE && as_it_is > POOLED_UNUSUAL * usual && evidence > SCALE_EVIDENCE
@@ -179,7 +174,7 @@ fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option
         let seconds = curve.seconds(place);
         let inside = place > 0 && place + 1 < curve.sums.len();
         let as_it_is = curve.at_zero_beside(place);
-        let (before, nothing) = (as_it_is.left(others), without(as_it_is, curve.own, others));
+        let (before, nothing) = (as_it_is.left(others), as_it_is.left_without(curve.own, others));
         let candidates = [
             (worth(seconds) && inside).then(|| (sums.left(others), Odd::Late(seconds))),
             (place == zero && !own_side).then(|| (sums.left(&turned), Odd::Turned)),
@@ -224,6 +219,11 @@ mod tests {
         }
     }
 
+    /// What is odd in each run, with no lag that matters.
+    fn among(curves: &[Option<&Curve>], sources: &Sources) -> Vec<Option<Odd>> {
+        odd(curves, &actuated(curves).unwrap(), sources, |_| false)
+    }
+
     #[test]
     fn a_run_of_a_recording_whose_other_runs_are_sound_is_not_turned() {
         // The last one answers to the other side, and does not say so beyond doubt by itself.
@@ -231,14 +231,14 @@ mod tests {
         let mut curves = curves;
         curves[8].sums[0].response[0] *= -1.0;
         let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
-        let odd = |sources: Sources| odd(&all, &sources, |_| false);
+        let odd = |sources: Sources| among(&all, &sources);
         let told = odd(Sources::of(0..9));
         assert!(told[..8].iter().all(Option::is_none) && told[8] == Some(Odd::Turned), "{told:?}");
         assert_eq!(odd(Sources::of(std::iter::repeat_n("log", 9))), [None; 9]);
         // A file that is turned is turned in all of its runs.
         curves[7] = curves[8].clone();
         let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
-        let told = super::odd(&all, &Sources::of((0..9).map(|i| i.min(7))), |_| false);
+        let told = among(&all, &Sources::of((0..9).map(|i| i.min(7))));
         assert!(told[..7].iter().all(Option::is_none) && told[7..] == [Some(Odd::Turned); 2], "{told:?}");
     }
 
@@ -251,7 +251,7 @@ mod tests {
         }
         curves[28].sums[0].response[0] *= -1.0;
         let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
-        let told = odd(&all, &Sources::of(0..29), |_| false);
+        let told = among(&all, &Sources::of(0..29));
         assert!(told[..28].iter().all(Option::is_none) && told[28] == Some(Odd::Turned), "{told:?}");
     }
 
@@ -263,7 +263,7 @@ mod tests {
             curves[8].sums[0] = Sums { columns: vec![moves], response: vec![0.0], squares: 0.4 };
             curves[8].without = if shows { 3.0 } else { curves[8].left[0] };
             let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
-            odd(&all, &Sources::of(0..9), |_| false)
+            among(&all, &Sources::of(0..9))
         };
         let unanswered = told(4.0, false);
         assert!(
@@ -294,7 +294,7 @@ mod tests {
         };
         let told = |speed: f64, acts: f64| {
             let curves: Vec<Curve> = (0..8).map(|i| swung(i + 1, 4.0, 1.0)).chain([swung(9, speed, acts)]).collect();
-            odd(&curves.iter().map(Some).collect::<Vec<_>>(), &Sources::of(0..9), |_| false)
+            among(&curves.iter().map(Some).collect::<Vec<_>>(), &Sources::of(0..9))
         };
         assert_eq!(told(0.5, 1.0), [None; 9]);
         // As one in degrees that counts as radians does at the usual speed.

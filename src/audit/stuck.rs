@@ -3,33 +3,29 @@
 
 use super::limits::{EXPLAINS, STUCK_UNLIKE};
 use super::plateau::Plateau;
-use super::pooled::{Pool, actuated};
+use super::pooled::Pool;
 use super::response::Curve;
 
 /// The plateau of each run over which the channel is stuck, the one that the motion contradicts most.
-pub fn stuck<'c>(curves: &[Option<&'c Curve>]) -> Vec<Option<&'c Plateau>> {
-    let none = || vec![None; curves.len()];
-    let Some((pool, usual)) = actuated(curves).and_then(|pool| pool.usual().map(|usual| (pool, usual))) else {
-        return none();
-    };
-    let most = |curve: &&'c Curve| {
-        let (share, plateau) = unlike(curve, &pool, usual)?;
+pub(super) fn stuck<'c>(curves: &[Option<&'c Curve>], pool: &Pool<'_>) -> Vec<Option<&'c Plateau>> {
+    let usual = pool.usual();
+    let most = |curve: &Option<&'c Curve>| {
+        let (share, plateau) = unlike((*curve)?, pool, usual?)?;
         (share > STUCK_UNLIKE).then_some(plateau)
     };
-    curves.iter().map(|curve| curve.as_ref().and_then(most)).collect()
+    curves.iter().map(most).collect()
 }
 
 /// The plateau of a run that is least like the other runs, of those in which the held value explains nothing, and how many times as much
 /// they leave there, squared and by window, as they do usually and beside it.
-fn unlike<'c>(curve: &'c Curve, pool: &Pool<'c>, usual: f64) -> Option<(f64, &'c Plateau)> {
+fn unlike<'c>(curve: &'c Curve, pool: &Pool<'_>, usual: f64) -> Option<(f64, &'c Plateau)> {
     let others = pool.others(curve).filter(|_| pool.is_alike(curve))?;
     let share = |plateau: &'c Plateau| {
         let mut with_constant = others.clone();
         with_constant.push(plateau.beside.constant(&others));
         let [left, beside] = [&plateau.inside, &plateau.beside].map(|part| part.left(&with_constant));
-        with_constant[..curve.own].fill(0.0);
         // In a hard turn the other runs' coefficients leave much, and the rudder explains far more.
-        let nothing = plateau.inside.left(&with_constant);
+        let nothing = plateau.inside.left_without(curve.own, &with_constant);
         (left > EXPLAINS * nothing).then_some((left / usual.max(beside), plateau))
     };
     curve.plateaus.iter().filter_map(share).max_by(|a, b| a.0.total_cmp(&b.0))
@@ -39,6 +35,7 @@ fn unlike<'c>(curve: &'c Curve, pool: &Pool<'c>, usual: f64) -> Option<(f64, &'c
 mod tests {
     use super::*;
     use crate::audit::example::noise;
+    use crate::audit::pooled::actuated;
     use crate::audit::response::rudder;
     use crate::audit::series::Series;
     use crate::recording::{Channel, Recording};
@@ -70,7 +67,7 @@ mod tests {
         let of = |still: Range<usize>| -> Vec<Option<(usize, usize)>> {
             let curves: Vec<Curve> = (0..8).map(|i| turning(i, if i == 3 { still.clone() } else { 0..1 })).collect();
             let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
-            stuck(&all).into_iter().map(|s| s.and_then(|s| s.lines)).collect()
+            stuck(&all, &actuated(&all).unwrap()).into_iter().map(|s| s.and_then(|s| s.lines)).collect()
         };
         assert_eq!(of(0..1), [None; 8]);
         let told = of(60..130);

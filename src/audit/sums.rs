@@ -23,6 +23,20 @@ impl Sums {
         self.squares += other.squares;
     }
 
+    /// Takes out those of some of its windows.
+    pub fn subtract(&mut self, other: &Self) {
+        self.columns.iter_mut().zip(&other.columns).for_each(|(s, o)| *s -= o);
+        self.response.iter_mut().zip(&other.response).for_each(|(s, o)| *s -= o);
+        self.squares -= other.squares;
+    }
+
+    /// Squares that coefficients leave without the first `own` columns.
+    pub fn left_without(&self, own: usize, coefficients: &[f64]) -> f64 {
+        let mut rest = coefficients.to_vec();
+        rest[..own].fill(0.0);
+        self.left(&rest)
+    }
+
     /// Squares that coefficients of other runs leave.
     pub fn left(&self, coefficients: &[f64]) -> f64 {
         let n = coefficients.len();
