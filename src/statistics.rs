@@ -82,15 +82,28 @@ pub fn student_p(t: f64, degrees: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |d| (2.0 * d.sf(t.abs())).max(f64::MIN_POSITIVE))
 }
 
-/// The 95 % interval of a sum of independent values, by Student's t; `None` of fewer than three.
-pub fn interval_of_sum(values: &[f64]) -> Option<[f64; 2]> {
-    let count = values.len();
-    if count < FEWEST_CLUSTERS {
+/// The 95 % interval of `q = sum y/sum x` over independent clusters, each a pair (y, x) whose y is expected in proportion to its size
+/// x >= 0. With h the share of a cluster in all sizes, the variance of `sum y` given the sizes is `sum (y - q x)^2/(1 - h)` (Bell & McCaffrey
+/// 2002, Survey Methodology 28, p. 169), and Student's t has `1/sum h^2 - 1` degrees of freedom: clusters of unequal size count as fewer
+/// (Carter, Schnepel & Steigerwald 2017, Rev. Economics and Statistics 99, p. 698). For equal sizes it is the interval of a mean.
+/// `None` of fewer than three clusters, and where they count as fewer than two.
+pub fn interval_of_ratio(clusters: &[(f64, f64)]) -> Option<[f64; 2]> {
+    let size: f64 = clusters.iter().map(|c| c.1).sum();
+    let shares: f64 = clusters.iter().map(|c| (c.1 / size).powi(2)).sum();
+    let counted = 1.0 / shares;
+    if clusters.len() < FEWEST_CLUSTERS || counted.is_nan() || counted < 2.0 {
         return None;
     }
-    let (mean, variance) = (mean(values.iter().copied())?, variance(values)?);
-    let half = student_quantile(0.975, (count - 1) as f64) * (variance / count as f64).sqrt();
-    Some([mean - half, mean + half].map(|v| v * count as f64))
+    let q = clusters.iter().map(|c| c.0).sum::<f64>() / size;
+    let variance: f64 = clusters.iter().map(|(y, x)| (y - q * x).powi(2) / (1.0 - x / size)).sum();
+    let half = student_quantile(0.975, counted - 1.0) * variance.sqrt() / size;
+    Some([q - half, q + half]).filter(|ends| ends.iter().all(|e| e.is_finite()))
+}
+
+/// The 95 % interval of `sum y` over clusters as [`interval_of_ratio`] takes them.
+pub fn interval_of_sum(clusters: &[(f64, f64)]) -> Option<[f64; 2]> {
+    let size: f64 = clusters.iter().map(|c| c.1).sum();
+    interval_of_ratio(clusters).map(|ends| ends.map(|e| e * size))
 }
 
 /// Share of the ranks that belongs to differences above zero, of all differences ranked by their size (Wilcoxon 1945, Biometrics Bulletin 1,
@@ -231,12 +244,38 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_interval_of_a_sum_is_that_of_students_t() {
+    fn the_interval_of_a_sum_over_clusters_of_one_size_is_that_of_students_t() {
         // Mean 2, standard deviation 1, three values: t = 4.3027.
-        let [low, high] = interval_of_sum(&[1.0, 2.0, 3.0]).unwrap();
+        let of_size = |size: f64| [1.0, 2.0, 3.0].map(|y| (y, size));
         let half = 4.302_652_73 * 3f64.sqrt();
-        assert!((low - (6.0 - half)).abs() < 1e-6 && (high - (6.0 + half)).abs() < 1e-6, "{low} {high}");
-        assert!(interval_of_sum(&[1.0, 2.0]).is_none());
+        for size in [1.0, 250.0] {
+            let [low, high] = interval_of_sum(&of_size(size)).unwrap();
+            assert!((low - (6.0 - half)).abs() < 1e-6 && (high - (6.0 + half)).abs() < 1e-6, "{low} {high}");
+        }
+        assert!(interval_of_sum(&[(1.0, 1.0), (2.0, 1.0)]).is_none());
+    }
+
+    #[test]
+    fn what_goes_with_the_size_of_a_cluster_has_no_scatter_and_one_large_cluster_has_no_interval() {
+        let in_proportion = [2.0, 20.0, 6.0, 10.0].map(|size| (0.4 * size, size));
+        let ends = interval_of_ratio(&in_proportion).unwrap();
+        assert!(ends.iter().all(|e| (e - 0.4).abs() < 1e-12), "{ends:?}");
+        assert!(interval_of_ratio(&[(1.0, 1.0), (2.0, 1.0), (30.0, 100.0)]).is_none());
+        assert!(interval_of_ratio(&[(f64::NAN, 1.0), (2.0, 1.0), (3.0, 1.0)]).is_none());
+        assert!(interval_of_ratio(&[(0.0, 0.0); 4]).is_none());
+    }
+
+    #[test]
+    fn the_interval_of_a_ratio_holds_it_as_often_as_it_says_over_clusters_of_unequal_size() {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let mut normal = || (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();
+        let sizes: [f64; 6] = [1.0, 1.0, 2.0, 3.0, 3.0, 8.0];
+        let held = (0..4000).filter(|_| {
+            let clusters = sizes.map(|x| (0.3 * x + 0.2 * x.sqrt() * normal(), x));
+            interval_of_ratio(&clusters).is_some_and(|[low, high]| (low..=high).contains(&0.3))
+        });
+        let share = held.count() as f64 / 4000.0;
+        assert!((0.93..=0.98).contains(&share), "{share}");
     }
 
     #[test]

@@ -24,7 +24,8 @@ use trimtab::validity::Coverage;
 const LONG: &str = "\
 Simulates the recordings of a study with two models and compares both with the measured motion, first on the test runs: \
     mean deviation (MD) of each dimension, cVDM (all dimensions in one number, percent), how much the fitted model improves on \
-    the baseline, and on how many runs. Intervals are 95 % bootstrap intervals over runs.
+    the baseline, and on how many runs. All intervals are of 95 % and over runs: of an improvement by Student's t, of \
+    everything else from a bootstrap.
 
 The fitted model is --model, or the study's. The baseline is --baseline, or `baseline` in [evaluate] of the study, or the \
     study's model. If both are one model, its deviations are printed without a comparison.";
@@ -404,7 +405,7 @@ fn improvement(s: &Summary) -> Figure {
     let axis = Axis::categories("", names);
     let title = format!("Improvement on the baseline, {} runs (95 % intervals)", s.group);
     let caption = "Relative improvement on the baseline of the mean deviation (MD) of each dimension, of cVDM, of their mean over \
-                   dimensions (mARI) and of the variance of cVDM (consistency), with 95 % bootstrap intervals over runs.";
+                   dimensions (mARI) and of the variance of cVDM (consistency), with 95 % intervals over runs.";
     Figure::new(title).panel_size(1200, 620).caption(caption).legend(trimtab::plot::Legend::Off).with(
         Panel::new("", axis, Axis::new("improvement [%]").including(0.0))
             .with(Layer::bars_with_intervals("improvement", FITTED, bars))

@@ -3,7 +3,7 @@
 
 use super::filter::{Filter, GATE, Pass, Wanted};
 use super::noise::Noise;
-use super::unseen::improvement_over;
+use super::unseen::interval_of_improvement;
 use crate::audit::settled;
 use crate::evaluate::{Comparison, Judging, Outcome, outcome, predict_all, summarise};
 use crate::model::Model;
@@ -24,8 +24,7 @@ pub struct RunScore {
     pub mean_distance: Option<[Option<f64>; STATES]>,
 }
 
-/// Before against after on held-out runs. The numbers of free simulation are those that `trimtab evaluate` prints, but for
-/// the interval of the improvement: it is that of a finding, since a verdict turns on it.
+/// Before against after on held-out runs. The numbers of free simulation are those that `trimtab evaluate` prints.
 #[derive(Clone, Debug, Serialize)]
 pub struct HeldOut {
     /// Number of held-out runs.
@@ -36,7 +35,7 @@ pub struct HeldOut {
     pub after: Option<f64>,
     /// Relative improvement of the mean cVDM, `1 - after/before`.
     pub improvement: Option<f64>,
-    /// Its 95 % interval, by Student's t over recordings, as a finding has it; absent with fewer than three.
+    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, and where a simulation diverged.
     pub ci95: Option<[f64; 2]>,
     /// Runs that got better.
     pub better: usize,
@@ -116,7 +115,7 @@ pub fn prove(
         before: summary.cvdm_baseline.map(|e| e.value),
         after: summary.cvdm_fitted.map(|e| e.value),
         improvement: summary.cvdm_improvement.map(|e| e.value),
-        ci95: improvement_over(&all, runs),
+        ci95: interval_of_improvement(&summary),
         better: summary.better,
         worse: summary.worse,
         worst_run: worst.map(|(name, _)| name.clone()),

@@ -16,7 +16,9 @@
 //! - cVDM improvement: `(mean cVDM~ - mean cVDM*)/mean cVDM~` over the trajectories.
 //! - Consistency: `1 - Var(cVDM*)/Var(cVDM~)` over the trajectories.
 //!
-//! Intervals are 95 % percentile intervals of a bootstrap that draws whole runs: windows of one run share what is unknown.
+//! Intervals are 95 % intervals over whole runs: windows of one run share what is unknown. Of an improvement, on which verdicts turn,
+//! it is that of a ratio by Student's t ([`crate::statistics::interval_of_ratio`]): few runs are resampled to too narrow an interval.
+//! All others are percentile intervals of a bootstrap.
 //!
 //! A simulation that diverges has no deviation. It is counted, counts as worse than any that does not, and the other numbers
 //! are of the trajectories that neither model diverges on.
@@ -298,11 +300,18 @@ mod tests {
         let (a, b) = (changed(0.3), changed(-0.1));
         let first = evaluated(&a, &b, &windows);
         assert_eq!(first, evaluated(&a, &b, &windows));
-        let estimate = first.summary("test").unwrap().cvdm_improvement.unwrap();
-        let [lo, hi] = estimate.ci95.unwrap();
-        assert!(lo < estimate.value && estimate.value < hi);
-        let other = prove(&a, &b, &windows, &judging(2));
-        assert_ne!(other.summary("test").unwrap().cvdm_improvement.unwrap().ci95, estimate.ci95);
+        let of = |evaluation: &Evaluation| {
+            let test = evaluation.summary("test").unwrap();
+            [test.cvdm_fitted.unwrap(), test.cvdm_improvement.unwrap()]
+        };
+        let estimates = of(&first);
+        for estimate in estimates {
+            let [lo, hi] = estimate.ci95.unwrap();
+            assert!(lo < estimate.value && estimate.value < hi);
+        }
+        // An improvement has its interval from no draws.
+        let other = of(&prove(&a, &b, &windows, &judging(2)));
+        assert!(other[0].ci95 != estimates[0].ci95 && other[1] == estimates[1]);
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! Many trajectories under two models in a few numbers, each with its interval from a bootstrap over whole runs.
-//! It knows the outcomes alone: neither models nor recordings.
+//! Many trajectories under two models in a few numbers, each with its interval over recordings: an improvement, on which verdicts
+//! turn, by Student's t, everything else from a bootstrap. It knows the outcomes alone: neither models nor recordings.
 
 use super::compare::Comparison;
 use super::cvdm::{Outcome, by_dimension};
@@ -7,7 +7,7 @@ use super::settings::EvaluationSettings;
 use crate::ranks::Ranks;
 use crate::recording::Split;
 use crate::state::STATES;
-use crate::statistics::{Bootstrap, mean, median, variance};
+use crate::statistics::{Bootstrap, interval_of_ratio, mean, median, variance};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -163,13 +163,10 @@ fn summarise_over(ranks: &Ranks, group: String, members: &[&Comparison], setting
         diverged_fitted: diverged(after),
         md_baseline: std::array::from_fn(|i| resampled.estimate(|d| mean(d.column(BEFORE + i)))),
         md_fitted: std::array::from_fn(|i| resampled.estimate(|d| mean(d.column(AFTER + i)))),
-        md_improvement: std::array::from_fn(|i| {
-            resampled.estimate(|d| gain(mean(d.column(BEFORE + i))?, mean(d.column(AFTER + i))?))
-        }),
+        md_improvement: std::array::from_fn(|i| resampled.improvement(i)),
         cvdm_baseline: resampled.estimate(|d| mean(d.column(BEFORE + STATES))),
         cvdm_fitted: resampled.estimate(|d| mean(d.column(AFTER + STATES))),
-        cvdm_improvement: resampled
-            .estimate(|d| gain(mean(d.column(BEFORE + STATES))?, mean(d.column(AFTER + STATES))?)),
+        cvdm_improvement: resampled.improvement(STATES),
         mari: resampled.estimate(|d| median(d.column(RELATIVE))),
         consistency: resampled.estimate(|d| {
             let spread = |c: usize| variance(&d.column(c).collect::<Vec<_>>());
@@ -249,5 +246,22 @@ impl<'a> Resampled<'a> {
             |drawn: Option<&[usize]>| statistic(&Drawn { columns: &self.columns, clusters: &self.clusters, drawn });
         let value = of(None).filter(|v| v.is_finite())?;
         Some(Estimate { value, ci95: self.bootstrap.interval(|drawn| of(Some(drawn))) })
+    }
+
+    /// The improvement of the mean of a number over the trajectories that have it under both models, `1 - after/before`, and its
+    /// interval over the recordings, which ends at 1, an exact prediction.
+    fn improvement(&self, number: usize) -> Option<Estimate> {
+        let cluster = |range: &Range<usize>| {
+            let pair = |t: usize| (self.columns[AFTER + number][t], self.columns[BEFORE + number][t]);
+            let known = range.clone().map(pair).filter(|(after, before)| (after + before).is_finite());
+            known.fold((0.0, 0.0), |sum, (after, before)| (sum.0 + after, sum.1 + before))
+        };
+        let clusters: Vec<(f64, f64)> = self.clusters.iter().map(cluster).filter(|c| c.1 > 0.0 || c.0 > 0.0).collect();
+        let [after, before] = [0, 1].map(|i| clusters.iter().map(|c| [c.0, c.1][i]).sum::<f64>());
+        let value = gain(before, after).filter(|v| v.is_finite())?;
+        Some(Estimate {
+            value,
+            ci95: interval_of_ratio(&clusters).map(|[low, high]| [1.0 - high, (1.0 - low).min(1.0)]),
+        })
     }
 }

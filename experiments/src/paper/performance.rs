@@ -19,7 +19,7 @@ use trimtab::state::{STATE_NAMES, STATE_UNITS};
 /// Overall performance.
 pub static PERFORMANCE: Artefact = Artefact {
     name: "performance",
-    about: "Overall performance on the test runs: mARI, cVDM improvement and consistency, with 95 % bootstrap intervals",
+    about: "Overall performance on the test runs: mARI, cVDM improvement and consistency, with 95 % intervals",
     make,
 };
 
@@ -58,11 +58,7 @@ impl Bars {
         let titles = ["mARI", "improvement of mean cVDM", "consistency 1 - Var*/Var~"];
         let panels = titles.into_iter().enumerate().map(|(i, title)| {
             Panel::new(title, Axis::categories("", self.groups.clone()), Axis::new("[%]").including(0.0))
-                .with(Layer::bars_with_intervals(
-                    "ours, 95 % bootstrap interval over runs",
-                    FITTED,
-                    self.ours[i].clone(),
-                ))
+                .with(Layer::bars_with_intervals("ours, 95 % interval over runs", FITTED, self.ours[i].clone()))
                 .with(Layer::bars("paper (its own ships and baseline)", GREY, self.paper[i].clone()))
         });
         Figure::new("What the fit gains on each baseline, test runs").columns(3).panel_size(1000, 640).with_all(panels)

@@ -254,7 +254,7 @@ pub(super) fn validation(v: &Reader) -> Markup {
         @if t.is_there() {
             p {
                 "Model `" (v.at("model").text()) "` against the baseline `" (v.at("baseline").text()) "` on " (t.at("runs").count())
-                " test runs (" (t.at("trajectories").count()) " trajectories). Intervals are 95 % bootstrap intervals over runs ("
+                " test runs (" (t.at("trajectories").count()) " trajectories). All intervals are of 95 % and over runs: of an improvement by Student's t, else from a bootstrap ("
                 (v.at("resamples").count()) " resamples, seed " (v.at("seed").count()) "). Better than the baseline on "
                 (t.at("runs_better").count()) " runs, worse on " (t.at("runs_worse").count()) "; diverged on "
                 (t.at("diverged_fitted").count()) " trajectories."
