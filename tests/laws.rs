@@ -363,3 +363,27 @@ fn a_lagged_heel_follows_the_yaw_rate_of_some_seconds_before() {
         assert!((rate[i] - expected[i]).abs() < 1e-12, "rate {i}: {} {}", rate[i], expected[i]);
     }
 }
+
+#[test]
+fn a_late_channel_reports_an_earlier_time_to_third_order_in_the_delay_for_positions_and_heading_and_second_order_for_rates()
+ {
+    let late = model(Form::Paper, &["time_skew", "current"], &[("current.north", 0.3), ("current.east", -0.2)]);
+    let scenario = Scenario {
+        dt: 1.0,
+        inputs: (0..=60).map(|k| Inputs::actuators(f64::from(k), 3.0, 0.3)).collect(),
+        initial: [0.0, 0.0, 0.4, 6.0, -0.4, 0.006],
+    };
+    let sailed = simulate(&late, &late.values(), Integration { method: Method::Rk4, substeps: 4 }, &scenario).states;
+    let error = |delay: usize| {
+        let mut late = late.clone();
+        let delays = ["position", "heading", "velocity", "yaw_rate"].map(|c| (format!("time_skew.{c}"), delay as f64));
+        late.set(&delays.each_ref().map(|(name, d)| (name.as_str(), *d))).unwrap();
+        let reported = Dynamics::new(&late, late.values()).report(&sailed[40], &scenario.inputs[40]);
+        std::array::from_fn::<f64, STATES, _>(|i| (reported[i] - sailed[40 - delay][i]).abs())
+    };
+    let (long, short) = (error(8), error(4));
+    for (i, order) in [3, 3, 3, 2, 2, 2].into_iter().enumerate() {
+        let measured = (long[i] / short[i]).log2();
+        assert!((measured - f64::from(order)).abs() < 0.5, "{i}: {measured}");
+    }
+}

@@ -1,5 +1,5 @@
 //! Delays of the position channels, of the heading channel, of the yaw rate channel and of the velocity channels.
-//! First order in the delay, accurate while the rates change little over it.
+//! Second order in the delay for positions and heading, whose accelerations the model knows; first order for velocities and yaw rate.
 
 use super::size;
 use crate::parameter::ParameterInfo;
@@ -18,10 +18,10 @@ static INFO: TermInfo = TermInfo {
     name: "time_skew",
     title: "time skew between channels",
     group: Group::Sensor,
-    equation: "y_m(t) = y(t) - tau y'(t)",
-    source: "first-order expansion of a delay",
+    equation: "y_m(t) = y(t) - tau y'(t) + tau^2/2 y''(t); u, v, r without the last",
+    source: "Taylor expansion of a delay",
     needs: &[],
-    validity: Validity::any("first order in the delay: good while rates change little over it"),
+    validity: Validity::any("good while accelerations (of u, v and r: rates) change little over the delay"),
     mechanisms: &[
         Mechanism {
             name: "time_skew",
@@ -90,17 +90,14 @@ impl Term for TimeSkew {
 }
 
 impl<S: Scalar> Physics<S> for TimeSkew {
-    fn measure(
-        &self,
-        p: &[S::Coefficient],
-        _at: &Instant<S>,
-        _flow: &Flow<S>,
-        rate: &[S; STATES],
-        y: &mut [S; STATES],
-    ) {
-        y[0] -= rate[0] * p[0];
-        y[1] -= rate[1] * p[0];
-        y[2] -= rate[2] * p[1];
+    fn measure(&self, p: &[S::Coefficient], at: &Instant<S>, _flow: &Flow<S>, rate: &[S; STATES], y: &mut [S; STATES]) {
+        let ([sin, cos], r) = (at.heading, rate[2]);
+        let acceleration =
+            [cos * rate[3] - sin * rate[4] - r * rate[1], sin * rate[3] + cos * rate[4] + r * rate[0], rate[5]];
+        for (i, acceleration) in acceleration.into_iter().enumerate() {
+            let delay = p[usize::from(i == 2)];
+            y[i] -= (rate[i] - acceleration * delay * 0.5) * delay;
+        }
         y[3] -= rate[3] * p[3];
         y[4] -= rate[4] * p[3];
         y[5] -= rate[5] * p[2];
