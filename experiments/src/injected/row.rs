@@ -68,6 +68,8 @@ pub struct Row {
     pub ranked: String,
     /// Mechanisms withdrawn, with their grades: `tide:refuted`.
     pub withdrawn: String,
+    /// Their parameters, as those of the findings.
+    pub withdrawn_parameters: String,
     /// Proof of each finding: `[[gain, low, high, improvement, low, high], ...]`, of all together where that alone is given.
     pub proof: String,
     /// Repetitions with the same answer.
@@ -174,11 +176,12 @@ impl Row {
         self.kinds = joined(&|f| f.kind.clone());
         self.grades = joined(&|f| f.grade.clone());
         self.found_sessions = joined(&|f| f.sessions.join("|"));
-        let parameters = said.findings.iter().flat_map(|f| &f.parameters);
         let found = |p: &super::said::Parameter| -> Found {
             (p.name.clone(), p.value, p.ci95.and_then(|c| c[0]), p.ci95.and_then(|c| c[1]), p.unit.clone())
         };
-        self.parameters = json(&parameters.map(found).collect::<Vec<_>>());
+        self.parameters = json(&said.findings.iter().flat_map(|f| &f.parameters).map(found).collect::<Vec<_>>());
+        let withdrawn = said.withdrawn.iter().flat_map(|w| &w.parameters);
+        self.withdrawn_parameters = json(&withdrawn.map(found).collect::<Vec<_>>());
         let withdrawn = said.withdrawn.iter().map(|w| format!("{}:{}", w.mechanism, w.grade));
         self.withdrawn = withdrawn.collect::<Vec<_>>().join("+");
         let own: Vec<Proof> = said.findings.iter().filter_map(|f| f.held_out.as_ref()).map(proof).collect();
@@ -254,7 +257,8 @@ mod tests {
         let output = r#"{"verdict": "named", "headline": "two\nlines", "findings": [
             {"mechanism": "current", "kind": "environment", "confidence_set": ["current", "tide"], "grade": "confirmed",
              "parameters": [{"name": "current.north [day 1]", "value": 0.1, "ci95": [0.0, 0.2], "unit": "m/s"}],
-             "held_out": {"log_likelihood_gain": 3.0}}], "withdrawn": [{"mechanism": "munk", "grade": "refuted"}],
+             "held_out": {"log_likelihood_gain": 3.0}}], "withdrawn": [{"mechanism": "munk", "grade": "refuted",
+             "parameters": [{"name": "munk.yaw", "value": 0.5, "ci95": [0.4, 0.6], "unit": "-"}]}],
             "ranking": [{"mechanism": "current", "amplitude": [0.1, null]}]}"#;
         let ended =
             Ended { code: Some(0), stopped: false, output: output.into(), messages: String::new(), seconds: 1.5 };
@@ -264,6 +268,7 @@ mod tests {
             ("current", "current|tide", "two lines")
         );
         assert_eq!(row.withdrawn, "munk:refuted");
+        assert_eq!(row.withdrawn_parameters, r#"[["munk.yaw",0.5,0.4,0.6,"-"]]"#);
         let found: Vec<Found> = cell(&row.parameters);
         assert_eq!(found[0], ("current.north [day 1]".into(), Some(0.1), Some(0.0), Some(0.2), "m/s".into()));
         let proof: Vec<Proof> = cell(&row.proof);

@@ -91,6 +91,8 @@ pub struct Withdrawn {
     pub mechanism: String,
     /// `refuted`, `immaterial` or `undetermined`.
     pub grade: String,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
 }
 
 /// A proof on unseen recordings.

@@ -130,10 +130,15 @@ impl Row {
         Set::named(&self.set).map_or(&[], |s| s.facts().carried)
     }
 
-    /// Estimate and half width of the 95 % interval of a parameter; where each session has its own, their mean over the
-    /// sessions in which `acting` says that the effect acts.
+    /// Estimate and half width of the 95 % interval of a parameter of a finding.
     fn found(&self, name: &str, acting: &[&str]) -> Option<(f64, f64)> {
-        let all: Vec<Found> = cell(&self.parameters);
+        Self::estimate(&self.parameters, name, acting)
+    }
+
+    /// Estimate and half width of the 95 % interval of a parameter among others; where each session has its own, their mean over the
+    /// sessions in which `acting` says that the effect acts.
+    fn estimate(parameters: &str, name: &str, acting: &[&str]) -> Option<(f64, f64)> {
+        let all: Vec<Found> = cell(parameters);
         let of = |(full, value, low, high, _): &Found| {
             let (own, session) = full.split_once(" [").map_or((full.as_str(), None), |(n, s)| (n, s.strip_suffix(']')));
             let acts = session.is_none_or(|s| acting.is_empty() || acting.contains(&s));
@@ -146,9 +151,11 @@ impl Row {
             .then(|| (found.iter().map(|f| f.0).sum::<f64>() / count, found.iter().map(|f| f.1).sum::<f64>() / count))
     }
 
-    /// Estimate of a parameter where nothing was injected: of a finding, or without any finding of the ranking; 0 otherwise.
+    /// Estimate of a parameter where nothing was injected: of a finding, or of what was withdrawn, or without any finding of the
+    /// ranking; 0 otherwise.
     fn found_without(&self, name: &str) -> f64 {
-        if let Some((value, _)) = self.found(name, &[]) {
+        let known = [&self.parameters, &self.withdrawn_parameters];
+        if let Some((value, _)) = known.into_iter().find_map(|p| Self::estimate(p, name, &[])) {
             return value;
         }
         let Some((mechanism, parameter)) = name.split_once('.').filter(|_| self.named.is_empty()) else { return 0.0 };
@@ -370,6 +377,15 @@ mod tests {
         let s = score(&current(), Some(&carried));
         assert_eq!(s.right, None);
         assert!((s.size_error.unwrap() - 0.5).abs() < 1e-12 && s.covered == Some(false));
+        // Withdrawn without it, as too small to matter: that estimate, and not the one of the ranking, is the recordings' own.
+        let small = Row {
+            withdrawn: "current:immaterial".into(),
+            withdrawn_parameters:
+                r#"[["current.north", 0.05, 0.0, 0.1, "m/s"], ["current.east", 0.01, 0.0, 0.1, "m/s"]]"#.into(),
+            ..null()
+        };
+        let s = score(&current(), Some(&small));
+        assert!(s.right == Some(true) && (s.size_error.unwrap() - 0.5).abs() < 1e-12);
         assert_eq!(score(&current(), None).size_error, None);
     }
 
