@@ -35,7 +35,8 @@ pub struct HeldOut {
     pub after: Option<f64>,
     /// Relative improvement of the mean cVDM, `1 - after/before`.
     pub improvement: Option<f64>,
-    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, and where a simulation diverged.
+    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, where one holds most of the error, and where a
+    /// simulation diverged.
     pub ci95: Option<[f64; 2]>,
     /// Runs that got better.
     pub better: usize,

@@ -22,7 +22,7 @@ pub struct FindingProof {
     pub runs: usize,
     /// Gain in log-likelihood over all of them.
     pub log_likelihood_gain: f64,
-    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three.
+    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, and where one holds most of the samples.
     pub log_likelihood_ci95: Option<[f64; 2]>,
     /// Mean cVDM without the finding \[%\].
     pub before: Option<f64>,
@@ -30,7 +30,8 @@ pub struct FindingProof {
     pub after: Option<f64>,
     /// Relative improvement of the mean cVDM, `1 - after/before`.
     pub improvement: Option<f64>,
-    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, and where a simulation diverged.
+    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, where one holds most of the error, and where a
+    /// simulation diverged.
     pub improvement_ci95: Option<[f64; 2]>,
     /// Mean distance of the simulated from the measured position \[m\], without and with it; absent where none was measured.
     pub position: Option<[f64; 2]>,

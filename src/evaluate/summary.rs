@@ -20,7 +20,7 @@ type Which = fn(&Comparison) -> &Outcome;
 pub struct Estimate {
     /// The number.
     pub value: f64,
-    /// Its 95 % interval; absent with fewer than three runs.
+    /// Its 95 % interval; absent with fewer than three runs, and of an improvement where one run holds most of the error.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ci95: Option<[f64; 2]>,
 }
