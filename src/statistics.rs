@@ -91,7 +91,7 @@ pub fn interval_of_ratio(clusters: &[(f64, f64)]) -> Option<[f64; 2]> {
     let size: f64 = clusters.iter().map(|c| c.1).sum();
     let shares: f64 = clusters.iter().map(|c| (c.1 / size).powi(2)).sum();
     let counted = 1.0 / shares;
-    if clusters.len() < FEWEST_CLUSTERS || counted.is_nan() || counted < 2.0 {
+    if clusters.len() < FEWEST_CLUSTERS || counted.is_nan() || counted < FEWEST_COUNTED {
         return None;
     }
     let q = clusters.iter().map(|c| c.0).sum::<f64>() / size;
@@ -213,6 +213,8 @@ pub struct Bootstrap<'a> {
 const FEWEST_DRAWS: usize = 100;
 /// Fewest clusters that have an interval: of fewer it would only seem to say something.
 const FEWEST_CLUSTERS: usize = 3;
+/// Fewest clusters that clusters of unequal size must count as: two leave Student's t one degree of freedom.
+const FEWEST_COUNTED: f64 = 2.0;
 
 impl<'a> Bootstrap<'a> {
     /// So many draws of as many clusters as there are.

@@ -257,7 +257,7 @@ impl<'a> Resampled<'a> {
             known.fold((0.0, 0.0), |sum, (after, before)| (sum.0 + after, sum.1 + before))
         };
         let clusters: Vec<(f64, f64)> = self.clusters.iter().map(cluster).filter(|c| c.1 > 0.0 || c.0 > 0.0).collect();
-        let [after, before] = [0, 1].map(|i| clusters.iter().map(|c| [c.0, c.1][i]).sum::<f64>());
+        let (after, before) = clusters.iter().fold((0.0, 0.0), |sum, c| (sum.0 + c.0, sum.1 + c.1));
         let value = gain(before, after).filter(|v| v.is_finite())?;
         Some(Estimate {
             value,
