@@ -82,6 +82,13 @@ pub fn student_p(t: f64, degrees: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |d| (2.0 * d.sf(t.abs())).max(f64::MIN_POSITIVE))
 }
 
+/// How many clusters of equal size those of some sizes count as, `(sum x)^2/sum x^2` (Kish 1965, Survey Sampling, section 11.7); not a number
+/// without any.
+pub fn counted(sizes: impl IntoIterator<Item = f64>) -> f64 {
+    let (sum, squares) = sizes.into_iter().fold((0.0, 0.0), |(sum, squares), x| (sum + x, squares + x * x));
+    sum * sum / squares
+}
+
 /// The 95 % interval of `q = sum y/sum x` over independent clusters, each a pair (y, x) whose y is expected in proportion to its size
 /// x >= 0. With h the share of a cluster in all sizes, the variance of `sum y` given the sizes is `sum (y - q x)^2/(1 - h)` (Bell & McCaffrey
 /// 2002, Survey Methodology 28, p. 169), and Student's t has `1/sum h^2 - 1` degrees of freedom: clusters of unequal size count as fewer
@@ -89,8 +96,7 @@ pub fn student_p(t: f64, degrees: f64) -> f64 {
 /// `None` of fewer than three clusters, and where they count as fewer than two.
 pub fn interval_of_ratio(clusters: &[(f64, f64)]) -> Option<[f64; 2]> {
     let size: f64 = clusters.iter().map(|c| c.1).sum();
-    let shares: f64 = clusters.iter().map(|c| (c.1 / size).powi(2)).sum();
-    let counted = 1.0 / shares;
+    let counted = counted(clusters.iter().map(|c| c.1));
     if clusters.len() < FEWEST_CLUSTERS || counted.is_nan() || counted < FEWEST_COUNTED {
         return None;
     }

@@ -110,6 +110,7 @@ fn no_key_is_explained_that_the_document_cannot_have() {
         "findings[].windows[]",
         "absorbed[]",
         "next_trial",
+        "findings[].held_out.agreement",
         "findings[].region",
         "ranking[].sessions",
         "withdrawn[]",

@@ -16,7 +16,7 @@ use super::residual::{Kept, Residual};
 use super::select::Selection;
 use super::settings::Settings;
 use super::stability::{Brief, CHANGES, Change, Doubts, Stability, Variant};
-use super::weigh::{Base, Weight, carried, findings, weakest, weakest_together, weigh, withdrawn};
+use super::weigh::{Base, Weight, carried, findings, weakest, weakest_together, weigh, with_ship_held, withdrawn};
 use crate::model::Model;
 use crate::recording::Run;
 use std::borrow::Cow;
@@ -100,6 +100,7 @@ impl Answer {
             tried.append(&mut findings);
         }
         let verdict = lead(verdict, &mut findings);
+        let kept = with_ship_held(question, kept, &findings, held_out);
         Self { verdict, findings, withdrawn: tried, kept, base, law: None, decision }
     }
 

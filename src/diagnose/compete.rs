@@ -11,13 +11,14 @@ use super::problem::Problem;
 use super::screen::{Row, Screen};
 use super::selected::Selected;
 use super::settings::{
-    Effort, FORM_TOLERANCE, IMPLAUSIBLE, INDISTINGUISHABLE, LIKENESS, PARAMETER_PRICE, REFIT, REMAINDER, RIVAL_GAP,
-    RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES,
+    Effort, FORM_TOLERANCE, IMPLAUSIBLE, INDISTINGUISHABLE, LIKENESS, PARAMETER_PRICE, REFIT, REMAINDER,
+    RESOLVED_SAMPLES, RIVAL_GAP, RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES,
 };
 use super::together::Leading;
 use super::wald::Wald;
 use crate::model::Model;
 use crate::physics::{Kind, Probe};
+use crate::statistics::{mean, median};
 use nalgebra::DVector;
 
 /// A candidate's amplitudes in an estimate beyond what the model already had, its companions held: an amplitude that only counts times a
@@ -334,7 +335,36 @@ impl Competition<'_> {
         }
         let winner = refitted.swap_remove(ranking.entries[0].place);
         let is_settled = settled.contains(&winner.hypothesis.candidate);
-        Ok(self.selected(winner, is_settled, p, set, why))
+        Ok(self.selected(self.pooled(winner), is_settled, p, set, why))
+    }
+
+    /// A clock with one value in all sessions, where those of the sessions differ by less than is resolved: that they differ would be
+    /// significant and immaterial.
+    fn pooled(&self, winner: Refit) -> Refit {
+        let Hypothesis { candidate, extent, statistic, p, .. } = &winner.hypothesis;
+        let (c, found) = (&self.problem.candidates[*candidate], &winner.estimate);
+        let Extent::Each(sessions) = extent else { return winner };
+        let own: Vec<&FreeParameter> = c.positions(&found.free, extent).into_iter().map(|i| &found.free[i]).collect();
+        let is_time = |f: &&FreeParameter| found.model.parameters[f.column.parameter].info.unit == "s";
+        let Some(period) = median(self.problem.runs.iter().map(|r| r.recorded_dt)) else { return winner };
+        if c.mechanism.kind != Kind::Sensor || !own.iter().all(is_time) {
+            return winner;
+        }
+        let columns = own.len() / sessions.len();
+        // The addition in each session, by column of the mechanism.
+        let values = |k: usize| own.iter().skip(k).step_by(columns).map(|f| f.value(&found.model));
+        let spread = |k: usize| values(k).fold(f64::MIN, f64::max) - values(k).fold(f64::MAX, f64::min);
+        if (0..columns).any(|k| spread(k) > RESOLVED_SAMPLES * period) {
+            return winner;
+        }
+        let amplitude = DVector::from_fn(columns, |k, _| mean(values(k)).unwrap_or(0.0) / own[k].column.scale);
+        let hypothesis =
+            Hypothesis { candidate: *candidate, extent: Extent::All, amplitude, statistic: *statistic, p: *p };
+        let (mut model, mut free) = c.removed(found, extent);
+        c.add(&mut model, &Extent::All, &hypothesis.amplitude);
+        free.extend(c.parameters(&Extent::All));
+        let estimate = self.problem.estimate(&model, &free, &found.noise, SETTLE);
+        Refit { value: estimate.log_posterior - hypothesis.price(), hypothesis, estimate }
     }
 
     /// Why the confidence set is what it is.

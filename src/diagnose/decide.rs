@@ -39,7 +39,7 @@ pub struct PushTest {
     pub across: f64,
     /// Statistic of its mirror image, as a share of its own.
     pub mirrored: f64,
-    /// Recordings in which it acts.
+    /// Recordings of equal evidence that those in which it acts count as.
     pub recordings: usize,
 }
 

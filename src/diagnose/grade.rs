@@ -55,7 +55,7 @@ pub struct GainTest {
 }
 
 impl GainTest {
-    fn is_above_zero(&self) -> bool {
+    pub(super) fn is_above_zero(&self) -> bool {
         self.ci95.is_some_and(|[low, _]| low > 0.0)
     }
 
@@ -83,6 +83,8 @@ pub struct FindingTests {
     pub likelihood: Option<GainTest>,
     /// Improvement of the free simulation of unseen runs.
     pub prediction: Option<GainTest>,
+    /// For an error of a sensor, gain in log-likelihood of what the sensors of unseen runs say of each other, where they tell.
+    pub agreement: Option<GainTest>,
 }
 
 /// Whether a mechanism that so many of the repetitions find is not stable enough to be named: fewer than half of them.
@@ -94,7 +96,7 @@ impl FindingTests {
     /// Whether unseen runs are worse with it beyond chance by one measure at least: what simulates them worse is no improvement, however
     /// likely it makes them, and nothing is named beside its refutation.
     pub fn is_refuted(&self) -> bool {
-        refute(self.likelihood, self.prediction)
+        refute(&[self.likelihood, self.prediction, self.agreement])
     }
 
     /// Whether it is too small to matter: a clock by the sensor's own resolution, all else by how little it changes predictions. A position
@@ -104,17 +106,19 @@ impl FindingTests {
     }
 }
 
-/// Whether unseen runs are worse beyond chance by log-likelihood or free simulation.
-fn refute(likelihood: Option<GainTest>, prediction: Option<GainTest>) -> bool {
-    [likelihood, prediction].into_iter().flatten().any(|g| g.is_below_zero())
+/// Whether unseen runs are worse beyond chance by one measure.
+fn refute(measures: &[Option<GainTest>]) -> bool {
+    measures.iter().flatten().any(GainTest::is_below_zero)
 }
 
-/// Whether unseen runs are better: by one measure beyond chance, and not worse by the other.
-fn confirm(likelihood: Option<GainTest>, prediction: Option<GainTest>) -> bool {
-    let confirms = |one: Option<GainTest>, other: Option<GainTest>| {
-        one.is_some_and(|g| g.is_above_zero()) && other.is_some_and(|g| g.gain >= 0.0)
-    };
-    confirms(likelihood, prediction) || confirms(prediction, likelihood)
+/// Whether unseen runs are better: by one measure beyond chance, and worse by none, of log-likelihood and free simulation, or, for an error
+/// of a sensor that they show themselves, by what their sensors say of each other.
+fn confirm(likelihood: Option<GainTest>, prediction: Option<GainTest>, agreement: Option<GainTest>) -> bool {
+    let is_shown = agreement.is_some_and(|g| g.is_above_zero());
+    let is_judged = is_shown || likelihood.is_some() && prediction.is_some();
+    let measures = [likelihood, prediction, agreement];
+    let mut known = measures.iter().flatten();
+    is_judged && known.clone().any(GainTest::is_above_zero) && known.all(|g| g.gain >= 0.0)
 }
 
 /// How well a law for what the catalogue does not hold is supported.
@@ -132,9 +136,9 @@ pub enum LawGrade {
 impl LawGrade {
     /// The grade that gains on unseen runs give.
     pub fn new(likelihood: Option<GainTest>, prediction: Option<GainTest>) -> Self {
-        if refute(likelihood, prediction) {
+        if refute(&[likelihood, prediction]) {
             Self::Refuted
-        } else if confirm(likelihood, prediction) {
+        } else if confirm(likelihood, prediction, None) {
             Self::Confirmed
         } else {
             Self::Exploratory
@@ -156,7 +160,7 @@ pub fn grade(tests: &FindingTests) -> Grade {
         Grade::NotIsolated
     } else if tests.by_steps > 1.0 - FORM_TOLERANCE {
         Grade::EulerSteps
-    } else if confirm(tests.likelihood, tests.prediction) {
+    } else if confirm(tests.likelihood, tests.prediction, tests.agreement) {
         Grade::Confirmed
     } else {
         Grade::Suspected
@@ -180,6 +184,7 @@ mod tests {
             by_steps: 0.0,
             likelihood: BETTER,
             prediction: BETTER,
+            agreement: None,
         }
     }
 

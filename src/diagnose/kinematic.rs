@@ -57,16 +57,27 @@ pub fn agreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> Opt
         let own: Vec<usize> = (from..from + c.columns.len()).collect();
         from += c.columns.len();
         let Solution { amplitude, .. } = solve(&stretches, &own, &scatter, 0.0)?;
-        let mut by_recording = BTreeMap::new();
-        for stretch in &stretches {
-            let of = |(e, s): (f64, f64)| -0.5 * (e / s).powi(2).min(GATE * GATE);
-            let likelihood: f64 = less(stretch, &own, &amplitude).into_iter().zip(scatter).map(of).sum();
-            let sum: &mut (f64, f64) = by_recording.entry(stretch.recording.to_owned()).or_default();
-            *sum = (sum.0 + likelihood, sum.1 + 1.0);
-        }
+        let by_recording = by_recording(&stretches, &scatter, |s| less(s, &own, &amplitude));
         Some(Agreement { amplitude, by_recording })
     });
     each.collect()
+}
+
+/// How much likelier what the sensors of some runs say of each other is with the errors of sensors that a model has (`after`) than with those
+/// of another (`before`): in log-likelihood over all recordings, with its 95 % interval over them, where they are enough. Each equation
+/// counts by the scatter that the errors of all `sensors` together leave in it. `None` where no stretch has every channel.
+pub fn gain(before: &Model, after: &Model, runs: &[Run], sensors: &[&Candidate]) -> Option<(f64, Option<[f64; 2]>)> {
+    let of = |model, sensors: &[&Candidate]| -> Vec<Stretch> {
+        runs.iter().flat_map(|run| stretches(model, run, sensors)).collect()
+    };
+    let without = of(before, sensors);
+    let (scatter, _) = all_at_once(&without)?;
+    let [before, after] = [without, of(after, &[])].map(|all| {
+        let by_recording = by_recording(&all, &scatter, |s| s.left);
+        Agreement { amplitude: DVector::zeros(0), by_recording }
+    });
+    let all = |a: &Agreement| a.by_recording.values().map(|r| r.0).sum::<f64>();
+    Some((all(&after) - all(&before), after.over(&before)))
 }
 
 /// An error of a sensor beside those of all sensors, by what the sensors say of each other alone.
@@ -92,6 +103,23 @@ pub fn disagreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> 
         Disagreement { p: chi_squared_p(part.statistic(), own.len()), amplitude: part.value }
     });
     Some(each.collect())
+}
+
+/// Log-likelihood by recording of what is left of stretches, with their number: normal by the scatter of each equation, with outliers at the
+/// filter's gate.
+fn by_recording(
+    stretches: &[Stretch],
+    scatter: &Equations,
+    left: impl Fn(&Stretch) -> Equations,
+) -> BTreeMap<String, (f64, f64)> {
+    let mut sums = BTreeMap::new();
+    for stretch in stretches {
+        let of = |(e, s): (f64, &f64)| -0.5 * (e / s).powi(2).min(GATE * GATE);
+        let likelihood: f64 = left(stretch).into_iter().zip(scatter).map(of).sum();
+        let sum: &mut (f64, f64) = sums.entry(stretch.recording.to_owned()).or_default();
+        *sum = (sum.0 + likelihood, sum.1 + 1.0);
+    }
+    sums
 }
 
 /// The scatter of each equation beside the errors of all sensors, and these errors.
@@ -154,7 +182,8 @@ fn solve(stretches: &[Stretch], columns: &[usize], scatter: &Equations, precisio
 fn stretches<'r>(model: &Model, run: &'r Run, candidates: &[&Candidate]) -> Vec<Stretch<'r>> {
     let states: Vec<Option<[f64; STATES]>> = corrected(model, run);
     let reports = reports(model, run, &states, candidates);
-    let speed = median(states.iter().flatten().map(|s| s[3].hypot(s[4]))).unwrap_or(0.0);
+    // By what was recorded, so that the stretches are the same whatever errors the model has.
+    let speed = median(run.measured.iter().filter_map(whole).map(|s| s[3].hypot(s[4]))).unwrap_or(0.0);
     let rows = (STRETCH * model.ship.hull.lpp / (speed * run.dt)).round();
     let rows = if rows.is_finite() { (rows as usize).clamp(1, states.len().max(2) - 1) } else { return Vec::new() };
     let starts = (0..states.len().saturating_sub(rows)).step_by(rows);

@@ -105,7 +105,8 @@ impl Law {
             let judging = &question.settings.judging;
             FindingProof::new(before, after, &estimate.noise, fit.integration, held_out, judging)
         });
-        let gains = (proof.as_ref().map(FindingProof::likelihood), proof.as_ref().and_then(FindingProof::prediction));
+        let gains =
+            (proof.as_ref().and_then(FindingProof::likelihood), proof.as_ref().and_then(FindingProof::prediction));
         let grade = LawGrade::new(gains.0, gains.1);
         Some(Self { grade, equation: equation(&terms), terms, range: Vec::new(), held_out: proof, estimate })
     }

@@ -10,10 +10,11 @@ use super::settings::{PUSH_PRIOR, PUSH_ROUNDS, PUSH_STARTS};
 use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
+use crate::statistics::counted;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// A time window in which a force acts that the model does not have.
 #[derive(Clone, Debug, Serialize)]
@@ -62,9 +63,14 @@ pub struct Push {
 }
 
 impl Push {
-    /// How many recordings it acts in: windows of one recording are no evidence apart.
+    /// How many recordings of equal evidence those in which it acts count as: windows of one recording are no evidence apart, and faint windows
+    /// of others do not make one strong window repeat.
     pub fn recordings(&self) -> usize {
-        self.windows.iter().map(|w| w.run.as_str()).collect::<BTreeSet<_>>().len()
+        let mut evidence: BTreeMap<&str, f64> = BTreeMap::new();
+        for w in &self.windows {
+            *evidence.entry(&w.run).or_default() += w.statistic;
+        }
+        counted(evidence.into_values()).round() as usize
     }
 }
 

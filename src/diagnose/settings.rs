@@ -95,6 +95,8 @@ pub struct Effort {
 
 /// The first estimate of the base model, from the values of the model file.
 pub const FIRST: Effort = Effort { rounds: 12, noise_rounds: 4, noise_iterations: 14 };
+/// No step from where a model stands: its value alone.
+pub const AS_IT_IS: Effort = Effort { rounds: 0, noise_rounds: 0, noise_iterations: 0 };
 /// A refit at given noise.
 pub const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0 };
 /// A refit with the noise estimated along, to convergence: a noise that had taken over a force gives it back when the force is in the

@@ -1,9 +1,12 @@
-//! One finding on runs that no earlier step has used: a model with it against the same model refitted without it.
-//! It computes gains and their intervals over recordings; what follows from them is decided elsewhere.
+//! One finding on runs that no earlier step has used: a model with it against the same model refitted without it, and, for an error of a
+//! sensor, what their sensors say of each other. It computes gains and their intervals over recordings; what follows from them is decided elsewhere.
 
+use super::candidate::Candidate;
 use super::filter::{Filter, Wanted};
 use super::grade::GainTest;
+use super::kinematic;
 use super::noise::Noise;
+use super::settings::INDISTINGUISHABLE;
 use crate::audit::settled;
 use crate::evaluate::{self, Judging, Summary, summarise};
 use crate::model::Model;
@@ -11,19 +14,25 @@ use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::statistics::interval_of_sum;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// What unseen runs say of one finding: the model without it, refitted, (before) against the model with it (after).
-#[derive(Clone, Debug, Serialize)]
+/// What unseen runs say of one finding: the model without it, refitted, (before) against the model with it (after). An error of a sensor that
+/// the sensors of the unseen runs show themselves needs no ship for its proof: it has their agreement alone, and whether the ship that was
+/// refitted beside it predicts better is asked of all findings together.
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct FindingProof {
     /// Recordings.
     pub recordings: usize,
     /// Their runs.
     pub runs: usize,
     /// Gain in log-likelihood over all of them.
-    pub log_likelihood_gain: f64,
+    pub log_likelihood_gain: Option<f64>,
     /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, and where one holds most of the samples.
     pub log_likelihood_ci95: Option<[f64; 2]>,
+    /// For an error of a sensor, how much likelier it makes what the sensors of the runs say of each other; absent where they do not tell.
+    pub agreement_gain: Option<f64>,
+    /// Its 95 % interval, as that of the likelihood.
+    pub agreement_ci95: Option<[f64; 2]>,
     /// Mean cVDM without the finding \[%\].
     pub before: Option<f64>,
     /// Mean cVDM with it \[%\].
@@ -65,8 +74,10 @@ impl FindingProof {
         Self {
             recordings: gains.len(),
             runs: runs.len(),
-            log_likelihood_gain: gains.iter().map(|g| g.0).sum(),
+            log_likelihood_gain: Some(gains.iter().map(|g| g.0).sum()),
             log_likelihood_ci95: interval_of_sum(&gains),
+            agreement_gain: None,
+            agreement_ci95: None,
             before: summary.cvdm_baseline.map(|e| e.value),
             after: summary.cvdm_fitted.map(|e| e.value),
             improvement: summary.cvdm_improvement.map(|e| e.value),
@@ -77,15 +88,44 @@ impl FindingProof {
         }
     }
 
+    /// Unseen runs whose sensors show the error of a sensor themselves.
+    pub fn shown(agreement: GainTest, runs: &[Run]) -> Self {
+        let recordings = runs.iter().map(|r| r.recording.as_str()).collect::<BTreeSet<_>>().len();
+        Self { recordings, runs: runs.len(), ..Self::default() }.beside(Some(agreement))
+    }
+
+    /// With what the sensors of the runs say of each other.
+    pub fn beside(self, agreement: Option<GainTest>) -> Self {
+        Self { agreement_gain: agreement.map(|g| g.gain), agreement_ci95: agreement.and_then(|g| g.ci95), ..self }
+    }
+
+    /// What the sensors of the runs say of each other.
+    pub fn agreement(&self) -> Option<GainTest> {
+        Some(GainTest { gain: self.agreement_gain?, ci95: self.agreement_ci95 })
+    }
+
+    /// Whether the sensors of the runs show the finding themselves, beyond chance.
+    pub fn is_shown(&self) -> bool {
+        self.agreement().is_some_and(|g| g.is_above_zero())
+    }
+
     /// The gain in log-likelihood.
-    pub fn likelihood(&self) -> GainTest {
-        GainTest { gain: self.log_likelihood_gain, ci95: self.log_likelihood_ci95 }
+    pub fn likelihood(&self) -> Option<GainTest> {
+        Some(GainTest { gain: self.log_likelihood_gain?, ci95: self.log_likelihood_ci95 })
     }
 
     /// The improvement of the free simulation.
     pub fn prediction(&self) -> Option<GainTest> {
         Some(GainTest { gain: self.improvement?, ci95: self.improvement_ci95 })
     }
+}
+
+/// What the sensors of runs say of each other with the errors of sensors of `after` against those of `before`; `None` where that makes
+/// less difference than can be told apart.
+pub fn agreement(before: &Model, after: &Model, runs: &[Run], sensors: &[&Candidate]) -> Option<GainTest> {
+    let (sound, _) = settled(runs, before.ship.hull.lpp);
+    let (gain, ci95) = kinematic::gain(before, after, &sound, sensors)?;
+    (gain.abs() > INDISTINGUISHABLE).then_some(GainTest { gain, ci95 })
 }
 
 /// Log-likelihood of each run.
@@ -127,13 +167,13 @@ mod tests {
         let judging = Settings::default().judging;
         let against = |after: &Model| FindingProof::new(&model(), after, &noise(), RK4, &held_out, &judging);
         let right = against(&truth);
-        assert!(right.recordings == 6 && right.likelihood().ci95.is_some_and(|[low, _]| low > 0.0), "{right:?}");
+        assert!(right.recordings == 6 && right.likelihood().is_some_and(|g| g.is_above_zero()), "{right:?}");
         assert!(right.prediction().is_some_and(|p| p.gain > 0.5));
         assert!(right.position.is_some_and(|[b, a]| a < 0.5 * b) && right.heading.is_some() && right.speed.is_some());
         let wrong = against(&with(&[("current.north", -0.4)]));
-        assert!(wrong.likelihood().ci95.is_some_and(|[_, high]| high < 0.0), "{wrong:?}");
+        assert!(wrong.likelihood().is_some_and(|g| g.is_below_zero()), "{wrong:?}");
         let same = against(&model());
-        assert_eq!((same.log_likelihood_gain, same.improvement), (0.0, Some(0.0)));
+        assert_eq!((same.log_likelihood_gain, same.improvement), (Some(0.0), Some(0.0)));
     }
 
     #[test]
@@ -143,7 +183,8 @@ mod tests {
         let mut wide = noise();
         (wide.sensors[2].coloured, wide.sensors[2].time) = (0.3, 1e3);
         let judging = Settings::default().judging;
-        let gain = |noise: &Noise| FindingProof::new(&model(), &off, noise, RK4, &runs, &judging).log_likelihood_gain;
+        let gain =
+            |noise: &Noise| FindingProof::new(&model(), &off, noise, RK4, &runs, &judging).log_likelihood_gain.unwrap();
         assert!(gain(&noise()) > 10.0 * gain(&wide).abs(), "{} {}", gain(&noise()), gain(&wide));
     }
 
@@ -176,7 +217,7 @@ mod tests {
         let held_out = runs(&truth, 2);
         let judging = Settings::default().judging;
         let proof = FindingProof::new(&model(), &truth, &noise(), RK4, &held_out, &judging);
-        assert!(proof.log_likelihood_gain > 0.0 && proof.log_likelihood_ci95.is_none());
+        assert!(proof.log_likelihood_gain > Some(0.0) && proof.log_likelihood_ci95.is_none());
         assert!(proof.improvement.is_some() && proof.improvement_ci95.is_none());
     }
 }

@@ -2,6 +2,7 @@
 //! and on unseen ones. It computes the tests of a finding; the grade is a pure function of them.
 
 use super::base::Question;
+use super::candidate::Candidate;
 use super::describe::{Intervals, mechanism_finding, push_finding, sensor_findings};
 use super::estimate::Estimate;
 use super::event::BaseTests;
@@ -10,10 +11,11 @@ use super::grade::{FindingTests, Grade, grade};
 use super::improved::inside_bounds;
 use super::influence::{Following, change};
 use super::problem::Problem;
+use super::prove::mean_cvdm;
 use super::residual::{Kept, Left};
 use super::selected::Selected;
-use super::settings::{REFIT, SETTLE};
-use super::unseen::FindingProof;
+use super::settings::{AS_IT_IS, REFIT, SETTLE};
+use super::unseen::{FindingProof, agreement};
 use crate::evaluate::predict_all;
 use crate::physics::{Kind, Mechanism};
 use crate::recording::Run;
@@ -75,18 +77,16 @@ fn weight(
         tests.problem(question.settings).estimate(&model, &free, &found.noise, REFIT)
     };
     let amplitudes = intervals.amplitudes(found, candidate, &of.extent);
-    let proof = (!held_out.is_empty()).then(|| {
-        let judging = &question.settings.judging;
-        FindingProof::new(&without.model, &found.model, &found.noise, fit.integration, held_out, judging)
-    });
+    let proof = (!held_out.is_empty()).then(|| proof(question, kept, of, &without, held_out));
     let mut tests = FindingTests {
         excludes_zero: intervals.excludes_zero(found, candidate, &of.extent),
         isolated: isolated(tests, of),
         change: change(&fit.runs, &predict_all(&without.model, &fit.runs, fit.integration), with),
         shift: (candidate.mechanism.kind == Kind::Sensor).then(|| shift(&amplitudes, &fit.runs)).flatten(),
         by_steps: 0.0,
-        likelihood: proof.as_ref().map(FindingProof::likelihood),
+        likelihood: proof.as_ref().and_then(FindingProof::likelihood),
         prediction: proof.as_ref().and_then(FindingProof::prediction),
+        agreement: proof.as_ref().and_then(FindingProof::agreement),
     };
     // Costs an estimate, and only what would be named needs it.
     let like_a_clock = |m: &Mechanism| m.kind == Kind::Sensor && (m.name == CLOCKS || m.look_alikes.contains(&CLOCKS));
@@ -95,6 +95,23 @@ fn weight(
         tests.by_steps = by_steps(question, kept, &without);
     }
     Weight { grade: grade(&tests), tests, proof, without }
+}
+
+/// A mechanism on unseen runs: an error of a sensor by what their sensors show themselves, all else against the model `without` it, refitted.
+fn proof(question: &Question, kept: &Kept, of: &Selected, without: &Estimate, held_out: &[Run]) -> FindingProof {
+    let (tests, found) = (&kept.selection.tests, &kept.selection.estimate);
+    let candidate = &tests.candidates[of.candidate];
+    let is_sensor = |c: &&Candidate| c.mechanism.kind == Kind::Sensor;
+    let sensors: Vec<&Candidate> = tests.candidates.iter().filter(is_sensor).collect();
+    let (alone, _) = candidate.removed(found, &of.extent);
+    let asked = is_sensor(&candidate).then(|| agreement(&alone, &found.model, held_out, &sensors));
+    let agreement = asked.flatten();
+    if let Some(shown) = agreement.filter(|g| g.is_above_zero()) {
+        return FindingProof::shown(shown, held_out);
+    }
+    let judging = &question.settings.judging;
+    let integration = tests.fit.integration;
+    FindingProof::new(&without.model, &found.model, &found.noise, integration, held_out, judging).beside(agreement)
 }
 
 /// The least share of its information that is left to the weather of a set: what cannot be told from a member that the ship takes over is
@@ -148,7 +165,7 @@ pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight]
     let [base, found] = [&tests.fit.estimate, &kept.selection.estimate].map(written);
     let proof = FindingProof::new(&base.model, &found.model, &found.noise, tests.fit.integration, held_out, judging);
     let simulated = proof.prediction().is_some_and(|g| g.is_below_zero());
-    if !simulated && !proof.likelihood().is_below_zero() {
+    if !simulated && !proof.likelihood().is_some_and(|g| g.is_below_zero()) {
         return None;
     }
     let index = does_least(weights, simulated)?;
@@ -161,10 +178,36 @@ pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight]
     Some(index)
 }
 
-/// The mechanism that gains least on unseen runs, in free simulation or in log-likelihood.
+/// What is kept, with the ship of the base model where every finding is an error of a sensor that the sensors of the unseen runs show
+/// themselves, and the ship that was refitted beside these errors simulates the unseen runs worse: it was never in question.
+pub fn with_ship_held(question: &Question, mut kept: Kept, findings: &[Finding], held_out: &[Run]) -> Kept {
+    let is_shown = |f: &Finding| f.held_out.as_ref().is_some_and(FindingProof::is_shown);
+    if findings.is_empty() || !findings.iter().all(is_shown) {
+        return kept;
+    }
+    let (tests, found) = (&kept.selection.tests, &kept.selection.estimate);
+    let base = &tests.fit.estimate;
+    let error = |e: &Estimate| mean_cvdm(&e.model, held_out, &question.settings.judging);
+    if let (Some(before), Some(after)) = (error(base), error(found))
+        && after > before
+    {
+        let own = found.free.iter().filter(|f| base.free.iter().all(|b| b.column.parameter != f.column.parameter));
+        let (mut model, mut free) = (base.model.clone(), base.free.clone());
+        for f in own {
+            f.set(&mut model, f.value(&found.model));
+            free.push(f.clone());
+        }
+        kept.selection.estimate = tests.problem(question.settings).estimate(&model, &free, &found.noise, AS_IT_IS);
+    }
+    kept
+}
+
+/// The mechanism that gains least on unseen runs, in free simulation or in log-likelihood, of those that their sensors do not show
+/// themselves.
 fn does_least(weights: &[Weight], simulated: bool) -> Option<usize> {
     let gain = |w: &Weight| if simulated { w.tests.prediction.map_or(0.0, |g| g.gain) } else { w.gain() };
-    weights.iter().enumerate().min_by(|a, b| gain(a.1).total_cmp(&gain(b.1))).map(|(i, _)| i)
+    let doubted = weights.iter().enumerate().filter(|(_, w)| !w.proof.as_ref().is_some_and(FindingProof::is_shown));
+    doubted.min_by(|a, b| gain(a.1).total_cmp(&gain(b.1))).map(|(i, _)| i)
 }
 
 /// A mechanism with its weight, as a finding.
@@ -240,6 +283,7 @@ mod tests {
             by_steps: 0.0,
             likelihood,
             prediction: None,
+            agreement: None,
         };
         Weight { grade, tests, proof: None, without: crate::diagnose::example::at(&model()) }
     }

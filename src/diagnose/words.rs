@@ -248,6 +248,11 @@ fn proof(f: &Finding) -> String {
 /// Errors on unseen runs without and with a finding or a law, in brackets.
 fn on_unseen(h: &FindingProof) -> String {
     let mut parts = Vec::new();
+    if h.is_shown() {
+        parts.push("their sensors show it themselves".to_owned());
+    } else if h.agreement().is_some_and(|g| g.is_below_zero()) {
+        parts.push("their sensors contradict it".to_owned());
+    }
     if let Some([before, after]) = h.position {
         parts.push(format!("position error {} m to {} m", sig(before, 3), sig(after, 3)));
     }

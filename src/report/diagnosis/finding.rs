@@ -120,8 +120,9 @@ fn proof(f: &Finding, i: usize) -> Markup {
         }
     };
     let mean = h.before.zip(h.after);
+    let is_simulated = mean.is_some() || rows.iter().any(|r| r.2.is_some());
     html! {
-        div.scroll { table {
+        @if is_simulated { div.scroll { table {
             caption { "Free simulation of " (count(&format!("findings[{i}].held_out.recordings"), h.recordings)) " " (plural(h.recordings, "unseen recording")) ", everything else refitted without the finding." }
             thead { tr { th { "measure" } th.number { "without" } th.number { "with" } th { "unit" } } }
             tbody {
@@ -135,30 +136,38 @@ fn proof(f: &Finding, i: usize) -> Markup {
                     }
                 }
             }
-        } }
+        } } } @else {
+            p { "The sensors of " (count(&format!("findings[{i}].held_out.recordings"), h.recordings)) " " (plural(h.recordings, "unseen recording")) " show it themselves, whatever the ship does." }
+        }
         p { (gains(h, i)) }
     }
 }
 
-/// Improvement and gain in log-likelihood with their intervals.
+/// Improvement and gains in log-likelihood with their intervals.
 fn gains(h: &FindingProof, i: usize) -> Markup {
     let number = |part: &str, v: f64, factor: f64| {
         quantity(&format!("findings[{i}].held_out.{part}"), v, factor, &fixed(v * factor, 0))
     };
-    html! {
-        @if let Some(gain) = h.improvement {
-            "Improvement of cVDM " (number("improvement", gain, 100.0)) " %"
-            @if let Some([low, high]) = h.improvement_ci95 {
-                " (95 % interval " (number("improvement_ci95[0]", low, 100.0)) " % to " (number("improvement_ci95[1]", high, 100.0)) " %)"
+    let one = |of: &str, part: &str, gain: Option<f64>, ci: Option<[f64; 2]>, factor: f64, unit: &str| {
+        let (own, interval) =
+            (if part == "improvement" { part.to_owned() } else { format!("{part}_gain") }, format!("{part}_ci95"));
+        gain.map(|gain| {
+            html! {
+                (of) " " (number(&own, gain, factor)) (unit)
+                @if let Some([low, high]) = ci {
+                    " (95 % interval " (number(&format!("{interval}[0]"), low, factor)) (unit) " to "
+                    (number(&format!("{interval}[1]"), high, factor)) (unit) ")"
+                }
             }
-            "; "
-        }
-        "gain in log-likelihood " (number("log_likelihood_gain", h.log_likelihood_gain, 1.0))
-        @if let Some([low, high]) = h.log_likelihood_ci95 {
-            " (95 % interval " (number("log_likelihood_ci95[0]", low, 1.0)) " to " (number("log_likelihood_ci95[1]", high, 1.0)) ")"
-        }
-        "."
-    }
+        })
+    };
+    let agreement = "Gain in log-likelihood of what their sensors say of each other";
+    let all = [
+        one(agreement, "agreement", h.agreement_gain, h.agreement_ci95, 1.0, ""),
+        one("Improvement of cVDM", "improvement", h.improvement, h.improvement_ci95, 100.0, " %"),
+        one("Gain in log-likelihood", "log_likelihood", h.log_likelihood_gain, h.log_likelihood_ci95, 1.0, ""),
+    ];
+    html! { @for gain in all.into_iter().flatten() { (gain) ". " } }
 }
 
 /// The class of mechanisms that these data allow, and the trial that parts them.

@@ -11,21 +11,27 @@ fn percentage(cvdm: Option<f64>) -> String {
     cvdm.map_or(DASH.to_owned(), |v| sig(v, 3))
 }
 
-/// What one finding or law by itself does on the test runs, everything else refitted without it.
-pub(super) fn alone(title: &str, h: &FindingProof) -> String {
-    let interval = |ci: Option<[f64; 2]>, of: &dyn Fn(f64) -> String| {
-        ci.map_or(String::new(), |[low, high]| format!(" [{}, {}]", of(low), of(high)))
+/// The gains of a finding on unseen runs with their intervals.
+pub(super) fn gains(h: &FindingProof) -> Vec<String> {
+    let gain = |of: &str, gain: Option<f64>, ci: Option<[f64; 2]>, say: &dyn Fn(f64) -> String| {
+        let interval = ci.map_or(String::new(), |[low, high]| format!(" [{}, {}]", say(low), say(high)));
+        gain.map(|gain| format!("{of} {}{interval}", say(gain)))
     };
-    let mut parts = Vec::new();
-    if let Some(gain) = h.improvement {
-        parts.push(format!("cVDM better by {}{}", percent(gain), interval(h.improvement_ci95, &percent)));
-    }
     let whole = |v: f64| fixed(v, 0);
-    parts.push(format!(
-        "log-likelihood by {}{}",
-        whole(h.log_likelihood_gain),
-        interval(h.log_likelihood_ci95, &whole)
-    ));
+    let agreement = "what their sensors say of each other likelier by";
+    [
+        gain(agreement, h.agreement_gain, h.agreement_ci95, &whole),
+        gain("cVDM better by", h.improvement, h.improvement_ci95, &percent),
+        gain("log-likelihood by", h.log_likelihood_gain, h.log_likelihood_ci95, &whole),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// What one finding or law by itself does on the test runs.
+pub(super) fn alone(title: &str, h: &FindingProof) -> String {
+    let mut parts = gains(h);
     let distance = |pair: Option<[f64; 2]>, factor: f64, what: &str, unit: &str| {
         pair.map(|[b, a]| format!("{what} {} to {} {unit}", sig(b * factor, 3), sig(a * factor, 3)))
     };

@@ -3,11 +3,12 @@
 
 use super::names::title_of;
 use super::phrases::{amplitude, p_value, percent};
+use super::proof::gains;
 use crate::audit::Issue;
 use crate::diagnose::calibrate::ErrorRates;
 use crate::diagnose::stability::Stability;
 use crate::diagnose::{Diagnosis, Finding, Grade, Verdict};
-use crate::numerals::{DASH, fixed, number_of, sig};
+use crate::numerals::{fixed, number_of, sig};
 use crate::physics::Kind;
 use crate::report::units::Units;
 use std::collections::{BTreeMap, BTreeSet};
@@ -141,18 +142,8 @@ fn withdrawn_because(f: &Finding) -> &'static str {
 /// A mechanism that was tried and is not named, with the reason.
 pub(super) fn withdrawn(f: &Finding, units: Units) -> String {
     let reason = withdrawn_because(f);
-    let interval = |value: Option<f64>, ci95: Option<[f64; 2]>, of: &dyn Fn(f64) -> String| match (value, ci95) {
-        (Some(value), Some([low, high])) => format!("{} [{}, {}]", of(value), of(low), of(high)),
-        (Some(value), None) => of(value),
-        (None, _) => DASH.to_owned(),
-    };
     let proof = f.held_out.as_ref().map_or(String::new(), |h| {
-        format!(
-            "; on {}: improvement of cVDM {}, log-likelihood {}",
-            number_of(h.recordings, "unseen recording"),
-            interval(h.improvement, h.improvement_ci95, &percent),
-            interval(Some(h.log_likelihood_gain), h.log_likelihood_ci95, &|v| fixed(v, 0))
-        )
+        format!("; on {}: {}", number_of(h.recordings, "unseen recording"), gains(h).join(", "))
     });
     let change = f
         .change
