@@ -222,7 +222,7 @@ fn brief(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{made_by_euler, model, runs, with};
+    use crate::diagnose::example::{erring, made_by_euler, model, runs, with};
 
     fn without_repetitions() -> Settings {
         Settings { nuisance: false, repeat: false, ..Settings::default() }
@@ -252,6 +252,53 @@ mod tests {
             let [lower, upper] = delay(name).ci95;
             assert!(lower < truth && truth < upper && upper - lower < 1.0, "{name}: {lower} to {upper}");
         }
+    }
+
+    #[test]
+    fn clocks_that_differ_between_sessions_by_less_than_half_a_sample_have_one_value() {
+        let (model, settings) = (model(), without_repetitions());
+        let [a, b] = [-3.0, -2.0].map(|delay| erring(&[("time_skew.position", delay)], 12));
+        let all: Vec<Run> = a.into_iter().zip(b).map(|(a, b)| if a.session == "a" { a } else { b }).collect();
+        let question = Question::new(&model, &settings, &|_| ()).unwrap();
+        let answer = Answer::new(&question, all, &[]);
+        let found = answer.findings.iter().find(|f| f.mechanism == "time_skew").unwrap();
+        let delay = found.parameters.iter().find(|a| a.name == "time_skew.position").map(|a| a.value);
+        assert!(!found.by_session && delay.is_some_and(|d| (d + 2.5).abs() < 0.3), "{:?}", found.parameters);
+    }
+
+    #[test]
+    fn an_error_of_a_sensor_is_proven_and_refuted_by_what_the_sensors_of_unseen_runs_say() {
+        let (model, settings) = (model(), without_repetitions());
+        let question = Question::new(&model, &settings, &|_| ()).unwrap();
+        let biased = erring(&[("yaw_rate_bias.bias", 0.002)], 16);
+        let (train, unseen) = biased.split_at(12);
+        let answer = Answer::new(&question, train, unseen);
+        let found = answer.findings.iter().find(|f| f.mechanism == "yaw_rate_bias").unwrap();
+        let proof = found.held_out.as_ref().unwrap();
+        assert!(found.grade == Grade::Confirmed && proof.is_shown() && proof.improvement.is_none(), "{found:?}");
+        let sound = runs(&model, 16).split_off(12);
+        let answer = Answer::new(&question, train, &sound);
+        let tried = answer.withdrawn.iter().find(|f| f.mechanism == "yaw_rate_bias").unwrap();
+        assert!(tried.grade == Grade::Refuted && answer.findings.is_empty(), "{tried:?}");
+    }
+
+    #[test]
+    fn beside_an_error_that_the_sensors_show_the_ship_is_held_where_it_predicts_worse() {
+        let (model, settings) = (model(), without_repetitions());
+        let question = Question::new(&model, &settings, &|_| ()).unwrap();
+        let biased = erring(&[("yaw_rate_bias.bias", 0.002)], 16);
+        let (train, unseen) = biased.split_at(12);
+        let Answer { mut kept, findings, .. } = Answer::new(&question, train, unseen);
+        let value = |e: &Estimate, name: &str| e.model.parameters[e.model.find(name).unwrap()].value;
+        // A rudder that steers half as well.
+        let found = &mut kept.selection.estimate;
+        let (lift, bias) = (found.model.find("rudder.lift1").unwrap(), value(found, "yaw_rate_bias.bias"));
+        found.model.parameters[lift].value *= 0.5;
+        let held = with_ship_held(&question, kept, &findings, unseen);
+        let (base, improved) = (&held.selection.tests.fit.estimate, &held.selection.estimate);
+        assert_eq!(value(improved, "rudder.lift1"), value(base, "rudder.lift1"));
+        assert_eq!(value(improved, "yaw_rate_bias.bias"), bias);
+        assert_eq!(improved.free.len(), base.free.len() + 1);
     }
 
     #[test]

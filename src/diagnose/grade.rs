@@ -189,6 +189,19 @@ mod tests {
     }
 
     #[test]
+    fn a_sensors_error_is_confirmed_by_the_sensors_of_unseen_runs_alone_and_refuted_by_them() {
+        let alone = |agreement| FindingTests { likelihood: None, prediction: None, agreement, ..sound() };
+        assert_eq!(grade(&alone(BETTER)), Grade::Confirmed);
+        assert_eq!(grade(&alone(UNDECIDED)), Grade::Suspected);
+        assert_eq!(grade(&alone(WORSE)), Grade::Refuted);
+        assert_eq!(grade(&FindingTests { agreement: WORSE, ..sound() }), Grade::Refuted);
+        assert_eq!(grade(&FindingTests { agreement: UNDECIDED, ..sound() }), Grade::Confirmed);
+        let little_worse = Some(GainTest { gain: -4.0, ci95: Some([-9.0, 1.0]) });
+        assert_eq!(grade(&FindingTests { agreement: little_worse, ..sound() }), Grade::Suspected);
+        assert_eq!(grade(&FindingTests { excludes_zero: false, ..alone(BETTER) }), Grade::Undetermined);
+    }
+
+    #[test]
     fn a_finding_is_confirmed_where_unseen_runs_are_better_by_one_measure_and_not_worse_by_the_other() {
         assert_eq!(grade(&sound()), Grade::Confirmed);
         assert_eq!(grade(&FindingTests { prediction: UNDECIDED, ..sound() }), Grade::Confirmed);

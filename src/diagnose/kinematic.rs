@@ -307,6 +307,8 @@ mod tests {
     use super::*;
     use crate::diagnose::candidate::candidates;
     use crate::diagnose::example::{erring, model, runs, with};
+    use crate::diagnose::settings::INDISTINGUISHABLE;
+    use crate::physics::Kind;
 
     /// Agreements under a late clock, a lever arm of the positions and a bias of the gyro.
     fn of(runs: &[Run]) -> Vec<Agreement> {
@@ -417,6 +419,24 @@ mod tests {
         // Both have the noise of the same runs.
         let added = (more[0].amplitude[0] - known[0].amplitude[0]) * scale;
         assert!((added + 1.5).abs() < 0.1 && more[0].p < 1e-6 && more[1].p > 1e-3, "{added}");
+    }
+
+    #[test]
+    fn a_model_with_the_error_of_a_sensor_gains_its_opposite_loses_and_the_ship_has_no_say() {
+        let list = candidates(&model(), &[]);
+        let sensors: Vec<&Candidate> = list.iter().filter(|c| c.mechanism.kind == Kind::Sensor).collect();
+        let runs = erring(&[("yaw_rate_bias.bias", 0.002)], 12);
+        let of = |values: &[(&str, f64)]| gain(&model(), &with(values), &runs, &sensors).unwrap();
+        let (right, interval) = of(&[("yaw_rate_bias.bias", 0.002)]);
+        assert!(right > 20.0 && interval.is_some_and(|[low, _]| low > 0.0), "{right} {interval:?}");
+        let (wrong, interval) = of(&[("yaw_rate_bias.bias", -0.002)]);
+        assert!(wrong < -20.0 && interval.is_some_and(|[_, high]| high < 0.0), "{wrong} {interval:?}");
+        let m = model();
+        let damping = 2.0 * m.parameters[m.find("hull.Nr").unwrap()].value;
+        assert_eq!(of(&[("yaw_rate_bias.bias", 0.002), ("hull.Nr", damping)]).0, right);
+        // Positions and velocities of one other point agree with each other.
+        let (none, _) = gain(&m, &with(&[("antenna.x", 20.0)]), &erring(&[], 12), &sensors).unwrap();
+        assert!(none.abs() < INDISTINGUISHABLE, "{none}");
     }
 
     #[test]

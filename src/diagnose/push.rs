@@ -331,6 +331,23 @@ mod tests {
     }
 
     #[test]
+    fn one_strong_window_and_faint_ones_elsewhere_are_one_recording_and_windows_of_one_do_not_add() {
+        let (runs, blocks) = measured([0.0, 3.0, 2.0], |i| i == 3, 1);
+        let push = pushes(&runs, &blocks, &[1.0; 3], 1.0).swap_remove(0);
+        let of = |windows: &[(&str, f64)]| {
+            let window = |(run, statistic): &(&str, f64)| Window {
+                run: (*run).into(),
+                statistic: *statistic,
+                ..push.windows[0].clone()
+            };
+            Push { windows: windows.iter().map(window).collect(), ..push.clone() }.recordings()
+        };
+        assert_eq!(of(&[("a", 200.0), ("b", 10.0), ("c", 15.0), ("d", 10.0)]), 1);
+        assert_eq!(of(&[("a", 40.0), ("b", 30.0), ("c", 50.0), ("d", 40.0)]), 4);
+        assert_eq!(of(&[("a", 20.0), ("a", 20.0), ("b", 40.0)]), 2);
+    }
+
+    #[test]
     fn a_window_in_a_run_that_was_divided_since_keeps_its_edges() {
         let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
         let model = Model::new(ship, "HD", Form::Regular, &[]).unwrap();

@@ -302,6 +302,15 @@ mod tests {
     }
 
     #[test]
+    fn what_the_sensors_of_unseen_runs_show_themselves_stays_whatever_the_ship_predicts() {
+        let shown = FindingProof::shown(GainTest { gain: 9.0, ci95: Some([4.0, 14.0]) }, &runs(&model(), 3));
+        let proven = Weight { proof: Some(shown), ..weight(Grade::Confirmed, -50.0) };
+        assert_eq!(does_least(&[weight(Grade::Suspected, 3.0), proven], false), Some(0));
+        let shown = FindingProof::shown(GainTest { gain: 9.0, ci95: Some([4.0, 14.0]) }, &runs(&model(), 3));
+        assert_eq!(does_least(&[Weight { proof: Some(shown), ..weight(Grade::Confirmed, -50.0) }], false), None);
+    }
+
+    #[test]
     fn of_what_is_refuted_together_the_one_goes_that_does_least_by_the_measure_that_refutes() {
         let of = |likelihood: f64, improvement: f64| {
             let w = weight(Grade::Confirmed, likelihood);
