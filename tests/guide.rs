@@ -131,3 +131,25 @@ fn every_file_shown_in_the_guide_can_be_read() {
     }
     assert!(read >= 6, "{read}");
 }
+
+/// The intervals of a text, each with the number before it: `63 % [51, 74]`.
+fn intervals(text: &str) -> BTreeSet<String> {
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let is_number = |s: &str| s.trim().parse::<f64>().is_ok();
+    let of = |(at, _): (usize, &str)| {
+        let inside = words[at + 1..].split_once(']')?.0;
+        let ends: Vec<&str> = inside.split(',').collect();
+        let value = words[..at].trim_end().rsplit(' ').take(2).collect::<Vec<_>>();
+        let value = value.into_iter().rev().collect::<Vec<_>>().join(" ");
+        (ends.len() == 2 && ends.into_iter().all(is_number)).then(|| format!("{value} [{inside}]"))
+    };
+    words.match_indices('[').filter_map(of).collect()
+}
+
+#[test]
+fn every_interval_of_the_front_page_stands_in_the_whole_tables() {
+    let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap();
+    let (front, whole) = (intervals(&read("README.md")), intervals(&read("figures/README.md")));
+    let stale: Vec<&String> = front.difference(&whole).collect();
+    assert!(front.len() > 20 && stale.is_empty(), "not in figures/README.md: {stale:?}");
+}

@@ -148,24 +148,21 @@ fn gains(h: &FindingProof, i: usize) -> Markup {
     let number = |part: &str, v: f64, factor: f64| {
         quantity(&format!("findings[{i}].held_out.{part}"), v, factor, &fixed(v * factor, 0))
     };
-    let one = |of: &str, part: &str, gain: Option<f64>, ci: Option<[f64; 2]>, factor: f64, unit: &str| {
-        let (own, interval) =
-            (if part == "improvement" { part.to_owned() } else { format!("{part}_gain") }, format!("{part}_ci95"));
+    let one = |of: &str, keys: [&str; 2], gain: Option<f64>, ci: Option<[f64; 2]>, factor: f64, unit: &str| {
+        let end = |k: usize, v: f64| number(&format!("{}[{k}]", keys[1]), v, factor);
         gain.map(|gain| {
             html! {
-                (of) " " (number(&own, gain, factor)) (unit)
-                @if let Some([low, high]) = ci {
-                    " (95 % interval " (number(&format!("{interval}[0]"), low, factor)) (unit) " to "
-                    (number(&format!("{interval}[1]"), high, factor)) (unit) ")"
-                }
+                (of) " " (number(keys[0], gain, factor)) (unit)
+                @if let Some([low, high]) = ci { " (95 % interval " (end(0, low)) (unit) " to " (end(1, high)) (unit) ")" }
             }
         })
     };
     let agreement = "Gain in log-likelihood of what their sensors say of each other";
+    let keys = ["log_likelihood_gain", "log_likelihood_ci95"];
     let all = [
-        one(agreement, "agreement", h.agreement_gain, h.agreement_ci95, 1.0, ""),
-        one("Improvement of cVDM", "improvement", h.improvement, h.improvement_ci95, 100.0, " %"),
-        one("Gain in log-likelihood", "log_likelihood", h.log_likelihood_gain, h.log_likelihood_ci95, 1.0, ""),
+        one(agreement, ["agreement_gain", "agreement_ci95"], h.agreement_gain, h.agreement_ci95, 1.0, ""),
+        one("Improvement of cVDM", ["improvement", "improvement_ci95"], h.improvement, h.improvement_ci95, 100.0, " %"),
+        one("Gain in log-likelihood", keys, h.log_likelihood_gain, h.log_likelihood_ci95, 1.0, ""),
     ];
     html! { @for gain in all.into_iter().flatten() { (gain) ". " } }
 }

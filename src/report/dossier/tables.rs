@@ -528,13 +528,17 @@ fn findings(heading: &str, list: &Reader, none: &str) -> Markup {
     let row = |f: &Reader| {
         let h = f.at("held_out");
         let gain = |key: &str| h.at(key);
+        let whole = |value: &str, interval: &str| {
+            html! { (gain(value).number(1.0, Decimals(0))) " " (gain(interval).interval(1.0, Decimals(0))) }
+        };
         vec![
             html! { (f.at("title").text()) },
             html! { (f.at("grade").text().replace('_', " ")) },
             html! { @for p in f.at("parameters").entries() { (size(&p)) br; } },
             f.at("p").number(1.0, Significant(2)),
             html! { (gain("improvement").number(100.0, Decimals(0))) " " (gain("improvement_ci95").interval(100.0, Decimals(0))) },
-            html! { (gain("log_likelihood_gain").number(1.0, Decimals(0))) " " (gain("log_likelihood_ci95").interval(1.0, Decimals(0))) },
+            whole("log_likelihood_gain", "log_likelihood_ci95"),
+            whole("agreement_gain", "agreement_ci95"),
             h.at("recordings").count(),
         ]
     };
@@ -545,6 +549,7 @@ fn findings(heading: &str, list: &Reader, none: &str) -> Markup {
         "p",
         "improvement of cVDM [%]",
         "gain in log-likelihood",
+        "the same, of what their sensors say of each other",
         "unseen recordings",
     ];
     html! {
