@@ -100,7 +100,7 @@ impl Answer {
             tried.append(&mut findings);
         }
         let verdict = lead(verdict, &mut findings);
-        let kept = with_ship_held(question, kept, &findings, held_out);
+        let kept = with_ship_held(question, kept, &weights, held_out);
         Self { verdict, findings, withdrawn: tried, kept, base, law: None, decision }
     }
 
@@ -288,13 +288,14 @@ mod tests {
         let question = Question::new(&model, &settings, &|_| ()).unwrap();
         let biased = erring(&[("yaw_rate_bias.bias", 0.002)], 16);
         let (train, unseen) = biased.split_at(12);
-        let Answer { mut kept, findings, .. } = Answer::new(&question, train, unseen);
+        let Answer { mut kept, .. } = Answer::new(&question, train, unseen);
+        let weights = weigh(&question, &kept, unseen);
         let value = |e: &Estimate, name: &str| e.model.parameters[e.model.find(name).unwrap()].value;
         // A rudder that steers half as well.
         let found = &mut kept.selection.estimate;
         let (lift, bias) = (found.model.find("rudder.lift1").unwrap(), value(found, "yaw_rate_bias.bias"));
         found.model.parameters[lift].value *= 0.5;
-        let held = with_ship_held(&question, kept, &findings, unseen);
+        let held = with_ship_held(&question, kept, &weights, unseen);
         let (base, improved) = (&held.selection.tests.fit.estimate, &held.selection.estimate);
         assert_eq!(value(improved, "rudder.lift1"), value(base, "rudder.lift1"));
         assert_eq!(value(improved, "yaw_rate_bias.bias"), bias);

@@ -43,6 +43,11 @@ impl Weight {
         self.grade.may_be_carried() && !self.tests.is_refuted()
     }
 
+    /// Whether the sensors of unseen runs show it themselves.
+    fn is_shown(&self) -> bool {
+        self.proof.as_ref().is_some_and(FindingProof::is_shown)
+    }
+
     /// How much it gains on unseen runs, for an order among those that are withdrawn.
     fn gain(&self) -> f64 {
         self.tests.likelihood.map_or(0.0, |g| g.gain)
@@ -178,11 +183,11 @@ pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight]
     Some(index)
 }
 
-/// What is kept, with the ship of the base model where every finding is an error of a sensor that the sensors of the unseen runs show
-/// themselves, and the ship that was refitted beside these errors simulates the unseen runs worse: it was never in question.
-pub fn with_ship_held(question: &Question, mut kept: Kept, findings: &[Finding], held_out: &[Run]) -> Kept {
-    let is_shown = |f: &Finding| f.held_out.as_ref().is_some_and(FindingProof::is_shown);
-    if findings.is_empty() || !findings.iter().all(is_shown) {
+/// What is kept, with the ship of the base model where all that the model has of it, named or not, are errors of sensors that the sensors of
+/// the unseen runs show themselves, and the ship that was refitted beside these errors simulates the unseen runs worse: it was never in
+/// question.
+pub fn with_ship_held(question: &Question, mut kept: Kept, weights: &[Weight], held_out: &[Run]) -> Kept {
+    if weights.is_empty() || !weights.iter().all(Weight::is_shown) {
         return kept;
     }
     let (tests, found) = (&kept.selection.tests, &kept.selection.estimate);
@@ -206,7 +211,7 @@ pub fn with_ship_held(question: &Question, mut kept: Kept, findings: &[Finding],
 /// themselves.
 fn does_least(weights: &[Weight], simulated: bool) -> Option<usize> {
     let gain = |w: &Weight| if simulated { w.tests.prediction.map_or(0.0, |g| g.gain) } else { w.gain() };
-    let doubted = weights.iter().enumerate().filter(|(_, w)| !w.proof.as_ref().is_some_and(FindingProof::is_shown));
+    let doubted = weights.iter().enumerate().filter(|(_, w)| !w.is_shown());
     doubted.min_by(|a, b| gain(a.1).total_cmp(&gain(b.1))).map(|(i, _)| i)
 }
 
