@@ -193,8 +193,9 @@ pub fn with_ship_held(question: &Question, mut kept: Kept, weights: &[Weight], h
     let (tests, found) = (&kept.selection.tests, &kept.selection.estimate);
     let base = &tests.fit.estimate;
     let error = |e: &Estimate| mean_cvdm(&e.model, held_out, &question.settings.judging);
-    if let (Some(before), Some(after)) = (error(base), error(found))
-        && after > before
+    // A ship that is lost has no error.
+    if let Some(before) = error(base)
+        && error(found).is_none_or(|after| after > before)
     {
         let own = found.free.iter().filter(|f| base.free.iter().all(|b| b.column.parameter != f.column.parameter));
         let (mut model, mut free) = (base.model.clone(), base.free.clone());
