@@ -245,27 +245,35 @@ impl Competition<'_> {
         estimate.free.iter().all(|f| !companions.contains(&f.column.parameter) || stayed(f))
     }
 
+    /// A hypothesis refitted from where a model stands, to convergence.
+    fn settled(&self, hypothesis: Hypothesis, model: &Model, free: &[FreeParameter], noise: &Noise) -> Refit {
+        let estimate = self.problem.estimate(model, free, noise, SETTLE);
+        Refit { value: estimate.log_posterior - hypothesis.price(), hypothesis, estimate }
+    }
+
+    /// The mechanism of a refit where it acts otherwise, from these amplitudes.
+    fn elsewhere(&self, from: &Refit, extent: Extent, amplitude: DVector<f64>, noise: &Noise) -> Refit {
+        let Hypothesis { candidate, extent: before, statistic, p, .. } = &from.hypothesis;
+        let c = &self.problem.candidates[*candidate];
+        let (mut model, mut free) = c.removed(&from.estimate, before);
+        c.add(&mut model, &extent, &amplitude);
+        free.extend(c.parameters(&extent));
+        let hypothesis = Hypothesis { candidate: *candidate, extent, amplitude, statistic: *statistic, p: *p };
+        self.settled(hypothesis, &model, &free, noise)
+    }
+
     /// Refits the error of a sensor from where it stood beside those of all sensors: with one amplitude, and where sensors are made anew
     /// every day with one a session, if that explains clearly more.
     fn refit_from(&self, Leading { candidate, amplitude, statistic, p, model, free, noise }: Leading) -> Refit {
-        let refit = |extent: Extent, amplitude: DVector<f64>, model: &Model, free: &[FreeParameter]| {
-            let estimate = self.problem.estimate(model, free, &noise, SETTLE);
-            let hypothesis = Hypothesis { candidate, extent, amplitude, statistic, p };
-            let value = estimate.log_posterior - hypothesis.price();
-            Refit { hypothesis, estimate, value }
-        };
         let c = &self.problem.candidates[candidate];
-        let all = refit(Extent::All, amplitude.clone(), &model, &free);
+        let hypothesis = Hypothesis { candidate, extent: Extent::All, amplitude: amplitude.clone(), statistic, p };
+        let all = self.settled(hypothesis, &model, &free, &noise);
         let sessions: Vec<String> = self.screen.evidence.sessions.keys().cloned().collect();
         if !c.mechanism.by_session || sessions.len() < 2 {
             return all;
         }
-        let (mut model, mut free) = c.removed(&all.estimate, &Extent::All);
         let amplitudes = DVector::from_fn(amplitude.len() * sessions.len(), |i, _| amplitude[i % amplitude.len()]);
-        let each = Extent::Each(sessions);
-        c.add(&mut model, &each, &amplitudes);
-        free.extend(c.parameters(&each));
-        let each = refit(each, amplitudes, &model, &free);
+        let each = self.elsewhere(&all, Extent::Each(sessions), amplitudes, &noise);
         if each.value > all.value + INDISTINGUISHABLE { each } else { all }
     }
 
@@ -341,7 +349,7 @@ impl Competition<'_> {
     /// A clock with one value in all sessions, where those of the sessions differ by less than is resolved: that they differ would be
     /// significant and immaterial.
     fn pooled(&self, winner: Refit) -> Refit {
-        let Hypothesis { candidate, extent, statistic, p, .. } = &winner.hypothesis;
+        let Hypothesis { candidate, extent, .. } = &winner.hypothesis;
         let (c, found) = (&self.problem.candidates[*candidate], &winner.estimate);
         let Extent::Each(sessions) = extent else { return winner };
         let own: Vec<&FreeParameter> = c.positions(&found.free, extent).into_iter().map(|i| &found.free[i]).collect();
@@ -358,13 +366,7 @@ impl Competition<'_> {
             return winner;
         }
         let amplitude = DVector::from_fn(columns, |k, _| mean(values(k)).unwrap_or(0.0) / own[k].column.scale);
-        let hypothesis =
-            Hypothesis { candidate: *candidate, extent: Extent::All, amplitude, statistic: *statistic, p: *p };
-        let (mut model, mut free) = c.removed(found, extent);
-        c.add(&mut model, &Extent::All, &hypothesis.amplitude);
-        free.extend(c.parameters(&Extent::All));
-        let estimate = self.problem.estimate(&model, &free, &found.noise, SETTLE);
-        Refit { value: estimate.log_posterior - hypothesis.price(), hypothesis, estimate }
+        self.elsewhere(&winner, Extent::All, amplitude, &found.noise)
     }
 
     /// Why the confidence set is what it is.
