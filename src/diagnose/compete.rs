@@ -5,7 +5,7 @@ use super::candidate::{Candidate, Extent};
 use super::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
 use super::evidence::chi_squared_p;
 use super::forces::only_cancels;
-use super::kinematic::agreements;
+use super::kinematic::{agreements, gain};
 use super::noise::Noise;
 use super::problem::Problem;
 use super::screen::{Row, Screen};
@@ -262,52 +262,49 @@ impl Competition<'_> {
         self.settled(hypothesis, &model, &free, noise)
     }
 
-    /// Refits the error of a sensor from where it stood beside those of all sensors: with one amplitude, and where sensors are made anew
-    /// every day with one a session, if that explains clearly more.
-    fn refit_from(&self, Leading { candidate, amplitude, statistic, p, model, free, noise }: Leading) -> Refit {
-        let c = &self.problem.candidates[candidate];
-        let hypothesis = Hypothesis { candidate, extent: Extent::All, amplitude: amplitude.clone(), statistic, p };
-        let all = self.settled(hypothesis, &model, &free, &noise);
+    /// Refits the error of a sensor from where it stood beside those of all sensors; where sensors are made anew every day and one amplitude
+    /// does for what the sensors say of each other, also with one a session, if that explains clearly more.
+    fn refit_from(&self, leading: Leading) -> Refit {
+        let Leading { candidate, extent, amplitude, statistic, p, model, free, noise } = leading;
+        let hypothesis = Hypothesis { candidate, extent, amplitude: amplitude.clone(), statistic, p };
+        let found = self.settled(hypothesis, &model, &free, &noise);
         let sessions: Vec<String> = self.screen.evidence.sessions.keys().cloned().collect();
-        if !c.mechanism.by_session || sessions.len() < 2 {
-            return all;
+        let by_session = self.problem.candidates[candidate].mechanism.by_session && sessions.len() > 1;
+        if !by_session || found.hypothesis.extent != Extent::All {
+            return found;
         }
         let amplitudes = DVector::from_fn(amplitude.len() * sessions.len(), |i, _| amplitude[i % amplitude.len()]);
-        let each = self.elsewhere(&all, Extent::Each(sessions), amplitudes, &noise);
-        if each.value > all.value + INDISTINGUISHABLE { each } else { all }
+        let each = self.elsewhere(&found, Extent::Each(sessions), amplitudes, &noise);
+        if each.value > found.value + INDISTINGUISHABLE { each } else { found }
     }
 
-    /// Refits the leader and its rivals, and returns the best with its confidence set. The leader is the best of the ranking or the
-    /// leading error of a sensor, whichever explains more.
-    fn best(&self, leaders: &[&Row], sensor: Option<Leading>) -> Result<(Selected, Estimate), Rejection> {
+    /// The error of a sensor that the sensors show of each other, where a refit confirms it and they show it at the size that it has there.
+    fn shown(&self, leading: Leading) -> Option<(Selected, Estimate)> {
+        let Problem { runs, candidates, .. } = self.problem;
+        let found = self.refit_from(leading);
+        let sensors: Vec<&Candidate> = candidates.iter().filter(|c| c.mechanism.kind == Kind::Sensor).collect();
+        let (agreement, interval) = gain(&self.current.model, &found.estimate.model, runs, &sensors)?;
+        let is_shown = agreement > INDISTINGUISHABLE && interval.is_none_or(|[low, _]| low > 0.0);
+        let (p, set) = (found.hypothesis.p, vec![found.hypothesis.candidate]);
+        let why = "what the sensors say of each other shows it beside the errors of all others".to_owned();
+        (is_shown && self.is_confirmed(&found)).then(|| self.selected(self.pooled(found), true, p, set, why))
+    }
+
+    /// Refits the leader of a ranking and its rivals, and returns the best with its confidence set.
+    fn best(&self, leaders: &[&Row]) -> Result<(Selected, Estimate), Rejection> {
         let candidates = self.problem.candidates;
-        let (mut rivals, mut alike) = (Vec::new(), Vec::new());
-        let ranked = leaders.first().map(|row| {
-            let mut first = Hypothesis::of(row);
-            rivals = self::rivals(self.screen, leaders, candidates);
-            alike = self.told_by_sensors(&mut first, &mut rivals);
-            self.refit(first, &self.current.noise, SETTLE, f64::NEG_INFINITY)
-        });
-        let sensor = sensor.map(|s| self.refit_from(s));
-        let mut leading: Vec<Refit> = sensor.into_iter().chain(ranked).collect();
-        leading.sort_by(|a, b| b.value.total_cmp(&a.value));
-        leading.dedup_by_key(|r| r.hypothesis.candidate);
-        rivals.retain(|r| leading.iter().all(|l| l.hypothesis.candidate != r.candidate));
-        let first = leading.first().ok_or(Rejection::Unconfirmed)?;
-        let (noise, p) = (first.estimate.noise, first.hypothesis.p);
-        let settled: Vec<usize> = leading.iter().map(|l| l.hypothesis.candidate).collect();
-        let confirmed = self.is_confirmed(first);
-        // A rival that stays further behind a leader than any set is wide changes nothing.
-        let least = if confirmed && self.is_plausible(first) {
-            first.value - form_tolerance(first.value - self.current.log_posterior)
-        } else {
-            f64::NEG_INFINITY
-        };
+        let mut first = Hypothesis::of(leaders.first().ok_or(Rejection::Unconfirmed)?);
+        let mut rivals = rivals(self.screen, leaders, candidates);
+        let alike = self.told_by_sensors(&mut first, &mut rivals);
+        let (leader, p) = (first.candidate, first.p);
+        let first = self.refit(first, &self.current.noise, SETTLE, f64::NEG_INFINITY);
+        let (confirmed, noise) = (self.is_confirmed(&first), first.estimate.noise);
         let mut refitted = Vec::new();
-        for r in leading {
-            if r.value < least || (self.is_plausible(&r) && self.is_confirmed(&r)) {
-                refitted.push(r);
-            }
+        let mut least = f64::NEG_INFINITY;
+        if confirmed && self.is_plausible(&first) {
+            // A rival that stays further behind a leader than any set is wide changes nothing.
+            least = first.value - form_tolerance(first.value - self.current.log_posterior);
+            refitted.push(first);
         }
         for rival in rivals {
             let rival = self.refit(rival, &noise, REFIT, least);
@@ -342,7 +339,7 @@ impl Competition<'_> {
             }
         }
         let winner = refitted.swap_remove(ranking.entries[0].place);
-        let is_settled = settled.contains(&winner.hypothesis.candidate);
+        let is_settled = winner.hypothesis.candidate == leader;
         Ok(self.selected(self.pooled(winner), is_settled, p, set, why))
     }
 
@@ -451,7 +448,7 @@ pub fn compare(
     current: &Estimate,
     problem: Problem,
 ) -> Option<(Selected, Estimate)> {
-    Competition { screen, current, problem, tried: leaders.len() }.best(leaders, None).ok()
+    Competition { screen, current, problem, tried: leaders.len() }.best(leaders).ok()
 }
 
 /// A mechanism whose gain the refit confirms, and whose own coefficients are not where such coefficients are: something acts, and not
@@ -464,30 +461,35 @@ pub struct Rejected {
     pub p: f64,
 }
 
-/// As [`compare`], the leading error of a sensor with them; where the leader's own coefficients are implausible, it goes to `rejected`
-/// and the next mechanism that is unlike it leads.
+/// The first error of a sensor that a refit confirms: what the sensors show of each other comes before all that can be said of the ship. Else as [`compare`]; where the leader's own coefficients are implausible, it goes to `rejected` and the next mechanism that is
+/// unlike it leads.
 pub fn compete(
     screen: &Screen,
     mut leaders: Vec<&Row>,
-    mut sensor: Option<Leading>,
+    sensors: Vec<Leading>,
     current: &Estimate,
     problem: Problem,
     rejected: &mut Vec<Rejected>,
     progress: &dyn Fn(&str),
 ) -> Option<(Selected, Estimate)> {
-    // Every mechanism that the data can see was tried where the sensors tell which of them leads.
-    let visible = screen.rows.iter().filter(|r| r.visible).count();
+    let refitting = |i: usize| progress(&format!("refitting with {}", problem.candidates[i].mechanism.title));
+    for sensor in sensors {
+        refitting(sensor.candidate);
+        // Every mechanism that the data can see was tried where the sensors tell which of them leads.
+        let tried = screen.rows.iter().filter(|r| r.visible).count();
+        let shown = Competition { screen, current, problem, tried }.shown(sensor);
+        if shown.is_some() {
+            return shown;
+        }
+    }
     loop {
-        let leader = leaders.first().map(|r| (r.candidate, r.p));
-        let title = |i: usize| problem.candidates[i].mechanism.title;
-        progress(&format!("refitting with {}", title(leader.map(|l| l.0).or(sensor.as_ref().map(|s| s.candidate))?)));
-        let tried = if sensor.is_some() { visible } else { leaders.len() };
-        match (Competition { screen, current, problem, tried }).best(&leaders, sensor.take()) {
+        let (leader, p) = leaders.first().map(|r| (r.candidate, r.p))?;
+        refitting(leader);
+        match (Competition { screen, current, problem, tried: leaders.len() }).best(&leaders) {
             Ok(outcome) => return Some(outcome),
             Err(Rejection::Unconfirmed) => return None,
             Err(Rejection::Implausible) => {}
         }
-        let (leader, p) = leader?;
         rejected.push(Rejected { candidate: leader, p });
         leaders.retain(|r| r.candidate != leader && screen.likeness(leader, r.candidate) < LIKENESS);
     }

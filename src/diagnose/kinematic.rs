@@ -4,7 +4,7 @@
 use super::candidate::Candidate;
 use super::evidence::chi_squared_p;
 use super::filter::Column;
-use super::settings::{CORRECTIONS, GATE, SENSOR_SPREAD, STRETCH};
+use super::settings::{CORRECTIONS, GATE, SENSOR_SPREAD, STRETCH, STRETCHES};
 use super::wald::Wald;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
@@ -12,7 +12,7 @@ use crate::recording::{Measured, Run};
 use crate::state::{Force, Inputs, STATES, State};
 use crate::statistics::{interval_of_sum, median};
 use nalgebra::{DMatrix, DVector};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use trimtab_ad::smooth::wrap_angle;
 
 /// The equations of a stretch: its way ahead and to starboard \[m\], its turn \[rad\].
@@ -21,10 +21,22 @@ type Equations = [f64; 3];
 /// A stretch of a run, half a ship length long.
 struct Stretch<'r> {
     recording: &'r str,
+    session: &'r str,
+    /// Those that follow one another in a run are a block, a few together: the run and the number of the block in it.
+    block: (usize, usize),
     /// Way and turn less those that the velocities make, of what was recorded without the errors that the model already has.
     left: Equations,
     /// The same of what a unit of each column adds to the reports.
     columns: Vec<Equations>,
+}
+
+impl Stretch<'_> {
+    /// The stretch with more columns: those of some columns in each session, which are zero in the others.
+    fn apart(&self, some: &[usize], sessions: &BTreeSet<&str>) -> Self {
+        let of = |session: &str, c: usize| if session == self.session { self.columns[c] } else { [0.0; 3] };
+        let more = sessions.iter().flat_map(|session| some.iter().map(|c| of(session, *c)));
+        Self { columns: self.columns.iter().copied().chain(more).collect(), ..*self }
+    }
 }
 
 /// How well the sensors agree if one of them errs.
@@ -50,14 +62,11 @@ impl Agreement {
 /// `R(-psi) (p(t + T) - p(t) - int R(psi) V dt)` and `psi(t + T) - psi(t) - int r dt`, which are linear in the amplitudes; each equation
 /// counts by the scatter that all errors together leave in it, with outliers at the filter's gate.
 pub fn agreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> Option<Vec<Agreement>> {
-    let stretches: Vec<Stretch> = runs.iter().flat_map(|run| stretches(model, run, candidates)).collect();
+    let stretches = stretches_of(model, runs, candidates);
     let (scatter, _) = all_at_once(&stretches)?;
-    let mut from = 0;
-    let each = candidates.iter().map(|c| {
-        let own: Vec<usize> = (from..from + c.columns.len()).collect();
-        from += c.columns.len();
+    let each = places(candidates).map(|own| {
         let Solution { amplitude, .. } = solve(&stretches, &own, &scatter, 0.0)?;
-        let by_recording = by_recording(&stretches, &scatter, |s| less(s, &own, &amplitude));
+        let by_recording = by(&stretches, &scatter, |s| s.recording.to_owned(), |s| less(s, &own, &amplitude));
         Some(Agreement { amplitude, by_recording })
     });
     each.collect()
@@ -67,13 +76,10 @@ pub fn agreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> Opt
 /// of another (`before`): in log-likelihood over all recordings, with its 95 % interval over them, where they are enough. Each equation
 /// counts by the scatter that the errors of all `sensors` together leave in it. `None` where no stretch has every channel.
 pub fn gain(before: &Model, after: &Model, runs: &[Run], sensors: &[&Candidate]) -> Option<(f64, Option<[f64; 2]>)> {
-    let of = |model, sensors: &[&Candidate]| -> Vec<Stretch> {
-        runs.iter().flat_map(|run| stretches(model, run, sensors)).collect()
-    };
-    let without = of(before, sensors);
+    let without = stretches_of(before, runs, sensors);
     let (scatter, _) = all_at_once(&without)?;
-    let [before, after] = [without, of(after, &[])].map(|all| {
-        let by_recording = by_recording(&all, &scatter, |s| s.left);
+    let [before, after] = [without, stretches_of(after, runs, &[])].map(|all| {
+        let by_recording = by(&all, &scatter, |s| s.recording.to_owned(), |s| s.left);
         Agreement { amplitude: DVector::zeros(0), by_recording }
     });
     let all = |a: &Agreement| a.by_recording.values().map(|r| r.0).sum::<f64>();
@@ -82,41 +88,109 @@ pub fn gain(before: &Model, after: &Model, runs: &[Run], sensors: &[&Candidate])
 
 /// An error of a sensor beside those of all sensors, by what the sensors say of each other alone.
 pub struct Disagreement {
-    /// Its amplitudes, in units of the candidate's columns.
+    /// Its amplitudes, in units of the candidate's columns: those of all sessions, or of each of some, session after session.
     pub amplitude: DVector<f64>,
+    /// The sessions, where they differ beyond chance and all along; empty where they do not.
+    pub sessions: Vec<String>,
+    /// Squared distance from zero in units of the covariance.
+    pub statistic: f64,
     /// Its p-value.
     pub p: f64,
+    /// The 95 % interval of what it adds to the log-likelihood, over blocks of stretches that follow one another: what is not the same all
+    /// along is no error of a sensor, however large. `None` where the blocks are too few.
+    pub gain_ci95: Option<[f64; 2]>,
 }
 
 /// All candidates together at the amplitudes at which the sensors agree best, each with the weak prior of [`SENSOR_SPREAD`]; `None`
 /// where no stretch has every channel. What the sensors cannot show of each other (an antenna that carries its velocities with it) is
-/// not significant, whatever it does.
-pub fn disagreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> Option<Vec<Disagreement>> {
-    let stretches: Vec<Stretch> = runs.iter().flat_map(|run| stretches(model, run, candidates)).collect();
-    let (_, Solution { amplitude, information }) = all_at_once(&stretches)?;
-    let all = Wald { covariance: information.try_inverse()?, value: amplitude };
-    let mut from = 0;
-    let each = candidates.iter().map(|c| {
-        let own: Vec<usize> = (from..from + c.columns.len()).collect();
-        from += own.len();
-        let part = all.part(&own);
-        Disagreement { p: chi_squared_p(part.statistic(), own.len()), amplitude: part.value }
+/// not significant, whatever it does. A candidate has an amplitude in each session, the others one for all, where that is likelier with a
+/// chance below `alpha`.
+pub fn disagreements(model: &Model, runs: &[Run], candidates: &[&Candidate], alpha: f64) -> Option<Vec<Disagreement>> {
+    let stretches = stretches_of(model, runs, candidates);
+    let (scatter, all) = all_at_once(&stretches)?;
+    let columns: Vec<usize> = (0..all.amplitude.len()).collect();
+    let sessions: BTreeSet<&str> = stretches.iter().map(|s| s.session).collect();
+    let with = Explained::by(&stretches, &columns, &scatter, all);
+    let each = places(candidates).map(|own| {
+        let others: Vec<usize> = columns.iter().copied().filter(|c| !own.contains(c)).collect();
+        let without = Explained::new(&stretches, &others, &scatter)?;
+        if sessions.len() > 1 {
+            let apart: Vec<Stretch> = stretches.iter().map(|s| s.apart(&own, &sessions)).collect();
+            let own: Vec<usize> = (columns.len()..columns.len() + own.len() * sessions.len()).collect();
+            let each = Explained::new(&apart, &[others, own.clone()].concat(), &scatter)?;
+            let gain: f64 = each.by_block.iter().map(|(block, (l, _))| l - with.by_block[block].0).sum();
+            let more = own.len() - own.len() / sessions.len();
+            let differs = chi_squared_p(2.0 * gain.max(0.0), more) < alpha;
+            if differs && each.over(&with).is_none_or(|[low, _]| low > 0.0) {
+                let sessions = sessions.iter().map(|s| (*s).to_owned()).collect();
+                return each.disagreement(&own, &without, sessions);
+            }
+        }
+        with.disagreement(&own, &without, Vec::new())
     });
-    Some(each.collect())
+    each.collect()
 }
 
-/// Log-likelihood by recording of what is left of stretches, with their number: normal by the scatter of each equation, with outliers at the
-/// filter's gate.
-fn by_recording(
-    stretches: &[Stretch],
+/// What some columns explain of stretches.
+struct Explained {
+    columns: Vec<usize>,
+    solution: Solution,
+    /// Log-likelihood and number of the stretches by block.
+    by_block: BTreeMap<(usize, usize), (f64, f64)>,
+}
+
+impl Explained {
+    fn new(stretches: &[Stretch], columns: &[usize], scatter: &Equations) -> Option<Self> {
+        let solution = solve(stretches, columns, scatter, SENSOR_SPREAD.powi(-2))?;
+        Some(Self::by(stretches, columns, scatter, solution))
+    }
+
+    /// By a solution.
+    fn by(stretches: &[Stretch], columns: &[usize], scatter: &Equations, solution: Solution) -> Self {
+        let by_block = by(stretches, scatter, |s| s.block, |s| less(s, columns, &solution.amplitude));
+        Self { columns: columns.to_vec(), solution, by_block }
+    }
+
+    /// The 95 % interval over blocks of how much likelier it makes the stretches than another.
+    fn over(&self, other: &Self) -> Option<[f64; 2]> {
+        let gains = self.by_block.iter().map(|(block, (l, n))| (l - other.by_block[block].0, *n));
+        interval_of_sum(&gains.collect::<Vec<_>>())
+    }
+
+    /// The error that some of its columns make, over what the others explain `without` them.
+    fn disagreement(&self, own: &[usize], without: &Self, sessions: Vec<String>) -> Option<Disagreement> {
+        let Solution { amplitude, information } = &self.solution;
+        let all = Wald { covariance: information.clone().try_inverse()?, value: amplitude.clone() };
+        let places: Vec<usize> = own.iter().filter_map(|c| self.columns.iter().position(|o| o == c)).collect();
+        let part = all.part(&places);
+        let statistic = part.statistic();
+        let p = chi_squared_p(statistic, own.len());
+        Some(Disagreement { amplitude: part.value, sessions, statistic, p, gain_ci95: self.over(without) })
+    }
+}
+
+/// Where the columns of each candidate stand among those of all.
+fn places<'c>(candidates: &'c [&Candidate]) -> impl Iterator<Item = Vec<usize>> + 'c {
+    candidates.iter().scan(0, |from, c| {
+        let own = *from..*from + c.columns.len();
+        *from = own.end;
+        Some(own.collect())
+    })
+}
+
+/// Log-likelihood of what is left of stretches, with their number, by what they have in common: normal by the scatter of each equation, with
+/// outliers at the filter's gate.
+fn by<'s, 'r: 's, K: Ord>(
+    stretches: &'s [Stretch<'r>],
     scatter: &Equations,
+    key: impl Fn(&Stretch) -> K,
     left: impl Fn(&Stretch) -> Equations,
-) -> BTreeMap<String, (f64, f64)> {
+) -> BTreeMap<K, (f64, f64)> {
     let mut sums = BTreeMap::new();
     for stretch in stretches {
         let of = |(e, s): (f64, &f64)| -0.5 * (e / s).powi(2).min(GATE * GATE);
         let likelihood: f64 = left(stretch).into_iter().zip(scatter).map(of).sum();
-        let sum: &mut (f64, f64) = sums.entry(stretch.recording.to_owned()).or_default();
+        let sum: &mut (f64, f64) = sums.entry(key(stretch)).or_default();
         *sum = (sum.0 + likelihood, sum.1 + 1.0);
     }
     sums
@@ -160,6 +234,9 @@ fn solve(stretches: &[Stretch], columns: &[usize], scatter: &Equations, precisio
     let n = columns.len();
     let mut amplitude = DVector::zeros(n);
     let mut information = DMatrix::zeros(n, n);
+    if n == 0 {
+        return Some(Solution { amplitude, information });
+    }
     // What lies far from a first solution is left out of the second.
     for round in 0..2 {
         information = DMatrix::from_diagonal_element(n, n, precision);
@@ -178,8 +255,13 @@ fn solve(stretches: &[Stretch], columns: &[usize], scatter: &Equations, precisio
     amplitude.iter().all(|a| a.is_finite()).then_some(Solution { amplitude, information })
 }
 
+/// The stretches of all runs.
+fn stretches_of<'r>(model: &Model, runs: &'r [Run], candidates: &[&Candidate]) -> Vec<Stretch<'r>> {
+    runs.iter().enumerate().flat_map(|(index, run)| stretches(model, (index, run), candidates)).collect()
+}
+
 /// The stretches of a run in which every channel was measured.
-fn stretches<'r>(model: &Model, run: &'r Run, candidates: &[&Candidate]) -> Vec<Stretch<'r>> {
+fn stretches<'r>(model: &Model, (index, run): (usize, &'r Run), candidates: &[&Candidate]) -> Vec<Stretch<'r>> {
     let states: Vec<Option<[f64; STATES]>> = corrected(model, run);
     let reports = reports(model, run, &states, candidates);
     // By what was recorded, so that the stretches are the same whatever errors the model has.
@@ -191,7 +273,9 @@ fn stretches<'r>(model: &Model, run: &'r Run, candidates: &[&Candidate]) -> Vec<
         let states: Vec<[f64; STATES]> = states[from..=from + rows].iter().copied().collect::<Option<_>>()?;
         let added = |c: usize| &reports[c][from..=from + rows];
         let columns = (0..reports.len()).map(|c| slope(&states, added(c), run.dt)).collect();
-        Some(Stretch { recording: &run.recording, left: disagreement(&states, run.dt), columns })
+        let block = (index, from / (rows * STRETCHES));
+        let left = disagreement(&states, run.dt);
+        Some(Stretch { recording: &run.recording, session: &run.session, block, left, columns })
     };
     starts.filter_map(stretch).collect()
 }
@@ -347,7 +431,7 @@ mod tests {
         let asked = names.map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
         let errors = [("time_skew.position", -1.5), ("log_scale.error", 0.08)];
         let runs = erring(&[&errors[..], &[("yaw_rate_bias.bias", 0.001)]].concat(), 12);
-        let all = disagreements(&m, &runs, &asked).unwrap();
+        let all = disagreements(&m, &runs, &asked, 0.01).unwrap();
         // The log's error as a share of what it reads.
         let expected = [(-1.5, 0.3), (0.0, 0.3), (0.08 / 1.08, 0.004), (0.001, 2e-4), (0.0, 2.0), (0.0, 2.0)];
         let columns = asked.iter().flat_map(|c| &c.columns);
@@ -357,13 +441,40 @@ mod tests {
     }
 
     #[test]
+    fn an_error_gains_all_along_and_sensors_that_agree_do_not() {
+        let m = model();
+        let list = candidates(&m, &[]);
+        let asked = ["yaw_rate_bias", "log_scale"].map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
+        let low = |runs: &[Run], i: usize| disagreements(&m, runs, &asked, 0.01).unwrap()[i].gain_ci95.unwrap()[0];
+        assert!(low(&erring(&[("yaw_rate_bias.bias", 0.002)], 12), 0) > 0.0);
+        assert!((0..2).all(|i| low(&erring(&[], 12), i) < 0.0));
+    }
+
+    #[test]
+    fn sessions_have_an_error_each_where_they_differ_and_one_where_they_do_not() {
+        let m = model();
+        let list = candidates(&m, &[]);
+        let asked = ["yaw_rate_bias"].map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
+        let [a, b] = [0.002, -0.001].map(|bias| erring(&[("yaw_rate_bias.bias", bias)], 12));
+        let runs: Vec<Run> = a.into_iter().zip(b).map(|(a, b)| if a.session == "a" { a } else { b }).collect();
+        let found = &disagreements(&m, &runs, &asked, 0.01).unwrap()[0];
+        let unit = asked[0].columns[0].scale;
+        assert!(found.sessions == ["a", "b"] && found.gain_ci95.is_some_and(|[low, _]| low > 0.0));
+        for (value, bias) in found.amplitude.iter().zip([0.002, -0.001]) {
+            assert!((value * unit - bias).abs() < 3e-4, "{} for {bias}", value * unit);
+        }
+        let same = &disagreements(&m, &erring(&[("yaw_rate_bias.bias", 0.002)], 12), &asked, 0.01).unwrap()[0];
+        assert!(same.sessions.is_empty() && same.amplitude.len() == 1);
+    }
+
+    #[test]
     fn only_what_the_sensors_show_of_each_other_is_significant() {
         let m = model();
         let list = candidates(&m, &[]);
         let asked =
             ["time_skew", "log_scale", "antenna"].map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
         let of = |errors: &[(&str, f64)]| {
-            disagreements(&m, &erring(errors, 12), &asked).unwrap().iter().map(|d| d.p < 1e-6).collect::<Vec<_>>()
+            disagreements(&m, &erring(errors, 12), &asked, 0.01).unwrap().iter().map(|d| d.p < 1e-6).collect::<Vec<_>>()
         };
         assert_eq!(of(&[("time_skew.position", -1.5)]), [true, false, false]);
         assert_eq!(of(&[("log_scale.error", 0.08)]), [false, true, false]);
@@ -411,7 +522,7 @@ mod tests {
         let list = candidates(&m, &[]);
         let asked = ["time_skew", "yaw_rate_skew", "log_scale"]
             .map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
-        let of = |runs: &[Run]| disagreements(&m, runs, &asked).unwrap();
+        let of = |runs: &[Run]| disagreements(&m, runs, &asked, 0.01).unwrap();
         let known = of(&erring(&errors, 12));
         assert!(known.iter().all(|d| d.p > 1e-3), "{:?}", known.iter().map(|d| d.p).collect::<Vec<_>>());
         let more = of(&erring(&[errors[0], ("time_skew.position", -3.0), errors[2]], 12));

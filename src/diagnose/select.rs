@@ -93,8 +93,8 @@ impl Selection {
         let nothing_else = self.push.is_none() && !by_euler;
         let beside = Beside { present: &present, selected: &self.mechanisms, nothing_else };
         let leaders = eligible(screen, problem.candidates, beside, question.settings);
-        let sensor = leading(&self.estimate, problem, beside);
-        let next = compete(screen, leaders, sensor, &self.estimate, problem, &mut self.rejected, question.progress);
+        let sensors = leading(&self.estimate, problem, beside);
+        let next = compete(screen, leaders, sensors, &self.estimate, problem, &mut self.rejected, question.progress);
         if next.is_none() {
             self.latest = latest;
         }

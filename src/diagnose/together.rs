@@ -5,13 +5,11 @@
 use super::candidate::{Candidate, Extent};
 use super::eligible::{Beside, Further};
 use super::estimate::{Estimate, FreeParameter, log_posterior};
-use super::evidence::chi_squared_p;
 use super::kinematic::{Disagreement, disagreements};
 use super::noise::Noise;
 use super::problem::Problem;
-use super::settings::{SENSOR_SPREAD, TOGETHER_EFFORT};
-use super::wald::Wald;
-use crate::model::{Model, Prior};
+use super::settings::TOGETHER_EFFORT;
+use crate::model::Model;
 use crate::physics::Kind;
 use nalgebra::DVector;
 
@@ -19,6 +17,8 @@ use nalgebra::DVector;
 pub struct Leading {
     /// Index into the candidates.
     pub candidate: usize,
+    /// All sessions with one amplitude, or each with its own.
+    pub extent: Extent,
     /// Its amplitudes beyond what the model already has, in units of its columns.
     pub amplitude: DVector<f64>,
     /// Squared distance from zero in units of the covariance.
@@ -29,16 +29,49 @@ pub struct Leading {
     pub model: Model,
     /// What is free then.
     pub free: Vec<FreeParameter>,
-    /// The noise beside the errors of all sensors.
+    /// The noise to start from.
     pub noise: Noise,
 }
 
-/// The leading error of a sensor that may be named beside what the model had and what was selected. What the sensors show of each other beyond
-/// chance is free, with a weak prior and one amplitude in all sessions; it starts where they agree best, and parameters and noise are
-/// estimated in turn. `None` where the sensors agree, where they cannot be held against each other, and where no error is both
-/// significant.
-pub fn leading(current: &Estimate, problem: Problem, beside: Beside) -> Option<Leading> {
-    let Problem { integration, runs, candidates, settings, .. } = problem;
+/// The errors of sensors that may be named beside what the model had and what was selected: those that the sensors show of each other
+/// beyond chance and all along, whatever the ship does, the most significant first. Ship and noise are estimated beside all of them, each
+/// held where the sensors agree best: a noise that has taken an error in lets go of it only where the error is there instead. From there or
+/// from where they were, whichever is likelier with the error, a refit starts. None where the sensors agree and where they cannot be held
+/// against each other.
+pub fn leading(current: &Estimate, problem: Problem, beside: Beside) -> Vec<Leading> {
+    let shown = shown(current, problem);
+    let further = |(candidate, extent, d): &(usize, Extent, Disagreement)| {
+        beside.allows(&Further { candidate: *candidate, extent, statistic: d.statistic, p: d.p }, problem.candidates)
+    };
+    if !shown.iter().any(further) {
+        return Vec::new();
+    }
+    let mut start = current.model.clone();
+    shown.iter().for_each(|(i, extent, d)| problem.candidates[*i].add(&mut start, extent, &d.amplitude));
+    let found = problem.estimate(&start, &current.free, &current.noise, TOGETHER_EFFORT);
+    let lead = |(candidate, extent, d): (usize, Extent, Disagreement)| {
+        let c = &problem.candidates[candidate];
+        let mut free = current.free.clone();
+        free.extend(c.parameters(&extent));
+        let start = |from: &Estimate| {
+            let mut model = current.model.clone();
+            current.free.iter().for_each(|f| f.set(&mut model, f.value(&from.model)));
+            c.add(&mut model, &extent, &d.amplitude);
+            let value = log_posterior(&model, problem.integration, problem.runs, &current.free, &from.noise);
+            (value, model, from.noise)
+        };
+        // An error that is not all that it seems may have led ship and noise astray.
+        let (beside, before) = (start(&found), start(current));
+        let (_, model, noise) = if before.0 > beside.0 { before } else { beside };
+        let Disagreement { amplitude, statistic, p, .. } = d;
+        Leading { candidate, extent, amplitude, statistic, p, model, free, noise }
+    };
+    shown.into_iter().filter(further).map(lead).collect()
+}
+
+/// What the sensors show of each other, the most significant first, with p-values corrected for the sensors that were asked.
+fn shown(current: &Estimate, problem: Problem) -> Vec<(usize, Extent, Disagreement)> {
+    let Problem { runs, candidates, settings, .. } = problem;
     let is_free = |parameter: usize| current.free.iter().any(|f| f.column.parameter == parameter);
     let may_be = |i: &usize| {
         let c = &candidates[*i];
@@ -46,51 +79,15 @@ pub fn leading(current: &Estimate, problem: Problem, beside: Beside) -> Option<L
     };
     let sensors: Vec<usize> = (0..candidates.len()).filter(may_be).collect();
     let all: Vec<&Candidate> = sensors.iter().map(|i| &candidates[*i]).collect();
-    let shown = disagreements(&current.model, runs, &all)?;
-    let shown = sensors.iter().copied().zip(shown).filter(|(_, d)| d.p * (sensors.len() as f64) < settings.alpha);
-    let (asked, shown): (Vec<usize>, Vec<Disagreement>) = shown.unzip();
-    if asked.is_empty() {
-        return None;
-    }
-    let (mut free, mut start) = (current.free.clone(), current.model.clone());
-    let mut places = Vec::with_capacity(asked.len());
-    for (i, Disagreement { amplitude, .. }) in asked.iter().zip(&shown) {
-        let from = free.len();
-        free.extend(candidates[*i].parameters(&Extent::All).into_iter().map(|f| weak(f, &current.model)));
-        candidates[*i].add(&mut start, &Extent::All, amplitude);
-        places.push((from..free.len()).collect::<Vec<usize>>());
-    }
-    let value = |model: &Model| log_posterior(model, integration, runs, &free, &current.noise);
-    let start = if value(&start) > value(&current.model) { &start } else { &current.model };
-    let found = problem.estimate(start, &free, &current.noise, TOGETHER_EFFORT);
-    let wald = Wald::at(&found, integration, runs);
-    let may_lead = |candidate: usize, statistic: f64, p: f64| {
-        let further = Further { candidate, extent: &Extent::All, statistic, p };
-        p < settings.alpha && beside.allows(&further, candidates)
+    let extent = |d: &Disagreement| if d.sessions.is_empty() { Extent::All } else { Extent::Each(d.sessions.clone()) };
+    let told = disagreements(&current.model, runs, &all, settings.alpha).unwrap_or_default();
+    let of = |(i, d): (usize, Disagreement)| (i, extent(&d), Disagreement { p: d.p * all.len() as f64, ..d });
+    let is_shown = |(_, _, d): &(usize, Extent, Disagreement)| {
+        d.p < settings.alpha && d.gain_ci95.is_none_or(|[low, _]| low > 0.0)
     };
-    let row = |(i, own): (&usize, &Vec<usize>)| {
-        let part = wald.part(own).less(&candidates[*i].held(&Extent::All));
-        let statistic = part.statistic();
-        let p = chi_squared_p(statistic, own.len()) * sensors.len() as f64;
-        may_lead(*i, statistic, p).then_some((*i, part.value, statistic, p))
-    };
-    let (candidate, amplitude, statistic, p) =
-        asked.iter().zip(&places).filter_map(row).max_by(|a, b| a.2.total_cmp(&b.2))?;
-    let mut model = current.model.clone();
-    for f in &current.free {
-        f.set(&mut model, f.value(&found.model));
-    }
-    candidates[candidate].add(&mut model, &Extent::All, &amplitude);
-    let mut free = current.free.clone();
-    free.extend(candidates[candidate].parameters(&Extent::All));
-    Some(Leading { candidate, amplitude, statistic, p, model, free, noise: found.noise })
-}
-
-/// A parameter of a sensor's error with a prior around no error.
-fn weak(f: FreeParameter, model: &Model) -> FreeParameter {
-    let p = &model.parameters[f.column.parameter];
-    let prior = Some(Prior { mean: p.value, sd: SENSOR_SPREAD * p.scale });
-    FreeParameter { prior, ..f }
+    let mut shown: Vec<_> = sensors.iter().copied().zip(told).map(of).filter(is_shown).collect();
+    shown.sort_by(|a, b| b.2.statistic.total_cmp(&a.2.statistic));
+    shown
 }
 
 #[cfg(test)]
@@ -119,7 +116,7 @@ mod tests {
             Selected { candidate: clocks, extent: Extent::All, statistic, p: 0.0, set, why, carried: false }
         });
         let beside = Beside { present: &[], selected: selected.as_slice(), nothing_else: true };
-        let found = leading(&base, problem, beside);
+        let found = leading(&base, problem, beside).into_iter().next();
         (list, base, found)
     }
 
@@ -157,7 +154,7 @@ mod tests {
             let problem =
                 Problem { integration: RK4, runs: &runs, candidates: &list, prior: &prior, settings: &settings };
             let base = problem.again(&at(&model), SETTLE);
-            leading(&base, problem, NOTHING).map(|l| {
+            leading(&base, problem, NOTHING).first().map(|l| {
                 let c = &list[l.candidate];
                 (
                     c.mechanism.name,
@@ -173,7 +170,7 @@ mod tests {
 
     #[test]
     fn beside_clocks_a_look_alike_must_explain_more_than_they_leave_and_another_error_leads_instead() {
-        let runs = erring(&[("position_lever.x", 12.0), ("yaw_rate_bias.bias", 0.0005)], 12);
+        let runs = erring(&[("position_lever.x", 20.0), ("yaw_rate_bias.bias", 0.0002)], 12);
         let name = |taken: Option<f64>| {
             let (list, _, found) = of(&runs, &[], taken);
             found.map(|l| list[l.candidate].mechanism.name)
