@@ -100,6 +100,8 @@ impl Answer {
             tried.append(&mut findings);
         }
         let verdict = lead(verdict, &mut findings);
+        // The last word on a mechanism is the name: tried in other sessions before, it was not refuted.
+        tried.retain(|w| findings.iter().all(|f| f.mechanism != w.mechanism));
         let kept = with_ship_held(question, kept, &weights, held_out);
         Self { verdict, findings, withdrawn: tried, kept, base, law: None, decision }
     }
