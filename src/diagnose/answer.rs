@@ -100,8 +100,7 @@ impl Answer {
             tried.append(&mut findings);
         }
         let verdict = lead(verdict, &mut findings);
-        // The last word on a mechanism is the name: tried in other sessions before, it was not refuted.
-        tried.retain(|w| findings.iter().all(|f| f.mechanism != w.mechanism));
+        let tried = unnamed(tried, &findings);
         let kept = with_ship_held(question, kept, &weights, held_out);
         Self { verdict, findings, withdrawn: tried, kept, base, law: None, decision }
     }
@@ -206,6 +205,12 @@ impl Answer {
     }
 }
 
+/// What was withdrawn and is not named: the name is the last word on a mechanism, which was tried in other sessions before.
+fn unnamed(mut tried: Vec<Finding>, findings: &[Finding]) -> Vec<Finding> {
+    tried.retain(|w| findings.iter().all(|f| f.mechanism != w.mechanism));
+    tried
+}
+
 /// What the analysis answers once something is changed.
 fn brief(
     settings: &Settings,
@@ -224,7 +229,7 @@ fn brief(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{erring, made_by_euler, model, runs, with};
+    use crate::diagnose::example::{erring, finding, made_by_euler, model, runs, with};
 
     fn without_repetitions() -> Settings {
         Settings { nuisance: false, repeat: false, ..Settings::default() }
@@ -282,6 +287,13 @@ mod tests {
         let answer = Answer::new(&question, train, &sound);
         let tried = answer.withdrawn.iter().find(|f| f.mechanism == "yaw_rate_bias").unwrap();
         assert!(tried.grade == Grade::Refuted && answer.findings.is_empty(), "{tried:?}");
+    }
+
+    #[test]
+    fn a_mechanism_that_is_named_was_not_withdrawn() {
+        let of = |names: &[&str]| names.iter().map(|n| finding(n, n, &[n])).collect::<Vec<_>>();
+        let left = unnamed(of(&["position_lever", "waves"]), &of(&["time_skew", "position_lever"]));
+        assert_eq!(left.iter().map(|f| f.mechanism.as_str()).collect::<Vec<_>>(), ["waves"]);
     }
 
     #[test]

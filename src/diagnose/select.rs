@@ -203,12 +203,17 @@ mod tests {
     use crate::diagnose::candidate::Extent;
     use crate::diagnose::example::{model, runs, with};
     use crate::model::Model;
+    use crate::recording::Run;
 
     /// The selection on twelve runs of a truth, the model's own parameters free.
     fn selection(truth: &Model, settings: &Settings) -> Selection {
+        selection_on(runs(truth, 12), settings)
+    }
+
+    fn selection_on(runs: Vec<Run>, settings: &Settings) -> Selection {
         let model = model();
         let question = Question { model: &model, full: model.clone(), settings, progress: &|_| () };
-        let audited = AuditedRuns::new(runs(truth, 12), model.ship.hull.lpp);
+        let audited = AuditedRuns::new(runs, model.ship.hull.lpp);
         let tests = BaseTests::new(&question, BaseFit::new(&question, audited));
         Selection::new(&question, Opening { tests, push: None, first: None })
     }
@@ -229,6 +234,16 @@ mod tests {
         let north = s.estimate.model.find("current.north").unwrap();
         assert!((s.estimate.model.parameters[north].value - 0.3).abs() < 0.03);
         assert!(s.estimate.log_posterior > s.tests.fit.estimate.log_posterior + 50.0);
+    }
+
+    #[test]
+    fn what_the_sensors_show_of_each_other_comes_before_what_the_ship_shows_more_strongly() {
+        let mut all = runs(&with(&[("current.north", 0.6)]), 12);
+        all.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[5] = m[5].map(|r| r + 0.001));
+        let s = selection_on(all, &plain());
+        assert_eq!(names(&s), ["yaw_rate_bias", "current"]);
+        let bias = s.estimate.model.find("yaw_rate_bias.bias").unwrap();
+        assert!((s.estimate.model.parameters[bias].value - 0.001).abs() < 1e-4);
     }
 
     #[test]
