@@ -265,7 +265,8 @@ impl Competition<'_> {
     /// Refits the error of a sensor from where it stood beside those of all sensors; where sensors are made anew every day and one amplitude
     /// does for what the sensors say of each other, also with one a session, if that explains clearly more.
     fn refit_from(&self, leading: Leading) -> Refit {
-        let Leading { candidate, extent, amplitude, statistic, p, model, free, noise } = leading;
+        let Leading { set, extent, amplitude, statistic, p, model, free, noise } = leading;
+        let candidate = set[0];
         let hypothesis = Hypothesis { candidate, extent, amplitude: amplitude.clone(), statistic, p };
         let found = self.settled(hypothesis, &model, &free, &noise);
         let sessions: Vec<String> = self.screen.evidence.sessions.keys().cloned().collect();
@@ -281,12 +282,18 @@ impl Competition<'_> {
     /// The error of a sensor that the sensors show of each other, where a refit confirms it and they show it at the size that it has there.
     fn shown(&self, leading: Leading) -> Option<(Selected, Estimate)> {
         let Problem { runs, candidates, .. } = self.problem;
+        let set = leading.set.clone();
         let found = self.refit_from(leading);
         let sensors: Vec<&Candidate> = candidates.iter().filter(|c| c.mechanism.kind == Kind::Sensor).collect();
         let (agreement, interval) = gain(&self.current.model, &found.estimate.model, runs, &sensors)?;
         let is_shown = agreement > INDISTINGUISHABLE && interval.is_none_or(|[low, _]| low > 0.0);
-        let (p, set) = (found.hypothesis.p, vec![found.hypothesis.candidate]);
-        let why = "what the sensors say of each other shows it beside the errors of all others".to_owned();
+        let p = found.hypothesis.p;
+        let others: Vec<&str> = set[1..].iter().map(|i| candidates[*i].mechanism.title).collect();
+        let why = if others.is_empty() {
+            "what the sensors say of each other shows it and no other error of theirs".to_owned()
+        } else {
+            format!("what the sensors say of each other does not tell it from {}", others.join(", "))
+        };
         (is_shown && self.is_confirmed(&found)).then(|| self.selected(self.pooled(found), true, p, set, why))
     }
 
@@ -474,7 +481,7 @@ pub fn compete(
 ) -> Option<(Selected, Estimate)> {
     let refitting = |i: usize| progress(&format!("refitting with {}", problem.candidates[i].mechanism.title));
     for sensor in sensors {
-        refitting(sensor.candidate);
+        refitting(sensor.set[0]);
         // Every mechanism that the data can see was tried where the sensors tell which of them leads.
         let tried = screen.rows.iter().filter(|r| r.visible).count();
         let shown = Competition { screen, current, problem, tried }.shown(sensor);

@@ -14,7 +14,6 @@ use crate::model::{Model, Prior};
 use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 /// A free parameter of the estimate.
 #[derive(Clone, Debug)]
@@ -272,9 +271,10 @@ pub fn log_posterior(
 /// The noise of the calmer runs: what disturbs some runs only is no noise.
 pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prior: &NoisePrior) -> Noise {
     let filter = Filter::new(&found.model, integration, &[]);
-    let share =
-        |run: &Run| filter.pass(run, &found.noise, Wanted::default()).log_likelihood / run.measured.len() as f64;
-    let likelihood: Vec<f64> = runs.par_iter().map(share).collect();
+    let wanted = Wanted { sums_only: true, ..Wanted::default() };
+    let share = |run: &Run, pass: Pass| pass.log_likelihood / run.measured.len() as f64;
+    let mut likelihood = Vec::with_capacity(runs.len());
+    filter.each(runs, &found.noise, wanted, share, |share| likelihood.push(share));
     let mut order: Vec<usize> = (0..runs.len()).collect();
     order.sort_by(|a, b| likelihood[*b].total_cmp(&likelihood[*a]));
     order.truncate((CALM_SHARE * runs.len() as f64).ceil() as usize);

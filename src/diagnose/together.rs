@@ -1,4 +1,4 @@
-//! The errors of all sensors at once. One after the other they fail where the noise of a sensor has taken one of them in: a speed log
+//! The errors of sensors before any mechanism of the ship. Against the noise of the model without them they fail where the noise of a sensor has taken one of them in: a speed log
 //! that reads 8 % too much has a noise of 8 % where nothing else explains it, and no test against that noise sees it.
 //! What is named, and whether a refit confirms it, is decided elsewhere.
 
@@ -15,13 +15,13 @@ use nalgebra::DVector;
 
 /// The error of a sensor that stands out most beside all others, with a model and a noise that a refit can start from.
 pub struct Leading {
-    /// Index into the candidates.
-    pub candidate: usize,
+    /// The candidate, and those that the sensors do not tell from it.
+    pub set: Vec<usize>,
     /// All sessions with one amplitude, or each with its own.
     pub extent: Extent,
     /// Its amplitudes beyond what the model already has, in units of its columns.
     pub amplitude: DVector<f64>,
-    /// Squared distance from zero in units of the covariance.
+    /// Twice what it adds to the log-likelihood of what the sensors say of each other.
     pub statistic: f64,
     /// Its p-value, corrected for the sensors that were asked.
     pub p: f64,
@@ -34,43 +34,46 @@ pub struct Leading {
 }
 
 /// The errors of sensors that may be named beside what the model had and what was selected: those that the sensors show of each other
-/// beyond chance and all along, whatever the ship does, the most significant first. Ship and noise are estimated beside all of them, each
-/// held where the sensors agree best: a noise that has taken an error in lets go of it only where the error is there instead. From there or
-/// from where they were, whichever is likelier with the error, a refit starts. None where the sensors agree and where they cannot be held
-/// against each other.
+/// beyond chance and all along, whatever the ship does, the most significant first. Ship and noise are estimated beside the first, held
+/// where the sensors agree best: a noise that has taken an error in lets go of it only where the error is there instead. From there or from
+/// where they were, whichever is likelier with the error, a refit starts. None where the sensors agree and where they cannot be held against
+/// each other.
 pub fn leading(current: &Estimate, problem: Problem, beside: Beside) -> Vec<Leading> {
-    let shown = shown(current, problem);
-    let further = |(candidate, extent, d): &(usize, Extent, Disagreement)| {
-        beside.allows(&Further { candidate: *candidate, extent, statistic: d.statistic, p: d.p }, problem.candidates)
-    };
-    if !shown.iter().any(further) {
-        return Vec::new();
-    }
+    let shown = shown(current, problem, beside);
+    let Some((first, extent, d)) = shown.first() else { return Vec::new() };
     let mut start = current.model.clone();
-    shown.iter().for_each(|(i, extent, d)| problem.candidates[*i].add(&mut start, extent, &d.amplitude));
+    problem.candidates[*first].add(&mut start, extent, &d.amplitude);
     let found = problem.estimate(&start, &current.free, &current.noise, TOGETHER_EFFORT);
-    let lead = |(candidate, extent, d): (usize, Extent, Disagreement)| {
-        let c = &problem.candidates[candidate];
+    let lead = |(place, (candidate, extent, d)): (usize, &(usize, Extent, Disagreement))| {
+        let c = &problem.candidates[*candidate];
         let mut free = current.free.clone();
-        free.extend(c.parameters(&extent));
+        free.extend(c.parameters(extent));
         let start = |from: &Estimate| {
             let mut model = current.model.clone();
             current.free.iter().for_each(|f| f.set(&mut model, f.value(&from.model)));
-            c.add(&mut model, &extent, &d.amplitude);
+            c.add(&mut model, extent, &d.amplitude);
             let value = log_posterior(&model, problem.integration, problem.runs, &current.free, &from.noise);
             (value, model, from.noise)
         };
-        // An error that is not all that it seems may have led ship and noise astray.
         let (beside, before) = (start(&found), start(current));
         let (_, model, noise) = if before.0 > beside.0 { before } else { beside };
-        let Disagreement { amplitude, statistic, p, .. } = d;
-        Leading { candidate, extent, amplitude, statistic, p, model, free, noise }
+        let like = shown[place + 1..].iter().filter(|other| !d.is_ahead_of(&other.2)).map(|other| other.0);
+        Leading {
+            set: std::iter::once(*candidate).chain(like).collect(),
+            extent: extent.clone(),
+            amplitude: d.amplitude.clone(),
+            statistic: d.statistic,
+            p: d.p,
+            model,
+            free,
+            noise,
+        }
     };
-    shown.into_iter().filter(further).map(lead).collect()
+    shown.iter().enumerate().map(lead).collect()
 }
 
-/// What the sensors show of each other, the most significant first, with p-values corrected for the sensors that were asked.
-fn shown(current: &Estimate, problem: Problem) -> Vec<(usize, Extent, Disagreement)> {
+/// What the sensors show of each other and may be named, the most significant first, with p-values corrected for the sensors that were asked.
+fn shown(current: &Estimate, problem: Problem, beside: Beside) -> Vec<(usize, Extent, Disagreement)> {
     let Problem { runs, candidates, settings, .. } = problem;
     let is_free = |parameter: usize| current.free.iter().any(|f| f.column.parameter == parameter);
     let may_be = |i: &usize| {
@@ -81,9 +84,13 @@ fn shown(current: &Estimate, problem: Problem) -> Vec<(usize, Extent, Disagreeme
     let all: Vec<&Candidate> = sensors.iter().map(|i| &candidates[*i]).collect();
     let extent = |d: &Disagreement| if d.sessions.is_empty() { Extent::All } else { Extent::Each(d.sessions.clone()) };
     let told = disagreements(&current.model, runs, &all, settings.alpha).unwrap_or_default();
-    let of = |(i, d): (usize, Disagreement)| (i, extent(&d), Disagreement { p: d.p * all.len() as f64, ..d });
-    let is_shown = |(_, _, d): &(usize, Extent, Disagreement)| {
-        d.p < settings.alpha && d.gain_ci95.is_none_or(|[low, _]| low > 0.0)
+    let of = |(i, mut d): (usize, Disagreement)| {
+        d.p *= all.len() as f64;
+        (i, extent(&d), d)
+    };
+    let is_shown = |(candidate, extent, d): &(usize, Extent, Disagreement)| {
+        let further = Further { candidate: *candidate, extent, statistic: d.statistic, p: d.p };
+        d.p < settings.alpha && d.is_steady() && beside.allows(&further, candidates)
     };
     let mut shown: Vec<_> = sensors.iter().copied().zip(told).map(of).filter(is_shown).collect();
     shown.sort_by(|a, b| b.2.statistic.total_cmp(&a.2.statistic));
@@ -125,12 +132,12 @@ mod tests {
         let runs = erring(&[("log_scale.error", 0.08)], 12);
         let (list, base, found) = of(&runs, &[], None);
         let found = found.unwrap();
-        assert_eq!(list[found.candidate].mechanism.name, "log_scale");
-        let scale = list[found.candidate].columns[0].scale;
+        assert_eq!(list[found.set[0]].mechanism.name, "log_scale");
+        let scale = list[found.set[0]].columns[0].scale;
         assert!((found.amplitude[0] * scale - 0.08).abs() < 0.01, "{}", found.amplitude[0] * scale);
         let speed = |n: &Noise| n.sensors[2].white.hypot(n.sensors[2].coloured);
         assert!(speed(&base.noise) > 3.0 * speed(&found.noise), "{:?} {:?}", base.noise, found.noise);
-        let row = screen(&base, RK4, &runs, &list).rows.into_iter().find(|r| r.candidate == found.candidate).unwrap();
+        let row = screen(&base, RK4, &runs, &list).rows.into_iter().find(|r| r.candidate == found.set[0]).unwrap();
         assert!(row.test.statistic < found.statistic);
         assert!(found.free.len() == base.free.len() + 1 && found.free.last().is_some_and(|f| f.prior.is_none()));
     }
@@ -141,7 +148,7 @@ mod tests {
         assert!(of(&sound, &[], None).2.is_none());
         let runs = erring(&[("log_scale.error", 0.08)], 12);
         let (list, _, found) = of(&runs, &["log_scale"], None);
-        assert!(found.is_none_or(|l| list[l.candidate].mechanism.name != "log_scale"));
+        assert!(found.is_none_or(|l| list[l.set[0]].mechanism.name != "log_scale"));
     }
 
     #[test]
@@ -155,7 +162,7 @@ mod tests {
                 Problem { integration: RK4, runs: &runs, candidates: &list, prior: &prior, settings: &settings };
             let base = problem.again(&at(&model), SETTLE);
             leading(&base, problem, NOTHING).first().map(|l| {
-                let c = &list[l.candidate];
+                let c = &list[l.set[0]];
                 (
                     c.mechanism.name,
                     l.amplitude[0] * c.columns[0].scale,
@@ -173,7 +180,7 @@ mod tests {
         let runs = erring(&[("position_lever.x", 20.0), ("yaw_rate_bias.bias", 0.0002)], 12);
         let name = |taken: Option<f64>| {
             let (list, _, found) = of(&runs, &[], taken);
-            found.map(|l| list[l.candidate].mechanism.name)
+            found.map(|l| list[l.set[0]].mechanism.name)
         };
         assert_eq!((name(None), name(Some(10.0))), (Some("position_lever"), Some("position_lever")));
         assert_eq!(name(Some(1e9)), Some("yaw_rate_bias"));
