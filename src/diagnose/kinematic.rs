@@ -432,19 +432,23 @@ mod tests {
     }
 
     #[test]
-    fn all_errors_together_are_found_each_at_its_size() {
+    fn an_error_is_found_at_its_size_and_is_ahead_of_all_others() {
         let m = model();
         let list = candidates(&m, &[]);
         let names = ["time_skew", "log_scale", "yaw_rate_bias", "position_lever"];
         let asked = names.map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
-        let errors = [("time_skew.position", -1.5), ("log_scale.error", 0.08)];
-        let runs = erring(&[&errors[..], &[("yaw_rate_bias.bias", 0.001)]].concat(), 12);
-        let all = disagreements(&m, &runs, &asked, 0.01).unwrap();
         // The log's error as a share of what it reads.
-        let expected = [(-1.5, 0.3), (0.0, 0.3), (0.08 / 1.08, 0.004), (0.001, 2e-4), (0.0, 2.0), (0.0, 2.0)];
-        let columns = asked.iter().flat_map(|c| &c.columns);
-        for ((c, a), (value, near)) in columns.zip(all.iter().flat_map(|d| d.amplitude.iter())).zip(expected) {
-            assert!((a * c.scale - value).abs() < near, "{}: {}", m.parameters[c.parameter].name, a * c.scale);
+        let errors = [
+            ("time_skew.position", -1.5, -1.5, 0.3),
+            ("log_scale.error", 0.08, 0.08 / 1.08, 0.004),
+            ("yaw_rate_bias.bias", 0.001, 0.001, 2e-4),
+            ("position_lever.x", 12.0, 12.0, 1.0),
+        ];
+        for (i, (name, error, expected, near)) in errors.into_iter().enumerate() {
+            let all = disagreements(&m, &erring(&[(name, error)], 12), &asked, 0.01).unwrap();
+            let value = all[i].amplitude[0] * asked[i].columns[0].scale;
+            assert!((value - expected).abs() < near && all[i].p < 1e-6 && all[i].is_steady(), "{name}: {value}");
+            assert!((0..4).all(|other| other == i || all[i].is_ahead_of(&all[other])), "{name}");
         }
     }
 
@@ -453,9 +457,9 @@ mod tests {
         let m = model();
         let list = candidates(&m, &[]);
         let asked = ["yaw_rate_bias", "log_scale"].map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
-        let low = |runs: &[Run], i: usize| disagreements(&m, runs, &asked, 0.01).unwrap()[i].gain_ci95.unwrap()[0];
-        assert!(low(&erring(&[("yaw_rate_bias.bias", 0.002)], 12), 0) > 0.0);
-        assert!((0..2).all(|i| low(&erring(&[], 12), i) < 0.0));
+        let is_steady = |runs: &[Run], i: usize| disagreements(&m, runs, &asked, 0.01).unwrap()[i].is_steady();
+        assert!(is_steady(&erring(&[("yaw_rate_bias.bias", 0.002)], 12), 0));
+        assert!((0..2).all(|i| !is_steady(&erring(&[], 12), i)));
     }
 
     #[test]
@@ -467,7 +471,7 @@ mod tests {
         let runs: Vec<Run> = a.into_iter().zip(b).map(|(a, b)| if a.session == "a" { a } else { b }).collect();
         let found = &disagreements(&m, &runs, &asked, 0.01).unwrap()[0];
         let unit = asked[0].columns[0].scale;
-        assert!(found.sessions == ["a", "b"] && found.gain_ci95.is_some_and(|[low, _]| low > 0.0));
+        assert!(found.sessions == ["a", "b"] && found.is_steady());
         for (value, bias) in found.amplitude.iter().zip([0.002, -0.001]) {
             assert!((value * unit - bias).abs() < 3e-4, "{} for {bias}", value * unit);
         }
@@ -484,10 +488,11 @@ mod tests {
         let of = |errors: &[(&str, f64)]| {
             disagreements(&m, &erring(errors, 12), &asked, 0.01).unwrap().iter().map(|d| d.p < 1e-6).collect::<Vec<_>>()
         };
-        assert_eq!(of(&[("time_skew.position", -1.5)]), [true, false, false]);
-        assert_eq!(of(&[("log_scale.error", 0.08)]), [false, true, false]);
-        // Positions and velocities of one other point agree with each other.
+        assert!(of(&[("time_skew.position", -1.5)])[0] && of(&[("log_scale.error", 0.08)])[1]);
+        // Positions and velocities of one other point agree with each other, and so do clocks that are late together.
         assert_eq!(of(&[("antenna.x", 20.0)]), [false, false, false]);
+        let late = ["position", "heading", "velocity", "yaw_rate"].map(|channel| format!("time_skew.{channel}"));
+        assert_eq!(of(&late.each_ref().map(|name| (name.as_str(), 1.5))), [false, false, false]);
         assert_eq!(of(&[]), [false, false, false]);
     }
 
