@@ -262,7 +262,7 @@ impl Competition<'_> {
         self.settled(hypothesis, &model, &free, noise)
     }
 
-    /// Refits the error of a sensor from where it stood beside those of all sensors; where sensors are made anew every day and one amplitude
+    /// Refits the error of a sensor from where the sensors agree best; where sensors are made anew every day and one amplitude
     /// does for what the sensors say of each other, also with one a session, if that explains clearly more.
     fn refit_from(&self, leading: Leading) -> Refit {
         let Leading { set, extent, amplitude, statistic, p, model, free, noise } = leading;
@@ -468,8 +468,9 @@ pub struct Rejected {
     pub p: f64,
 }
 
-/// The first error of a sensor that a refit confirms: what the sensors show of each other comes before all that can be said of the ship. Else as [`compare`]; where the leader's own coefficients are implausible, it goes to `rejected` and the next mechanism that is
-/// unlike it leads.
+/// The first error of a sensor that a refit confirms: what the sensors show of each other comes before all that can be said of the ship.
+/// Else as [`compare`]; where the leader's own coefficients are implausible, it goes to `rejected` and the next mechanism that is unlike
+/// it leads.
 pub fn compete(
     screen: &Screen,
     mut leaders: Vec<&Row>,

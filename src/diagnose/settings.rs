@@ -102,7 +102,7 @@ pub const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations
 /// A refit with the noise estimated along, to convergence: a noise that had taken over a force gives it back when the force is in the
 /// model. The rounds only bound it.
 pub const SETTLE: Effort = Effort { rounds: 20, noise_rounds: 20, noise_iterations: 8 };
-/// The errors of all sensors at once.
+/// Ship and noise beside the error of a sensor that is held.
 pub const TOGETHER_EFFORT: Effort = Effort { rounds: 8, noise_rounds: 3, noise_iterations: 6 };
 /// The base model of a signal-to-noise ratio: noise within a few per cent.
 pub const SIGNAL: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6 };
@@ -293,7 +293,7 @@ numbers! {
     DIVIDED_SESSIONS: usize = 6, COST;
     /// Shortest span of the recordings that can show a tide: a quarter of its period of 12.42 h \[s\].
     QUARTER_TIDE: f64 = 11_178.0, "a quarter of the principal lunar tide";
-    /// Prior standard deviation of a sensor's error beside those of all sensors, in units of the parameter's scale.
+    /// Prior standard deviation of a sensor's error, in units of the parameter's scale.
     SENSOR_SPREAD: f64 = 10.0, "wider than any error that a user would not see; not varied";
     /// Length of the stretches over which the sensors are held against each other, in ship lengths.
     STRETCH: f64 = 0.5, "chosen with the method, before any case, and not varied";

@@ -1,6 +1,6 @@
-//! The errors of sensors before any mechanism of the ship. Against the noise of the model without them they fail where the noise of a sensor has taken one of them in: a speed log
-//! that reads 8 % too much has a noise of 8 % where nothing else explains it, and no test against that noise sees it.
-//! What is named, and whether a refit confirms it, is decided elsewhere.
+//! The errors of sensors, before any mechanism of the ship. Against the noise of a model without it an error fails where the noise of a
+//! sensor has taken it in: a speed log that reads 8 % too much has a noise of 8 % where nothing else explains it, and no test against that
+//! noise sees it. What is named, and whether a refit confirms it, is decided elsewhere.
 
 use super::candidate::{Candidate, Extent};
 use super::eligible::{Beside, Further};
