@@ -284,8 +284,7 @@ impl Competition<'_> {
         let Problem { runs, candidates, .. } = self.problem;
         let set = leading.set.clone();
         let found = self.refit_from(leading);
-        let sensors: Vec<&Candidate> = candidates.iter().filter(|c| c.mechanism.kind == Kind::Sensor).collect();
-        let (agreement, interval) = gain(&self.current.model, &found.estimate.model, runs, &sensors)?;
+        let (agreement, interval) = gain(&self.current.model, &found.estimate.model, runs, candidates)?;
         let is_shown = agreement > INDISTINGUISHABLE && interval.is_none_or(|[low, _]| low > 0.0);
         let p = found.hypothesis.p;
         let others: Vec<&str> = set[1..].iter().map(|i| candidates[*i].mechanism.title).collect();

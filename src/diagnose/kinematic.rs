@@ -7,6 +7,7 @@ use super::filter::Column;
 use super::settings::{CORRECTIONS, GATE, SENSOR_SPREAD, STRETCH, STRETCHES};
 use crate::dynamics::Dynamics;
 use crate::model::Model;
+use crate::physics::Kind;
 use crate::recording::{Measured, Run};
 use crate::state::{Force, Inputs, STATES, State};
 use crate::statistics::{interval_of_sum, median};
@@ -30,11 +31,11 @@ struct Stretch<'r> {
 }
 
 impl Stretch<'_> {
-    /// The stretch with more columns: those of some columns in each session, which are zero in the others.
+    /// The stretch with some of its columns in each session, which are zero in the others.
     fn apart(&self, some: &[usize], sessions: &BTreeSet<&str>) -> Self {
         let of = |session: &str, c: usize| if session == self.session { self.columns[c] } else { [0.0; 3] };
-        let more = sessions.iter().flat_map(|session| some.iter().map(|c| of(session, *c)));
-        Self { columns: self.columns.iter().copied().chain(more).collect(), ..*self }
+        let columns = sessions.iter().flat_map(|session| some.iter().map(|c| of(session, *c))).collect();
+        Self { columns, ..*self }
     }
 }
 
@@ -71,9 +72,11 @@ pub fn agreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> Opt
 
 /// How much likelier what the sensors of some runs say of each other is with the errors of sensors that a model has (`after`) than with those
 /// of another (`before`): in log-likelihood over all recordings, with its 95 % interval over them, where they are enough. Each equation
-/// counts by the scatter that the errors of all `sensors` together leave in it. `None` where no stretch has every channel.
-pub fn gain(before: &Model, after: &Model, runs: &[Run], sensors: &[&Candidate]) -> Option<(f64, Option<[f64; 2]>)> {
-    let without = stretches_of(before, runs, sensors);
+/// counts by the scatter that the errors of all sensors among the `candidates` together leave in it. `None` where no stretch has every
+/// channel.
+pub fn gain(before: &Model, after: &Model, runs: &[Run], candidates: &[Candidate]) -> Option<(f64, Option<[f64; 2]>)> {
+    let sensors: Vec<&Candidate> = candidates.iter().filter(|c| c.mechanism.kind == Kind::Sensor).collect();
+    let without = stretches_of(before, runs, &sensors);
     let scatter = scatter(&without)?;
     let [before, after] = [without, stretches_of(after, runs, &[])].map(|all| {
         let by_recording = by(&all, &scatter, |s| s.recording.to_owned(), |s| s.left);
@@ -93,18 +96,14 @@ pub struct Disagreement {
     pub statistic: f64,
     /// Its p-value.
     pub p: f64,
-    /// Log-likelihood and number of the stretches by block, with it and without it.
+    /// Whether it makes the stretches likelier all along, over blocks of them that follow one another: what is not the same all along is no
+    /// error of a sensor, however large. Too few blocks do not tell.
+    pub is_steady: bool,
+    /// Log-likelihood of the stretches with it, and their number, by block.
     by_block: BTreeMap<(usize, usize), (f64, f64)>,
-    without: BTreeMap<(usize, usize), (f64, f64)>,
 }
 
 impl Disagreement {
-    /// Whether it makes the stretches likelier all along, over blocks of them that follow one another: what is not the same all along is no
-    /// error of a sensor, however large. Too few blocks do not tell.
-    pub fn is_steady(&self) -> bool {
-        gain_over(&self.by_block, &self.without).is_none_or(|[low, _]| low > 0.0)
-    }
-
     /// Whether it makes the stretches likelier than another error does, beyond chance.
     pub fn is_ahead_of(&self, other: &Self) -> bool {
         gain_over(&self.by_block, &other.by_block).is_some_and(|[low, _]| low > 0.0)
@@ -132,14 +131,14 @@ pub fn disagreements(model: &Model, runs: &[Run], candidates: &[&Candidate], alp
         let by_block = by(stretches, &scatter, |s| s.block, |s| less(s, own, &amplitude));
         let statistic = 2.0 * (total(&by_block) - total(&without)).max(0.0);
         let p = chi_squared_p(statistic, own.len());
-        Some(Disagreement { amplitude, sessions, statistic, p, by_block, without: without.clone() })
+        let is_steady = gain_over(&by_block, &without).is_none_or(|[low, _]| low > 0.0);
+        Some(Disagreement { amplitude, sessions, statistic, p, is_steady, by_block })
     };
     let each = places(candidates).map(|own| {
         let all = of(&stretches, &own, Vec::new())?;
         if sessions.len() > 1 {
             let apart: Vec<Stretch> = stretches.iter().map(|s| s.apart(&own, &sessions)).collect();
-            let columns: Vec<usize> =
-                (apart[0].columns.len() - own.len() * sessions.len()..apart[0].columns.len()).collect();
+            let columns: Vec<usize> = (0..own.len() * sessions.len()).collect();
             let each = of(&apart, &columns, sessions.iter().map(|s| (*s).to_owned()).collect())?;
             let gain = (each.statistic - all.statistic).max(0.0);
             if chi_squared_p(gain, columns.len() - own.len()) < alpha && each.is_ahead_of(&all) {
@@ -400,7 +399,6 @@ mod tests {
     use crate::diagnose::candidate::candidates;
     use crate::diagnose::example::{erring, model, runs, with};
     use crate::diagnose::settings::INDISTINGUISHABLE;
-    use crate::physics::Kind;
 
     /// Agreements under a late clock, a lever arm of the positions and a bias of the gyro.
     fn of(runs: &[Run]) -> Vec<Agreement> {
@@ -447,7 +445,7 @@ mod tests {
         for (i, (name, error, expected, near)) in errors.into_iter().enumerate() {
             let all = disagreements(&m, &erring(&[(name, error)], 12), &asked, 0.01).unwrap();
             let value = all[i].amplitude[0] * asked[i].columns[0].scale;
-            assert!((value - expected).abs() < near && all[i].p < 1e-6 && all[i].is_steady(), "{name}: {value}");
+            assert!((value - expected).abs() < near && all[i].p < 1e-6 && all[i].is_steady, "{name}: {value}");
             assert!((0..4).all(|other| other == i || all[i].is_ahead_of(&all[other])), "{name}");
         }
     }
@@ -457,7 +455,7 @@ mod tests {
         let m = model();
         let list = candidates(&m, &[]);
         let asked = ["yaw_rate_bias", "log_scale"].map(|name| list.iter().find(|c| c.mechanism.name == name).unwrap());
-        let is_steady = |runs: &[Run], i: usize| disagreements(&m, runs, &asked, 0.01).unwrap()[i].is_steady();
+        let is_steady = |runs: &[Run], i: usize| disagreements(&m, runs, &asked, 0.01).unwrap()[i].is_steady;
         assert!(is_steady(&erring(&[("yaw_rate_bias.bias", 0.002)], 12), 0));
         assert!((0..2).all(|i| !is_steady(&erring(&[], 12), i)));
     }
@@ -471,7 +469,7 @@ mod tests {
         let runs: Vec<Run> = a.into_iter().zip(b).map(|(a, b)| if a.session == "a" { a } else { b }).collect();
         let found = &disagreements(&m, &runs, &asked, 0.01).unwrap()[0];
         let unit = asked[0].columns[0].scale;
-        assert!(found.sessions == ["a", "b"] && found.is_steady());
+        assert!(found.sessions == ["a", "b"] && found.is_steady);
         for (value, bias) in found.amplitude.iter().zip([0.002, -0.001]) {
             assert!((value * unit - bias).abs() < 3e-4, "{} for {bias}", value * unit);
         }
@@ -565,9 +563,8 @@ mod tests {
     #[test]
     fn a_model_with_the_error_of_a_sensor_gains_its_opposite_loses_and_the_ship_has_no_say() {
         let list = candidates(&model(), &[]);
-        let sensors: Vec<&Candidate> = list.iter().filter(|c| c.mechanism.kind == Kind::Sensor).collect();
         let runs = erring(&[("yaw_rate_bias.bias", 0.002)], 12);
-        let of = |values: &[(&str, f64)]| gain(&model(), &with(values), &runs, &sensors).unwrap();
+        let of = |values: &[(&str, f64)]| gain(&model(), &with(values), &runs, &list).unwrap();
         let (right, interval) = of(&[("yaw_rate_bias.bias", 0.002)]);
         assert!(right > 20.0 && interval.is_some_and(|[low, _]| low > 0.0), "{right} {interval:?}");
         let (wrong, interval) = of(&[("yaw_rate_bias.bias", -0.002)]);
@@ -576,7 +573,7 @@ mod tests {
         let damping = 2.0 * m.parameters[m.find("hull.Nr").unwrap()].value;
         assert_eq!(of(&[("yaw_rate_bias.bias", 0.002), ("hull.Nr", damping)]).0, right);
         // Positions and velocities of one other point agree with each other.
-        let (none, _) = gain(&m, &with(&[("antenna.x", 20.0)]), &erring(&[], 12), &sensors).unwrap();
+        let (none, _) = gain(&m, &with(&[("antenna.x", 20.0)]), &erring(&[], 12), &list).unwrap();
         assert!(none.abs() < INDISTINGUISHABLE, "{none}");
     }
 

@@ -90,7 +90,7 @@ fn shown(current: &Estimate, problem: Problem, beside: Beside) -> Vec<(usize, Ex
     };
     let is_shown = |(candidate, extent, d): &(usize, Extent, Disagreement)| {
         let further = Further { candidate: *candidate, extent, statistic: d.statistic, p: d.p };
-        d.p < settings.alpha && d.is_steady() && beside.allows(&further, candidates)
+        d.p < settings.alpha && d.is_steady && beside.allows(&further, candidates)
     };
     let mut shown: Vec<_> = sensors.iter().copied().zip(told).map(of).filter(is_shown).collect();
     shown.sort_by(|a, b| b.2.statistic.total_cmp(&a.2.statistic));

@@ -122,9 +122,9 @@ impl FindingProof {
 
 /// What the sensors of runs say of each other with the errors of sensors of `after` against those of `before`; `None` where that makes
 /// less difference than can be told apart.
-pub fn agreement(before: &Model, after: &Model, runs: &[Run], sensors: &[&Candidate]) -> Option<GainTest> {
+pub fn agreement(before: &Model, after: &Model, runs: &[Run], candidates: &[Candidate]) -> Option<GainTest> {
     let (sound, _) = settled(runs, before.ship.hull.lpp);
-    let (gain, ci95) = kinematic::gain(before, after, &sound, sensors)?;
+    let (gain, ci95) = kinematic::gain(before, after, &sound, candidates)?;
     (gain.abs() > INDISTINGUISHABLE).then_some(GainTest { gain, ci95 })
 }
 

@@ -2,7 +2,6 @@
 //! and on unseen ones. It computes the tests of a finding; the grade is a pure function of them.
 
 use super::base::Question;
-use super::candidate::Candidate;
 use super::describe::{Intervals, mechanism_finding, push_finding, sensor_findings};
 use super::estimate::Estimate;
 use super::event::BaseTests;
@@ -106,10 +105,9 @@ fn weight(
 fn proof(question: &Question, kept: &Kept, of: &Selected, without: &Estimate, held_out: &[Run]) -> FindingProof {
     let (tests, found) = (&kept.selection.tests, &kept.selection.estimate);
     let candidate = &tests.candidates[of.candidate];
-    let is_sensor = |c: &&Candidate| c.mechanism.kind == Kind::Sensor;
-    let sensors: Vec<&Candidate> = tests.candidates.iter().filter(is_sensor).collect();
+    let is_sensor = candidate.mechanism.kind == Kind::Sensor;
     let (alone, _) = candidate.removed(found, &of.extent);
-    let asked = is_sensor(&candidate).then(|| agreement(&alone, &found.model, held_out, &sensors));
+    let asked = is_sensor.then(|| agreement(&alone, &found.model, held_out, &tests.candidates));
     let agreement = asked.flatten();
     if let Some(shown) = agreement.filter(|g| g.is_above_zero()) {
         return FindingProof::shown(shown, held_out);
