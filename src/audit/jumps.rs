@@ -123,7 +123,7 @@ fn set_at_ends(values: &[f64]) -> Vec<usize> {
 }
 
 /// Rows at the ends that are far from the line through the other rows of their window, by what such rows are all along the run.
-fn far_at_ends(t: &[f64], rows: &[usize], values: &[f64], least: impl Fn(f64) -> f64) -> Vec<usize> {
+fn far_at_ends(t: &[f64], rows: &[usize], values: &[f64], limit: impl Fn(f64) -> f64) -> Vec<usize> {
     let windows = values.len() + 1 - WINDOW;
     let stride = windows.div_ceil(END_WINDOWS);
     let off = |start: usize, j: usize| {
@@ -138,8 +138,10 @@ fn far_at_ends(t: &[f64], rows: &[usize], values: &[f64], least: impl Fn(f64) ->
     let mut far = Vec::new();
     for j in 0..MEDIAN_ROWS {
         for (start, j) in [(0, j), (windows - 1, WINDOW - 1 - j)] {
-            let limit = least(deviation((0..windows).step_by(stride).map(|start| off(start, j))));
-            if off(start, j).abs() > limit {
+            let own = off(start, j).abs();
+            let usual = || deviation((0..windows).step_by(stride).map(|start| off(start, j)));
+            // Most rows are near by the range alone, and what is usual along the run is not asked.
+            if own > limit(0.0) && own > limit(usual()) {
                 far.push(start + j);
             }
         }

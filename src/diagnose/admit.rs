@@ -121,8 +121,8 @@ fn loss(run: &Run, pass: &Pass) -> Option<Loss> {
     (0..STATES).filter_map(of).max_by_key(|l| l.count)
 }
 
-/// Audits the recordings' kinematics and the numerics.
-pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run]) -> Admission {
+/// Audits the recordings' kinematics and the numerics; `at` are the passes over the runs.
+pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run], at: &[Pass]) -> Admission {
     let issues = audit_runs(runs);
     let (mut cos, mut sin, mut count) = (0.0, 0.0, 0.0);
     for heading in runs.iter().flat_map(|r| r.measured.iter().filter_map(|m| m[2])) {
@@ -131,14 +131,14 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
         count += 1.0;
     }
     let refined = Integration { method: Method::Rk4, substeps: integration.substeps.max(1) * 8 };
-    let filters = [integration, refined].map(|integration| Filter::new(model, integration, &[]));
-    let error = |some: &[Run]| {
-        let [as_used, refined] = filters.each_ref().map(|f| f.passes(some, noise, Wanted::default()));
-        let innovations = |passes: Vec<Pass>| passes.into_iter().flat_map(|pass| pass.innovations).flatten();
-        let pairs = innovations(as_used).zip(innovations(refined));
-        pairs.map(|(a, b)| (a - b).abs()).filter(|e| e.is_finite()).fold(0.0, f64::max)
+    let filter = Filter::new(model, refined, &[]);
+    let error = |(some, as_used): (&[Run], &[Pass])| {
+        let refined = filter.passes(some, noise, Wanted::default());
+        let pairs = as_used.iter().zip(&refined).flat_map(|(a, b)| a.innovations.iter().zip(&b.innovations));
+        let differences = pairs.flat_map(|(a, b)| (0..STATES).map(|j| (a[j] - b[j]).abs()));
+        differences.filter(|e| e.is_finite()).fold(0.0, f64::max)
     };
-    let largest = runs.chunks(COMPARED).map(error).fold(0.0, f64::max);
+    let largest = runs.chunks(COMPARED).zip(at.chunks(COMPARED)).map(error).fold(0.0, f64::max);
     let sessions: std::collections::BTreeSet<&str> = runs.iter().map(|r| r.session.as_str()).collect();
     Admission {
         runs: runs.len(),
@@ -201,10 +201,11 @@ mod tests {
     fn headings_all_round_have_a_spread_near_one_and_a_step_that_is_fine_enough_a_small_error() {
         let model = model();
         let mut runs = runs(&model, 6);
-        let all = admit(&model, RK4, &noise(), &runs);
+        let at = passes(&model, RK4, &[], &runs, &noise(), false);
+        let all = admit(&model, RK4, &noise(), &runs, &at);
         assert_eq!((all.runs, all.samples, all.sessions), (6, 6 * SAMPLES, 2));
         assert!(all.heading_spread > 0.5 && all.integration_error < 0.2, "{all:?}");
         runs.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[2] = Some(0.3));
-        assert!(admit(&model, RK4, &noise(), &runs).heading_spread < 1e-12);
+        assert!(admit(&model, RK4, &noise(), &runs, &at).heading_spread < 1e-12);
     }
 }

@@ -132,17 +132,19 @@ impl BaseFit {
         let prior = NoisePrior::around(&first_noise);
         let fit = |runs: &[Run]| estimate(&question.full, integration, runs, &free, &first_noise, &prior, FIRST);
         let mut base = fit(&kept);
+        let filtered = |base: &Estimate, runs: &[Run]| passes(&base.model, integration, &[], runs, &base.noise, false);
+        let mut at = filtered(&base, &kept);
         // Without these stretches the estimate is better, and further stretches may show.
         for _ in 0..LOSS_ROUNDS {
-            let at = passes(&base.model, integration, &[], &kept, &base.noise, false);
             let (without, lost) = followed(&kept, &at);
             issues.extend(lost);
             let Some(without) = without else { break };
             kept = without;
             base = fit(&kept);
+            at = filtered(&base, &kept);
         }
         (question.progress)("auditing recordings and integration step");
-        let mut admission = admit(&base.model, integration, &base.noise, &kept);
+        let mut admission = admit(&base.model, integration, &base.noise, &kept, &at);
         admission.issues.extend(issues);
         Self { estimate: base, prior, runs: kept, integration, admission }.read_as_euler()
     }

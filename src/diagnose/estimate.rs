@@ -191,17 +191,32 @@ pub struct Sums {
 impl Sums {
     /// Passes over all runs; `sessions` as for [`evidence`]. Sums by session are kept where `apart`.
     pub fn of(filter: &Filter, runs: &[Run], noise: &Noise, sessions: &[Option<Vec<String>>], apart: bool) -> Self {
+        Self::and_step_maps(filter, runs, noise, sessions, apart, None)
+    }
+
+    /// As [`Self::of`]; the step maps of the runs, linearised along their filtered paths, are added to `maps`.
+    fn and_step_maps(
+        filter: &Filter,
+        runs: &[Run],
+        noise: &Noise,
+        sessions: &[Option<Vec<String>>],
+        apart: bool,
+        mut maps: Option<&mut Vec<Tangent>>,
+    ) -> Self {
         let mut out = Self { evidence: Evidence::default(), log_likelihood: 0.0, used: 0, outliers: 0 };
         let work = |run: &Run, pass: Pass| {
-            let Pass { score, information, log_likelihood, used, outliers, .. } = pass;
-            (run_evidence(run, score, information, sessions), log_likelihood, used, outliers)
+            let Pass { score, information, log_likelihood, used, outliers, tangent, .. } = pass;
+            (run_evidence(run, score, information, sessions), log_likelihood, used, outliers, tangent)
         };
-        let wanted = Wanted { sums_only: true, ..Wanted::default() };
-        filter.each(runs, noise, wanted, work, |(one, log_likelihood, used, outliers)| {
+        let wanted = Wanted { tangent: maps.is_some(), sums_only: true, ..Wanted::default() };
+        filter.each(runs, noise, wanted, work, |(one, log_likelihood, used, outliers, tangent)| {
             out.evidence.add(one, apart);
             out.log_likelihood += log_likelihood;
             out.used += used;
             out.outliers += outliers;
+            if let Some(maps) = &mut maps {
+                maps.extend(tangent);
+            }
         });
         out
     }
@@ -314,7 +329,7 @@ pub fn estimate_above(
 ) -> Estimate {
     let columns = free.iter().map(|f| f.column).collect();
     let fit = Fit { integration, runs, free, columns, prior, effort };
-    let mut point = fit.at(start.clone(), *noise, effort.rounds > 0);
+    let mut point = fit.at(start.clone(), *noise, if effort.rounds > 0 { Beside::Slopes } else { Beside::Nothing });
     let (mut damping, mut refused) = (0.0, false);
     for round in 0..effort.rounds {
         point = fit.differentiated(point);
@@ -324,7 +339,12 @@ pub fn estimate_above(
             break;
         }
         let (fits_noise, last) = (round < effort.noise_rounds, round + 1 == effort.rounds);
-        let (next, length) = fit.step(&point, &quadratic, &mut damping, !fits_noise && !last);
+        let beside = match (fits_noise, last) {
+            (true, _) => Beside::StepMaps,
+            (false, true) => Beside::Nothing,
+            (false, false) => Beside::Slopes,
+        };
+        let (next, length) = fit.step(&point, &quadratic, &mut damping, beside);
         let settled = match &next {
             None => true,
             Some(next) => length < STEP_SHORTEST || next.value - point.value < STEP_GAIN,
@@ -334,7 +354,7 @@ pub fn estimate_above(
         point = next.unwrap_or(point);
         let before = point.value;
         if fits_noise && !refused {
-            let better = fit.better_noise(&point, !last);
+            let better = fit.better_noise(&mut point, if last { Beside::Nothing } else { Beside::Slopes });
             refused = better.is_none();
             point = better.unwrap_or(point);
         }
@@ -342,7 +362,7 @@ pub fn estimate_above(
             break;
         }
     }
-    let Point { model, noise, sums, value, differentiated } = point;
+    let Point { model, noise, sums, value, differentiated, .. } = point;
     let seen = differentiated.then_some(sums.evidence.total.information);
     Estimate { model, noise, free: free.to_vec(), log_posterior: value, seen }
 }
@@ -366,33 +386,47 @@ struct Point {
     value: f64,
     /// Whether the sums hold scores and information.
     differentiated: bool,
+    /// The step maps along the filtered paths, where they were asked for.
+    step_maps: Option<Vec<Tangent>>,
+}
+
+/// What the passes at a point give beside its value.
+#[derive(Clone, Copy, PartialEq)]
+enum Beside {
+    Nothing,
+    /// Scores and information, from which a step is taken.
+    Slopes,
+    /// The linearised step maps, to which a noise is fitted.
+    StepMaps,
 }
 
 impl Fit<'_> {
-    /// The point of a model and a noise; its value has the same bits with derivatives and without them.
-    fn at(&self, model: Model, noise: Noise, differentiated: bool) -> Point {
+    /// The point of a model and a noise; its value has the same bits whatever is asked for beside it.
+    fn at(&self, model: Model, noise: Noise, beside: Beside) -> Point {
+        let differentiated = beside == Beside::Slopes;
         let (columns, restrictions) = if differentiated {
             (self.columns.as_slice(), restrictions(self.free))
         } else {
             (Default::default(), Vec::new())
         };
         let filter = Filter::new(&model, self.integration, columns);
-        let sums = Sums::of(&filter, self.runs, &noise, &restrictions, false);
+        let mut step_maps = (beside == Beside::StepMaps).then(|| Vec::with_capacity(self.runs.len()));
+        let sums = Sums::and_step_maps(&filter, self.runs, &noise, &restrictions, false, step_maps.as_mut());
         let log_prior = self.free.iter().map(|f| f.log_prior(&model)).sum::<f64>();
         let value = sums.log_likelihood + log_prior;
-        Point { model, noise, sums, value, differentiated }
+        Point { model, noise, sums, value, differentiated, step_maps }
     }
 
     /// The point with its scores and information.
     fn differentiated(&self, point: Point) -> Point {
-        if point.differentiated { point } else { self.at(point.model, point.noise, true) }
+        if point.differentiated { point } else { self.at(point.model, point.noise, Beside::Slopes) }
     }
 
     /// The point after a step of the parameters, where one gains, and the length of the last step that was tried.
     ///
-    /// A pass with derivatives costs three without: steps are tried with them only where `goes_on` says that another may follow, and
-    /// the first is no end by its length. Steps after it are mostly refused.
-    fn step(&self, from: &Point, quadratic: &Quadratic, damping: &mut f64, goes_on: bool) -> (Option<Point>, f64) {
+    /// A pass with derivatives costs three without: of the steps that are tried only the first has them, and only where it is no end by
+    /// its length. Steps after it are mostly refused.
+    fn step(&self, from: &Point, quadratic: &Quadratic, damping: &mut f64, beside: Beside) -> (Option<Point>, f64) {
         let propose = |damping: f64| {
             let mut step = quadratic.step(damping);
             let length = step.amax();
@@ -402,11 +436,12 @@ impl Fit<'_> {
             let promise = quadratic.promise(&step);
             Some(Proposal { step: (step, length.min(STEP_LONGEST)), promise })
         };
-        let mut differentiated = goes_on;
+        let mut first = true;
         let evaluate = |(step, length): &(DVector<f64>, f64)| {
-            differentiated &= *length >= STEP_SHORTEST;
-            let point = self.at(moved(&from.model, self.free, step), from.noise, differentiated);
-            differentiated = false;
+            let ends = beside == Beside::Slopes && (!first || *length < STEP_SHORTEST);
+            let point =
+                self.at(moved(&from.model, self.free, step), from.noise, if ends { Beside::Nothing } else { beside });
+            first = false;
             let value = point.value;
             (point, value)
         };
@@ -415,17 +450,18 @@ impl Fit<'_> {
     }
 
     /// The point with the noise fitted to all runs, linearised; `None` where that serves no better than the noise of the point.
-    ///
-    /// `goes_on` says whether the point is stepped from.
-    fn better_noise(&self, point: &Point, goes_on: bool) -> Option<Point> {
-        let trial = self.at(point.model.clone(), self.noise(point), goes_on);
+    fn better_noise(&self, point: &mut Point, beside: Beside) -> Option<Point> {
+        let trial = self.at(point.model.clone(), self.noise(point), beside);
         (trial.value > point.value).then_some(trial)
     }
 
-    /// The noise of the runs at a point. Of all of them: a part of them makes the answer a matter of their order.
-    fn noise(&self, Point { model, noise, sums, .. }: &Point) -> Noise {
+    /// The noise of the runs at a point, whose step maps it takes. Of all of them: a part of them makes the answer a matter of their
+    /// order.
+    fn noise(&self, point: &mut Point) -> Noise {
         let all: Vec<&Run> = self.runs.iter().collect();
-        let tangents = tangents(model, self.integration, &all, noise);
+        let kept = point.step_maps.take();
+        let Point { model, noise, sums, .. } = point;
+        let tangents = kept.unwrap_or_else(|| tangents(model, self.integration, &all, noise));
         let tangents: Vec<&Tangent> = tangents.iter().collect();
         // Where many measurements are set aside the noise is too small by far, and a gate hides that: everything counts first.
         let gates = if sums.outlier_share() > OUTLIER_SHARE { &[f64::INFINITY, GATE][..] } else { &[GATE] };
@@ -486,15 +522,21 @@ mod tests {
     }
 
     #[test]
-    fn a_point_has_the_same_value_with_derivatives_and_without() {
+    fn a_point_has_the_same_value_and_step_maps_whatever_is_asked_for_beside_it() {
         let m = model();
         let (runs, free, prior) = (runs(&m, 5), at(&m).free, NoisePrior::around(&noise()));
         for method in [crate::simulate::Method::Rk4, crate::simulate::Method::Euler] {
             let integration = Integration { method, substeps: 1 };
             let columns = free.iter().map(|f| f.column).collect();
             let fit = Fit { integration, runs: &runs, free: &free, columns, prior: &prior, effort: REFIT };
-            let [with, without] = [true, false].map(|d| fit.at(m.clone(), noise(), d));
-            assert_eq!(with.value, without.value);
+            let [with, without, maps] =
+                [Beside::Slopes, Beside::Nothing, Beside::StepMaps].map(|b| fit.at(m.clone(), noise(), b));
+            assert_eq!((with.value, maps.value), (without.value, without.value));
+            let all: Vec<&Run> = runs.iter().collect();
+            let by_themselves = tangents(&m, integration, &all, &noise());
+            let same = |(a, b): (&Tangent, &Tangent)| a.state == b.state && a.a == b.a && a.offset == b.offset;
+            let kept = maps.step_maps.expect("asked for");
+            assert!(kept.len() == all.len() && kept.iter().zip(&by_themselves).all(same));
             assert_eq!((with.sums.used, with.sums.outliers), (without.sums.used, without.sums.outliers));
             let later = fit.differentiated(without);
             assert!(later.differentiated && later.sums.evidence.total.score == with.sums.evidence.total.score);

@@ -132,7 +132,8 @@ pub fn agreement(before: &Model, after: &Model, runs: &[Run], candidates: &[Cand
 fn likelihoods(model: &Model, integration: Integration, noise: &Noise, runs: &[Run]) -> Vec<f64> {
     let mut out = Vec::with_capacity(runs.len());
     let filter = Filter::new(model, integration, &[]);
-    filter.each(runs, noise, Wanted::default(), |_, pass| pass.log_likelihood, |l| out.push(l));
+    let wanted = Wanted { sums_only: true, ..Wanted::default() };
+    filter.each(runs, noise, wanted, |_, pass| pass.log_likelihood, |l| out.push(l));
     out
 }
 
