@@ -29,8 +29,9 @@ Fits the free parameters of the model to the training runs of the study: weighte
     or --free NAME, frees one: each with its \
     estimate as mean and the spread that its term knows (`trimtab terms`) as standard deviation.
 
-A fit returns the best feasible point of all that it evaluated, never one above a feasible start, and says what stopped the \
-    solver. Damping, added mass, thrust and drag keep their physical signs (the bounds of each term), and the mass matrix stays \
+Every fit is solved by Ipopt. It returns the best feasible point of all that it evaluated, never one above a feasible start, and says what \
+    stopped the solver: max_iterations, max_evaluations and max_seconds of [fit] always hold. It is called converged only after a second solve from \
+    a disturbed point found no lower cost. Damping, added mass, thrust and drag keep their physical signs (the bounds of each term), and the mass matrix stays \
     invertible. Its first line says what the residuals say against it: a cost far above the noise of the sensors, windows \
     too long to be predicted in open loop, residuals that are alike.
 
@@ -49,7 +50,7 @@ With --out: fitted.toml (a model file with the estimates and their covariance, w
     ended). While the fit runs, best.toml is the model at the best point so far; it is removed at the end. \
     With --starts a fit that was killed goes on with the starts that are left when it is repeated on the same input.
 JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
-    result.converged, result.headline, result.status, result.doubts[] (kind: model-error, windows-too-long or clustered; \
+    result.converged, result.headline, result.status, result.solver_status (of Ipopt), result.hessian, result.checks (second solves, and how many found a lower cost), result.doubts[] (kind: model-error, windows-too-long or clustered; \
     value, limit, sentence), result.residual_statistics (model_error, growth, growth_error, likeness), result.estimates[] \
     (name, symbol, unit, start, value, standard_error, interval, at_bound), result.start_cost, result.start_prior_cost, \
     result.cost, result.prior_cost, result.first_stage_parts, result.residual_variance, result.active[] (sentence, rule), \

@@ -87,7 +87,7 @@ impl Covariances {
     ///
     /// `likeness` is how many successive residuals count as one, where that is known.
     pub fn of(task: &Task, end: &End, cost: f64, likeness: Option<f64>) -> Self {
-        let n = task.scales.len();
+        let n = task.scaling.scales.len();
         let directions = task.free_directions(&end.active);
         let quadratic = task.evaluations.quadratic(&end.p);
         let own = scores_by_recording(task, quadratic.as_deref());
@@ -137,7 +137,7 @@ impl Covariances {
     }
 
     fn entry(&self, task: &Task, matrix: &DMatrix<f64>, i: usize, j: usize) -> Option<f64> {
-        let value = matrix[(i, j)] * task.scales[i] * task.scales[j];
+        let value = matrix[(i, j)] * task.scaling.scales[i] * task.scaling.scales[j];
         (self.determined[i] && self.determined[j] && value.is_finite()).then_some(value)
     }
 
@@ -154,12 +154,12 @@ impl Covariances {
 
     /// A covariance matrix in the parameters' own units.
     pub fn table(&self, task: &Task, matrix: &DMatrix<f64>) -> Covariance {
-        square(task.scales.len(), |i, j| self.entry(task, matrix, i, j))
+        square(task.scaling.scales.len(), |i, j| self.entry(task, matrix, i, j))
     }
 
     /// Correlations of the estimates.
     pub fn correlations(&self, task: &Task) -> Covariance {
-        square(task.scales.len(), |i, j| {
+        square(task.scaling.scales.len(), |i, j| {
             let (si, sj, cij) = (self.error(task, i)?, self.error(task, j)?, self.entry(task, self.chosen(), i, j)?);
             let r = cij / (si * sj);
             r.is_finite().then_some(r.clamp(-1.0, 1.0))

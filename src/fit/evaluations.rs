@@ -1,7 +1,8 @@
-//! The last evaluations of one cost, so that a point is evaluated once for all steps of a fit that ask.
+//! The last evaluations of one objective, so that a point is evaluated once for all steps of a fit that ask.
 //! It computes nothing of its own and decides nothing.
 
-use super::cost::{Cost, Quadratic};
+use super::cost::Quadratic;
+use super::objective::Objective;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -9,10 +10,10 @@ use std::rc::Rc;
 /// How many points are remembered: start, best and last of a solve, and one to compare with.
 const REMEMBERED: usize = 4;
 
-/// A cost and its last evaluations.
+/// An objective and its last evaluations.
 pub(super) struct Evaluations<'a> {
-    /// The cost.
-    pub cost: &'a Cost<'a>,
+    /// The objective.
+    pub objective: &'a dyn Objective,
     values: RefCell<VecDeque<(Vec<f64>, Option<f64>)>>,
     quadratics: RefCell<VecDeque<Known>>,
 }
@@ -30,12 +31,12 @@ fn remember<T>(all: &RefCell<VecDeque<T>>, new: T) {
 }
 
 impl<'a> Evaluations<'a> {
-    /// Of a cost that was not evaluated yet.
-    pub fn of(cost: &'a Cost<'a>) -> Self {
-        Self { cost, values: RefCell::default(), quadratics: RefCell::default() }
+    /// Of an objective that was not evaluated yet.
+    pub fn of(objective: &'a dyn Objective) -> Self {
+        Self { objective, values: RefCell::default(), quadratics: RefCell::default() }
     }
 
-    /// As [`Cost::value`].
+    /// As [`Objective::value`].
     pub fn value(&self, p: &[f64]) -> Option<f64> {
         let beside_derivatives = self.quadratics.borrow().iter().find(|known| known.p == p).map(|k| k.quadratic.value);
         if beside_derivatives.is_some() {
@@ -43,18 +44,18 @@ impl<'a> Evaluations<'a> {
         }
         let known = self.values.borrow().iter().find(|(at, _)| at == p).map(|(_, value)| *value);
         known.unwrap_or_else(|| {
-            let value = self.cost.value(p);
+            let value = self.objective.value(p);
             remember(&self.values, (p.to_vec(), value));
             value
         })
     }
 
-    /// As [`Cost::quadratic`].
+    /// As [`Objective::quadratic`], with the matrix.
     pub fn quadratic(&self, p: &[f64]) -> Option<Rc<Quadratic>> {
         self.derivatives(p, true)
     }
 
-    /// As [`Cost::with_gradient`], perhaps with the matrix.
+    /// As [`Objective::quadratic`], perhaps with the matrix.
     pub fn with_gradient(&self, p: &[f64]) -> Option<Rc<Quadratic>> {
         self.derivatives(p, false)
     }
@@ -63,8 +64,7 @@ impl<'a> Evaluations<'a> {
         let serves = |known: &&Known| known.p == p && (known.with_matrix || !with_matrix);
         let known = self.quadratics.borrow().iter().find(serves).map(|known| Rc::clone(&known.quadratic));
         known.or_else(|| {
-            let quadratic = if with_matrix { self.cost.quadratic(p) } else { self.cost.with_gradient(p) };
-            let quadratic = Rc::new(quadratic?);
+            let quadratic = Rc::new(self.objective.quadratic(p, with_matrix)?);
             remember(&self.quadratics, Known { p: p.to_vec(), with_matrix, quadratic: Rc::clone(&quadratic) });
             Some(quadratic)
         })
@@ -74,7 +74,7 @@ impl<'a> Evaluations<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::FitSettings;
+    use crate::fit::{Cost, FitSettings};
     use crate::model::Model;
     use crate::physics::Form;
     use crate::recording::{Run, Split, measured};

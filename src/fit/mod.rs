@@ -7,13 +7,15 @@
 //! | `sums` | sums over samples behind the cost, its gradient and the Gauss-Newton matrix |
 //! | [`constraints`] | the constraints as data: curves bounded on grids |
 //! | `settings` | section `[fit]` of a study |
-//! | `evaluations` | the last evaluations of a cost, each made once |
+//! | `objective` | what a fit minimises, as its solver sees it |
+//! | `evaluations` | the last evaluations of an objective, each made once |
 //! | `task` | what stays fixed during a fit: model, cost, constraints, scales, start |
+//! | `curvature` | the matrix of second derivatives that Ipopt is given |
+//! | `limits` | what ends a fit before its optimum |
 //! | `problem` | the task with the priors, scaled, as Ipopt wants it |
-//! | `quadratic_program` | the least of a quadratic function under linear limits |
-//! | `steps` | Gauss-Newton steps within the limits, each a quadratic program |
-//! | `stages` | runs in shorter pieces, to be fitted first |
-//! | `solve` | from the start through the steps, or Ipopt, to the best point |
+//! | `stages` | runs in shorter pieces, or a few of them, to be fitted first |
+//! | `descent` | one solve through Ipopt, with its restarts |
+//! | `solve` | from the start through the stages to an optimum that was checked |
 //! | `subspace` | directions that constraints leave free |
 //! | `covariance` | covariances, and what the data do not determine |
 //! | `doubts` | what residuals say against a fit: model error, windows too long, residuals alike |
@@ -25,23 +27,27 @@ pub mod cost;
 #[cfg(feature = "ipopt")]
 mod covariance;
 #[cfg(feature = "ipopt")]
+mod curvature;
+#[cfg(feature = "ipopt")]
+mod descent;
+#[cfg(feature = "ipopt")]
 mod doubts;
 mod error;
 #[cfg(feature = "ipopt")]
 mod evaluations;
 #[cfg(feature = "ipopt")]
+mod limits;
+#[cfg(feature = "ipopt")]
 pub mod multistart;
 #[cfg(feature = "ipopt")]
-mod problem;
+mod objective;
 #[cfg(feature = "ipopt")]
-mod quadratic_program;
+mod problem;
 mod settings;
 #[cfg(feature = "ipopt")]
 mod solve;
 #[cfg(feature = "ipopt")]
 mod stages;
-#[cfg(feature = "ipopt")]
-mod steps;
 #[cfg(feature = "ipopt")]
 mod subspace;
 #[cfg(feature = "ipopt")]

@@ -1,12 +1,14 @@
 //! A fit as the nonlinear program that Ipopt is given: scaled parameters, cost plus priors, linear constraints.
-//! It decides nothing about what is fitted and reports nothing: it translates, and remembers what evaluations share.
+//! It decides nothing about what is fitted and reports nothing: it translates, keeps the best feasible point and minds the limits.
 
 use super::constraints::Row;
 use super::cost::Quadratic;
+use super::curvature::{Curvature, Local};
 use super::evaluations::Evaluations;
+use super::limits::Watch;
 use super::settings::Hessian;
 use super::task::Task;
-use crate::ipopt::{IterationReport, Nlp};
+use crate::ipopt::{IterationReport, Multipliers, Nlp};
 use crate::model::Model;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
@@ -69,52 +71,97 @@ pub(super) struct Point {
     pub total: f64,
 }
 
-/// The program in `z = p / scale`, with each constraint row divided by its size over a change of one scale.
-pub(super) struct Problem<'a, 'f> {
-    pub task: &'a Task<'a>,
-    /// The cost that is minimised: the task's, or that of its runs cut into shorter pieces.
+/// The units that a program is solved in.
+#[derive(Clone)]
+pub(super) struct Scaling {
+    /// One unit of each variable, in the parameter's own unit.
+    pub scales: Vec<f64>,
+    /// Size of each constraint row over a change of one unit in every variable.
+    pub sizes: Vec<f64>,
+}
+
+impl Scaling {
+    /// The scaling by these units.
+    pub fn of(scales: Vec<f64>, rows: &[Row]) -> Self {
+        Self { sizes: rows.iter().map(|row| row.size(&scales)).collect(), scales }
+    }
+}
+
+/// What is minimised, and in which way.
+#[derive(Clone, Copy)]
+pub(super) struct Stage<'a> {
+    /// The objective that is minimised: the task's, or that of its runs cut into shorter pieces.
     pub evaluations: &'a Evaluations<'a>,
     pub priors: &'a Priors,
+    pub scaling: &'a Scaling,
+    pub hessian: Hessian,
+    pub tolerance: f64,
+    pub max_iterations: usize,
+    /// How often the solver may start again from a better point that it left.
+    pub restarts: usize,
+}
+
+impl Stage<'_> {
+    /// Value at a point, priors included.
+    pub fn total(&self, p: &[f64]) -> Option<f64> {
+        Some(self.evaluations.value(p)? + self.priors.value(p))
+    }
+
+    /// Value, gradient and Gauss-Newton matrix at a point as the solver counts them, priors included.
+    pub fn local(&self, p: &[f64]) -> Option<Local> {
+        let quadratic = self.evaluations.quadratic(p)?;
+        let (mut gradient, mut matrix) = (quadratic.gradient.clone(), quadratic.gauss_newton.clone());
+        self.priors.add_gradient(p, &mut gradient);
+        self.priors.add_hessian(&mut matrix);
+        let (n, scales, factor) = (p.len(), &self.scaling.scales, self.evaluations.objective.factor());
+        Some(Local {
+            z: DVector::from_fn(n, |j, _| p[j] / scales[j]),
+            value: factor * (quadratic.value + self.priors.value(p)),
+            gradient: DVector::from_fn(n, |j, _| factor * gradient[j] * scales[j]),
+            gauss_newton: DMatrix::from_fn(n, n, |i, j| factor * matrix[(i, j)] * scales[i] * scales[j]),
+        })
+    }
+}
+
+/// The program in `z = p / scale`, with each constraint row divided by its size over a change of one scale.
+pub(super) struct Problem<'a, 'f, 'w> {
+    pub task: &'a Task<'a>,
+    pub stage: Stage<'a>,
     /// Start, in the parameters' own units.
     pub start: &'a [f64],
-    /// Factor from cost to the solver's objective: one over the mean number of samples of a run, so that it is of order one.
-    pub factor: f64,
+    /// Multipliers to start with.
+    pub multipliers: Option<Multipliers>,
+    pub curvature: &'f mut Curvature,
+    pub watch: &'f mut Watch<'w>,
     pub progress: &'f mut dyn FnMut(&Progress) -> bool,
     /// The best feasible point of all that were evaluated.
     pub best: Option<Point>,
-    /// Number of points evaluated.
-    pub evaluated: usize,
+    /// Trial points of the last line search.
+    pub trials: usize,
 }
 
-impl<'a, 'f> Problem<'a, 'f> {
-    pub fn new(
-        task: &'a Task<'a>,
-        evaluations: &'a Evaluations<'a>,
-        priors: &'a Priors,
-        start: &'a [f64],
-        progress: &'f mut dyn FnMut(&Progress) -> bool,
-    ) -> Self {
-        let factor = evaluations.cost.runs() as f64 / evaluations.cost.samples().max(1) as f64;
-        Self { task, evaluations, priors, start, factor, progress, best: None, evaluated: 0 }
-    }
-
+impl Problem<'_, '_, '_> {
     /// A point in the parameters' own units; the start without the rounding of scaling there and back.
     pub fn unscaled(&self, z: &[f64]) -> Vec<f64> {
         let unscaled = |((z, scale), start): ((&f64, &f64), &f64)| if *z == start / scale { *start } else { z * scale };
-        z.iter().zip(&self.task.scales).zip(self.start).map(unscaled).collect()
+        z.iter().zip(&self.stage.scaling.scales).zip(self.start).map(unscaled).collect()
+    }
+
+    fn factor(&self) -> f64 {
+        self.stage.evaluations.objective.factor()
     }
 
     /// Value and gradient of the data's part at a point, with the Gauss-Newton matrix where the solver wants it.
     fn quadratic(&self, p: &[f64]) -> Option<Rc<Quadratic>> {
-        match self.task.settings.hessian {
-            Hessian::GaussNewton => self.evaluations.quadratic(p),
-            Hessian::Exact | Hessian::LimitedMemory => self.evaluations.with_gradient(p),
+        match self.stage.hessian {
+            Hessian::GaussNewton => self.stage.evaluations.quadratic(p),
+            Hessian::Exact | Hessian::LimitedMemory => self.stage.evaluations.with_gradient(p),
         }
     }
 
     /// The constraint rows with their sizes.
     fn rows(&self) -> impl Iterator<Item = (&Row, f64)> {
-        self.task.rows.iter().zip(self.task.sizes.iter().copied())
+        self.task.rows.iter().zip(self.stage.scaling.sizes.iter().copied())
     }
 
     fn keep_if_best(&mut self, p: Vec<f64>, total: f64) {
@@ -122,11 +169,24 @@ impl<'a, 'f> Problem<'a, 'f> {
             self.best = Some(Point { p: self.task.within_bounds(&p), total });
         }
     }
+
+    /// The matrix of second derivatives as the solver counts them.
+    fn matrix(&mut self, p: &[f64]) -> Option<DMatrix<f64>> {
+        if self.stage.hessian != Hessian::Exact {
+            let local = self.stage.local(p)?;
+            return Some(self.curvature.at(local, self.trials));
+        }
+        let mut matrix = self.stage.evaluations.objective.hessian(p)?;
+        self.stage.priors.add_hessian(&mut matrix);
+        let scales = &self.stage.scaling.scales;
+        let factor = self.factor();
+        Some(DMatrix::from_fn(p.len(), p.len(), |i, j| factor * matrix[(i, j)] * scales[i] * scales[j]))
+    }
 }
 
-impl Nlp for Problem<'_, '_> {
+impl Nlp for Problem<'_, '_, '_> {
     fn variables(&self) -> usize {
-        self.task.scales.len()
+        self.stage.scaling.scales.len()
     }
 
     fn constraints(&self) -> usize {
@@ -134,7 +194,7 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn variable_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
-        for (j, ((lo, hi), scale)) in self.task.bounds.iter().zip(&self.task.scales).enumerate() {
+        for (j, ((lo, hi), scale)) in self.task.bounds.iter().zip(&self.stage.scaling.scales).enumerate() {
             (lower[j], upper[j]) = (lo / scale, hi / scale);
         }
     }
@@ -146,41 +206,42 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn start(&self, z: &mut [f64]) {
-        for (z, (p, scale)) in z.iter_mut().zip(self.start.iter().zip(&self.task.scales)) {
+        for (z, (p, scale)) in z.iter_mut().zip(self.start.iter().zip(&self.stage.scaling.scales)) {
             *z = p / scale;
         }
     }
 
+    fn multipliers(&self) -> Option<Multipliers> {
+        self.multipliers.clone()
+    }
+
     fn objective(&mut self, z: &[f64]) -> Option<f64> {
-        self.evaluated += 1;
         let p = self.unscaled(z);
         // Without a value the solver steps back.
-        if !self.task.has_mass(&p) {
+        if !self.watch.evaluates() || !self.task.has_mass(&p) {
             return None;
         }
         // Nearly every point that is tried is accepted: its derivatives are computed with its value.
-        let value = match self.task.settings.hessian {
-            Hessian::GaussNewton => self.evaluations.quadratic(&p)?.value,
-            Hessian::Exact | Hessian::LimitedMemory => self.evaluations.value(&p)?,
-        };
-        let total = value + self.priors.value(&p);
+        let total = self.quadratic(&p)?.value + self.stage.priors.value(&p);
         self.keep_if_best(p, total);
-        Some(self.factor * total)
+        Some(self.factor() * total)
     }
 
     fn gradient(&mut self, z: &[f64], gradient: &mut [f64]) -> bool {
         let p = self.unscaled(z);
         let Some(mut total) = self.quadratic(&p).map(|q| q.gradient.clone()) else { return false };
-        self.priors.add_gradient(&p, &mut total);
-        for (j, g) in gradient.iter_mut().enumerate() {
-            *g = self.factor * total[j] * self.task.scales[j];
+        self.stage.priors.add_gradient(&p, &mut total);
+        let factor = self.factor();
+        for ((g, total), scale) in gradient.iter_mut().zip(total.iter()).zip(&self.stage.scaling.scales) {
+            *g = factor * total * scale;
         }
         true
     }
 
     fn constraint_values(&mut self, z: &[f64], values: &mut [f64]) -> bool {
+        let scales = &self.stage.scaling.scales;
         for (value, (row, size)) in values.iter_mut().zip(self.rows()) {
-            let linear: f64 = row.coefficients.iter().zip(&self.task.scales).zip(z).map(|((a, s), z)| a * s * z).sum();
+            let linear: f64 = row.coefficients.iter().zip(scales).zip(z).map(|((a, s), z)| a * s * z).sum();
             *value = linear / size;
         }
         true
@@ -197,7 +258,7 @@ impl Nlp for Problem<'_, '_> {
     fn jacobian_values(&mut self, _z: &[f64], values: &mut [f64]) -> bool {
         let mut values = values.iter_mut();
         for (row, size) in self.rows() {
-            let nonzero = row.coefficients.iter().zip(&self.task.scales).filter(|(a, _)| **a != 0.0);
+            let nonzero = row.coefficients.iter().zip(&self.stage.scaling.scales).filter(|(a, _)| **a != 0.0);
             for ((a, scale), value) in nonzero.zip(&mut values) {
                 *value = a * scale / size;
             }
@@ -206,30 +267,28 @@ impl Nlp for Problem<'_, '_> {
     }
 
     fn hessian_structure(&self) -> Vec<(usize, usize)> {
-        (0..self.task.scales.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).collect()
+        (0..self.variables()).flat_map(|i| (0..=i).map(move |j| (i, j))).collect()
     }
 
     fn hessian_values(&mut self, z: &[f64], factor: f64, _multipliers: &[f64], values: &mut [f64]) -> bool {
         let p = self.unscaled(z);
-        let matrix = match self.task.settings.hessian {
-            Hessian::Exact => self.evaluations.cost.hessian(&p),
-            _ => self.quadratic(&p).map(|q| q.gauss_newton.clone()),
-        };
-        let Some(mut matrix) = matrix else { return false };
-        self.priors.add_hessian(&mut matrix);
+        let Some(matrix) = self.matrix(&p) else { return false };
         for ((i, j), value) in self.hessian_structure().into_iter().zip(values) {
-            *value = factor * self.factor * matrix[(i, j)] * self.task.scales[i] * self.task.scales[j];
+            *value = factor * matrix[(i, j)];
         }
         true
     }
 
     fn iteration(&mut self, report: &IterationReport) -> bool {
-        (self.progress)(&Progress {
+        self.trials = report.trials;
+        let cost = report.objective / self.factor();
+        let wanted = (self.progress)(&Progress {
             iteration: report.iteration,
-            cost: report.objective / self.factor,
+            cost,
             violation: report.inf_pr,
             optimality: report.inf_du,
             best: self.best.as_ref().map(|best| best.p.as_slice()),
-        })
+        });
+        self.watch.goes_on(report, wanted)
     }
 }

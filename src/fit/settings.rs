@@ -35,8 +35,12 @@ pub struct FitSettings {
     pub history: usize,
     /// Optimality tolerance of the solver.
     pub tolerance: f64,
-    /// Iterations after which to give up.
+    /// Iterations of the solver after which a fit ends, over all its solves.
     pub max_iterations: usize,
+    /// Evaluations of the objective after which a fit ends, over all its solves.
+    pub max_evaluations: usize,
+    /// Time after which a fit ends \[s\].
+    pub max_seconds: f64,
     /// Newton steps within the active constraints after the solver, which end the barrier's last small bias; 0 for none.
     pub polish_steps: usize,
     /// r_max of the cost \[rad/s\].
@@ -62,7 +66,9 @@ impl Default for FitSettings {
             hessian: Hessian::default(),
             history: DEFAULT_HISTORY,
             tolerance: 1e-8,
-            max_iterations: 500,
+            max_iterations: 1000,
+            max_evaluations: 5000,
+            max_seconds: 3600.0,
             polish_steps: 10,
             max_yaw_rate: 0.0314,
             correlated_samples: 1.0,
@@ -80,6 +86,8 @@ impl Limited for FitSettings {
         counted("history", self.history, &(1..=10_000), "steps that the limited-memory Hessian remembers")?;
         within("tolerance", self.tolerance, &(1e-15..=1.0), "the optimality tolerance of the solver")?;
         counted("max_iterations", self.max_iterations, &(1..=1_000_000), "iterations of the solver")?;
+        counted("max_evaluations", self.max_evaluations, &(1..=10_000_000), "evaluations of the objective")?;
+        within("max_seconds", self.max_seconds, &(1e-3..=1e9), "a time in s")?;
         counted("polish_steps", self.polish_steps, &(0..=1000), "Newton steps after the solver")?;
         within("max_yaw_rate", self.max_yaw_rate, &(1e-6..=10.0), "a yaw rate in rad/s, as the ship turns at most")?;
         within("correlated_samples", self.correlated_samples, &(1.0..=1e6), "samples that count as one")?;

@@ -1,95 +1,75 @@
-//! From the start of a fit to the best point that was evaluated, with the priors weighed anew between solves.
+//! From the start of a fit through its stages to an optimum that was checked, with the priors weighed anew between solves.
 //! It says where the fit ended and what stopped it; how sure the estimates are is the work of `covariance`.
 //!
-//! With the Gauss-Newton matrix a fit is solved by steps within its limits (see `steps`), which take the fewest evaluations. Ipopt
-//! solves what these do not: with another Hessian, and where they find no optimum. What keeps a solve from ending above its
-//! start:
-//!
-//! - A trial point that cannot be simulated, or whose mass matrix cannot be inverted, has no value: the solver steps back.
-//! - Where hull coefficients are free, Ipopt's barrier begins small beside the objective. Its own start (a barrier parameter of
-//!   1 against a cost of 0.02 a sample) lets the barrier of a one-sided limit, such as R >= 0, push the parameters away to
-//!   where no trajectory is followed; from there the way back is not found. The barrier parameter then only falls
-//!   (`monotone`), so that each step must lower the cost. Without hull coefficients Ipopt's adaptive barrier takes fewer
-//!   iterations.
-//! - The best feasible point of all of Ipopt's evaluations is kept; it starts again from it where it ended elsewhere.
-//! - Where hull coefficients are free, shorter pieces of the runs are fitted first; of many runs, a few (see `stages`).
+//! Shorter pieces of the runs are fitted first where errors grow too fast for whole runs; of many runs, a few (see `stages`).
+//! An optimum is only called one after a second solve from a disturbed point near it, by another Hessian (limited memory), found
+//! no lower cost; where it does find one, the fit goes on from there.
 
 use super::constraints::Row;
 use super::cost::Cost;
+use super::curvature::{Curvature, Local};
+use super::descent::{BETTER, Descent, From, Shared, Work};
 use super::error::FitError;
 use super::evaluations::Evaluations;
-use super::problem::{Point, Priors, Problem, Progress};
-use super::settings::Hessian;
+use super::limits::Watch;
+use super::problem::{Priors, Progress, Scaling, Stage};
+use super::settings::{FitSettings, Hessian};
 use super::stages::{self, Sample};
-use super::steps::{Residual, Walk};
 use super::subspace::inverse;
 use super::task::{ActiveSet, Task};
-use crate::ipopt::{self, Counts, HessianMode, IpoptError, OptionValue, Options, Solution, Status};
-use crate::recording::Runs;
+use crate::ipopt::{Multipliers, Status};
+use crate::recording::{RunStore, Runs};
+use crate::state::STATES;
 use nalgebra::{DMatrix, DVector};
-
-/// How often the solver starts again from a better point that it left.
-const RESTARTS: usize = 3;
-
-/// Share of the cost by which a point must be better for the solver to start again from it: less is rounding, or the kinks of
-/// a cost whose terms take absolute values.
-const BETTER: f64 = 1e-4;
-
-/// Share of the cost below which the solver's own answer is as good as the best point.
-const SAME: f64 = 1e-9;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 
 /// Share of the weight of the priors below which a change of it changes nothing.
 const SAME_WEIGHT: f64 = 1e-3;
 
-/// Barrier parameter at the start over the objective there. A thousand constraints then weigh about as much as the cost.
-const BARRIER_SHARE: f64 = 1e-3;
-
 /// Share of the cost that its rounding may hide.
 const ROUNDING: f64 = 1e-12;
 
-/// Iterations of a fit to shorter pieces, and its tolerance: it only has to bring the fit near.
+/// How often the solver starts again from a better point that it left.
+const RESTARTS: usize = 3;
+
+/// Iterations of a fit to shorter pieces or to a few runs, and its tolerance: it only has to bring the fit near.
 const STAGE_ITERATIONS: usize = 100;
 const STAGE_TOLERANCE: f64 = 1e-6;
+
+/// Distance from a limit, in units of its size, at which a point touches it.
+const TOUCH: f64 = 1e-6;
+
+/// The check of an optimum: its seed, the rise of the cost by the disturbance as a share of the cost, the largest change of a parameter
+/// in units of its scale, the share of the way to the nearest limit, iterations of the second solve, and the share of what it looks for that
+/// its tolerance leaves: in units of unit curvature a gradient g promises g^2/2.
+const CHECK_SEED: u64 = 20_261_126;
+const CHECK_RISE: f64 = 0.05;
+const CHECK_REACH: f64 = 0.5;
+const CHECK_ROOM: f64 = 0.9;
+const CHECK_ITERATIONS: usize = 50;
+const CHECK_LEFT: f64 = 1e-4;
+
+/// Objective, as the solver counts it, below which nothing is left to be found: 1e-6 of what residuals are measured in.
+const NOTHING_LEFT: f64 = 1e-12;
 
 /// Where a fit ended.
 pub(super) struct End {
     pub p: Vec<f64>,
     pub priors: Priors,
-    /// Whether `p` is the solver's optimum.
+    /// Whether `p` is the solver's optimum, and no lower cost was found near it.
     pub converged: bool,
     /// How the fit ended, in words.
     pub words: String,
+    /// The solver's own word for it.
+    pub solver: &'static str,
+    /// How often an optimum was checked by a second solve, and how many of these found a lower cost.
+    pub checks: [usize; 2],
     pub work: Work,
     pub active: ActiveSet,
     /// Parts into which runs were cut for the first stage; 1 without stages.
     pub parts: usize,
-}
-
-/// What the solver took.
-#[derive(Default)]
-pub(super) struct Work {
-    pub iterations: usize,
-    pub counts: Counts,
-}
-
-/// Where one solve, with its restarts, ended.
-struct Descent {
-    p: Vec<f64>,
-    status: Status,
-    /// What holds `p` back, where it is the solver's optimum.
-    active: Option<ActiveSet>,
-    /// Ipopt's last answer, to say what it could not satisfy.
-    last: Option<Solution>,
-    evaluated: usize,
-}
-
-/// How Ipopt is set out.
-#[derive(Clone, Copy, PartialEq)]
-enum Way {
-    /// From a point far from the optimum.
-    Whole,
-    /// From a point near the optimum.
-    Again,
 }
 
 /// A step in scaled parameters, and by how much a quadratic model of the cost expects it to fall.
@@ -98,43 +78,43 @@ struct NewtonStep {
     gain: f64,
 }
 
-/// What one run of Ipopt left.
-struct Attempt {
-    status: Status,
-    solution: Option<Solution>,
-    /// Where it ended, put back within the bounds.
-    at: Option<Vec<f64>>,
-    /// The best feasible point it met.
-    best: Option<Point>,
-    evaluated: usize,
-}
-
-/// What is solved: a cost over runs, and where from.
-struct Stage<'a> {
-    evaluations: &'a Evaluations<'a>,
-    tolerance: f64,
-    max_iterations: usize,
-    /// Whether the start is near the optimum: the barrier then starts lower still, and the bounds do not push the start away.
-    near: bool,
-}
-
 impl Task<'_> {
-    /// Solves in stages, and where there are priors solves again with their weight set by the residuals just found.
+    /// Solves in stages and checks the optimum.
     pub fn solve(&self, progress: &mut dyn FnMut(&Progress) -> bool) -> Result<End, FitError> {
-        let mut work = Work::default();
-        let (parts, from) = self.approach(&mut work, progress)?;
-        let settings = self.settings;
-        let mut stage = Stage {
-            evaluations: &self.evaluations,
-            tolerance: settings.tolerance,
-            max_iterations: settings.max_iterations,
-            near: false,
-        };
+        let mut shared =
+            Shared { watch: Watch::new(self.settings, self.cost.ranks()), work: Work::default(), progress };
+        let (parts, from, multipliers) = self.approach(&mut shared)?;
         let mut priors = Priors::of(self.model);
-        let rounds = if priors.terms.is_empty() { 1 } else { 1 + settings.prior_updates };
+        let mut curvature = Curvature::unknown(from.len());
+        let mut end = self.weighed(&from, multipliers, &mut priors, &mut curvature, &mut shared)?;
+        let (mut checks, mut is_checked) = ([0, 0], false);
+        while end.may_be_minimum() && !shared.watch.is_over() {
+            let lower = self.lower_nearby(&end, &priors, checks[0], &mut shared)?;
+            checks[0] += 1;
+            let Some(lower) = lower else {
+                is_checked = true;
+                break;
+            };
+            checks[1] += 1;
+            let on = self.weighed(&lower, None, &mut priors, &mut curvature, &mut shared)?;
+            end = Descent { evaluated: end.evaluated + on.evaluated, ..on };
+        }
+        self.check_feasible(&end)?;
+        Ok(self.settle(end, is_checked, priors, shared.work, parts, checks))
+    }
+
+    /// Solves, and where there are priors solves again with their weight set by the residuals just found.
+    fn weighed(
+        &self,
+        from: &[f64],
+        mut multipliers: Option<Multipliers>,
+        priors: &mut Priors,
+        curvature: &mut Curvature,
+        shared: &mut Shared,
+    ) -> Result<Descent, FitError> {
+        let rounds = if priors.terms.is_empty() { 1 } else { 1 + self.settings.prior_updates };
         let mut end: Option<Descent> = None;
-        let mut p = from;
-        let mut residual = Residual::unknown(p.len());
+        let mut p = from.to_vec();
         for _ in 0..rounds {
             let value = self.evaluations.value(&p).ok_or_else(|| self.diverged())?;
             let weight = self.weight(self.cost, value);
@@ -142,57 +122,172 @@ impl Task<'_> {
                 break;
             }
             priors.weight = weight;
-            let descent = self.descend(&stage, &p, &priors, &mut residual, &mut work, progress)?;
+            let stage = self.stage(&self.evaluations, priors);
+            let from = From { p: &p, near: multipliers.is_some(), multipliers };
+            let descent = self.descend(&stage, from, curvature, shared)?;
             p.clone_from(&descent.p);
-            stage.near = descent.active.is_some();
+            multipliers = descent.optimum.as_ref().map(|(_, multipliers)| multipliers.clone());
             end = Some(descent);
-            if !stage.near {
+            if multipliers.is_none() {
                 break;
             }
         }
-        let Some(end) = end else { return Err(FitError::NothingFree) };
-        self.check_feasible(&end)?;
-        Ok(self.settle(end, priors, work, parts))
+        end.ok_or(FitError::NothingFree)
     }
 
-    /// The start of the last stage: the fit's own start, or what fits shorter pieces or a few of the runs where that is better.
-    fn approach(
+    /// The last stage: all runs, to the tolerance of the settings.
+    fn stage<'a>(&'a self, evaluations: &'a Evaluations<'a>, priors: &'a Priors) -> Stage<'a> {
+        let FitSettings { hessian, tolerance, max_iterations, .. } = *self.settings;
+        Stage { evaluations, priors, scaling: &self.scaling, hessian, tolerance, max_iterations, restarts: RESTARTS }
+    }
+
+    /// A feasible point of lower cost that a second solve finds from a disturbed point near an optimum.
+    fn lower_nearby(
         &self,
-        work: &mut Work,
-        progress: &mut dyn FnMut(&Progress) -> bool,
-    ) -> Result<(usize, Vec<f64>), FitError> {
+        end: &Descent,
+        priors: &Priors,
+        round: usize,
+        shared: &mut Shared,
+    ) -> Result<Option<Vec<f64>>, FitError> {
+        let stage = self.stage(&self.evaluations, priors);
+        let Some(local) = stage.local(&end.p) else { return Ok(None) };
+        if local.value < NOTHING_LEFT {
+            return Ok(None);
+        }
+        // In units of each parameter's own curvature: what a limited-memory matrix begins with.
+        let most = local.gauss_newton.diagonal().max();
+        let unit = |j: usize| local.gauss_newton[(j, j)].max(ROUNDING * most).sqrt().recip().min(CHECK_REACH);
+        let units: Vec<f64> = (0..end.p.len()).map(unit).collect();
+        let directions = match &end.optimum {
+            Some((active, _)) => self.free_directions(active),
+            None => self.free_directions(&self.touched(&end.p)),
+        };
+        let disturbed = self.disturbed(&end.p, &local, &directions, &units, round);
+        let Some(disturbed) = disturbed.filter(|p| stage.total(p).is_some() && self.has_mass(p)) else {
+            return Ok(None);
+        };
+        let scales = units.iter().zip(&self.scaling.scales).map(|(unit, scale)| unit * scale).collect();
+        let scaling = Scaling::of(scales, &self.rows);
+        // Of many runs a few tell of another minimum as well; whether it is lower is a matter of all.
+        let few = self.few_runs()?;
+        let cost = match &few {
+            Some((runs, weights)) => self.cost_of(runs, weights.clone())?,
+            None => None,
+        };
+        let evaluations = cost.as_ref().map(|cost| Evaluations::of(cost));
+        let second = Stage {
+            evaluations: evaluations.as_ref().unwrap_or(stage.evaluations),
+            scaling: &scaling,
+            hessian: Hessian::LimitedMemory,
+            tolerance: (2.0 * CHECK_LEFT * BETTER * local.value).sqrt().max(stage.tolerance),
+            max_iterations: CHECK_ITERATIONS,
+            restarts: 0,
+            ..stage
+        };
+        let from = From { p: &disturbed, near: true, multipliers: None };
+        let outer = std::mem::take(&mut shared.work);
+        let found = self.descend(&second, from, &mut Curvature::unknown(end.p.len()), shared);
+        let own = std::mem::replace(&mut shared.work, outer);
+        let share = cost.as_ref().map_or(1.0, |cost| cost.samples() as f64 / self.cost.samples() as f64);
+        shared.work.join(&own, share);
+        let found = found?;
+        let (before, after) = (stage.total(&end.p), stage.total(&found.p));
+        let lower = before.zip(after).is_some_and(|(before, after)| after < before - BETTER * before.abs());
+        Ok((lower && self.is_feasible(&found.p)).then_some(found.p))
+    }
+
+    /// A point near an optimum: each parameter disturbed at random in its unit, within the directions that no active constraint blocks, so
+    /// far that the quadratic model of the cost rises by [`CHECK_RISE`], or to near the first constraint. `None` where nothing is free.
+    fn disturbed(
+        &self,
+        p: &[f64],
+        local: &Local,
+        directions: &DMatrix<f64>,
+        units: &[f64],
+        round: usize,
+    ) -> Option<Vec<f64>> {
+        let mut random = ChaCha8Rng::seed_from_u64(CHECK_SEED.wrapping_add(round as u64));
+        let mut draw = |unit: &f64| {
+            let normal: f64 = StandardNormal.sample(&mut random);
+            normal * unit
+        };
+        let drawn = DVector::from_iterator(p.len(), units.iter().map(&mut draw));
+        let step = directions * directions.tr_mul(&drawn);
+        let rise = 0.5 * (&local.gauss_newton * &step).dot(&step);
+        let wanted = (CHECK_RISE * local.value / rise).sqrt().min(CHECK_REACH / step.amax());
+        let step: Vec<f64> = step.iter().zip(&self.scaling.scales).map(|(step, scale)| step * scale).collect();
+        let length = wanted.min(CHECK_ROOM * self.room(p, &step));
+        let disturbed: Vec<f64> = p.iter().zip(&step).map(|(p, step)| p + length * step).collect();
+        (length > 0.0 && length.is_finite()).then(|| self.within_bounds(&disturbed))
+    }
+
+    /// How often a step can be made from a feasible point before it leaves a bound or constraint that it is not on already.
+    fn room(&self, p: &[f64], step: &[f64]) -> f64 {
+        let to = |value: f64, change: f64, lower: f64, upper: f64, size: f64| {
+            let room = if change > 0.0 { upper - value } else { value - lower };
+            let blind = change.abs() <= ROUNDING * size || room <= TOUCH * size;
+            if blind { f64::INFINITY } else { room / change.abs() }
+        };
+        let of_row = |(row, size): (&Row, &f64)| {
+            let change = row.value(step) - row.constant;
+            to(row.value(p), change, row.lower, row.upper, *size)
+        };
+        let of_bound =
+            |(j, (lower, upper)): (usize, &(f64, f64))| to(p[j], step[j], *lower, *upper, self.scaling.scales[j]);
+        let rows = self.rows.iter().zip(&self.scaling.sizes).map(of_row);
+        rows.chain(self.bounds.iter().enumerate().map(of_bound)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The start of the last stage: the fit's own start, or what fits shorter pieces or a few of the runs where that is better. A few of the
+    /// runs are held back by the constraints that hold back all of them: the multipliers come along.
+    fn approach(&self, shared: &mut Shared) -> Result<(usize, Vec<f64>, Option<Multipliers>), FitError> {
         let parts = stages::parts(self);
         if parts < 2 && !self.start_cost.is_finite() {
             return Err(self.diverged());
         }
         let mut p = self.start.clone();
         let mut priors = Priors::of(self.model);
+        let mut multipliers = None;
         for sample in Sample::stages(self, parts) {
             let (runs, weights) = sample.draw(self.runs, self.cost.weights())?;
-            let runs = Runs::from(&runs);
-            let cost = match Cost::weighted(self.cost.ranks(), self.model, runs, weights, self.cost_options()) {
-                // None was drawn.
-                Err(FitError::NoRuns) => continue,
-                cost => cost?,
-            };
+            let Some(cost) = self.cost_of(&runs, weights)? else { continue };
             let evaluations = Evaluations::of(&cost);
             let Some(value) = evaluations.value(&p) else { continue };
             priors.weight = self.weight(&cost, value);
+            let whole = self.stage(&evaluations, &priors);
             let stage = Stage {
-                evaluations: &evaluations,
-                tolerance: self.settings.tolerance.max(STAGE_TOLERANCE),
-                max_iterations: self.settings.max_iterations.min(STAGE_ITERATIONS),
-                near: false,
+                tolerance: whole.tolerance.max(STAGE_TOLERANCE),
+                max_iterations: whole.max_iterations.min(STAGE_ITERATIONS),
+                ..whole
             };
-            let mut own = Work::default();
-            let descent = self.descend(&stage, &p, &priors, &mut Residual::unknown(p.len()), &mut own, progress)?;
-            work.join(&own, cost.samples() as f64 / self.cost.samples() as f64);
+            let before = std::mem::take(&mut shared.work);
+            let from = From { p: &p, near: false, multipliers: None };
+            let descent = self.descend(&stage, from, &mut Curvature::unknown(p.len()), shared)?;
+            let own = std::mem::replace(&mut shared.work, before);
+            shared.work.join(&own, cost.samples() as f64 / self.cost.samples() as f64);
             p = descent.p;
-            if descent.status == Status::Stopped {
+            multipliers =
+                descent.optimum.map(|(_, multipliers)| multipliers).filter(|_| matches!(sample, Sample::Few(_)));
+            if shared.watch.is_over() {
                 break;
             }
         }
-        Ok((parts, self.better_start(p, priors)?))
+        let start = self.better_start(p.clone(), priors)?;
+        let multipliers = multipliers.filter(|_| start == p);
+        Ok((parts, start, multipliers))
+    }
+
+    /// A few of the runs with their weights, where there are many.
+    fn few_runs(&self) -> Result<Option<(RunStore, Vec<[f64; STATES]>)>, FitError> {
+        Sample::few(self).map(|sample| sample.draw(self.runs, self.cost.weights())).transpose()
+    }
+
+    /// The cost over runs that were drawn for a stage; `None` where none was.
+    fn cost_of<'r>(&'r self, runs: &'r RunStore, weights: Vec<[f64; STATES]>) -> Result<Option<Cost<'r>>, FitError> {
+        match Cost::weighted(self.cost.ranks(), self.model, Runs::from(runs), weights, self.cost_options()) {
+            Err(FitError::NoRuns) => Ok(None),
+            cost => cost.map(Some),
+        }
     }
 
     /// The better of where the stages ended and the fit's own start.
@@ -201,7 +296,7 @@ impl Task<'_> {
             return Ok(p);
         }
         priors.weight = self.weight(self.cost, self.start_cost);
-        // Where the steps begin at the end of the stages, they need the derivatives there.
+        // Where the solver begins at the end of the stages, it needs the derivatives there.
         let value = match self.settings.hessian {
             Hessian::GaussNewton => self.evaluations.quadratic(&p).map(|quadratic| quadratic.value),
             _ => self.evaluations.value(&p),
@@ -221,160 +316,38 @@ impl Task<'_> {
         self.variance_of(cost, value) * self.settings.correlated_samples / cost.runs() as f64
     }
 
-    fn options(&self, stage: &Stage, objective: f64, way: Way) -> Options {
-        let number = |name: &str, value: f64| (name.to_owned(), OptionValue::Number(value));
-        let near = stage.near || way == Way::Again;
-        let strategy = |word: &str| ("mu_strategy".to_owned(), OptionValue::Text(word.to_owned()));
-        let mut extra = vec![strategy("adaptive")];
-        if near || stages::frees_hull(self) {
-            let barrier = if near { 1e-3 * BARRIER_SHARE } else { BARRIER_SHARE };
-            extra = vec![strategy("monotone"), number("mu_init", (barrier * objective).max(0.1 * stage.tolerance))];
-        }
-        if near {
-            let pushes = ["bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"];
-            extra.extend(pushes.map(|name| number(name, 1e-8)));
-        }
-        Options {
-            tolerance: stage.tolerance,
-            max_iterations: stage.max_iterations,
-            hessian: match self.settings.hessian {
-                Hessian::LimitedMemory => HessianMode::LimitedMemory { history: self.settings.history },
-                Hessian::GaussNewton | Hessian::Exact => HessianMode::Given,
-            },
-            linear_constraints: true,
-            print: self.settings.print,
-            extra,
-            ..Options::default()
-        }
-    }
-
-    /// Solves from `from`: by Gauss-Newton steps within the limits, and through Ipopt where these find no optimum.
-    fn descend(
-        &self,
-        stage: &Stage,
-        from: &[f64],
-        priors: &Priors,
-        residual: &mut Residual,
-        work: &mut Work,
-        progress: &mut dyn FnMut(&Progress) -> bool,
-    ) -> Result<Descent, FitError> {
-        if self.settings.hessian != Hessian::GaussNewton {
-            return self.through_ipopt(stage, from, priors, work, progress);
-        }
-        let limit = (stage.tolerance, stage.max_iterations);
-        let Some(walk) = self.walk(stage.evaluations, from, priors, residual, limit, progress) else {
-            return self.through_ipopt(stage, from, priors, work, progress);
-        };
-        work.walked(&walk);
-        let Walk { status, p, evaluated, active, .. } = walk;
-        match status {
-            Status::Solved => Ok(Descent { p, status, active: Some(active), last: None, evaluated }),
-            Status::Stopped | Status::MaxIterations { .. } => {
-                Ok(Descent { p, status, active: None, last: None, evaluated })
-            }
-            _ => self.through_ipopt(stage, &p, priors, work, progress),
-        }
-    }
-
-    /// Solves through Ipopt, and again from the best feasible point where it ended above that.
-    fn through_ipopt(
-        &self,
-        stage: &Stage,
-        from: &[f64],
-        priors: &Priors,
-        work: &mut Work,
-        progress: &mut dyn FnMut(&Progress) -> bool,
-    ) -> Result<Descent, FitError> {
-        let total = |p: &[f64]| Some(stage.evaluations.value(p)? + priors.value(p));
-        let mut best = total(from).filter(|_| self.is_feasible(from)).map(|total| Point { p: from.to_vec(), total });
-        let mut start = from.to_vec();
-        let mut evaluated = 0;
-        let mut restarts = 0;
-        let mut way = Way::Whole;
-        loop {
-            let attempt = self.attempt(stage, &start, way, priors, work, progress)?;
-            evaluated += attempt.evaluated;
-            let Attempt { status, solution, at, best: found, .. } = attempt;
-            let better = found.filter(|f| best.as_ref().is_none_or(|b| f.total < b.total));
-            let improved = better
-                .as_ref()
-                .is_some_and(|f| best.as_ref().is_none_or(|b| f.total < b.total - BETTER * b.total.abs()));
-            best = better.or(best);
-            let reached = at.as_ref().and_then(|p| total(p).filter(|_| self.has_mass(p)));
-            let is_best = |value: f64| best.as_ref().is_none_or(|b| value <= b.total + BETTER * b.total.abs());
-            if let (Some(p), Some(value), Some(solution)) = (&at, reached, &solution)
-                && status.is_success()
-                && is_best(value)
-            {
-                let better = best.filter(|b| b.total < value - SAME * value.abs());
-                let p = better.map_or_else(|| p.clone(), |b| b.p);
-                let active = Some(self.active_set(&p, solution));
-                return Ok(Descent { p, status, active, last: None, evaluated });
-            }
-            let given_up = matches!(status, Status::Stopped | Status::Panicked(_) | Status::MaxIterations { .. });
-            match &best {
-                Some(best) if improved && restarts < RESTARTS && !given_up => start.clone_from(&best.p),
-                _ => {
-                    let fallback = || at.filter(|_| reached.is_some()).unwrap_or_else(|| from.to_vec());
-                    let p = best.map_or_else(fallback, |b| b.p);
-                    return Ok(Descent { p, status, active: None, last: solution, evaluated });
-                }
-            }
-            (restarts, way) = (restarts + 1, Way::Again);
-        }
-    }
-
-    /// One run of Ipopt.
-    fn attempt(
-        &self,
-        stage: &Stage,
-        start: &[f64],
-        way: Way,
-        priors: &Priors,
-        work: &mut Work,
-        progress: &mut dyn FnMut(&Progress) -> bool,
-    ) -> Result<Attempt, FitError> {
-        let mut problem = Problem::new(self, stage.evaluations, priors, start, progress);
-        let total = stage.evaluations.value(start).map(|value| value + priors.value(start));
-        let objective = problem.factor * total.unwrap_or(1.0);
-        let (status, solution) = match ipopt::solve(&mut problem, &self.options(stage, objective, way)) {
-            Ok(solution) => (solution.status.clone(), Some(solution)),
-            // The start could be evaluated, a point near it could not.
-            Err(IpoptError::NoIterate { status }) => (status, None),
-            Err(error) => return Err(error.into()),
-        };
-        if let Some(solution) = &solution {
-            work.add(solution);
-        }
-        let at = solution.as_ref().map(|s| self.within_bounds(&problem.unscaled(&s.x)));
-        Ok(Attempt { status, solution, at, best: problem.best.take(), evaluated: problem.evaluated })
-    }
-
-    fn unscaled(&self, z: &[f64]) -> Vec<f64> {
-        z.iter().zip(&self.scales).map(|(z, s)| z * s).collect()
-    }
-
     /// The better of where the solver ended and the start, with what holds it back and why it is the answer.
-    fn settle(&self, end: Descent, priors: Priors, work: Work, parts: usize) -> End {
+    fn settle(
+        &self,
+        end: Descent,
+        is_checked: bool,
+        priors: Priors,
+        work: Work,
+        parts: usize,
+        checks: [usize; 2],
+    ) -> End {
         let here = self.evaluations.value(&end.p).map_or(f64::INFINITY, |value| value + priors.value(&end.p));
         let there = self.start_cost + priors.value(&self.start);
         let start_is_better = there < here - BETTER * here.abs() && self.is_feasible(&self.start);
+        let converged = is_checked && !start_is_better;
+        let is_optimum = end.optimum.is_some();
         let p = if start_is_better { self.start.clone() } else { end.p };
-        let active = end.active.filter(|_| !start_is_better);
-        let words = match &active {
-            Some(_) => end.status.to_string(),
-            None if start_is_better || p == self.start => format!(
-                "no point better than the start was found in {} evaluations, and the start is returned; the solver says: {}",
-                end.evaluated, end.status
-            ),
-            None => format!(
-                "the best feasible point of {} evaluations is returned, which the solver does not hold for an optimum; it says: {}",
-                end.evaluated, end.status
-            ),
+        let active = end.optimum.map(|(active, _): (ActiveSet, Multipliers)| active).filter(|_| !start_is_better);
+        let says = end.stop.map_or_else(|| end.status.to_string(), |stop| stop.to_string());
+        let words = if converged && is_optimum {
+            end.status.to_string()
+        } else if converged {
+            "solved: no step lowers the cost, whose slope jumps there".to_owned()
+        } else if start_is_better || p == self.start {
+            format!(
+                "no point better than the start was found in {} evaluations, and the start is returned; {says}",
+                end.evaluated
+            )
+        } else {
+            format!("the best feasible point of {} evaluations is returned; {says}", end.evaluated)
         };
-        let converged = active.is_some();
         let active = active.unwrap_or_else(|| self.touched(&p));
-        End { converged, words, p, priors, work, active, parts }
+        End { converged, words, solver: end.status.name(), checks, p, priors, work, active, parts }
     }
 
     /// Infeasibility is an error where it is the constraints' own: they are linear, so that Ipopt's word is final.
@@ -382,8 +355,11 @@ impl Task<'_> {
         if !matches!(end.status, Status::Infeasible | Status::RestorationFailed) || self.is_feasible(&end.p) {
             return Ok(());
         }
-        let p = end.last.as_ref().map_or_else(|| end.p.clone(), |s| self.within_bounds(&self.unscaled(&s.x)));
-        let broken = |i: usize| self.rows[i].violation(&p) / self.sizes[i];
+        let p = end.last.as_ref().map_or_else(
+            || end.p.clone(),
+            |s| self.within_bounds(&s.x.iter().zip(&self.scaling.scales).map(|(z, s)| z * s).collect::<Vec<_>>()),
+        );
+        let broken = |i: usize| self.rows[i].violation(&p) / self.scaling.sizes[i];
         let worst = (0..self.rows.len()).max_by(|a, b| broken(*a).total_cmp(&broken(*b)));
         match worst {
             Some(worst) if broken(worst) > 1e-6 => {
@@ -394,41 +370,18 @@ impl Task<'_> {
         }
     }
 
-    /// What holds the solution back: the multiplier exceeds the distance from the limit, both in solver units.
-    fn active_set(&self, p: &[f64], solution: &Solution) -> ActiveSet {
-        let least = 1e3 * self.settings.tolerance * self.settings.tolerance.min(1e-3);
-        let is_active = |multiplier: f64, slack: f64| multiplier.abs() > slack.abs().max(least);
-        let multipliers = solution.constraint_multipliers.iter().enumerate();
-        let rows = multipliers.filter(|(i, multiplier)| {
-            let row = &self.rows[*i];
-            let value = row.value(p);
-            let slack = (value - row.lower).abs().min((row.upper - value).abs()) / self.sizes[*i];
-            is_active(**multiplier, slack)
-        });
-        let mut bounds = Vec::new();
-        for (j, (lower, upper)) in self.bounds.iter().enumerate() {
-            if is_active(solution.lower_bound_multipliers[j], (p[j] - lower) / self.scales[j]) {
-                bounds.push((j, "lower"));
-            } else if is_active(solution.upper_bound_multipliers[j], (upper - p[j]) / self.scales[j]) {
-                bounds.push((j, "upper"));
-            }
-        }
-        ActiveSet { rows: rows.map(|(i, _)| i).collect(), bounds }
-    }
-
     /// Rows and bounds that a point touches, where no multipliers say which of them hold it back.
     fn touched(&self, p: &[f64]) -> ActiveSet {
-        const TOUCH: f64 = 1e-6;
         let touches = |i: &usize| {
             let row = &self.rows[*i];
             let value = row.value(p);
-            (value - row.lower).abs().min((row.upper - value).abs()) <= TOUCH * self.sizes[*i]
+            (value - row.lower).abs().min((row.upper - value).abs()) <= TOUCH * self.scaling.sizes[*i]
         };
         let mut bounds = Vec::new();
         for (j, (lower, upper)) in self.bounds.iter().enumerate() {
-            if (p[j] - lower).abs() <= TOUCH * self.scales[j] {
+            if (p[j] - lower).abs() <= TOUCH * self.scaling.scales[j] {
                 bounds.push((j, "lower"));
-            } else if (upper - p[j]).abs() <= TOUCH * self.scales[j] {
+            } else if (upper - p[j]).abs() <= TOUCH * self.scaling.scales[j] {
                 bounds.push((j, "upper"));
             }
         }
@@ -448,10 +401,12 @@ impl Task<'_> {
         };
         let start = self.start_cost + end.priors.value(&self.start);
         for _ in 0..self.settings.polish_steps {
-            let moved: Vec<f64> = (0..end.p.len()).map(|j| end.p[j] + step.direction[j] * self.scales[j]).collect();
+            let moved: Vec<f64> =
+                (0..end.p.len()).map(|j| end.p[j] + step.direction[j] * self.scaling.scales[j]).collect();
             let inside = |(j, p): (usize, &f64)| *p >= self.bounds[j].0 && *p <= self.bounds[j].1;
             let broken = |(row, size): (&Row, &f64)| row.violation(&moved) > row.violation(&end.p) + 1e-9 * size;
-            let outside = !moved.iter().enumerate().all(inside) || self.rows.iter().zip(&self.sizes).any(broken);
+            let outside =
+                !moved.iter().enumerate().all(inside) || self.rows.iter().zip(&self.scaling.sizes).any(broken);
             if outside || !self.has_mass(&moved) || step.gain <= f64::EPSILON * best {
                 return;
             }
@@ -481,37 +436,5 @@ impl Task<'_> {
         let gradient = self.scaled_vector(&gradient);
         let direction = -(inverse(&self.scaled(&hessian), directions).matrix * &gradient);
         Some(NewtonStep { gain: -0.5 * direction.dot(&gradient), direction })
-    }
-}
-
-impl Work {
-    /// Adds the work of a stage, its evaluations by the share of all samples that each of them took.
-    fn join(&mut self, stage: &Self, share: f64) {
-        self.iterations += stage.iterations;
-        let part = |count: usize| (share.min(1.0) * count as f64).ceil() as usize;
-        let (sum, counts) = (&mut self.counts, &stage.counts);
-        sum.objective += part(counts.objective);
-        sum.gradient += part(counts.gradient);
-        sum.constraints += counts.constraints;
-        sum.jacobian += counts.jacobian;
-        sum.hessian += part(counts.hessian);
-    }
-
-    fn walked(&mut self, walk: &Walk) {
-        self.iterations += walk.steps;
-        let counts = &mut self.counts;
-        for count in [&mut counts.objective, &mut counts.gradient, &mut counts.hessian] {
-            *count += walk.evaluated;
-        }
-    }
-
-    fn add(&mut self, solution: &Solution) {
-        self.iterations += solution.iterations;
-        let (sum, counts) = (&mut self.counts, &solution.counts);
-        sum.objective += counts.objective;
-        sum.gradient += counts.gradient;
-        sum.constraints += counts.constraints;
-        sum.jacobian += counts.jacobian;
-        sum.hessian += counts.hessian;
     }
 }

@@ -1,7 +1,7 @@
 //! Stages of a fit: what is fitted before all whole runs, so that the fit to these begins nearer. It cuts and draws runs; what is
 //! done with them is the work of `solve`.
 //!
-//! Where hull coefficients are free, runs are cut into shorter pieces, each started from its own measured state.
+//! Where errors of the start grow fast, runs are cut into shorter pieces, each started from its own measured state.
 //! The cost of a run simulated in open loop has one basin near the ship and many far from it: a hull coefficient that is wrong
 //! by a third turns the simulated ship out of step with the recorded one, and from there on its track says nothing of which way
 //! to go. Over a shorter piece the same error has not grown yet. So the shortest pieces over which errors grow no faster than
@@ -43,14 +43,14 @@ pub(super) enum Sample {
 impl Sample {
     /// The stages before the fit to all whole runs, where the first cuts them into `parts`.
     pub fn stages(task: &Task, parts: usize) -> Vec<Self> {
+        if parts > 1 { falling(parts).map(Self::Pieces).collect() } else { Self::few(task).into_iter().collect() }
+    }
+
+    /// A few of the runs, where there are many and a fit takes steps that few of them tell as well as all.
+    pub fn few(task: &Task) -> Option<Self> {
         let runs = task.cost.runs();
-        if parts > 1 {
-            falling(parts).map(Self::Pieces).collect()
-        } else if runs >= MANY_RUNS && task.settings.hessian == Hessian::GaussNewton {
-            vec![Self::Few(runs / (runs / FEW_SHARE).max(FEW_RUNS))]
-        } else {
-            Vec::new()
-        }
+        let many = runs >= MANY_RUNS && task.settings.hessian == Hessian::GaussNewton;
+        many.then(|| Self::Few(runs / (runs / FEW_SHARE).max(FEW_RUNS)))
     }
 
     /// The runs of the stage with the weights of their whole run.
@@ -65,12 +65,9 @@ impl Sample {
     }
 }
 
-/// Number of parts of the first stage of a fit, 1 for no stages: where hull coefficients are free, which decide whether the
-/// ship holds its course, the fewest parts over which the errors of the start grow no faster than linearly.
+/// Number of parts of the first stage of a fit, 1 for no stages: the fewest parts over which the errors of the start grow no faster than
+/// linearly.
 pub(super) fn parts(task: &Task) -> usize {
-    if !frees_hull(task) {
-        return 1;
-    }
     let longest = task.runs.iter().map(|r| r.measured.len().saturating_sub(1)).max().unwrap_or(0);
     let longest = task.cost.ranks().largest(&[longest as f64])[0] as usize;
     let cost = |parts: usize| {
@@ -91,11 +88,6 @@ pub(super) fn parts(task: &Task) -> usize {
         (parts, here) = (2 * parts, halves);
     }
     parts
-}
-
-/// Whether a hull coefficient is free.
-pub(super) fn frees_hull(task: &Task) -> bool {
-    task.cost.free().iter().any(|i| task.model.parameters[*i].name.starts_with("hull."))
 }
 
 /// The numbers of parts of the stages before the whole runs: `parts`, then half as many, down to 2.

@@ -6,7 +6,7 @@ use super::covariance::{Covariance, CovarianceKind, Covariances, in_words};
 use super::doubts::{Doubt, ResidualStatistics, headline};
 use super::error::FitError;
 use super::problem::Progress;
-use super::settings::FitSettings;
+use super::settings::{FitSettings, Hessian};
 use super::solve::End;
 use super::subspace::inverse;
 use super::task::Task;
@@ -72,6 +72,12 @@ pub struct Fit {
     pub headline: String,
     /// How it ended, in words: what stopped the solver, and whether its last point is the one returned.
     pub status: String,
+    /// The solver's own word for how its last solve ended, as Ipopt names it.
+    pub solver_status: &'static str,
+    /// Where the solver's second derivatives came from.
+    pub hessian: Hessian,
+    /// How often the optimum was checked by a second solve from a disturbed point, and how many of these found a lower cost.
+    pub checks: [usize; 2],
     /// What residuals say against taking the fit at its word.
     pub doubts: Vec<Doubt>,
     /// The statistics behind the doubts.
@@ -214,7 +220,7 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
     let model = task.model_at(&end.p);
     let statistics = ResidualStatistics::of(task, &end.p);
     let covariances = Covariances::of(task, &end, cost, statistics.likeness);
-    let doubts = statistics.doubts(&covariances, task.scales.len());
+    let doubts = statistics.doubts(&covariances, task.scaling.scales.len());
     let mut validity = Count::new(&model);
     task.runs.iter().for_each(|run| validity.add(validity::samples(&run)));
     validity.gather(task.cost.ranks());
@@ -225,6 +231,9 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
         doubts,
         residual_statistics: statistics,
         status: end.words.clone(),
+        solver_status: end.solver,
+        hessian: task.settings.hessian,
+        checks: end.checks,
         estimates: estimates(task, &end, &covariances),
         covariance_kind: covariances.kind,
         covariance: covariances.table(task, covariances.chosen()),

@@ -5,6 +5,7 @@ use super::constraints::{self, Row};
 use super::cost::{Cost, CostOptions};
 use super::error::FitError;
 use super::evaluations::Evaluations;
+use super::problem::Scaling;
 use super::settings::FitSettings;
 use super::subspace::null_space;
 use crate::model::{Model, Parameter};
@@ -28,9 +29,8 @@ pub(super) struct Task<'a> {
     pub runs: Runs<'a>,
     pub settings: &'a FitSettings,
     pub rows: Vec<Row>,
-    /// Size of each row over a change of one scale in every free parameter.
-    pub sizes: Vec<f64>,
-    pub scales: Vec<f64>,
+    /// The scales of the free parameters, and the sizes of the rows.
+    pub scaling: Scaling,
     pub bounds: Vec<(f64, f64)>,
     pub start: Vec<f64>,
     /// Cost at the start; infinite where its simulation diverges.
@@ -66,8 +66,7 @@ impl<'a> Task<'a> {
         let evaluations = Evaluations::of(cost);
         let start_cost = evaluations.value(&start).unwrap_or(f64::INFINITY);
         let scale = |p: &&Parameter| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 };
-        let scales: Vec<f64> = free.iter().map(scale).collect();
-        let sizes = rows.iter().map(|row| row.size(&scales)).collect();
+        let scaling = Scaling::of(free.iter().map(scale).collect(), &rows);
         let mut sessions: Vec<String> = if model.sessions.is_empty() {
             Vec::new()
         } else {
@@ -76,7 +75,7 @@ impl<'a> Task<'a> {
             met.into_iter().filter(|s| model.sessions.contains_key(s)).collect()
         };
         sessions.push(String::new());
-        Ok(Self { model, cost, evaluations, runs, settings, rows, sizes, scales, bounds, start, start_cost, sessions })
+        Ok(Self { model, cost, evaluations, runs, settings, rows, scaling, bounds, start, start_cost, sessions })
     }
 
     /// How costs of this task are evaluated.
@@ -118,8 +117,8 @@ impl<'a> Task<'a> {
     pub fn is_feasible(&self, p: &[f64]) -> bool {
         let inside =
             |((p, (lo, hi)), scale): ((&f64, &(f64, f64)), &f64)| *p >= lo - KEPT * scale && *p <= hi + KEPT * scale;
-        p.iter().zip(&self.bounds).zip(&self.scales).all(inside)
-            && self.rows.iter().zip(&self.sizes).all(|(row, size)| row.violation(p) <= KEPT * size)
+        p.iter().zip(&self.bounds).zip(&self.scaling.scales).all(inside)
+            && self.rows.iter().zip(&self.scaling.sizes).all(|(row, size)| row.violation(p) <= KEPT * size)
             && self.has_mass(p)
     }
 
@@ -130,7 +129,7 @@ impl<'a> Task<'a> {
 
     /// Variance of the weighted residuals of a cost, at a given value.
     pub fn variance_of(&self, cost: &Cost, value: f64) -> f64 {
-        let freedom = cost.residuals().saturating_sub(self.scales.len()).max(1);
+        let freedom = cost.residuals().saturating_sub(self.scaling.scales.len()).max(1);
         value * cost.runs() as f64 / freedom as f64
     }
 
@@ -141,10 +140,14 @@ impl<'a> Task<'a> {
 
     /// Directions in scaled parameters along which no active constraint changes.
     pub fn free_directions(&self, active: &ActiveSet) -> DMatrix<f64> {
-        let n = self.scales.len();
+        let n = self.scaling.scales.len();
         let mut normals: Vec<DVector<f64>> = Vec::new();
         for i in &active.rows {
-            let scaled = self.rows[*i].coefficients.iter().zip(&self.scales).map(|(a, s)| a * s / self.sizes[*i]);
+            let scaled = self.rows[*i]
+                .coefficients
+                .iter()
+                .zip(&self.scaling.scales)
+                .map(|(a, s)| a * s / self.scaling.sizes[*i]);
             normals.push(DVector::from_iterator(n, scaled));
         }
         for (j, _) in &active.bounds {
@@ -157,11 +160,13 @@ impl<'a> Task<'a> {
 
     /// A matrix or vector by the parameters, by the scaled parameters.
     pub fn scaled(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
-        DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)] * self.scales[i] * self.scales[j])
+        DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+            matrix[(i, j)] * self.scaling.scales[i] * self.scaling.scales[j]
+        })
     }
 
     pub fn scaled_vector(&self, vector: &DVector<f64>) -> DVector<f64> {
-        DVector::from_fn(vector.len(), |i, _| vector[i] * self.scales[i])
+        DVector::from_fn(vector.len(), |i, _| vector[i] * self.scaling.scales[i])
     }
 }
 

@@ -1,9 +1,9 @@
 //! The C interface of Ipopt: a problem of the shim, its callbacks, and the answer copied out of it.
 //! It is the only file of the project that contains `unsafe`; what is solved and what an answer is worth are decided elsewhere.
 
-use super::nlp::IterationReport;
+use super::nlp::{IterationReport, Multipliers};
 use super::options::{HessianMode, OptionValue, Options};
-use super::problem::Context;
+use super::problem::{Context, Problem};
 use super::status::{IpoptError, Status};
 use ipopt_sys as sys;
 use std::any::Any;
@@ -16,9 +16,7 @@ pub(super) struct Outcome {
     pub(super) x: Vec<f64>,
     pub(super) objective: f64,
     pub(super) constraint_values: Vec<f64>,
-    pub(super) constraint_multipliers: Vec<f64>,
-    pub(super) lower_bound_multipliers: Vec<f64>,
-    pub(super) upper_bound_multipliers: Vec<f64>,
+    pub(super) multipliers: Multipliers,
 }
 
 /// A problem of the C shim, freed when dropped.
@@ -79,7 +77,7 @@ impl Handle {
         if accepted == 0 { Err(refused()) } else { Ok(()) }
     }
 
-    fn set_all(&self, options: &Options, hessian: HessianMode) -> Result<(), IpoptError> {
+    fn set_all(&self, options: &Options, problem: &Problem) -> Result<(), IpoptError> {
         let text = |text: &str| OptionValue::Text(text.to_owned());
         let number = OptionValue::Number;
         let integer = |count: usize| OptionValue::Integer(i32::try_from(count).unwrap_or(i32::MAX));
@@ -95,9 +93,12 @@ impl Handle {
         if let Some(seconds) = options.max_cpu_seconds {
             self.set("max_cpu_time", &number(seconds))?;
         }
-        if let HessianMode::LimitedMemory { history } = hessian {
+        if let HessianMode::LimitedMemory { history } = problem.hessian_mode {
             self.set("hessian_approximation", &text("limited-memory"))?;
             self.set("limited_memory_max_history", &integer(history))?;
+        }
+        if problem.multipliers.is_some() {
+            self.set("warm_start_init_point", &text("yes"))?;
         }
         if options.linear_constraints {
             self.set("jac_c_constant", &text("yes"))?;
@@ -114,7 +115,7 @@ impl Handle {
 pub(super) fn run(context: &mut Context<'_>, options: &Options) -> Result<Outcome, IpoptError> {
     let (n, m) = (context.problem.variables(), context.problem.constraints());
     let handle = Handle::create()?;
-    handle.set_all(options, context.problem.hessian_mode)?;
+    handle.set_all(options, &context.problem)?;
 
     let user_data = (&raw mut *context).cast::<c_void>();
     // SAFETY: the problem is alive; `user_data` points to the context, which outlives the call and which nothing but the
@@ -133,9 +134,11 @@ pub(super) fn run(context: &mut Context<'_>, options: &Options) -> Result<Outcom
             x: view(result.data.x, n).to_vec(),
             objective: result.obj_val,
             constraint_values: view(result.g, m).to_vec(),
-            constraint_multipliers: view(result.data.mult_g, m).to_vec(),
-            lower_bound_multipliers: view(result.data.mult_x_L, n).to_vec(),
-            upper_bound_multipliers: view(result.data.mult_x_U, n).to_vec(),
+            multipliers: Multipliers {
+                constraints: view(result.data.mult_g, m).to_vec(),
+                lower: view(result.data.mult_x_L, n).to_vec(),
+                upper: view(result.data.mult_x_U, n).to_vec(),
+            },
         }
     };
     match &context.panic {
@@ -271,14 +274,27 @@ unsafe extern "C" fn start(
                 let x = view_mut(x, n);
                 if context.placeholder { x.fill(f64::NAN) } else { x.copy_from_slice(&context.problem.start) }
             }
-            // Wanted for the placeholder, and where an extra option asks for a warm start: Ipopt's own defaults serve.
+            // Wanted for the placeholder, and for a warm start.
+            let known = context.problem.multipliers.as_ref().filter(|_| !context.placeholder);
             if wants_bound_multipliers != 0 {
-                let multiplier = if context.placeholder { 0.0 } else { 1.0 };
-                view_mut(z_lower, n).fill(multiplier);
-                view_mut(z_upper, n).fill(multiplier);
+                let (lower, upper) = (view_mut(z_lower, n), view_mut(z_upper, n));
+                match known {
+                    Some(known) => {
+                        lower.copy_from_slice(&known.lower);
+                        upper.copy_from_slice(&known.upper);
+                    }
+                    None => {
+                        lower.fill(0.0);
+                        upper.fill(0.0);
+                    }
+                }
             }
             if wants_multipliers != 0 {
-                view_mut(lambda, m).fill(0.0);
+                let lambda = view_mut(lambda, m);
+                match known {
+                    Some(known) => lambda.copy_from_slice(&known.constraints),
+                    None => lambda.fill(0.0),
+                }
             }
             true
         })

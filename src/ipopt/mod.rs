@@ -50,7 +50,7 @@ mod status;
 mod tests;
 
 #[cfg(feature = "ipopt")]
-pub use nlp::{IterationReport, Nlp};
+pub use nlp::{IterationReport, Multipliers, Nlp};
 pub use options::{DEFAULT_HISTORY, HessianMode, OptionValue, Options};
 #[cfg(feature = "ipopt")]
 pub use problem::Counts;

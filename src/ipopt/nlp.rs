@@ -23,6 +23,12 @@ pub trait Nlp {
     /// Writes the point to start from. Ipopt first moves it strictly inside the variable bounds.
     fn start(&self, x: &mut [f64]);
 
+    /// Multipliers to start with, of a program that differs little from one that was solved: Ipopt then starts from these and
+    /// does not push the start away from its bounds. `None` where nothing is known of them.
+    fn multipliers(&self) -> Option<Multipliers> {
+        None
+    }
+
     /// The objective f(x), or `None` where it cannot be evaluated.
     fn objective(&mut self, x: &[f64]) -> Option<f64>;
 
@@ -51,6 +57,18 @@ pub trait Nlp {
     fn iteration(&mut self, _report: &IterationReport) -> bool {
         true
     }
+}
+
+/// The multipliers of a solution, as in the Lagrangian of [this module](super).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Multipliers {
+    /// lambda, one a constraint: positive where the upper bound of a constraint holds the objective back, negative where the
+    /// lower one does.
+    pub constraints: Vec<f64>,
+    /// z_lower, one a variable, not negative; 0 for a fixed variable.
+    pub lower: Vec<f64>,
+    /// z_upper, one a variable, not negative; 0 for a fixed variable.
+    pub upper: Vec<f64>,
 }
 
 /// What Ipopt tells of one iteration, under the names of the columns of its own log.

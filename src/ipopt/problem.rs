@@ -1,7 +1,7 @@
 //! The part of a program that stays fixed during a solve, checked, and the context that the callbacks work on.
 //! It calls neither Ipopt nor anything unsafe.
 
-use super::nlp::Nlp;
+use super::nlp::{Multipliers, Nlp};
 use super::options::{DEFAULT_HISTORY, HessianMode, Options};
 use super::status::IpoptError;
 
@@ -30,6 +30,8 @@ pub(super) struct Problem {
     pub(super) constraint_lower: Vec<f64>,
     pub(super) constraint_upper: Vec<f64>,
     pub(super) start: Vec<f64>,
+    /// Multipliers to start with, all of them finite and as many as there are bounds.
+    pub(super) multipliers: Option<Multipliers>,
     pub(super) jacobian: Vec<(i32, i32)>,
     /// Empty with a limited-memory Hessian.
     pub(super) hessian: Vec<(i32, i32)>,
@@ -58,6 +60,12 @@ impl Problem {
             return Err(IpoptError::Start { index, value });
         }
 
+        let fits = |w: &Multipliers| {
+            [w.constraints.len(), w.lower.len(), w.upper.len()] == [m, n, n]
+                && [&w.constraints, &w.lower, &w.upper].into_iter().all(|values| all_finite(values))
+        };
+        let multipliers = nlp.multipliers().filter(fits);
+
         let jacobian = check_structure("Jacobian", &nlp.jacobian_structure(), m, n)?;
         let (hessian, hessian_mode) = match options.hessian {
             HessianMode::Given => match check_structure("Hessian", &nlp.hessian_structure(), n, n)? {
@@ -72,6 +80,7 @@ impl Problem {
             constraint_lower,
             constraint_upper,
             start,
+            multipliers,
             jacobian,
             hessian,
             hessian_mode,

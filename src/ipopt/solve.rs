@@ -2,7 +2,7 @@
 //! What crosses into C is in `ffi`.
 
 use super::ffi::{Outcome, run};
-use super::nlp::Nlp;
+use super::nlp::{Multipliers, Nlp};
 use super::options::Options;
 use super::problem::{Context, Counts, Problem, all_finite};
 use super::status::{IpoptError, Status};
@@ -27,13 +27,8 @@ pub struct Solution {
     pub objective: f64,
     /// The constraint values at `x`.
     pub constraint_values: Vec<f64>,
-    /// lambda of the Lagrangian above (like the other multipliers 0 after a failure that left none): positive where the upper bound of a constraint holds the objective back, negative
-    /// where the lower one does.
-    pub constraint_multipliers: Vec<f64>,
-    /// z_lower of the Lagrangian above, not negative; 0 for a fixed variable.
-    pub lower_bound_multipliers: Vec<f64>,
-    /// z_upper of the Lagrangian above, not negative; 0 for a fixed variable.
-    pub upper_bound_multipliers: Vec<f64>,
+    /// The multipliers there; 0 after a failure that left none.
+    pub multipliers: Multipliers,
     /// How the solve ended.
     pub status: Status,
     /// Iterations taken.
@@ -101,9 +96,7 @@ fn settle(mut context: Context<'_>, outcome: Outcome) -> Result<Solution, IpoptE
         x,
         objective,
         constraint_values,
-        constraint_multipliers: outcome.constraint_multipliers,
-        lower_bound_multipliers: outcome.lower_bound_multipliers,
-        upper_bound_multipliers: outcome.upper_bound_multipliers,
+        multipliers: outcome.multipliers,
         status,
         iterations: context.iterations,
         counts: context.counts,

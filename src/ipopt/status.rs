@@ -53,6 +53,31 @@ pub enum Status {
 }
 
 impl Status {
+    /// Ipopt's own name of it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Status::Solved => "Solve_Succeeded",
+            Status::SolvedToAcceptable => "Solved_To_Acceptable_Level",
+            Status::Infeasible => "Infeasible_Problem_Detected",
+            Status::TinyStep => "Search_Direction_Becomes_Too_Small",
+            Status::Diverging => "Diverging_Iterates",
+            Status::Stopped | Status::Panicked(_) => "User_Requested_Stop",
+            Status::FeasiblePointFound => "Feasible_Point_Found",
+            Status::MaxIterations { .. } => "Maximum_Iterations_Exceeded",
+            Status::RestorationFailed => "Restoration_Failed",
+            Status::StepComputationFailed => "Error_In_Step_Computation",
+            Status::MaxCpuTime => "Maximum_CpuTime_Exceeded",
+            Status::NotEnoughDegreesOfFreedom => "Not_Enough_Degrees_Of_Freedom",
+            Status::InvalidProblem => "Invalid_Problem_Definition",
+            Status::InvalidOption => "Invalid_Option",
+            Status::InvalidNumber => "Invalid_Number_Detected",
+            Status::UnrecoverableException => "Unrecoverable_Exception",
+            Status::NonIpoptException => "NonIpopt_Exception_Thrown",
+            Status::InsufficientMemory => "Insufficient_Memory",
+            Status::InternalError => "Internal_Error",
+        }
+    }
+
     /// Whether the solution can be used.
     pub fn is_success(&self) -> bool {
         matches!(self, Status::Solved | Status::SolvedToAcceptable | Status::FeasiblePointFound)

@@ -287,9 +287,9 @@ fn assert_solves_hs071(options: &Options) -> Solution {
 fn hs071_reaches_its_published_optimum_and_multipliers() {
     let solution = assert_solves_hs071(&Options::default());
     assert_close(&solution.constraint_values, &[25.0, 40.0], 1e-6);
-    assert_close(&solution.constraint_multipliers, &[-0.552_293_7, 0.161_468_6], 1e-5);
-    assert_close(&solution.lower_bound_multipliers, &[1.087_871_2, 0.0, 0.0, 0.0], 1e-5);
-    assert_close(&solution.upper_bound_multipliers, &[0.0; 4], 1e-5);
+    assert_close(&solution.multipliers.constraints, &[-0.552_293_7, 0.161_468_6], 1e-5);
+    assert_close(&solution.multipliers.lower, &[1.087_871_2, 0.0, 0.0, 0.0], 1e-5);
+    assert_close(&solution.multipliers.upper, &[0.0; 4], 1e-5);
 }
 
 #[test]
@@ -299,9 +299,9 @@ fn the_gradient_of_the_lagrangian_vanishes_at_a_solution() {
     let (mut gradient, mut jacobian) = ([0.0; 4], [0.0; 8]);
     assert!(nlp.gradient(&solution.x, &mut gradient) && nlp.jacobian_values(&solution.x, &mut jacobian));
     for i in 0..4 {
-        let lambda = &solution.constraint_multipliers;
+        let lambda = &solution.multipliers.constraints;
         let constraints = lambda[0] * jacobian[i] + lambda[1] * jacobian[4 + i];
-        let bounds = solution.upper_bound_multipliers[i] - solution.lower_bound_multipliers[i];
+        let bounds = solution.multipliers.upper[i] - solution.multipliers.lower[i];
         assert_close(&[gradient[i] + constraints + bounds], &[0.0], 1e-7);
     }
 }
@@ -322,7 +322,7 @@ fn constrained_least_squares_from_an_infeasible_start_finds_the_nearest_feasible
     assert_eq!(solution.status, Status::Solved);
     assert_close(&solution.x, &[1.5, 0.5], 1e-7);
     assert_close(&[solution.objective], &[0.25], 1e-7);
-    assert_close(&solution.constraint_multipliers, &[0.5, 0.0], 1e-6);
+    assert_close(&solution.multipliers.constraints, &[0.5, 0.0], 1e-6);
 }
 
 #[test]
@@ -343,8 +343,8 @@ fn without_constraints_the_bounds_alone_hold_the_optimum() {
     assert_eq!(solution.status, Status::Solved);
     assert_close(&solution.x, &[1.5, 1.0], 1e-6);
     assert!(solution.x[0] <= 1.5);
-    assert_close(&solution.upper_bound_multipliers, &[0.5, 0.0], 1e-6);
-    assert!(solution.constraint_values.is_empty() && solution.constraint_multipliers.is_empty());
+    assert_close(&solution.multipliers.upper, &[0.5, 0.0], 1e-6);
+    assert!(solution.constraint_values.is_empty() && solution.multipliers.constraints.is_empty());
     assert_eq!((solution.counts.constraints, solution.counts.jacobian), (0, 0));
 }
 

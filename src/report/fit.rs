@@ -75,10 +75,19 @@ impl Fit {
         let (c, variance) = (&self.counts, number(self.residual_variance));
         let (residuals, parameters, rows) = (self.residuals, self.estimates.len(), self.constraints);
         let passes = self.iterations;
+        let (checks, lower) = (self.checks[0], self.checks[1]);
+        let check = match (checks, lower) {
+            (0, _) => "none was made".to_owned(),
+            (_, 0) => "a second solve from a disturbed point found no lower cost".to_owned(),
+            _ => format!(
+                "{lower} of {checks} second solves from a disturbed point found a lower cost, and the fit went on from there"
+            ),
+        };
         [
             self.headline.clone(),
             format!("Fit of {} to {} runs of {} recordings", self.model.name, self.runs, self.recordings),
-            format!("Status       {}", self.status),
+            format!("Status       {} (Ipopt: {})", self.status, self.solver_status),
+            format!("Check        {check}"),
             format!("Cost         {cost} (residual variance {variance})"),
             format!("Size         {residuals} residuals, {parameters} parameters, {rows} constraint rows"),
             format!("Derivatives  {derivatives}; Hessian {hessian}"),

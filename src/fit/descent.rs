@@ -1,0 +1,262 @@
+//! One solve through Ipopt from a start to the best point that was met, with restarts where it ended above that.
+//! It takes objective, priors and limits as given; what is solved in which order is the work of `solve`.
+//!
+//! What keeps a solve from ending above its start:
+//!
+//! - A trial point that cannot be simulated, or whose mass matrix cannot be inverted, has no value: Ipopt steps back.
+//! - The barrier begins small beside the objective and then only falls (`monotone`), so that each step must lower the cost. Ipopt's own
+//!   start (a barrier parameter of 1 against a cost of 0.02 a sample) lets the barrier of a one-sided limit, such as R >= 0,
+//!   push the parameters away to where no trajectory is followed; from there the way back is not found.
+//! - The best feasible point of all evaluations is kept; Ipopt starts again from it where it ended elsewhere.
+
+use super::curvature::Curvature;
+use super::error::FitError;
+use super::limits::{Stop, Watch};
+use super::problem::{Point, Problem, Progress, Stage};
+use super::settings::Hessian;
+use super::task::{ActiveSet, Task};
+use crate::ipopt::{self, Counts, HessianMode, IpoptError, Multipliers, OptionValue, Options, Solution, Status};
+
+/// Share of the cost by which a point must be better for the solver to start again from it: less is rounding, or the kinks of
+/// a cost whose terms take absolute values.
+pub(super) const BETTER: f64 = 1e-4;
+
+/// Share of the cost below which the solver's own answer is as good as the best point.
+const SAME: f64 = 1e-9;
+
+/// Barrier parameter at the start over the objective there. A thousand constraints then weigh about as much as the cost.
+const BARRIER_SHARE: f64 = 1e-3;
+
+/// The same, and how far a start is pushed away from its bounds, from a point near the optimum.
+const NEAR_BARRIER_SHARE: f64 = 1e-6;
+const NEAR_PUSH: f64 = 1e-8;
+
+/// What the solver took.
+#[derive(Default)]
+pub(super) struct Work {
+    pub iterations: usize,
+    pub counts: Counts,
+}
+
+/// Where one solve, with its restarts, ended.
+pub(super) struct Descent {
+    pub p: Vec<f64>,
+    /// Ipopt's word at its end.
+    pub status: Status,
+    /// What ended it before that, where something else did.
+    pub stop: Option<Stop>,
+    /// What holds `p` back, where it is the solver's optimum, with the multipliers.
+    pub optimum: Option<(ActiveSet, Multipliers)>,
+    /// Ipopt's last answer, to say what it could not satisfy.
+    pub last: Option<Solution>,
+    /// Whether `p` is within all limits.
+    pub is_feasible: bool,
+    pub evaluated: usize,
+}
+
+impl Descent {
+    /// Whether the end may be a minimum: the solver's optimum, or a feasible point from which no step led down. Where terms take absolute
+    /// values the slope of the cost jumps, and at a minimum there it is nowhere 0 as the solver asks.
+    pub fn may_be_minimum(&self) -> bool {
+        let stuck = matches!(
+            self.status,
+            Status::TinyStep | Status::RestorationFailed | Status::StepComputationFailed | Status::SolvedToAcceptable
+        );
+        self.optimum.is_some()
+            || self.is_feasible && (stuck && self.stop.is_none() || self.stop == Some(Stop::NoProgress))
+    }
+}
+
+/// What all solves of a fit share.
+pub(super) struct Shared<'f, 'w> {
+    pub watch: Watch<'w>,
+    pub work: Work,
+    pub progress: &'f mut dyn FnMut(&Progress) -> bool,
+}
+
+/// Where a solve starts.
+pub(super) struct From<'a> {
+    pub p: &'a [f64],
+    /// Whether it is near the optimum: the barrier then starts lower still, and the bounds do not push the start away.
+    pub near: bool,
+    /// The multipliers there, where they are known.
+    pub multipliers: Option<Multipliers>,
+}
+
+/// What one run of Ipopt left.
+struct Attempt {
+    status: Status,
+    solution: Option<Solution>,
+    /// Where it ended, put back within the bounds.
+    at: Option<Vec<f64>>,
+    /// The best feasible point it met.
+    best: Option<Point>,
+    evaluated: usize,
+}
+
+impl Task<'_> {
+    /// Solves through Ipopt, and again from the best feasible point where it ended above that.
+    pub fn descend(
+        &self,
+        stage: &Stage,
+        from: From,
+        curvature: &mut Curvature,
+        shared: &mut Shared,
+    ) -> Result<Descent, FitError> {
+        let start = from.p.to_vec();
+        let mut best =
+            stage.total(&start).filter(|_| self.is_feasible(&start)).map(|total| Point { p: start.clone(), total });
+        let (mut evaluated, mut restarts, mut from) = (0, 0, From { p: &start, ..from });
+        let mut again: Vec<f64>;
+        loop {
+            let attempt = self.attempt(stage, &from, curvature, shared)?;
+            evaluated += attempt.evaluated;
+            let Attempt { status, solution, at, best: found, .. } = attempt;
+            let better = found.filter(|f| best.as_ref().is_none_or(|b| f.total < b.total));
+            let improved = better
+                .as_ref()
+                .is_some_and(|f| best.as_ref().is_none_or(|b| f.total < b.total - BETTER * b.total.abs()));
+            best = better.or(best);
+            let reached = at.as_ref().and_then(|p| stage.total(p).filter(|_| self.has_mass(p)));
+            let is_best = |value: f64| best.as_ref().is_none_or(|b| value <= b.total + BETTER * b.total.abs());
+            if let (Some(p), Some(value), Some(solution)) = (&at, reached, &solution)
+                && status.is_success()
+                && is_best(value)
+            {
+                let better = best.filter(|b| b.total < value - SAME * value.abs());
+                let p = better.map_or_else(|| p.clone(), |b| b.p);
+                let active = self.active_set(stage, &p, &solution.multipliers);
+                let optimum = Some((active, solution.multipliers.clone()));
+                let is_feasible = self.is_feasible(&p);
+                return Ok(Descent { p, status, stop: None, optimum, last: None, is_feasible, evaluated });
+            }
+            let given_up =
+                shared.watch.is_over() || matches!(status, Status::Panicked(_) | Status::MaxIterations { .. });
+            match &best {
+                Some(best) if improved && restarts < stage.restarts && !given_up => again = best.p.clone(),
+                _ => {
+                    let fallback = || at.filter(|_| reached.is_some()).unwrap_or_else(|| start.clone());
+                    let p = best.map_or_else(fallback, |b| b.p);
+                    let stop = shared.watch.stop();
+                    let is_feasible = self.is_feasible(&p);
+                    return Ok(Descent { p, status, stop, optimum: None, last: solution, is_feasible, evaluated });
+                }
+            }
+            (restarts, from) = (restarts + 1, From { p: &again, near: true, multipliers: None });
+        }
+    }
+
+    /// One run of Ipopt.
+    fn attempt(
+        &self,
+        stage: &Stage,
+        from: &From,
+        curvature: &mut Curvature,
+        shared: &mut Shared,
+    ) -> Result<Attempt, FitError> {
+        shared.watch.begin();
+        let before = shared.watch.evaluations();
+        curvature.leave();
+        let options = self.options(stage, from);
+        let mut problem = Problem {
+            task: self,
+            stage: *stage,
+            start: from.p,
+            multipliers: from.multipliers.clone(),
+            curvature,
+            watch: &mut shared.watch,
+            progress: shared.progress,
+            best: None,
+            trials: 0,
+        };
+        let (status, solution) = match ipopt::solve(&mut problem, &options) {
+            Ok(solution) => (solution.status.clone(), Some(solution)),
+            // The start could be evaluated, a point near it could not.
+            Err(IpoptError::NoIterate { status }) => (status, None),
+            Err(error) => return Err(error.into()),
+        };
+        let at = solution.as_ref().map(|s| self.within_bounds(&problem.unscaled(&s.x)));
+        let best = problem.best.take();
+        let evaluated = shared.watch.evaluations() - before;
+        if let Some(solution) = &solution {
+            shared.work.add(solution);
+        }
+        Ok(Attempt { status, solution, at, best, evaluated })
+    }
+
+    fn options(&self, stage: &Stage, from: &From) -> Options {
+        let number = |name: &str, value: f64| (name.to_owned(), OptionValue::Number(value));
+        let objective = stage.evaluations.objective.factor() * stage.total(from.p).unwrap_or(1.0).abs();
+        let share = if from.near { NEAR_BARRIER_SHARE } else { BARRIER_SHARE };
+        let mut extra = vec![
+            ("mu_strategy".to_owned(), OptionValue::Text("monotone".to_owned())),
+            number("mu_init", (share * objective).max(0.1 * stage.tolerance)),
+            // Rows and variables are scaled already: to let MUMPS do it again takes a third of its time.
+            ("mumps_permuting_scaling".to_owned(), OptionValue::Integer(0)),
+            ("mumps_scaling".to_owned(), OptionValue::Integer(0)),
+        ];
+        if from.near {
+            let pushes = ["bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"];
+            let warm = ["", "warm_start_"].into_iter().flat_map(|kind| pushes.map(|name| format!("{kind}{name}")));
+            extra.extend(warm.map(|name| number(&name, NEAR_PUSH)));
+        }
+        Options {
+            tolerance: stage.tolerance,
+            max_iterations: stage.max_iterations,
+            hessian: match stage.hessian {
+                Hessian::LimitedMemory => HessianMode::LimitedMemory { history: self.settings.history },
+                Hessian::GaussNewton | Hessian::Exact => HessianMode::Given,
+            },
+            linear_constraints: true,
+            print: self.settings.print,
+            extra,
+            ..Options::default()
+        }
+    }
+
+    /// What holds a solution back: the multiplier exceeds the distance from the limit, both in solver units.
+    fn active_set(&self, stage: &Stage, p: &[f64], multipliers: &Multipliers) -> ActiveSet {
+        let least = 1e3 * self.settings.tolerance * self.settings.tolerance.min(1e-3);
+        let is_active = |multiplier: f64, slack: f64| multiplier.abs() > slack.abs().max(least);
+        let rows = multipliers.constraints.iter().enumerate().filter(|(i, multiplier)| {
+            let row = &self.rows[*i];
+            let value = row.value(p);
+            let slack = (value - row.lower).abs().min((row.upper - value).abs()) / stage.scaling.sizes[*i];
+            is_active(**multiplier, slack)
+        });
+        let mut bounds = Vec::new();
+        for (j, (lower, upper)) in self.bounds.iter().enumerate() {
+            let scale = stage.scaling.scales[j];
+            if is_active(multipliers.lower[j], (p[j] - lower) / scale) {
+                bounds.push((j, "lower"));
+            } else if is_active(multipliers.upper[j], (upper - p[j]) / scale) {
+                bounds.push((j, "upper"));
+            }
+        }
+        ActiveSet { rows: rows.map(|(i, _)| i).collect(), bounds }
+    }
+}
+
+impl Work {
+    /// Adds the work of a stage, its evaluations by the share of all samples that each of them took.
+    pub fn join(&mut self, stage: &Self, share: f64) {
+        self.iterations += stage.iterations;
+        let part = |count: usize| (share.min(1.0) * count as f64).ceil() as usize;
+        let (sum, counts) = (&mut self.counts, &stage.counts);
+        sum.objective += part(counts.objective);
+        sum.gradient += part(counts.gradient);
+        sum.constraints += counts.constraints;
+        sum.jacobian += counts.jacobian;
+        sum.hessian += part(counts.hessian);
+    }
+
+    fn add(&mut self, solution: &Solution) {
+        self.iterations += solution.iterations;
+        let (sum, counts) = (&mut self.counts, &solution.counts);
+        sum.objective += counts.objective;
+        sum.gradient += counts.gradient;
+        sum.constraints += counts.constraints;
+        sum.jacobian += counts.jacobian;
+        sum.hessian += counts.hessian;
+    }
+}
