@@ -86,6 +86,7 @@ pub mod fit;
 pub mod guide;
 pub mod import;
 pub mod ipopt;
+pub mod likelihood;
 pub mod maneuver;
 pub mod model;
 pub mod numerals;

@@ -9,8 +9,8 @@ use support::{model, runs, truth_noise};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::baseline::{Refitted, Told, oracle};
 use trimtab::diagnose::candidate::Extent;
-use trimtab::diagnose::noise::Noise;
 use trimtab::diagnose::prove::mean_cvdm;
+use trimtab::likelihood::noise::Noise;
 use trimtab::model::Model;
 use trimtab::recording::Run;
 

@@ -7,11 +7,11 @@ mod support;
 
 use rayon::prelude::*;
 use support::{STAR, model, runs, truth_noise};
-use trimtab::diagnose::estimate::{Effort, FreeParameter, estimate, log_posterior};
-use trimtab::diagnose::evidence::{Evidence, RunEvidence};
-use trimtab::diagnose::filter::{Column, Filter, GATE, Wanted};
-use trimtab::diagnose::noise::{NOISE_PARAMETERS, Noise, NoisePrior, SensorNoise};
-use trimtab::diagnose::noise_fit::{fit_noise, guess};
+use trimtab::likelihood::estimate::{Effort, FreeParameter, estimate, log_posterior};
+use trimtab::likelihood::evidence::{Evidence, RunEvidence};
+use trimtab::likelihood::filter::{Column, Filter, GATE, Wanted};
+use trimtab::likelihood::noise::{NOISE_PARAMETERS, Noise, NoisePrior, SensorNoise};
+use trimtab::likelihood::noise_fit::{fit_noise, guess};
 use trimtab::model::{ELEVEN, Model};
 use trimtab::physics::Probe;
 use trimtab::simulate::{Integration, Method};

@@ -38,7 +38,7 @@ const LAYERS: [&[&str]; 16] = [
     &["sensitivity"],
     &["statistics", "recording", "study", "audit", "check", "validity", "demo", "export"],
     &["import", "split"],
-    &["ipopt"],
+    &["ipopt", "likelihood"],
     &["fit"],
     &["evaluate", "maneuver"],
     &["diagnose"],

@@ -1,10 +1,10 @@
 //! The audit of recordings and integration step by the base model, before any physics is claimed.
 //! It judges data and numerics only; what recordings show by themselves is in `audit`.
 
-use super::filter::{Filter, GATE, Pass, Wanted};
-use super::noise::Noise;
 use super::settings::{COMPARED, FEW_LOST_SHARE, LOST_MEASUREMENTS};
 use crate::audit::{Issue, Severity, audit_runs, piece};
+use crate::likelihood::filter::{Filter, GATE, Pass, Wanted};
+use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::numerals::sig;
 use crate::recording::{Channel, Run, STATE_CHANNELS};
@@ -155,8 +155,8 @@ pub fn admit(model: &Model, integration: Integration, noise: &Noise, runs: &[Run
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::estimate::passes;
     use crate::diagnose::example::{RK4, SAMPLES, model, noise, runs};
+    use crate::likelihood::estimate::passes;
 
     /// Twelve runs, in some of which the position is 300 m off for eight samples.
     fn lost_in(some: &[usize]) -> (Vec<Run>, Vec<Pass>) {

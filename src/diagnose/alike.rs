@@ -2,10 +2,10 @@
 //! It compares what the manoeuvres would show of each; how well each fits the recordings is compared elsewhere.
 
 use super::candidate::{Candidate, Extent};
-use super::estimate::Estimate;
 use super::screen::Screen;
 use super::selected::Selected;
 use super::settings::FORM_TOLERANCE;
+use crate::likelihood::estimate::Estimate;
 use nalgebra::DVector;
 
 /// The mechanisms that could take over nearly all of the gain of a selected one, the largest share first: once base parameters and

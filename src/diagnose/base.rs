@@ -3,67 +3,16 @@
 
 use super::admit::{Admission, admit, followed};
 use super::decide::is_euler;
-use super::estimate::{Estimate, FreeParameter, estimate, log_posterior, passes};
-use super::filter::Column;
-use super::noise::NoisePrior;
-use super::noise_fit::guess;
 use super::settings::{EULER_EXACT, EULER_HOPELESS, Effort, FIRST, LOSS_ROUNDS, REFIT, SETTLE, Settings};
 use crate::audit::{Issue, settled};
+use crate::likelihood::estimate::{Estimate, estimate, log_posterior, passes};
+use crate::likelihood::noise::NoisePrior;
+use crate::likelihood::noise_fit::guess;
+use crate::likelihood::parameters::base_parameters;
 use crate::model::{Model, ModelError};
 use crate::recording::{Measured, Run};
 use crate::simulate::{Integration, Method};
 use std::borrow::Cow;
-
-/// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
-const NUISANCE: [&str; 31] = [
-    "hull.inertia",
-    "hull.Xudot",
-    "hull.Yvdot",
-    "hull.Yrdot",
-    "hull.Nvdot",
-    "hull.Nrdot",
-    "hull.Xvr",
-    "hull.Yv",
-    "hull.Yr",
-    "hull.Nv",
-    "hull.Nr",
-    "hull.Yvv",
-    "hull.Yvr",
-    "hull.Yrr",
-    "hull.Nrr",
-    "hull.Nrrv",
-    "hull.Nvvr",
-    "flow.wake",
-    "flow.kt0",
-    "flow.kt1",
-    "flow.astern",
-    "flow.wake_ratio",
-    "flow.race",
-    "flow.race_astern",
-    "flow.straightening",
-    "flow.asymmetry",
-    "flow.lever",
-    "crossflow.drag",
-    "hull_nonlinear.X_vv",
-    "hull_nonlinear.X_rr",
-    "sternway.share",
-];
-
-/// The free parameters of the base: those of the model, and where asked for the nuisance coefficients with their priors.
-pub fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParameter> {
-    let mut free: Vec<FreeParameter> = model
-        .free()
-        .into_iter()
-        .map(|i| FreeParameter::common(Column::tangent(model, i), model.parameters[i].prior))
-        .collect();
-    if nuisance {
-        for name in NUISANCE {
-            let Some(i) = model.index(name).filter(|i| !model.parameters[*i].free) else { continue };
-            free.push(FreeParameter::uncertain(model, i));
-        }
-    }
-    free
-}
 
 /// The inputs that all steps of a diagnosis share.
 pub struct Question<'a> {
@@ -200,6 +149,7 @@ fn is_made_by_euler(runs: &[Run]) -> bool {
 mod tests {
     use super::*;
     use crate::diagnose::example::{EULER, SAMPLES, made_by_euler, model, runs, sailed};
+    use crate::likelihood::parameters::NUISANCE;
 
     fn question<'a>(model: &'a Model, settings: &'a Settings) -> Question<'a> {
         Question { model, full: model.clone(), settings, progress: &|_| () }

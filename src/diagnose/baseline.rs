@@ -1,21 +1,21 @@
 //! Rival methods that the diagnosis is compared with: what a user would do otherwise, and the best that could be done.
 //! None of it is part of a diagnosis: a rival names by other rules ([`Refitted`]) or is given the answer ([`oracle`]).
 
-use super::base::base_parameters;
 use super::candidate::{Candidate, Extent, append, applies, candidates};
 use super::compete::start_with;
-use super::covariance::Z;
-use super::estimate::{Estimate, FreeParameter, base_of, estimate, evidence, moved, restrictions};
-use super::evidence::Evidence;
-use super::filter::{Column, Filter, Gains, Pass, Wanted};
-use super::noise::{Noise, NoisePrior};
-use super::noise_fit::guess;
-use super::optimise::{Damping, Proposal};
 use super::problem::Problem;
 use super::prove::mean_cvdm;
 use super::screen::screen_by_session;
 use super::settings::{GIVEN_FINISH, GIVEN_START, Settings};
 use crate::evaluate::Judging;
+use crate::likelihood::covariance::Z;
+use crate::likelihood::estimate::{Estimate, FreeParameter, base_of, estimate, evidence, moved, restrictions};
+use crate::likelihood::evidence::Evidence;
+use crate::likelihood::filter::{Column, Filter, Gains, Pass, Wanted};
+use crate::likelihood::noise::{Noise, NoisePrior};
+use crate::likelihood::noise_fit::guess;
+use crate::likelihood::optimise::{Damping, Proposal};
+use crate::likelihood::parameters::base_parameters;
 use crate::model::{Model, ModelError};
 use crate::recording::Run;
 use crate::simulate::Integration;

@@ -1,9 +1,9 @@
 //! The evidence for a constant force in any span of blocks of a run's time, the base model projected out.
 //! It knows no force's cause and compares no spans.
 
-use super::algebra::pick;
-use super::evidence::{Base, RunEvidence};
 use super::settings::{BLOCK_SAMPLES, BLOCKS, PUSH_LONGEST};
+use crate::likelihood::algebra::pick;
+use crate::likelihood::evidence::{Base, RunEvidence};
 use crate::recording::Run;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -232,7 +232,7 @@ mod tests {
         let four = DVector::from_fn(4, |i, _| score[i]);
         let joint = DMatrix::from_fn(4, 4, |i, j| information[(i, j)]);
         let run = RunEvidence { session: "a".into(), score: four.clone(), information: joint.clone() };
-        let e = super::super::evidence::Evidence::new(vec![run.clone()]);
+        let e = crate::likelihood::evidence::Evidence::new(vec![run.clone()]);
         let base = e.base(&[0], &[0.0], &[0.0]);
         let blocks = Blocks::new(2, 1, &run, &base, &base.step(), 1);
         let alone = blocks.fit(0, 1).ok_or("no fit")?;

@@ -5,12 +5,12 @@
 use super::answer::Answer;
 use super::base::Question;
 use super::error::DiagnoseError;
-use super::estimate::Estimate;
 use super::finding::Finding;
-use super::noise::{GROUP_OF, Noise};
 use super::settings::Settings;
 use super::stability::Brief;
 use crate::dynamics::Dynamics;
+use crate::likelihood::estimate::Estimate;
+use crate::likelihood::noise::{GROUP_OF, Noise};
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::{Integration, driven, step};

@@ -1,10 +1,10 @@
 //! A mechanism of the catalogue as a candidate of one model: its columns, its amplitudes, and the sessions it acts in.
 //! What the mechanisms are is told in the terms' files, beside the physics; whether one is named is decided elsewhere.
 
-use super::estimate::{Estimate, FreeParameter};
-use super::evidence::Test;
-use super::filter::Column;
 use super::settings::{BEYOND_BOUNDS, QUARTER_TIDE};
+use crate::likelihood::estimate::{Estimate, FreeParameter};
+use crate::likelihood::evidence::Test;
+use crate::likelihood::filter::Column;
 use crate::model::Model;
 use crate::physics::{Group, Mechanism, Probe};
 use crate::recording::Run;

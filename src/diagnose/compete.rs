@@ -2,11 +2,8 @@
 //! them, and keeps every one that the data allow. What is tested, and what is said of the outcome, is decided elsewhere.
 
 use super::candidate::{Candidate, Extent};
-use super::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
-use super::evidence::chi_squared_p;
 use super::forces::only_cancels;
 use super::kinematic::{agreements, gain};
-use super::noise::Noise;
 use super::problem::Problem;
 use super::screen::{Row, Screen};
 use super::selected::Selected;
@@ -16,6 +13,9 @@ use super::settings::{
 };
 use super::together::Leading;
 use super::wald::Wald;
+use crate::likelihood::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
+use crate::likelihood::evidence::chi_squared_p;
+use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::physics::{Kind, Probe};
 use crate::statistics::{mean, median};

@@ -89,8 +89,8 @@ pub fn may_be_further(f: &Further, beside: &Beside, candidates: &[Candidate]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::evidence::Test;
     use crate::diagnose::example;
+    use crate::likelihood::evidence::Test;
     use nalgebra::{DMatrix, DVector};
 
     fn list() -> Vec<Candidate> {

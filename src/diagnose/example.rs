@@ -4,12 +4,12 @@
 #![allow(clippy::unwrap_used)]
 
 use super::candidate::{Candidate, candidates};
-use super::estimate::Estimate;
-use super::filter::Column;
 use super::finding::{Amplitude, Equations, Finding};
 use super::grade::Grade;
-use super::noise::{Noise, SensorNoise};
 use crate::dynamics::Dynamics;
+use crate::likelihood::estimate::Estimate;
+use crate::likelihood::filter::Column;
+use crate::likelihood::noise::{Noise, SensorNoise};
 use crate::model::Model;
 use crate::physics::{Form, Kind};
 use crate::recording::{Run, Split, measured};
@@ -130,7 +130,7 @@ pub fn sailed(model: &Model, run: &Run, steps: Integration) -> Vec<[f64; 6]> {
 
 /// An estimate at a model's values with the noise above and its own free parameters.
 pub fn at(model: &Model) -> Estimate {
-    let free = super::base::base_parameters(model, false);
+    let free = crate::likelihood::parameters::base_parameters(model, false);
     Estimate { model: model.clone(), noise: noise(), free, log_posterior: 0.0, seen: None }
 }
 

@@ -2,9 +2,9 @@
 //! It takes a model at its word; whether the model is right is tested elsewhere.
 
 use super::candidate::Candidate;
-use super::estimate::Estimate;
 use super::settings::{FORCE_STRIDE, REMAINDER};
 use crate::dynamics::Dynamics;
+use crate::likelihood::estimate::Estimate;
 use crate::model::Model;
 use crate::parameter::Parity;
 use crate::recording::{Run, or_nan};

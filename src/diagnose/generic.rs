@@ -1,10 +1,10 @@
 //! A generic force law: a basis of smooth forces of state, inputs and heading, as a rival of every name in the catalogue.
 //! It is no physics: it says what a free law would explain, and names nothing.
 
-use super::algebra::pick;
-use super::evidence::{Base, Evidence};
-use super::filter::Column;
 use super::settings::PARAMETER_PRICE;
+use crate::likelihood::algebra::pick;
+use crate::likelihood::evidence::{Base, Evidence};
+use crate::likelihood::filter::Column;
 use crate::model::Model;
 use nalgebra::{DVector, SymmetricEigen};
 
@@ -107,7 +107,7 @@ pub fn corrected(law: &GenericLaw, evidence: &Evidence, base: &Base, model: &Mod
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::evidence::RunEvidence;
+    use crate::likelihood::evidence::RunEvidence;
     use nalgebra::DMatrix;
 
     /// One run of columns that share no information: the score of each, and information 100.

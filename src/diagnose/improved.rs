@@ -1,10 +1,10 @@
 //! The model as a file should hold it: the user's terms and those of the mechanisms that act, without neutral ones, each parameter inside
 //! its bounds. It decides nothing.
 
-use super::algebra::pseudo_inverse;
-use super::estimate::{Estimate, FreeParameter};
 use super::problem::Problem;
 use super::settings::REFIT;
+use crate::likelihood::algebra::pseudo_inverse;
+use crate::likelihood::estimate::{Estimate, FreeParameter};
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;
@@ -106,8 +106,8 @@ mod tests {
     use super::*;
     use crate::diagnose::candidate::candidates;
     use crate::diagnose::example::{RK4, at, column, model, runs, with};
-    use crate::diagnose::noise::NoisePrior;
     use crate::diagnose::settings::{SETTLE, Settings};
+    use crate::likelihood::noise::NoisePrior;
     use crate::model::Prior;
 
     #[test]

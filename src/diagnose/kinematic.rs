@@ -2,10 +2,10 @@
 //! that of the yaw rate. Errors of sensors are compared by it without a model of the ship; which are compared is decided elsewhere.
 
 use super::candidate::Candidate;
-use super::evidence::chi_squared_p;
-use super::filter::Column;
 use super::settings::{CORRECTIONS, GATE, SENSOR_SPREAD, STRETCH, STRETCHES};
 use crate::dynamics::Dynamics;
+use crate::likelihood::evidence::chi_squared_p;
+use crate::likelihood::filter::Column;
 use crate::model::Model;
 use crate::physics::Kind;
 use crate::recording::{Measured, Run};

@@ -2,14 +2,14 @@
 //! It describes a force where it was recorded and is no physics: it names no cause.
 
 use super::base::Question;
-use super::estimate::{Estimate, FreeParameter, Sums, base_of, restrictions};
 use super::event::BaseTests;
-use super::filter::{Column, Filter};
 use super::grade::LawGrade;
 use super::monomial::Monomial;
 use super::settings::SETTLE;
 use super::sparse::select;
 use super::unseen::FindingProof;
+use crate::likelihood::estimate::{Estimate, FreeParameter, Sums, base_of, restrictions};
+use crate::likelihood::filter::{Column, Filter};
 use crate::numerals::sig;
 use crate::parameter::Parity;
 use crate::recording::Run;

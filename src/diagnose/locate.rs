@@ -2,13 +2,13 @@
 //! It tests constant forces against the base; the cause of a force is named elsewhere.
 
 use super::blocks::{Blocks, block_length, choices};
-use super::estimate::{Estimate, Sums, base_of, restrictions, run_evidence};
-use super::evidence::{Base, Evidence, RunEvidence};
-use super::filter::{Column, Filter, Pass, Wanted};
 use super::generic::{GenericLaw, widen};
 use super::place::{Chart, PARTS, Place, place};
 use super::push::{Push, Window, pushes, significant};
 use super::region::{REGIONS, RegionTest, Visits, regions, visited};
+use crate::likelihood::estimate::{Estimate, Sums, base_of, restrictions, run_evidence};
+use crate::likelihood::evidence::{Base, Evidence, RunEvidence};
+use crate::likelihood::filter::{Column, Filter, Pass, Wanted};
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;

@@ -1,8 +1,8 @@
 //! Whether an earth-fixed force differs from place to place: a force of its own in each part of the water that was sailed.
 //! Weather is the same everywhere; a force that differs has another cause, which is not sought here.
 
-use super::evidence::{Base, Evidence};
 use super::settings::{PLACE_PARTS, PLACE_TAIL};
+use crate::likelihood::evidence::{Base, Evidence};
 use crate::recording::Run;
 use serde::Serialize;
 use statrs::statistics::{Data, OrderStatistics};
@@ -93,7 +93,7 @@ pub fn place(chart: &Chart, evidence: &Evidence, base: &Base, first: usize, unit
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::evidence::RunEvidence;
+    use crate::likelihood::evidence::RunEvidence;
     use nalgebra::{DMatrix, DVector};
 
     const CHART: Chart = Chart { low: [0.0, -300.0], high: [300.0, 0.0] };

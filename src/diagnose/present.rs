@@ -1,10 +1,10 @@
 //! What the model that is diagnosed already has of errors of sensors and actuators and of weather, as a diagnosis before it has written
 //! them there. They count as selected, so that the answer to a model does not change once the model holds it.
 
-use super::algebra::{pick, pseudo_inverse};
 use super::candidate::{Candidate, Extent};
-use super::estimate::{Estimate, FreeParameter};
 use super::screen::Screen;
+use crate::likelihood::algebra::{pick, pseudo_inverse};
+use crate::likelihood::estimate::{Estimate, FreeParameter};
 use crate::physics::{Kind, Mechanism};
 use nalgebra::DVector;
 

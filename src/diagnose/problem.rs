@@ -2,9 +2,9 @@
 //! It holds them and decides nothing.
 
 use super::candidate::Candidate;
-use super::estimate::{Estimate, FreeParameter, estimate};
-use super::noise::{Noise, NoisePrior};
 use super::settings::{Effort, Settings};
+use crate::likelihood::estimate::{Estimate, FreeParameter, estimate};
+use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;

@@ -1,11 +1,11 @@
 //! The proof of a diagnosis: models against each other on runs that no earlier step has touched, in free simulation as
 //! [`crate::evaluate::prove`] judges it, and in likelihood. It fits nothing.
 
-use super::filter::{Filter, GATE, Pass, Wanted};
-use super::noise::Noise;
 use super::unseen::interval_of_improvement;
 use crate::audit::settled;
 use crate::evaluate::{Comparison, Judging, Outcome, outcome, predict_all, summarise};
+use crate::likelihood::filter::{Filter, GATE, Pass, Wanted};
+use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;

@@ -2,11 +2,11 @@
 //! Whether a push is an event and no form of the ship's own forces is decided elsewhere.
 
 use super::blocks::{Blocks, Span, block_length};
-use super::estimate::Estimate;
-use super::evidence::chi_squared_p;
-use super::filter::{Filter, Pass, Wanted};
-use super::noise::Noise;
 use super::settings::{PUSH_PRIOR, PUSH_ROUNDS, PUSH_STARTS};
+use crate::likelihood::estimate::Estimate;
+use crate::likelihood::evidence::chi_squared_p;
+use crate::likelihood::filter::{Filter, Pass, Wanted};
+use crate::likelihood::noise::Noise;
 use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::state::{Inputs, State};
@@ -278,7 +278,7 @@ fn edges(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::noise_fit::guess;
+    use crate::likelihood::noise_fit::guess;
     use crate::model::Model;
     use crate::physics::Form;
     use crate::recording::Split;

@@ -4,10 +4,10 @@
 //! With gains fixed, `sum e^2/s` is a smooth function of the parameters, its gradient is exactly the score of an exact pass and
 //! its Gauss-Newton Hessian the information. The filter's gains are then computed anew and the problem solved again.
 
-use super::estimate::{Estimate, base_of, log_posterior, restrictions, run_evidence};
-use super::evidence::{Base, Evidence};
-use super::filter::{Column, Filter, Gains, Pass, Wanted};
 use crate::ipopt::{IpoptError, Nlp, OptionValue, Options, Solution, solve};
+use crate::likelihood::estimate::{Estimate, base_of, log_posterior, restrictions, run_evidence};
+use crate::likelihood::evidence::{Base, Evidence};
+use crate::likelihood::filter::{Column, Filter, Gains, Pass, Wanted};
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;

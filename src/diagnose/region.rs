@@ -1,8 +1,8 @@
 //! Regions of state and inputs, and the test of a constant force in each of them.
 //! A region says where a force shows, not what it is.
 
-use super::covariance::Z;
-use super::evidence::{Base, Evidence};
+use crate::likelihood::covariance::Z;
+use crate::likelihood::evidence::{Base, Evidence};
 use crate::model::Model;
 use crate::recording::Run;
 use crate::state::{Inputs, State};

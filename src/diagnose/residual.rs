@@ -4,7 +4,6 @@
 use super::alike::class;
 use super::base::Question;
 use super::decide::{Decision, MechanismTest, PlaceTest, PushTest, ResidualTests, TestTable};
-use super::estimate::Estimate;
 use super::finding::PUSH;
 use super::locate::{Location, locate};
 use super::place::Place;
@@ -12,6 +11,7 @@ use super::push::{Push, sharpened};
 use super::screen::{Screen, screen};
 use super::select::Selection;
 use super::selected::Selected;
+use crate::likelihood::estimate::Estimate;
 use crate::recording::Run;
 
 /// The tests of what the selected mechanisms leave.

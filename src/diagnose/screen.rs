@@ -1,13 +1,13 @@
 //! The score test of every mechanism of the catalogue, with parameters, nuisance coefficients, initial states and noise profiled
 //! out. It ranks and corrects for multiplicity; it does not refit and does not conclude.
 
-use super::algebra::{pick, pseudo_inverse};
 use super::candidate::{Candidate, Extent, append};
-use super::estimate::{Estimate, Sums, base_of, restrictions};
-use super::evidence::{Base, Evidence, Test, are_references};
-use super::filter::{Column, Filter};
 use super::generic::{GenericLaw, widen};
 use super::settings::{DIVIDED_SESSIONS, EQUAL_STATISTICS, IDENTIFIABLE_SHARE, INDISTINGUISHABLE, PARAMETER_PRICE};
+use crate::likelihood::algebra::{pick, pseudo_inverse};
+use crate::likelihood::estimate::{Estimate, Sums, base_of, restrictions};
+use crate::likelihood::evidence::{Base, Evidence, Test, are_references};
+use crate::likelihood::filter::{Column, Filter};
 use crate::model::Model;
 use crate::physics::{Kind, Mechanism};
 use crate::recording::Run;

@@ -6,9 +6,7 @@ use super::base::Question;
 use super::compete::{Rejected, amplitudes, compare, compete, form_tolerance};
 use super::decide::is_euler;
 use super::eligible::{Beside, Further, eligible, may_be_further, may_be_named};
-use super::estimate::{Estimate, passes};
 use super::event::{BaseTests, Opening};
-use super::evidence::chi_squared_p;
 use super::present::Present;
 use super::problem::Problem;
 use super::push::Push;
@@ -19,6 +17,8 @@ use super::selected::Selected;
 use super::settings::{PARAMETER_PRICE, REFIT, SETTLE, Settings};
 use super::together::leading;
 use super::wald::Wald;
+use crate::likelihood::estimate::{Estimate, passes};
+use crate::likelihood::evidence::chi_squared_p;
 use crate::physics::Kind;
 
 /// The mechanisms that were selected, in the model that holds them.

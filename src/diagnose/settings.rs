@@ -1,9 +1,12 @@
 //! Every number of the diagnosis: those with which tests are compared, those by which tests are made, and the settings that a user may
 //! change; each with its name, value, meaning, and how it was set.
 
-use super::optimise::Damping;
 use crate::evaluate::{EvaluationSettings, Judging};
 use crate::fit::FitSettings;
+use crate::likelihood::settings::{COST, CUSTOM, HULLS, SEEDS, numbers};
+pub use crate::likelihood::settings::{
+    Effort, FIRST, GATE, IDENTIFIABLE_SHARE, LIKELIHOOD, Number, REFIT, SCATTER_GROUPS, SETTLE, STEP_GAIN, TOGETHER,
+};
 use crate::ranges::{Limited, OutOfRange, counted, within};
 use crate::simulate::{Integration, Method};
 use serde::{Deserialize, Serialize};
@@ -82,26 +85,8 @@ impl Default for Settings {
     }
 }
 
-/// Rounds and iterations of an estimation.
-#[derive(Clone, Copy, Debug)]
-pub struct Effort {
-    /// Rounds of parameter steps, each followed by a noise estimate while `noise_rounds` last.
-    pub rounds: usize,
-    /// Rounds with a noise estimate.
-    pub noise_rounds: usize,
-    /// Fisher scoring iterations in a noise estimate.
-    pub noise_iterations: usize,
-}
-
-/// The first estimate of the base model, from the values of the model file.
-pub const FIRST: Effort = Effort { rounds: 12, noise_rounds: 4, noise_iterations: 14 };
 /// No step from where a model stands: its value alone.
 pub const AS_IT_IS: Effort = Effort { rounds: 0, noise_rounds: 0, noise_iterations: 0 };
-/// A refit at given noise.
-pub const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0 };
-/// A refit with the noise estimated along, to convergence: a noise that had taken over a force gives it back when the force is in the
-/// model. The rounds only bound it.
-pub const SETTLE: Effort = Effort { rounds: 20, noise_rounds: 20, noise_iterations: 8 };
 /// Ship and noise beside the error of a sensor that is held.
 pub const TOGETHER_EFFORT: Effort = Effort { rounds: 8, noise_rounds: 3, noise_iterations: 6 };
 /// The base model of a signal-to-noise ratio: noise within a few per cent.
@@ -111,84 +96,12 @@ pub const GIVEN_START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_itera
 /// The one fit of a model that is given its mechanisms.
 pub const GIVEN_FINISH: Effort = Effort { rounds: 8, noise_rounds: 2, noise_iterations: 6 };
 
-/// How a step of the parameters is damped, in units of the columns' scales: parameters that the data hardly determine ask for
-/// steps on which the others would fail. It stays while the valley bends.
-pub const STEP_DAMPING: Damping = Damping {
-    attempts: 6,
-    least_promise: STEP_GAIN,
-    loss: STEP_LOSS,
-    first: 0.3,
-    most: f64::INFINITY,
-    shrink: 0.3,
-    off: 0.03,
-    trusted: 0.5,
-};
-/// How a step of the noise's logarithms is damped, in units of the information's diagonal.
-pub const NOISE_DAMPING: Damping = Damping {
-    attempts: 6,
-    least_promise: NOISE_STEP_GAIN,
-    loss: 0.0,
-    first: 0.1,
-    most: f64::INFINITY,
-    shrink: 0.1,
-    off: 0.05,
-    trusted: 0.0,
-};
 /// Shares of the amplitudes of a score test at which a refit may start, the other parameters moved along.
 pub const STARTS: [f64; 3] = [1.0, 0.3, 0.1];
 /// Multiples at which the refit of an effect that grows with the square of its amplitude may start, the others held.
 pub const STARTS_OF_SQUARES: [f64; 3] = [3.0, 10.0, 30.0];
 /// p-value below which port and starboard of the ship itself are told apart: the level at which a diagnosis names anything (`alpha`).
 pub const SIDES_DIFFER: f64 = 0.01;
-/// Standard deviations of a run's own start: x and y in ship lengths, heading \[rad\], u and v in units of the root of gravity
-/// times length, yaw rate in that unit over the length.
-pub const START_SPREAD: [f64; 6] = [0.5, 0.5, 0.2, 0.05, 0.05, 0.1];
-/// Sensor noise below which a sensor is exact for every purpose: position in ship lengths, heading \[rad\], speed and yaw rate in the
-/// units of [`START_SPREAD`].
-pub const EXACT_SENSOR: [f64; 4] = [1e-4, 2e-4, 1e-4, 1e-4];
-
-/// A number of the diagnosis.
-#[derive(Clone, Copy, Debug)]
-pub struct Number {
-    /// Its name in this file.
-    pub name: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// What it means.
-    pub meaning: &'static str,
-    /// How it was set.
-    pub origin: &'static str,
-}
-
-/// Declares numbers as constants, and a table of them.
-macro_rules! numbers {
-    ($(#[doc = $title:literal])+ $table:ident: $($(#[doc = $meaning:literal])+ $name:ident: $type:ty = $value:expr, $origin:expr;)*) => {
-        $($(#[doc = $meaning])+ pub const $name: $type = $value;)*
-
-        $(#[doc = $title])+
-        #[allow(clippy::unnecessary_cast)]
-        pub const $table: &[Number] = &[
-            $(Number {
-                name: stringify!($name),
-                value: $value as f64,
-                meaning: concat!($($meaning),+).trim_ascii(),
-                origin: $origin,
-            },)*
-        ];
-    };
-}
-
-/// Concealed cases of the campaign's development seeds; no published seed was looked at before it was published.
-const SEEDS: &str =
-    "development seeds 21, 22 and 24 of the campaign of concealed cases (`campaign -- --alone --seed 21`)";
-/// Those cases, and recordings of two real hulls.
-const HULLS: &str =
-    "the same seeds, and the recordings of Esso Osaka and KVLCC2 (`diagnose_esso_osaka`, `diagnose_kvlcc2`)";
-/// A round value in common use; how it was chosen is not recorded.
-const CUSTOM: &str = "convention; how it was chosen is not recorded";
-/// More costs time, less costs accuracy.
-const COST: &str = "computing time against accuracy";
-
 numbers! {
     /// The numbers with which tests are compared: all on which a verdict turns once the tests are made, beside the settings of the user.
     VERDICT:
@@ -213,12 +126,6 @@ numbers! {
     FORM_TOLERANCE: f64 = 0.1, SEEDS;
     /// Prior standard deviations that a mechanism's own coefficients may be off before its force is another mechanism's.
     IMPLAUSIBLE: f64 = 2.0, CUSTOM;
-    /// Directions with less than this share of their information left beside the base parameters are not identifiable.
-    IDENTIFIABLE_SHARE: f64 = 0.01, "prototype: a rudder offset keeps 0.000, the least identifiable effect 0.02";
-    /// Innovations larger than this many standard deviations are set aside as outliers.
-    GATE: f64 = 6.0, CUSTOM;
-    /// Fewest groups of runs for the scatter of a parameter; where there are fewer, their number is taken as this.
-    SCATTER_GROUPS: usize = 5, SEEDS;
     /// Share of the runs that a push is expected to act in beforehand.
     PUSH_PRIOR: f64 = 0.2, SEEDS;
     /// Share of the error of predictions that a finding must change, in one channel at least, to matter.
@@ -254,38 +161,6 @@ numbers! {
     /// Loss in log-posterior of an unfitted Euler reading beyond which it is not fitted.
     EULER_HOPELESS: f64 = 1000.0, COST;
 
-    /// Share of measurements beyond the outlier gate above which the noise is taken as too small and everything counts first.
-    OUTLIER_SHARE: f64 = 0.03, "recordings of Esso Osaka, where a quarter lay beyond the gate of the first guess";
-    /// Share of the runs, those of the highest likelihood, that tell the noise without what disturbs some runs only.
-    CALM_SHARE: f64 = 0.6, SEEDS;
-    /// Iterations of the noise estimate on those runs.
-    CALM_ITERATIONS: usize = 8, COST;
-    /// Gain in log-posterior below which a parameter step is not worth taking.
-    STEP_GAIN: f64 = 0.3, COST;
-    /// Longest parameter step, in units of the scales: beyond it the linearisation says nothing.
-    STEP_LONGEST: f64 = 10.0, COST;
-    /// Length of a parameter step, in units of the scales, below which the estimate has converged.
-    STEP_SHORTEST: f64 = 0.03, COST;
-    /// Loss in log-posterior that a parameter step may make and still count as no worse.
-    STEP_LOSS: f64 = 0.01, COST;
-    /// Gain in log-posterior below which a step of the noise's logarithms is not worth taking.
-    NOISE_STEP_GAIN: f64 = 0.05, COST;
-    /// Longest step of the noise's logarithms.
-    NOISE_STEP_LONGEST: f64 = 1.5, COST;
-    /// First guess of the coloured part of a sensor noise, as a share of the white part.
-    COLOURED_GUESS: f64 = 0.7, CUSTOM;
-    /// First guess of its correlation time, in sample periods.
-    COLOURED_PERIODS: f64 = 4.0, CUSTOM;
-    /// First guess of the unknown force: a share of the mass times the acceleration U^2 / L at a Froude number of 0.2.
-    FORCE_GUESS: f64 = 0.01, CUSTOM;
-    /// Prior standard deviation of the logarithm of a sensor noise's size: a factor of about 4.
-    NOISE_SIZE_SPREAD: f64 = 1.4, SEEDS;
-    /// Prior standard deviation of the logarithm of a white noise below its first guess: a smoothed sensor is not exact.
-    NOISE_WHITE_SPREAD: f64 = 0.05, SEEDS;
-    /// Prior standard deviation of the logarithm of a correlation time: a factor of about 2.
-    NOISE_TIME_SPREAD: f64 = 0.7, SEEDS;
-    /// Prior standard deviation of the logarithm of the unknown force's size: a factor of about 12.
-    NOISE_FORCE_SPREAD: f64 = 2.5, SEEDS;
 
     /// Statistics of two groups of sessions closer than this are equal.
     EQUAL_STATISTICS: f64 = 0.01, CUSTOM;
@@ -308,8 +183,6 @@ numbers! {
 
     /// Blocks of the time scan of the longest run, at most.
     BLOCKS: usize = 64, COST;
-    /// Runs that each thread passes over before what they gave is added up.
-    TOGETHER: usize = 8, COST;
     /// Runs whose innovations with the step as used and with a finer one are in memory at once.
     COMPARED: usize = 64, COST;
     /// Samples in a block of the time scan, at least.
@@ -337,7 +210,7 @@ mod tests {
 
     #[test]
     fn every_number_has_a_name_of_its_own_a_meaning_and_an_origin() {
-        let numbers = || VERDICT.iter().chain(ESTIMATION);
+        let numbers = || VERDICT.iter().chain(ESTIMATION).chain(LIKELIHOOD);
         let names: BTreeSet<&str> = numbers().map(|n| n.name).collect();
         assert_eq!(names.len(), numbers().count());
         assert!(numbers().all(|n| n.value > 0.0 && n.meaning.len() > 20 && !n.origin.is_empty()));

@@ -1,11 +1,11 @@
 //! Whether port and starboard of the ship differ: the effect of a single screw on the flow and of a rudder off its zero, by
 //! parameters that are free in every estimate. It is reported beside the verdict and is no finding: no physics is missing for it.
 
-use super::estimate::{Estimate, FreeParameter};
-use super::evidence::chi_squared_p;
 use super::finding::Amplitude;
 use super::screen::Screen;
 use super::wald::Wald;
+use crate::likelihood::estimate::{Estimate, FreeParameter};
+use crate::likelihood::evidence::chi_squared_p;
 use crate::parameter::Parity;
 use crate::physics::Group;
 use nalgebra::DMatrix;
@@ -26,7 +26,7 @@ pub struct Sides {
 
 /// Tests the parameters of the base, the first `base` free ones of the estimate, that differ between port and starboard; `None` when
 /// it has none. `s` is the screen at the estimate and `kinds` the kind of manoeuvre of each run, between which the parameters may
-/// scatter more than their information says ([`super::evidence::Evidence::scatter`]).
+/// scatter more than their information says ([`crate::likelihood::evidence::Evidence::scatter`]).
 pub fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -> Option<Sides> {
     // A sensor that reads to one side is not the ship.
     let of_the_ship = |name: &str| {
@@ -70,9 +70,9 @@ pub fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::base::base_parameters;
     use crate::diagnose::example::{RK4, at, model, runs, with};
     use crate::diagnose::screen::screen;
+    use crate::likelihood::parameters::base_parameters;
     use crate::model::Model;
 
     /// The test of the sides of a ship, at its own values, with the nuisance coefficients free.

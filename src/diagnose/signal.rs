@@ -1,14 +1,14 @@
 //! The signal-to-noise ratio of an effect for the diagnosis, by which concealed effects are graded.
 //! It decides nothing and names nothing.
 
-use super::base::base_parameters;
 use super::candidate::{Candidate, append, candidates};
-use super::estimate::{Estimate, base_of, estimate, evidence, passes, restrictions};
-use super::evidence::{Base, Evidence};
-use super::filter::{Column, Filter, Wanted};
-use super::noise::NoisePrior;
-use super::noise_fit::guess;
 use super::settings::{SIGNAL, Settings};
+use crate::likelihood::estimate::{Estimate, base_of, estimate, evidence, passes, restrictions};
+use crate::likelihood::evidence::{Base, Evidence};
+use crate::likelihood::filter::{Column, Filter, Wanted};
+use crate::likelihood::noise::NoisePrior;
+use crate::likelihood::noise_fit::guess;
+use crate::likelihood::parameters::base_parameters;
 use crate::model::{Model, ModelError};
 use crate::recording::Run;
 use crate::simulate::Integration;

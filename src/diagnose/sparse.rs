@@ -1,9 +1,9 @@
 //! The few columns of a library that the data ask for: the set with the highest gain in log-likelihood less a price a column.
 //! It is algebra on scores and information: it refits nothing, and does not know what a column means.
 
-use super::algebra::pick;
-use super::evidence::{Base, Evidence, degrees_of, excess};
 use super::settings::{IDENTIFIABLE_SHARE, LAW_P};
+use crate::likelihood::algebra::pick;
+use crate::likelihood::evidence::{Base, Evidence, degrees_of, excess};
 use crate::statistics::{chi_squared_p, student_quantile};
 use nalgebra::{DMatrix, DVector};
 
@@ -104,7 +104,7 @@ pub fn select(evidence: &Evidence, base: &Base, columns: &[usize], groups: &[&st
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::evidence::RunEvidence;
+    use crate::likelihood::evidence::RunEvidence;
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
     use rand_distr::{Distribution, StandardNormal};

@@ -2,13 +2,13 @@
 //! They are read off the tests of the base model and the estimates; nothing is tested or decided here.
 
 use super::candidate::{Candidate, Extent};
-use super::covariance::Z;
 use super::diagnosis::{Absorbed, Adequacy, Budget, Detectable, Likeness, Move, Ranked, Trace};
-use super::estimate::Estimate;
-use super::filter::{Filter, Pass, Wanted};
 use super::screen::{Row, Screen};
 use super::settings::Settings;
 use super::wald::Wald;
+use crate::likelihood::covariance::Z;
+use crate::likelihood::estimate::Estimate;
+use crate::likelihood::filter::{Filter, Pass, Wanted};
 use crate::model::Model;
 use crate::physics::Probe;
 use crate::recording::Run;
@@ -207,7 +207,7 @@ mod tests {
         let runs = runs(&model, 4);
         let all = moves(&found, &found, RK4, &runs, &model);
         assert!(all.len() == 11 && all.iter().all(|m| m.moved == 0.0 && m.error > 0.0));
-        found.free = crate::diagnose::base::base_parameters(&model, true);
+        found.free = crate::likelihood::parameters::base_parameters(&model, true);
         let f = found.free.last().unwrap().clone();
         let (mean, sd) = f.prior.map(|p| (p.mean, p.sd)).unwrap();
         f.set(&mut found.model, mean + 0.5 * sd);

@@ -4,11 +4,11 @@
 
 use super::candidate::{Candidate, Extent};
 use super::eligible::{Beside, Further};
-use super::estimate::{Estimate, FreeParameter, log_posterior};
 use super::kinematic::{Disagreement, disagreements};
-use super::noise::Noise;
 use super::problem::Problem;
 use super::settings::TOGETHER_EFFORT;
+use crate::likelihood::estimate::{Estimate, FreeParameter, log_posterior};
+use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::physics::Kind;
 use nalgebra::DVector;
@@ -102,10 +102,10 @@ mod tests {
     use super::*;
     use crate::diagnose::candidate::candidates;
     use crate::diagnose::example::{RK4, at, erring, model};
-    use crate::diagnose::noise::NoisePrior;
     use crate::diagnose::screen::screen;
     use crate::diagnose::selected::Selected;
     use crate::diagnose::settings::{SETTLE, Settings};
+    use crate::likelihood::noise::NoisePrior;
     use crate::recording::Run;
 
     const NOTHING: Beside = Beside { present: &[], selected: &[], nothing_else: true };

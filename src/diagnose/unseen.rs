@@ -2,13 +2,13 @@
 //! sensor, what their sensors say of each other. It computes gains and their intervals over recordings; what follows from them is decided elsewhere.
 
 use super::candidate::Candidate;
-use super::filter::{Filter, Wanted};
 use super::grade::GainTest;
 use super::kinematic;
-use super::noise::Noise;
 use super::settings::INDISTINGUISHABLE;
 use crate::audit::settled;
 use crate::evaluate::{self, Judging, Summary, summarise};
+use crate::likelihood::filter::{Filter, Wanted};
+use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;

@@ -1,8 +1,8 @@
 //! Wald's test: how far estimated parameters are from zero, in units of their covariance.
 //! It takes estimate and covariance as they are; whether a parameter is worth naming is decided elsewhere.
 
-use super::algebra::{pick, pseudo_inverse};
-use super::estimate::{Estimate, FreeParameter};
+use crate::likelihood::algebra::{pick, pseudo_inverse};
+use crate::likelihood::estimate::{Estimate, FreeParameter};
 use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};

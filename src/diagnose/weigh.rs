@@ -3,7 +3,6 @@
 
 use super::base::Question;
 use super::describe::{Intervals, mechanism_finding, push_finding, sensor_findings};
-use super::estimate::Estimate;
 use super::event::BaseTests;
 use super::finding::{Amplitude, Finding, are_times};
 use super::grade::{FindingTests, Grade, grade};
@@ -16,6 +15,7 @@ use super::selected::Selected;
 use super::settings::{AS_IT_IS, REFIT, SETTLE};
 use super::unseen::{FindingProof, agreement};
 use crate::evaluate::predict_all;
+use crate::likelihood::estimate::Estimate;
 use crate::physics::{Kind, Mechanism};
 use crate::recording::Run;
 use crate::simulate::{Integration, MOST_SUBSTEPS, Method, Trajectory};

@@ -4,11 +4,11 @@
 use super::outlook::{Pair, TOLERANCE, share};
 use super::sail::Sailed;
 use crate::diagnose::candidate::{Candidate, Extent, append};
-use crate::diagnose::estimate::{Estimate, base_of, restrictions, run_evidence};
-use crate::diagnose::evidence::{Evidence, RunEvidence};
-use crate::diagnose::filter::{Column, Filter, Wanted};
 use crate::diagnose::screen::{Screen, screen};
 use crate::diagnose::settings::IDENTIFIABLE_SHARE;
+use crate::likelihood::estimate::{Estimate, base_of, restrictions, run_evidence};
+use crate::likelihood::evidence::{Evidence, RunEvidence};
+use crate::likelihood::filter::{Column, Filter, Wanted};
 use crate::recording::Run;
 use crate::simulate::Integration;
 use serde::Serialize;
@@ -146,7 +146,8 @@ pub(super) fn part(found: &Estimate, integration: Integration, trials: &[Sailed]
     let filter = Filter::new(&found.model, integration, &columns);
     let only = restrictions(&found.free);
     let mut information = Vec::with_capacity(runs.len());
-    let work = |run: &Run, pass: crate::diagnose::filter::Pass| run_evidence(run, pass.score, pass.information, &only);
+    let work =
+        |run: &Run, pass: crate::likelihood::filter::Pass| run_evidence(run, pass.score, pass.information, &only);
     filter.each(&runs, &found.noise, Wanted::default(), work, |one| information.push(one));
     let screen = screen(found, integration, &runs[..1], pair);
     let mut search = Search { found, trials, information, screen };

@@ -2,9 +2,9 @@
 //! Nothing is estimated: there are no recordings yet.
 
 use super::settings::{Sensor, SensorSettings};
-use crate::diagnose::noise::{GROUP_OF, Noise, SensorNoise};
-use crate::diagnose::noise_fit::guess;
-use crate::diagnose::settings::{COLOURED_GUESS, COLOURED_PERIODS};
+use crate::likelihood::noise::{GROUP_OF, Noise, SensorNoise};
+use crate::likelihood::noise_fit::guess;
+use crate::likelihood::settings::{COLOURED_GUESS, COLOURED_PERIODS};
 use crate::model::Model;
 use crate::recording::Run;
 use serde::Serialize;

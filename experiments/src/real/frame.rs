@@ -4,13 +4,13 @@
 use nalgebra::{DMatrix, DVector};
 use trimtab::audit::settled;
 use trimtab::diagnose::admit::followed;
-use trimtab::diagnose::estimate::{Effort, FreeParameter, base_of, estimate, evidence, passes, restrictions};
-use trimtab::diagnose::evidence::Test;
-use trimtab::diagnose::filter::Column;
-use trimtab::diagnose::noise::{Noise, NoisePrior};
 use trimtab::diagnose::prove::{HeldOut, prove};
 use trimtab::diagnose::{Diagnosis, Settings};
 use trimtab::evaluate::Judging;
+use trimtab::likelihood::estimate::{Effort, FreeParameter, base_of, estimate, evidence, passes, restrictions};
+use trimtab::likelihood::evidence::Test;
+use trimtab::likelihood::filter::Column;
+use trimtab::likelihood::noise::{Noise, NoisePrior};
 use trimtab::model::{Model, Prior};
 use trimtab::numerals::{fixed, sig};
 use trimtab::recording::Run;

@@ -415,10 +415,10 @@ pub fn guess(runs: &[Run], model: &Model) -> Noise {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::estimate::passes;
     use crate::diagnose::example::{RK4, model, noise, runs, with};
-    use crate::diagnose::filter::{GATE, Pass};
-    use crate::diagnose::settings::FIRST;
+    use crate::likelihood::estimate::passes;
+    use crate::likelihood::filter::{GATE, Pass};
+    use crate::likelihood::settings::FIRST;
 
     #[test]
     fn the_first_guess_of_a_sensor_is_its_white_scatter() {

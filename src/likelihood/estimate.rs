@@ -6,105 +6,15 @@ use super::filter::{Column, Filter, GATE, Pass, Tangent, Wanted};
 use super::noise::{Noise, NoisePrior};
 use super::noise_fit::fit_noise;
 use super::optimise::{Outcome, Proposal, Quadratic};
+pub use super::parameters::FreeParameter;
 pub use super::settings::Effort;
 use super::settings::{
     CALM_ITERATIONS, CALM_SHARE, OUTLIER_SHARE, STEP_DAMPING, STEP_GAIN, STEP_LONGEST, STEP_SHORTEST,
 };
-use crate::model::{Model, Prior};
+use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
-
-/// A free parameter of the estimate.
-#[derive(Clone, Debug)]
-pub struct FreeParameter {
-    /// Its column.
-    pub column: Column,
-    /// Sessions in which it acts, added there to the common value; `None` for all of them.
-    pub sessions: Option<Vec<String>>,
-    /// What is known of it beforehand \[unit of the parameter\].
-    pub prior: Option<Prior>,
-}
-
-impl FreeParameter {
-    /// A parameter that acts in every run.
-    pub fn common(column: Column, prior: Option<Prior>) -> Self {
-        Self { column, sessions: None, prior }
-    }
-
-    /// A coefficient that is not known exactly: common to all runs, its value the mean and its spread (its scale where it has
-    /// none) the standard deviation of its prior.
-    pub fn uncertain(model: &Model, parameter: usize) -> Self {
-        let p = &model.parameters[parameter];
-        let spread = (p.info.spread)(&model.ship);
-        let sd = if spread.is_finite() { spread } else { p.scale };
-        Self::common(Column::tangent(model, parameter), Some(Prior { mean: p.value, sd }))
-    }
-
-    /// Its present value \[unit of the parameter\].
-    pub fn value(&self, model: &Model) -> f64 {
-        let i = self.column.parameter;
-        match self.sessions.as_ref().and_then(|s| s.first()) {
-            None => model.parameters[i].value,
-            Some(first) => {
-                model.sessions.get(first).into_iter().flatten().filter(|(j, _)| *j == i).map(|(_, v)| v).sum()
-            }
-        }
-    }
-
-    /// The parameter's least and greatest value, in its own unit. A hull coefficient that is carried with a prior is held by the
-    /// prior alone: a sign that a fit may insist on would make its estimate one-sided and the score tests with it.
-    fn limits(&self, model: &Model) -> (f64, f64) {
-        let p = &model.parameters[self.column.parameter];
-        if self.prior.is_some() && p.name.starts_with("hull.") {
-            return (f64::NEG_INFINITY, f64::INFINITY);
-        }
-        (p.lower, p.upper)
-    }
-
-    /// Sets its value, kept inside the parameter's bounds.
-    pub fn set(&self, model: &mut Model, value: f64) {
-        let i = self.column.parameter;
-        let (lower, upper) = self.limits(model);
-        let p = &mut model.parameters[i];
-        let Some(sessions) = &self.sessions else {
-            p.value = value.clamp(lower, upper);
-            return;
-        };
-        let value = (p.value + value).clamp(lower, upper) - p.value;
-        for session in sessions {
-            let list = model.sessions.entry(session.clone()).or_default();
-            match list.iter_mut().find(|(j, _)| *j == i) {
-                Some(entry) => entry.1 = value,
-                None => list.push((i, value)),
-            }
-        }
-    }
-
-    /// Its least and greatest value, in units of the column.
-    pub(super) fn bounds(&self, model: &Model) -> (f64, f64) {
-        let p = &model.parameters[self.column.parameter];
-        // An addition in some sessions is bounded by what the sum may be.
-        let common = if self.sessions.is_some() { p.value } else { 0.0 };
-        let (lower, upper) = self.limits(model);
-        let (a, b) = ((lower - common) / self.column.scale, (upper - common) / self.column.scale);
-        (a.min(b), a.max(b))
-    }
-
-    /// Precision of the prior, and the pull of the prior on the score, in units of the column.
-    pub(super) fn prior_terms(&self, model: &Model) -> (f64, f64) {
-        self.prior.map_or((0.0, 0.0), |prior| {
-            let precision = (self.column.scale / prior.sd).powi(2);
-            let away = (self.value(model) - prior.mean) / self.column.scale;
-            (precision, -precision * away)
-        })
-    }
-
-    /// Logarithm of the prior density at the present value, up to a constant.
-    pub(super) fn log_prior(&self, model: &Model) -> f64 {
-        self.prior.map_or(0.0, |prior| -0.5 * ((self.value(model) - prior.mean) / prior.sd).powi(2))
-    }
-}
 
 /// A fitted structure.
 #[derive(Clone, Debug)]
@@ -475,7 +385,7 @@ impl Fit<'_> {
 mod tests {
     use super::*;
     use crate::diagnose::example::{RK4, at, column, model, noise, runs, with};
-    use crate::diagnose::settings::{REFIT, SETTLE};
+    use crate::likelihood::settings::{REFIT, SETTLE};
 
     #[test]
     fn a_value_stays_inside_its_bounds_and_so_does_its_sum_with_the_addition_of_a_session() {
@@ -606,7 +516,7 @@ mod tests {
         let m = with(&[("current.north", 0.1), ("mean_wind.east", 5.0)]);
         let runs = runs(&model(), 3);
         let mut columns: Vec<Column> =
-            crate::diagnose::base::base_parameters(&m, true).iter().map(|f| f.column).collect();
+            crate::likelihood::parameters::base_parameters(&m, true).iter().map(|f| f.column).collect();
         append(&mut columns, &candidates(&m, &[]));
         GenericLaw::append(&mut columns, &m);
         let pass = |columns: &[Column], exact: bool| {
