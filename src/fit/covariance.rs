@@ -15,6 +15,7 @@
 //! 50 (1982) 1-25 and Liang & Zeger, Biometrika 73 (1986) 13-22 for the sandwich.
 
 use super::cost::Quadratic;
+use super::evaluations::Evaluations;
 use super::solve::End;
 use super::subspace::inverse;
 use super::task::Task;
@@ -83,20 +84,19 @@ pub(super) struct Covariances {
 }
 
 impl Covariances {
-    /// The covariances where a fit ended at a given cost.
+    /// The covariances where a fit ended, from its objective there; `unit` turns the inverse of the objective's Hessian into a covariance.
     ///
     /// `likeness` is how many successive residuals count as one, where that is known.
-    pub fn of(task: &Task, end: &End, cost: f64, likeness: Option<f64>) -> Self {
+    pub fn of(task: &Task, evaluations: &Evaluations, unit: f64, end: &End, likeness: Option<f64>) -> Self {
         let n = task.scaling.scales.len();
         let directions = task.free_directions(&end.active);
-        let quadratic = task.evaluations.quadratic(&end.p);
+        let quadratic = evaluations.quadratic(&end.p);
         let own = scores_by_recording(task, quadratic.as_deref());
         let (meat, clusters) = clustered_variance(task.cost.ranks(), &own, n);
         let data = quadratic.map_or_else(|| DMatrix::zeros(n, n), |q| task.scaled(&q.gauss_newton));
         let mut prior = DMatrix::zeros(n, n);
         end.priors.add_hessian(&mut prior);
         let prior = task.scaled(&prior);
-        let unit = 2.0 * task.variance(cost) * task.settings.correlated_samples / task.cost.runs() as f64;
         let bread = inverse(&(&data + &prior), &directions);
         let ratio = (&bread.matrix * &meat).trace() / (&bread.matrix * &data * unit).trace();
         let likeness = likeness.unwrap_or(1.0).max(1.0) / task.settings.correlated_samples.max(1.0);

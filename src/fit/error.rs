@@ -63,6 +63,11 @@ pub enum FitError {
         /// By how much it is broken, in its own unit.
         violation: f64,
     },
+    /// A fit by likelihood on several ranks.
+    #[error(
+        "a fit with objective = \"likelihood\" runs in one process; start it without mpirun, or set objective = \"trajectory\" in [fit]"
+    )]
+    OneRank,
     /// The solver could not start.
     #[cfg(feature = "ipopt")]
     #[error("the solver could not start: {0}")]

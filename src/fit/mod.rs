@@ -16,6 +16,7 @@
 //! | `stages` | runs in shorter pieces, or a few of them, to be fitted first |
 //! | `descent` | one solve through Ipopt, with its restarts |
 //! | `solve` | from the start through the stages to an optimum that was checked |
+//! | `likelihood` | the fit by likelihood: noise, gains and parameters in turn |
 //! | `subspace` | directions that constraints leave free |
 //! | `covariance` | covariances, and what the data do not determine |
 //! | `doubts` | what residuals say against a fit: model error, windows too long, residuals alike |
@@ -35,6 +36,8 @@ mod doubts;
 mod error;
 #[cfg(feature = "ipopt")]
 mod evaluations;
+#[cfg(feature = "ipopt")]
+mod likelihood;
 #[cfg(feature = "ipopt")]
 mod limits;
 #[cfg(feature = "ipopt")]
@@ -66,9 +69,11 @@ pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;
 #[cfg(feature = "ipopt")]
+pub use likelihood::Likelihood;
+#[cfg(feature = "ipopt")]
 pub use multistart::{MultiStart, StartOutcome, StartRow, multi_start, multi_start_over};
 #[cfg(feature = "ipopt")]
 pub use problem::Progress;
-pub use settings::{FitSettings, Hessian};
+pub use settings::{FitSettings, Goal, Hessian};
 #[cfg(feature = "ipopt")]
 pub use summary::{Active, Combination, Estimate, Fit, fit, fit_over};

@@ -21,10 +21,24 @@ pub enum Hessian {
     LimitedMemory,
 }
 
+/// What a fit minimises.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Goal {
+    /// The weighted squares of the differences between recorded and simulated trajectories, through every Euler step.
+    #[default]
+    Trajectory,
+    /// Minus the log-likelihood of the recordings, with sensor noise, an unknown force and initial states, and minus the log-prior of
+    /// coefficients that are never known exactly.
+    Likelihood,
+}
+
 /// Section `[fit]` of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FitSettings {
+    /// What is minimised.
+    pub objective: Goal,
     /// Where first derivatives come from.
     pub derivatives: Derivatives,
     /// Step of finite differences, in units of each parameter's scale.
@@ -61,6 +75,7 @@ pub struct FitSettings {
 impl Default for FitSettings {
     fn default() -> Self {
         Self {
+            objective: Goal::default(),
             derivatives: Derivatives::default(),
             difference_step: 1e-5,
             hessian: Hessian::default(),

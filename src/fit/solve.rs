@@ -89,7 +89,7 @@ impl Task<'_> {
         let mut end = self.weighed(&from, multipliers, &mut priors, &mut curvature, &mut shared)?;
         let (mut checks, mut is_checked) = ([0, 0], false);
         while end.may_be_minimum() && !shared.watch.is_over() {
-            let lower = self.lower_nearby(&end, &priors, checks[0], &mut shared)?;
+            let lower = self.lower_nearby(&self.stage(&self.evaluations, &priors), &end, checks[0], &mut shared)?;
             checks[0] += 1;
             let Some(lower) = lower else {
                 is_checked = true;
@@ -136,20 +136,19 @@ impl Task<'_> {
     }
 
     /// The last stage: all runs, to the tolerance of the settings.
-    fn stage<'a>(&'a self, evaluations: &'a Evaluations<'a>, priors: &'a Priors) -> Stage<'a> {
+    pub(super) fn stage<'a>(&'a self, evaluations: &'a Evaluations<'a>, priors: &'a Priors) -> Stage<'a> {
         let FitSettings { hessian, tolerance, max_iterations, .. } = *self.settings;
         Stage { evaluations, priors, scaling: &self.scaling, hessian, tolerance, max_iterations, restarts: RESTARTS }
     }
 
     /// A feasible point of lower cost that a second solve finds from a disturbed point near an optimum.
-    fn lower_nearby(
+    pub(super) fn lower_nearby(
         &self,
+        stage: &Stage,
         end: &Descent,
-        priors: &Priors,
         round: usize,
         shared: &mut Shared,
     ) -> Result<Option<Vec<f64>>, FitError> {
-        let stage = self.stage(&self.evaluations, priors);
         let Some(local) = stage.local(&end.p) else { return Ok(None) };
         if local.value < NOTHING_LEFT {
             return Ok(None);
@@ -169,7 +168,7 @@ impl Task<'_> {
         let scales = units.iter().zip(&self.scaling.scales).map(|(unit, scale)| unit * scale).collect();
         let scaling = Scaling::of(scales, &self.rows);
         // Of many runs a few tell of another minimum as well; whether it is lower is a matter of all.
-        let few = self.few_runs()?;
+        let few = if std::ptr::eq(stage.evaluations, &self.evaluations) { self.few_runs()? } else { None };
         let cost = match &few {
             Some((runs, weights)) => self.cost_of(runs, weights.clone())?,
             None => None,
@@ -182,7 +181,7 @@ impl Task<'_> {
             tolerance: (2.0 * CHECK_LEFT * BETTER * local.value).sqrt().max(stage.tolerance),
             max_iterations: CHECK_ITERATIONS,
             restarts: 0,
-            ..stage
+            ..*stage
         };
         let from = From { p: &disturbed, near: true, multipliers: None };
         let outer = std::mem::take(&mut shared.work);
@@ -350,8 +349,21 @@ impl Task<'_> {
         End { converged, words, solver: end.status.name(), checks, p, priors, work, active, parts }
     }
 
+    /// The end of a fit whose objective changed on the way, so that no cost compares it with its start.
+    pub(super) fn ended(&self, end: Descent, is_checked: bool, priors: Priors, work: Work, checks: [usize; 2]) -> End {
+        let says = end.stop.map_or_else(|| end.status.to_string(), |stop| stop.to_string());
+        let words = if is_checked {
+            "solved".to_owned()
+        } else {
+            format!("the best feasible point of {} evaluations is returned; {says}", work.counts.objective)
+        };
+        let active = end.optimum.map_or_else(|| self.touched(&end.p), |(active, _)| active);
+        let solver = end.status.name();
+        End { converged: is_checked, words, solver, checks, p: end.p, priors, work, active, parts: 1 }
+    }
+
     /// Infeasibility is an error where it is the constraints' own: they are linear, so that Ipopt's word is final.
-    fn check_feasible(&self, end: &Descent) -> Result<(), FitError> {
+    pub(super) fn check_feasible(&self, end: &Descent) -> Result<(), FitError> {
         if !matches!(end.status, Status::Infeasible | Status::RestorationFailed) || self.is_feasible(&end.p) {
             return Ok(());
         }

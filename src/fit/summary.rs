@@ -5,8 +5,10 @@ use super::cost::Cost;
 use super::covariance::{Covariance, CovarianceKind, Covariances, in_words};
 use super::doubts::{Doubt, ResidualStatistics, headline};
 use super::error::FitError;
+use super::evaluations::Evaluations;
+use super::likelihood::{Likelihood, LikelihoodEnd, check_ranks, with_uncertain_coefficients};
 use super::problem::Progress;
-use super::settings::{FitSettings, Hessian};
+use super::settings::{FitSettings, Goal, Hessian};
 use super::solve::End;
 use super::subspace::inverse;
 use super::task::Task;
@@ -14,11 +16,12 @@ use crate::ipopt::Counts;
 use crate::model::Model;
 use crate::ranges::Limited;
 use crate::ranks::Ranks;
-use crate::recording::Runs;
+use crate::recording::{Run, Runs};
 use crate::uncertainty::Uncertainty;
 use crate::validity::{self, Count, Coverage};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::borrow::Cow;
 use std::time::Instant;
 
 /// What a fit says of one parameter.
@@ -101,6 +104,9 @@ pub struct Fit {
     pub design_effect: Option<f64>,
     /// Constraints and bounds that hold the fit back.
     pub active: Vec<Active>,
+    /// What a fit by likelihood says beside its estimates; absent in a fit of trajectories.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub likelihood: Option<Likelihood>,
     /// Combinations the data determine to no better than one scale unit, the worst first.
     pub undetermined: Vec<Combination>,
     /// Cost at the start, without priors.
@@ -207,19 +213,51 @@ pub fn fit_over<'a>(
     let clock = Instant::now();
     settings.limits()?;
     let runs = runs.into();
+    if settings.objective == Goal::Likelihood {
+        return by_likelihood(ranks, model, runs, settings, progress, clock);
+    }
     let cost = Cost::over(ranks, model, runs, settings.cost_options())?;
     let task = Task::new(model, &cost, runs, settings)?;
     let mut end = task.solve(progress)?;
     task.polish(&mut end);
-    Ok(describe(&task, end, clock))
+    let variance = task.variance(task.evaluations.value(&end.p).unwrap_or(task.start_cost));
+    let unit = 2.0 * variance * settings.correlated_samples / cost.runs() as f64;
+    Ok(describe(&task, &task.evaluations, unit, end, clock))
 }
 
-/// The outcome of a task from where it ended.
-fn describe(task: &Task, end: End, clock: Instant) -> Fit {
+/// As [`fit`], by likelihood. The model keeps which of its parameters are free: the coefficients that were estimated along are not.
+fn by_likelihood(
+    ranks: &Ranks,
+    model: &Model,
+    runs: Runs,
+    settings: &FitSettings,
+    progress: &mut dyn FnMut(&Progress) -> bool,
+    clock: Instant,
+) -> Result<Fit, FitError> {
+    let held: Vec<Run> = runs.iter().map(Cow::into_owned).collect();
+    if held.len() < runs.len() {
+        return Err(FitError::Unreadable);
+    }
+    let all = with_uncertain_coefficients(model);
+    let cost = Cost::over(ranks, &all, &held[..], settings.cost_options())?;
+    check_ranks(&cost)?;
+    let task = Task::new(&all, &cost, Runs::from(&held[..]), settings)?;
+    let LikelihoodEnd { end, innovations, likelihood } = task.solve_by_likelihood(&held, progress)?;
+    let mut fit = describe(&task, &Evaluations::of(&innovations), 1.0, end, clock);
+    for (p, own) in fit.model.parameters.iter_mut().zip(&model.parameters) {
+        (p.free, p.prior) = (own.free, own.prior);
+    }
+    fit.likelihood = Some(likelihood);
+    Ok(fit)
+}
+
+/// The outcome of a task from where it ended; its covariance from the objective that was minimised.
+fn describe(task: &Task, evaluations: &Evaluations, unit: f64, end: End, clock: Instant) -> Fit {
     let cost = task.evaluations.value(&end.p).unwrap_or(task.start_cost);
     let model = task.model_at(&end.p);
     let statistics = ResidualStatistics::of(task, &end.p);
-    let covariances = Covariances::of(task, &end, cost, statistics.likeness);
+    let likeness = if unit == 1.0 { None } else { statistics.likeness };
+    let covariances = Covariances::of(task, evaluations, unit, &end, likeness);
     let doubts = statistics.doubts(&covariances, task.scaling.scales.len());
     let mut validity = Count::new(&model);
     task.runs.iter().for_each(|run| validity.add(validity::samples(&run)));
@@ -243,6 +281,7 @@ fn describe(task: &Task, end: End, clock: Instant) -> Fit {
         correlations: covariances.correlations(task),
         design_effect: covariances.design_effect,
         active: active(task, &end),
+        likelihood: None,
         undetermined: undetermined(task, &covariances),
         start_cost: task.start_cost,
         cost,

@@ -210,6 +210,38 @@ pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prio
     fit_noise(&some, &tangents, &found.model, &found.noise, prior, GATE, CALM_ITERATIONS)
 }
 
+/// The noise of all runs by maximum likelihood, under step maps that are linearised along their filtered paths.
+///
+/// Where many measurements are beyond the gate the noise is too small by far, and a gate hides that: everything counts first.
+pub fn fitted_noise(
+    model: &Model,
+    integration: Integration,
+    runs: &[Run],
+    noise: &Noise,
+    prior: &NoisePrior,
+    iterations: usize,
+) -> Noise {
+    let all: Vec<&Run> = runs.iter().collect();
+    let filter = Filter::new(model, integration, &[]);
+    let mut maps = Vec::with_capacity(runs.len());
+    let sums = Sums::and_step_maps(&filter, runs, noise, &[], false, Some(&mut maps));
+    gated_noise(&all, &maps, model, noise, prior, sums.outlier_share(), iterations)
+}
+
+fn gated_noise(
+    runs: &[&Run],
+    maps: &[Tangent],
+    model: &Model,
+    noise: &Noise,
+    prior: &NoisePrior,
+    outliers: f64,
+    iterations: usize,
+) -> Noise {
+    let maps: Vec<&Tangent> = maps.iter().collect();
+    let gates = if outliers > OUTLIER_SHARE { &[f64::INFINITY, GATE][..] } else { &[GATE] };
+    gates.iter().fold(*noise, |noise, gate| fit_noise(runs, &maps, model, &noise, prior, *gate, iterations))
+}
+
 /// Fits the free parameters and the noise, starting from the model's values.
 ///
 /// A step that lowers the log-posterior is tried again with more damping, at most five times. Values stay inside the parameters'
@@ -372,12 +404,7 @@ impl Fit<'_> {
         let kept = point.step_maps.take();
         let Point { model, noise, sums, .. } = point;
         let tangents = kept.unwrap_or_else(|| tangents(model, self.integration, &all, noise));
-        let tangents: Vec<&Tangent> = tangents.iter().collect();
-        // Where many measurements are set aside the noise is too small by far, and a gate hides that: everything counts first.
-        let gates = if sums.outlier_share() > OUTLIER_SHARE { &[f64::INFINITY, GATE][..] } else { &[GATE] };
-        gates.iter().fold(*noise, |noise, gate| {
-            fit_noise(&all, &tangents, model, &noise, self.prior, *gate, self.effort.noise_iterations)
-        })
+        gated_noise(&all, &tangents, model, noise, self.prior, sums.outlier_share(), self.effort.noise_iterations)
     }
 }
 

@@ -89,6 +89,7 @@ impl Fit {
             format!("Status       {} (Ipopt: {})", self.status, self.solver_status),
             format!("Check        {check}"),
             format!("Cost         {cost} (residual variance {variance})"),
+            self.likelihood_lines(),
             format!("Size         {residuals} residuals, {parameters} parameters, {rows} constraint rows"),
             format!("Derivatives  {derivatives}; Hessian {hessian}"),
             format!(
@@ -96,7 +97,30 @@ impl Fit {
                 c.objective, c.gradient, c.hessian
             ),
         ]
+        .into_iter()
+        .filter(|line| !line.is_empty())
+        .collect::<Vec<String>>()
         .join("\n")
+    }
+
+    /// What a fit by likelihood says beside the cost: how far the log-posterior rose, and the noise.
+    fn likelihood_lines(&self) -> String {
+        let Some(l) = &self.likelihood else { return String::new() };
+        let size = |g: usize| number(l.noise.sensors[g].white.hypot(l.noise.sensors[g].coloured));
+        let [x, y, n] = l.noise.force.map(number);
+        format!(
+            "Likelihood   log-posterior {} -> {} in {} rounds of noise and parameters\n\
+             Noise        position {} m, heading {} rad, speed {} m/s, yaw rate {} rad/s\n\
+             Force        unknown, standard deviation {x} N, {y} N, {n} N m over {} s",
+            number(l.start_log_posterior),
+            number(l.log_posterior),
+            l.rounds,
+            size(0),
+            size(1),
+            size(2),
+            size(3),
+            number(l.noise.force_time),
+        )
     }
 
     /// The estimates, and how their errors are to be read.
