@@ -106,6 +106,11 @@ impl Task<'_> {
         let start = from.p.to_vec();
         let mut best =
             stage.total(&start).filter(|_| self.is_feasible(&start)).map(|total| Point { p: start.clone(), total });
+        if shared.watch.is_over() {
+            let (is_feasible, stop) = (best.is_some(), shared.watch.stop());
+            let status = Status::Stopped;
+            return Ok(Descent { p: start, status, stop, optimum: None, last: None, is_feasible, evaluated: 0 });
+        }
         let (mut evaluated, mut restarts, mut from) = (0, 0, From { p: &start, ..from });
         let mut again: Vec<f64>;
         loop {

@@ -97,9 +97,10 @@ impl Task<'_> {
             };
             checks[1] += 1;
             let on = self.weighed(&lower, None, &mut priors, &mut curvature, &mut shared)?;
-            end = Descent { evaluated: end.evaluated + on.evaluated, ..on };
+            end = on;
         }
         self.check_feasible(&end)?;
+        end.evaluated = shared.watch.evaluations();
         Ok(self.settle(end, is_checked, priors, shared.work, parts, checks))
     }
 

@@ -1,0 +1,69 @@
+//! Fits as users type them, which once never ended: each ends within its limits, converged, at the lowest cost that is known.
+//! How good the models are is not tested here.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+#[path = "support/study.rs"]
+mod study;
+
+use serde_json::Value;
+use std::path::PathBuf;
+use study::{Study, at};
+
+/// The result of a fit that converged, with what it took.
+fn fitted(study: &Study, arguments: &[&str]) -> (f64, usize) {
+    let value: Value = study.json(&[&["fit"], arguments].concat());
+    assert_eq!(at(&value, "result.converged"), true, "{arguments:?}: {}", at(&value, "result.headline"));
+    let number = |path: &str| at(&value, path).as_f64().unwrap();
+    assert!(number("result.checks.0") >= 1.0, "{arguments:?}: an optimum is checked");
+    (number("result.cost") + number("result.prior_cost"), number("result.counts.objective") as usize)
+}
+
+#[test]
+fn fits_of_the_demo_end_whatever_of_the_hull_is_free() {
+    let study = Study::new();
+    study.does(&["demo", "--out", "demo"]);
+    let eleven = fitted(&study, &["demo/study.toml"]);
+    for free in [&["--free-hull"][..], &["--free", "hull"], &["--free", "flow"]] {
+        let (cost, evaluated) = fitted(&study, &[&["demo/study.toml"], free].concat());
+        assert!(cost < eleven.0 && evaluated < 1000, "{free:?}: {cost} in {evaluated}, eleven alone {}", eleven.0);
+    }
+    let (cost, _) = fitted(&study, &["demo/study.toml", "--free-hull"]);
+    assert!(cost < 145.6, "{cost}");
+}
+
+#[test]
+fn a_fit_that_may_not_go_on_says_which_limit_ended_it_and_writes_its_best_point() {
+    let study = Study::new();
+    study.does(&["demo", "--out", "demo"]);
+    for (limit, word) in [("max_evaluations = 5", "max_evaluations"), ("max_seconds = 0.001", "max_seconds")] {
+        let text = std::fs::read_to_string(study.path("demo/study.toml")).unwrap();
+        study.write("demo/short.toml", &text.replace("[fit]\n", &format!("[fit]\n{limit}\n")));
+        let output = study.run(&["fit", "demo/short.toml", "--out", "short", "--json"]);
+        assert_eq!(output.status.code(), Some(1));
+        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let status = at(&value, "result.status").as_str().unwrap();
+        assert!(status.contains(word), "{status}");
+        assert!(study.path("short/fitted.toml").is_file());
+    }
+}
+
+/// A ship that is known by its particulars alone, without priors: its start is far from where a fit should end.
+#[test]
+fn a_fit_of_a_ship_known_by_its_particulars_ends_at_the_lowest_known_cost() {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let given = std::env::var_os("TRIMTAB_DATA").map(PathBuf::from);
+    let folder = given.unwrap_or_else(|| root.join("../shared/data")).join("tug");
+    if !folder.is_dir() {
+        println!("skipped: {} is absent; set TRIMTAB_DATA to run this test", folder.display());
+        return;
+    }
+    let file = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let study = Study::new();
+    for (seed, lowest) in [(77, 3242.334), (1, 3337.81)] {
+        let (nav, bridge) = (file(&format!("nav_{seed}.csv")), file(&format!("bridge_{seed}.csv")));
+        let out = format!("tug{seed}");
+        study.does(&["import", &nav, &bridge, "--ship", &file("ship.toml"), "--out", &out]);
+        let (cost, _) = fitted(&study, &[&format!("{out}/study.toml")]);
+        assert!(cost < 1.001 * lowest, "{seed}: {cost}");
+    }
+}
