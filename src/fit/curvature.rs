@@ -164,13 +164,28 @@ mod tests {
         assert!((found - 10.0).abs() < 1.0, "{found}");
     }
 
+    /// The squares of `x` and `3 (y - x)` at x = y: residuals without curvature.
+    fn linear(x: f64) -> Local {
+        let j = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, -3.0, 3.0]);
+        let r = DVector::from_row_slice(&[x, 0.0]);
+        Local {
+            z: DVector::from_row_slice(&[x, x]),
+            value: r.norm_squared(),
+            gradient: 2.0 * j.transpose() * &r,
+            gauss_newton: 2.0 * j.transpose() * &j,
+        }
+    }
+
     #[test]
     fn damping_grows_where_steps_are_shortened_and_goes_where_they_are_not() {
         let mut curvature = Curvature::unknown(2);
-        let mut diagonal = |x: f64, trials: usize| curvature.at(local(x, x), trials)[(1, 1)] / 18.0 - 1.0;
-        assert!(diagonal(0.9, 0) < 1e-9);
-        assert!(diagonal(0.8, 4) > 0.9 * FIRST_DAMPING);
-        assert!(diagonal(0.7, 4) > 9.0 * FIRST_DAMPING);
-        assert!((0..6).map(|i| diagonal(0.6 - 0.01 * f64::from(i), 1)).last() < Some(1e-6));
+        let mut damping = |x: f64, trials: usize| curvature.at(linear(x), trials)[(1, 1)] / 18.0 - 1.0;
+        // Whole numbers of 64ths leave no rounding to be taken for curvature.
+        assert!(damping(1.0, 0) < 1e-9);
+        assert!(damping(60.0 / 64.0, POORLY) > 0.9 * FIRST_DAMPING);
+        let poor = (1..6).map(|i| damping((60.0 - f64::from(i)) / 64.0, POORLY)).fold(0.0, f64::max);
+        assert!(poor > 5.0 * FIRST_DAMPING, "{poor}");
+        let good = (1..15).map(|i| damping((50.0 - f64::from(i)) / 64.0, FORETOLD)).last();
+        assert!(good < Some(1e-6), "{good:?}");
     }
 }

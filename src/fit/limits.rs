@@ -127,7 +127,7 @@ impl<'a> Watch<'a> {
             return false;
         }
         let fell = [
-            report.objective < self.least[0] - LOWER * self.least[0].abs(),
+            self.least[0].is_infinite() || report.objective < self.least[0] - LOWER * self.least[0].abs(),
             report.inf_pr < (1.0 - SMALLER) * self.least[1],
             report.inf_du < (1.0 - SMALLER) * self.least[2],
         ];

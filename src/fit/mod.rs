@@ -10,6 +10,7 @@
 //! | `objective` | what a fit minimises, as its solver sees it |
 //! | `evaluations` | the last evaluations of an objective, each made once |
 //! | `task` | what stays fixed during a fit: model, cost, constraints, scales, start |
+//! | `scaling` | scales of the parameters, sizes of the rows |
 //! | `curvature` | the matrix of second derivatives that Ipopt is given |
 //! | `limits` | what ends a fit before its optimum |
 //! | `problem` | the task with the priors, scaled, as Ipopt wants it |
@@ -46,6 +47,8 @@ pub mod multistart;
 mod objective;
 #[cfg(feature = "ipopt")]
 mod problem;
+#[cfg(feature = "ipopt")]
+mod scaling;
 mod settings;
 #[cfg(feature = "ipopt")]
 mod solve;

@@ -6,6 +6,7 @@ use super::cost::Quadratic;
 use super::curvature::{Curvature, Local};
 use super::evaluations::Evaluations;
 use super::limits::Watch;
+use super::scaling::Scaling;
 use super::settings::Hessian;
 use super::task::Task;
 use crate::ipopt::{IterationReport, Multipliers, Nlp};
@@ -69,22 +70,6 @@ impl Priors {
 pub(super) struct Point {
     pub p: Vec<f64>,
     pub total: f64,
-}
-
-/// The units that a program is solved in.
-#[derive(Clone)]
-pub(super) struct Scaling {
-    /// One unit of each variable, in the parameter's own unit.
-    pub scales: Vec<f64>,
-    /// Size of each constraint row over a change of one unit in every variable.
-    pub sizes: Vec<f64>,
-}
-
-impl Scaling {
-    /// The scaling by these units.
-    pub fn of(scales: Vec<f64>, rows: &[Row]) -> Self {
-        Self { sizes: rows.iter().map(|row| row.size(&scales)).collect(), scales }
-    }
 }
 
 /// What is minimised, and in which way.

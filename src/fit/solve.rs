@@ -12,7 +12,8 @@ use super::descent::{BETTER, Descent, From, Shared, Work};
 use super::error::FitError;
 use super::evaluations::Evaluations;
 use super::limits::Watch;
-use super::problem::{Priors, Progress, Scaling, Stage};
+use super::problem::{Priors, Progress, Stage};
+use super::scaling::Scaling;
 use super::settings::{FitSettings, Hessian};
 use super::stages::{self, Sample};
 use super::subspace::inverse;
@@ -118,6 +119,8 @@ impl Task<'_> {
         let mut p = from.to_vec();
         for _ in 0..rounds {
             let value = self.evaluations.value(&p).ok_or_else(|| self.diverged())?;
+            // A weight that is never set anew is that of the fit's own start.
+            let value = if rounds == 1 && self.start_cost.is_finite() { self.start_cost } else { value };
             let weight = self.weight(self.cost, value);
             if end.is_some() && (weight - priors.weight).abs() <= SAME_WEIGHT * weight {
                 break;

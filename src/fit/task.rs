@@ -5,7 +5,7 @@ use super::constraints::{self, Row};
 use super::cost::{Cost, CostOptions};
 use super::error::FitError;
 use super::evaluations::Evaluations;
-use super::problem::Scaling;
+use super::scaling::Scaling;
 use super::settings::FitSettings;
 use super::subspace::null_space;
 use crate::model::{Model, Parameter};
