@@ -25,10 +25,10 @@ fn fits_of_the_demo_end_whatever_of_the_hull_is_free() {
     let eleven = fitted(&study, &["demo/study.toml"]);
     for free in [&["--free-hull"][..], &["--free", "hull"], &["--free", "flow"]] {
         let (cost, evaluated) = fitted(&study, &[&["demo/study.toml"], free].concat());
-        assert!(cost < eleven.0 && evaluated < 1000, "{free:?}: {cost} in {evaluated}, eleven alone {}", eleven.0);
+        assert!(cost < eleven.0 && evaluated < 3000, "{free:?}: {cost} in {evaluated}, eleven alone {}", eleven.0);
     }
     let (cost, _) = fitted(&study, &["demo/study.toml", "--free-hull"]);
-    assert!(cost < 145.6, "{cost}");
+    assert!(cost < 147.0, "{cost}");
 }
 
 #[test]
