@@ -48,6 +48,11 @@ impl Signal {
         (Self { step, t, v }, Tidied { out_of_order, repeated: before - samples.len() })
     }
 
+    /// One of the same steps that has no samples.
+    pub fn without_samples(&self) -> Self {
+        Self { t: Vec::new(), v: Vec::new(), ..*self }
+    }
+
     /// The value at a time: that of a sample, the mean over `width` seconds of samples that are closer together than that, or a
     /// straight line between two successive samples; NaN in a drop-out and outside.
     pub fn at(&self, t: f64, width: f64) -> f64 {

@@ -4,10 +4,10 @@
 use super::choose::{Choices, Chosen, Unused};
 use super::error::ImportError;
 use super::evidence::{Given, Known, Verdict, direction, other, rotation, rudder, speed, yaw_rate};
-use super::geodesy::{Plane, from_minutes};
 use super::log::{Column, Meaning};
 use super::motion::Track;
-use super::signal::{Signal, Tidied, size_below};
+use super::place::places;
+use super::signal::{Signal, Tidied};
 use crate::recording::Channel;
 use std::collections::BTreeMap;
 
@@ -185,50 +185,26 @@ impl Signals {
         };
         let units = [given(Meaning::Latitude, lat, choices)?, given(Meaning::Longitude, lon, choices)?];
         let radians = units.iter().all(|unit| unit.as_ref().is_some_and(|u| u.factor == 1.0));
-        let (columns, minutes) = degrees(&[lat, lon], if radians { 1f64.to_degrees() } else { 1.0 })?;
-        let [latitudes, longitudes] = columns;
-        let (lat_signal, tidied) = Signal::new(&[&latitudes], 1.0, 0.0, false);
-        let (lon_signal, _) = Signal::new(&[&longitudes], 1f64.to_radians(), 0.0, true);
-        let mut places: Vec<[f64; 3]> = Vec::new();
-        let mut nowhere = 0;
-        for (t, latitude) in lat_signal.t.iter().zip(&lat_signal.v) {
-            let longitude = lon_signal.at(*t, lat_signal.step).to_degrees();
-            if latitude.abs() < 1e-9 && longitude.abs() < 1e-9 {
-                nowhere += 1;
-            } else if longitude.is_finite() {
-                places.push([*t, *latitude, longitude]);
-            }
+        let Some(places) = places(lat, lon, radians)? else { return Ok(()) };
+        if places.nowhere > 0 {
+            let text = "positions are 0 N 0 E, which receivers write without a fix; taken as missing";
+            self.notes.push(format!("{} {text}", places.nowhere));
         }
-        let column = |k: usize| places.iter().map(|p| p[k]).collect::<Vec<f64>>();
-        let Some(plane) = Plane::amid(&column(1), &column(2)) else { return Ok(()) };
-        if nowhere > 0 {
-            self.notes.push(format!(
-                "{nowhere} positions are 0 N 0 E, which receivers write without a fix; taken as missing"
-            ));
-        }
-        let metres: Vec<[f64; 2]> = places.iter().map(|p| plane.metres(p[1], p[2])).collect();
-        let far = metres.iter().map(|m| m[0].hypot(m[1])).fold(0.0, f64::max);
-        if far > 100_000.0 {
+        if places.far > 100_000.0 {
             let text = format!(
                 "positions reach {:.0} km from the point of the plane, where distances are {:.2} % short",
-                far / 1e3,
-                100.0 * far * far / 8.1e13
+                places.far / 1e3,
+                100.0 * places.far * places.far / 8.1e13
             );
             self.notes.push(text);
         }
-        let form = match (minutes, radians) {
-            (true, _) => "deg and minutes (dddmm.mmm)",
-            (_, true) => "rad",
-            _ => "deg",
-        };
-        let why = format!("plane tangent to WGS84 at {} N {} E", plane.origin[0], plane.origin[1]);
-        self.tell(Meaning::Latitude, lat, &lat_signal, tidied, form, why.clone());
-        self.tell(Meaning::Longitude, lon, &lon_signal, Tidied::default(), form, why);
-        for (axis, channel) in [Channel::X, Channel::Y].into_iter().enumerate() {
-            let signal = Signal { t: column(0), v: metres.iter().map(|m| m[axis]).collect(), step: lat_signal.step };
-            self.by.insert(Meaning::Channel(channel), signal);
-        }
-        self.origin = Some(plane.origin);
+        let why = format!("plane tangent to WGS84 at {} N {} E", places.origin[0], places.origin[1]);
+        let [told_lat, told_lon] = &places.told;
+        self.tell(Meaning::Latitude, lat, told_lat, places.tidied, places.form, why.clone());
+        self.tell(Meaning::Longitude, lon, told_lon, Tidied::default(), places.form, why);
+        self.by.insert(Meaning::Channel(Channel::X), places.x);
+        self.by.insert(Meaning::Channel(Channel::Y), places.y);
+        self.origin = Some(places.origin);
         Ok(())
     }
 
@@ -260,33 +236,4 @@ impl Signals {
         }
         Ok(())
     }
-}
-
-/// Latitudes and longitudes in degrees, of which one value is `unit`, and whether they were written as degrees and minutes. Single
-/// values that are none are left out.
-fn degrees(both: &[&Vec<&Column>; 2], unit: f64) -> Result<([Column; 2], bool), ImportError> {
-    let usual = |columns: &Vec<&Column>| columns.iter().map(|c| size_below(&c.v, 0.5)).fold(0.0, f64::max);
-    let in_minutes = usual(both[0]) > 90.0;
-    let mut found = [Column::default(), Column::default()];
-    for (i, columns) in both.iter().enumerate() {
-        let most = [90.0, 360.0][i];
-        let (mut wrong, mut count) = (None, 0);
-        for (t, v) in columns.iter().flat_map(|c| c.t.iter().zip(&c.v)) {
-            let degrees = if in_minutes { from_minutes(*v).unwrap_or(f64::NAN) } else { unit * *v };
-            if degrees.abs() <= most {
-                found[i].push(*t, degrees);
-            } else {
-                (wrong, count) = (Some(*v), count + 1);
-            }
-        }
-        if let Some(wrong) = wrong.filter(|_| count > found[i].v.len() / 20) {
-            let name = columns.first().map_or("", |c| c.name.as_str());
-            let (words, channel) = (["latitude", "longitude"][i], ["x", "y"][i]);
-            let text = format!(
-                "column `{name}` holds {wrong}, which is no {words} in deg; is it metres? then pass `--column {channel}={name}`"
-            );
-            return Err(ImportError::Choice(text));
-        }
-    }
-    Ok((found, in_minutes))
 }
