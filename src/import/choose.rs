@@ -25,6 +25,13 @@ pub struct Choices {
 }
 
 impl Choices {
+    /// What a column is by itself: as the user says, as the format says, as its name says.
+    pub fn meaning(&self, column: &Column) -> Option<Meaning> {
+        let forced = self.columns.iter().find(|(_, name)| name.eq_ignore_ascii_case(&column.name));
+        let forced = forced.and_then(|(quantity, _)| Meaning::from_name(quantity));
+        forced.or(column.meaning).or_else(|| reading(&column.name).map(|r| r.meaning))
+    }
+
     /// Checks that each quantity there is, and each unit of it.
     ///
     /// # Errors

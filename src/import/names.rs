@@ -3,8 +3,8 @@
 
 use super::log::Meaning;
 use super::vocabulary::{
-    CHANGES, CLOCKS, FROM_BOW, FROM_NORTH, MAGNETIC, MOVES, NEUTRAL, ORDERS, PHRASES, RELATIVE, SINCE, SPEEDS, VAGUE,
-    WIND, WIND_DIRECTIONS, WIND_SPEEDS, is_on, phrases,
+    BESIDE_SHIPS, CHANGES, CLOCKS, FROM_BOW, FROM_NORTH, MAGNETIC, MOVES, NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS,
+    SINCE, SPEEDS, VAGUE, WIND, WIND_DIRECTIONS, WIND_SPEEDS, is_on, phrases,
 };
 use crate::recording::{Channel, UNITS};
 use std::ops::Range;
@@ -207,7 +207,10 @@ fn share_by_place(parts: &[String], counts: impl Fn(usize) -> bool) -> f64 {
         let letters = part.chars().count();
         if counts(i) {
             explained += letters;
-        } else if !is_on(NEUTRAL, part) && !unnumbered(part).is_empty() && !is_on(ORDERS, part) {
+        } else if ![part.as_str(), unnumbered(part)]
+            .iter()
+            .any(|p| p.is_empty() || is_on(NEUTRAL, p) || is_on(ORDERS, p))
+        {
             unknown += letters;
         }
     }
@@ -316,6 +319,12 @@ pub fn source(name: &str) -> String {
     // The number of a sensor stays: `gps1 lat` and `gps1 lon`, `lat1` and `lon1`.
     let kept = parts.iter().map(|p| if told(p) { p[unnumbered(p).len()..].to_owned() } else { p.clone() });
     kept.filter(|p| !p.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// Whether a column says whose row it is: MMSI, name of the ship.
+pub fn is_ships_name(name: &str) -> bool {
+    let parts = words(name);
+    parts.iter().any(|p| is_on(SHIPS, p)) && parts.iter().all(|p| is_on(SHIPS, p) || is_on(BESIDE_SHIPS, p))
 }
 
 #[cfg(test)]

@@ -1,15 +1,17 @@
 //! From the columns taken to signals in SI units: each quantity's unit and sign decided with its evidence, positions in metres.
 //! Rows are made elsewhere; here each quantity keeps its own times.
 
+use super::agree::heading;
 use super::choose::{Choices, Chosen, Unused};
 use super::error::ImportError;
 use super::evidence::{Given, Known, Verdict, direction, other, rotation, rudder, speed, yaw_rate};
 use super::log::{Column, Meaning};
 use super::motion::Track;
 use super::place::places;
-use super::signal::{Signal, Tidied};
+use super::signal::{Signal, Tidied, median};
 use crate::recording::Channel;
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
 
 /// What a column was taken for.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -69,6 +71,21 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         let sway = chosen.get(&Meaning::Channel(Channel::V));
         known.sway = sway.map(|columns| Signal::new(columns, 1.0, 0.0, false).0);
     }
+    if choices.units.keys().all(|k| !["lat", "lon"].contains(&k.as_str()))
+        && let Some(axis) = known.track.as_ref().and_then(|track| wrong_axis(track, chosen))
+    {
+        signals.turn_axis(axis);
+        known.track = get(&signals, Channel::X).zip(get(&signals, Channel::Y)).and_then(|(x, y)| Track::of(&x, &y));
+    }
+    if let Some(columns) = chosen.get(&Meaning::Variation) {
+        let verdict = other(Meaning::Variation, columns, given(Meaning::Variation)?.as_ref());
+        // Degrees, where no unit is given: a variation of a few of them is small too.
+        let factor = verdict.as_ref().map_or(1f64.to_radians(), |verdict| verdict.factor);
+        let (signal, tidied) = Signal::new(columns, factor, 0.0, true);
+        let name = columns.first().map_or("", |c| c.name.as_str());
+        known.variation = median(signal.v.clone()).map(|v| (v, name.to_owned()));
+        signals.tell(Meaning::Variation, columns, &signal, tidied, "deg", "positive to the east".to_owned());
+    }
     for meaning in [Meaning::Channel(Channel::Psi), Meaning::Course] {
         if let Some(columns) = chosen.get(&meaning) {
             let verdict = direction(meaning, columns, given(meaning)?.as_ref(), &known);
@@ -83,17 +100,62 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         signals.put(r, columns, verdict);
     }
     known.r = get(&signals, Channel::R).or_else(|| known.psi.as_ref().map(|psi| psi.rate(psi.span())));
+    if let Some(columns) = chosen.get(&Meaning::WindAngle) {
+        let mut verdict = other(Meaning::WindAngle, columns, given(Meaning::WindAngle)?.as_ref());
+        if let Ok(verdict) = &mut verdict {
+            verdict.evidence += "; an angle from the bow: the direction is heading + angle";
+        }
+        signals.put(Meaning::WindAngle, columns, verdict);
+    }
     for (meaning, columns) in chosen {
         let Meaning::Channel(channel) = *meaning else { continue };
         let verdict = match channel {
             Channel::Delta | Channel::DeltaOrder => rudder(*meaning, columns, given(*meaning)?.as_ref(), &known),
             Channel::N | Channel::NOrder => rotation(*meaning, columns, given(*meaning)?.as_ref(), &known),
             _ if signals.by.contains_key(meaning) || signals.is_told(*meaning) => continue,
-            _ => other(*meaning, columns, given(*meaning)?.as_ref()),
+            _ => other(*meaning, columns, given(*meaning)?.as_ref()).map(|verdict| referred(verdict, channel)),
         };
         signals.put(*meaning, columns, verdict);
     }
     if signals.asked.is_empty() { Ok(signals) } else { Err(ImportError::Undecided(signals.asked)) }
+}
+
+/// Directions agree from this length of their mean on; they do in one sense and not in the other where these are so far apart.
+const AGREE: f64 = 0.8;
+const APART: f64 = 0.3;
+
+/// The axis of position that is counted the wrong way, 0 for north and 1 for east: latitude and longitude against which every direction
+/// turns, from north or south and not from east or west as a mathematician's angle.
+fn wrong_axis(track: &Track, chosen: &Chosen<'_>) -> Option<usize> {
+    if !chosen.contains_key(&Meaning::Latitude) || !chosen.contains_key(&Meaning::Longitude) {
+        return None;
+    }
+    let directions: Vec<&Vec<&Column>> =
+        [Meaning::Channel(Channel::Psi), Meaning::Course].iter().filter_map(|m| chosen.get(m)).collect();
+    let against = |columns: &&Vec<&Column>| {
+        let signal = heading(columns);
+        let [[right, _], [mirrored, turned]] = [track.agreement(&signal, 1.0)?, track.agreement(&signal, -1.0)?];
+        let quarter = (turned / FRAC_PI_2).round().rem_euclid(4.0);
+        let tells = mirrored > AGREE && mirrored > right + APART;
+        (tells && quarter % 2.0 == 0.0).then_some(if quarter == 0.0 { 1 } else { 0 })
+    };
+    let axes: Vec<usize> = directions.iter().map(against).collect::<Option<_>>()?;
+    axes.first().copied().filter(|first| axes.iter().all(|axis| axis == first))
+}
+
+fn plane_words(origin: [f64; 2]) -> String {
+    format!("plane tangent to WGS84 at {} N {} E", origin[0], origin[1])
+}
+
+/// The verdict on a direction of wind, current or waves, with what it counts from.
+fn referred(mut verdict: Verdict, channel: Channel) -> Verdict {
+    let from = match channel {
+        Channel::ApparentWindDirection => "; an angle from the bow",
+        Channel::WindDirection | Channel::CurrentDirection | Channel::WaveDirection => "; from north",
+        _ => "",
+    };
+    verdict.evidence += from;
+    verdict
 }
 
 /// The unit that the user or the files give.
@@ -124,6 +186,7 @@ fn needed(meaning: Meaning) -> bool {
     use Channel::{Delta, N, Psi, R, U, V, X, Y};
     match meaning {
         Meaning::Channel(channel) => [X, Y, Psi, U, V, R, N, Delta].contains(&channel),
+        Meaning::WindAngle | Meaning::Variation => false,
         _ => true,
     }
 }
@@ -198,7 +261,7 @@ impl Signals {
             );
             self.notes.push(text);
         }
-        let why = format!("plane tangent to WGS84 at {} N {} E", places.origin[0], places.origin[1]);
+        let why = plane_words(places.origin);
         let [told_lat, told_lon] = &places.told;
         self.tell(Meaning::Latitude, lat, told_lat, places.tidied, places.form, why.clone());
         self.tell(Meaning::Longitude, lon, told_lon, Tidied::default(), places.form, why);
@@ -206,6 +269,29 @@ impl Signals {
         self.by.insert(Meaning::Channel(Channel::Y), places.y);
         self.origin = Some(places.origin);
         Ok(())
+    }
+
+    /// Counts an axis of position the other way, and says so first of all.
+    fn turn_axis(&mut self, axis: usize) {
+        let (channel, meaning) = [(Channel::X, Meaning::Latitude), (Channel::Y, Meaning::Longitude)][axis];
+        if let Some(signal) = self.by.get_mut(&Meaning::Channel(channel)) {
+            signal.v.iter_mut().for_each(|v| *v = -*v);
+        }
+        if let Some(origin) = &mut self.origin {
+            origin[axis] = -origin[axis];
+        }
+        let plane = self.origin.map_or_else(String::new, plane_words);
+        let side = ["south", "west"][axis];
+        let words =
+            format!("counted positive to the {side}, turned: heading and course turn against the track otherwise");
+        for taken in &mut self.taken {
+            let turned = if taken.quantity == meaning.name() { format!("{words}; ") } else { String::new() };
+            taken.evidence = turned + &plane;
+        }
+        let name = meaning.name();
+        let text =
+            format!("WARNING: the {} is {words}; if it is right as it is, pass `--unit {name}=deg`", meaning.words());
+        self.notes.insert(0, text);
     }
 
     /// Speeds: over ground alone or in parts, and through water.

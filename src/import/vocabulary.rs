@@ -137,6 +137,11 @@ pub const CLOCKS: &str = "timestamp, datetime, time, utc, epoch, unix, zeit, uhr
          horodatage, temps, ora, orario, tempo, hora, tiempo, fecha";
 /// Words of a time since something.
 pub const SINCE: &str = "stamp, elapsed, seconds, secs, sec, millis, secondes, segundos, secondi";
+/// Words by which a column tells whose row it is.
+pub const SHIPS: &str = "mmsi, imo, callsign, vessel, ship, schiff, navire, nave, buque";
+/// Words that may stand beside these in the name of such a column.
+pub const BESIDE_SHIPS: &str = "name, id, number, no, nr, userid, source";
+
 /// The words or phrases of a list.
 pub fn phrases(list: &'static str) -> impl Iterator<Item = &'static str> {
     list.split(", ")
