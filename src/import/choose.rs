@@ -29,7 +29,7 @@ impl Choices {
     pub fn meaning(&self, column: &Column) -> Option<Meaning> {
         let forced = self.columns.iter().find(|(_, name)| name.eq_ignore_ascii_case(&column.name));
         let forced = forced.and_then(|(quantity, _)| Meaning::from_name(quantity));
-        forced.or(column.meaning).or_else(|| reading(&column.name).map(|r| r.meaning))
+        forced.or(column.meaning).or_else(|| by_name(&column.name, column.unit.as_deref()).map(|(meaning, _)| meaning))
     }
 
     /// Checks that each quantity there is, and each unit of it.
@@ -179,6 +179,11 @@ fn read(name: &str, columns: &[&Column], forced: &BTreeMap<String, Meaning>) -> 
     if let Some(meaning) = forced.get(name).copied().or(first.meaning) {
         return Some((meaning, 1.0));
     }
+    by_name(name, unit)
+}
+
+/// What a name and its unit say.
+fn by_name(name: &str, unit: Option<&str>) -> Option<(Meaning, f64)> {
     let shaft = || is_shaft(name) && unit.is_some_and(|u| Quantity::Rotation.factor(u).is_some());
     let by_name = reading(name).filter(|r| unit.is_none_or(|unit| fits(r.meaning, unit)));
     by_name.map(|r| (r.meaning, r.explained)).or_else(|| shaft().then_some((SHAFT, 0.5)))

@@ -80,6 +80,8 @@ const FAR: f64 = 5.0;
 const COHERENT: f64 = 0.6;
 /// A steady angle of course and heading that is told \[rad\]: 3 deg, above the error of a gyrocompass under way (1 to 2 deg).
 const STEADY: f64 = 0.052;
+/// A heading goes with the course within this angle on the mean of a log \[rad\]: 14 deg, more than drift, current and variation mostly make.
+const ALONG: f64 = 0.25;
 /// Directions agree.
 const AGREE: f64 = 0.8;
 /// t value of the rudder's effect from which its sign is told.
@@ -141,6 +143,7 @@ pub fn direction(
     let top = largest(columns);
     let length =
         |factor| [1.0, -1.0].map(|s| agreement(factor, s).map_or(0.0, |a| a[0])).into_iter().fold(0.0, f64::max);
+    let along = |factor| agreement(factor, 1.0).is_some_and(|[length, off]| length > AGREE && off.abs() < ALONG);
     let (unit, factor, why) = match given {
         Some(given) if given.by_user => (given.unit.as_str(), given.factor, String::new()),
         _ if top > MOST_RADIANS => ("deg", degree, format!("values up to {}", sig(top, 4))),
@@ -151,6 +154,8 @@ pub fn direction(
                 _ if deg > AGREE && deg > rad + 0.1 => ("deg", degree, says("degrees")),
                 _ if rad > AGREE && rad > deg + 0.1 => ("rad", 1.0, says("radians")),
                 Some(given) => (given.unit.as_str(), given.factor, String::new()),
+                None if along(1.0) && !along(degree) => ("rad", 1.0, says("radians")),
+                None if along(degree) && !along(1.0) => ("deg", degree, says("degrees")),
                 None => return Err(ask(meaning, name, "deg or rad")),
             }
         }

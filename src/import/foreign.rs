@@ -83,7 +83,7 @@ fn is_candump(text: &[u8]) -> bool {
     let frame = |f: &&str| f.split_once('#').is_some_and(|(id, data)| hex(id) && (data.is_empty() || hex(data)));
     let listed = fields.iter().any(|f| f.len() == 3 && f.starts_with('[') && f.ends_with(']'));
     let bus = fields.iter().take(2).any(|f| f.contains("can"));
-    (stamped && fields.iter().any(|f| frame(&f))) || (bus && listed)
+    (stamped && fields.iter().any(frame)) || (bus && listed)
 }
 
 #[cfg(test)]

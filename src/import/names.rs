@@ -149,7 +149,7 @@ pub fn reading(name: &str) -> Option<Reading> {
     }
     let parts = without_unit(words(name));
     if let Some(wind) = wind(&parts) {
-        return wind.map(|meaning| Reading { meaning, explained: share(&parts, |p| is_wind_word(p)) });
+        return wind.map(|meaning| Reading { meaning, explained: share(&parts, is_wind_word) });
     }
     let all = [(PHRASES, 1.0), (VAGUE, VAGUELY)];
     let each = all.iter().flat_map(|(table, weight)| table.iter().map(move |(m, list)| (*m, *list, *weight)));

@@ -35,6 +35,8 @@ pub fn shifts(logs: &[Log], choices: &Choices) -> Result<Vec<f64>, ImportError> 
     }
     let ranges: Vec<[f64; 2]> = logs.iter().map(range).collect();
     let lasts = ranges.iter().fold(f64::MIN, |m, r| m.max(r[1])) - ranges.iter().fold(f64::MAX, |m, r| m.min(r[0]));
+    // The parts of one file need no other.
+    let one_file = logs.windows(2).all(|pair| pair[0].path == pair[1].path);
     let mut groups: Vec<Vec<usize>> = Vec::new();
     let mut shifts = Vec::with_capacity(logs.len());
     for (j, log) in logs.iter().enumerate() {
@@ -48,7 +50,7 @@ pub fn shifts(logs: &[Log], choices: &Choices) -> Result<Vec<f64>, ImportError> 
                 at = g;
                 break;
             };
-            if !(is_whole(&logs[i], choices) && is_whole(log, choices)) {
+            if !(one_file || is_whole(&logs[i], choices) && is_whole(log, choices)) {
                 return Err(refusal(&logs[i], log, column, ranges[i][0].max(ranges[j][0])));
             }
         }

@@ -99,7 +99,13 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         let verdict = yaw_rate(r, columns, given(r)?.as_ref(), &known);
         signals.put(r, columns, verdict);
     }
-    known.r = get(&signals, Channel::R).or_else(|| known.psi.as_ref().map(|psi| psi.rate(psi.span())));
+    let turning = known.psi.as_ref().map(|psi| psi.rate(psi.span()));
+    // A recorded rate with many blanks has few stretches that are long enough to be held against a rudder.
+    let whole = |r: &Signal| {
+        let fitted = r.smooth(r.span()).t.len();
+        turning.as_ref().is_none_or(|turning| 2 * fitted > turning.t.len())
+    };
+    known.r = get(&signals, Channel::R).filter(whole).or(turning.clone());
     if let Some(columns) = chosen.get(&Meaning::WindAngle) {
         let mut verdict = other(Meaning::WindAngle, columns, given(Meaning::WindAngle)?.as_ref());
         if let Ok(verdict) = &mut verdict {

@@ -316,15 +316,15 @@ impl Imported {
                 }
             }
             let sparse = !core.contains(&channel) && channel.interrupts() && absent as f64 > MOSTLY * rows as f64;
-            if lonely || sparse {
+            if lonely {
+                self.recordings.iter_mut().for_each(|r| r.rows.channels.retain(|(c, _)| *c != channel));
+                let partner = partner.map_or("", Channel::name);
+                self.notes.push(format!("{channel} is left out: without {partner} it says nothing"));
+            } else if sparse {
                 self.leave_out.push(channel);
-                let why = if lonely {
-                    format!("without {} it says nothing", partner.map_or("", Channel::name))
-                } else {
-                    format!("it is missing in {absent} of {rows} rows, each of which would end a run")
-                };
-                self.notes
-                    .push(format!("{channel} is in the recordings and not used: {why} (`leave_out` in columns.toml)"));
+                self.notes.push(format!(
+                    "{channel} is in the recordings and not used: it is missing in {absent} of {rows} rows, each of which would end a run (`leave_out` in columns.toml)"
+                ));
             }
         }
     }
