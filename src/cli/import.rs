@@ -16,7 +16,7 @@ use trimtab::numerals::{fixed, sig};
 use trimtab::recording::{ColumnMap, Recording};
 use trimtab::report::Table;
 use trimtab::ship::Ship;
-use trimtab::split::{Sessions, SplitPart, SplitRun, runs_csv, split};
+use trimtab::split::{Sessions, SplitPart, SplitRun, runs_csv, shortest_run, split};
 
 const LONG: &str = "\
 Makes a study folder of the files that ships and loggers write, so that `trimtab check` and \
@@ -30,11 +30,12 @@ Reads, by content and not by name:
               51°30.25'N; letters of the hemisphere or of the rudder's side beside the number or in a
               column of their own; fields may be empty, and each column may have its own rate; a time
               that starts again begins another recording
-  NMEA 0183   RMC GGA VTG HDT THS HDG ROT RSA RPM VHW VBW MWV DPT ZDA; checksums are verified, and a
-              time before each sentence is used
+  NMEA 0183   RMC GGA GLL VTG HDT THS HDG HDM ROT RSA RPM VHW VBW MWV MWD VWR DPT ZDA; checksums are
+              verified, a time before each sentence is used, and two talkers are two columns
   Parquet     flat columns of numbers, timestamps or text
 
-What each column is taken for is told with its evidence. Units and signs are decided from the data \
+What each column is taken for is told with its evidence. Of several columns for one quantity the one is \
+    taken whose name says it most fully, and which agrees with the data. Units and signs are decided from the data \
     where they tell: heading and course by the track, speed by the speed of the track, yaw rate by the \
     heading, rudder by its size and by the way the ship turns, propeller rate by its size. What nothing \
     tells is asked for, everything in one message.
@@ -43,8 +44,10 @@ Positions become metres on the plane that is tangent to WGS84 amid the track. Wi
     are u = SOG cos(COG - heading), v = SOG sin(COG - heading), over ground at the antenna, or derived \
     from position and heading; `reference_point` in columns.toml takes them to midship.
 
-No gap is filled: a row without a value keeps an empty field, a gap longer than --session-gap ends a \
-    recording, and a run ends at every gap. Channels of other rates are brought to the rows of the slower \
+No gap is filled, but by --bridge and from channels that tell the same (the yaw rate from the heading): \
+    a row without a value keeps an empty field, a gap longer than --session-gap ends a recording, and a run \
+    ends at every gap; what that costs is told. A clock that steps back, and a second file over the same \
+    time, make a recording of their own. Channels of other rates are brought to the rows of the slower \
     of position and heading: a faster one as its mean over a step, a slower one on straight lines between \
     two successive samples.";
 
@@ -94,6 +97,9 @@ pub struct Args {
     /// A longer gap ends a recording and a session [s]; 1800 if not given.
     #[arg(long, value_name = "S")]
     session_gap: Option<f64>,
+    /// Longest drop-out to bridge by straight lines [s]; none if not given.
+    #[arg(long, value_name = "S")]
+    bridge: Option<f64>,
     /// List each recording as one run instead of splitting it.
     #[arg(long)]
     no_split: bool,
@@ -152,7 +158,10 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let bar = progress(format!("importing {} files", args.files.len()));
     let imported = import(&args.files, &settings);
     bar.finish_and_clear();
-    let imported = imported?;
+    let mut imported = imported?;
+    if let Some(longest) = args.bridge {
+        imported.bridge(longest);
+    }
     let antenna = antenna(args)?;
     let origins = Origins {
         name: &name,
@@ -172,7 +181,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             Recording::parse(&text, &args.out.join(&file), &map).map_err(trimtab::study::StudyError::from)?;
         recordings.push((file, recording));
     }
-    let (runs, skipped) = runs(args, &imported, &recordings)?;
+    let (runs, skipped, lost) = runs(args, &imported, &recordings)?;
+    imported.notes.extend(lost);
     let table = if args.no_split { whole_runs(&recordings) } else { runs_csv(&runs) };
     output.file("runs.csv", table.as_bytes());
     let mut kept = Vec::new();
@@ -214,6 +224,9 @@ fn settings(args: &Args) -> Result<ImportSettings, CliError> {
             "--session-gap {gap}: give a positive number of seconds, such as 1800"
         )));
     }
+    if let Some(bridge) = args.bridge.filter(|b| !(b.is_finite() && *b > 0.0)) {
+        return Err(CliError::Argument(format!("--bridge {bridge}: give a positive number of seconds, such as 6")));
+    }
     let choices = Choices { columns: pairs("--column", &args.column)?, units: pairs("--unit", &args.unit)? };
     Ok(ImportSettings { choices, session_gap: args.session_gap })
 }
@@ -237,14 +250,14 @@ fn own_file(path: Option<&Path>) -> Result<Option<String>, CliError> {
     path.map(read).transpose()
 }
 
-/// The runs of all recordings.
+/// The runs of all recordings, how many stretches are too short for one, and what blanks and gaps cost.
 fn runs(
     args: &Args,
     imported: &Imported,
     recordings: &[(String, Recording)],
-) -> Result<(Vec<SplitRun>, usize), CliError> {
+) -> Result<(Vec<SplitRun>, usize, Option<String>), CliError> {
     if args.no_split {
-        return Ok((Vec::new(), 0));
+        return Ok((Vec::new(), 0, None));
     }
     let settings = args.split.settings()?;
     let sessions = imported.sessions(args.session_gap);
@@ -253,7 +266,14 @@ fn runs(
     for ((file, recording), session) in recordings.iter().zip(sessions) {
         parts.push(SplitPart { file: file.clone(), session: Some(session).filter(|_| known), recording });
     }
-    split(&parts, &settings).map_err(|error| CliError::Argument(format!("{}: {error}", args.out.display())))
+    let lost = imported.lost(shortest_run(&parts));
+    match split(&parts, &settings) {
+        Ok((runs, skipped)) => Ok((runs, skipped, lost)),
+        Err(error) => {
+            let more = lost.map_or_else(String::new, |lost| format!(". {lost}"));
+            Err(CliError::Argument(format!("{}: {error}{more}", args.out.display())))
+        }
+    }
 }
 
 /// A table of runs with each recording as one.

@@ -48,6 +48,8 @@ pub struct Known {
     pub psi: Option<Signal>,
     /// Yaw rate \[rad/s\]: the recorded one, or that of the heading.
     pub r: Option<Signal>,
+    /// Magnetic variation \[rad\], positive to the east, and its column.
+    pub variation: Option<(f64, String)>,
 }
 
 impl Known {
@@ -76,6 +78,10 @@ const NEAR_IN_WATER: f64 = 0.3;
 const FAR: f64 = 5.0;
 /// Coherence from which a ratio means something.
 const COHERENT: f64 = 0.6;
+/// A steady angle of course and heading that is told \[rad\]: 3 deg, above the error of a gyrocompass under way (1 to 2 deg).
+const STEADY: f64 = 0.052;
+/// A heading goes with the course within this angle on the mean of a log \[rad\]: 14 deg, more than drift, current and variation mostly make.
+const ALONG: f64 = 0.25;
 /// Directions agree.
 const AGREE: f64 = 0.8;
 /// t value of the rudder's effect from which its sign is told.
@@ -137,6 +143,7 @@ pub fn direction(
     let top = largest(columns);
     let length =
         |factor| [1.0, -1.0].map(|s| agreement(factor, s).map_or(0.0, |a| a[0])).into_iter().fold(0.0, f64::max);
+    let along = |factor| agreement(factor, 1.0).is_some_and(|[length, off]| length > AGREE && off.abs() < ALONG);
     let (unit, factor, why) = match given {
         Some(given) if given.by_user => (given.unit.as_str(), given.factor, String::new()),
         _ if top > MOST_RADIANS => ("deg", degree, format!("values up to {}", sig(top, 4))),
@@ -147,6 +154,8 @@ pub fn direction(
                 _ if deg > AGREE && deg > rad + 0.1 => ("deg", degree, says("degrees")),
                 _ if rad > AGREE && rad > deg + 0.1 => ("rad", 1.0, says("radians")),
                 Some(given) => (given.unit.as_str(), given.factor, String::new()),
+                None if along(1.0) && !along(degree) => ("rad", 1.0, says("radians")),
+                None if along(degree) && !along(1.0) => ("deg", degree, says("degrees")),
                 None => return Err(ask(meaning, name, "deg or rad")),
             }
         }
@@ -156,10 +165,14 @@ pub fn direction(
         Some(given) if told => as_given(given, &why),
         given => by_data(unit, factor, why, given),
     };
-    if matches!(meaning, Meaning::Channel(Channel::Psi)) && is_magnetic(name) {
-        verdict.doubt = Some(
-            "a magnetic heading: variation and deviation are not in it; `offset` in columns.toml adds them".to_owned(),
-        );
+    if is_magnetic(name) {
+        bring_to_true(&mut verdict, meaning, known);
+    }
+    if meaning == Meaning::Channel(Channel::Psi) {
+        let heading = Signal::new(columns, factor, verdict.offset, true).0;
+        let steady = known.track.as_ref().and_then(|track| track.steady_angle(&heading));
+        let told = steady.filter(|angle| angle.abs() > STEADY).map(steady_words);
+        verdict.doubt = [verdict.doubt.take(), told].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
     }
     if let (Some([right, _]), Some([mirrored, turned])) = (agreement(factor, 1.0), agreement(factor, -1.0)) {
         let degrees = |angle: f64| sig(angle.to_degrees(), 3);
@@ -182,6 +195,32 @@ pub fn direction(
         }
     }
     Ok(verdict)
+}
+
+/// Adds the variation to a magnetic direction, or tells that it is not known.
+fn bring_to_true(verdict: &mut Verdict, meaning: Meaning, known: &Known) {
+    match &known.variation {
+        Some((variation, column)) => {
+            verdict.offset = *variation;
+            let (degrees, side) = (sig(variation.to_degrees().abs(), 3), if *variation < 0.0 { "W" } else { "E" });
+            verdict.evidence += &format!("; magnetic, brought to true north by {degrees} deg {side} (`{column}`)");
+        }
+        None => {
+            let words = if meaning == Meaning::Course { "course" } else { "heading" };
+            verdict.doubt = Some(format!(
+                "a magnetic {words}: variation and deviation are not in it; `offset` in columns.toml adds them, or a column of the variation (`--column variation=NAME`)"
+            ));
+        }
+    }
+}
+
+/// What is told of a steady angle from heading to course \[rad\].
+fn steady_words(angle: f64) -> String {
+    format!(
+        "the course is {} deg off the heading on straights in opposite directions, which no current or wind explains: a magnetic compass, or one that is not aligned; `psi = {{ offset = {} }}` (rad) in [columns] of columns.toml takes it out",
+        sig(angle.to_degrees(), 3),
+        sig(angle, 4)
+    )
 }
 
 /// Speeds over ground or through water, by the speed of the track. `size` is the speed that the columns give, in their own unit.

@@ -2,7 +2,21 @@
 //! Nothing is unpacked or converted.
 
 /// What a file begins with, what it is then, and what to do.
-const BEGINNINGS: [(&[u8], &str, &str); 13] = [
+const BEGINNINGS: [(&[u8], &str, &str); 19] = [
+    (b"MATLAB 7.3", "a MATLAB 7.3 file", "write its table with `writetable(T, \"log.csv\")`"),
+    (
+        b"ARROW1",
+        "a Feather or Arrow file",
+        "write it as Parquet: `pandas.read_feather(FILE).to_parquet(\"log.parquet\")`",
+    ),
+    (b"FEA1", "a Feather file", "write it as Parquet: `pandas.read_feather(FILE).to_parquet(\"log.parquet\")`"),
+    (b"ULog\x01\x12\x35", "a ULog of PX4", "write its topics as CSV with `ulog2csv FILE`"),
+    (
+        b"\xa3\x95\x80\x80",
+        "a dataflash log of ArduPilot",
+        "write its messages as CSV with `mavlogdump.py --format csv`",
+    ),
+    (b"MDF     ", "an MDF measurement file", "write its channels as CSV or Parquet"),
     (b"\x1f\x8b", "compressed (gzip)", "unpack it first, with `gunzip`"),
     (b"BZh", "compressed (bzip2)", "unpack it first, with `bunzip2`"),
     (b"\xfd7zXZ\0", "compressed (xz)", "unpack it first, with `unxz`"),
@@ -46,6 +60,12 @@ pub fn foreign(bytes: &[u8]) -> Option<String> {
     if object.starts_with(b"{") && has(b"\":") {
         return told("JSON", "write its records as CSV or Parquet");
     }
+    if is_candump(text) {
+        return told(
+            "a log of CAN frames (candump)",
+            "decode it to columns first, as with `cantools` or `analyzer -json`",
+        );
+    }
     let strange = head.iter().filter(|b| **b < 32 && !b.is_ascii_whitespace() && **b != 0x1a).count();
     // Text in UTF-16 has a nought in every other byte.
     let noughts = head.iter().filter(|b| **b == 0).count();
@@ -54,13 +74,30 @@ pub fn foreign(bytes: &[u8]) -> Option<String> {
         .then(|| "holds bytes that are no text; give a CSV, NMEA 0183 or Parquet file".to_owned())
 }
 
+/// Whether a text begins with frames such as `(1620000000.123456) can0 09F80103#2A366C2B`, or those of candump without a file.
+fn is_candump(text: &[u8]) -> bool {
+    let Ok(line) = std::str::from_utf8(text.split(|b| *b == b'\n').next().unwrap_or(b"")) else { return false };
+    let fields: Vec<&str> = line.split_whitespace().collect();
+    let hex = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_hexdigit());
+    let stamped = fields.first().is_some_and(|f| f.starts_with('(') && f.ends_with(')'));
+    let frame = |f: &&str| f.split_once('#').is_some_and(|(id, data)| hex(id) && (data.is_empty() || hex(data)));
+    let listed = fields.iter().any(|f| f.len() == 3 && f.starts_with('[') && f.ends_with(']'));
+    let bus = fields.iter().take(2).any(|f| f.contains("can"));
+    (stamped && fields.iter().any(frame)) || (bus && listed)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn what_is_no_log_is_told_with_what_to_do() {
-        let cases: [(&[u8], &str); 9] = [
+        let cases: [(&[u8], &str); 14] = [
+            (b"MATLAB 7.3 MAT-file, Platform: GLNXA64", "MATLAB 7.3"),
+            (b"ARROW1\0\0\xff\xff", "Feather"),
+            (b"ULog\x01\x12\x35\x01", "ULog"),
+            (b"(1620000000.123456) can0 09F80103#2A366C2B\n", "candump"),
+            (b"  can0  09F80103   [8]  2A 36 6C 2B 00 00 00 00\n", "candump"),
             (b"\x1f\x8b\x08\0", "gunzip"),
             (b"PK\x03\x04..........[Content_Types].xml", "save the sheet as CSV"),
             (b"PK\x03\x04..........log.csv", "unzip"),

@@ -92,6 +92,19 @@ pub struct Layout {
     pub first: usize,
 }
 
+/// Fields that a line of a log has at most: the largest voyage recorders write a few thousand channels.
+const MOST_FIELDS: usize = 20_000;
+
+/// Fields of a line that has more than any log, among the first ones.
+pub fn too_wide(text: &str) -> Option<usize> {
+    let lines = text.lines().take(LOOKED_AT);
+    let widest = |line: &str| {
+        let count = |mark: u8| line.bytes().filter(|b| *b == mark).count();
+        [b';', b'\t', b',', b'|', b' '].map(count).into_iter().max().unwrap_or(0)
+    };
+    lines.map(|line| widest(line) + 1).find(|fields| *fields > MOST_FIELDS)
+}
+
 /// The layout of a text; `None` where its lines have no number of fields in common.
 pub fn layout(text: &str) -> Option<Layout> {
     let wanted = |line: &str| !line.trim().is_empty() && comment(line).is_none();

@@ -70,18 +70,24 @@ pub enum Meaning {
     VelocityNorth,
     /// Velocity over ground to the east.
     VelocityEast,
+    /// Direction from which the wind blows over ground, clockwise from the bow.
+    WindAngle,
+    /// Magnetic variation, positive to the east: what is added to a magnetic direction.
+    Variation,
     /// A channel of a recording.
     Channel(Channel),
 }
 
 /// The meanings that are no channel, by the name they have in `--column` and `--unit`.
-pub const BESIDE_CHANNELS: [(&str, Meaning, Quantity, &str); 6] = [
+pub const BESIDE_CHANNELS: [(&str, Meaning, Quantity, &str); 8] = [
     ("lat", Meaning::Latitude, Quantity::Angle, "latitude"),
     ("lon", Meaning::Longitude, Quantity::Angle, "longitude"),
     ("cog", Meaning::Course, Quantity::Angle, "course over ground"),
     ("sog", Meaning::GroundSpeed, Quantity::Speed, "speed over ground"),
     ("v_north", Meaning::VelocityNorth, Quantity::Speed, "velocity to the north"),
     ("v_east", Meaning::VelocityEast, Quantity::Speed, "velocity to the east"),
+    ("wind_angle", Meaning::WindAngle, Quantity::Angle, "true wind angle from the bow"),
+    ("variation", Meaning::Variation, Quantity::Angle, "magnetic variation"),
 ];
 
 impl Meaning {

@@ -24,6 +24,8 @@ const AHEAD_ASTERN: Sides =
 
 /// Words beside a heading that change nothing.
 const TRUE: [&str; 2] = ["t", "true"];
+/// Words beside a heading that counts from magnetic north.
+const MAGNETIC: [&str; 3] = ["m", "mag", "magnetic"];
 
 impl Sides {
     /// Those of a quantity; `S` is south of a latitude and starboard of a rudder.
@@ -48,6 +50,8 @@ pub struct Marks {
     sides: Option<&'static Sides>,
     /// The unit that stands beside every number.
     pub unit: Option<String>,
+    /// Whether a heading or a course counts from magnetic north: `023.4 M`.
+    pub magnetic: bool,
 }
 
 impl Marks {
@@ -56,12 +60,14 @@ impl Marks {
         let parts = fields.filter_map(|f| marked(f, decimal_comma));
         let found: BTreeSet<&str> = parts.map(|(_, mark)| mark).filter(|mark| !mark.is_empty()).collect();
         let sides = Sides::of(meaning).filter(|sides| found.iter().any(|mark| sides.sign(mark).is_some()));
-        let mut units = found.iter().filter(|mark| is_unit(mark));
+        let counts = matches!(meaning, Some(Meaning::Course | Meaning::Channel(Channel::Psi)));
+        let magnetic = counts && !found.is_empty() && found.iter().all(|mark| among(&MAGNETIC, mark));
+        let mut units = found.iter().filter(|mark| is_unit(mark) && !magnetic);
         let unit = match (units.next(), units.next()) {
             (Some(unit), None) => Some((*unit).to_owned()),
             _ => None,
         };
-        Self { sides, unit: unit.filter(|_| sides.is_none()) }
+        Self { sides, unit: unit.filter(|_| sides.is_none()), magnetic }
     }
 
     /// A field as a number with its sign; NaN for a missing value, `None` for what is no number or has other letters.
@@ -72,9 +78,13 @@ impl Marks {
             // Amidships has no side.
             Some(_) if mark.is_empty() => (value == 0.0 || value.is_nan()).then_some(value),
             Some(sides) => sides.sign(mark).filter(|_| value >= 0.0).map(|sign| sign * value),
-            None => (told || TRUE.iter().any(|t| mark.eq_ignore_ascii_case(t))).then_some(value),
+            None => (told || among(&TRUE, mark) || (self.magnetic && among(&MAGNETIC, mark))).then_some(value),
         }
     }
+}
+
+fn among(words: &[&str], mark: &str) -> bool {
+    words.iter().any(|word| mark.eq_ignore_ascii_case(word))
 }
 
 /// The signs that a column of letters alone gives to the numbers of another with this meaning, NaN where it has none; `None` where it

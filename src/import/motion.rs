@@ -1,8 +1,9 @@
 //! Rates of signals and how two of them compare: the evidence from which units, signs and senses are told.
 //! It knows no unit; what a ratio means is decided where it is asked for.
 
-use super::signal::{GAP_IN_STEPS, Signal, size_below};
+use super::signal::{Signal, median, nearest, size_below};
 use crate::recording::local;
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Steps over which a rate is taken.
@@ -11,7 +12,7 @@ const SPAN_STEPS: f64 = 8.0;
 impl Signal {
     /// Stretches of samples without a gap.
     pub fn stretches(&self) -> Vec<Range<usize>> {
-        let longest = GAP_IN_STEPS * self.step + 1e-6;
+        let longest = self.longest_step();
         let mut stretches = Vec::new();
         let mut start = 0;
         for i in 1..=self.t.len() {
@@ -30,7 +31,7 @@ impl Signal {
 
     /// Value (0) or rate (1) from local quadratic fits over `span` seconds, within unbroken stretches of five samples and more.
     fn fitted(&self, span: f64, which: usize) -> Self {
-        let mut fitted = Self { step: self.step, ..Self::default() };
+        let mut fitted = self.without_samples();
         for stretch in self.stretches().into_iter().filter(|s| s.len() >= 5) {
             let values = local(&self.t, &self.v, stretch.clone(), span);
             for (row, value) in stretch.zip(values).filter(|(_, value)| value[which].is_finite()) {
@@ -134,6 +135,56 @@ impl Track {
     }
 }
 
+/// Samples of a straight, at least.
+const STRAIGHT: usize = 10;
+/// A ship goes straight where it turns slower than this share of how fast it turns at most.
+const SLOWLY: f64 = 0.1;
+/// Straights are opposite where their headings are half a turn apart within this \[rad\].
+const OPPOSITE: f64 = 0.5;
+
+impl Track {
+    /// The steady angle from a heading \[rad\] to the course, on straights in opposite directions, where that of a current or of the wind
+    /// changes its side; `None` where there are no such straights, or where these do not agree on it.
+    pub fn steady_angle(&self, heading: &Signal) -> Option<f64> {
+        let rate = heading.rate(heading.span());
+        let slow = SLOWLY * size_below(&rate.v, 0.95);
+        let mut straights: Vec<(usize, [f64; 4])> = Vec::new();
+        let mut going = false;
+        for i in 0..self.speed.t.len() {
+            let (t, step) = (self.speed.t[i], self.speed.step);
+            let (psi, turning) = (heading.at(t, step), rate.at(t, step).abs());
+            let straight = self.speed.v[i] > 0.4 * self.fast && psi.is_finite() && turning <= slow;
+            if straight {
+                let apart = self.east.v[i].atan2(self.north.v[i]) - psi;
+                let parts = [psi.cos(), psi.sin(), apart.cos(), apart.sin()];
+                match straights.last_mut().filter(|_| going) {
+                    Some((count, sums)) => {
+                        *count += 1;
+                        sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
+                    }
+                    None => straights.push((1, parts)),
+                }
+            }
+            going = straight;
+        }
+        let means: Vec<[f64; 2]> = straights
+            .into_iter()
+            .filter(|(count, _)| *count >= STRAIGHT)
+            .map(|(_, [c, s, ac, asin])| [s.atan2(c), asin.atan2(ac)])
+            .collect();
+        let mut steady = Vec::new();
+        for (i, a) in means.iter().enumerate() {
+            for b in &means[i + 1..] {
+                if nearest(a[0] - b[0] - PI).abs() < OPPOSITE {
+                    steady.push(a[1] + 0.5 * nearest(b[1] - a[1]));
+                }
+            }
+        }
+        let middle = median(steady.clone())?;
+        steady.iter().all(|angle| angle * middle > 0.0 && angle.abs() > 0.5 * middle.abs()).then_some(middle)
+    }
+}
+
 /// Which way a ship turns when its rudder is put over: the coefficient b of
 /// `r(t + h) - r(t) = a r(t) + b mean(delta over t to t + h) + c`, over its standard error; `None` where it cannot be told.
 pub fn rudder_effect(r: &Signal, delta: &Signal) -> Option<f64> {
@@ -202,7 +253,7 @@ mod tests {
     #[test]
     fn rates_do_not_reach_across_gaps() {
         let t: Vec<f64> = (0..20).map(f64::from).chain((100..120).map(f64::from)).collect();
-        let s = Signal { v: t.iter().map(|t| if *t < 50.0 { *t } else { -*t }).collect(), t, step: 1.0 };
+        let s = Signal { v: t.iter().map(|t| if *t < 50.0 { *t } else { -*t }).collect(), t, step: 1.0, jitter: 0.0 };
         let rate = s.rate(8.0);
         assert!(
             rate.v[..20].iter().all(|v| (v - 1.0).abs() < 1e-9) && rate.v[20..].iter().all(|v| (v + 1.0).abs() < 1e-9)

@@ -2,9 +2,28 @@
 //! Whether a column is what its name says is asked of its values elsewhere.
 
 use super::log::Meaning;
+use super::vocabulary::{
+    BESIDE_SHIPS, CHANGES, CLOCKS, FROM_BOW, FROM_NORTH, MAGNETIC, MOVES, NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS,
+    SINCE, SPEEDS, VAGUE, WIND, WIND_DIRECTIONS, WIND_SPEEDS, is_on, phrases,
+};
 use crate::recording::{Channel, UNITS};
+use std::ops::Range;
 
-/// Words of a name, in lower case: `Rudder_Angle` is `rudder angle`.
+/// A letter without its accent.
+fn plain(c: char) -> char {
+    match c {
+        'à' | 'á' | 'â' | 'ã' | 'ä' | 'å' => 'a',
+        'è' | 'é' | 'ê' | 'ë' => 'e',
+        'ì' | 'í' | 'î' | 'ï' => 'i',
+        'ò' | 'ó' | 'ô' | 'õ' | 'ö' | 'ø' => 'o',
+        'ù' | 'ú' | 'û' | 'ü' => 'u',
+        'ñ' => 'n',
+        'ç' => 'c',
+        other => other,
+    }
+}
+
+/// Words of a name, in lower case and without accents: `Rudder_Angle` is `rudder angle`.
 fn words(name: &str) -> Vec<String> {
     let mut spaced = String::new();
     let mut last_lower = false;
@@ -15,7 +34,8 @@ fn words(name: &str) -> Vec<String> {
         last_lower = c.is_lowercase();
         spaced.push(if c.is_alphanumeric() { c } else { ' ' });
     }
-    spaced.to_lowercase().split_whitespace().map(str::to_owned).collect()
+    let plain: String = spaced.to_lowercase().chars().map(plain).collect();
+    plain.split_whitespace().map(str::to_owned).collect()
 }
 
 /// Spellings of units at the end of a name, as in `sog_kn`, and the unit.
@@ -55,7 +75,8 @@ const ENDINGS: [(&[&str], &str); 33] = [
     (&["time", "h"], "h"),
 ];
 
-/// A header field as name and unit: `Rudder angle [deg]`, `SOG (kn)`, `hdg_deg`, `Shaft RPM`.
+/// A header field as name and unit: `Rudder angle [deg]`, `SOG (kn)`, `hdg_deg`, `Shaft RPM`. A reference that stands with the unit
+/// goes to the name: `Heading [°M]` is `Heading magnetic`.
 pub fn name_and_unit(field: &str) -> (String, Option<String>) {
     let field = field.trim().trim_matches('"').trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>')] {
@@ -67,12 +88,33 @@ pub fn name_and_unit(field: &str) -> (String, Option<String>) {
             if unit.is_empty() || is_unit(unit) {
                 return (name.trim().to_owned(), Some(unit.to_owned()).filter(|u| !u.is_empty()));
             }
+            if let Some((degrees, reference)) = referred(unit) {
+                return (format!("{} {reference}", name.trim()), Some(degrees.to_owned()));
+            }
             return (format!("{} {unit}", name.trim()), None);
+        }
+    }
+    // `True wind angle °`, `Heading °M`.
+    if let Some((name, last)) = field.rsplit_once(' ')
+        && last.starts_with('°')
+    {
+        let (unit, reference) = referred(last).unwrap_or((last, ""));
+        if is_unit(unit) {
+            return (format!("{name} {reference}").trim().to_owned(), Some(unit.to_owned()));
         }
     }
     let parts = words(field);
     let ending = ENDINGS.iter().find(|(end, _)| parts.len() >= end.len() && parts[parts.len() - end.len()..] == **end);
     (field.to_owned(), ending.map(|(_, unit)| (*unit).to_owned()))
+}
+
+/// A unit of angles with the north that it counts from, `°M` or `deg true`, as both.
+fn referred(unit: &str) -> Option<(&str, &'static str)> {
+    let parted = ["magnetic", "mag", "M", "true", "T"].into_iter().find_map(|end| {
+        let degrees = unit.strip_suffix(end)?.trim_end_matches([' ', '_', '(']);
+        Some((degrees, if end.starts_with(['m', 'M']) { "magnetic" } else { "true" }))
+    });
+    parted.filter(|(degrees, _)| crate::recording::Quantity::Angle.factor(degrees).is_some())
 }
 
 /// Whether a text is the spelling of a unit.
@@ -81,250 +123,168 @@ pub fn is_unit(text: &str) -> bool {
     UNITS.iter().any(|u| u.spellings.iter().any(|s| !s.is_empty() && s.eq_ignore_ascii_case(text)))
 }
 
-/// Phrases that tell what a column is: the first that is found in a name. A phrase of one letter must be the whole name.
-const PHRASES: &[(&str, Meaning)] = &[
-    ("lat", Meaning::Latitude),
-    ("latitude", Meaning::Latitude),
-    ("breite", Meaning::Latitude),
-    ("breddegrad", Meaning::Latitude),
-    ("breedtegraad", Meaning::Latitude),
-    ("lon", Meaning::Longitude),
-    ("lng", Meaning::Longitude),
-    ("long", Meaning::Longitude),
-    ("longitude", Meaning::Longitude),
-    ("länge", Meaning::Longitude),
-    ("laenge", Meaning::Longitude),
-    ("lengdegrad", Meaning::Longitude),
-    ("lengtegraad", Meaning::Longitude),
-    ("v north", Meaning::VelocityNorth),
-    ("vn", Meaning::VelocityNorth),
-    ("velocity north", Meaning::VelocityNorth),
-    ("north velocity", Meaning::VelocityNorth),
-    ("speed north", Meaning::VelocityNorth),
-    ("north speed", Meaning::VelocityNorth),
-    ("v east", Meaning::VelocityEast),
-    ("ve", Meaning::VelocityEast),
-    ("velocity east", Meaning::VelocityEast),
-    ("east velocity", Meaning::VelocityEast),
-    ("speed east", Meaning::VelocityEast),
-    ("east speed", Meaning::VelocityEast),
-    ("u water", Meaning::Channel(Channel::UWater)),
-    ("v water", Meaning::Channel(Channel::VWater)),
-    ("stw", Meaning::Channel(Channel::UWater)),
-    ("speed through water", Meaning::Channel(Channel::UWater)),
-    ("water speed", Meaning::Channel(Channel::UWater)),
-    ("log speed", Meaning::Channel(Channel::UWater)),
-    ("speed log", Meaning::Channel(Channel::UWater)),
-    ("bank starboard", Meaning::Channel(Channel::BankStarboard)),
-    ("bank port", Meaning::Channel(Channel::BankPort)),
-    ("bow thruster", Meaning::Channel(Channel::Thruster)),
-    ("thruster", Meaning::Channel(Channel::Thruster)),
-    ("rudder", Meaning::Channel(Channel::Delta)),
-    ("rud", Meaning::Channel(Channel::Delta)),
-    ("ruderlage", Meaning::Channel(Channel::Delta)),
-    ("ruderwinkel", Meaning::Channel(Channel::Delta)),
-    ("ror", Meaning::Channel(Channel::Delta)),
-    ("rorvinkel", Meaning::Channel(Channel::Delta)),
-    ("roerhoek", Meaning::Channel(Channel::Delta)),
-    ("rudderangle", Meaning::Channel(Channel::Delta)),
-    ("rsa", Meaning::Channel(Channel::Delta)),
-    ("helm", Meaning::Channel(Channel::Delta)),
-    ("delta", Meaning::Channel(Channel::Delta)),
-    ("δ", Meaning::Channel(Channel::Delta)),
-    ("rot", Meaning::Channel(Channel::R)),
-    ("rate of turn", Meaning::Channel(Channel::R)),
-    ("turn rate", Meaning::Channel(Channel::R)),
-    ("yaw rate", Meaning::Channel(Channel::R)),
-    ("yawrate", Meaning::Channel(Channel::R)),
-    ("drehrate", Meaning::Channel(Channel::R)),
-    ("wendegeschwindigkeit", Meaning::Channel(Channel::R)),
-    ("svinghastighet", Meaning::Channel(Channel::R)),
-    ("draaisnelheid", Meaning::Channel(Channel::R)),
-    ("cog", Meaning::Course),
-    ("course", Meaning::Course),
-    ("track made good", Meaning::Course),
-    ("kurs über grund", Meaning::Course),
-    ("kurs over grunn", Meaning::Course),
-    ("grondkoers", Meaning::Course),
-    ("sog", Meaning::GroundSpeed),
-    ("speed over ground", Meaning::GroundSpeed),
-    ("ground speed", Meaning::GroundSpeed),
-    ("gps speed", Meaning::GroundSpeed),
-    ("fahrt über grund", Meaning::GroundSpeed),
-    ("fart over grunn", Meaning::GroundSpeed),
-    ("heading", Meaning::Channel(Channel::Psi)),
-    ("hdg", Meaning::Channel(Channel::Psi)),
-    ("hdt", Meaning::Channel(Channel::Psi)),
-    ("gyro", Meaning::Channel(Channel::Psi)),
-    ("psi", Meaning::Channel(Channel::Psi)),
-    ("yaw", Meaning::Channel(Channel::Psi)),
-    ("compass", Meaning::Channel(Channel::Psi)),
-    ("head", Meaning::Channel(Channel::Psi)),
-    ("steuerkurs", Meaning::Channel(Channel::Psi)),
-    ("ψ", Meaning::Channel(Channel::Psi)),
-    ("rpm", Meaning::Channel(Channel::N)),
-    ("rps", Meaning::Channel(Channel::N)),
-    ("revs", Meaning::Channel(Channel::N)),
-    ("rev", Meaning::Channel(Channel::N)),
-    ("revolutions", Meaning::Channel(Channel::N)),
-    ("revolution", Meaning::Channel(Channel::N)),
-    ("drehzahl", Meaning::Channel(Channel::N)),
-    ("propellerdrehzahl", Meaning::Channel(Channel::N)),
-    ("turtall", Meaning::Channel(Channel::N)),
-    ("toerental", Meaning::Channel(Channel::N)),
-    ("shaft speed", Meaning::Channel(Channel::N)),
-    ("propeller rate", Meaning::Channel(Channel::N)),
-    ("propeller speed", Meaning::Channel(Channel::N)),
-    ("propeller rotation", Meaning::Channel(Channel::N)),
-    ("engine speed", Meaning::Channel(Channel::N)),
-    ("northing", Meaning::Channel(Channel::X)),
-    ("easting", Meaning::Channel(Channel::Y)),
-    ("north", Meaning::Channel(Channel::X)),
-    ("east", Meaning::Channel(Channel::Y)),
-    ("x0", Meaning::Channel(Channel::X)),
-    ("y0", Meaning::Channel(Channel::Y)),
-    ("pos x", Meaning::Channel(Channel::X)),
-    ("pos y", Meaning::Channel(Channel::Y)),
-    ("surge", Meaning::Channel(Channel::U)),
-    ("sway", Meaning::Channel(Channel::V)),
-    ("wave height", Meaning::Channel(Channel::WaveHeight)),
-    ("hs", Meaning::Channel(Channel::WaveHeight)),
-    ("current speed", Meaning::Channel(Channel::CurrentSpeed)),
-    ("current direction", Meaning::Channel(Channel::CurrentDirection)),
-    ("wave direction", Meaning::Channel(Channel::WaveDirection)),
-    ("wave dir", Meaning::Channel(Channel::WaveDirection)),
-    ("depth", Meaning::Channel(Channel::Depth)),
-    ("x", Meaning::Channel(Channel::X)),
-    ("y", Meaning::Channel(Channel::Y)),
-    ("u", Meaning::Channel(Channel::U)),
-    ("v", Meaning::Channel(Channel::V)),
-    ("r", Meaning::Channel(Channel::R)),
-    ("n", Meaning::Channel(Channel::N)),
-    ("speed", Meaning::GroundSpeed),
-    ("spd", Meaning::GroundSpeed),
-    ("geschwindigkeit", Meaning::GroundSpeed),
-    ("snelheid", Meaning::GroundSpeed),
-];
+/// What a name says a column is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// The quantity.
+    pub meaning: Meaning,
+    /// Share of the name's letters that the quantity's own words explain, 0 to 1.
+    pub explained: f64,
+}
 
-/// Words that make a column an order rather than a measurement.
-const ORDERS: [&str; 16] = [
-    "order",
-    "ordered",
-    "ord",
-    "command",
-    "commanded",
-    "cmd",
-    "set",
-    "setpoint",
-    "demand",
-    "desired",
-    "target",
-    "ref",
-    "reference",
-    "requested",
-    "soll",
-    "sollwert",
-];
-
-/// Words that make a column something else of the thing that it names: how fast a rudder moves, whether its pump runs.
-const ELSE: [&str; 22] = [
-    "acceleration",
-    "accel",
-    "acc",
-    "limit",
-    "pump",
-    "status",
-    "state",
-    "alarm",
-    "mode",
-    "running",
-    "valid",
-    "quality",
-    "torque",
-    "power",
-    "load",
-    "temperature",
-    "temp",
-    "pressure",
-    "turbo",
-    "turbocharger",
-    "std",
-    "covariance",
-];
+/// A word such as `speed` may stand for several quantities: it explains this much of what a word of one quantity does. Between the
+/// share of a name that is explained whole and that of one explained by half, so that `SOG` comes before `speed` and `speed` before
+/// `SOG of the pilot's plug`.
+const VAGUELY: f64 = 0.7;
 
 /// What a name says a column is; `None` where it says nothing that is used.
 pub fn meaning(name: &str) -> Option<Meaning> {
+    reading(name).map(|reading| reading.meaning)
+}
+
+/// The quantity whose words explain most of a name and that no other word of it rules out.
+pub fn reading(name: &str) -> Option<Reading> {
     if let Some(meaning) = Meaning::from_name(name.trim()) {
-        return Some(meaning);
+        return Some(Reading { meaning, explained: 1.0 });
     }
-    let parts = words(name);
+    let parts = without_unit(words(name));
     if let Some(wind) = wind(&parts) {
-        return Some(wind);
+        return wind.map(|meaning| Reading { meaning, explained: share(&parts, is_wind_word) });
     }
-    let has = |word: &str| parts.iter().any(|p| p == word);
-    // Depth under keel or transducer is no water depth.
-    if has("depth") && ["keel", "transducer", "below", "under"].iter().any(|w| has(w)) {
-        return None;
-    }
-    let found = PHRASES.iter().find(|(phrase, _)| {
-        let phrase: Vec<&str> = phrase.split(' ').collect();
-        match phrase.as_slice() {
-            [letter] if letter.len() == 1 => parts.first().is_some_and(|p| p == letter) && parts.len() <= 2,
-            several => parts.windows(several.len()).any(|w| w == several),
+    let all = [(PHRASES, 1.0), (VAGUE, VAGUELY)];
+    let each = all.iter().flat_map(|(table, weight)| table.iter().map(move |(m, list)| (*m, *list, *weight)));
+    let mut best: Option<Reading> = None;
+    for (meaning, list, weight) in each {
+        for phrase in phrases(list) {
+            let Some(at) = found(&parts, phrase).filter(|at| !ruled_out(meaning, &parts, at)) else { continue };
+            let of = |i: usize| at.contains(&i);
+            let explained = weight * share_by_place(&parts, of);
+            if best.is_none_or(|best| explained > best.explained) {
+                best = Some(Reading { meaning, explained });
+            }
         }
-    });
-    let meaning = found.map(|(_, meaning)| *meaning)?;
-    let rate = matches!(meaning, Meaning::Channel(Channel::Delta)) && has("rate");
-    if rate || ELSE.iter().any(|word| has(word)) {
-        return None;
     }
-    if !ORDERS.iter().any(|order| has(order)) {
-        return Some(meaning);
+    let best = best?;
+    if !parts.iter().any(|p| is_on(ORDERS, p)) {
+        return Some(best);
     }
-    match meaning {
-        Meaning::Channel(Channel::Delta) => Some(Meaning::Channel(Channel::DeltaOrder)),
-        Meaning::Channel(Channel::N) => Some(Meaning::Channel(Channel::NOrder)),
+    match best.meaning {
+        Meaning::Channel(Channel::Delta) => Some(Reading { meaning: Meaning::Channel(Channel::DeltaOrder), ..best }),
+        Meaning::Channel(Channel::N) => Some(Reading { meaning: Meaning::Channel(Channel::NOrder), ..best }),
         _ => None,
     }
 }
 
-fn wind(parts: &[String]) -> Option<Meaning> {
-    let has = |word: &str| parts.iter().any(|p| p == word);
-    let short = [
-        ("tws", Channel::WindSpeed),
-        ("twd", Channel::WindDirection),
-        ("aws", Channel::ApparentWindSpeed),
-        ("awa", Channel::ApparentWindDirection),
-    ];
-    if let Some((_, channel)) = short.iter().find(|(word, _)| has(word)) {
-        return Some(Meaning::Channel(*channel));
+/// The words of a name without those of its unit.
+fn without_unit(mut parts: Vec<String>) -> Vec<String> {
+    let ends = |end: &[&str]| parts.len() > end.len() && parts[parts.len() - end.len()..] == *end;
+    if let Some((end, _)) = ENDINGS.iter().filter(|(end, _)| ends(end)).max_by_key(|(end, _)| end.len()) {
+        parts.truncate(parts.len() - end.len());
     }
-    if !has("wind") {
-        return None;
-    }
-    let relative = ["apparent", "relative", "rel"].iter().any(|w| has(w));
-    let speed = has("speed");
-    let direction = ["direction", "dir", "angle"].iter().any(|w| has(w));
-    let channel = match (relative, speed, direction) {
-        (false, true, _) => Channel::WindSpeed,
-        (false, _, true) => Channel::WindDirection,
-        (true, true, _) => Channel::ApparentWindSpeed,
-        (true, _, true) => Channel::ApparentWindDirection,
-        _ => return None,
-    };
-    Some(Meaning::Channel(channel))
+    parts
 }
 
-/// Whether a name is that of a time, from the surest (2) to the least sure (1); 0 where it is none.
+/// Where the words of a phrase stand in a name; `heading1` and `heading` are one word.
+fn found(parts: &[String], phrase: &str) -> Option<Range<usize>> {
+    let wanted: Vec<&str> = phrase.split(' ').collect();
+    if wanted.len() == 1 && phrase.len() == 1 {
+        let alone = parts.first().is_some_and(|p| p == phrase) && parts.len() <= 2;
+        return alone.then_some(0..1);
+    }
+    let same = |part: &String, word: &str| part == word || (word.len() > 1 && unnumbered(part) == word);
+    let at = parts.windows(wanted.len()).position(|w| w.iter().zip(&wanted).all(|(part, word)| same(part, word)))?;
+    Some(at..at + wanted.len())
+}
+
+fn unnumbered(word: &str) -> &str {
+    word.trim_end_matches(|c: char| c.is_ascii_digit())
+}
+
+/// Share of the letters of a name that are in words for which `counts` says so, among these and those that mean something else.
+fn share_by_place(parts: &[String], counts: impl Fn(usize) -> bool) -> f64 {
+    let (mut explained, mut unknown) = (0, 0);
+    for (i, part) in parts.iter().enumerate() {
+        let letters = part.chars().count();
+        if counts(i) {
+            explained += letters;
+        } else if ![part.as_str(), unnumbered(part)]
+            .iter()
+            .any(|p| p.is_empty() || is_on(NEUTRAL, p) || is_on(ORDERS, p))
+        {
+            unknown += letters;
+        }
+    }
+    explained as f64 / (explained + unknown).max(1) as f64
+}
+
+fn share(parts: &[String], counts: impl Fn(&str) -> bool) -> f64 {
+    share_by_place(parts, |i| counts(&parts[i]))
+}
+
+/// Whether a word beside the phrase makes the column something else.
+fn ruled_out(meaning: Meaning, parts: &[String], phrase: &Range<usize>) -> bool {
+    use Channel::{Delta, Depth, Psi, R, U, UWater, V, X, Y};
+    let beside = || parts.iter().enumerate().filter(|(i, _)| !phrase.contains(i)).map(|(_, p)| p.as_str());
+    let is = |channels: &[Channel]| matches!(meaning, Meaning::Channel(c) if channels.contains(&c));
+    let direction = is(&[Psi]) || meaning == Meaning::Course;
+    let still = direction
+        || is(&[Delta, X, Y, Depth])
+        || matches!(meaning, Meaning::Latitude | Meaning::Longitude | Meaning::Variation);
+    let speed = is(&[U, UWater]) || meaning == Meaning::GroundSpeed;
+    beside().any(|word| {
+        is_on(CHANGES, word)
+            || (still && is_on(MOVES, word))
+            || (word == "t" && !direction)
+            || ((is(&[Psi, R, Delta])) && ["x", "y"].contains(&word))
+            || (is(&[Psi]) && word == "z")
+            || (speed && ["trans", "transverse", "transversal", "lateral"].contains(&word))
+            // Depth under keel or transducer is no water depth.
+            || (is(&[Depth]) && ["keel", "transducer", "below", "under"].contains(&word))
+            || (is(&[U, V]) && word == "water")
+            || (meaning == Meaning::GroundSpeed && ["water", "current", "sound", "log", "wasser"].contains(&word))
+    })
+}
+
+fn is_wind_word(word: &str) -> bool {
+    [WIND, WIND_SPEEDS, WIND_DIRECTIONS, RELATIVE, SPEEDS, FROM_NORTH, FROM_BOW].iter().any(|list| is_on(list, word))
+        || ["theoretical", "wahrer", "wahre", "vrai", "reale", "real"].contains(&word)
+}
+
+/// What a name says of the wind: an angle counts from the bow, a direction from north, but that of an apparent wind, which is from the
+/// bow. `None` where it is not of the wind, `Some(None)` where it is something else of it.
+fn wind(parts: &[String]) -> Option<Option<Meaning>> {
+    let any = |list: &'static str| parts.iter().any(|p| is_on(list, p));
+    let [speeds, directions] = [any(WIND_SPEEDS), any(WIND_DIRECTIONS)];
+    // Two letters alone are no wind: `AW_speed` is one, `AW` may be anything.
+    let said = parts.iter().any(|p| is_on(WIND, p) && p.len() > 2)
+        || (any(WIND) && (any(SPEEDS) || any(FROM_NORTH) || any(FROM_BOW)));
+    if !(said || speeds || directions) {
+        return None;
+    }
+    if parts.iter().any(|p| is_on(ORDERS, p) || (is_on(CHANGES, p) && !is_wind_word(p))) {
+        return Some(None);
+    }
+    let relative = any(RELATIVE);
+    let channel = match (speeds || any(SPEEDS), directions || any(FROM_NORTH), any(FROM_BOW)) {
+        (true, false, false) if relative => Channel::ApparentWindSpeed,
+        (true, false, false) => Channel::WindSpeed,
+        (false, _, true) | (false, true, _) if relative => Channel::ApparentWindDirection,
+        (false, true, _) => Channel::WindDirection,
+        (false, false, true) => return Some(Some(Meaning::WindAngle)),
+        _ => return Some(None),
+    };
+    Some(Some(Meaning::Channel(channel)))
+}
+
+/// Whether a name is that of a time, from the surest (3) to the least sure (1); 0 where it is none.
 pub fn time_rank(name: &str) -> u8 {
     let parts = words(name);
-    let has = |word: &str| parts.iter().any(|p| p == word);
-    let clocks =
-        ["timestamp", "datetime", "time", "utc", "epoch", "unix", "zeit", "uhrzeit", "zeitstempel", "tid", "tijd"];
-    if clocks.iter().any(|w| has(w)) {
-        return 2;
+    let any = |list: &'static str| parts.iter().any(|p| is_on(list, p));
+    let since = |p: &String| ["update", "updated", "last", "since", "to", "until", "next"].contains(&p.as_str());
+    if any(CLOCKS) {
+        return if parts.iter().any(since) { 1 } else { 2 + u8::from(parts.iter().all(|p| is_on(CLOCKS, p))) };
     }
-    if ["stamp", "elapsed", "seconds", "secs", "sec", "millis"].iter().any(|w| has(w)) {
+    if any(SINCE) {
         return 1;
     }
     u8::from(parts.first().is_some_and(|p| p == "t") && parts.len() <= 2)
@@ -334,17 +294,37 @@ pub fn time_rank(name: &str) -> u8 {
 pub fn is_shaft(name: &str) -> bool {
     let parts = words(name);
     let has = |all: &[&str]| parts.iter().any(|p| all.contains(&p.as_str()));
-    has(&["propeller", "prop", "shaft", "engine", "me"]) && !has(&ELSE) && !has(&ORDERS)
+    has(&["propeller", "prop", "shaft", "engine", "me"]) && !parts.iter().any(|p| is_on(CHANGES, p) || is_on(ORDERS, p))
 }
 
-/// Whether a heading is that of a magnetic compass, by its name.
+/// Whether a heading or a course counts from magnetic north, by its name.
 pub fn is_magnetic(name: &str) -> bool {
-    words(name).iter().any(|p| ["magnetic", "mag", "hdm", "compass"].contains(&p.as_str()))
+    words(name).iter().any(|p| is_on(MAGNETIC, p))
 }
 
 /// Whether a column is taken only where no other is there: a magnetic heading, the rate of an engine beside that of its shaft.
 pub fn is_second_choice(name: &str) -> bool {
-    is_magnetic(name) || words(name).iter().any(|p| ["engine", "me"].contains(&p.as_str()))
+    is_magnetic(name) || words(name).iter().any(|p| ["engine", "me", "moteur", "motore", "motor"].contains(&p.as_str()))
+}
+
+/// What is left of a name without the words of its quantity and of its unit: columns of one sensor share it.
+pub fn source(name: &str) -> String {
+    let parts = without_unit(words(name));
+    let told = |p: &str| {
+        let word = unnumbered(p);
+        let axis = ["x", "y", "n", "e", "north", "east", "long", "longitudinal", "trans", "transverse", "lateral"];
+        let named = |table: &[(Meaning, &'static str)]| table.iter().any(|(_, list)| is_on(list, word));
+        axis.contains(&word) || is_wind_word(word) || named(PHRASES) || named(VAGUE)
+    };
+    // The number of a sensor stays: `gps1 lat` and `gps1 lon`, `lat1` and `lon1`.
+    let kept = parts.iter().map(|p| if told(p) { p[unnumbered(p).len()..].to_owned() } else { p.clone() });
+    kept.filter(|p| !p.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// Whether a column says whose row it is: MMSI, name of the ship.
+pub fn is_ships_name(name: &str) -> bool {
+    let parts = words(name);
+    parts.iter().any(|p| is_on(SHIPS, p)) && parts.iter().all(|p| is_on(SHIPS, p) || is_on(BESIDE_SHIPS, p))
 }
 
 #[cfg(test)]

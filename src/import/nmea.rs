@@ -1,13 +1,15 @@
 //! Reads logs of NMEA 0183 sentences: position, course and speed, heading, rate of turn, rudder, propeller, water speed, wind, depth.
-//! Checksums are verified; lines that fail are counted and told. Sentences without a time have that of the last one with a time.
+//! Checksums are verified; lines that fail are counted and told, and makers' own sentences are not read.
 
 use super::clock::{DAY, DateOrder, date_time, digits_of_day, past_midnight};
 use super::error::ImportError;
 use super::layout::decoded;
 use super::log::{Clock, Column, Log, Meaning};
+use super::passes::{FEW, passes, stepped_back};
 use super::signal::median;
 use crate::recording::Channel;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 /// What sentences give: name, meaning, unit; of two for one quantity the first is taken.
@@ -16,6 +18,8 @@ const VALUES: &[(&str, Option<Meaning>, &str)] = &[
     ("RMC longitude", Some(Meaning::Longitude), "deg"),
     ("GGA latitude", Some(Meaning::Latitude), "deg"),
     ("GGA longitude", Some(Meaning::Longitude), "deg"),
+    ("GLL latitude", Some(Meaning::Latitude), "deg"),
+    ("GLL longitude", Some(Meaning::Longitude), "deg"),
     ("RMC course", Some(Meaning::Course), "deg"),
     ("RMC speed", Some(Meaning::GroundSpeed), "kn"),
     ("VTG course", Some(Meaning::Course), "deg"),
@@ -24,6 +28,8 @@ const VALUES: &[(&str, Option<Meaning>, &str)] = &[
     ("HDG heading with variation", Some(Meaning::Channel(Channel::Psi)), "deg"),
     ("VHW heading", Some(Meaning::Channel(Channel::Psi)), "deg"),
     ("HDG magnetic heading", Some(Meaning::Channel(Channel::Psi)), "deg"),
+    ("HDM magnetic heading", Some(Meaning::Channel(Channel::Psi)), "deg"),
+    ("RMC variation", Some(Meaning::Variation), "deg"),
     ("ROT", Some(Meaning::Channel(Channel::R)), "deg/min"),
     ("RSA rudder", Some(Meaning::Channel(Channel::Delta)), "deg"),
     ("RSA port rudder", Some(Meaning::Channel(Channel::Delta)), "deg"),
@@ -39,16 +45,22 @@ const VALUES: &[(&str, Option<Meaning>, &str)] = &[
     ("VBW ground speed ahead", None, "kn"),
     ("VBW ground speed across", None, "kn"),
     ("MWV apparent wind speed", Some(Meaning::Channel(Channel::ApparentWindSpeed)), "m/s"),
-    ("MWV apparent wind direction", Some(Meaning::Channel(Channel::ApparentWindDirection)), "deg"),
-    ("MWV theoretical wind speed", None, "m/s"),
-    ("MWV theoretical wind direction", None, "deg"),
+    ("MWV apparent wind angle", Some(Meaning::Channel(Channel::ApparentWindDirection)), "deg"),
+    ("VWR apparent wind speed", Some(Meaning::Channel(Channel::ApparentWindSpeed)), "m/s"),
+    ("VWR apparent wind angle", Some(Meaning::Channel(Channel::ApparentWindDirection)), "deg"),
+    ("MWD wind speed", Some(Meaning::Channel(Channel::WindSpeed)), "m/s"),
+    ("MWD wind direction", Some(Meaning::Channel(Channel::WindDirection)), "deg"),
+    ("MWV theoretical wind speed", Some(Meaning::Channel(Channel::WindSpeed)), "m/s"),
+    ("MWV theoretical wind angle", Some(Meaning::WindAngle), "deg"),
     ("DPT depth from the surface", Some(Meaning::Channel(Channel::Depth)), "m"),
     ("DPT depth below the transducer", None, "m"),
 ];
 
 /// A sentence that passed its check.
 struct Sentence<'a> {
-    /// Such as `RMC`.
+    /// Whose it is, such as `GP`.
+    talker: &'a str,
+    /// Such as `RMC`; the whole address of a maker's own sentence, such as `PSXN`.
     kind: &'a str,
     fields: Vec<&'a str>,
     /// What is written before it on the line.
@@ -81,9 +93,14 @@ impl Sentence<'_> {
     }
 }
 
+/// Which of the values a sentence gives, and whose it is: two compasses that both send HDT are two.
+type Kind = (usize, String);
+
 /// A sentence as values and times.
 #[derive(Default)]
 struct Record {
+    /// Whose it is.
+    talker: String,
     /// Time that a logger wrote before it \[s since 1970\].
     stamp: Option<f64>,
     /// Time of day that it tells \[s\].
@@ -108,12 +125,22 @@ pub fn is_nmea(bytes: &[u8]) -> bool {
     like > 0 && 2 * like >= lines.len()
 }
 
-/// What is before a sentence on a line, and the sentence without `$`.
+/// What is before a sentence on a line, and the sentence without `$`. A maker's own begins with `P` and has any length of address.
 fn framed(line: &str) -> Option<(&str, &str)> {
     let at = line.find(['$', '!'])?;
     let sentence = line.get(at + 1..)?.trim_end();
-    let named = |head: &str| head.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit());
-    (named(sentence.get(..5)?) && sentence.as_bytes().get(5) == Some(&b',')).then_some((&line[..at], sentence))
+    let address = sentence.split([',', '*']).next()?;
+    let named = address.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit());
+    let fits = match address.len() {
+        5 => true,
+        length => is_makers(address) && (3..=10).contains(&length),
+    };
+    (named && fits && address.len() < sentence.len()).then_some((&line[..at], sentence))
+}
+
+/// Whether the address of a sentence is that of a maker's own.
+fn is_makers(address: &str) -> bool {
+    address.starts_with('P')
 }
 
 /// A line as a sentence; `None` for a line without one.
@@ -134,7 +161,8 @@ fn sentence(line: &str) -> Option<Result<Sentence<'_>, Bad>> {
     };
     let mut fields = body.split(',');
     let address = fields.next().unwrap_or("");
-    Some(Ok(Sentence { kind: address.get(2..5).unwrap_or(""), fields: fields.collect(), before }))
+    let (talker, kind) = if is_makers(address) { ("P", address) } else { address.split_at(2.min(address.len())) };
+    Some(Ok(Sentence { talker, kind, fields: fields.collect(), before }))
 }
 
 /// Hours, minutes and seconds in one number: `101530.25`.
@@ -168,7 +196,7 @@ fn index(name: &str) -> Option<usize> {
 
 /// What a sentence tells.
 fn record(s: &Sentence<'_>) -> Record {
-    let mut record = Record { stamp: stamp(s.before), ..Record::default() };
+    let mut record = Record { talker: s.talker.to_owned(), stamp: stamp(s.before), ..Record::default() };
     let mut put = |name: &str, value: Option<f64>| record.values.extend(index(name).zip(value));
     match s.kind {
         "RMC" => {
@@ -177,6 +205,7 @@ fn record(s: &Sentence<'_>) -> Record {
                 put("RMC longitude", s.place(4, "W"));
                 put("RMC speed", s.number(6));
                 put("RMC course", s.number(7));
+                put("RMC variation", s.signed(9, "W"));
             }
             record.time = time_of_day(s.text(0));
             if let Some([day, month, year]) =
@@ -191,6 +220,13 @@ fn record(s: &Sentence<'_>) -> Record {
                 put("GGA longitude", s.place(3, "W"));
             }
             record.time = time_of_day(s.text(0));
+        }
+        "GLL" => {
+            if s.valid(5) {
+                put("GLL latitude", s.place(0, "S"));
+                put("GLL longitude", s.place(2, "W"));
+            }
+            record.time = time_of_day(s.text(4));
         }
         "ZDA" => {
             record.time = time_of_day(s.text(0));
@@ -209,6 +245,7 @@ fn record(s: &Sentence<'_>) -> Record {
                 None => put("HDG magnetic heading", magnetic),
             }
         }
+        "HDM" => put("HDM magnetic heading", s.number(0)),
         "ROT" => put("ROT", s.number(0).filter(|_| s.valid(1))),
         "RSA" => {
             put("RSA rudder", s.number(0).filter(|_| s.valid(1)));
@@ -250,7 +287,16 @@ fn more(s: &Sentence<'_>, record: &mut Record) {
             };
             let kind = if s.text(1).eq_ignore_ascii_case("T") { "theoretical" } else { "apparent" };
             put(&format!("MWV {kind} wind speed"), s.number(2).map(|v| v * factor));
-            put(&format!("MWV {kind} wind direction"), s.number(0));
+            put(&format!("MWV {kind} wind angle"), s.number(0));
+        }
+        "MWD" => {
+            put("MWD wind direction", s.number(0));
+            put("MWD wind speed", s.number(6).or_else(|| s.number(4).map(|v| v * 1852.0 / 3600.0)));
+        }
+        "VWR" => {
+            put("VWR apparent wind angle", s.signed(0, "L"));
+            let knots = s.number(2).map(|v| v * 1852.0 / 3600.0);
+            put("VWR apparent wind speed", s.number(4).or(knots).or_else(|| s.number(6).map(|v| v / 3.6)));
         }
         "DPT" => match s.number(1).filter(|offset| *offset > 0.0) {
             Some(offset) => put("DPT depth from the surface", s.number(0).map(|d| d + offset)),
@@ -264,10 +310,10 @@ fn more(s: &Sentence<'_>, record: &mut Record) {
 ///
 /// # Errors
 /// [`ImportError::File`] where no sentence tells a time.
-pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Log, ImportError> {
+pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Vec<Log>, ImportError> {
     let text = decoded(bytes);
     let (mut records, mut unknown) = (Vec::new(), BTreeMap::<String, usize>::new());
-    let (mut failed, mut broken, mut unchecked) = (Vec::new(), Vec::new(), 0);
+    let (mut failed, mut broken, mut unchecked, mut unsided) = (Vec::new(), Vec::new(), 0, 0);
     for (i, line) in text.lines().enumerate() {
         match sentence(line) {
             Some(Ok(s)) => {
@@ -275,6 +321,8 @@ pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Log, ImportError> {
                 let record = record(&s);
                 if record.values.is_empty() && record.time.is_none() && !KNOWN.contains(&s.kind) {
                     *unknown.entry(s.kind.to_owned()).or_default() += 1;
+                } else if POSITIONS.contains(&s.kind) {
+                    unsided += usize::from(record.values.iter().any(|(i, _)| *i < PLACES) && without_letters(&s));
                 }
                 records.push(record);
             }
@@ -292,8 +340,12 @@ pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Log, ImportError> {
     if unchecked > 0 {
         notes.push(format!("{unchecked} sentences have no checksum and are taken as they are"));
     }
+    if unsided > 0 {
+        notes.push(format!("{unsided} positions lack the letter N, S, E or W; they count as north and east"));
+    }
     if !unknown.is_empty() {
-        let list: Vec<String> = unknown.iter().map(|(kind, count)| format!("{kind} {count}")).collect();
+        let own = |kind: &str| if is_makers(kind) { " (a maker's own)" } else { "" };
+        let list: Vec<String> = unknown.iter().map(|(kind, count)| format!("{kind} {count}{}", own(kind))).collect();
         notes.push(format!("sentences that are not used: {}", list.join(", ")));
     }
     let (clock, times, how) = times(&records);
@@ -305,31 +357,76 @@ pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Log, ImportError> {
     if untimed > 0 {
         notes.push(format!("{untimed} sentences come before the first time and are left out"));
     }
-    let columns = columns(&records, &times);
-    Ok(Log { path: path.to_owned(), format: format!("NMEA 0183; time is {how}"), clock, columns, notes })
+    let t: Vec<f64> = times.iter().map(|t| t.unwrap_or(f64::NAN)).collect();
+    let passes = passes(&t, |before, after| repeat(&records[before], &records[after]));
+    if let [_, second, ..] = passes.as_slice() {
+        notes.push(stepped_back(passes.len(), &format!("sentence {}", second.start + 1)));
+    }
+    let format = format!("NMEA 0183; time is {how}");
+    let log = |pass: Range<usize>| {
+        let columns = columns(&records[pass.clone()], &times[pass]);
+        Log { path: path.to_owned(), format: format.clone(), clock, columns, notes: std::mem::take(&mut notes) }
+    };
+    Ok(passes.into_iter().map(log).collect())
+}
+
+/// Whether two stretches of sentences tell the same quantity again.
+fn repeat(before: &[Record], after: &[Record]) -> bool {
+    let count = |records: &[Record], kind: &Kind| records.iter().filter(|r| kinds(r).any(|k| k == *kind)).count();
+    let mut told: Vec<Kind> = after.iter().flat_map(kinds).collect();
+    told.sort_unstable();
+    told.dedup();
+    let same = before.len() == after.len() && before.iter().zip(after).all(|(a, b)| a.values == b.values);
+    !same && told.iter().any(|kind| count(before, kind) >= FEW && count(after, kind) >= FEW)
+}
+
+fn kinds(record: &Record) -> impl Iterator<Item = Kind> + '_ {
+    record.values.iter().map(|(i, _)| (*i, record.talker.clone()))
+}
+
+/// The first of the values are those of positions.
+const PLACES: usize = 6;
+/// Sentences with a position.
+const POSITIONS: [&str; 3] = ["RMC", "GGA", "GLL"];
+
+/// Whether the position of a sentence lacks the letters of its hemispheres.
+fn without_letters(s: &Sentence<'_>) -> bool {
+    let first = match s.kind {
+        "RMC" => 3,
+        "GGA" => 2,
+        _ => 1,
+    };
+    s.text(first).is_empty() || s.text(first + 2).is_empty()
 }
 
 /// Sentences that are read, also where they tell nothing at the moment.
-const KNOWN: [&str; 14] =
-    ["RMC", "GGA", "ZDA", "VTG", "HDT", "THS", "HDG", "ROT", "RSA", "RPM", "VHW", "VBW", "MWV", "DPT"];
+const KNOWN: [&str; 18] = [
+    "RMC", "GGA", "GLL", "ZDA", "VTG", "HDT", "THS", "HDG", "HDM", "ROT", "RSA", "RPM", "VHW", "VBW", "MWV", "MWD",
+    "VWR", "DPT",
+];
 
+/// The columns: one for each value, or for each talker where several tell it.
 fn columns(records: &[Record], times: &[Option<f64>]) -> Vec<Column> {
-    let named = |(name, meaning, unit): &(&str, Option<Meaning>, &str)| Column {
-        name: (*name).to_owned(),
-        unit: Some((*unit).to_owned()),
-        meaning: *meaning,
-        ..Column::default()
-    };
-    let mut columns: Vec<Column> = VALUES.iter().map(named).collect();
+    let mut found: BTreeMap<Kind, Column> = BTreeMap::new();
     for (record, t) in records.iter().zip(times) {
         for (i, value) in &record.values {
-            if let Some(t) = t {
-                columns[*i].push(*t, *value);
-            }
+            let Some(t) = t else { continue };
+            let column = found.entry((*i, record.talker.clone())).or_insert_with(|| {
+                let (name, meaning, unit) = VALUES[*i];
+                Column { name: name.to_owned(), unit: Some(unit.to_owned()), meaning, ..Column::default() }
+            });
+            column.push(*t, *value);
         }
     }
-    columns.retain(|c| !c.v.is_empty());
-    columns
+    found.retain(|_, column| !column.v.is_empty());
+    let several: Vec<usize> =
+        found.keys().zip(found.keys().skip(1)).filter(|(a, b)| a.0 == b.0).map(|(a, _)| a.0).collect();
+    for ((i, talker), column) in &mut found {
+        if several.contains(i) {
+            column.name += &format!(" of {talker}");
+        }
+    }
+    found.into_values().collect()
 }
 
 /// The time of each record, what it counts from, and how it was told.
@@ -363,10 +460,10 @@ fn times(records: &[Record]) -> (Clock, Vec<Option<f64>>, &'static str) {
 /// The times of all records, given those of the records that tell one. What comes several times between two of these is spread
 /// evenly: headings ten times a second are a tenth of a second apart.
 fn within_epochs(records: &[Record], told: &[Option<f64>]) -> Vec<Option<f64>> {
-    let kind = |r: &Record| r.values.first().map(|(i, _)| *i);
+    let kind = |r: &Record| kinds(r).next();
     // How often each kind comes in an epoch.
-    let mut counts: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-    let mut now: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut counts: BTreeMap<Kind, Vec<f64>> = BTreeMap::new();
+    let mut now: BTreeMap<Kind, usize> = BTreeMap::new();
     let (mut epoch, mut starts) = (None::<f64>, Vec::new());
     let next = |epoch: Option<f64>, t: &Option<f64>| t.filter(|t| epoch.is_none_or(|e| (e - t).abs() > 1e-3));
     for (r, t) in records.iter().zip(told) {
@@ -383,9 +480,9 @@ fn within_epochs(records: &[Record], told: &[Option<f64>]) -> Vec<Option<f64>> {
     }
     let steps: Vec<f64> = starts.windows(2).map(|s| s[1] - s[0]).filter(|s| *s > 0.0).collect();
     let step = median(steps).unwrap_or(0.0);
-    let usual: BTreeMap<usize, f64> = counts.into_iter().filter_map(|(k, c)| Some((k, median(c)?.max(1.0)))).collect();
+    let usual: BTreeMap<Kind, f64> = counts.into_iter().filter_map(|(k, c)| Some((k, median(c)?.max(1.0)))).collect();
     let mut times = Vec::with_capacity(records.len());
-    let mut seen: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut seen: BTreeMap<Kind, usize> = BTreeMap::new();
     epoch = None;
     for (r, t) in records.iter().zip(told) {
         if let Some(t) = next(epoch, t) {
@@ -408,7 +505,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Log {
-        read_nmea(Path::new("log.nmea"), text.as_bytes()).unwrap()
+        read_nmea(Path::new("log.nmea"), text.as_bytes()).unwrap().remove(0)
     }
 
     fn summed(body: &str) -> String {

@@ -6,13 +6,15 @@ use super::clock::{DateOrder, NumericTime, date_time, numeric_time, spread};
 use super::error::ImportError;
 use super::layout::number;
 use super::log::{Clock, Column, Log};
-use super::names::{name_and_unit, time_rank};
+use super::names::{meaning, name_and_unit, time_rank};
+use super::passes::{FEW, OTHERWISE, passes, stepped_back};
 use ::parquet::basic::{ConvertedType, LogicalType, TimeUnit};
 use ::parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use ::parquet::data_type::{ByteArray, DataType};
 use ::parquet::errors::ParquetError;
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use ::parquet::schema::types::ColumnDescriptor;
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -40,11 +42,11 @@ struct Cells {
 ///
 /// # Errors
 /// [`ImportError::File`]: it cannot be read, or has no time.
-pub fn read_parquet(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Log, ImportError> {
+pub fn read_parquet(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log>, ImportError> {
     let fail = |message: String| ImportError::File { path: path.to_owned(), message };
     // The decoder may meet what it does not expect in a damaged file.
     let read = catch_unwind(AssertUnwindSafe(|| columns(bytes)));
-    let (mut cells, notes) = match read {
+    let (mut cells, mut notes) = match read {
         Ok(Ok(read)) => read,
         Ok(Err(error)) => {
             return Err(fail(format!(
@@ -65,20 +67,60 @@ pub fn read_parquet(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Log,
             clock_cells.name
         )));
     }
-    let shared = spread(&mut times);
+    cells.iter_mut().for_each(Cells::read_texts);
+    let shared = rounded(&cells, &times).then(|| spread(&mut times)).flatten();
     let spread = shared.map_or(String::new(), |k| format!(", rounded: {k} rows share a time and are spread over it"));
-    let mut columns = Vec::new();
-    for cell in cells {
-        let mut column = Column { name: cell.name, unit: cell.unit, ..Column::default() };
-        let texts = cell.texts.iter().map(|text| number(text, true).unwrap_or(f64::NAN));
-        let values: Vec<f64> = if cell.values.is_empty() { texts.collect() } else { cell.values };
-        times.iter().zip(values).for_each(|(t, v)| column.push(*t, v));
-        if !column.v.is_empty() {
-            columns.push(column);
-        }
+    let runs = passes(&times, |before, after| {
+        let told = |cells: &Cells, rows: &Range<usize>| {
+            cells.in_rows(rows).iter().filter(|v| v.is_finite()).take(FEW).count() == FEW
+        };
+        let bits = |cells: &Cells, rows: &Range<usize>| -> Vec<u64> {
+            cells.in_rows(rows).iter().map(|v| v.to_bits()).collect()
+        };
+        let copy = cells.iter().all(|c| bits(c, &before) == bits(c, &after));
+        !copy && cells.iter().any(|c| told(c, &before) && told(c, &after))
+    });
+    if let [_, second, ..] = runs.as_slice() {
+        notes.push(stepped_back(runs.len(), &format!("row {}", second.start + 1)));
     }
     let format = format!("Parquet; time is `{}`, {how}{spread}", clock_cells.name);
-    Ok(Log { path: path.to_owned(), format, clock, columns, notes })
+    let log = |run: Range<usize>| {
+        let column = |cells: &Cells| {
+            let mut column = Column { name: cells.name.clone(), unit: cells.unit.clone(), ..Column::default() };
+            times[run.clone()].iter().zip(cells.in_rows(&run)).for_each(|(t, v)| column.push(*t, *v));
+            column
+        };
+        let columns = cells.iter().map(column).filter(|c| !c.v.is_empty()).collect();
+        Log { path: path.to_owned(), format: format.clone(), clock, columns, notes: std::mem::take(&mut notes) }
+    };
+    Ok(runs.into_iter().map(log).collect())
+}
+
+impl Cells {
+    /// Takes texts as numbers, where there are no others.
+    fn read_texts(&mut self) {
+        if self.values.is_empty() {
+            self.values = self.texts.iter().map(|text| number(text, true).unwrap_or(f64::NAN)).collect();
+        }
+    }
+
+    /// The values of some rows.
+    fn in_rows(&self, rows: &Range<usize>) -> &[f64] {
+        self.values.get(rows.start..rows.end.min(self.values.len())).unwrap_or(&[])
+    }
+}
+
+/// Whether rows that share a time are later ones, whose time was rounded, and not repeated rows or rows that each fill other columns.
+fn rounded(cells: &[Cells], times: &[f64]) -> bool {
+    let known: Vec<&Cells> = cells.iter().filter(|c| meaning(&c.name).is_some()).collect();
+    let telling = if known.is_empty() { cells.iter().collect() } else { known };
+    let pairs: Vec<usize> = (1..times.len()).filter(|i| times[*i] == times[i - 1]).collect();
+    let differ = |i: &&usize| {
+        let both = |c: &&Cells| Some([*c.values.get(**i - 1)?, *c.values.get(**i)?]);
+        telling.iter().filter_map(both).any(|[a, b]| a.is_finite() && b.is_finite() && a != b)
+    };
+    let differing = pairs.iter().filter(differ).count();
+    differing > 0 && differing as f64 >= OTHERWISE * pairs.len() as f64
 }
 
 /// The column with the time.

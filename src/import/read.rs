@@ -32,9 +32,9 @@ pub fn read_bytes(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Lo
     if let Some(message) = foreign(bytes) {
         Err(ImportError::File { path: path.to_owned(), message })
     } else if is_parquet(bytes) {
-        Ok(vec![read_parquet(path, bytes, choices)?])
+        read_parquet(path, bytes, choices)
     } else if is_nmea(bytes) {
-        Ok(vec![read_nmea(path, bytes)?])
+        read_nmea(path, bytes)
     } else {
         read_text(path, bytes, choices)
     }

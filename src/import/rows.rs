@@ -1,10 +1,13 @@
 //! From signals with their own times to rows that have them all, cut into recordings; what was not recorded stays missing.
-//! No drop-out is filled: a row without a value keeps the field blank, and a long gap ends the recording.
+//! No drop-out is filled but from channels that tell the same: a row without a value keeps the field blank, and a long gap ends the recording.
 
 use super::log::Meaning;
+use super::motion::Track;
 use super::signal::{GAP_IN_STEPS, Signal, nearest};
 use super::take::Signals;
+use crate::numerals::sig;
 use crate::recording::{CHANNELS, Channel};
+use std::ops::Range;
 
 /// The rows of one recording.
 #[derive(Clone, Debug)]
@@ -39,11 +42,76 @@ fn times(signals: &Signals) -> (Vec<f64>, f64) {
     }
     times.sort_by(f64::total_cmp);
     times.dedup();
+    if slowest.is_uneven() {
+        return even(slowest);
+    }
     (times, slowest.step)
 }
 
+/// Even times in the unbroken stretches of a signal whose own times are uneven, as many as it has samples.
+fn even(signal: &Signal) -> (Vec<f64>, f64) {
+    let stretches: Vec<Range<usize>> = signal.stretches().into_iter().filter(|s| s.len() > 1).collect();
+    let lasts = |s: &Range<usize>| signal.t[s.end - 1] - signal.t[s.start];
+    let steps: usize = stretches.iter().map(|s| s.len() - 1).sum();
+    let step = stretches.iter().map(lasts).sum::<f64>() / steps.max(1) as f64;
+    // To a millisecond, so that the rows of a recording are as even as they are written.
+    let step = ((step * 1e3).round() * 1e-3).max(1e-3);
+    let mut times = Vec::new();
+    for stretch in stretches {
+        let count = (lasts(&stretch) / step + 1e-6) as usize;
+        times.extend((0..=count).map(|i| signal.t[stretch.start] + i as f64 * step));
+    }
+    (times, step)
+}
+
+/// A channel that is missing in more than this share of the rows in which others give it is taken from them there, and one that is
+/// missing in less keeps its blanks.
+const OFTEN: f64 = 0.02;
+
+/// Takes the yaw rate from the heading, and the velocity from position and heading, where they are blank and the others are not; says
+/// how many values and of what.
+fn complete(signals: &Signals, rows: &mut Rows) -> Vec<String> {
+    let of = |channel| signals.by.get(&Meaning::Channel(channel));
+    let Some(psi) = of(Channel::Psi) else { return Vec::new() };
+    let rate = psi.rate(psi.span());
+    let track = of(Channel::X).zip(of(Channel::Y)).and_then(|(x, y)| Track::of(x, y));
+    let mut notes = Vec::new();
+    for (channel, from) in
+        [(Channel::R, "the heading"), (Channel::U, "position and heading"), (Channel::V, "position and heading")]
+    {
+        let Some((_, values)) = rows.channels.iter_mut().find(|(c, _)| *c == channel) else { continue };
+        let given = |t: f64| match (channel, &track) {
+            (Channel::R, _) => rate.at(t, rows.step),
+            (_, None) => f64::NAN,
+            (_, Some(track)) => {
+                let (sin, cos) = psi.at(t, rows.step).sin_cos();
+                let (north, east) = (track.north.at(t, rows.step), track.east.at(t, rows.step));
+                if channel == Channel::U { north * cos + east * sin } else { east * cos - north * sin }
+            }
+        };
+        let blank: Vec<(usize, f64)> = values
+            .iter()
+            .zip(&rows.t)
+            .enumerate()
+            .filter(|(_, (v, _))| v.is_nan())
+            .map(|(i, (_, t))| (i, given(*t)))
+            .filter(|(_, v)| v.is_finite())
+            .collect();
+        if blank.is_empty() || (channel != Channel::R && blank.len() as f64 <= OFTEN * values.len() as f64) {
+            continue;
+        }
+        notes.push(format!(
+            "{channel}: {} of {} values are blank and follow from {from}, so that no run ends there",
+            blank.len(),
+            values.len()
+        ));
+        blank.into_iter().for_each(|(i, v)| values[i] = v);
+    }
+    notes
+}
+
 /// Every channel at every row.
-pub fn rows(signals: &Signals) -> Rows {
+pub fn rows(signals: &Signals) -> (Rows, Vec<String>) {
     let (t, step) = times(signals);
     let at = |meaning: Meaning| {
         let signal = signals.by.get(&meaning)?;
@@ -57,6 +125,7 @@ pub fn rows(signals: &Signals) -> Rows {
         channels.extend(at(Meaning::Channel(info.channel)).map(|v| (info.channel, v)));
     }
     let has = |channel| channels.iter().any(|(c, _)| *c == channel);
+    let has_wind = has(Channel::WindDirection);
     let psi = channels.iter().find(|(c, _)| *c == Channel::Psi).map(|(_, v)| v.clone());
     if let (false, Some(psi)) = (has(Channel::U) || has(Channel::V), psi) {
         let polar = at(Meaning::GroundSpeed).zip(at(Meaning::Course)).map(|(speed, course)| {
@@ -76,8 +145,22 @@ pub fn rows(signals: &Signals) -> Rows {
             channels.push((Channel::V, body(1)));
         }
     }
+    let heading = at(Meaning::Channel(Channel::Psi));
+    if let (false, Some(angle), Some(psi)) = (has_wind, at(Meaning::WindAngle), heading) {
+        let direction =
+            angle.iter().zip(&psi).map(|(a, psi)| if a.is_nan() || psi.is_nan() { f64::NAN } else { nearest(a + psi) });
+        channels.push((Channel::WindDirection, direction.collect()));
+    }
     channels.sort_by_key(|(channel, _)| *channel);
-    Rows { t, channels, step }
+    let mut rows = Rows { t, channels, step };
+    let mut notes = complete(signals, &mut rows);
+    if leading(signals).iter().any(|s| s.is_uneven()) {
+        notes.push(format!(
+            "the rows come at uneven times; they are brought to even steps of {} s by straight lines",
+            sig(step, 4)
+        ));
+    }
+    (rows, notes)
 }
 
 impl Rows {

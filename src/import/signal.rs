@@ -6,6 +6,11 @@ use std::f64::consts::{PI, TAU};
 
 /// Steps longer than this many usual ones are gaps, as in a recording.
 pub const GAP_IN_STEPS: f64 = 1.5;
+/// Uneven steps are gaps from one and this many times the share by which a quarter of them differs: where each time is off by up to half
+/// a step that share is a half, and the longest step is two.
+const OF_JITTER: f64 = 2.5;
+/// No step of more usual ones than this is even enough: between is at least one sample that is missing.
+const MOST_IN_STEPS: f64 = 2.5;
 /// Times closer than this are one \[s\].
 const SAME_TIME: f64 = 1e-6;
 
@@ -18,6 +23,8 @@ pub struct Signal {
     pub v: Vec<f64>,
     /// Usual step: the median \[s\].
     pub step: f64,
+    /// How uneven the steps are: a quarter of them differs from the usual one by more than this share.
+    pub jitter: f64,
 }
 
 /// What was put in order to make a signal.
@@ -44,8 +51,25 @@ impl Signal {
         if wraps {
             unwrap(&mut v);
         }
-        let step = median(t.windows(2).map(|t| t[1] - t[0]).collect()).unwrap_or(0.0);
-        (Self { step, t, v }, Tidied { out_of_order, repeated: before - samples.len() })
+        let steps: Vec<f64> = t.windows(2).map(|t| t[1] - t[0]).collect();
+        let step = median(steps.clone()).unwrap_or(0.0);
+        let off: Vec<f64> = steps.iter().map(|s| s / step - 1.0).collect();
+        (Self { step, jitter: size_below(&off, 0.75), t, v }, Tidied { out_of_order, repeated: before - samples.len() })
+    }
+
+    /// A longer step is a gap \[s\].
+    pub fn longest_step(&self) -> f64 {
+        self.step * (1.0 + OF_JITTER * self.jitter).clamp(GAP_IN_STEPS, MOST_IN_STEPS) + SAME_TIME
+    }
+
+    /// Whether its times are so uneven that a step of one and a half is no gap.
+    pub fn is_uneven(&self) -> bool {
+        1.0 + OF_JITTER * self.jitter > GAP_IN_STEPS + 0.01
+    }
+
+    /// One of the same steps that has no samples.
+    pub fn without_samples(&self) -> Self {
+        Self { t: Vec::new(), v: Vec::new(), ..*self }
     }
 
     /// The value at a time: that of a sample, the mean over `width` seconds of samples that are closer together than that, or a
@@ -59,7 +83,7 @@ impl Signal {
         }
         match (self.t.get(after), after.checked_sub(1)) {
             (Some(next), _) if (next - t).abs() <= SAME_TIME => self.v[after],
-            (Some(next), Some(before)) if next - self.t[before] <= GAP_IN_STEPS * self.step + SAME_TIME => {
+            (Some(next), Some(before)) if next - self.t[before] <= self.longest_step() => {
                 let share = (t - self.t[before]) / (next - self.t[before]);
                 self.v[before] + share * (self.v[after] - self.v[before])
             }
@@ -77,7 +101,7 @@ impl Signal {
             to += 1;
         }
         let inside = self.t.get(from..to)?;
-        let unbroken = inside.windows(2).all(|s| s[1] - s[0] <= GAP_IN_STEPS * self.step + SAME_TIME);
+        let unbroken = inside.windows(2).all(|s| s[1] - s[0] <= self.longest_step());
         let centred = inside.first()? + inside.last()?;
         if inside.len() < 2 || !unbroken || (0.5 * centred - t).abs() > 0.6 * self.step {
             return None;

@@ -96,6 +96,12 @@ fn columns(imported: &Imported, origins: &Origins<'_>) -> String {
             imported.derive
         );
     }
+    if let Some(bridge) = imported.bridge {
+        let _ = writeln!(
+            text,
+            "# Longest drop-out of a channel that is bridged by a straight line [s].\nbridge = {bridge:?}"
+        );
+    }
     if !imported.leave_out.is_empty() {
         let names: Vec<&str> = imported.leave_out.iter().map(|c| c.name()).collect();
         let _ = writeln!(

@@ -1,15 +1,17 @@
 //! From the columns taken to signals in SI units: each quantity's unit and sign decided with its evidence, positions in metres.
 //! Rows are made elsewhere; here each quantity keeps its own times.
 
+use super::agree::heading;
 use super::choose::{Choices, Chosen, Unused};
 use super::error::ImportError;
 use super::evidence::{Given, Known, Verdict, direction, other, rotation, rudder, speed, yaw_rate};
-use super::geodesy::{Plane, from_minutes};
 use super::log::{Column, Meaning};
 use super::motion::Track;
-use super::signal::{Signal, Tidied, size_below};
+use super::place::places;
+use super::signal::{Signal, Tidied, median};
 use crate::recording::Channel;
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
 
 /// What a column was taken for.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -69,6 +71,21 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         let sway = chosen.get(&Meaning::Channel(Channel::V));
         known.sway = sway.map(|columns| Signal::new(columns, 1.0, 0.0, false).0);
     }
+    if choices.units.keys().all(|k| !["lat", "lon"].contains(&k.as_str()))
+        && let Some(axis) = known.track.as_ref().and_then(|track| wrong_axis(track, chosen))
+    {
+        signals.turn_axis(axis);
+        known.track = get(&signals, Channel::X).zip(get(&signals, Channel::Y)).and_then(|(x, y)| Track::of(&x, &y));
+    }
+    if let Some(columns) = chosen.get(&Meaning::Variation) {
+        let verdict = other(Meaning::Variation, columns, given(Meaning::Variation)?.as_ref());
+        // Degrees, where no unit is given: a variation of a few of them is small too.
+        let factor = verdict.as_ref().map_or(1f64.to_radians(), |verdict| verdict.factor);
+        let (signal, tidied) = Signal::new(columns, factor, 0.0, true);
+        let name = columns.first().map_or("", |c| c.name.as_str());
+        known.variation = median(signal.v.clone()).map(|v| (v, name.to_owned()));
+        signals.tell(Meaning::Variation, columns, &signal, tidied, "deg", "positive to the east".to_owned());
+    }
     for meaning in [Meaning::Channel(Channel::Psi), Meaning::Course] {
         if let Some(columns) = chosen.get(&meaning) {
             let verdict = direction(meaning, columns, given(meaning)?.as_ref(), &known);
@@ -82,18 +99,69 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         let verdict = yaw_rate(r, columns, given(r)?.as_ref(), &known);
         signals.put(r, columns, verdict);
     }
-    known.r = get(&signals, Channel::R).or_else(|| known.psi.as_ref().map(|psi| psi.rate(psi.span())));
+    let turning = known.psi.as_ref().map(|psi| psi.rate(psi.span()));
+    // A recorded rate with many blanks has few stretches that are long enough to be held against a rudder.
+    let whole = |r: &Signal| {
+        let fitted = r.smooth(r.span()).t.len();
+        turning.as_ref().is_none_or(|turning| 2 * fitted > turning.t.len())
+    };
+    known.r = get(&signals, Channel::R).filter(whole).or(turning.clone());
+    if let Some(columns) = chosen.get(&Meaning::WindAngle) {
+        let mut verdict = other(Meaning::WindAngle, columns, given(Meaning::WindAngle)?.as_ref());
+        if let Ok(verdict) = &mut verdict {
+            verdict.evidence += "; an angle from the bow: the direction is heading + angle";
+        }
+        signals.put(Meaning::WindAngle, columns, verdict);
+    }
     for (meaning, columns) in chosen {
         let Meaning::Channel(channel) = *meaning else { continue };
         let verdict = match channel {
             Channel::Delta | Channel::DeltaOrder => rudder(*meaning, columns, given(*meaning)?.as_ref(), &known),
             Channel::N | Channel::NOrder => rotation(*meaning, columns, given(*meaning)?.as_ref(), &known),
             _ if signals.by.contains_key(meaning) || signals.is_told(*meaning) => continue,
-            _ => other(*meaning, columns, given(*meaning)?.as_ref()),
+            _ => other(*meaning, columns, given(*meaning)?.as_ref()).map(|verdict| referred(verdict, channel)),
         };
         signals.put(*meaning, columns, verdict);
     }
     if signals.asked.is_empty() { Ok(signals) } else { Err(ImportError::Undecided(signals.asked)) }
+}
+
+/// Directions agree from this length of their mean on; they do in one sense and not in the other where these are so far apart.
+const AGREE: f64 = 0.8;
+const APART: f64 = 0.3;
+
+/// The axis of position that is counted the wrong way, 0 for north and 1 for east: latitude and longitude against which every direction
+/// turns, from north or south and not from east or west as a mathematician's angle.
+fn wrong_axis(track: &Track, chosen: &Chosen<'_>) -> Option<usize> {
+    if !chosen.contains_key(&Meaning::Latitude) || !chosen.contains_key(&Meaning::Longitude) {
+        return None;
+    }
+    let directions: Vec<&Vec<&Column>> =
+        [Meaning::Channel(Channel::Psi), Meaning::Course].iter().filter_map(|m| chosen.get(m)).collect();
+    let against = |columns: &&Vec<&Column>| {
+        let signal = heading(columns);
+        let [[right, _], [mirrored, turned]] = [track.agreement(&signal, 1.0)?, track.agreement(&signal, -1.0)?];
+        let quarter = (turned / FRAC_PI_2).round().rem_euclid(4.0);
+        let tells = mirrored > AGREE && mirrored > right + APART;
+        (tells && quarter % 2.0 == 0.0).then_some(if quarter == 0.0 { 1 } else { 0 })
+    };
+    let axes: Vec<usize> = directions.iter().map(against).collect::<Option<_>>()?;
+    axes.first().copied().filter(|first| axes.iter().all(|axis| axis == first))
+}
+
+fn plane_words(origin: [f64; 2]) -> String {
+    format!("plane tangent to WGS84 at {} N {} E", origin[0], origin[1])
+}
+
+/// The verdict on a direction of wind, current or waves, with what it counts from.
+fn referred(mut verdict: Verdict, channel: Channel) -> Verdict {
+    let from = match channel {
+        Channel::ApparentWindDirection => "; an angle from the bow",
+        Channel::WindDirection | Channel::CurrentDirection | Channel::WaveDirection => "; from north",
+        _ => "",
+    };
+    verdict.evidence += from;
+    verdict
 }
 
 /// The unit that the user or the files give.
@@ -124,6 +192,7 @@ fn needed(meaning: Meaning) -> bool {
     use Channel::{Delta, N, Psi, R, U, V, X, Y};
     match meaning {
         Meaning::Channel(channel) => [X, Y, Psi, U, V, R, N, Delta].contains(&channel),
+        Meaning::WindAngle | Meaning::Variation => false,
         _ => true,
     }
 }
@@ -185,51 +254,50 @@ impl Signals {
         };
         let units = [given(Meaning::Latitude, lat, choices)?, given(Meaning::Longitude, lon, choices)?];
         let radians = units.iter().all(|unit| unit.as_ref().is_some_and(|u| u.factor == 1.0));
-        let (columns, minutes) = degrees(&[lat, lon], if radians { 1f64.to_degrees() } else { 1.0 })?;
-        let [latitudes, longitudes] = columns;
-        let (lat_signal, tidied) = Signal::new(&[&latitudes], 1.0, 0.0, false);
-        let (lon_signal, _) = Signal::new(&[&longitudes], 1f64.to_radians(), 0.0, true);
-        let mut places: Vec<[f64; 3]> = Vec::new();
-        let mut nowhere = 0;
-        for (t, latitude) in lat_signal.t.iter().zip(&lat_signal.v) {
-            let longitude = lon_signal.at(*t, lat_signal.step).to_degrees();
-            if latitude.abs() < 1e-9 && longitude.abs() < 1e-9 {
-                nowhere += 1;
-            } else if longitude.is_finite() {
-                places.push([*t, *latitude, longitude]);
-            }
+        let Some(places) = places(lat, lon, radians)? else { return Ok(()) };
+        if places.nowhere > 0 {
+            let text = "positions are 0 N 0 E, which receivers write without a fix; taken as missing";
+            self.notes.push(format!("{} {text}", places.nowhere));
         }
-        let column = |k: usize| places.iter().map(|p| p[k]).collect::<Vec<f64>>();
-        let Some(plane) = Plane::amid(&column(1), &column(2)) else { return Ok(()) };
-        if nowhere > 0 {
-            self.notes.push(format!(
-                "{nowhere} positions are 0 N 0 E, which receivers write without a fix; taken as missing"
-            ));
-        }
-        let metres: Vec<[f64; 2]> = places.iter().map(|p| plane.metres(p[1], p[2])).collect();
-        let far = metres.iter().map(|m| m[0].hypot(m[1])).fold(0.0, f64::max);
-        if far > 100_000.0 {
+        if places.far > 100_000.0 {
             let text = format!(
                 "positions reach {:.0} km from the point of the plane, where distances are {:.2} % short",
-                far / 1e3,
-                100.0 * far * far / 8.1e13
+                places.far / 1e3,
+                100.0 * places.far * places.far / 8.1e13
             );
             self.notes.push(text);
         }
-        let form = match (minutes, radians) {
-            (true, _) => "deg and minutes (dddmm.mmm)",
-            (_, true) => "rad",
-            _ => "deg",
-        };
-        let why = format!("plane tangent to WGS84 at {} N {} E", plane.origin[0], plane.origin[1]);
-        self.tell(Meaning::Latitude, lat, &lat_signal, tidied, form, why.clone());
-        self.tell(Meaning::Longitude, lon, &lon_signal, Tidied::default(), form, why);
-        for (axis, channel) in [Channel::X, Channel::Y].into_iter().enumerate() {
-            let signal = Signal { t: column(0), v: metres.iter().map(|m| m[axis]).collect(), step: lat_signal.step };
-            self.by.insert(Meaning::Channel(channel), signal);
-        }
-        self.origin = Some(plane.origin);
+        let why = plane_words(places.origin);
+        let [told_lat, told_lon] = &places.told;
+        self.tell(Meaning::Latitude, lat, told_lat, places.tidied, places.form, why.clone());
+        self.tell(Meaning::Longitude, lon, told_lon, Tidied::default(), places.form, why);
+        self.by.insert(Meaning::Channel(Channel::X), places.x);
+        self.by.insert(Meaning::Channel(Channel::Y), places.y);
+        self.origin = Some(places.origin);
         Ok(())
+    }
+
+    /// Counts an axis of position the other way, and says so first of all.
+    fn turn_axis(&mut self, axis: usize) {
+        let (channel, meaning) = [(Channel::X, Meaning::Latitude), (Channel::Y, Meaning::Longitude)][axis];
+        if let Some(signal) = self.by.get_mut(&Meaning::Channel(channel)) {
+            signal.v.iter_mut().for_each(|v| *v = -*v);
+        }
+        if let Some(origin) = &mut self.origin {
+            origin[axis] = -origin[axis];
+        }
+        let plane = self.origin.map_or_else(String::new, plane_words);
+        let side = ["south", "west"][axis];
+        let words =
+            format!("counted positive to the {side}, turned: heading and course turn against the track otherwise");
+        for taken in &mut self.taken {
+            let turned = if taken.quantity == meaning.name() { format!("{words}; ") } else { String::new() };
+            taken.evidence = turned + &plane;
+        }
+        let name = meaning.name();
+        let text =
+            format!("WARNING: the {} is {words}; if it is right as it is, pass `--unit {name}=deg`", meaning.words());
+        self.notes.insert(0, text);
     }
 
     /// Speeds: over ground alone or in parts, and through water.
@@ -260,33 +328,4 @@ impl Signals {
         }
         Ok(())
     }
-}
-
-/// Latitudes and longitudes in degrees, of which one value is `unit`, and whether they were written as degrees and minutes. Single
-/// values that are none are left out.
-fn degrees(both: &[&Vec<&Column>; 2], unit: f64) -> Result<([Column; 2], bool), ImportError> {
-    let usual = |columns: &Vec<&Column>| columns.iter().map(|c| size_below(&c.v, 0.5)).fold(0.0, f64::max);
-    let in_minutes = usual(both[0]) > 90.0;
-    let mut found = [Column::default(), Column::default()];
-    for (i, columns) in both.iter().enumerate() {
-        let most = [90.0, 360.0][i];
-        let (mut wrong, mut count) = (None, 0);
-        for (t, v) in columns.iter().flat_map(|c| c.t.iter().zip(&c.v)) {
-            let degrees = if in_minutes { from_minutes(*v).unwrap_or(f64::NAN) } else { unit * *v };
-            if degrees.abs() <= most {
-                found[i].push(*t, degrees);
-            } else {
-                (wrong, count) = (Some(*v), count + 1);
-            }
-        }
-        if let Some(wrong) = wrong.filter(|_| count > found[i].v.len() / 20) {
-            let name = columns.first().map_or("", |c| c.name.as_str());
-            let (words, channel) = (["latitude", "longitude"][i], ["x", "y"][i]);
-            let text = format!(
-                "column `{name}` holds {wrong}, which is no {words} in deg; is it metres? then pass `--column {channel}={name}`"
-            );
-            return Err(ImportError::Choice(text));
-        }
-    }
-    Ok((found, in_minutes))
 }

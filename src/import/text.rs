@@ -7,12 +7,14 @@ use super::clock::{
     past_midnight, spread, time_of_day, two_orders,
 };
 use super::error::ImportError;
-use super::layout::{Delimiter, Layout, comment, decimal_comma, decoded, layout, number};
+use super::layout::{Delimiter, Layout, comment, decimal_comma, decoded, layout, number, too_wide};
 use super::log::{Clock, Column, Log};
 use super::marks::{Marks, signs};
-use super::names::{is_unit, meaning, name_and_unit, time_rank};
+use super::names::{is_ships_name, is_unit, meaning, name_and_unit, time_rank};
+use super::passes::{FEW, OTHERWISE, passes, stepped_back};
 use crate::recording::Quantity;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::path::Path;
 
 /// Share of a column's fields that must be numbers for it to be one, where the others are not all the same few words.
@@ -40,10 +42,15 @@ struct Table<'a> {
 pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log>, ImportError> {
     let text = decoded(bytes);
     let fail = |message: &str| ImportError::File { path: path.to_owned(), message: message.to_owned() };
+    if let Some(count) = too_wide(&text) {
+        let next = "a log has a line for each time and a column for each quantity; are rows and columns exchanged?";
+        return Err(fail(&format!("a line has {count} fields; {next}")));
+    }
     let layout = layout(&text).ok_or_else(|| {
         fail("no columns are found: lines have no number of fields in common. Give a CSV (commas, semicolons, tabs, upright strokes or blanks), NMEA 0183 or Parquet file")
     })?;
     let mut table = table(path, &text, &layout)?;
+    one_ship(&table)?;
     if table.rows.len() < 2 {
         let count = ["no line", "one line"][table.rows.len()];
         return Err(fail(&format!("there is {count} of data; give a file with at least two")));
@@ -54,9 +61,13 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
         if table.decimal_comma && layout.delimiter != Delimiter::Character(',') { " and decimal commas" } else { "" };
     let format = format!("text with {}{decimal}; time is {how}", layout.delimiter.words());
     let log = |columns, notes| Log { path: path.to_owned(), format: format.clone(), clock, columns, notes };
-    let runs = runs(clock, &t);
-    if let [_, _, ..] = runs.as_slice() {
-        table.notes.push(format!("its time starts again {} times: {} runs", runs.len() - 1, runs.len()));
+    let runs = runs(&table, &columns, clock, &t);
+    if let [_, second, ..] = runs.as_slice() {
+        let line = table.rows[second.start].0;
+        table.notes.push(match clock {
+            Clock::Utc => stepped_back(runs.len(), &format!("line {line}")),
+            _ => format!("its time starts again {} times: {} runs", runs.len() - 1, runs.len()),
+        });
     }
     let mut logs = Vec::new();
     for run in runs {
@@ -73,22 +84,71 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
     Ok(logs)
 }
 
-/// The rows of each run, where a clock of its own starts again; all rows as one where they are merely out of order.
-fn runs(clock: Clock, t: &[f64]) -> Vec<std::ops::Range<usize>> {
-    let mut runs = Vec::new();
-    let (mut start, mut last) = (0, f64::NAN);
+/// The rows of each run, where the clock steps back over what it told before, or a clock of its own starts again; all rows as one where
+/// they are merely out of order.
+fn runs(table: &Table<'_>, columns: &[(Column, Vec<f64>)], clock: Clock, t: &[f64]) -> Vec<Range<usize>> {
+    let repeats = |before: Range<usize>, after: Range<usize>| {
+        let copy = before.len() == after.len()
+            && before.clone().zip(after.clone()).all(|(a, b)| table.rows[a].1 == table.rows[b].1);
+        let told = |values: &[f64], rows: &Range<usize>| {
+            values[rows.clone()].iter().filter(|v| v.is_finite()).take(FEW).count() == FEW
+        };
+        !copy && columns.iter().any(|(_, values)| told(values, &before) && told(values, &after))
+    };
+    let mut starts: BTreeSet<usize> = passes(t, repeats).into_iter().map(|run| run.start).collect();
+    if clock != Clock::Utc {
+        starts.extend(restarts(t));
+    }
+    let ends: Vec<usize> = starts.iter().copied().skip(1).chain([t.len()]).collect();
+    let runs: Vec<Range<usize>> = starts.into_iter().zip(ends).map(|(start, end)| start..end).collect();
+    let long = clock == Clock::Utc || runs.iter().all(|run| run.len() >= FEWEST);
+    if long { runs } else { std::iter::once(0..t.len()).collect() }
+}
+
+/// First rows of runs that begin where time goes back to the first tenth of the run before.
+fn restarts(t: &[f64]) -> Vec<usize> {
+    let mut found = Vec::new();
+    let (mut begun, mut last) = (f64::NAN, f64::NAN);
     for (row, time) in t.iter().enumerate().filter(|(_, time)| time.is_finite()) {
-        let begun = t[start..row].iter().copied().find(|t| t.is_finite()).unwrap_or(*time);
-        // Back to the first tenth of the run.
+        if begun.is_nan() {
+            begun = *time;
+        }
         if *time < last && *time - begun < 0.1 * (last - begun) {
-            runs.push(start..row);
-            start = row;
+            found.push(row);
+            begun = *time;
         }
         last = *time;
     }
-    runs.push(start..t.len());
-    let own = clock != Clock::Utc && runs.iter().all(|run| run.len() >= FEWEST);
-    if own { runs } else { std::iter::once(0..t.len()).collect() }
+    found
+}
+
+/// Ships that one file may name before it is taken for the log of many.
+const MOST_NAMED: usize = 3;
+
+/// Refuses a file that holds the rows of several ships: their tracks would be one.
+fn one_ship(table: &Table<'_>) -> Result<(), ImportError> {
+    for field in (0..table.names.len()).filter(|f| is_ships_name(&table.names[*f].0)) {
+        let mut rows: BTreeMap<&str, usize> = BTreeMap::new();
+        for (_, fields) in table.rows.iter().filter(|(_, fields)| !fields[field].is_empty()) {
+            *rows.entry(fields[field]).or_default() += 1;
+        }
+        rows.retain(|_, count| *count >= FEW);
+        // A column in which every row differs is no name.
+        if rows.len() < 2 || 2 * rows.len() > table.rows.len() {
+            continue;
+        }
+        let named: Vec<String> =
+            rows.iter().take(MOST_NAMED).map(|(name, count)| format!("{name} ({count} lines)")).collect();
+        let more = if rows.len() > MOST_NAMED { " and others" } else { "" };
+        let message = format!(
+            "column `{}` names {} ships: {}{more}; write the lines of each to a file of its own, and import one ship at a time",
+            table.names[field].0,
+            rows.len(),
+            named.join(", ")
+        );
+        return Err(ImportError::File { path: table.path.to_owned(), message });
+    }
+    Ok(())
 }
 
 /// The lines below the header, and what the header says.
@@ -224,14 +284,29 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
             format!("`{}` in column `{name}` is no time; name the time column with `--column t=NAME`", fields[field]);
         return Err(ImportError::At { path: table.path.to_owned(), line: *line, column: field + 1, message });
     }
-    // Rows that say the same again are not later ones.
-    let pairs = || times.t.windows(2).zip(table.rows.windows(2)).filter(|(t, _)| t[0] == t[1]);
-    if pairs().any(|(_, rows)| rows[0].1 != rows[1].1)
+    if rounded(table, &times)
         && let Some(shared) = spread(&mut times.t)
     {
         times.how += &format!(", rounded: {shared} rows share a time and are spread over it");
     }
     Ok(times)
+}
+
+/// Whether rows that share a time are later ones, whose time was rounded: what is known by name then differs from row to row. Rows that
+/// repeat all but a counter, or that each fill other fields, were written at one time.
+fn rounded(table: &Table<'_>, times: &Times) -> bool {
+    let others = || (0..table.names.len()).filter(|f| !times.used.contains(f));
+    let mut telling: Vec<usize> = others().filter(|f| meaning(&table.names[*f].0).is_some()).collect();
+    if telling.is_empty() {
+        telling = others().collect();
+    }
+    let pairs = || times.t.windows(2).zip(table.rows.windows(2)).filter(|(t, _)| t[0] == t[1]).map(|(_, rows)| rows);
+    let differ = |rows: &&[(usize, Vec<&str>)]| {
+        let [a, b] = [&rows[0].1, &rows[1].1];
+        telling.iter().any(|f| !a[*f].is_empty() && !b[*f].is_empty() && a[*f] != b[*f])
+    };
+    let differing = pairs().filter(differ).count();
+    differing > 0 && differing as f64 >= OTHERWISE * pairs().count() as f64
 }
 
 /// Which of day and month comes first, and what is to be told where no date proves it: then the order is taken in which the days
@@ -329,6 +404,7 @@ fn column(table: &Table<'_>, field: usize, notes: &mut Vec<String>) -> Option<(C
     let (name, unit) = &table.names[field];
     let texts = || table.rows.iter().map(|(_, fields)| fields[field]);
     let marks = Marks::of(texts(), meaning(name), table.decimal_comma);
+    let name = &if marks.magnetic { format!("{name} magnetic") } else { name.clone() };
     let values: Vec<Option<f64>> = texts().map(|text| marks.value(text, table.decimal_comma)).collect();
     let known = values.iter().flatten().filter(|v| v.is_finite()).count();
     let wrong =

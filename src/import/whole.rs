@@ -6,7 +6,7 @@ use super::clock::written;
 use super::error::ImportError;
 use super::fills::take_out;
 use super::log::{Clock, Log, Meaning};
-use super::names::meaning;
+use super::overlap::{range, shifts};
 use super::read::read;
 use super::rows::{Rows, rows};
 use super::take::{Signals, Taken, take};
@@ -26,8 +26,6 @@ pub struct ImportSettings {
 /// A longer gap ends a recording: after so long wind, current and loading may be others \[s\].
 pub const SESSION_GAP: f64 = 1800.0;
 
-/// Files with clocks of their own are put so far apart \[s\].
-const APART: f64 = 1e7;
 /// Rows that a recording has at least.
 const FEWEST: usize = 10;
 /// A channel that no simulation needs is left out where it is missing in more than this share of the rows.
@@ -65,6 +63,8 @@ pub struct Imported {
     pub derive: Vec<&'static str>,
     /// Channels that are written and not used, for want of values.
     pub leave_out: Vec<Channel>,
+    /// Longest drop-out that the column map bridges \[s\].
+    pub bridge: Option<f64>,
     /// The recordings, in order of time.
     pub recordings: Vec<ImportedRecording>,
 }
@@ -80,7 +80,7 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
         logs.extend(read(file, &settings.choices)?);
     }
     logs.iter_mut().for_each(|log| blank_fills(log, &settings.choices));
-    let shifts = shifts(&logs)?;
+    let shifts = shifts(&logs, &settings.choices)?;
     for (log, shift) in logs.iter_mut().zip(&shifts) {
         log.columns.iter_mut().for_each(|c| c.t.iter_mut().for_each(|t| *t += shift));
     }
@@ -88,11 +88,11 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     let mut signals = take(&chosen, &settings.choices)?;
     signals.unused.extend(unused);
     missing(&chosen, &signals, &logs)?;
-    let table = rows(&signals);
+    let (table, filled) = rows(&signals);
     let longest = settings.session_gap.unwrap_or(SESSION_GAP);
     let ends: Vec<[f64; 2]> = logs.iter().map(range).collect();
     let starts: Vec<f64> = ends.iter().map(|e| e[0]).collect();
-    let (mut notes, mut recordings) = (Vec::new(), Vec::new());
+    let (mut notes, mut recordings) = (filled, Vec::new());
     for part in table.cut(longest, &starts) {
         let (Some(first), Some(last)) = (part.t.first().copied(), part.t.last().copied()) else { continue };
         if part.t.len() < FEWEST {
@@ -103,7 +103,9 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
             continue;
         }
         let own = ends.iter().position(|e| e[0] <= first + 1e-6 && last <= e[1] + 1e-6);
-        recordings.push(recording(part, own.map(|i| (&logs[i], shifts[i])), &logs));
+        let within = own.or_else(|| ends.iter().position(|e| (e[0]..=e[1]).contains(&first)));
+        let shift = within.map_or(0.0, |i| shifts[i]);
+        recordings.push(recording(part, own.map(|i| &logs[i]), shift, &logs));
     }
     if recordings.is_empty() {
         let text = "position and heading are never recorded together; are the clocks of the files the same?";
@@ -113,7 +115,9 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     for log in &logs {
         notes.extend(log.notes.iter().map(|note| format!("{}: {note}", log.path.display())));
     }
-    notes.append(&mut signals.notes);
+    // What was turned comes before all else.
+    signals.notes.append(&mut notes);
+    let mut notes = std::mem::take(&mut signals.notes);
     if !signals.by.contains_key(&Meaning::Channel(Channel::X)) {
         notes.push("no column is taken for a position: if one is, name it with `--column lat=NAME --column lon=NAME` or `--column x=NAME --column y=NAME`".to_owned());
     }
@@ -129,6 +133,7 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
         velocity,
         derive,
         leave_out: Vec::new(),
+        bridge: None,
         recordings,
     };
     imported.blank_impossible();
@@ -140,40 +145,13 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
 /// Takes the numbers that stand for missing values out of a log, and notes them.
 fn blank_fills(log: &mut Log, choices: &Choices) {
     for column in &mut log.columns {
-        let forced = choices.columns.iter().find(|(_, name)| name.eq_ignore_ascii_case(&column.name));
-        let forced = forced.and_then(|(quantity, _)| Meaning::from_name(quantity));
-        for (fill, count) in take_out(column, forced.or(column.meaning).or_else(|| meaning(&column.name))) {
+        for (fill, count) in take_out(column, choices.meaning(column)) {
             let name = &column.name;
             log.notes.push(format!(
                 "column `{name}` holds {fill} in {count} lines, far from all other values; taken as missing"
             ));
         }
     }
-}
-
-/// First and last time of a file.
-fn range(log: &Log) -> [f64; 2] {
-    let times = || log.columns.iter().flat_map(|c| c.t.iter().copied());
-    [times().fold(f64::MAX, f64::min), times().fold(f64::MIN, f64::max)]
-}
-
-/// What is to be added to the times of each file \[s\]. Files with clocks of their own are runs of their own where each has the same
-/// columns; otherwise they are parts of one log and share a clock.
-fn shifts(logs: &[Log]) -> Result<Vec<f64>, ImportError> {
-    let clocks: BTreeSet<u8> = logs.iter().map(|log| log.clock as u8).collect();
-    if clocks.len() > 1 {
-        let list: Vec<String> = logs.iter().map(|log| format!("{}: {}", log.path.display(), log.format)).collect();
-        return Err(ImportError::Choice(format!(
-            "the files count time from different starts, so that they cannot be joined: {}. Import them apart",
-            list.join("; ")
-        )));
-    }
-    let names = |log: &Log| log.columns.iter().map(|c| c.name.clone()).collect::<BTreeSet<String>>();
-    let own = logs.iter().all(|log| log.clock != Clock::Utc);
-    let alike = logs.windows(2).all(|pair| names(&pair[0]) == names(&pair[1]));
-    let overlap = logs.windows(2).any(|pair| range(&pair[1])[0] <= range(&pair[0])[1]);
-    let apart = own && alike && overlap;
-    Ok((0..logs.len()).map(|i| if apart { APART * i as f64 } else { 0.0 }).collect())
 }
 
 /// Refuses files that lack what every study needs, with one message for everything.
@@ -208,21 +186,18 @@ fn missing(chosen: &Chosen<'_>, signals: &Signals, logs: &[Log]) -> Result<(), I
     Err(ImportError::Undecided(asked))
 }
 
-/// A recording with its name and times.
-fn recording(mut rows: Rows, own: Option<(&Log, f64)>, logs: &[Log]) -> ImportedRecording {
-    let first = rows.t.first().copied().unwrap_or(0.0);
+/// A recording with its name and times; `shift` was added to the times of its files.
+fn recording(mut rows: Rows, own: Option<&Log>, shift: f64, logs: &[Log]) -> ImportedRecording {
+    let first = rows.t.first().copied().unwrap_or(0.0) - shift;
     let clock = logs.first().map_or(Clock::Own, |log| log.clock);
     let start = (clock == Clock::Utc).then(|| written(first));
-    let zero = match (clock, own) {
-        (Clock::Own, Some((_, shift))) => shift,
-        (Clock::Own, None) => 0.0,
-        _ => first,
-    };
+    let zero = if clock == Clock::Own { shift } else { first + shift };
     rows.t.iter_mut().for_each(|t| *t = ((*t - zero) * 1e6).round() / 1e6);
-    let stem = own.and_then(|(log, _)| log.path.file_stem().map(|s| s.to_string_lossy().into_owned()));
+    let stem = own.and_then(|log| log.path.file_stem().map(|s| s.to_string_lossy().into_owned()));
     let dated = start.as_ref().map(|s| s.replace(' ', "_").replace(':', ""));
-    let name = match (logs.len(), stem, dated) {
-        (1, _, Some(dated)) | (_, None, Some(dated)) => dated,
+    let one_file = logs.windows(2).all(|pair| pair[0].path == pair[1].path);
+    let name = match (one_file, stem, dated) {
+        (true, _, Some(dated)) | (_, None, Some(dated)) => dated,
         (_, Some(stem), _) => stem,
         _ => "recording".to_owned(),
     };
@@ -341,15 +316,15 @@ impl Imported {
                 }
             }
             let sparse = !core.contains(&channel) && channel.interrupts() && absent as f64 > MOSTLY * rows as f64;
-            if lonely || sparse {
+            if lonely {
+                self.recordings.iter_mut().for_each(|r| r.rows.channels.retain(|(c, _)| *c != channel));
+                let partner = partner.map_or("", Channel::name);
+                self.notes.push(format!("{channel} is left out: without {partner} it says nothing"));
+            } else if sparse {
                 self.leave_out.push(channel);
-                let why = if lonely {
-                    format!("without {} it says nothing", partner.map_or("", Channel::name))
-                } else {
-                    format!("it is missing in {absent} of {rows} rows, each of which would end a run")
-                };
-                self.notes
-                    .push(format!("{channel} is in the recordings and not used: {why} (`leave_out` in columns.toml)"));
+                self.notes.push(format!(
+                    "{channel} is in the recordings and not used: it is missing in {absent} of {rows} rows, each of which would end a run (`leave_out` in columns.toml)"
+                ));
             }
         }
     }

@@ -129,6 +129,12 @@ pub fn split(parts: &[SplitPart<'_>], settings: &SplitSettings) -> Result<(Vec<S
     Ok((runs, skipped))
 }
 
+/// The shortest stretch without a gap that is a run of these recordings \[s\].
+pub fn shortest_run(parts: &[SplitPart<'_>]) -> f64 {
+    let controls: Vec<Controls> = parts.iter().flat_map(|p| Controls::of(p.recording)).collect();
+    SHORTEST * time_scale(&controls)
+}
+
 fn session_of(part: &SplitPart<'_>, sessions: &Sessions) -> Result<Option<String>, SplitError> {
     let stem =
         std::path::Path::new(&part.file).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();

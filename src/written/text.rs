@@ -33,6 +33,11 @@ pub fn read_text(path: &Path) -> Result<String, Error> {
 /// # Errors
 /// Those of the file system, worded for whoever wrote the path.
 pub fn bytes_of(path: &Path) -> Result<Vec<u8>, Error> {
+    // A device or a pipe may have no end, or no beginning.
+    if std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir()) {
+        let words = "it is a pipe or a device and no file; write what it gives to a file, and name that";
+        return Err(Error::new(ErrorKind::InvalidInput, words));
+    }
     std::fs::read(path).map_err(|source| explained(path, source))
 }
 

@@ -1,0 +1,86 @@
+//! How well a column agrees with what is known of the motion: a speed with the track, a direction with the course, a rate with the heading.
+//! It ranks the candidates for one quantity; units and signs are decided later, in `evidence`.
+
+use super::log::{Column, Meaning};
+use super::motion::{Track, ratio, rudder_effect};
+use super::signal::{Signal, size_below};
+use crate::recording::{Channel, Quantity};
+
+/// What is known of the motion while columns are chosen.
+#[derive(Default)]
+pub struct Sight {
+    /// The track.
+    pub track: Option<Track>,
+    /// The heading \[rad\].
+    pub psi: Option<Signal>,
+}
+
+/// A speed agrees where the track's is within this share of it: the spread of the speed of a track from fixes of some metres.
+const NEAR: f64 = 0.15;
+/// Coherence from which a ratio of speeds means something.
+const COHERENT: f64 = 0.6;
+/// Any heading or course above this is no radian.
+const MOST_RADIANS: f64 = 7.0;
+/// t value of a rudder's effect that counts half: twice that from which its sign is told.
+const HALF_T: f64 = 10.0;
+
+impl Sight {
+    /// From 0, where a column contradicts the data, to 1; `None` where they do not tell.
+    pub fn agreement(&self, meaning: Meaning, columns: &[&Column]) -> Option<f64> {
+        match meaning {
+            Meaning::Course | Meaning::Channel(Channel::Psi) => self.direction(columns),
+            Meaning::GroundSpeed => self.speed(columns),
+            Meaning::Channel(Channel::R) => self.rate(columns),
+            Meaning::Channel(Channel::Delta) => self.rudder(columns),
+            _ => None,
+        }
+    }
+
+    /// Length of the mean of the direction from the course, in either sense.
+    fn direction(&self, columns: &[&Column]) -> Option<f64> {
+        let track = self.track.as_ref()?;
+        let signal = heading(columns);
+        [1.0, -1.0].into_iter().filter_map(|sense| track.agreement(&signal, sense)).map(|a| a[0]).reduce(f64::max)
+    }
+
+    /// Whether the track is as fast as the column says in the unit that the file states, or in any where it states none.
+    fn speed(&self, columns: &[&Column]) -> Option<f64> {
+        let track = self.track.as_ref()?;
+        let mut size = Signal::new(columns, 1.0, 0.0, false).0;
+        size.v.iter_mut().for_each(|v| *v = v.abs());
+        let pairs: Vec<[f64; 2]> = track.speed.pairs(&size).into_iter().filter(|p| p[0] > 0.3 * track.fast).collect();
+        let found = ratio(&pairs)?;
+        let near = |factor: f64| (found.gain.abs() / factor).ln().abs() < NEAR;
+        let stated = columns.iter().find_map(|c| Quantity::Speed.factor(c.unit.as_deref()?));
+        let fits = match stated {
+            Some(factor) => near(factor),
+            None => ["m/s", "kn", "km/h"].iter().filter_map(|u| Quantity::Speed.factor(u)).any(near),
+        };
+        Some(if fits && found.coherence > COHERENT { found.coherence } else { 0.0 })
+    }
+
+    /// Coherence with the rate of the heading.
+    fn rate(&self, columns: &[&Column]) -> Option<f64> {
+        let psi = self.psi.as_ref()?;
+        let raw = Signal::new(columns, 1.0, 0.0, false).0;
+        let span = psi.span().max(raw.span());
+        ratio(&psi.rate(span).pairs(&raw.smooth(span))).map(|r| r.coherence)
+    }
+
+    /// How surely the ship turns by the column. One that it does not turn by may be sound where nothing is steered, so that it never
+    /// contradicts.
+    fn rudder(&self, columns: &[&Column]) -> Option<f64> {
+        let psi = self.psi.as_ref()?;
+        let t = rudder_effect(&psi.rate(psi.span()), &Signal::new(columns, 1.0, 0.0, false).0)?.abs();
+        Some(0.5 + 0.5 * t / (t + HALF_T))
+    }
+}
+
+/// Columns as a heading: degrees by their size, or by the unit that is stated.
+pub fn heading(columns: &[&Column]) -> Signal {
+    let degree = Quantity::Angle.factor("deg").unwrap_or(1.0);
+    let top = columns.iter().map(|c| size_below(&c.v, 0.999)).fold(0.0, f64::max);
+    let stated = columns.iter().find_map(|c| Quantity::Angle.factor(c.unit.as_deref()?));
+    let factor = if top > MOST_RADIANS { degree } else { stated.unwrap_or(1.0) };
+    Signal::new(columns, factor, 0.0, true).0
+}

@@ -1,0 +1,153 @@
+//! The words that ships and loggers write for what they record, in the languages of those who build them.
+//! How a name is read with them is in `names`; whether a column is what its name says is asked of its values elsewhere.
+
+use super::log::Meaning::{self, *};
+use crate::recording::Channel::*;
+
+/// Phrases by what they name, parted by commas, in lower case and without accents. A phrase of one letter must begin the name.
+pub const PHRASES: &[(Meaning, &str)] = &[
+    (Latitude, "lat, latitude, breite, breddegrad, breedtegraad, latitudine, latitud"),
+    (Longitude, "lon, lng, long, longitude, lange, laenge, lengdegrad, lengtegraad, longitudine, longitud"),
+    (VelocityNorth, "v north, vn, velocity north, north velocity, speed north, north speed, vel n, vel north"),
+    (VelocityEast, "v east, ve, velocity east, east velocity, speed east, east speed, vel e, vel east"),
+    (
+        Channel(UWater),
+        "u water, stw, stw long, stw longitudinal, speed through water, speed through the water, speed in \
+         water, water speed, water speed ahead, long water speed, longitudinal water speed, log speed, speed \
+         log, fdw, fahrt durchs wasser, fahrt durch wasser, vitesse surface, velocita in acqua, velocidad en \
+         el agua, velocidad en agua",
+    ),
+    (
+        Channel(VWater),
+        "v water, stw trans, stw transverse, stw transversal, stw lateral, stw lat, water speed across, trans \
+         water speed, transverse water speed, lateral water speed",
+    ),
+    (Channel(BankStarboard), "bank starboard"),
+    (Channel(BankPort), "bank port"),
+    (Channel(Thruster), "bow thruster, thruster, bugstrahler, bugstrahlruder, propulseur etrave"),
+    (
+        Channel(Delta),
+        "rudder, rudder angle, rud, ruder, ruderlage, ruderwinkel, ror, rorvinkel, roerhoek, roer, \
+         rudderangle, rsa, helm, barre, angle de barre, angle barre, safran, angle de safran, gouvernail, \
+         timone, angolo timone, angolo di timone, angolo del timone, timon, angulo timon, angulo de timon, \
+         angulo del timon, angulo de pala",
+    ),
+    (
+        Channel(R),
+        "rot, rate of turn, turn rate, yaw rate, yawrate, yaw velocity, yaw speed, yaw vel, heading rate, \
+         angular velocity, angular velocity z, gyro z, drehrate, drehgeschwindigkeit, wendegeschwindigkeit, \
+         svinghastighet, draaisnelheid, taux de giration, vitesse de giration, taux de rotation, velocita di \
+         accostata, velocita accostata, velocidad de giro, regimen de giro, tasa de giro",
+    ),
+    (
+        Course,
+        "cog, course, course over ground, track made good, course made good, kurs uber grund, kurs ueber \
+         grund, kug, kurs over grunn, grondkoers, route fond, route sur le fond, rotta, rotta al suolo, rotta \
+         vera, rotta sul fondo, rumbo sobre el fondo, rumbo sobre fondo, rumbo efectivo, derrota",
+    ),
+    (
+        GroundSpeed,
+        "sog, speed over ground, ground speed, groundspeed, gps speed, speed made good, fahrt uber grund, \
+         fahrt ueber grund, fug, fart over grunn, vitesse fond, vitesse sur le fond, velocita al suolo, \
+         velocita sul fondo, velocidad sobre el fondo, velocidad sobre fondo",
+    ),
+    (
+        Channel(Psi),
+        "heading, hdg, hdt, hdm, gyro, psi, yaw, compass, head, steuerkurs, kurs rechtweisend, cap, cap vrai, \
+         cap magnetique, prua, prora, angolo di prua, rumbo, rumbo verdadero, rumbo magnetico",
+    ),
+    (
+        Channel(N),
+        "rpm, rps, nps, revs, rev, revolutions, revolution, drehzahl, propellerdrehzahl, wellendrehzahl, \
+         turtall, toerental, shaft speed, shaft rate, propeller rate, propeller speed, prop speed, propeller \
+         rotation, engine speed, tours, tours helice, tours par minute, regime, regime helice, regime moteur, \
+         vitesse helice, giri, giri elica, giri motore, revoluciones, revoluciones helice, revoluciones por \
+         minuto, vueltas helice",
+    ),
+    (Channel(X), "northing, x0, pos x, position x, pos north"),
+    (Channel(Y), "easting, y0, pos y, position y, pos east"),
+    (Channel(U), "surge velocity, surge speed, surge vel, u, longitudinal velocity, longitudinal speed"),
+    (Channel(V), "sway velocity, sway speed, sway vel, v, transverse velocity, transverse speed, lateral speed"),
+    (Channel(WaveHeight), "wave height, hs, wellenhohe, hauteur vagues"),
+    (Channel(WaveDirection), "wave direction, wave dir"),
+    (Channel(CurrentSpeed), "current speed, drift speed"),
+    (Channel(CurrentDirection), "current direction, current dir"),
+    (Channel(Depth), "depth, water depth, tiefe, wassertiefe, profondeur, profondita, profundidad"),
+    (Variation, "variation, magnetic variation, mag var, magvar, declination, missweisung, declinaison"),
+];
+
+/// Phrases that name the same less surely: another column may be meant.
+pub const VAGUE: &[(Meaning, &str)] = &[
+    (GroundSpeed, "speed, spd, geschwindigkeit, fahrt, snelheid, vitesse, velocita, velocidad, fart"),
+    (Course, "kurs, route"),
+    (Channel(X), "north, x"),
+    (Channel(Y), "east, y"),
+    (Channel(U), "surge"),
+    (Channel(V), "sway"),
+    (Channel(Delta), "delta, δ"),
+    (Channel(Psi), "ψ"),
+    (Channel(R), "r"),
+    (Channel(N), "n"),
+];
+
+/// Words that change nothing of what a column is: where it is from, how it was taken, which of several.
+pub const NEUTRAL: &str = "a, actual, ais, angle, average, avg, bow, data, deg, direction, estimate, estimated, fb, feedback, \
+         filtered, gnss, gps, ground, ins, ist, istwert, main, mean, measured, measurement, meas, mru, nav, \
+         own, pos, position, prop, propeller, raw, sensor, shaft, ship, signal, smoothed, t, true, value, \
+         vessel, vrai, wgs84, helice, elica, welle, schiff, rechtweisend, verdadero, vero, vera, over, of, \
+         the, in, port, starboard, stbd, sb, ps, number, no";
+
+/// Words that make a column something else of the thing that it names: how fast a rudder moves, whether its pump runs, when it was told.
+pub const CHANGES: &str = "acceleration, accel, acc, accuracy, age, alarm, apparent, aw, bearing, beschleunigung, bias, count, \
+         covariance, cross, destination, dest, deviation, diff, difference, drag, dt, error, err, fan, force, \
+         fuel, gust, gyroscope, heave, interval, kraft, last, lift, limit, load, max, maximum, min, minimum, \
+         mode, moment, oil, pitch, power, pressure, pump, quality, rate, residual, roll, running, rms, sigma, \
+         slip, state, status, std, stddev, stamp, tau, temperature, temp, tide, time, torque, thrust, \
+         tension, tw, turbo, turbocharger, update, updated, valid, var, variance, voltage, waypoint, wave, \
+         wind, wp, wpt, xte, zeit";
+
+/// Words that make an angle or a rudder its rate of change.
+pub const MOVES: &str = "speed, velocity, vel, geschwindigkeit, vitesse, velocita, velocidad";
+
+/// Words that make a column an order rather than a measurement.
+pub const ORDERS: &str = "order, ordered, ord, command, commanded, cmd, set, setpoint, demand, demanded, desired, target, ref, \
+         reference, requested, soll, sollwert, consigne, comando, ordre, orden";
+
+/// Names of a magnetic reference.
+pub const MAGNETIC: &str = "magnetic, mag, hdm, compass, magnetisch, magnetique, magnetico";
+
+/// Words of the wind.
+pub const WIND: &str = "wind, vent, vento, viento, tws, twd, twa, aws, awa, awd, aw, tw";
+/// The same where one word says wind and measure.
+pub const WIND_SPEEDS: &str = "windgeschwindigkeit, windspeed, vindhastighet";
+/// The same for directions.
+pub const WIND_DIRECTIONS: &str = "windrichtung, winddirection, winddir, vindretning";
+/// Words of a wind that a moving ship feels.
+pub const RELATIVE: &str =
+    "apparent, relative, rel, aw, aws, awa, awd, scheinbar, scheinbare, scheinbarer, apparente, aparente";
+/// Words of a speed.
+pub const SPEEDS: &str = "speed, spd, velocity, vel, tws, aws, geschwindigkeit, vitesse, velocita, velocidad";
+/// Words of a direction that counts from north.
+pub const FROM_NORTH: &str = "direction, dir, twd, awd, richtung, direzione, direccion, from";
+/// Words of a direction that counts from the bow.
+pub const FROM_BOW: &str = "angle, twa, awa, winkel, einfallswinkel, angolo, angulo";
+
+/// Words that are a time of their own.
+pub const CLOCKS: &str = "timestamp, datetime, time, utc, epoch, unix, zeit, uhrzeit, zeitstempel, tid, tijd, heure, \
+         horodatage, temps, ora, orario, tempo, hora, tiempo, fecha";
+/// Words of a time since something.
+pub const SINCE: &str = "stamp, elapsed, seconds, secs, sec, millis, secondes, segundos, secondi";
+/// Words by which a column tells whose row it is.
+pub const SHIPS: &str = "mmsi, imo, callsign, vessel, ship, schiff, navire, nave, buque";
+/// Words that may stand beside these in the name of such a column.
+pub const BESIDE_SHIPS: &str = "name, id, number, no, nr, userid, source";
+
+/// The words or phrases of a list.
+pub fn phrases(list: &'static str) -> impl Iterator<Item = &'static str> {
+    list.split(", ")
+}
+
+/// Whether a word is on a list.
+pub fn is_on(list: &'static str, word: &str) -> bool {
+    phrases(list).any(|w| w == word)
+}
