@@ -14,8 +14,10 @@ use super::error::FitError;
 use super::limits::{Stop, Watch};
 use super::problem::{Point, Problem, Progress, Stage};
 use super::settings::Hessian;
+use super::subspace::inverse;
 use super::task::{ActiveSet, Task};
 use crate::ipopt::{self, Counts, HessianMode, IpoptError, Multipliers, OptionValue, Options, Solution, Status};
+use nalgebra::DMatrix;
 
 /// Share of the cost by which a point must be better for the solver to start again from it: less is rounding, or the kinks of
 /// a cost whose terms take absolute values.
@@ -23,6 +25,9 @@ pub(super) const BETTER: f64 = 1e-4;
 
 /// Share of the cost below which the solver's own answer is as good as the best point.
 const SAME: f64 = 1e-9;
+
+/// Curvature, as a share of the largest, that directions have which the data do not determine.
+const UNDETERMINED: f64 = 1e-12;
 
 /// Barrier parameter at the start over the objective there. A thousand constraints then weigh about as much as the cost.
 const BARRIER_SHARE: f64 = 1e-3;
@@ -219,22 +224,30 @@ impl Task<'_> {
         }
     }
 
-    /// What holds a solution back: the multiplier exceeds the distance from the limit, both in solver units.
+    /// What holds a solution back: without the limit, whose multiplier is y and whose normal is a, the point would move by `y a' H^-1 a`
+    /// across it (H the curvature of the objective), and that is more than its distance from it. An interior-point solution keeps
+    /// a distance of the barrier parameter over y from an active limit, so that neither y nor the distance tells it alone.
     fn active_set(&self, stage: &Stage, p: &[f64], multipliers: &Multipliers) -> ActiveSet {
-        let least = 1e3 * self.settings.tolerance * self.settings.tolerance.min(1e-3);
-        let is_active = |multiplier: f64, slack: f64| multiplier.abs() > slack.abs().max(least);
+        let n = p.len();
+        let yielding = stage.local(p).map(|local| {
+            let ridge = UNDETERMINED * local.gauss_newton.diagonal().max();
+            let matrix = local.gauss_newton + DMatrix::identity(n, n) * ridge;
+            inverse(&matrix, &DMatrix::identity(n, n)).matrix
+        });
+        let yielding = yielding.unwrap_or_else(|| DMatrix::identity(n, n));
+        let is_active = |multiplier: f64, along: f64, slack: f64| multiplier.abs() * along > slack.abs();
         let rows = multipliers.constraints.iter().enumerate().filter(|(i, multiplier)| {
-            let row = &self.rows[*i];
+            let (row, normal) = (&self.rows[*i], self.normal(stage.scaling, *i));
             let value = row.value(p);
             let slack = (value - row.lower).abs().min((row.upper - value).abs()) / stage.scaling.sizes[*i];
-            is_active(**multiplier, slack)
+            is_active(**multiplier, (&yielding * &normal).dot(&normal), slack)
         });
         let mut bounds = Vec::new();
         for (j, (lower, upper)) in self.bounds.iter().enumerate() {
-            let scale = stage.scaling.scales[j];
-            if is_active(multipliers.lower[j], (p[j] - lower) / scale) {
+            let (scale, along) = (stage.scaling.scales[j], yielding[(j, j)]);
+            if is_active(multipliers.lower[j], along, (p[j] - lower) / scale) {
                 bounds.push((j, "lower"));
-            } else if is_active(multipliers.upper[j], (upper - p[j]) / scale) {
+            } else if is_active(multipliers.upper[j], along, (upper - p[j]) / scale) {
                 bounds.push((j, "upper"));
             }
         }

@@ -138,18 +138,17 @@ impl<'a> Task<'a> {
         self.variance_of(self.cost, value)
     }
 
+    /// Gradient of a constraint row in scaled parameters, divided by its size.
+    pub fn normal(&self, scaling: &Scaling, row: usize) -> DVector<f64> {
+        let each = self.rows[row].coefficients.iter().zip(&scaling.scales);
+        DVector::from_iterator(scaling.scales.len(), each.map(|(a, scale)| a * scale / scaling.sizes[row]))
+    }
+
     /// Directions in scaled parameters along which no active constraint changes.
     pub fn free_directions(&self, active: &ActiveSet) -> DMatrix<f64> {
         let n = self.scaling.scales.len();
         let mut normals: Vec<DVector<f64>> = Vec::new();
-        for i in &active.rows {
-            let scaled = self.rows[*i]
-                .coefficients
-                .iter()
-                .zip(&self.scaling.scales)
-                .map(|(a, s)| a * s / self.scaling.sizes[*i]);
-            normals.push(DVector::from_iterator(n, scaled));
-        }
+        normals.extend(active.rows.iter().map(|i| self.normal(&self.scaling, *i)));
         for (j, _) in &active.bounds {
             let mut normal = DVector::zeros(n);
             normal[*j] = 1.0;
