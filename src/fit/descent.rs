@@ -13,9 +13,10 @@ use super::curvature::Curvature;
 use super::error::FitError;
 use super::limits::{Stop, Watch};
 use super::problem::{Point, Problem, Progress, Stage};
+use super::rows::WorkingRows;
 use super::settings::Hessian;
 use super::subspace::inverse;
-use super::task::{ActiveSet, Task};
+use super::task::{ActiveSet, KEPT, Task};
 use crate::ipopt::{self, Counts, HessianMode, IpoptError, Multipliers, OptionValue, Options, Solution, Status};
 use nalgebra::DMatrix;
 
@@ -29,7 +30,10 @@ const SAME: f64 = 1e-9;
 /// Curvature, as a share of the largest, that directions have which the data do not determine.
 const UNDETERMINED: f64 = 1e-12;
 
-/// Barrier parameter at the start over the objective there. A thousand constraints then weigh about as much as the cost.
+/// Distance from a limit, in the sizes of rows, up to which a row is the solver's from the start.
+const NEAR_ROW: f64 = 0.1;
+
+/// Barrier parameter at the start over what the objective may fall by. A thousand constraints then weigh about as much as the cost.
 const BARRIER_SHARE: f64 = 1e-3;
 
 /// The same, and how far a start is pushed away from its bounds, from a point near the optimum.
@@ -77,6 +81,8 @@ pub(super) struct Shared<'f, 'w> {
     pub watch: Watch<'w>,
     pub work: Work,
     pub progress: &'f mut dyn FnMut(&Progress) -> bool,
+    /// Constraint rows that the solver gets.
+    pub rows: WorkingRows,
 }
 
 /// Where a solve starts.
@@ -118,6 +124,7 @@ impl Task<'_> {
         }
         let (mut evaluated, mut restarts, mut from) = (0, 0, From { p: &start, ..from });
         let mut again: Vec<f64>;
+        shared.rows.take(self, stage.scaling, from.p, NEAR_ROW);
         loop {
             let attempt = self.attempt(stage, &from, curvature, shared)?;
             evaluated += attempt.evaluated;
@@ -128,6 +135,16 @@ impl Task<'_> {
                 .is_some_and(|f| best.as_ref().is_none_or(|b| f.total < b.total - BETTER * b.total.abs()));
             best = better.or(best);
             let reached = at.as_ref().and_then(|p| stage.total(p).filter(|_| self.has_mass(p)));
+            let given_up =
+                shared.watch.is_over() || matches!(status, Status::Panicked(_) | Status::MaxIterations { .. });
+            // A row that was left out and is broken joins the others.
+            if let Some(p) = at.as_ref().filter(|_| !given_up)
+                && shared.rows.take(self, stage.scaling, p, -KEPT)
+            {
+                again = p.clone();
+                from = From { p: &again, near: true, multipliers: solution.map(|s| s.multipliers) };
+                continue;
+            }
             let is_best = |value: f64| best.as_ref().is_none_or(|b| value <= b.total + BETTER * b.total.abs());
             if let (Some(p), Some(value), Some(solution)) = (&at, reached, &solution)
                 && status.is_success()
@@ -140,8 +157,6 @@ impl Task<'_> {
                 let is_feasible = self.is_feasible(&p);
                 return Ok(Descent { p, status, stop: None, optimum, last: None, is_feasible, evaluated });
             }
-            let given_up =
-                shared.watch.is_over() || matches!(status, Status::Panicked(_) | Status::MaxIterations { .. });
             match &best {
                 Some(best) if improved && restarts < stage.restarts && !given_up => again = best.p.clone(),
                 _ => {
@@ -168,10 +183,12 @@ impl Task<'_> {
         let before = shared.watch.evaluations();
         curvature.leave();
         let options = self.options(stage, from);
+        let rows = shared.rows.indices();
         let mut problem = Problem {
             task: self,
             stage: *stage,
             start: from.p,
+            rows: &rows,
             multipliers: from.multipliers.clone(),
             curvature,
             watch: &mut shared.watch,
@@ -179,7 +196,7 @@ impl Task<'_> {
             best: None,
             trials: 0,
         };
-        let (status, solution) = match ipopt::solve(&mut problem, &options) {
+        let (status, mut solution) = match ipopt::solve(&mut problem, &options) {
             Ok(solution) => (solution.status.clone(), Some(solution)),
             // The start could be evaluated, a point near it could not.
             Err(IpoptError::NoIterate { status }) => (status, None),
@@ -188,7 +205,9 @@ impl Task<'_> {
         let at = solution.as_ref().map(|s| self.within_bounds(&problem.unscaled(&s.x)));
         let best = problem.best.take();
         let evaluated = shared.watch.evaluations() - before;
-        if let Some(solution) = &solution {
+        if let Some(solution) = &mut solution {
+            let multipliers = &mut solution.multipliers;
+            multipliers.constraints = shared.rows.of_all(&multipliers.constraints);
             shared.work.add(solution);
         }
         Ok(Attempt { status, solution, at, best, evaluated })
@@ -196,11 +215,12 @@ impl Task<'_> {
 
     fn options(&self, stage: &Stage, from: &From) -> Options {
         let number = |name: &str, value: f64| (name.to_owned(), OptionValue::Number(value));
-        let objective = stage.evaluations.objective.factor() * stage.total(from.p).unwrap_or(1.0).abs();
+        let objective = stage.evaluations.objective;
+        let reach = objective.factor() * objective.reach(stage.total(from.p).unwrap_or(1.0));
         let share = if from.near { NEAR_BARRIER_SHARE } else { BARRIER_SHARE };
         let mut extra = vec![
             ("mu_strategy".to_owned(), OptionValue::Text("monotone".to_owned())),
-            number("mu_init", (share * objective).max(0.1 * stage.tolerance)),
+            number("mu_init", (share * reach).max(0.1 * stage.tolerance)),
             // Rows and variables are scaled already: to let MUMPS do it again takes a third of its time.
             ("mumps_permuting_scaling".to_owned(), OptionValue::Integer(0)),
             ("mumps_scaling".to_owned(), OptionValue::Integer(0)),

@@ -23,6 +23,7 @@ use super::evaluations::Evaluations;
 use super::limits::Watch;
 use super::objective::Objective;
 use super::problem::{Priors, Progress};
+use super::rows::WorkingRows;
 use super::settings::Hessian;
 use super::solve::End;
 use super::task::Task;
@@ -38,13 +39,22 @@ use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-/// Rounds of gains and noise at most, those whose solve only has to bring the fit near, and its iterations.
+/// Rounds of gains and noise at most.
 const ROUNDS: usize = 30;
-const ROUGH_ROUNDS: usize = 3;
-const ROUGH_ITERATIONS: usize = 4;
+
+/// Rounds up to which a solve takes at most so many iterations: with gains held fixed the objective far from where they were made is another
+/// one, and what is gained there is lost when they are renewed.
+const SHORT: [(usize, usize); 2] = [(3, 4), (6, 16)];
 
 /// Rise of the log-posterior in a round below which gains and noise are settled: a tenth of a likelihood unit turns no comparison.
 const SETTLED: f64 = 0.1;
+
+/// Likelihood units by which a start may be below the optimum with gains and noise held fixed: the barrier's own scale, a thousandth of it at
+/// first, is then one unit.
+const REACH: f64 = 1e3;
+
+/// Largest gradient that a solve leaves, in likelihood units by a parameter's scale: what it leaves to be gained is far below [`SETTLED`].
+const GRADIENT: f64 = 0.01;
 
 /// Iterations of the noise estimate in a round.
 const NOISE_ITERATIONS: usize = 8;
@@ -165,6 +175,41 @@ impl Objective for Innovations<'_> {
     fn factor(&self) -> f64 {
         1.0 / self.samples.max(1) as f64
     }
+
+    /// Most of the squares are noise, which no model takes away.
+    fn reach(&self, _value: f64) -> f64 {
+        REACH
+    }
+}
+
+/// What stays fixed during a fit by likelihood.
+struct Posterior<'a> {
+    task: &'a Task<'a>,
+    runs: &'a [Run],
+    free: Vec<FreeParameter>,
+    noise_prior: NoisePrior,
+}
+
+impl Posterior<'_> {
+    /// Log-likelihood plus log-priors of parameters and noise.
+    fn log_density(&self, p: &[f64], noise: &Noise) -> f64 {
+        let (model, integration) = (self.task.model_at(p), self.task.settings.integration);
+        let of_parameters = log_posterior(&model, integration, self.runs, &self.free, noise);
+        of_parameters + self.noise_prior.log_density(&noise.to_log())
+    }
+
+    /// The noise of the runs at these parameters.
+    fn noise(&self, p: &[f64], from: &Noise) -> Noise {
+        let (model, integration) = (self.task.model_at(p), self.task.settings.integration);
+        fitted_noise(&model, integration, self.runs, from, &self.noise_prior, NOISE_ITERATIONS)
+    }
+}
+
+/// Parameters and noise with their log-posterior.
+struct Reached {
+    p: Vec<f64>,
+    noise: Noise,
+    value: f64,
 }
 
 impl<'t> Task<'t> {
@@ -174,69 +219,56 @@ impl<'t> Task<'t> {
         runs: &'a [Run],
         progress: &mut dyn FnMut(&Progress) -> bool,
     ) -> Result<LikelihoodEnd<'a>, FitError> {
-        let mut shared =
-            Shared { watch: Watch::new(self.settings, self.cost.ranks()), work: Work::default(), progress };
-        let integration = self.settings.integration;
+        let watch = Watch::new(self.settings, self.cost.ranks());
+        let mut shared = Shared { watch, work: Work::default(), progress, rows: WorkingRows::of(self) };
         let mut priors = Priors::of(self.model);
         priors.weight = 0.5;
         let free: Vec<FreeParameter> = self.model.free().into_iter().map(|i| common(self.model, i)).collect();
         let first = guess(runs, self.model);
-        let noise_prior = NoisePrior::around(&first);
-        let posterior = |p: &[f64], noise: &Noise| {
-            log_posterior(&self.model_at(p), integration, runs, &free, noise) + noise_prior.log_density(&noise.to_log())
-        };
-        let noise_at = |p: &[f64], noise: &Noise| {
-            fitted_noise(&self.model_at(p), integration, runs, noise, &noise_prior, NOISE_ITERATIONS)
-        };
-        let mut p = self.start.clone();
-        let mut noise = noise_at(&p, &first);
-        let (mut reached, mut rounds) = (posterior(&p, &noise), 0);
-        let start_log_posterior = reached;
+        let posterior = Posterior { task: self, runs, free, noise_prior: NoisePrior::around(&first) };
+        let noise = posterior.noise(&self.start, &first);
+        let value = posterior.log_density(&self.start, &noise);
+        let (mut reached, start_log_posterior) = (Reached { p: self.start.clone(), noise, value }, value);
         let mut multipliers: Option<Multipliers> = None;
-        let (mut checks, mut is_checked) = ([0, 0], false);
+        let (mut rounds, mut checks, mut is_checked) = (0, [0, 0], false);
         let mut last = None;
-        while rounds < ROUNDS && !shared.watch.is_over() {
+        while rounds < ROUNDS && !is_checked && !shared.watch.is_over() {
             rounds += 1;
-            let innovations = Innovations::new(self, runs, noise, &p);
+            let innovations = Innovations::new(self, runs, reached.noise, &reached.p);
             let evaluations = Evaluations::of(&innovations);
-            let rough = rounds <= ROUGH_ROUNDS;
             let mut stage = self.stage(&evaluations, &priors);
             if stage.hessian == Hessian::Exact {
                 stage.hessian = Hessian::GaussNewton;
             }
-            stage.max_iterations = if rough { ROUGH_ITERATIONS } else { stage.max_iterations };
-            let from = From { p: &p, near: multipliers.is_some(), multipliers: multipliers.take() };
-            let mut descent = self.descend(&stage, from, &mut Curvature::unknown(p.len()), &mut shared)?;
-            let trial_noise = noise_at(&descent.p, &noise);
-            let now = posterior(&descent.p, &trial_noise);
-            let settled = !rough && now - reached < SETTLED;
+            stage.tolerance = stage.tolerance.max(GRADIENT * innovations.factor());
+            let short = SHORT.iter().find(|(until, _)| rounds <= *until).map(|(_, most)| *most);
+            stage.max_iterations = stage.max_iterations.min(short.unwrap_or(usize::MAX));
+            let from = From { p: &reached.p, near: multipliers.is_some(), multipliers: multipliers.take() };
+            let mut descent = self.descend(&stage, from, &mut Curvature::unknown(reached.p.len()), &mut shared)?;
+            let noise = posterior.noise(&descent.p, &reached.noise);
+            let value = posterior.log_density(&descent.p, &noise);
+            let settled = short.is_none() && value - reached.value < SETTLED;
             if settled && descent.may_be_minimum() && !shared.watch.is_over() {
                 let lower = self.lower_nearby(&stage, &descent, checks[0], &mut shared)?;
-                checks[0] += 1;
-                checks[1] += usize::from(lower.is_some());
+                checks = [checks[0] + 1, checks[1] + usize::from(lower.is_some())];
                 is_checked = lower.is_none();
                 if let Some(lower) = lower {
                     descent.p = lower;
                     descent.optimum = None;
                 }
             }
-            if now.is_finite() && (now >= reached || rough || last.is_none()) {
-                (p, noise, reached) = (descent.p.clone(), trial_noise, now);
-            } else if !is_checked {
-                descent.p.clone_from(&p);
+            if value.is_finite() && (value >= reached.value || short.is_some() || last.is_none()) {
+                reached = Reached { p: descent.p.clone(), noise, value };
             }
             multipliers = descent.optimum.as_ref().map(|(_, multipliers)| multipliers.clone());
             last = Some(descent);
-            if is_checked {
-                break;
-            }
         }
         let Some(mut descent) = last else { return Err(FitError::NothingFree) };
-        descent.p.clone_from(&p);
+        descent.p.clone_from(&reached.p);
         self.check_feasible(&descent)?;
         let end = self.ended(descent, is_checked, priors, shared.work, checks);
-        let innovations = Innovations::new(self, runs, noise, &end.p);
-        let likelihood = Likelihood { start_log_posterior, log_posterior: reached, noise, rounds };
+        let innovations = Innovations::new(self, runs, reached.noise, &end.p);
+        let likelihood = Likelihood { start_log_posterior, log_posterior: reached.value, noise: reached.noise, rounds };
         Ok(LikelihoodEnd { end, innovations, likelihood })
     }
 }

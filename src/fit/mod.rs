@@ -12,6 +12,7 @@
 //! | `task` | what stays fixed during a fit: model, cost, constraints, scales, start |
 //! | `scaling` | scales of the parameters, sizes of the rows |
 //! | `curvature` | the matrix of second derivatives that Ipopt is given |
+//! | `rows` | which of the constraint rows the solver gets |
 //! | `limits` | what ends a fit before its optimum |
 //! | `problem` | the task with the priors, scaled, as Ipopt wants it |
 //! | `stages` | runs in shorter pieces, or a few of them, to be fitted first |
@@ -47,6 +48,8 @@ pub mod multistart;
 mod objective;
 #[cfg(feature = "ipopt")]
 mod problem;
+#[cfg(feature = "ipopt")]
+mod rows;
 #[cfg(feature = "ipopt")]
 mod scaling;
 mod settings;

@@ -17,6 +17,9 @@ pub(super) trait Objective {
 
     /// Factor that makes the value of order one, as the tolerances of the solver expect.
     fn factor(&self) -> f64;
+
+    /// By how much the value may fall, from a start where it is `value`: what barriers are small beside.
+    fn reach(&self, value: f64) -> f64;
 }
 
 impl Objective for Cost<'_> {
@@ -35,5 +38,10 @@ impl Objective for Cost<'_> {
     /// One over the mean number of samples of a run.
     fn factor(&self) -> f64 {
         self.runs() as f64 / self.samples().max(1) as f64
+    }
+
+    /// All of it: residuals may vanish.
+    fn reach(&self, value: f64) -> f64 {
+        value.abs()
     }
 }

@@ -114,7 +114,9 @@ pub(super) struct Problem<'a, 'f, 'w> {
     pub stage: Stage<'a>,
     /// Start, in the parameters' own units.
     pub start: &'a [f64],
-    /// Multipliers to start with.
+    /// The constraint rows that the solver gets, of all those of the task.
+    pub rows: &'a [usize],
+    /// Multipliers of all rows to start with.
     pub multipliers: Option<Multipliers>,
     pub curvature: &'f mut Curvature,
     pub watch: &'f mut Watch<'w>,
@@ -144,9 +146,9 @@ impl Problem<'_, '_, '_> {
         }
     }
 
-    /// The constraint rows with their sizes.
+    /// The solver's constraint rows with their sizes.
     fn rows(&self) -> impl Iterator<Item = (&Row, f64)> {
-        self.task.rows.iter().zip(self.stage.scaling.sizes.iter().copied())
+        self.rows.iter().map(|i| (&self.task.rows[*i], self.stage.scaling.sizes[*i]))
     }
 
     fn keep_if_best(&mut self, p: Vec<f64>, total: f64) {
@@ -175,7 +177,7 @@ impl Nlp for Problem<'_, '_, '_> {
     }
 
     fn constraints(&self) -> usize {
-        self.task.rows.len()
+        self.rows.len()
     }
 
     fn variable_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
@@ -197,7 +199,9 @@ impl Nlp for Problem<'_, '_, '_> {
     }
 
     fn multipliers(&self) -> Option<Multipliers> {
-        self.multipliers.clone()
+        let all = self.multipliers.as_ref()?;
+        let constraints = self.rows.iter().map(|i| all.constraints[*i]).collect();
+        Some(Multipliers { constraints, ..all.clone() })
     }
 
     fn objective(&mut self, z: &[f64]) -> Option<f64> {

@@ -13,6 +13,7 @@ use super::error::FitError;
 use super::evaluations::Evaluations;
 use super::limits::Watch;
 use super::problem::{Priors, Progress, Stage};
+use super::rows::WorkingRows;
 use super::scaling::Scaling;
 use super::settings::{FitSettings, Hessian};
 use super::stages::{self, Sample};
@@ -83,7 +84,7 @@ impl Task<'_> {
     /// Solves in stages and checks the optimum.
     pub fn solve(&self, progress: &mut dyn FnMut(&Progress) -> bool) -> Result<End, FitError> {
         let mut shared =
-            Shared { watch: Watch::new(self.settings, self.cost.ranks()), work: Work::default(), progress };
+            Shared { watch: Watch::new(self.settings, self.cost.ranks()), work: Work::default(), progress, rows: WorkingRows::of(self) };
         let (parts, from, multipliers) = self.approach(&mut shared)?;
         let mut priors = Priors::of(self.model);
         let mut curvature = Curvature::unknown(from.len());

@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 const MASS_MARGIN: f64 = 0.9;
 
 /// Scaled violation below which a constraint counts as kept: what the solver's own relaxation of its bounds may leave.
-const KEPT: f64 = 1e-7;
+pub(super) const KEPT: f64 = 1e-7;
 
 /// What stays fixed during a fit.
 pub(super) struct Task<'a> {
