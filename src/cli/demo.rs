@@ -27,7 +27,7 @@ use trimtab::report::diagnosis::next_commands;
 const LONG: &str = "\
 Runs the whole job on a built-in case: forty recordings of a coastal container ship of 85 m, with the noise of ordinary \
     sensors, made by another simulator (MMG) under an effect that no file of the study names. The demo checks the recordings, fits \
-    eleven parameters to 30 of the runs, judges the fit on the other 10, diagnoses which physics the model lacks, and then says what \
+    the model to 30 of the runs, judges the fit on the other 10, diagnoses which physics the model lacks, and then says what \
     was concealed and whether it was found. Study and results are written to the folder, ready to be copied.";
 
 const AFTER: &str = "\
@@ -118,11 +118,11 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let text = [
         format!("Wrote a study of {} recordings to {} ({files} files).", checked.runs, args.out.display()),
         section(1, "Checked the recordings", &checked.sentence()),
-        section(2, "Fitted the eleven parameters", &fit.brief()),
+        section(2, "Fitted the model", &fit.brief()),
         section(3, "Judged the fit on runs it has not seen", &judged(&evaluation)),
         section(4, "Diagnosed what the model lacks", &diagnosis.headline),
         section(5, "Opened what was concealed", &revealed.sentence(&diagnosis)),
-        next(&args.out, &diagnosis),
+        next(&args.out),
     ];
     let report = Report {
         folder: &args.out,
@@ -241,15 +241,15 @@ fn judged(evaluation: &Evaluation) -> String {
     )
 }
 
-fn next(folder: &Path, diagnosis: &Diagnosis) -> String {
+fn next(folder: &Path) -> String {
     let dir = folder.display();
-    let [fit, turning] =
-        next_commands(diagnosis, &folder.join("study.toml"), &folder.join("results"), &[]).map(|c| continued(&c));
+    let [compare, turning] =
+        next_commands(&folder.join("study.toml"), &folder.join("results"), &[]).map(|c| continued(&c));
     format!(
         "Read {dir}/results/report.html first: the diagnosis on one page.\nTry next:\n  \
          trimtab check {dir}/study.toml\n  \
          trimtab diagnose {dir}/study.toml\n  \
-         {fit}\n  \
+         {compare}\n  \
          {turning}\n  \
          trimtab help tutorial\n\
          For your own ship copy {dir} and replace ship.toml, runs.csv and the recordings."

@@ -11,12 +11,11 @@ use super::load::{Loaded, StudyArgs, no_mechanism};
 use super::output::{Output, OutputArgs, print, print_json};
 use super::progress::progress;
 use serde_json::Value;
-use std::path::Path;
 use trimtab::audit::Issue;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::evaluate::Judging;
 use trimtab::recording::{Run, Runs, Split};
-use trimtab::report::diagnosis::{document, keys_listing, next_commands, next_words, page, pictures, summary};
+use trimtab::report::diagnosis::{NEXT_WORDS, document, keys_listing, next_commands, page, pictures, summary};
 
 const LONG: &str = "\
 Compares the recordings of a study with its model in four steps:
@@ -53,8 +52,8 @@ Example:
 With --out: report.html (everything on one page, readable offline), diagnosis.json,
 improved.toml (a model file with the mechanisms found, which every command takes as --model),
 base.toml (the study's model, refitted alike), figures/ with the CSV behind each and
-figures.md with their captions. The answer then ends with the commands to run next: the fit of
-improved.toml with the hull free, and with what differs between port and starboard, and a trial.
+figures.md with their captions. The answer then ends with the commands to run next: the comparison
+of improved.toml with base.toml on every run, and a trial.
 
 Exit code 0 if any verdict was reached; 1 if the recordings cannot answer (verdict
 `insufficient`, or a fault in them that must be mended first or accepted); 2 if it could not run.
@@ -118,11 +117,11 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         || audited.refused()
         || diagnosis.admission.issues.iter().any(Issue::blocking);
     let next = args.output.out.as_ref().filter(|_| !unanswered);
-    let next = next.map(|folder| Next::new(&diagnosis, &args.study.study, folder, args.accept.faults()));
+    let next = next.map(|folder| Next(next_commands(&args.study.study, folder, args.accept.faults())));
     let mut json = document(&diagnosis, name)?;
     json["recordings"] = serde_json::to_value(&audited)?;
     if let Some(next) = &next {
-        json["next_commands"] = serde_json::to_value(&next.commands)?;
+        json["next_commands"] = serde_json::to_value(&next.0)?;
     }
     write_files(&mut output, &diagnosis, name, &json, next.as_ref())?;
     let written = output.close();
@@ -144,21 +143,14 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     Ok(if unanswered { Answer::No } else { Answer::Yes })
 }
 
-/// What to run after a diagnosis, and why.
-struct Next {
-    why: String,
-    commands: [String; 2],
-}
+/// What to run after a diagnosis.
+struct Next([String; 2]);
 
 impl Next {
-    fn new(diagnosis: &Diagnosis, study: &Path, folder: &Path, accepted: &[String]) -> Self {
-        Self { why: next_words(diagnosis), commands: next_commands(diagnosis, study, folder, accepted) }
-    }
-
     /// The sentence and the commands, which a shell takes in several lines.
     fn text(&self) -> String {
-        let lines = self.commands.iter().map(|command| format!("  {}\n", continued(command)));
-        format!("\n{}{}", filled(&self.why, 0), lines.collect::<String>())
+        let lines = self.0.iter().map(|command| format!("  {}\n", continued(command)));
+        format!("\n{}{}", filled(NEXT_WORDS, 0), lines.collect::<String>())
     }
 }
 
@@ -211,7 +203,7 @@ fn write_files(
         output.file("improved.toml", improved.as_bytes());
         output.file("base.toml", model_text(&base)?.as_bytes());
         let (pictures, mut from) = (pictures(diagnosis), output.provenance());
-        from.next = next.map(|next| (next.why.clone(), next.commands.to_vec()));
+        from.next = next.map(|next| (NEXT_WORDS.to_owned(), next.0.to_vec()));
         output.file("report.html", page(diagnosis, name, &pictures, &from)?.render().as_bytes());
         output.figures(
             pictures.into_iter().map(|p| (format!("figures/{}", p.stem), p.figure.caption(p.caption))).collect(),

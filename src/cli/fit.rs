@@ -22,8 +22,10 @@ use trimtab::terms::rudder::Rudder;
 use trimtab::uncertainty::Uncertainty;
 
 const LONG: &str = "\
-Fits the free parameters of the model to the training runs of the study: weighted nonlinear least squares through the \
-    simulation, with exact gradients, under the constraints of [fit.constraints]. Which parameters are free, their bounds and \
+Fits the free parameters of the model to the training runs of the study with exact gradients, under the constraints of \
+    [fit.constraints]. With `objective = \"trajectory\"` in [fit] it minimises the weighted squares between simulation and recording, as the \
+    paper does; with `\"likelihood\"`, as `trimtab import` and `trimtab demo` write, it maximises the likelihood of recordings with sensor noise \
+    under an unknown force, and estimates the coefficients of hull, propeller and rudder along, by their spreads. Which parameters are free, their bounds and \
     priors are in the model file; without any setting they are the paper's eleven (p0 to p10). There, `hull = \"free\"` at the top, \
     or --free-hull here, frees every hydrodynamic coefficient of the hull, and `prior = \"default\"` in [parameters.\"NAME\"], \
     or --free NAME, frees one: each with its \
@@ -42,8 +44,8 @@ const AFTER: &str = "\
 Example:
   trimtab fit study.toml --out results
   trimtab evaluate study.toml --model results/fitted.toml
-  trimtab fit study.toml --model results/improved.toml --free-hull --out refined
-  trimtab fit study.toml --model results/improved.toml --free-hull --free wake_drift,flow.asymmetry --out refined
+  trimtab fit study.toml --free-hull --free wake_drift,flow.asymmetry --out freed
+  trimtab compare study.toml results/fitted.toml freed/fitted.toml
 
 With --out: fitted.toml (a model file with the estimates and their covariance, which every command takes as --model), fit.json, fit.txt (the \
     report), parameters.csv, curves.png and .csv (R(u), c_L, c_D at start and end); with --starts also starts.csv (how each start \

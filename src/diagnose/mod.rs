@@ -59,7 +59,6 @@ pub mod present;
 mod problem;
 pub mod prove;
 pub mod push;
-pub mod refine;
 #[cfg(feature = "ipopt")]
 pub mod refit;
 pub mod region;

@@ -3,6 +3,7 @@
 
 use super::finding::Amplitude;
 use super::screen::Screen;
+use super::settings::SIDES_DIFFER;
 use super::wald::Wald;
 use crate::likelihood::estimate::{Estimate, FreeParameter};
 use crate::likelihood::evidence::chi_squared_p;
@@ -22,6 +23,14 @@ pub struct Sides {
     pub p: f64,
     /// The parameters, the most significant first.
     pub parameters: Vec<Amplitude>,
+}
+
+impl Sides {
+    /// The parameters whose interval excludes zero, the most significant first; none where the sides do not differ.
+    pub fn clear(&self) -> impl Iterator<Item = &Amplitude> {
+        let apart = self.p < SIDES_DIFFER;
+        self.parameters.iter().filter(move |a| apart && a.ci95[0] * a.ci95[1] > 0.0)
+    }
 }
 
 /// Tests the parameters of the base, the first `base` free ones of the estimate, that differ between port and starboard; `None` when

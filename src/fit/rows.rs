@@ -25,7 +25,8 @@ impl WorkingRows {
     /// Whether there are new ones.
     pub fn take(&mut self, task: &Task, scaling: &Scaling, p: &[f64], margin: f64) -> bool {
         let mut new = false;
-        for ((taken, row), size) in self.taken.iter_mut().zip(&task.rows).zip(&scaling.sizes).filter(|((t, _), _)| !**t) {
+        for ((taken, row), size) in self.taken.iter_mut().zip(&task.rows).zip(&scaling.sizes).filter(|((t, _), _)| !**t)
+        {
             let value = row.value(p);
             let room = (value - row.lower).min(row.upper - value);
             *taken = room < margin * size;
@@ -65,7 +66,8 @@ mod tests {
         assert_eq!(rows.indices().len(), few);
         let mut broken = task.start.clone();
         let free = model.free();
-        let drag = free.iter().position(|i| model.parameters[*i].name == "rudder.drag0").ok_or(FitError::NothingFree)?;
+        let drag =
+            free.iter().position(|i| model.parameters[*i].name == "rudder.drag0").ok_or(FitError::NothingFree)?;
         broken[drag] = -1.0;
         assert!(rows.take(&task, &task.scaling, &broken, 0.0));
         let out = |i: usize| task.rows[i].violation(&broken) > 0.0;
@@ -83,9 +85,10 @@ mod tests {
         let (truth, runs) = (model(), runs(&model(), 6));
         let mut settings = FitSettings { integration: RK4, ..FitSettings::default() };
         // The drag of the ship itself breaks this limit over a few degrees.
-        let ends = 0.9 * fit(&truth, &runs[..], &settings, &mut |_| true)?.model.parameters
-            [truth.index("rudder.drag0").ok_or(FitError::NothingFree)?]
-        .value;
+        let ends = 0.9
+            * fit(&truth, &runs[..], &settings, &mut |_| true)?.model.parameters
+                [truth.index("rudder.drag0").ok_or(FitError::NothingFree)?]
+            .value;
         settings.constraints.drag.lower = Some(ends.abs());
         let found = fit(&truth, &runs[..], &settings, &mut |_| true)?;
         assert!(found.converged && found.active.iter().any(|a| a.rule == "drag"), "{}", found.report());

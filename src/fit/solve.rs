@@ -83,8 +83,12 @@ struct NewtonStep {
 impl Task<'_> {
     /// Solves in stages and checks the optimum.
     pub fn solve(&self, progress: &mut dyn FnMut(&Progress) -> bool) -> Result<End, FitError> {
-        let mut shared =
-            Shared { watch: Watch::new(self.settings, self.cost.ranks()), work: Work::default(), progress, rows: WorkingRows::of(self) };
+        let mut shared = Shared {
+            watch: Watch::new(self.settings, self.cost.ranks()),
+            work: Work::default(),
+            progress,
+            rows: WorkingRows::of(self),
+        };
         let (parts, from, multipliers) = self.approach(&mut shared)?;
         let mut priors = Priors::of(self.model);
         let mut curvature = Curvature::unknown(from.len());

@@ -171,6 +171,7 @@ fn study(imported: &Imported, origins: &Origins<'_>) -> String {
          initial_span = {span:?}            # [s]\n\
          \n\
          [fit]\n\
+         objective = \"likelihood\"        # of recordings with sensor noise; \"trajectory\": least squares, as in the paper\n\
          # A real ship takes no Euler steps: with these the step is no part of the answer.\n\
          integration = {{ method = \"rk4\" }}\n",
         origins.name

@@ -33,15 +33,20 @@ impl Estimate {
 }
 
 impl Fit {
-    /// One line: `converged in 14 iterations (0.05 s): cost 312.41 -> 8.3120, 11 parameters, 165 runs, 2 active constraints`.
+    /// One line: `converged in 14 iterations (0.05 s): cost 312.41 -> 8.3120, 11 parameters, 165 runs, 2 active constraints`; the
+    /// log-posterior of a fit by likelihood instead of the cost.
     pub fn brief(&self) -> String {
+        let (what, from, to) = match &self.likelihood {
+            Some(likelihood) => ("log-posterior", likelihood.start_log_posterior, likelihood.log_posterior),
+            None => ("cost", self.start_cost, self.cost),
+        };
         format!(
-            "{} in {} iterations ({:.2} s): cost {} -> {}, {} parameters, {} runs, {} active constraints",
+            "{} in {} iterations ({:.2} s): {what} {} -> {}, {} parameters, {} runs, {} active constraints",
             if self.converged { "converged" } else { "did not converge" },
             self.iterations,
             self.seconds,
-            number(self.start_cost),
-            number(self.cost),
+            number(from),
+            number(to),
             self.estimates.len(),
             self.runs,
             self.active.len(),

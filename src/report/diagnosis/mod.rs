@@ -45,7 +45,7 @@ mod verdict;
 pub use appendix::{Provenance, SourceFile};
 pub use document::{document, keys, keys_listing};
 pub use names::mechanism_names;
-pub use next::{next_commands, next_words};
+pub use next::{NEXT_WORDS, next_commands};
 #[cfg(feature = "plot")]
 pub use page::page;
 pub use parts::{Part, parts};

@@ -1,47 +1,32 @@
-//! The commands that follow a diagnosis, written out whole: the fit of the improved model with the ship's own hull free, and its trials.
-//! What is freed is decided in [`crate::diagnose::refine`]; nothing is run here.
+//! The commands that follow a diagnosis, written out whole: the improved model against the base on every run, and its trials.
+//! Both are of models that the diagnosis compared on unseen runs; nothing is run here.
 
-use crate::diagnose::Diagnosis;
-use crate::diagnose::refine::to_free;
 use std::path::Path;
 
-/// The fit of the improved model that `folder` holds, and a trial with its outcome, for a study and the faults that its user accepts.
+/// The comparison of the two models that `folder` holds, and a trial with the improved one, for a study and the faults that its
+/// user accepts.
 #[must_use]
-pub fn next_commands(d: &Diagnosis, study: &Path, folder: &Path, accepted: &[String]) -> [String; 2] {
+pub fn next_commands(study: &Path, folder: &Path, accepted: &[String]) -> [String; 2] {
     let beside = |name: &str| match folder.parent().filter(|p| !p.as_os_str().is_empty()) {
         Some(parent) => parent.join(name),
         None => Path::new(name).to_owned(),
     };
     let quoted = |path: &Path| word(&path.display().to_string());
     let study = quoted(study);
-    let improved = quoted(&folder.join("improved.toml"));
     let accept: String = accepted.iter().map(|fault| format!(" --accept {}", word(fault))).collect();
-    let names = to_free(d.sides.as_ref(), &d.model);
-    let free = if names.is_empty() { String::new() } else { format!(" --free {}", names.join(",")) };
-    let refined = beside("refined");
+    let improved = quoted(&folder.join("improved.toml"));
     [
-        format!("trimtab fit {study} --model {improved} --free-hull{free}{accept} --out {}", quoted(&refined)),
         format!(
-            "trimtab maneuver turning {study} --model {} --out {}",
-            quoted(&refined.join("fitted.toml")),
-            quoted(&beside("turning"))
+            "trimtab evaluate {study} --model {improved} --baseline {}{accept} --out {}",
+            quoted(&folder.join("base.toml")),
+            quoted(&beside("compared"))
         ),
+        format!("trimtab maneuver turning {study} --model {improved} --out {}", quoted(&beside("turning"))),
     ]
 }
 
 /// Why these commands, in a sentence.
-#[must_use]
-pub fn next_words(d: &Diagnosis) -> String {
-    let names = to_free(d.sides.as_ref(), &d.model);
-    let sides = if names.is_empty() {
-        String::new()
-    } else {
-        format!(", and with it what differs between port and starboard ({})", names.join(", "))
-    };
-    format!(
-        "Next, for the manoeuvres of the ship itself: improved.toml keeps the hull near its estimate; these commands free it{sides}, and sail the circles:"
-    )
-}
+pub const NEXT_WORDS: &str = "Next: what the improved model is worth, run by run, and its turning circles:";
 
 /// A word of a command line, quoted where a shell would take it apart.
 fn word(text: &str) -> String {
@@ -55,7 +40,23 @@ fn word(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::word;
+    use super::{next_commands, word};
+    use std::path::Path;
+
+    #[test]
+    fn the_commands_name_the_files_of_the_folder_and_write_beside_it() {
+        let [compare, turning] =
+            next_commands(Path::new("my ship/study.toml"), Path::new("my ship/results"), &["rudder:sign".into()]);
+        assert_eq!(
+            compare,
+            "trimtab evaluate 'my ship/study.toml' --model 'my ship/results/improved.toml' --baseline 'my ship/results/base.toml' \
+             --accept rudder:sign --out 'my ship/compared'"
+        );
+        assert_eq!(
+            turning,
+            "trimtab maneuver turning 'my ship/study.toml' --model 'my ship/results/improved.toml' --out 'my ship/turning'"
+        );
+    }
 
     #[test]
     fn a_path_that_a_shell_would_take_apart_is_quoted() {
