@@ -4,6 +4,7 @@
 pub mod conceal;
 pub mod demo;
 pub mod demo_concealed;
+pub mod drawn_fits;
 pub mod folders;
 pub mod injected;
 pub mod killed;
