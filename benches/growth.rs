@@ -14,7 +14,6 @@ mod case;
 #[path = "support/freed.rs"]
 mod freed;
 #[path = "support/interleaved.rs"]
-#[allow(dead_code, reason = "one number of many is drawn")]
 mod interleaved;
 use case::{cost, recordings};
 use freed::{freed, start};

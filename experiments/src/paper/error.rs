@@ -40,6 +40,18 @@ pub enum PaperError {
         /// The ship.
         ship: &'static str,
     },
+    /// Times that do not repeat.
+    #[error(
+        "{ship}: repeats of `{what}` took times that differ by {percent:.0} %; run it again while the machine does nothing else"
+    )]
+    Scatter {
+        /// The ship.
+        ship: &'static str,
+        /// What was timed.
+        what: String,
+        /// The difference.
+        percent: f64,
+    },
     /// A file that could not be written.
     #[error("{path}: cannot write ({source}); check that the folder exists and is writable")]
     Write {

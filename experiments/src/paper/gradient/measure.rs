@@ -1,14 +1,13 @@
 //! Measures exact gradients and finite differences: errors over the step, the course of a fit, and times.
 //! Work is counted, so that it repeats bit by bit; times are measured and are ratios within one run. Nothing is drawn here.
 
-use std::time::Instant;
-
 use trimtab::fit::{Cost, CostOptions, Derivatives, FitSettings, Hessian, Progress, fit};
 use trimtab::model::Model;
 use trimtab::plot::{BLUE, Color, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
 use trimtab::recording::Run;
 use trimtab::simulate::{Integration, Method};
 
+use crate::interleaved::{Repeats, Task, processor_time, repeats};
 use crate::paper::case::Case;
 use crate::paper::error::PaperError;
 
@@ -18,6 +17,11 @@ const EXPONENTS: std::ops::RangeInclusive<i32> = -12..=0;
 const NEAR: f64 = 1e-3;
 /// Largest violation of a (scaled) constraint at which a cost counts as reached.
 const FEASIBLE: f64 = 1e-6;
+/// Rounds in which each fit, and each gradient, is repeated; repeats that differ by more than this share are refused.
+const FIT_ROUNDS: usize = 3;
+const GRADIENT_ROUNDS: usize = 15;
+const SCATTER: f64 = 0.1;
+
 /// Iterations after which a fit has failed.
 const PATIENCE: usize = 300;
 /// One Euler step a sample: the comparison is of gradients, and needs many fits.
@@ -70,9 +74,9 @@ pub struct Course {
     pub cost: f64,
     /// Evaluations of the cost, and of its gradient.
     pub evaluations: [usize; 2],
-    /// Cost, violation and time \[s\] at each iteration.
+    /// Cost, violation and processor time \[s\] at each iteration.
     pub path: Vec<(f64, f64, f64)>,
-    /// Time of the whole fit \[s\].
+    /// Processor time of the whole fit \[s\].
     pub seconds: f64,
 }
 
@@ -135,11 +139,43 @@ pub fn accuracies(case: &Case, model: &Model, runs: &[Run]) -> Result<Accuracies
     Ok(Accuracies { steps, oracle: error(&oracle) })
 }
 
-/// Fits in one way.
+/// Fits in each way, several times in turn, with the least processor time of each point on the way.
 ///
 /// # Errors
-/// [`PaperError::Fit`].
-pub fn course(case: &Case, model: &Model, runs: &[Run], way: &Way) -> Result<Course, PaperError> {
+/// [`PaperError::Fit`]; [`PaperError::Scatter`] where the times do not repeat.
+pub fn courses(case: &Case, model: &Model, runs: &[Run]) -> Result<Vec<Course>, PaperError> {
+    let mut all: Vec<Vec<Course>> = WAYS.iter().map(|_| Vec::with_capacity(FIT_ROUNDS)).collect();
+    for _ in 0..FIT_ROUNDS {
+        for (way, courses) in WAYS.iter().zip(&mut all) {
+            courses.push(course(case, model, runs, way)?);
+        }
+    }
+    WAYS.iter().zip(all).map(|(way, courses)| least(case, way.name, courses)).collect()
+}
+
+/// The course of a fit that was repeated, with the least of its times.
+fn least(case: &Case, way: &str, courses: Vec<Course>) -> Result<Course, PaperError> {
+    let times: Vec<f64> = courses.iter().map(|c| c.seconds).collect();
+    let seconds = checked(case, way, Repeats::of(&times))?;
+    let mut courses = courses.into_iter();
+    let Some(mut out) = courses.next() else { return Err(PaperError::Empty { ship: case.ship.name(), what: "fit" }) };
+    for other in courses {
+        out.path.iter_mut().zip(&other.path).for_each(|(own, other)| own.2 = own.2.min(other.2));
+    }
+    out.seconds = seconds;
+    Ok(out)
+}
+
+/// The least time of repeats, where they agree.
+fn checked(case: &Case, what: &str, Repeats { least, scatter }: Repeats) -> Result<f64, PaperError> {
+    if scatter <= SCATTER {
+        return Ok(least);
+    }
+    Err(PaperError::Scatter { ship: case.ship.name(), what: what.to_owned(), percent: 100.0 * scatter })
+}
+
+/// Fits in one way.
+fn course(case: &Case, model: &Model, runs: &[Run], way: &Way) -> Result<Course, PaperError> {
     let settings = FitSettings {
         derivatives: way.derivatives,
         difference_step: way.step,
@@ -149,47 +185,48 @@ pub fn course(case: &Case, model: &Model, runs: &[Run], way: &Way) -> Result<Cou
         polish_steps: 0,
         ..case.setup.fit
     };
-    let clock = Instant::now();
+    let begin = processor_time();
     let mut path = Vec::new();
     let mut watch = |p: &Progress| {
-        path.push((p.cost, p.violation, clock.elapsed().as_secs_f64()));
+        path.push((p.cost, p.violation, processor_time() - begin));
         true
     };
     let fit = fit(model, runs, &settings, &mut watch)?;
+    let seconds = processor_time() - begin;
     Ok(Course {
         iterations: fit.iterations,
         converged: fit.converged,
         cost: fit.cost,
         evaluations: [fit.counts.objective, fit.counts.gradient],
         path,
-        seconds: fit.seconds,
+        seconds,
     })
 }
 
-/// Time of a gradient over that of a cost, both eight runs side by side.
+/// Processor time of a gradient over that of a cost, both eight runs side by side, measured in turn.
 ///
 /// # Errors
-/// [`PaperError::Fit`].
-pub fn gradient_times(model: &Model, runs: &[Run]) -> Result<[(&'static str, f64); 4], PaperError> {
+/// [`PaperError::Fit`]; [`PaperError::Scatter`] where the times do not repeat.
+pub fn gradient_times(case: &Case, model: &Model, runs: &[Run]) -> Result<[(&'static str, f64); 4], PaperError> {
     let p: Vec<f64> = model.free().iter().map(|i| model.parameters[*i].value).collect();
-    let shortest = |work: &dyn Fn() -> bool| {
-        let time = || {
-            let clock = Instant::now();
-            std::hint::black_box(work());
-            clock.elapsed().as_secs_f64()
-        };
-        (0..5).map(|_| time()).fold(f64::INFINITY, f64::min)
+    let of = |derivatives| cost(model, runs, derivatives, 1e-5);
+    let plain = of(Derivatives::Lanes)?;
+    let ways = [
+        ("exact, duals over lanes", of(Derivatives::Lanes)?),
+        ("exact, duals run by run", of(Derivatives::Dual)?),
+        ("exact, num-dual run by run", of(Derivatives::NumDual)?),
+        ("central differences over lanes", of(Derivatives::FiniteDifferences)?),
+    ];
+    let p = &p;
+    let alone = || {
+        std::hint::black_box(plain.value(p));
     };
-    let plain = cost(model, runs, Derivatives::Lanes, 1e-5)?;
-    let unit = shortest(&|| plain.value(&p).is_some());
-    let timed = |name, derivatives| -> Result<(&'static str, f64), PaperError> {
-        let cost = cost(model, runs, derivatives, 1e-5)?;
-        Ok((name, shortest(&|| cost.with_gradient(&p).is_some()) / unit))
-    };
-    Ok([
-        timed("exact, duals over lanes", Derivatives::Lanes)?,
-        timed("exact, duals run by run", Derivatives::Dual)?,
-        timed("exact, num-dual run by run", Derivatives::NumDual)?,
-        timed("central differences over lanes", Derivatives::FiniteDifferences)?,
-    ])
+    let mut tasks: Vec<Task> = vec![("cost".to_owned(), Box::new(alone))];
+    for (name, cost) in &ways {
+        tasks.push(((*name).to_owned(), Box::new(move || drop(std::hint::black_box(cost.with_gradient(p))))));
+    }
+    let times = repeats(GRADIENT_ROUNDS, &mut tasks);
+    let unit = checked(case, "cost", times[0])?;
+    let ratio = |k: usize| Ok::<f64, PaperError>(checked(case, ways[k].0, times[k + 1])? / unit);
+    Ok([(ways[0].0, ratio(0)?), (ways[1].0, ratio(1)?), (ways[2].0, ratio(2)?), (ways[3].0, ratio(3)?)])
 }

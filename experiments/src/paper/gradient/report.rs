@@ -7,7 +7,7 @@ use trimtab::plot::{Axis, BLUE, Figure, Layer, Legend, ORANGE, Panel, SKY, VERMI
 use trimtab::recording::Run;
 use trimtab::report::Table;
 
-use super::measure::{Course, WAYS, Way, accuracies, course, gradient_times};
+use super::measure::{Course, WAYS, Way, accuracies, courses, gradient_times};
 use crate::paper::artefact::Artefact;
 use crate::paper::case::{Case, initial_model};
 use crate::paper::error::PaperError;
@@ -91,8 +91,7 @@ impl Report {
     }
 
     fn add_courses(&mut self, case: &Case, model: &Model, runs: &[Run]) -> Result<(), PaperError> {
-        let courses: Vec<(&Way, Course)> =
-            WAYS.iter().map(|way| Ok((way, course(case, model, runs, way)?))).collect::<Result<_, PaperError>>()?;
+        let courses: Vec<(&Way, Course)> = WAYS.iter().zip(courses(case, model, runs)?).collect();
         let best = courses.iter().map(|(_, c)| c.cost).fold(f64::INFINITY, f64::min);
         let reference = &courses[0].1;
         let mut panel = Panel::new(
@@ -163,7 +162,7 @@ impl Report {
     }
 
     fn add_gradient_times(&mut self, case: &Case, model: &Model, runs: &[Run]) -> Result<(), PaperError> {
-        for (name, ratio) in gradient_times(model, runs)? {
+        for (name, ratio) in gradient_times(case, model, runs)? {
             self.speed.row([case.label().to_owned(), format!("gradient / cost, {name}"), fixed(ratio, 1)]);
             let what = "time of a gradient over that of a cost";
             self.ratio_sheet.row([case.ship.name().to_owned(), what.into(), name.into(), fixed(ratio, 2)]);
