@@ -41,7 +41,7 @@ impl Asked {
 }
 
 /// What physics a model lacks: a verdict in one sentence, findings with size and proof, and the improved model.
-#[pyclass(module = "trimtab", frozen, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen)]
 pub struct Diagnosis {
     inner: trimtab::Diagnosis,
     study: String,

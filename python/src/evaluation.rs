@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 /// How well a model predicts runs beside a baseline. cVDM is the mean deviation from the recording in per cent of the size of the
 /// motion; improvements are shares of the baseline's error (1 is all of it); intervals are of 95 % and over runs.
-#[pyclass(module = "trimtab", frozen, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen)]
 pub struct Evaluation {
     pub inner: trimtab::Evaluation,
 }

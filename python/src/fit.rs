@@ -72,7 +72,7 @@ fn merge(into: &mut Value, from: Value) {
 }
 
 /// Where a running fit stands.
-#[pyclass(module = "trimtab", frozen, get_all, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen, get_all)]
 pub struct FitProgress {
     /// Iteration of the solver.
     pub iteration: usize,
@@ -136,7 +136,7 @@ pub fn run(
 }
 
 /// The estimate of one parameter.
-#[pyclass(module = "trimtab", frozen, get_all, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen, get_all)]
 #[derive(Clone)]
 pub struct Estimate {
     /// Dotted name.
@@ -166,7 +166,7 @@ impl Estimate {
 }
 
 /// The outcome of a fit: estimates with their uncertainty, what held them back, and the fitted model.
-#[pyclass(module = "trimtab", frozen, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen)]
 pub struct Fit {
     pub inner: trimtab::Fit,
     interrupted: bool,

@@ -22,7 +22,7 @@ const AROUND: [(&str, [f64; 2], &str); 8] = [
 
 /// Names of the inputs with the limits and the meaning of each.
 fn known() -> Vec<(&'static str, [f64; 2], String)> {
-    let mut blank = Inputs::actuators(0.0, 0.0, 0.0);
+    let mut blank: Inputs<f64> = Inputs::actuators(0.0, 0.0, 0.0);
     let recorded: Vec<&str> = blank.recorded().map(|(name, _)| name).collect();
     let of = |name: &&str| {
         let unit = match *name {

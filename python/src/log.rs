@@ -20,6 +20,7 @@ pub fn import_files(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<(Strin
         done.output.close().ended(Ok(()))?;
         Ok((done.text, done.report))
     };
-    let (text, report) = whole(py, |()| Ok(true), work)?.map_err(|error: crate::cli::error::CliError| error.raised())?;
+    let (text, report) =
+        whole(py, |()| Ok(true), work)?.map_err(|error: crate::cli::error::CliError| error.raised())?;
     Ok((text, document(py, &report)?))
 }

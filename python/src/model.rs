@@ -26,7 +26,7 @@ use trimtab::{Integration, Scenario};
 ///
 /// `model["rudder.lift1"]` reads a parameter, by dotted name or by the symbol of the paper (`p5`), and
 /// `model["rudder.lift1"] = 3.2` sets it. Made by `Model.load`, `Ship.model`, `Study.model` or `Fit.model`.
-#[pyclass(module = "trimtab", frozen, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen)]
 pub struct Model {
     inner: Mutex<Inner>,
 }
@@ -68,7 +68,7 @@ impl Model {
 }
 
 /// A parameter of a model as it was when it was asked for.
-#[pyclass(module = "trimtab", frozen, get_all, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen, get_all)]
 #[derive(Clone)]
 pub struct Parameter {
     /// Dotted name, `term.parameter`.

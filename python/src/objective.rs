@@ -46,7 +46,7 @@ type PriorTerm = (usize, f64, f64);
 /// minimises half of it, sum(r**2)/2, which has the same minimum.
 ///
 /// All calls release the interpreter's lock. An objective can be pickled: it then stands for study file, model and settings.
-#[pyclass(module = "trimtab", frozen, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen)]
 pub struct Objective {
     held: Held,
     study: Py<Study>,
@@ -389,7 +389,7 @@ fn unit(unit: &str) -> &str {
 
 /// Linear constraints on the free parameters, `lower <= matrix @ theta <= upper`: each rule of [fit.constraints] bounds a curve of the
 /// model (resistance, lift, drag, thrust) at the samples of a grid. `scipy.optimize.LinearConstraint(c.matrix, c.lower, c.upper)`.
-#[pyclass(module = "trimtab", frozen, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen)]
 pub struct Constraints {
     columns: usize,
     matrix: Vec<f64>,

@@ -17,7 +17,7 @@ use trimtab::particulars::{KINDS, Kind, estimate};
 /// A ship: its fixed particulars in SI units, x forward of midship, y to starboard.
 ///
 /// Made by `Ship.load(path)` from a ship file, or by `Ship.estimate(lpp=..., breadth=..., draught=..., type=...)`.
-#[pyclass(module = "trimtab", frozen, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen)]
 #[derive(Clone)]
 pub struct Ship {
     pub inner: trimtab::Ship,

@@ -72,7 +72,7 @@ struct Read {
 
 /// A study: a TOML file that names ship, model and recordings. Recordings are read when they are first needed, and audited before the
 /// first fit: those that contradict themselves (unit, sign, axes) raise `RecordingsError` unless the fault is accepted by name.
-#[pyclass(module = "trimtab", frozen, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen)]
 pub struct Study {
     loaded: Loaded,
     path: PathBuf,

@@ -11,7 +11,7 @@ use trimtab::state::{STATE_NAMES, STATES};
 /// [rad, not wrapped], u forward, v to starboard [m/s, over ground], r to starboard [rad/s].
 ///
 /// Where the simulation diverged it is shorter than its inputs, and `diverged_at` is the first sample that is missing.
-#[pyclass(module = "trimtab", frozen, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen)]
 pub struct Trajectory {
     pub start: f64,
     pub inner: trimtab::Trajectory,

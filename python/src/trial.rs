@@ -19,7 +19,7 @@ use trimtab::maneuver::{
 use trimtab::state::{STATE_NAMES, STATES};
 
 /// One trial with its measures, beside the criteria of IMO MSC.137(76).
-#[pyclass(module = "trimtab", frozen, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen)]
 pub struct Trial {
     whole: Value,
     track: Track,

@@ -10,7 +10,7 @@ use trimtab::recording::{Run, Split};
 use trimtab::state::{STATE_NAMES, STATES};
 
 /// A stretch of a recording on equal steps: what a simulation is given, and what it is compared with.
-#[pyclass(module = "trimtab", frozen, skip_from_py_object)]
+#[pyclass(module = "trimtab", frozen)]
 pub struct Window {
     pub runs: Arc<Vec<Run>>,
     pub index: usize,

@@ -121,12 +121,14 @@ pub fn long<T: Send, E: Send>(
 ) -> PyResult<Ended<T>> {
     let (pool, stopped) = (pool()?, AtomicBool::new(false));
     let (events, heard) = channel();
+    // Only this thread hears; the lock lets it wait without that of the interpreter.
+    let heard = Mutex::new(heard);
     let line = Line { events, stopped: &stopped };
     let (mut raised, mut interrupted): (Option<PyErr>, bool) = (None, false);
     let value = std::thread::scope(|scope: &Scope| {
         let worker = scope.spawn(move || catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&line)))));
         loop {
-            let event = py.detach(|| heard.recv_timeout(LISTEN));
+            let event = py.detach(|| heard.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LISTEN));
             let mut outcome = match event {
                 Ok(event) if raised.is_none() => told(event),
                 Ok(_) | Err(RecvTimeoutError::Timeout) => Ok(true),
