@@ -72,7 +72,7 @@ pub fn table<'py>(py: Python<'py>, rows: &[Vec<Option<f64>>]) -> PyResult<Bound<
     matrix(py, rows.len(), rows.first().map_or(0, Vec::len), values)
 }
 
-/// A table of pandas from a dictionary of columns or a list of records.
+/// A table of pandas from a dictionary of columns or a list of records; a column may be its index.
 pub fn frame<'py>(py: Python<'py>, columns: &Bound<'py, PyAny>, index: Option<&str>) -> PyResult<Bound<'py, PyAny>> {
     let pandas = py.import("pandas").map_err(|_| {
         PyImportError::new_err("to_frame needs pandas: pip install pandas; to_dict gives the same without it")

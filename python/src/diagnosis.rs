@@ -161,7 +161,11 @@ impl Diagnosis {
             row.set_item("high95", amplitude.ci95[1])?;
             row.set_item("p", finding.p)
         })?;
-        frame(py, &all, None)
+        let table = frame(py, &all, None)?;
+        let columns = ["mechanism", "title", "grade", "parameter", "value", "unit", "error", "low95", "high95", "p"];
+        let only = PyDict::new(py);
+        only.set_item("columns", columns.to_vec())?;
+        table.call_method("reindex", (), Some(&only))
     }
 
     fn __repr__(&self) -> String {

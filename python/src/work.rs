@@ -113,7 +113,7 @@ pub struct Ended<T> {
 
 /// Does a long work on the threads while this thread hands its events to `told` and looks for signals.
 ///
-/// Ctrl-C, or `told` giving false, asks the work to end. An exception of `told` or of a signal's handler is raised when it has.
+/// Ctrl-C, or `told` giving false, asks the work to end. Another exception of `told` or of a signal's handler is raised when it has.
 pub fn long<T: Send, E: Send>(
     py: Python<'_>,
     mut told: impl FnMut(E) -> PyResult<bool>,
@@ -135,16 +135,16 @@ pub fn long<T: Send, E: Send>(
                 Err(RecvTimeoutError::Disconnected) => break,
             };
             if let Err(error) = py.check_signals() {
-                if error.is_instance_of::<PyKeyboardInterrupt>(py) {
-                    interrupted = true;
-                    stopped.store(true, Ordering::Relaxed);
-                } else {
-                    outcome = Err(error);
-                }
+                outcome = Err(error);
             }
             match outcome {
                 Ok(true) => {}
                 Ok(false) => stopped.store(true, Ordering::Relaxed),
+                // Also where Ctrl-C was pressed while `told` ran.
+                Err(error) if error.is_instance_of::<PyKeyboardInterrupt>(py) => {
+                    interrupted = true;
+                    stopped.store(true, Ordering::Relaxed);
+                }
                 Err(error) => {
                     raised.get_or_insert(error);
                     stopped.store(true, Ordering::Relaxed);

@@ -1,4 +1,4 @@
-"""A study from tables in memory: each is written as a recording with its units, and then imported like a log."""
+"""A study from tables in memory: each is written as a recording, and then imported like a log."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ._logs import PathLike, import_log
 from ._trimtab import Model, Ship, Study
 
 
-def _write(path: Path, name: str, table: Any, columns: Mapping[str, str], units: Mapping[str, str]) -> None:
+def _write(path: Path, name: str, table: Any, columns: Mapping[str, str]) -> None:
     """Writes the columns of a table, under the names of the channels they are taken for, where the caller says so."""
     if not hasattr(table, "keys"):
         kind = type(table).__name__
@@ -27,9 +27,7 @@ def _write(path: Path, name: str, table: Any, columns: Mapping[str, str], units:
             raise KeyError(f"{name} has no column `{column}` for {channel}; its columns are {', '.join(known)}")
     header, values = [], []
     for key in known:
-        channel = own.get(key, key)
-        unit = units.get(channel)
-        header.append(channel if unit is None else f"{channel} [{unit}]")
+        header.append(own.get(key, key))
         values.append([_text(value) for value in table[key]])
     lengths = {column: len(entries) for column, entries in zip(header, values)}
     if len(set(lengths.values())) > 1:
@@ -73,7 +71,7 @@ def from_dataframe(
         files = []
         for title, table in tables.items():
             path = Path(logs, f"{title}.csv")
-            _write(path, title, table, columns or {}, units or {})
+            _write(path, title, table, columns or {})
             files.append(path)
-        study = import_log(files, place, ship=ship, model=model, name=name or "study", split=split, **more)
+        study = import_log(files, place, ship=ship, model=model, units=units, name=name or "study", split=split, **more)
     return Study.load(study.path, _folder=kept)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import logging
 import os
+import re
 import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from ._trimtab import Model, Ship, Study, example_files, import_files
+from ._trimtab import Model, Ship, Study, TrimtabError, example_files, import_files
 
 PathLike = str | os.PathLike[str]
 
@@ -60,7 +61,12 @@ def import_log(
                 arguments.append(f"--{option}={path}")
             elif given is not None:
                 arguments.append(f"--{option}={os.fspath(given)}")
-        text, _ = import_files(arguments)
+        try:
+            text, _ = import_files(arguments)
+        except TrimtabError as error:
+            # The command asks for options, a call for arguments.
+            words = re.sub(r"`--(unit|column) (\w+)=([^`]*)`", r'`\1s={"\2": "\3"}`', str(error))
+            raise type(error)(words) from None
     logging.getLogger("trimtab").info("%s", text)
     return Study.load(Path(out, "study.toml"))
 
