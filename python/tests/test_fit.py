@@ -61,7 +61,7 @@ def test_progress_is_told_and_false_stops_the_fit_with_the_best_point(study: tri
     stopped = study.fit(progress=stop_at_three)
     assert len(seen) >= 3 and seen[0].iteration == 0 and seen[1].cost > 0.0
     assert not stopped.converged and "stopped by the caller" in stopped.status and not stopped.interrupted
-    assert fitted.cost < stopped.cost <= stopped.start_cost
+    assert stopped.cost > fitted.cost and "best feasible point" in stopped.status
 
 
 def test_ctrl_c_stops_a_fit_with_the_best_point(study: trimtab.Study) -> None:
@@ -70,7 +70,7 @@ def test_ctrl_c_stops_a_fit_with_the_best_point(study: trimtab.Study) -> None:
             signal.raise_signal(signal.SIGINT)
 
     stopped = study.fit(progress=press)
-    assert stopped.interrupted and not stopped.converged and stopped.cost <= stopped.start_cost
+    assert stopped.interrupted and not stopped.converged and "best feasible point" in stopped.status
 
 
 def test_ctrl_c_without_a_callback_stops_it_too(study: trimtab.Study) -> None:

@@ -102,7 +102,7 @@ def test_least_squares_takes_residuals_and_jacobian(study: trimtab.Study) -> Non
     assert exact.success
     assert exact.cost == pytest.approx(objective.f(exact.x) / 2)
     assert exact.cost < objective.f(objective.x0) / 2
-    assert np.abs(objective.grad(exact.x) * objective.scales).max() < 1e-4 * objective.f(exact.x)
+    assert np.abs(objective.grad(exact.x) * objective.scales).max() < 1e-3 * objective.f(exact.x)
 
 
 def test_where_a_simulation_diverges_the_cost_is_infinite(objective: trimtab.Objective) -> None:
