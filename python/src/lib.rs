@@ -17,8 +17,10 @@ mod inputs;
 mod log;
 mod model;
 mod objective;
+mod sampled;
 mod ship;
 mod study;
+mod term;
 mod trajectory;
 mod trial;
 mod window;
@@ -85,6 +87,7 @@ fn _trimtab(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<ship::Ship>()?;
     module.add_class::<model::Model>()?;
     module.add_class::<model::Parameter>()?;
+    module.add_class::<term::Term>()?;
     module.add_class::<trajectory::Trajectory>()?;
     module.add_class::<trial::Trial>()?;
     module.add_class::<study::Study>()?;

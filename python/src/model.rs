@@ -7,6 +7,7 @@ use crate::convert::{finite, frame, records, word};
 use crate::errors::Raised;
 use crate::inputs::{inputs, state};
 use crate::ship::Ship;
+use crate::term::Term;
 use crate::trajectory::Trajectory;
 use crate::trial::{Trial, sail};
 use crate::work::short;
@@ -189,7 +190,15 @@ impl Model {
     /// a term that the model lacks is added. `"hull"` frees every hydrodynamic coefficient of the hull.
     #[pyo3(signature = (*names))]
     fn free(&self, names: Vec<String>) -> PyResult<()> {
-        self.change(|model| names.iter().try_for_each(|name| model.release(name)))
+        self.change(|model| {
+            let before: Vec<Option<Prior>> = model.parameters.iter().map(|p| p.prior).collect();
+            names.iter().try_for_each(|name| model.release(name))?;
+            // A prior that was given stays where the term knows none.
+            for (p, before) in model.parameters.iter_mut().zip(before) {
+                p.prior = p.prior.or(before);
+            }
+            Ok(())
+        })
     }
 
     /// Holds parameters, or all of a term, at their values; `value` sets the value of one.
@@ -225,9 +234,13 @@ impl Model {
         self.change(|model| model.prior(name, prior))
     }
 
-    /// Adds a term of the catalogue by name (`trimtab terms` lists them); with its default parameters it has no effect.
-    fn add_term(&self, name: &str) -> PyResult<()> {
-        self.change(|model| model.add_term(name))
+    /// Adds a term of the catalogue by name (`trimtab terms` lists them), or a Term of one's own; with its default parameters it has no
+    /// effect. Its parameters are fixed: set `model["my_term.k"]`, or free them by `free`.
+    fn add_term(&self, term: Added<'_>) -> PyResult<()> {
+        match term {
+            Added::Name(name) => self.change(|model| model.add_term(&name)),
+            Added::Own(term) => self.add_own(&term),
+        }
     }
 
     /// Simulates the ship: inputs at K samples to a trajectory of K states.
@@ -334,7 +347,33 @@ impl Model {
     }
 }
 
+/// What can be added to a model.
+#[derive(FromPyObject)]
+enum Added<'py> {
+    Name(String),
+    Own(PyRef<'py, Term>),
+}
+
 impl Model {
+    /// Puts a term of one's own into the catalogue of the model, and adds it.
+    fn add_own(&self, term: &Term) -> PyResult<()> {
+        let name = term.inner().info().name;
+        self.change(|model| {
+            let catalogue = model.catalogue().with(term.inner());
+            let mut changed = trimtab::Model::from_file_with(catalogue, &model.to_file(), model.ship.clone())?;
+            // What a model file does not keep, of the terms that were there before.
+            for p in &mut changed.parameters {
+                if let Some(own) = model.parameters.iter().find(|own| own.name == p.name) {
+                    p.scale = own.scale;
+                }
+            }
+            changed.add_term(name)?;
+            term.complete(&mut changed);
+            *model = changed;
+            Ok(())
+        })
+    }
+
     /// The model with its free parameters at `theta`, where that is given.
     fn at(&self, theta: Option<&Bound<'_, PyAny>>) -> PyResult<trimtab::Model> {
         let mut model = self.snapshot().model;

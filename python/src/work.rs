@@ -2,6 +2,7 @@
 //! It knows nothing of what is computed.
 
 use crate::errors::fault;
+use crate::term::failed;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -68,7 +69,8 @@ fn broken(panic: &(dyn Any + Send)) -> PyErr {
 /// Does some work on the threads, without the lock of the interpreter.
 pub fn short<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let pool = pool()?;
-    py.detach(|| catch_unwind(AssertUnwindSafe(|| pool.install(work)))).map_err(|panic| broken(&*panic))
+    let done = py.detach(|| catch_unwind(AssertUnwindSafe(|| pool.install(work)))).map_err(|panic| broken(&*panic))?;
+    failed().map_or(Ok(done), Err)
 }
 
 /// As [`short`], for work that chooses its own threads.
@@ -153,7 +155,7 @@ pub fn long<T: Send, E: Send>(
         }
         py.detach(|| worker.join().unwrap_or_else(Err))
     });
-    match (raised, value) {
+    match (raised.or_else(failed), value) {
         (Some(error), _) => Err(error),
         (None, Ok(value)) => Ok(Ended { value: Some(value), interrupted }),
         (None, Err(panic)) if panic.is::<GivenUp>() => Ok(Ended { value: None, interrupted }),
