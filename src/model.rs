@@ -1,6 +1,8 @@
 //! A model: a ship, a list of terms, and one vector of parameters; from these the equations of motion.
 //! It holds no recording and no cost: it only gives the accelerations of the ship.
 
+mod by_name;
+
 use crate::error::suggestion;
 use crate::files::intact;
 use crate::parameter::ParameterInfo;

@@ -17,7 +17,7 @@ pub struct AcceptArgs {
     /// Go on in spite of this fault of the recordings, by the name in the message (such as `sign_error`); may be given several
     /// times.
     #[arg(long, value_name = "FAULT")]
-    accept: Vec<String>,
+    pub accept: Vec<String>,
 }
 
 impl AcceptArgs {

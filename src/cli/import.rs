@@ -7,6 +7,7 @@ use super::output::{Output, OutputArgs};
 use super::progress::progress;
 use super::split::{SplitArgs, by_kind};
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use trimtab::files::write_whole;
@@ -140,8 +141,28 @@ struct RecordingReport<'a> {
     channels: Vec<&'static str>,
 }
 
+/// A study that was made, before its files are put into their places.
+pub struct Made {
+    /// Where its files go.
+    pub output: Output,
+    /// What was found, in words.
+    pub text: String,
+    /// The same as a document.
+    pub report: Value,
+}
+
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
+    let Made { output, text, report } = made(args)?;
+    output.finish(&text, &report)?;
+    Ok(Answer::Yes)
+}
+
+/// Makes the study and tells nothing yet.
+///
+/// # Errors
+/// What cannot be read, decided or written.
+pub fn made(args: &Args) -> Result<Made, CliError> {
     let settings = settings(args)?;
     let name = study_name(args);
     let mut output =
@@ -199,8 +220,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         }
     }
     let text = text(args, &imported, &runs, skipped, &kept);
-    output.finish(&text, &report(args, &imported, &runs, skipped))?;
-    Ok(Answer::Yes)
+    let report = serde_json::to_value(report(args, &imported, &runs, skipped))?;
+    Ok(Made { output, text, report })
 }
 
 /// The study's name: as given, or that of its folder.

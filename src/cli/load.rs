@@ -52,14 +52,14 @@ impl Loaded {
     /// Reads study, ship, model, settings and column maps; what is wrong with any of them is told at once.
     pub fn new(args: &StudyArgs) -> Result<Self, CliError> {
         let loaded = Self::read(args, Study::read(&args.study)?)?;
-        for doubt in unreached(&loaded.study, &loaded.model, &loaded.model_path) {
+        for doubt in loaded.unreached() {
             tell(&format!("warning: {doubt}"));
         }
         Ok(loaded)
     }
 
     /// A study with its ship and model, or everything that is wrong with these and with the settings.
-    fn read(args: &StudyArgs, study: Study) -> Result<Self, CliError> {
+    pub fn read(args: &StudyArgs, study: Study) -> Result<Self, CliError> {
         let path = args.model.clone().unwrap_or_else(|| study.model.clone());
         let mut errors = Vec::new();
         let model = match Ship::read(&study.ship) {
@@ -100,6 +100,11 @@ impl Loaded {
         files
     }
 
+    /// The warnings of what model and column maps say that no run reaches.
+    pub fn unreached(&self) -> Vec<String> {
+        unreached(&self.study, &self.model, &self.model_path)
+    }
+
     /// Reads study, ship and model, not the list of recordings, which need not exist.
     pub fn without_runs(args: &StudyArgs) -> Result<Self, CliError> {
         Self::read(args, Study::read_without_runs(&args.study)?)
@@ -132,7 +137,8 @@ impl Loaded {
         }
     }
 
-    fn yaw_rate_doubt(&self, runs: Runs<'_>) -> Option<String> {
+    /// The words of that warning; `None` where there is nothing to warn of.
+    pub fn yaw_rate_doubt(&self, runs: Runs<'_>) -> Option<String> {
         self.study.fit.get("max_yaw_rate")?;
         let set = self.fit_settings().ok()?.max_yaw_rate;
         let largest = |run: &Run| run.measured.iter().filter_map(|m| m[5]).fold(0.0_f64, |most, r| most.max(r.abs()));

@@ -2,26 +2,26 @@
 //! The library computes; a command only reads arguments, calls it, and prints.
 
 mod answer;
-mod audited;
+pub mod audited;
 mod check;
 mod compare;
 mod demo;
-mod diagnose;
+pub mod diagnose;
 mod dossier;
-mod error;
-mod evaluate;
+pub mod error;
+pub mod evaluate;
 mod export;
 mod figures;
-mod fit;
+pub mod fit;
 mod help;
-mod import;
+pub mod import;
 mod lines;
-mod load;
+pub mod load;
 mod maneuver;
 mod new;
 mod output;
 mod plan;
-mod processor;
+pub mod processor;
 mod progress;
 mod shell;
 mod simulate;
@@ -38,7 +38,9 @@ use clap::error::ContextKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use error::CliError;
 use processor::Build;
-use std::process::ExitCode;
+use progress::tell_progress;
+use std::ffi::OsString;
+use std::sync::{Mutex, PoisonError};
 use terminal::{plain, tell};
 use trimtab::ranks::{Ranks, Traffic};
 use trimtab::report::{USUAL, set_width};
@@ -128,33 +130,49 @@ fn in_words(message: &str) -> String {
         .replace("invalid digit found in string", "it must be a whole number of 0 or more")
 }
 
-/// Runs the command that the process was given.
-pub fn run() -> ExitCode {
+/// The arguments of the command that runs, without the name of the program.
+static ARGUMENTS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
+
+/// Those arguments as text.
+fn arguments() -> Vec<String> {
+    let given = ARGUMENTS.lock().unwrap_or_else(PoisonError::into_inner);
+    given.iter().map(|a| a.to_string_lossy().into_owned()).collect()
+}
+
+/// Runs a command from its arguments, the name of the program first, and gives the exit code.
+pub fn run(given: impl IntoIterator<Item = OsString>) -> u8 {
+    let given: Vec<OsString> = given.into_iter().skip(1).collect();
+    ARGUMENTS.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&given);
+    tell_progress();
     match processor::build() {
         Build::Suits => {}
         Build::TooNew => {
             tell(&format!("trimtab: {TOO_NEW}"));
-            return ExitCode::from(2);
+            return 2;
         }
         Build::TooOld => tell(&format!("warning: {TOO_OLD}")),
     }
-    let parsed = program().try_get_matches().and_then(|given| Cli::from_arg_matches(&given));
+    let parsed = program()
+        .try_get_matches_from(std::iter::once("trimtab".into()).chain(given))
+        .and_then(|given| Cli::from_arg_matches(&given));
     let cli = match parsed {
         Ok(cli) => cli,
         Err(mut wrong) if wrong.use_stderr() => {
             // How to pass what looks like an option as a file is no help to who misspelt an option.
             wrong.remove(ContextKind::Suggested);
-            let arguments: Vec<String> =
-                std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()).collect();
             let mut message = in_words(&wrong.render().to_string());
-            if let Some(words) = wanted(&wrong, &program(), &arguments) {
+            if let Some(words) = wanted(&wrong, &program(), &arguments()) {
                 message = message.replace(MORE, &format!("{words}\n\n{MORE}"));
             }
             tell(message.trim_end());
-            return ExitCode::from(2);
+            return 2;
         }
         // Help, or the version.
-        Err(asked) => asked.exit(),
+        Err(asked) => {
+            // Nobody reads it: there is nothing to do about that.
+            let _ = asked.print();
+            return 0;
+        }
     };
     set_width(style::columns().unwrap_or(USUAL));
     let ranks = Ranks::join();
@@ -167,11 +185,11 @@ pub fn run() -> ExitCode {
         tell(&format!("trimtab: {} ranks; each sent {bytes} bytes in {exchanges} exchanges", ranks.size()));
     }
     match outcome {
-        Ok(Answer::Yes) => ExitCode::SUCCESS,
-        Ok(Answer::No) => ExitCode::from(1),
+        Ok(Answer::Yes) => 0,
+        Ok(Answer::No) => 1,
         Err(error) => {
             tell(&format!("trimtab: {error}"));
-            ExitCode::from(2)
+            2
         }
     }
 }

@@ -149,7 +149,7 @@ impl Output {
             sha256: sha256.map(str::to_owned),
         };
         let files = self.folder.iter().flat_map(ResultFolder::inputs).map(file).collect();
-        let given = arguments(std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()));
+        let given = arguments(super::arguments().into_iter());
         let doubts = self.audited.as_ref().map(Audited::told);
         Provenance { command: format!("trimtab {}", given.join(" ")), next: None, files, doubts }
     }
@@ -277,10 +277,7 @@ impl Output {
             return Written { files: Err(failure) };
         }
         let path = folder.path().to_owned();
-        let origin = Origin {
-            arguments: arguments(std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned())),
-            settings: self.settings,
-        };
+        let origin = Origin { arguments: arguments(super::arguments().into_iter()), settings: self.settings };
         let files = folder.complete(origin).map(|files| Some((path, files))).map_err(CliError::from);
         if files.is_ok() {
             self.logs.into_iter().for_each(Log::remove);

@@ -4,6 +4,7 @@
 use super::terminal::plain;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use trimtab::progress::{Teller, left, words};
 
@@ -13,9 +14,20 @@ pub struct Progress {
     teller: Option<Teller>,
 }
 
+/// Whether progress is told: by the command alone, and not where another program calls its parts.
+static TOLD: AtomicBool = AtomicBool::new(false);
+
+/// Tells progress from now on.
+pub fn tell_progress() {
+    TOLD.store(true, Ordering::Relaxed);
+}
+
 /// A progress line while a computation runs. Where standard error is no terminal, the first line comes after a minute.
 pub fn progress(doing: impl Into<String>) -> Progress {
     let doing = doing.into();
+    if !TOLD.load(Ordering::Relaxed) {
+        return Progress { bar: ProgressBar::hidden(), teller: None };
+    }
     let bar = ProgressBar::new_spinner();
     if !std::io::stderr().is_terminal() {
         return Progress { bar: ProgressBar::hidden(), teller: Some(Teller::new("trimtab", &plain(&doing))) };

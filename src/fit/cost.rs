@@ -10,6 +10,10 @@
 //! L_i path length \[m\], U_i mean speed \[m/s\], r_max a reference yaw rate \[rad/s\], the heading difference wrapped into
 //! (-pi, pi]. Channels that were not measured have weight 0. Source: Papandreou et al. 2025 (arXiv 2502.18696), eq. (5).
 
+mod by_sample;
+
+pub use by_sample::{Compared, Residuals};
+
 use super::error::FitError;
 use super::sums::Sums;
 use crate::dynamics::Dynamics;

@@ -68,7 +68,7 @@ mod task;
 #[cfg(feature = "ipopt")]
 pub use crate::ipopt::Counts;
 pub use constraints::{ConstraintSettings, Limits, Rule};
-pub use cost::{Cost, CostOptions, Derivatives, Quadratic};
+pub use cost::{Compared, Cost, CostOptions, Derivatives, Quadratic, Residuals};
 #[cfg(feature = "ipopt")]
 pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 #[cfg(feature = "ipopt")]
@@ -83,3 +83,5 @@ pub use problem::Progress;
 pub use settings::{FitSettings, Goal, Hessian};
 #[cfg(feature = "ipopt")]
 pub use summary::{Active, Combination, Estimate, Fit, fit, fit_over};
+#[cfg(feature = "ipopt")]
+pub use task::bounds;

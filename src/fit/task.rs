@@ -60,8 +60,7 @@ impl<'a> Task<'a> {
         let [slowest, fastest] = constraints::speed_range(runs);
         let ends = cost.ranks().largest(&[-slowest, fastest]);
         let rows = constraints::rows(model, &settings.constraints, [-ends[0], ends[1]])?;
-        let mut bounds: Vec<(f64, f64)> = free.iter().map(|p| (p.lower, p.upper)).collect();
-        keep_mass_matrix_positive(model, &free, &mut bounds);
+        let bounds = bounds(model);
         let start: Vec<f64> = free.iter().zip(&bounds).map(|(p, (lo, hi))| p.value.max(*lo).min(*hi)).collect();
         let evaluations = Evaluations::of(cost);
         let start_cost = evaluations.value(&start).unwrap_or(f64::INFINITY);
@@ -167,6 +166,15 @@ impl<'a> Task<'a> {
     pub fn scaled_vector(&self, vector: &DVector<f64>) -> DVector<f64> {
         DVector::from_fn(vector.len(), |i, _| vector[i] * self.scaling.scales[i])
     }
+}
+
+/// The bounds of the free parameters as a fit has them, in their order: those of the model, and tighter ones for the coupling added
+/// masses where these could make the mass matrix singular.
+pub fn bounds(model: &Model) -> Vec<(f64, f64)> {
+    let free: Vec<&Parameter> = model.parameters.iter().filter(|p| p.free).collect();
+    let mut bounds: Vec<(f64, f64)> = free.iter().map(|p| (p.lower, p.upper)).collect();
+    keep_mass_matrix_positive(model, &free, &mut bounds);
+    bounds
 }
 
 /// Tightens the bounds of Yrdot and Nvdot so that no values of the free added masses make the mass matrix singular.

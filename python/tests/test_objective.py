@@ -1,0 +1,176 @@
+"""The objective: its derivatives are those of its values, it is what a fit minimises, and it goes where an optimiser takes it."""
+
+from __future__ import annotations
+
+import multiprocessing
+import pickle
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import LinearConstraint, least_squares, minimize
+
+import trimtab
+
+
+@pytest.fixture
+def objective(study: trimtab.Study) -> trimtab.Objective:
+    # Priors on one of the terms, so that their rows are tested as well.
+    study.model.free("flow.asymmetry")
+    return study.objective()
+
+
+def test_its_derivatives_are_those_of_its_values(objective: trimtab.Objective) -> None:
+    x, scales = objective.x0, objective.scales
+    grad, jacobian = objective.grad(x), objective.jacobian(x)
+    hessian = objective.hessian(x)
+    for j in range(len(x)):
+        step = np.zeros_like(x)
+        step[j] = 1e-5 * scales[j]
+        above, below = x + step, x - step
+        width = above[j] - below[j]
+        slope = (objective.f(above) - objective.f(below)) / width
+        assert abs(slope - grad[j]) * scales[j] <= 1e-6 * objective.f(x)
+        column = (objective.residuals(above) - objective.residuals(below)) / width
+        np.testing.assert_allclose(column, jacobian[:, j], atol=1e-6 * np.abs(jacobian[:, j]).max())
+        row = (objective.grad(above) - objective.grad(below)) / width
+        size = np.sqrt(np.abs(hessian[j, j] * np.diag(hessian)))
+        np.testing.assert_allclose(row / size, hessian[j] / size, atol=1e-5)
+
+
+def test_values_gradient_and_matrix_follow_from_the_residuals(objective: trimtab.Objective) -> None:
+    x = objective.x0 + 0.01 * objective.scales
+    r, jacobian = objective.residuals(x), objective.jacobian(x)
+    assert r.shape == (objective.size,) and jacobian.shape == (objective.size, len(x))
+    assert r @ r == pytest.approx(objective.f(x), rel=1e-12)
+    value, grad = objective.f_and_grad(x)
+    assert value == objective.f(x) == objective(x)
+    np.testing.assert_allclose(2 * jacobian.T @ r, grad, rtol=1e-8, atol=1e-9 * np.abs(grad).max())
+    matrix = objective.gauss_newton(x)
+    np.testing.assert_allclose(2 * jacobian.T @ jacobian, matrix, rtol=1e-8, atol=1e-9 * np.abs(matrix).max())
+
+
+def test_labels_say_what_each_residual_compares(objective: trimtab.Objective, study: trimtab.Study) -> None:
+    labels, r = objective.labels(), objective.residuals(objective.x0)
+    assert len(labels) == objective.size and labels[-1] == ("prior", None, "flow.asymmetry")
+    window = study.windows("train")[0]
+    run, sample, channel = labels[7]
+    assert (run, channel) == (window.name, "y")
+    measured = window.states[sample, 1]
+    simulated = study.model.simulate(window.inputs, window.initial_state).y[sample]
+    # The residual is the difference by the path length and the root of the number of runs: the sign is that of recorded - simulated.
+    assert np.sign(r[7]) == np.sign(measured - simulated)
+
+
+def test_it_is_what_a_fit_minimises(study: trimtab.Study, fitted: trimtab.Fit) -> None:
+    objective = study.objective()
+    assert objective.names == [e.name for e in fitted.estimates]
+    assert objective.f(objective.x0) == fitted.start_cost
+    assert objective.f(fitted.theta) == fitted.cost
+    constraints = objective.constraints()
+    size = np.linalg.norm(constraints.matrix * objective.scales, axis=1)
+    assert (constraints.violation(fitted.theta) <= 1e-6 * size).all()
+    lower, upper = objective.bounds
+    assert (fitted.theta >= lower - 1e-7 * objective.scales).all() and (fitted.theta <= upper).all()
+
+
+def test_scipy_finds_the_optimum_of_the_fit_with_it(study: trimtab.Study, fitted: trimtab.Fit) -> None:
+    objective = study.objective()
+    c = objective.constraints()
+    scales = objective.scales
+    lower, upper = objective.bounds
+    # In units of the scales, as every optimiser likes it.
+    found = minimize(
+        lambda z: objective.f(z * scales),
+        np.clip(objective.x0, lower, upper) / scales,
+        jac=lambda z: objective.grad(z * scales) * scales,
+        hess=lambda z: objective.gauss_newton(z * scales) * np.outer(scales, scales),
+        method="trust-constr",
+        bounds=list(zip(lower / scales, upper / scales)),
+        constraints=[LinearConstraint(c.matrix * scales, c.lower, c.upper)],
+        options={"maxiter": 300},
+    )
+    assert found.fun == pytest.approx(fitted.cost, rel=2e-3)
+
+
+def test_least_squares_takes_residuals_and_jacobian(study: trimtab.Study) -> None:
+    # Few parameters, so that an optimum exists without the constraints.
+    study.model.fix("resistance", "rudder.lift2", "rudder.lift3", "rudder.drag0", "rudder.drag1")
+    objective = study.objective()
+    exact = least_squares(objective.residuals, objective.x0, jac=objective.jacobian, x_scale=objective.scales, ftol=1e-14)
+    assert exact.success
+    assert exact.cost == pytest.approx(objective.f(exact.x) / 2)
+    assert exact.cost < objective.f(objective.x0) / 2
+    assert np.abs(objective.grad(exact.x) * objective.scales).max() < 1e-3 * objective.f(exact.x)
+
+
+def test_where_a_simulation_diverges_the_cost_is_infinite(objective: trimtab.Objective) -> None:
+    x = objective.x0.copy()
+    x[objective.names.index("rudder.lift1")] = 1e9
+    assert objective.f(x) == np.inf
+    assert np.isnan(objective.grad(x)).all() and np.isinf(objective.residuals(x)).all()
+    assert objective.residuals(x).shape == (objective.size,)
+    assert np.isnan(objective.jacobian(x)).all() and np.isnan(objective.gauss_newton(x)).all()
+
+
+def test_priors_are_rows_of_their_own_and_their_weight_can_be_set(study: trimtab.Study) -> None:
+    study.model.prior("rudder.lift1", mean=3.0, sd=0.2)
+    light, heavy = study.objective(prior_weight=0.0), study.objective(prior_weight=5.0)
+    x = light.x0
+    at = x[light.names.index("rudder.lift1")]
+    assert light.size + 1 == heavy.size
+    assert heavy.f(x) - light.f(x) == pytest.approx(5.0 * ((at - 3.0) / 0.2) ** 2)
+    assert study.objective().prior_weight > 0.0
+
+
+def test_a_pickled_objective_is_the_same_function(objective: trimtab.Objective) -> None:
+    again = pickle.loads(pickle.dumps(objective))
+    x = objective.x0 + 0.02 * objective.scales
+    assert again.names == objective.names and again.prior_weight == objective.prior_weight
+    assert again.f(x) == objective.f(x)
+    np.testing.assert_array_equal(again.jacobian(x), objective.jacobian(x))
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_other_processes_evaluate_it(objective: trimtab.Objective, method: str) -> None:
+    points = [objective.x0 + k * 0.01 * objective.scales for k in range(3)]
+    here = [objective.f(x) for x in points]
+    with multiprocessing.get_context(method).Pool(2) as pool:
+        assert pool.map_async(objective.f, points).get(timeout=120) == here
+
+
+def test_it_releases_the_lock_of_the_interpreter(objective: trimtab.Objective) -> None:
+    # Another thread counts while this one is in Rust: with the lock held it could not.
+    counted, done = [0], threading.Event()
+
+    def count() -> None:
+        while not done.is_set():
+            counted[0] += 1
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    try:
+        before = counted[0]
+        objective.hessian(objective.x0)
+        during = counted[0] - before
+    finally:
+        done.set()
+        thread.join()
+    assert during > 1000
+
+
+def test_the_number_of_threads_changes_no_bit(objective: trimtab.Objective) -> None:
+    x = objective.x0 + 0.03 * objective.scales
+    grads = []
+    for threads in (1, 3, None):
+        trimtab.set_threads(threads)
+        grads.append(objective.grad(x + 0.0))
+        objective.grad(objective.x0)
+    np.testing.assert_array_equal(grads[0], grads[1])
+    np.testing.assert_array_equal(grads[0], grads[2])
+
+
+def test_a_study_in_a_temporary_folder_says_why_it_is_not_pickled(tmp_path: Path) -> None:
+    with pytest.raises(TypeError, match="folder"):
+        pickle.dumps(trimtab.example())
