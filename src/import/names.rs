@@ -337,7 +337,6 @@ mod tests {
             ("Rudder angle [deg]", "delta", Some("deg")),
             ("SOG (kn)", "sog", Some("kn")),
             ("hdg_deg", "psi", Some("deg")),
-            ("Shaft RPM", "n", Some("rpm")),
             ("RateOfTurn", "r", None),
             ("rot_deg_per_min", "r", Some("deg/min")),
             ("Heading (true)", "psi", None),
@@ -358,6 +357,9 @@ mod tests {
             assert_eq!(meaning(&name).map(Meaning::name), Some(expected), "{field}");
             assert_eq!(found.as_deref(), unit, "{field}");
         }
+        // A shaft is a shaft rate by its unit alone.
+        let (shaft, unit) = name_and_unit("Shaft RPM");
+        assert!(is_shaft(&shaft) && meaning(&shaft).is_none() && unit.as_deref() == Some("rpm"), "{shaft} {unit:?}");
         for field in [
             "Depth below keel",
             "Heading setpoint",

@@ -5,39 +5,54 @@ use std::ops::Range;
 
 /// Rows that two stretches must have of the same time for the clock to have stepped back: one or two are late rows.
 pub const FEW: usize = 3;
+/// Earlier stretches that a further one is compared with.
+const STRETCHES: usize = 100;
 /// Share of the rows with the time of the one before that must tell something else for the times to be rounded: a ship under way moves
 /// between any two, and one that lies still does so in part of a log.
 pub const OTHERWISE: f64 = 0.3;
 /// Times closer than this are one \[s\].
 const SAME_TIME: f64 = 1e-6;
 
-/// The stretches of rows with these times. One begins where time steps back over what the stretch before has told, as `repeats` says of
-/// the rows of both; a batch of late rows fills a hole and begins none.
+/// The stretches of rows with these times. One begins where time steps back over what the file has told before, as `repeats` says of the
+/// rows of both; a batch of late rows fills a hole and begins none.
 pub fn passes(t: &[f64], repeats: impl Fn(Range<usize>, Range<usize>) -> bool) -> Vec<Range<usize>> {
     let rows: Vec<usize> = (0..t.len()).filter(|row| t[*row].is_finite()).collect();
-    let (mut starts, mut rising) = (vec![0], 0);
-    let mut at = 1;
+    let time = |at: usize| t[rows[at]];
+    let mut starts = vec![0];
+    // The last run of rising times, and the longest of each stretch.
+    let (mut last, mut longest): (Range<usize>, Vec<Range<usize>>) = (0..0, Vec::new());
+    let mut at = 0;
     while at < rows.len() {
-        let (first, last) = (t[rows[at]], t[rows[at - 1]]);
-        if first >= last - SAME_TIME {
-            at += 1;
-            continue;
-        }
         let mut end = at + 1;
-        while end < rows.len() && t[rows[end]] >= t[rows[end - 1]] - SAME_TIME {
+        while end < rows.len() && time(end) >= time(end - 1) - SAME_TIME {
             end += 1;
         }
-        let top = last.min(t[rows[end - 1]]);
-        let again = at + rows[at..end].partition_point(|row| t[*row] <= top + SAME_TIME);
-        // What late rows tell was not told before: only times between theirs count.
-        let latest = t[rows[again - 1]];
-        let before = rising + rows[rising..at].partition_point(|row| t[*row] < first - SAME_TIME);
-        let told = before + rows[before..at].partition_point(|row| t[*row] <= latest + SAME_TIME);
-        let many = told - before >= FEW && again - at >= FEW;
-        if many && repeats(rows[before]..rows[told - 1] + 1, rows[at]..rows[again - 1] + 1) {
-            starts.push(rows[at]);
+        if end - at >= FEW {
+            let again = |rise: &Range<usize>| {
+                if rise.is_empty() {
+                    return false;
+                }
+                let top = time(rise.end - 1).min(time(end - 1));
+                let here = at..at + rows[at..end].partition_point(|row| t[*row] <= top + SAME_TIME);
+                if here.len() < FEW {
+                    return false;
+                }
+                // What late rows tell was not told before: only times between theirs count.
+                let until = |least: f64| rise.start + rows[rise.clone()].partition_point(|row| t[*row] < least);
+                let before = until(time(at) - SAME_TIME)..until(time(here.end - 1) + SAME_TIME);
+                before.len() >= FEW
+                    && repeats(rows[before.start]..rows[before.end - 1] + 1, rows[at]..rows[here.end - 1] + 1)
+            };
+            if std::iter::once(&last).chain(longest.iter().rev().take(STRETCHES)).any(again) {
+                starts.push(rows[at]);
+                longest.push(at..end);
+            } else if longest.last().is_none_or(|longest| longest.len() < end - at) {
+                longest.pop();
+                longest.push(at..end);
+            }
+            last = at..end;
         }
-        (rising, at) = (at, end);
+        at = end;
     }
     let ends = starts[1..].iter().copied().chain([t.len()]);
     starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect()
@@ -67,6 +82,6 @@ mod tests {
         assert_eq!(of(&[0.0, 1.0, 5.0, 6.0, 7.0, 2.0, 3.0, 4.0, 8.0, 9.0]), 1);
         assert_eq!(of(&[0.0, 1.0, 2.0, 7.0, 8.0, 9.0, 3.0, 4.0, 5.0, 6.0, 10.0]), 1);
         assert_eq!(of(&hour.iter().rev().copied().collect::<Vec<f64>>()), 1);
-        assert_eq!(of(&[0.0, 1.0, f64::NAN, 2.0, 3.0, 0.5, f64::NAN, 1.5, 2.5, 9.0]), 2);
+        assert_eq!(of(&[0.0, 1.0, f64::NAN, 2.0, 3.0, 4.0, 0.5, f64::NAN, 1.5, 2.5, 3.5, 9.0]), 2);
     }
 }
