@@ -225,6 +225,17 @@ fn a_steady_angle_of_course_and_heading_is_told_and_that_of_a_current_is_not() {
 }
 
 #[test]
+fn a_heading_in_radians_that_counts_on_through_full_turns_keeps_the_unit_that_the_file_states() {
+    let mut text = NAMES.replace("heading", "heading [rad]") + "\n";
+    for row in sailed(0.0) {
+        text += &format!("{}\n", fields(&Row { heading: (row.heading + 3600.0) * DEGREE, ..row }));
+    }
+    let imported = read(&text);
+    // The log has hundredths of a radian.
+    assert!(off(&imported) < 0.6, "{} {}", off(&imported), notes(&imported));
+}
+
+#[test]
 fn a_longitude_positive_to_the_west_mirrors_no_ship() {
     let mirrored = |axis: usize| {
         let mut text = format!("{NAMES}\n");

@@ -144,8 +144,11 @@ pub fn direction(
     let length =
         |factor| [1.0, -1.0].map(|s| agreement(factor, s).map_or(0.0, |a| a[0])).into_iter().fold(0.0, f64::max);
     let along = |factor| agreement(factor, 1.0).is_some_and(|[length, off]| length > AGREE && off.abs() < ALONG);
+    // A heading that counts on through full turns has large values in radians, too: where the file says so, the track is asked.
+    let counted_on =
+        |given: &Given| (given.factor - 1.0).abs() < 1e-6 && length(1.0) > AGREE && length(1.0) > length(degree);
     let (unit, factor, why) = match given {
-        Some(given) if given.by_user => (given.unit.as_str(), given.factor, String::new()),
+        Some(given) if given.by_user || counted_on(given) => (given.unit.as_str(), given.factor, String::new()),
         _ if top > MOST_RADIANS => ("deg", degree, format!("values up to {}", sig(top, 4))),
         given => {
             let (deg, rad) = (length(degree), length(1.0));
