@@ -13,7 +13,7 @@ mod by_hand;
 mod case;
 #[path = "support/freed.rs"]
 mod freed;
-#[path = "support/interleaved.rs"]
+#[path = "../experiments/src/interleaved.rs"]
 mod interleaved;
 use by_hand::ByHand;
 use case::{cost, recordings, settings, ship_a};

@@ -13,7 +13,7 @@ use trimtab::plot::{Axis, BLUE, Figure, GREEN, GREY, Layer, Panel, VERMILLION};
 mod case;
 #[path = "support/freed.rs"]
 mod freed;
-#[path = "support/interleaved.rs"]
+#[path = "../experiments/src/interleaved.rs"]
 mod interleaved;
 use case::{cost, recordings};
 use freed::{freed, start};

@@ -7,7 +7,6 @@ pub mod demo_concealed;
 pub mod drawn_fits;
 pub mod folders;
 pub mod injected;
-#[path = "../../benches/support/interleaved.rs"]
 pub mod interleaved;
 pub mod killed;
 pub mod mutated;

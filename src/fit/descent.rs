@@ -28,7 +28,7 @@ pub(super) const BETTER: f64 = 1e-4;
 const SAME: f64 = 1e-9;
 
 /// Curvature, as a share of the largest, that directions have which the data do not determine.
-const UNDETERMINED: f64 = 1e-12;
+pub(super) const UNDETERMINED: f64 = 1e-12;
 
 /// Distance from a limit, in the sizes of rows, up to which a row is the solver's from the start.
 const NEAR_ROW: f64 = 0.1;

@@ -8,7 +8,7 @@
 use super::constraints::Row;
 use super::cost::Cost;
 use super::curvature::{Curvature, Local};
-use super::descent::{BETTER, Descent, From, Shared, Work};
+use super::descent::{BETTER, Descent, From, Shared, UNDETERMINED, Work};
 use super::error::FitError;
 use super::evaluations::Evaluations;
 use super::limits::Watch;
@@ -159,7 +159,9 @@ impl Task<'_> {
         shared: &mut Shared,
     ) -> Result<Option<Vec<f64>>, FitError> {
         let Some(local) = stage.local(&end.p) else { return Ok(None) };
-        if local.value < NOTHING_LEFT {
+        // Of a cost that fell to the rounding of where it began, nothing is left either.
+        let rounding = ROUNDING * stage.evaluations.objective.factor() * self.start_cost;
+        if local.value < if rounding.is_finite() { NOTHING_LEFT.max(rounding) } else { NOTHING_LEFT } {
             return Ok(None);
         }
         // In units of each parameter's own curvature: what a limited-memory matrix begins with.
@@ -416,6 +418,9 @@ impl Task<'_> {
             return;
         }
         let z = self.free_directions(&end.active);
+        if let Some(p) = self.on_limits(end) {
+            end.p = p;
+        }
         let total = |p: &[f64]| Some(self.evaluations.value(p)? + end.priors.value(p));
         let (Some(mut best), Some(mut step)) = (total(&end.p), self.newton_step(&end.p, &end.priors, &z)) else {
             return;
@@ -443,6 +448,43 @@ impl Task<'_> {
             }
             (end.p, best, step) = (moved, value, next);
         }
+    }
+
+    /// The point on the limits that hold an end back, where it is feasible and no worse: of all steps to them, that along which the quadratic
+    /// model of the cost rises least, `d = H^-1 N' (N H^-1 N')^-1 r` with the normals N of the limits and the distances r to them.
+    fn on_limits(&self, end: &End) -> Option<Vec<f64>> {
+        let (n, scaling) = (end.p.len(), &self.scaling);
+        let stage = self.stage(&self.evaluations, &end.priors);
+        let local = stage.local(&end.p)?;
+        let (mut normals, mut distances) = (Vec::new(), Vec::new());
+        for i in &end.active.rows {
+            let (row, size) = (&self.rows[*i], scaling.sizes[*i]);
+            let value = row.value(&end.p);
+            let [below, above] = [value - row.lower, row.upper - value];
+            normals.push(self.normal(scaling, *i));
+            distances.push(if below < above { -below / size } else { above / size });
+        }
+        for (j, side) in &end.active.bounds {
+            let limit = if *side == "lower" { self.bounds[*j].0 } else { self.bounds[*j].1 };
+            let unit = |k: usize| if k == *j { 1.0 } else { 0.0 };
+            normals.push(DVector::from_fn(n, |k, _| unit(k)));
+            distances.push((limit - end.p[*j]) / scaling.scales[*j]);
+        }
+        if normals.is_empty() {
+            return None;
+        }
+        let normals = DMatrix::from_columns(&normals);
+        let ridge = UNDETERMINED * local.gauss_newton.diagonal().max();
+        let matrix = &local.gauss_newton + DMatrix::identity(n, n) * ridge;
+        let yielding = inverse(&matrix, &DMatrix::identity(n, n)).matrix;
+        let along = normals.tr_mul(&yielding) * &normals;
+        let m = distances.len();
+        let back = inverse(&along, &DMatrix::identity(m, m)).matrix * DVector::from_vec(distances);
+        let step = yielding * (normals * back);
+        let moved: Vec<f64> = (0..n).map(|j| end.p[j] + step[j] * scaling.scales[j]).collect();
+        let moved = self.within_bounds(&moved);
+        let is_better = stage.total(&moved).zip(stage.total(&end.p)).is_some_and(|(new, old)| new <= old);
+        (is_better && self.is_feasible(&moved)).then_some(moved)
     }
 
     /// The step to the minimum of the cost's quadratic model within the span of `directions`.
