@@ -2,6 +2,7 @@
 //! The library computes; a command only reads arguments, calls it, and prints.
 
 mod answer;
+mod arguments;
 pub mod audited;
 mod check;
 mod compare;
@@ -40,7 +41,6 @@ use error::CliError;
 use processor::Build;
 use progress::tell_progress;
 use std::ffi::OsString;
-use std::sync::{Mutex, PoisonError};
 use terminal::{plain, tell};
 use trimtab::ranks::{Ranks, Traffic};
 use trimtab::report::{USUAL, set_width};
@@ -130,19 +130,10 @@ fn in_words(message: &str) -> String {
         .replace("invalid digit found in string", "it must be a whole number of 0 or more")
 }
 
-/// The arguments of the command that runs, without the name of the program.
-static ARGUMENTS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
-
-/// Those arguments as text.
-fn arguments() -> Vec<String> {
-    let given = ARGUMENTS.lock().unwrap_or_else(PoisonError::into_inner);
-    given.iter().map(|a| a.to_string_lossy().into_owned()).collect()
-}
-
 /// Runs a command from its arguments, the name of the program first, and gives the exit code.
 pub fn run(given: impl IntoIterator<Item = OsString>) -> u8 {
     let given: Vec<OsString> = given.into_iter().skip(1).collect();
-    ARGUMENTS.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&given);
+    arguments::keep(&given);
     tell_progress();
     match processor::build() {
         Build::Suits => {}
@@ -161,7 +152,7 @@ pub fn run(given: impl IntoIterator<Item = OsString>) -> u8 {
             // How to pass what looks like an option as a file is no help to who misspelt an option.
             wrong.remove(ContextKind::Suggested);
             let mut message = in_words(&wrong.render().to_string());
-            if let Some(words) = wanted(&wrong, &program(), &arguments()) {
+            if let Some(words) = wanted(&wrong, &program(), &arguments::given()) {
                 message = message.replace(MORE, &format!("{words}\n\n{MORE}"));
             }
             tell(message.trim_end());

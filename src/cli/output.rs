@@ -1,6 +1,7 @@
 //! Where results go: text or JSON to standard output, files to the folder given with `--out`.
 //! No other file writes to standard output; progress and errors go to standard error.
 
+use super::arguments::given;
 use super::audited::Audited;
 use super::error::CliError;
 use super::figures::{Captions, Drawing, FigureArgs};
@@ -149,7 +150,7 @@ impl Output {
             sha256: sha256.map(str::to_owned),
         };
         let files = self.folder.iter().flat_map(ResultFolder::inputs).map(file).collect();
-        let given = arguments(super::arguments().into_iter());
+        let given = arguments(given().into_iter());
         let doubts = self.audited.as_ref().map(Audited::told);
         Provenance { command: format!("trimtab {}", given.join(" ")), next: None, files, doubts }
     }
@@ -277,7 +278,7 @@ impl Output {
             return Written { files: Err(failure) };
         }
         let path = folder.path().to_owned();
-        let origin = Origin { arguments: arguments(super::arguments().into_iter()), settings: self.settings };
+        let origin = Origin { arguments: arguments(given().into_iter()), settings: self.settings };
         let files = folder.complete(origin).map(|files| Some((path, files))).map_err(CliError::from);
         if files.is_ok() {
             self.logs.into_iter().for_each(Log::remove);
