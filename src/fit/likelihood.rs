@@ -42,10 +42,9 @@ use serde::Serialize;
 /// Rounds of gains and noise at most.
 const ROUNDS: usize = 30;
 
-/// The first rounds, and iterations of their solves at most: with gains held fixed the objective far from where they were made is another
+/// Rounds up to which a solve takes at most so many iterations: with gains held fixed the objective far from where they were made is another
 /// one, and what is gained there is lost when they are renewed.
-const SHORT_ROUNDS: usize = 3;
-const SHORT_ITERATIONS: usize = 4;
+const SHORT: [(usize, usize); 2] = [(3, 4), (6, 16)];
 
 /// Rise of the log-posterior in a round below which gains and noise are settled: a tenth of a likelihood unit turns no comparison.
 const SETTLED: f64 = 0.1;
@@ -242,15 +241,13 @@ impl<'t> Task<'t> {
                 stage.hessian = Hessian::GaussNewton;
             }
             stage.tolerance = stage.tolerance.max(GRADIENT * innovations.factor());
-            let is_short = rounds <= SHORT_ROUNDS;
-            if is_short {
-                stage.max_iterations = stage.max_iterations.min(SHORT_ITERATIONS);
-            }
+            let short = SHORT.iter().find(|(until, _)| rounds <= *until).map(|(_, most)| *most);
+            stage.max_iterations = stage.max_iterations.min(short.unwrap_or(usize::MAX));
             let from = From { p: &reached.p, near: multipliers.is_some(), multipliers: multipliers.take() };
             let mut descent = self.descend(&stage, from, &mut Curvature::unknown(reached.p.len()), &mut shared)?;
             let noise = posterior.noise(&descent.p, &reached.noise);
             let value = posterior.log_density(&descent.p, &noise);
-            let settled = !is_short && value - reached.value < SETTLED;
+            let settled = short.is_none() && value - reached.value < SETTLED;
             if settled && descent.may_be_minimum() && !shared.watch.is_over() {
                 let lower = self.lower_nearby(&stage, &descent, checks[0], &mut shared)?;
                 checks = [checks[0] + 1, checks[1] + usize::from(lower.is_some())];
@@ -260,7 +257,7 @@ impl<'t> Task<'t> {
                     descent.optimum = None;
                 }
             }
-            if value.is_finite() && (value >= reached.value || is_short || last.is_none()) {
+            if value.is_finite() && (value >= reached.value || short.is_some() || last.is_none()) {
                 reached = Reached { p: descent.p.clone(), noise, value };
             }
             multipliers = descent.optimum.as_ref().map(|(_, multipliers)| multipliers.clone());
