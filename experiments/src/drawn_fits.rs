@@ -17,13 +17,13 @@ use trimtab::study::Study;
 
 use crate::conceal::error::ConcealError;
 
-/// Time within which a fit is to end [s].
+/// Time within which a fit is to end \[s\].
 pub const LIMIT: f64 = 60.0;
 
 /// What may be free beside the parameters that the model frees.
 const FREE: [&[&str]; 7] = [&[], &["hull"], &["flow"], &["hull", "flow"], &["rudder"], &["resistance"], &["crossflow"]];
 
-/// Lengths of windows [s]; none: runs as they are.
+/// Lengths of windows \[s\]; none: runs as they are.
 const WINDOWS: [Option<f64>; 5] = [None, None, Some(60.0), Some(150.0), Some(400.0)];
 
 /// Standard deviations of the start's parameters, as a share of each.
