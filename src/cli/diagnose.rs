@@ -176,7 +176,9 @@ pub fn continued(command: &str) -> String {
 
 /// Settings whose proof judges as the study's tables `[fit]` and `[evaluate]` say.
 pub fn prepared(loaded: &Loaded, settings: Settings) -> Result<Settings, CliError> {
-    Ok(Settings { judging: Judging::new(&loaded.fit_settings()?, loaded.evaluation_settings()?), ..settings })
+    let fit = loaded.fit_settings()?;
+    let judging = Judging::new(&fit, loaded.evaluation_settings()?);
+    Ok(Settings { judging, constraints: fit.constraints, ..settings })
 }
 
 /// Writes the files of a diagnosis, as this command has them, for another command; gives its document.

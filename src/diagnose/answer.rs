@@ -8,7 +8,7 @@ use super::error::DiagnoseError;
 use super::event::{BaseTests, Opening};
 use super::finding::{Finding, PUSH};
 use super::grade::Grade;
-use super::improved::{inside_bounds, trimmed};
+use super::improved::trimmed;
 use super::law::Law;
 use super::prove::HeldOut;
 use super::residual::{Kept, Residual};
@@ -52,7 +52,7 @@ impl Answer {
         let base: BaseFit = BaseFit::new(question, audited);
         let tests: BaseTests = BaseTests::new(question, base);
         let opening: Opening = Opening::new(question, tests);
-        let selection: Selection = Selection::new(question, opening).refitted(question);
+        let selection: Selection = Selection::new(question, opening);
         Self::settled(question, Residual::new(question, selection), Vec::new(), &[], held_out)
     }
 
@@ -197,7 +197,7 @@ impl Answer {
         if self.findings.is_empty() {
             return Ok(Vec::new());
         }
-        let found = inside_bounds(self.improved(), self.kept.selection.tests.problem(question.settings));
+        let found = self.kept.selection.tests.problem(question.settings).within_limits(self.improved());
         let improved = trimmed(&found.model, question.model, &found.free);
         let as_they_are = Change { name: "", model: Model::clone, run: |r| vec![r.clone()] };
         let again = brief(question.settings, &as_they_are, &improved, runs, held_out)?;

@@ -59,8 +59,6 @@ pub mod present;
 mod problem;
 pub mod prove;
 pub mod push;
-#[cfg(feature = "ipopt")]
-pub mod refit;
 pub mod region;
 mod residual;
 pub mod sailed;

@@ -9,7 +9,7 @@ use super::describe::kinds;
 use super::diagnosis::{Diagnosis, Trace};
 use super::error::DiagnoseError;
 use super::generic::corrected;
-use super::improved::{inside_bounds, trimmed, uncertainty};
+use super::improved::{trimmed, uncertainty};
 use super::law::Law;
 use super::prove::{HeldOut, prove};
 use super::sailed::{Sailed, sailed};
@@ -68,9 +68,10 @@ struct Written {
 impl Written {
     fn new(question: &Question, answer: &Answer) -> Self {
         let tests = &answer.kept.selection.tests;
-        let inside = |estimate| inside_bounds(estimate, tests.problem(question.settings));
-        let base = inside(&tests.fit.estimate);
-        let found = if answer.improves() { inside(answer.improved()) } else { base.clone() };
+        (question.progress)("fitting the models that are written");
+        let problem = tests.problem(question.settings);
+        let base = problem.within_limits(&tests.fit.estimate);
+        let found = if answer.improves() { problem.within_limits(answer.improved()) } else { base.clone() };
         Self { base, found }
     }
 }

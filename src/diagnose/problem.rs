@@ -2,7 +2,10 @@
 //! It holds them and decides nothing.
 
 use super::candidate::Candidate;
+use super::improved::inside_bounds;
 use super::settings::{Effort, Settings};
+#[cfg(feature = "ipopt")]
+use crate::fit::within_limits;
 use crate::likelihood::estimate::{Estimate, FreeParameter, estimate};
 use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::model::Model;
@@ -33,5 +36,21 @@ impl Problem<'_> {
     /// Estimates again from where an estimate is.
     pub fn again(&self, found: &Estimate, effort: Effort) -> Estimate {
         self.estimate(&found.model, &found.free, &found.noise, effort)
+    }
+
+    /// An estimate as a fit by likelihood ends, within bounds and constraints: what a file may hold. In the search a hull coefficient that is
+    /// carried is kept by its prior alone, which knows no sign, so that it may have ended where it drives the ship. Where no fit is possible
+    /// the values are put back within their bounds.
+    #[cfg(feature = "ipopt")]
+    pub fn within_limits(&self, found: &Estimate) -> Estimate {
+        let constraints = self.settings.constraints;
+        let fitted = within_limits(found, self.integration, self.runs, self.prior, constraints);
+        fitted.unwrap_or_else(|_| inside_bounds(found))
+    }
+
+    /// An estimate with its values within their bounds: this build has no Ipopt to fit the others to that.
+    #[cfg(not(feature = "ipopt"))]
+    pub fn within_limits(&self, found: &Estimate) -> Estimate {
+        inside_bounds(found)
     }
 }

@@ -10,8 +10,6 @@ use super::event::{BaseTests, Opening};
 use super::present::Present;
 use super::problem::Problem;
 use super::push::Push;
-#[cfg(feature = "ipopt")]
-use super::refit::refit;
 use super::screen::{Row, Screen, screen};
 use super::selected::Selected;
 use super::settings::{PARAMETER_PRICE, REFIT, SETTLE, Settings};
@@ -59,26 +57,6 @@ impl Selection {
     /// Whether a mechanism of this name stays in the model without being named.
     pub fn carries(&self, name: &str) -> bool {
         self.mechanisms.iter().any(|m| m.carried && self.tests.candidates[m.candidate].mechanism.name == name)
-    }
-
-    /// The estimate with all mechanisms, as Fisher scoring left it: this build has no Ipopt.
-    #[cfg(not(feature = "ipopt"))]
-    pub fn refitted(self, _question: &Question) -> Self {
-        self
-    }
-
-    /// The estimate with all mechanisms, refitted through Ipopt.
-    #[cfg(feature = "ipopt")]
-    pub fn refitted(mut self, question: &Question) -> Self {
-        if !self.mechanisms.is_empty() {
-            (question.progress)("refitting the whole model through Ipopt");
-            let fit = &self.tests.fit;
-            // Without Ipopt's answer the estimate by Fisher scoring is kept.
-            if let Ok(Some(refitted)) = refit(&self.estimate, fit.integration, &fit.runs) {
-                (self.estimate, self.latest) = (refitted, None);
-            }
-        }
-        self
     }
 
     /// The best further mechanism, with the estimate that holds it.

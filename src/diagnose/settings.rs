@@ -2,7 +2,7 @@
 //! change; each with its name, value, meaning, and how it was set.
 
 use crate::evaluate::{EvaluationSettings, Judging};
-use crate::fit::FitSettings;
+use crate::fit::{ConstraintSettings, FitSettings};
 use crate::likelihood::settings::{COST, CUSTOM, HULLS, SEEDS, numbers};
 pub use crate::likelihood::settings::{
     Effort, FIRST, GATE, IDENTIFIABLE_SHARE, LIKELIHOOD, Number, REFIT, SCATTER_GROUPS, SETTLE, STEP_GAIN, TOGETHER,
@@ -35,6 +35,9 @@ pub struct Settings {
     /// diagnosis and an evaluation print the same numbers.
     #[serde(skip, default = "judging")]
     pub judging: Judging,
+    /// The constraints of the models that are written. A study has them in its table `[fit.constraints]`.
+    #[serde(skip)]
+    pub constraints: ConstraintSettings,
 }
 
 /// As a fit would judge, but by the integration of a diagnosis.
@@ -81,6 +84,7 @@ impl Default for Settings {
             repeat: true,
             calibrate: 0,
             judging: judging(),
+            constraints: ConstraintSettings::default(),
         }
     }
 }

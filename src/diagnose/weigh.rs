@@ -6,7 +6,6 @@ use super::describe::{Intervals, mechanism_finding, push_finding, sensor_finding
 use super::event::BaseTests;
 use super::finding::{Amplitude, Finding, are_times};
 use super::grade::{FindingTests, Grade, grade};
-use super::improved::inside_bounds;
 use super::influence::{Following, change};
 use super::problem::Problem;
 use super::prove::mean_cvdm;
@@ -164,7 +163,7 @@ pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight]
         return None;
     }
     let (tests, judging) = (&kept.selection.tests, &question.settings.judging);
-    let written = |e: &Estimate| inside_bounds(e, tests.problem(question.settings));
+    let written = |e: &Estimate| tests.problem(question.settings).within_limits(e);
     let [base, found] = [&tests.fit.estimate, &kept.selection.estimate].map(written);
     let proof = FindingProof::new(&base.model, &found.model, &found.noise, tests.fit.integration, held_out, judging);
     let simulated = proof.prediction().is_some_and(|g| g.is_below_zero());

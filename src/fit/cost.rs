@@ -60,6 +60,8 @@ pub enum Derivatives {
     NumDual,
     /// Central differences of the residuals, four runs side by side.
     FiniteDifferences,
+    /// Forward differences of the residuals, four runs side by side: half the simulations, and an error that grows with the step.
+    ForwardDifferences,
 }
 
 /// A value with its gradient and Gauss-Newton matrix, by the free parameters in their own units.
@@ -360,7 +362,7 @@ impl<'a> Cost<'a> {
         let columns: Vec<Column> = free.iter().map(|p| Column { parameter: *p, scale: 1.0 }).collect();
         let (mut lanes, mut single) = (Blocks::Built(Vec::new()), Blocks::Built(Vec::new()));
         match options.derivatives {
-            Derivatives::Lanes | Derivatives::FiniteDifferences => {
+            Derivatives::Lanes | Derivatives::FiniteDifferences | Derivatives::ForwardDifferences => {
                 lanes = Block::group(model, runs, &weights, &shapes).ok_or(FitError::Unreadable)?;
             }
             Derivatives::Dual | Derivatives::NumDual => {
@@ -542,7 +544,7 @@ impl<'a> Cost<'a> {
             Derivatives::NumDual => {
                 self.assemble(&self.single, p, with_matrix, |b| self.by_duals::<NumDual>(b, p, with_matrix))
             }
-            Derivatives::FiniteDifferences => {
+            Derivatives::FiniteDifferences | Derivatives::ForwardDifferences => {
                 self.assemble(&self.lanes, p, with_matrix, |b| self.differences(b, p, with_matrix))
             }
         }
@@ -632,7 +634,7 @@ impl<'a> Cost<'a> {
         sums.finished()
     }
 
-    /// Sums of a block by central differences of its residuals.
+    /// Sums of a block by differences of its residuals, central or forward.
     fn differences<P: Plain>(&self, block: &Block<P>, p: &[f64], with_matrix: bool) -> Sums<P> {
         let n = self.free.len();
         let residuals = |p: &[f64]| {
@@ -640,6 +642,7 @@ impl<'a> Cost<'a> {
             self.rollout(block, p, |k, y| residuals[k] = block.residuals(k, y));
             residuals
         };
+        let here = residuals(p);
         let mut rows = vec![[P::zero(); STATES]; block.inputs.len() * n];
         for j in 0..n {
             let step = self.difference_step * self.model.parameters[self.free[j]].scale;
@@ -647,13 +650,14 @@ impl<'a> Cost<'a> {
             moved[j] = p[j] + step;
             let (above, up) = (residuals(&moved), moved[j]);
             moved[j] = p[j] - step;
-            let (below, down) = (residuals(&moved), moved[j]);
-            for (k, (a, b)) in above.iter().zip(&below).enumerate() {
+            let central = (self.derivatives == Derivatives::FiniteDifferences).then(|| residuals(&moved));
+            let (below, down) = central.as_ref().map_or((&here, p[j]), |below| (below, moved[j]));
+            for (k, (a, b)) in above.iter().zip(below).enumerate() {
                 rows[k * n + j] = std::array::from_fn(|c| (a[c] - b[c]) / (up - down));
             }
         }
         let mut sums = Sums::new(n, with_matrix);
-        for (k, residuals) in residuals(p).iter().enumerate() {
+        for (k, residuals) in here.iter().enumerate() {
             sums.add(residuals, rows[k * n..(k + 1) * n].iter().copied());
         }
         sums.finished()

@@ -12,7 +12,7 @@
 use super::curvature::Curvature;
 use super::error::FitError;
 use super::limits::{Stop, Watch};
-use super::problem::{Point, Problem, Progress, Stage};
+use super::problem::{Point, Problem, Progress, Settled, Stage};
 use super::rows::WorkingRows;
 use super::settings::Hessian;
 use super::subspace::inverse;
@@ -39,6 +39,9 @@ const BARRIER_SHARE: f64 = 1e-3;
 /// The same, and how far a start is pushed away from its bounds, from a point near the optimum.
 const NEAR_BARRIER_SHARE: f64 = 1e-6;
 const NEAR_PUSH: f64 = 1e-8;
+
+/// Iterations in a row after which an objective that changes no more ends a solve.
+const SETTLED_ITERATIONS: i32 = 3;
 
 /// What the solver took.
 #[derive(Default)]
@@ -196,19 +199,19 @@ impl Task<'_> {
             best: None,
             trials: 0,
         };
-        let (status, mut solution) = match ipopt::solve(&mut problem, &options) {
-            Ok(solution) => (solution.status.clone(), Some(solution)),
-            // The start could be evaluated, a point near it could not.
-            Err(IpoptError::NoIterate { status }) => (status, None),
+        let (status, iterations, counts, mut solution) = match ipopt::solve(&mut problem, &options) {
+            Ok(solution) => (solution.status.clone(), solution.iterations, solution.counts, Some(solution)),
+            // The start could be evaluated, a point near it could not; or the limits left no evaluation for the end.
+            Err(IpoptError::NoIterate { status, iterations, counts }) => (status, iterations, counts, None),
             Err(error) => return Err(error.into()),
         };
+        shared.work.add(iterations, &counts);
         let at = solution.as_ref().map(|s| self.within_bounds(&problem.unscaled(&s.x)));
         let best = problem.best.take();
         let evaluated = shared.watch.evaluations() - before;
         if let Some(solution) = &mut solution {
             let multipliers = &mut solution.multipliers;
             multipliers.constraints = shared.rows.of_all(&multipliers.constraints);
-            shared.work.add(solution);
         }
         Ok(Attempt { status, solution, at, best, evaluated })
     }
@@ -225,6 +228,11 @@ impl Task<'_> {
             ("mumps_permuting_scaling".to_owned(), OptionValue::Integer(0)),
             ("mumps_scaling".to_owned(), OptionValue::Integer(0)),
         ];
+        if let Some(Settled { gradient, change }) = stage.settled {
+            extra.push(number("acceptable_tol", gradient));
+            extra.push(number("acceptable_obj_change_tol", change));
+            extra.push(("acceptable_iter".to_owned(), OptionValue::Integer(SETTLED_ITERATIONS)));
+        }
         if from.near {
             let pushes = ["bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"];
             let warm = ["", "warm_start_"].into_iter().flat_map(|kind| pushes.map(|name| format!("{kind}{name}")));
@@ -288,9 +296,9 @@ impl Work {
         sum.hessian += part(counts.hessian);
     }
 
-    fn add(&mut self, solution: &Solution) {
-        self.iterations += solution.iterations;
-        let (sum, counts) = (&mut self.counts, &solution.counts);
+    fn add(&mut self, iterations: usize, counts: &Counts) {
+        self.iterations += iterations;
+        let sum = &mut self.counts;
         sum.objective += counts.objective;
         sum.gradient += counts.gradient;
         sum.constraints += counts.constraints;

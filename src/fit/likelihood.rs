@@ -15,31 +15,34 @@
 //! Hull, propeller and rudder coefficients that are never known exactly are estimated along, with the values of the model as means and the
 //! spreads of their terms as standard deviations of their priors.
 
+use super::constraints::ConstraintSettings;
 use super::cost::{Cost, Quadratic};
 use super::curvature::Curvature;
-use super::descent::{From, Shared, Work};
+use super::descent::{Descent, From, Shared, Work};
 use super::error::FitError;
 use super::evaluations::Evaluations;
 use super::limits::Watch;
 use super::objective::Objective;
-use super::problem::{Priors, Progress};
+use super::problem::{Priors, Progress, Settled, Stage};
 use super::rows::WorkingRows;
-use super::settings::Hessian;
-use super::solve::End;
+use super::settings::{FitSettings, Goal, Hessian};
+use super::solve::{End, Search};
+use super::stages;
 use super::task::Task;
 use crate::ipopt::Multipliers;
-use crate::likelihood::estimate::{fitted_noise, log_posterior};
+use crate::likelihood::estimate::{Estimate, fitted_noise, log_posterior, restrictions, run_evidence};
+use crate::likelihood::evidence::RunEvidence;
 use crate::likelihood::filter::{Column, Filter, Gains, Pass, Wanted};
 use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::likelihood::noise_fit::guess;
 use crate::likelihood::parameters::{FreeParameter, NUISANCE};
 use crate::model::{Model, Prior};
-use crate::recording::Run;
+use crate::recording::{Run, Runs};
 use crate::simulate::Integration;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-/// Rounds of gains and noise at most.
+/// Rounds of gains and noise at most, in each stage.
 const ROUNDS: usize = 30;
 
 /// Rounds up to which a solve takes at most so many iterations: with gains held fixed the objective far from where they were made is another
@@ -55,6 +58,10 @@ const REACH: f64 = 1e3;
 
 /// Largest gradient that a solve leaves, in likelihood units by a parameter's scale: what it leaves to be gained is far below [`SETTLED`].
 const GRADIENT: f64 = 0.01;
+
+/// Gradient and change of the objective in an iteration, in the same units, below which a solve ends all the same.
+const ROUGH: f64 = 1.0;
+const CHANGE: f64 = 0.01;
 
 /// Iterations of the noise estimate in a round.
 const NOISE_ITERATIONS: usize = 8;
@@ -74,13 +81,13 @@ pub struct Likelihood {
 
 /// The negative log-likelihood of runs with the filter's gains held fixed, as a function of the free parameters.
 pub(super) struct Innovations<'a> {
-    model: &'a Model,
-    free: Vec<usize>,
-    integration: Integration,
+    task: &'a Task<'a>,
     runs: &'a [Run],
     noise: Noise,
     gains: Vec<Gains>,
     columns: Vec<Column>,
+    /// The sessions in which each variable acts, `None` for all of them.
+    sessions: Vec<Option<Vec<String>>>,
     samples: usize,
 }
 
@@ -105,36 +112,26 @@ pub(super) fn with_uncertain_coefficients(model: &Model) -> Model {
 }
 
 impl<'a> Innovations<'a> {
-    /// With the gains of the filter at `p`.
-    fn new(task: &'a Task, runs: &'a [Run], noise: Noise, p: &[f64]) -> Self {
-        let (model, integration) = (task.model, task.settings.integration);
+    /// With the gains of the filter at `p`, by the variables `free` of the task.
+    fn new(task: &'a Task<'a>, free: &[FreeParameter], runs: &'a [Run], noise: Noise, p: &[f64]) -> Self {
         let at = task.model_at(p);
-        let filter = Filter::new(&at, integration, &[]);
+        let filter = Filter::new(&at, task.settings.integration, &[]);
         let passes = filter.passes(runs, &noise, Wanted { gains: true, ..Wanted::default() });
         let gains = passes.into_iter().map(|pass| pass.gains.unwrap_or_default()).collect();
-        let free = model.free();
-        // In the parameters' own units.
-        let column = |i: &usize| Column { scale: 1.0, ..Column::tangent(model, *i) };
-        let columns = free.iter().map(column).collect();
+        let columns = free.iter().map(|f| f.column).collect();
         let samples = runs.iter().map(|run| run.measured.len()).sum();
-        Self { model, free, integration, runs, noise, gains, columns, samples }
-    }
-
-    fn at(&self, p: &[f64]) -> Model {
-        let mut model = self.model.clone();
-        for (i, value) in self.free.iter().zip(p) {
-            model.parameters[*i].value = *value;
-        }
-        model
+        Self { task, runs, noise, gains, columns, sessions: restrictions(free), samples }
     }
 
     /// Half the sum of squared innovations, and what `take` makes of each pass; `None` where the model left the numbers.
     fn passes(&self, p: &[f64], columns: &[Column], mut take: impl FnMut(DVector<f64>, DMatrix<f64>)) -> Option<f64> {
-        let model = self.at(p);
-        let filter = Filter::new(&model, self.integration, columns);
+        let model = self.task.model_at(p);
+        let filter = Filter::new(&model, self.task.settings.integration, columns);
+        let sessions = if columns.is_empty() { &[] } else { &self.sessions[..] };
         let wanted = Wanted { frozen: Some(&self.gains), exact: true, ..Wanted::default() };
-        let work = |_: &Run, pass: Pass| {
+        let work = |run: &Run, pass: Pass| {
             let Pass { score, information, innovations, filtered, .. } = pass;
+            let RunEvidence { score, information, .. } = run_evidence(run, score, information, sessions);
             // A model that left the numbers has no innovations at all, and would look perfect.
             let finite = filtered.iter().flatten().all(|z| z.is_finite());
             let square: f64 = innovations.iter().flatten().filter(|e| !e.is_nan()).map(|e| e * e).sum();
@@ -156,13 +153,17 @@ impl Objective for Innovations<'_> {
     }
 
     fn quadratic(&self, p: &[f64], _with_matrix: bool) -> Option<Quadratic> {
-        let n = self.free.len();
+        let n = self.columns.len();
         let (mut gradient, mut information, mut by_run) = (DVector::zeros(n), DMatrix::zeros(n, n), Vec::new());
+        // From the units of the columns to those of the variables.
+        let units = DVector::from_iterator(n, self.columns.iter().map(|column| column.scale));
         let value = self.passes(p, &self.columns, |score, own| {
+            let score = score.component_div(&units);
             gradient -= &score;
             information += own;
             by_run.push(-score);
         })?;
+        information.component_div_assign(&(&units * units.transpose()));
         let finite = gradient.iter().chain(information.iter()).all(|v: &f64| v.is_finite());
         finite.then_some(Quadratic { value, gradient, gauss_newton: information, by_run })
     }
@@ -198,10 +199,11 @@ impl Posterior<'_> {
         of_parameters + self.noise_prior.log_density(&noise.to_log())
     }
 
-    /// The noise of the runs at these parameters.
-    fn noise(&self, p: &[f64], from: &Noise) -> Noise {
+    /// These parameters with the noise of the runs there.
+    fn reached(&self, p: &[f64], from: &Noise) -> Reached {
         let (model, integration) = (self.task.model_at(p), self.task.settings.integration);
-        fitted_noise(&model, integration, self.runs, from, &self.noise_prior, NOISE_ITERATIONS)
+        let noise = fitted_noise(&model, integration, self.runs, from, &self.noise_prior, NOISE_ITERATIONS);
+        Reached { p: p.to_vec(), noise, value: self.log_density(p, &noise) }
     }
 }
 
@@ -212,8 +214,18 @@ struct Reached {
     value: f64,
 }
 
+/// What goes from round to round.
+struct Rounds {
+    reached: Reached,
+    /// Whether the first solve begins near its optimum.
+    is_near: bool,
+    multipliers: Option<Multipliers>,
+    count: usize,
+}
+
 impl<'t> Task<'t> {
-    /// Solves by likelihood: noise, gains and parameters in turn, and at the end the check of the optimum.
+    /// Solves by likelihood: noise, gains and parameters in turn, of a few of the runs first where there are many, and at the end the check
+    /// of the optimum.
     pub fn solve_by_likelihood<'a>(
         &'a self,
         runs: &'a [Run],
@@ -221,56 +233,176 @@ impl<'t> Task<'t> {
     ) -> Result<LikelihoodEnd<'a>, FitError> {
         let watch = Watch::new(self.settings, self.cost.ranks());
         let mut shared = Shared { watch, work: Work::default(), progress, rows: WorkingRows::of(self) };
-        let mut priors = Priors::of(self.model);
-        priors.weight = 0.5;
         let free: Vec<FreeParameter> = self.model.free().into_iter().map(|i| common(self.model, i)).collect();
+        let priors = priors(&free);
         let first = guess(runs, self.model);
         let posterior = Posterior { task: self, runs, free, noise_prior: NoisePrior::around(&first) };
-        let noise = posterior.noise(&self.start, &first);
-        let value = posterior.log_density(&self.start, &noise);
-        let (mut reached, start_log_posterior) = (Reached { p: self.start.clone(), noise, value }, value);
-        let mut multipliers: Option<Multipliers> = None;
-        let (mut rounds, mut checks, mut is_checked) = (0, [0, 0], false);
-        let mut last = None;
-        while rounds < ROUNDS && !is_checked && !shared.watch.is_over() {
-            rounds += 1;
-            let innovations = Innovations::new(self, runs, reached.noise, &reached.p);
-            let evaluations = Evaluations::of(&innovations);
-            let mut stage = self.stage(&evaluations, &priors);
-            if stage.hessian == Hessian::Exact {
-                stage.hessian = Hessian::GaussNewton;
-            }
-            stage.tolerance = stage.tolerance.max(GRADIENT * innovations.factor());
-            let short = SHORT.iter().find(|(until, _)| rounds <= *until).map(|(_, most)| *most);
-            stage.max_iterations = stage.max_iterations.min(short.unwrap_or(usize::MAX));
-            let from = From { p: &reached.p, near: multipliers.is_some(), multipliers: multipliers.take() };
-            let mut descent = self.descend(&stage, from, &mut Curvature::unknown(reached.p.len()), &mut shared)?;
-            let noise = posterior.noise(&descent.p, &reached.noise);
-            let value = posterior.log_density(&descent.p, &noise);
-            let settled = short.is_none() && value - reached.value < SETTLED;
-            if settled && descent.may_be_minimum() && !shared.watch.is_over() {
-                let lower = self.lower_nearby(&stage, &descent, checks[0], &mut shared)?;
-                checks = [checks[0] + 1, checks[1] + usize::from(lower.is_some())];
-                is_checked = lower.is_none();
-                if let Some(lower) = lower {
-                    descent.p = lower;
-                    descent.optimum = None;
-                }
-            }
-            if value.is_finite() && (value >= reached.value || short.is_some() || last.is_none()) {
-                reached = Reached { p: descent.p.clone(), noise, value };
-            }
-            multipliers = descent.optimum.as_ref().map(|(_, multipliers)| multipliers.clone());
-            last = Some(descent);
+        let reached = posterior.reached(&self.start, &first);
+        let start_log_posterior = reached.value;
+        let mut rounds = Rounds { reached, is_near: false, multipliers: None, count: 0 };
+        let few = stages::drawn(runs);
+        if let Some(few) = &few {
+            self.approach_by_likelihood(&posterior, few, &priors, &mut rounds, &mut shared)?;
         }
-        let Some(mut descent) = last else { return Err(FitError::NothingFree) };
-        descent.p.clone_from(&reached.p);
+        let short: &[(usize, usize)] = if few.is_some() { &[] } else { &SHORT };
+        let mut descent = self.settled(&posterior, &priors, short, &mut rounds, &mut shared)?;
+        let (mut checks, mut is_checked) = ([0, 0], false);
+        while descent.may_be_minimum() && !shared.watch.is_over() {
+            let Reached { p, noise, .. } = &rounds.reached;
+            let innovations = Innovations::new(self, &posterior.free, runs, *noise, p);
+            let evaluations = Evaluations::of(&innovations);
+            let some = few.as_ref().map(|few| Innovations::new(self, &posterior.free, few, *noise, p));
+            let of_few = some.as_ref().map(|some| Evaluations::of(some));
+            let share = some.as_ref().map_or(1.0, |some| some.samples as f64 / innovations.samples as f64);
+            let search = Search { evaluations: of_few.as_ref().unwrap_or(&evaluations), share };
+            let stage = self.likelihood_stage(&evaluations, &innovations, &priors);
+            let lower = self.lower_nearby(&stage, search, &descent, checks[0], &mut shared)?;
+            checks = [checks[0] + 1, checks[1] + usize::from(lower.is_some())];
+            let Some(lower) = lower else {
+                is_checked = true;
+                break;
+            };
+            let reached = posterior.reached(&lower, noise);
+            rounds = Rounds { reached, is_near: true, multipliers: None, count: rounds.count };
+            descent = self.settled(&posterior, &priors, &[], &mut rounds, &mut shared)?;
+        }
+        let Rounds { reached, count, .. } = rounds;
         self.check_feasible(&descent)?;
         let end = self.ended(descent, is_checked, priors, shared.work, checks);
-        let innovations = Innovations::new(self, runs, reached.noise, &end.p);
-        let likelihood = Likelihood { start_log_posterior, log_posterior: reached.value, noise: reached.noise, rounds };
+        let innovations = Innovations::new(self, &posterior.free, runs, reached.noise, &end.p);
+        let (log_posterior, noise) = (reached.value, reached.noise);
+        let likelihood = Likelihood { start_log_posterior, log_posterior, noise, rounds: count };
         Ok(LikelihoodEnd { end, innovations, likelihood })
     }
+
+    /// A start for all runs from a few of them, where it is better than the fit's own.
+    fn approach_by_likelihood(
+        &self,
+        posterior: &Posterior,
+        few: &[Run],
+        priors: &Priors,
+        rounds: &mut Rounds,
+        shared: &mut Shared,
+    ) -> Result<(), FitError> {
+        let Posterior { task, free, noise_prior, .. } = posterior;
+        let of_few = Posterior { task, runs: few, free: free.clone(), noise_prior: *noise_prior };
+        let reached = of_few.reached(&rounds.reached.p, &rounds.reached.noise);
+        let mut near = Rounds { reached, is_near: false, multipliers: None, count: 0 };
+        let before = std::mem::take(&mut shared.work);
+        self.settled(&of_few, priors, &SHORT, &mut near, shared)?;
+        let own = std::mem::replace(&mut shared.work, before);
+        let samples = |runs: &[Run]| runs.iter().map(|run| run.measured.len()).sum::<usize>() as f64;
+        shared.work.join(&own, samples(few) / samples(posterior.runs));
+        let there = posterior.reached(&near.reached.p, &near.reached.noise);
+        rounds.count = near.count;
+        if there.value > rounds.reached.value || !self.is_feasible(&rounds.reached.p) {
+            (rounds.reached, rounds.multipliers) = (there, near.multipliers);
+        }
+        Ok(())
+    }
+
+    /// Rounds of gains, parameters and noise until the log-posterior rises no more; the first of them are `short`.
+    fn settled(
+        &self,
+        posterior: &Posterior,
+        priors: &Priors,
+        short: &[(usize, usize)],
+        rounds: &mut Rounds,
+        shared: &mut Shared,
+    ) -> Result<Descent, FitError> {
+        let mut round = 0;
+        loop {
+            round += 1;
+            rounds.count += 1;
+            let Reached { p, noise, value: before } = &rounds.reached;
+            let innovations = Innovations::new(self, &posterior.free, posterior.runs, *noise, p);
+            let evaluations = Evaluations::of(&innovations);
+            let mut stage = self.likelihood_stage(&evaluations, &innovations, priors);
+            let most = short.iter().find(|(until, _)| round <= *until).map(|(_, most)| *most);
+            stage.max_iterations = stage.max_iterations.min(most.unwrap_or(usize::MAX));
+            let near = rounds.is_near && round == 1 || rounds.multipliers.is_some();
+            let from = From { p, near, multipliers: rounds.multipliers.take() };
+            let mut descent = self.descend(&stage, from, &mut Curvature::unknown(p.len()), shared)?;
+            let next = posterior.reached(&descent.p, noise);
+            let settled = most.is_none() && next.value - before < SETTLED;
+            if next.value.is_finite() && (next.value >= *before || most.is_some() || round == 1) {
+                rounds.reached = next;
+            }
+            rounds.multipliers = descent.optimum.as_ref().map(|(_, multipliers)| multipliers.clone());
+            if settled || round >= ROUNDS || shared.watch.is_over() {
+                descent.p.clone_from(&rounds.reached.p);
+                return Ok(descent);
+            }
+        }
+    }
+
+    /// A solve of the likelihood with gains held fixed.
+    fn likelihood_stage<'s>(
+        &'s self,
+        evaluations: &'s Evaluations<'s>,
+        innovations: &Innovations,
+        priors: &'s Priors,
+    ) -> Stage<'s> {
+        let mut stage = self.stage(evaluations, priors);
+        if stage.hessian == Hessian::Exact {
+            stage.hessian = Hessian::GaussNewton;
+        }
+        let unit = innovations.factor();
+        stage.tolerance = stage.tolerance.max(GRADIENT * unit);
+        stage.settled = Some(Settled { gradient: ROUGH * unit, change: CHANGE * unit });
+        stage
+    }
+}
+
+/// The priors of the variables of a likelihood.
+fn priors(free: &[FreeParameter]) -> Priors {
+    let prior = |(j, f): (usize, &FreeParameter)| f.prior.map(|prior| (j, prior.mean, prior.sd));
+    Priors { terms: free.iter().enumerate().filter_map(prior).collect(), weight: 0.5 }
+}
+
+/// An estimate as a fit by likelihood ends: from where it is solved through Ipopt within the bounds of all its parameters, sums with what
+/// sessions add among them, and within the constraints; noise and gains in turn.
+///
+/// # Errors
+/// As [`super::fit`]; an estimate that no step improves is none.
+pub(crate) fn within_limits(
+    found: &Estimate,
+    integration: Integration,
+    runs: &[Run],
+    noise_prior: &NoisePrior,
+    constraints: ConstraintSettings,
+) -> Result<Estimate, FitError> {
+    let settings = FitSettings { objective: Goal::Likelihood, integration, constraints, ..FitSettings::default() };
+    let mut model = found.model.clone();
+    let (common, of_sessions): (Vec<&FreeParameter>, Vec<&FreeParameter>) =
+        found.free.iter().partition(|f| f.sessions.is_none());
+    for (i, p) in model.parameters.iter_mut().enumerate() {
+        let own = common.iter().find(|f| f.column.parameter == i);
+        (p.free, p.prior) = (own.is_some(), own.and_then(|f| f.prior));
+    }
+    let deviations: Vec<FreeParameter> = of_sessions.into_iter().cloned().collect();
+    let of_all = |i: usize| common.iter().find(|f| f.column.parameter == i).map(|f| (*f).clone());
+    let free: Vec<FreeParameter> =
+        model.free().into_iter().filter_map(of_all).chain(deviations.iter().cloned()).collect();
+    let cost = Cost::new(&model, runs, settings.cost_options())?;
+    let task = Task::new(&model, &cost, Runs::from(runs), &settings)?.beside(deviations);
+    let watch = Watch::new(&settings, task.cost.ranks());
+    let progress = &mut |_: &Progress| true;
+    let mut shared = Shared { watch, work: Work::default(), progress, rows: WorkingRows::of(&task) };
+    let priors = priors(&free);
+    let posterior = Posterior { task: &task, runs, free, noise_prior: *noise_prior };
+    let value = posterior.log_density(&task.start, &found.noise);
+    let reached = Reached { p: task.start.clone(), noise: found.noise, value };
+    let mut rounds = Rounds { reached, is_near: true, multipliers: None, count: 0 };
+    let end = task.settled(&posterior, &priors, &[], &mut rounds, &mut shared)?;
+    task.check_feasible(&end)?;
+    let Reached { p, noise, .. } = rounds.reached;
+    let mut model = task.model_at(&p);
+    for (p, own) in model.parameters.iter_mut().zip(&found.model.parameters) {
+        (p.free, p.prior) = (own.free, own.prior);
+    }
+    let log_posterior = log_posterior(&model, integration, runs, &found.free, &noise);
+    Ok(Estimate { model, noise, free: found.free.clone(), log_posterior, seen: None })
 }
 
 /// A parameter that acts in all runs, with its prior.
@@ -288,7 +420,7 @@ pub(super) fn check_ranks(cost: &Cost) -> Result<(), FitError> {
 mod tests {
     use super::*;
     use crate::diagnose::example::{RK4, model, noise, runs};
-    use crate::fit::{Fit, FitSettings, Goal, fit};
+    use crate::fit::{Fit, fit};
 
     fn settings() -> FitSettings {
         let mut settings = FitSettings { objective: Goal::Likelihood, integration: RK4, ..FitSettings::default() };
@@ -309,7 +441,8 @@ mod tests {
         let (start, runs, settings) = (off(1.05), runs(&model(), 3), settings());
         let cost = Cost::new(&start, &runs, settings.cost_options())?;
         let task = Task::new(&start, &cost, (&runs[..]).into(), &settings)?;
-        let innovations = Innovations::new(&task, &runs, noise(), &task.start);
+        let free: Vec<FreeParameter> = start.free().into_iter().map(|i| common(&start, i)).collect();
+        let innovations = Innovations::new(&task, &free, &runs, noise(), &task.start);
         let Some(quadratic) = innovations.quadratic(&task.start, true) else { return Err(FitError::NoRuns) };
         for (j, scale) in task.scaling.scales.iter().enumerate() {
             let value = |d: f64| {

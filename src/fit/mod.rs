@@ -77,6 +77,8 @@ pub use error::FitError;
 #[cfg(feature = "ipopt")]
 pub use likelihood::Likelihood;
 #[cfg(feature = "ipopt")]
+pub(crate) use likelihood::within_limits;
+#[cfg(feature = "ipopt")]
 pub use multistart::{MultiStart, StartOutcome, StartRow, multi_start, multi_start_over};
 #[cfg(feature = "ipopt")]
 pub use problem::Progress;

@@ -72,6 +72,16 @@ pub(super) struct Point {
     pub total: f64,
 }
 
+/// When an objective counts as settled before its gradient is 0, both as the solver counts them: where terms take absolute values, a
+/// gradient jumps from sample to sample, and below the size of these jumps nothing can be minimised.
+#[derive(Clone, Copy)]
+pub(super) struct Settled {
+    /// Largest gradient of the Lagrangian, violation and complementarity.
+    pub gradient: f64,
+    /// Largest change of the objective in an iteration, as a share of it (of 1 where it is less).
+    pub change: f64,
+}
+
 /// What is minimised, and in which way.
 #[derive(Clone, Copy)]
 pub(super) struct Stage<'a> {
@@ -82,6 +92,8 @@ pub(super) struct Stage<'a> {
     pub hessian: Hessian,
     pub tolerance: f64,
     pub max_iterations: usize,
+    /// What ends it where its tolerance is not met; none: the solver's own defaults.
+    pub settled: Option<Settled>,
     /// How often the solver may start again from a better point that it left.
     pub restarts: usize,
 }

@@ -74,6 +74,14 @@ pub(super) struct End {
     pub parts: usize,
 }
 
+/// What the second solve of a check minimises: the objective itself, or that of a few of the runs.
+#[derive(Clone, Copy)]
+pub(super) struct Search<'a> {
+    pub evaluations: &'a Evaluations<'a>,
+    /// Its samples over those of the objective.
+    pub share: f64,
+}
+
 /// A step in scaled parameters, and by how much a quadratic model of the cost expects it to fall.
 struct NewtonStep {
     direction: DVector<f64>,
@@ -94,8 +102,15 @@ impl Task<'_> {
         let mut curvature = Curvature::unknown(from.len());
         let mut end = self.weighed(&from, multipliers, &mut priors, &mut curvature, &mut shared)?;
         let (mut checks, mut is_checked) = ([0, 0], false);
+        // Of many runs a few tell of another minimum as well; whether it is lower is a matter of all.
+        let few = self.few_runs()?;
+        let few = few.as_ref().map(|(runs, weights)| self.cost_of(runs, weights.clone())).transpose()?.flatten();
+        let of_few = few.as_ref().map(|few| Evaluations::of(few));
+        let share = few.as_ref().map_or(1.0, |few| few.samples() as f64 / self.cost.samples() as f64);
+        let search = Search { evaluations: of_few.as_ref().unwrap_or(&self.evaluations), share };
         while end.may_be_minimum() && !shared.watch.is_over() {
-            let lower = self.lower_nearby(&self.stage(&self.evaluations, &priors), &end, checks[0], &mut shared)?;
+            let stage = self.stage(&self.evaluations, &priors);
+            let lower = self.lower_nearby(&stage, search, &end, checks[0], &mut shared)?;
             checks[0] += 1;
             let Some(lower) = lower else {
                 is_checked = true;
@@ -147,13 +162,15 @@ impl Task<'_> {
     /// The last stage: all runs, to the tolerance of the settings.
     pub(super) fn stage<'a>(&'a self, evaluations: &'a Evaluations<'a>, priors: &'a Priors) -> Stage<'a> {
         let FitSettings { hessian, tolerance, max_iterations, .. } = *self.settings;
-        Stage { evaluations, priors, scaling: &self.scaling, hessian, tolerance, max_iterations, restarts: RESTARTS }
+        let (scaling, settled, restarts) = (&self.scaling, None, RESTARTS);
+        Stage { evaluations, priors, scaling, hessian, tolerance, max_iterations, settled, restarts }
     }
 
     /// A feasible point of lower cost that a second solve finds from a disturbed point near an optimum.
     pub(super) fn lower_nearby(
         &self,
         stage: &Stage,
+        search: Search,
         end: &Descent,
         round: usize,
         shared: &mut Shared,
@@ -178,15 +195,8 @@ impl Task<'_> {
         };
         let scales = units.iter().zip(&self.scaling.scales).map(|(unit, scale)| unit * scale).collect();
         let scaling = Scaling::of(scales, &self.rows);
-        // Of many runs a few tell of another minimum as well; whether it is lower is a matter of all.
-        let few = if std::ptr::eq(stage.evaluations, &self.evaluations) { self.few_runs()? } else { None };
-        let cost = match &few {
-            Some((runs, weights)) => self.cost_of(runs, weights.clone())?,
-            None => None,
-        };
-        let evaluations = cost.as_ref().map(|cost| Evaluations::of(cost));
         let second = Stage {
-            evaluations: evaluations.as_ref().unwrap_or(stage.evaluations),
+            evaluations: search.evaluations,
             scaling: &scaling,
             hessian: Hessian::LimitedMemory,
             tolerance: (2.0 * CHECK_LEFT * BETTER * local.value).sqrt().max(stage.tolerance),
@@ -198,8 +208,7 @@ impl Task<'_> {
         let outer = std::mem::take(&mut shared.work);
         let found = self.descend(&second, from, &mut Curvature::unknown(end.p.len()), shared);
         let own = std::mem::replace(&mut shared.work, outer);
-        let share = cost.as_ref().map_or(1.0, |cost| cost.samples() as f64 / self.cost.samples() as f64);
-        shared.work.join(&own, share);
+        shared.work.join(&own, search.share);
         let found = found?;
         let (before, after) = (stage.total(&end.p), stage.total(&found.p));
         let lower = before.zip(after).is_some_and(|(before, after)| after < before - BETTER * before.abs());

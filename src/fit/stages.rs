@@ -31,6 +31,12 @@ const MANY_RUNS: usize = 96;
 const FEW_RUNS: usize = 24;
 const FEW_SHARE: usize = 16;
 
+/// Runs from which on a fit by likelihood begins with a few of them, how many these are at least, and the share of all that they are at
+/// least. With priors on what a few runs do not determine, and noise estimated along, fewer bring it near than where a cost is all there is.
+const MANY_BY_LIKELIHOOD: usize = 24;
+const FEW_BY_LIKELIHOOD: usize = 8;
+const SHARE_BY_LIKELIHOOD: usize = 5;
+
 /// What a stage fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Sample {
@@ -124,6 +130,17 @@ fn few(runs: Runs, weights: &[[f64; STATES]], of: usize) -> Result<(RunStore, Ve
         }
     }
     Ok((drawn, kept))
+}
+
+/// A few of the runs for a fit by likelihood, where there are many: those whose names have the lowest hashes, the same in whatever order
+/// runs are listed.
+pub(super) fn drawn(runs: &[Run]) -> Option<Vec<Run>> {
+    let few = (runs.len() / SHARE_BY_LIKELIHOOD).max(FEW_BY_LIKELIHOOD);
+    let mut order: Vec<usize> = (0..runs.len()).collect();
+    order.sort_by_cached_key(|i| (hash(&runs[*i].name), runs[*i].name.clone()));
+    order.truncate(few);
+    order.sort_unstable();
+    (runs.len() >= MANY_BY_LIKELIHOOD).then(|| order.into_iter().map(|i| runs[i].clone()).collect())
 }
 
 /// Hash of a text by Fowler, Noll and Vo (FNV-1a, 64 bits), its high half folded into the low one.
@@ -223,6 +240,21 @@ mod tests {
         let drawn = names(&runs);
         assert!((20..=60).contains(&drawn.len()), "{drawn:?}");
         assert_eq!(drawn, names(&backwards));
+    }
+
+    #[test]
+    fn a_fit_by_likelihood_begins_with_the_same_few_runs_in_whatever_order_they_are_listed() {
+        let named = |i: usize| Run { name: format!("run {i} 0 s"), ..run(20) };
+        let runs: Vec<Run> = (0..40).map(named).collect();
+        let backwards: Vec<Run> = runs.iter().rev().cloned().collect();
+        let names = |runs: &[Run]| {
+            let mut names: Vec<String> = drawn(runs).into_iter().flatten().map(|r| r.name).collect();
+            names.sort();
+            names
+        };
+        assert_eq!(names(&runs).len(), 8);
+        assert_eq!(names(&runs), names(&backwards));
+        assert!(drawn(&runs[..23]).is_none());
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::evaluations::Evaluations;
 use super::scaling::Scaling;
 use super::settings::FitSettings;
 use super::subspace::null_space;
+use crate::likelihood::parameters::FreeParameter;
 use crate::model::{Model, Parameter};
 use crate::recording::Runs;
 use nalgebra::{DMatrix, DVector};
@@ -37,6 +38,8 @@ pub(super) struct Task<'a> {
     pub start_cost: f64,
     /// Sessions whose additions to the parameters enter the runs.
     sessions: Vec<String>,
+    /// What some sessions add to parameters, as variables after the free parameters.
+    deviations: Vec<FreeParameter>,
 }
 
 /// Rows and bounds that hold a point back.
@@ -74,7 +77,49 @@ impl<'a> Task<'a> {
             met.into_iter().filter(|s| model.sessions.contains_key(s)).collect()
         };
         sessions.push(String::new());
-        Ok(Self { model, cost, evaluations, runs, settings, rows, scaling, bounds, start, start_cost, sessions })
+        let deviations = Vec::new();
+        Ok(Self {
+            model,
+            cost,
+            evaluations,
+            runs,
+            settings,
+            rows,
+            scaling,
+            bounds,
+            start,
+            start_cost,
+            sessions,
+            deviations,
+        })
+    }
+
+    /// With what some sessions add to parameters as further variables. Where the parameter itself is free, its sum with the addition is a
+    /// row between the bounds of the parameter.
+    pub fn beside(mut self, deviations: Vec<FreeParameter>) -> Self {
+        let own = self.start.len();
+        let variables = own + deviations.len();
+        self.rows.iter_mut().for_each(|row| row.coefficients.resize(variables, 0.0));
+        let mut scales = self.scaling.scales;
+        for (k, deviation) in deviations.iter().enumerate() {
+            let p = &self.model.parameters[deviation.column.parameter];
+            self.start.push(deviation.value(self.model));
+            scales.push(deviation.column.scale.abs());
+            let common = self.cost.free().iter().position(|i| *i == deviation.column.parameter);
+            self.bounds
+                .push(common.map_or((p.lower - p.value, p.upper - p.value), |_| (f64::NEG_INFINITY, f64::INFINITY)));
+            let Some(common) = common.filter(|_| p.lower.is_finite() || p.upper.is_finite()) else { continue };
+            let mut coefficients = vec![0.0; variables];
+            (coefficients[common], coefficients[own + k]) = (1.0, 1.0);
+            let quantity = format!("{} in some sessions", p.info.symbol);
+            let (lower, upper, unit) = (p.lower, p.upper, p.info.unit);
+            self.rows.push(Row { rule: "bounds", quantity, unit, coefficients, constant: 0.0, lower, upper });
+        }
+        let inside = |(p, (lower, upper)): (&f64, &(f64, f64))| p.max(*lower).min(*upper);
+        self.start = self.start.iter().zip(&self.bounds).map(inside).collect();
+        self.scaling = Scaling::of(scales, &self.rows);
+        self.deviations = deviations;
+        self
     }
 
     /// How costs of this task are evaluated.
@@ -89,11 +134,14 @@ impl<'a> Task<'a> {
         FitError::Diverged { run, time }
     }
 
-    /// The model with the free parameters at `p`.
+    /// The model with the free parameters, and what sessions add to them, at `p`.
     pub fn model_at(&self, p: &[f64]) -> Model {
         let mut model = self.model.clone();
         for (i, value) in self.cost.free().iter().zip(p) {
             model.parameters[*i].value = *value;
+        }
+        for (deviation, value) in self.deviations.iter().zip(&p[self.cost.free().len()..]) {
+            deviation.set(&mut model, *value);
         }
         model
     }

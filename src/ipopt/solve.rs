@@ -77,8 +77,12 @@ impl Drop for SolvingMark {
 /// Turns what Ipopt left into a solution whose every number was computed.
 fn settle(mut context: Context<'_>, outcome: Outcome) -> Result<Solution, IpoptError> {
     let Outcome { status, x, mut objective, mut constraint_values, .. } = outcome;
+    let none = |status: Status, context: &Context| {
+        let (iterations, counts) = (context.iterations, context.counts);
+        Err(IpoptError::NoIterate { status, iterations, counts })
+    };
     if !all_finite(&x) {
-        return Err(IpoptError::NoIterate { status });
+        return none(status, &context);
     }
     if !status.is_success() {
         // After a panic this runs the caller's code once more; if it panics again there is nothing to report.
@@ -89,7 +93,7 @@ fn settle(mut context: Context<'_>, outcome: Outcome) -> Result<Solution, IpoptE
         }));
         match evaluated {
             Ok(Some(value)) => objective = value,
-            Ok(None) | Err(_) => return Err(IpoptError::NoIterate { status }),
+            Ok(None) | Err(_) => return none(status, &context),
         }
     }
     Ok(Solution {

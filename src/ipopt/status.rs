@@ -2,6 +2,7 @@
 //! It evaluates nothing.
 
 use super::options::OptionValue;
+use super::problem::Counts;
 use std::fmt;
 
 /// How a solve ended. Its text says in words what happened and what to do next.
@@ -238,5 +239,9 @@ pub enum IpoptError {
     NoIterate {
         /// How the solve ended.
         status: Status,
+        /// Iterations it took.
+        iterations: usize,
+        /// Evaluations it took.
+        counts: Counts,
     },
 }
