@@ -11,6 +11,8 @@ use trimtab::recording::Run;
 mod by_hand;
 #[path = "support/case.rs"]
 mod case;
+#[path = "../experiments/src/freed.rs"]
+mod free_more;
 #[path = "support/freed.rs"]
 mod freed;
 #[path = "../experiments/src/interleaved.rs"]

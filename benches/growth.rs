@@ -11,6 +11,8 @@ use trimtab::plot::{Axis, BLUE, Figure, GREEN, GREY, Layer, Panel, VERMILLION};
 #[path = "support/case.rs"]
 #[allow(dead_code, reason = "settings of a fit are for the bench alone")]
 mod case;
+#[path = "../experiments/src/freed.rs"]
+mod free_more;
 #[path = "support/freed.rs"]
 mod freed;
 #[path = "../experiments/src/interleaved.rs"]

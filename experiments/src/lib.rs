@@ -6,6 +6,7 @@ pub mod demo;
 pub mod demo_concealed;
 pub mod drawn_fits;
 pub mod folders;
+pub mod freed;
 pub mod injected;
 pub mod interleaved;
 pub mod killed;

@@ -71,6 +71,7 @@ impl Fit {
             Derivatives::Dual => "exact, dual numbers",
             Derivatives::NumDual => "exact, num-dual",
             Derivatives::FiniteDifferences => "central differences",
+            Derivatives::ForwardDifferences => "forward differences",
         };
         let hessian = match self.settings.hessian {
             Hessian::GaussNewton => "Gauss-Newton",

@@ -5,7 +5,7 @@ use super::artefact::Artefact;
 use super::{curves, distributions, gradient, limits, performance, scenarios, table1, table2};
 
 /// Every table and figure.
-pub static ARTEFACTS: [&Artefact; 8] = [
+pub static ARTEFACTS: [&Artefact; 9] = [
     &table1::TABLE1,
     &table2::TABLE2,
     &performance::PERFORMANCE,
@@ -14,4 +14,5 @@ pub static ARTEFACTS: [&Artefact; 8] = [
     &distributions::DISTRIBUTIONS,
     &limits::LIMITS,
     &gradient::report::GRADIENT,
+    &gradient::benchmark::BENCHMARK,
 ];

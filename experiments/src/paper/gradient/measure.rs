@@ -25,7 +25,7 @@ const SCATTER: f64 = 0.1;
 /// Iterations after which a fit has failed.
 const PATIENCE: usize = 300;
 /// One Euler step a sample: the comparison is of gradients, and needs many fits.
-const INTEGRATION: Integration = Integration { method: Method::Euler, substeps: 1 };
+pub(super) const INTEGRATION: Integration = Integration { method: Method::Euler, substeps: 1 };
 
 /// One way to fit.
 pub struct Way {
@@ -45,6 +45,18 @@ impl Way {
 
     const fn differences(name: &'static str, step: f64, hessian: Hessian, color: Color) -> Self {
         Self { name, color, derivatives: Derivatives::FiniteDifferences, step, hessian }
+    }
+
+    fn settings(&self, case: &Case) -> FitSettings {
+        FitSettings {
+            derivatives: self.derivatives,
+            difference_step: self.step,
+            hessian: self.hessian,
+            integration: INTEGRATION,
+            max_iterations: PATIENCE,
+            polish_steps: 0,
+            ..case.setup.fit
+        }
     }
 
     /// Whether its gradients are exact.
@@ -81,6 +93,12 @@ pub struct Course {
 }
 
 impl Course {
+    /// The lowest cost on the way that keeps the constraints.
+    pub fn feasible(&self) -> Option<f64> {
+        let kept = self.path.iter().filter(|(_, violation, _)| *violation <= FEASIBLE);
+        kept.map(|(cost, _, _)| *cost).reduce(f64::min)
+    }
+
     /// The first iteration that keeps the constraints within 0.1 % of the cost `best`.
     pub fn reached(&self, best: f64) -> Option<usize> {
         let near = |(cost, violation, _): &(f64, f64, f64)| *cost <= best * (1.0 + NEAR) && *violation <= FEASIBLE;
@@ -147,14 +165,17 @@ pub fn courses(case: &Case, model: &Model, runs: &[Run]) -> Result<Vec<Course>, 
     let mut all: Vec<Vec<Course>> = WAYS.iter().map(|_| Vec::with_capacity(FIT_ROUNDS)).collect();
     for _ in 0..FIT_ROUNDS {
         for (way, courses) in WAYS.iter().zip(&mut all) {
-            courses.push(course(case, model, runs, way)?);
+            courses.push(course(model, runs, &way.settings(case))?);
         }
     }
-    WAYS.iter().zip(all).map(|(way, courses)| least(case, way.name, courses)).collect()
+    WAYS.iter().zip(all).map(|(way, courses)| of_rounds(case, way.name, courses)).collect()
 }
 
 /// The course of a fit that was repeated, with the least of its times.
-fn least(case: &Case, way: &str, courses: Vec<Course>) -> Result<Course, PaperError> {
+///
+/// # Errors
+/// [`PaperError::Scatter`] where the times do not repeat.
+pub(super) fn of_rounds(case: &Case, way: &str, courses: Vec<Course>) -> Result<Course, PaperError> {
     let times: Vec<f64> = courses.iter().map(|c| c.seconds).collect();
     let seconds = checked(case, way, Repeats::of(&times))?;
     let mut courses = courses.into_iter();
@@ -174,24 +195,18 @@ fn checked(case: &Case, what: &str, Repeats { least, scatter }: Repeats) -> Resu
     Err(PaperError::Scatter { ship: case.ship.name(), what: what.to_owned(), percent: 100.0 * scatter })
 }
 
-/// Fits in one way.
-fn course(case: &Case, model: &Model, runs: &[Run], way: &Way) -> Result<Course, PaperError> {
-    let settings = FitSettings {
-        derivatives: way.derivatives,
-        difference_step: way.step,
-        hessian: way.hessian,
-        integration: INTEGRATION,
-        max_iterations: PATIENCE,
-        polish_steps: 0,
-        ..case.setup.fit
-    };
+/// The course of one fit.
+///
+/// # Errors
+/// [`PaperError::Fit`].
+pub(super) fn course(model: &Model, runs: &[Run], settings: &FitSettings) -> Result<Course, PaperError> {
     let begin = processor_time();
     let mut path = Vec::new();
     let mut watch = |p: &Progress| {
         path.push((p.cost, p.violation, processor_time() - begin));
         true
     };
-    let fit = fit(model, runs, &settings, &mut watch)?;
+    let fit = fit(model, runs, settings, &mut watch)?;
     let seconds = processor_time() - begin;
     Ok(Course {
         iterations: fit.iterations,
