@@ -340,10 +340,7 @@ impl Competition<'_> {
             let more: Vec<usize> = near.filter(|c| alike.contains(c) && !set.contains(c)).collect();
             if !more.is_empty() {
                 let titles: Vec<&str> = more.iter().map(|c| candidates[*c].mechanism.title).collect();
-                why = format!(
-                    "{why}; the kinematic consistency of the sensors does not distinguish it from {}",
-                    titles.join(", ")
-                );
+                why = format!("{why}; the sensors' kinematics do not distinguish it from {}", titles.join(", "));
                 set.extend(more);
             }
         }

@@ -116,7 +116,7 @@ numbers! {
     REMAINDER: f64 = 0.4, SEEDS;
     /// Share of its statistic that an amplitude may lose where it is kept inside the bounds of its parameters.
     BEYOND_BOUNDS: f64 = 0.25, SEEDS;
-    /// Likeness of two mechanisms from which on they are compared by a joint fit.
+    /// Likeness of two mechanisms from which on they are refitted and compared.
     LIKENESS: f64 = 0.3, SEEDS;
     /// Log-likelihood that a further parameter must bring.
     PARAMETER_PRICE: f64 = 2.0, "twice the price in the information criterion of Akaike";

@@ -42,7 +42,8 @@ pub fn reached(score: &Score) -> bool {
 /// Weakest signal-to-noise ratio at which a detection has an aim.
 const WEAKEST: f64 = 6.0;
 
-/// Whether some answer about a case is wrong, or the case has no score. An undetected effect below [`WEAKEST`] is none.
+/// Whether some answer about a case is wrong, or the case has no score. That an effect weaker than any with an aim is not detected is
+/// no failure.
 pub fn failed(score: &Score) -> bool {
     let s = score;
     let aimed = s.snr_asked.is_none_or(|snr| snr >= WEAKEST);
