@@ -379,7 +379,7 @@ fn files_over_one_time_are_recordings_of_their_own_or_refused() {
     // A file of headings that are not those of the log.
     let headings: String = sailed(0.0).iter().map(|row| format!("{},{:.1}\n", iso(row.t), row.heading + 1.0)).collect();
     let said = import(&[a.clone(), file("e.csv", &format!("time,heading\n{headings}"))], &ImportSettings::default());
-    contains_all(&said.unwrap_err().to_string(), &["a.csv", "e.csv", "both tell `heading`", "2021-06-03 10:00:00"]);
+    contains_all(&said.unwrap_err().to_string(), &["a.csv", "e.csv", "both have `heading`", "2021-06-03 10:00:00"]);
     // A copy is one.
     let imported = import(&[a, file("f.csv", &text)], &ImportSettings::default()).unwrap();
     assert_eq!((imported.recordings.len(), imported.recordings[0].rows.t.len()), (1, 600));

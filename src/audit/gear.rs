@@ -66,7 +66,7 @@ fn told(channel: Channel, fastest: &Fastest, limit: f64, reached: usize) -> Issu
         fastest.lines.1,
         sig(fastest.rate / limit, 2),
     );
-    let next = "look at the rows before it: where values were held or lost, leave their fields blank, so that they count as a dropout, \
+    let next = "look at the rows before it: where values were repeated or lost, leave their fields blank, so that they count as a dropout, \
                 or use the run from there with `from`";
     Issue::new(Severity::Warning, "leap", text, next).of(channel).at(fastest.lines)
 }

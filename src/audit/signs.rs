@@ -180,7 +180,7 @@ impl Track {
                     "is the heading counted anticlockwise from east? `psi = { sign = -1, offset = 90 }`, for one in deg, in a column map makes it clockwise from north"
                 }
                 (true, false) => {
-                    "is y positive to port, or heading counted anticlockwise? The yaw rate speaks for the heading: set `sign = -1` for `psi` in a column map"
+                    "is y positive to port, or heading counted anticlockwise? The yaw rate agrees with the heading: set `sign = -1` for `psi` in a column map"
                 }
                 (false, true) => {
                     "are x and y exchanged, or heading and yaw rate counted anticlockwise, from east? exchange them, or set `sign = -1` for `r` and `psi = { sign = -1, offset = 90 }`, for one in deg, in a column map"

@@ -22,12 +22,12 @@ Compares the recordings of a study with its model in four steps:
   locates    in which equation, when, and in which region of state and inputs a force acts that
              the model lacks
   names      which mechanism of the catalogue explains the force, or which mechanisms these data
-             cannot tell apart
+             do not distinguish
   models     adds the mechanism, with its size in physical units, and says which parameters had
              absorbed it
   proves     errors before and after on the test runs, which no earlier step has used
 The verdict can also be: nothing is missing, only gusts act, a sensor or the integration step is
-at fault, the catalogue has no such mechanism, or the recordings cannot tell.
+at fault, the catalogue has no such mechanism, or the recordings do not decide.
 
 The training runs of the study locate, name and model; its test runs only prove. Settings are in
 the table [diagnose] of the study: alpha (chance of naming anything when nothing is missing,
@@ -39,8 +39,8 @@ the error rates of this study, 0), seed (of bootstrap and simulations).
 
 Every finding has a grade. Confirmed: test runs are better with it, by log-likelihood or by free
 simulation (interval above zero), not worse by the other, and every repetition finds it. Suspected:
-the training runs speak for it, test runs cannot tell or there are none. What test runs refute, what
-no interval tells from zero, what is too small to matter and what most repetitions do not find is
+the training runs support it, test runs do not decide or there are none. What test runs refute, what
+has zero in the interval of its size, what is too small to matter and what most repetitions do not find is
 not named, and is listed with the reason. Without test runs every fourth recording is set aside for
 the proof, from eight on.";
 

@@ -35,19 +35,19 @@ Reads, by content and not by name:
               verified, a time before each sentence is used, and two talkers are two columns
   Parquet     flat columns of numbers, timestamps or text
 
-What each column is taken for is told with its evidence. Of several columns for one quantity the one is \
+The answer lists what each column is taken for, with the evidence. Of several columns for one quantity the one is \
     taken whose name says it most fully, and which agrees with the data. Units and signs are decided from the data \
-    where they tell: heading and course by the track, speed by the speed of the track, yaw rate by the \
-    heading, rudder by its size and by the way the ship turns, propeller rate by its size. What nothing \
-    tells is asked for, everything in one message.
+    where they determine them: heading and course by the track, speed by the speed of the track, yaw rate by the \
+    heading, rudder by its size and by the way the ship turns, propeller rate by its size. What the data do \
+    not determine is asked for, everything in one message.
 
 Positions become metres on the plane that is tangent to WGS84 amid the track. Without u and v these \
     are u = SOG cos(COG - heading), v = SOG sin(COG - heading), over ground at the antenna, or derived \
     from position and heading; `reference_point` in columns.toml takes them to midship.
 
-No gap is filled, but by --bridge and from channels that tell the same (the yaw rate from the heading): \
+No gap is filled, but by --bridge and from channels with the same content (the yaw rate from the heading): \
     a row without a value keeps an empty field, a gap longer than --session-gap ends a recording, and a run \
-    ends at every gap; what that costs is told. A clock that steps back, and a second file over the same \
+    ends at every gap; the answer says what that costs. A clock that steps back, and a second file over the same \
     time, make a recording of their own. Channels of other rates are brought to the rows of the slower \
     of position and heading: a faster one as its mean over a step, a slower one on straight lines between \
     two successive samples.";

@@ -62,7 +62,7 @@ Begin with
   trimtab plan STUDY                 before going to sea: what would these trials show?
 
 A STUDY is a TOML file that names ship, model and recordings; `trimtab demo` writes one with comments.
-Topics of `trimtab help`: tutorial, study, columns, channels, ship, model, parameters, diagnosis, theory, faq, glossary.
+Topics of `trimtab help`: tutorial, study, columns, channels, ship, model, parameters, diagnosis, answer, theory, faq, glossary.
 
 Exit codes
   0  done

@@ -47,7 +47,7 @@ pub struct SplitArgs {
     /// What comes to one side as a whole: block (a manoeuvre) or session.
     #[arg(long, value_name = "WHAT", default_value = "block", value_parser = ["block", "session"])]
     by: String,
-    /// How sessions are told apart: gaps, gaps=SECONDS, dates, files, or a pattern of file names with `{}` for the session.
+    /// How sessions are separated: gaps, gaps=SECONDS, dates, files, or a pattern of file names with `{}` for the session.
     #[arg(long, value_name = "HOW")]
     sessions: Option<String>,
     /// Longest run [s]; forty times the time in which the ship turns ten degrees if not given.

@@ -21,12 +21,12 @@ use trimtab::statistics::student_quantile;
 use trimtab::sweep::{Pair, Profile, Sensitivity, SweepSettings, pair, profile, sensitivities};
 
 const LONG: &str = "\
-Fits the model to the training runs, and then asks what these runs determine: each parameter is held at values around its \
+Fits the model to the training runs, and then asks what these runs determine: each parameter is fixed at values around its \
     estimate and all others are fitted again (the profile of the likelihood), and each is moved by its standard error to see what \
     that does to the tracks and to the standard trials in calm water.
 
 A parameter whose profile stays below the 95 % line is not determined: fix it, give it a prior (`prior = \"default\"`), or record \
-    runs that show it (`trimtab plan`). Two whose pair has a long valley cannot be told apart. Many starts: `trimtab fit --starts N`.";
+    runs that show it (`trimtab plan`). Two whose pair has a long valley cannot be distinguished. Many starts: `trimtab fit --starts N`.";
 
 const AFTER: &str = "\
 Example:

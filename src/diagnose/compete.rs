@@ -289,9 +289,9 @@ impl Competition<'_> {
         let p = found.hypothesis.p;
         let others: Vec<&str> = set[1..].iter().map(|i| candidates[*i].mechanism.title).collect();
         let why = if others.is_empty() {
-            "what the sensors say of each other shows it and no other error of theirs".to_owned()
+            "the kinematic consistency of the sensors shows it and no other error of theirs".to_owned()
         } else {
-            format!("what the sensors say of each other does not tell it from {}", others.join(", "))
+            format!("the kinematic consistency of the sensors does not distinguish it from {}", others.join(", "))
         };
         (is_shown && self.is_confirmed(&found)).then(|| self.selected(self.pooled(found), true, p, set, why))
     }
@@ -340,7 +340,7 @@ impl Competition<'_> {
             let more: Vec<usize> = near.filter(|c| alike.contains(c) && !set.contains(c)).collect();
             if !more.is_empty() {
                 let titles: Vec<&str> = more.iter().map(|c| candidates[*c].mechanism.title).collect();
-                why = format!("{why}; what the sensors say of each other does not tell it from {}", titles.join(", "));
+                why = format!("{why}; the sensors' kinematics do not distinguish it from {}", titles.join(", "));
                 set.extend(more);
             }
         }
@@ -384,7 +384,7 @@ impl Competition<'_> {
                 format!("{} (likeness {likeness:.2})", title(e))
             };
             let alike: Vec<String> = others.iter().map(alike).collect();
-            return format!("these fit within {width:.0} units of log-likelihood of each other: {}", alike.join(", "));
+            return format!("these fit equally well, within {width:.0} units of log-likelihood: {}", alike.join(", "));
         }
         let Some(next) = entries.get(1) else {
             return "no other mechanism of the catalogue fits nearly as well".into();

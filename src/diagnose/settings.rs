@@ -27,7 +27,7 @@ pub struct Settings {
     pub substeps: usize,
     /// Seed of the bootstrap.
     pub seed: u64,
-    /// Whether the analysis is repeated with what is named, on the same recordings told otherwise, to see whether it is stable.
+    /// Whether the analysis is repeated with what is named, on transformed recordings, to see whether it is stable.
     pub repeat: bool,
     /// Simulated studies with nothing missing, and as many with what was found, that are analysed for the study's own error rates.
     pub calibrate: usize,
@@ -120,11 +120,11 @@ numbers! {
     REMAINDER: f64 = 0.4, SEEDS;
     /// Share of its statistic that an amplitude may lose where it is kept inside the bounds of its parameters.
     BEYOND_BOUNDS: f64 = 0.25, SEEDS;
-    /// Likeness of two mechanisms from which on they are held against each other.
+    /// Likeness of two mechanisms from which on they are refitted and compared.
     LIKENESS: f64 = 0.3, SEEDS;
     /// Log-likelihood that a further parameter must bring.
     PARAMETER_PRICE: f64 = 2.0, "twice the price in the information criterion of Akaike";
-    /// Mechanisms closer than this in log-likelihood cannot be told apart.
+    /// Mechanisms closer than this in log-likelihood cannot be distinguished.
     INDISTINGUISHABLE: f64 = 3.0, "a likelihood ratio of 20";
     /// That difference as a share of the gain of a force or of the ship's own physics, whose law is known only so well.
     FORM_TOLERANCE: f64 = 0.1, SEEDS;

@@ -88,7 +88,7 @@ pub fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) ->
             let rival = by_name(set.get(1)?)?;
             Some(NextTrial {
                 trial: rival.trial.into(),
-                why: format!("it tells {} from {}", by_name(set.first()?)?.title, rival.title),
+                why: format!("it distinguishes {} from {}", by_name(set.first()?)?.title, rival.title),
             })
         }
         Verdict::Named | Verdict::Sensor => {
@@ -97,7 +97,7 @@ pub fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) ->
         }
         Verdict::Insufficient => Some(NextTrial {
             trial: "turning circles both ways, a zigzag and a crash stop, each on two headings, in two sessions".into(),
-            why: "with so few runs no mechanism can be told from another".into(),
+            why: "with so few runs no mechanism can be distinguished from another".into(),
         }),
         _ => None,
     }
@@ -164,7 +164,7 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
 /// That weather cannot be told from the ship itself.
 fn not_isolated(f: &Finding) -> String {
     format!(
-        "These recordings cannot tell: {} is significant, but on the headings that were sailed the ship's own parameters and its sensors \
+        "These recordings do not decide: {} is significant, but on the headings that were sailed the ship's own parameters and its sensors \
          (a side force, trim, resistance, the zero of the compass, the scale of the log) can take over nearly all of its effect; \
          the same runs on opposite headings would part them.",
         f.title
@@ -327,7 +327,7 @@ fn together(worse: Option<[f64; 2]>) -> String {
 fn one_of(f: &Finding) -> String {
     if f.mechanism != PUSH {
         return format!(
-            "Something is missing, and these data cannot tell which of: {}{}.",
+            "Something is missing, and these data do not decide which of: {}{}.",
             f.confidence_set.join(", "),
             proof(f)
         );

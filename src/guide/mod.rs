@@ -37,7 +37,8 @@ chapters! {
     ship, "every key of a ship file";
     model, "every key of a model file";
     parameters, "which parameters these data determine";
-    diagnosis, "how to read a diagnosis: verdicts, grades, JSON";
+    diagnosis, "how to read a diagnosis: verdicts, grades, proof";
+    answer, "every key of diagnosis.json, and the numbers on which a verdict turns";
     theory, "the equations: model, simulation, fit, measures, diagnosis";
     faq, "questions and answers";
     glossary, "the words of this project";

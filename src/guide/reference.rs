@@ -50,7 +50,7 @@ pub fn tables(chapter: &str) -> Vec<Table> {
 pub fn listing(chapter: &str) -> String {
     match chapter {
         "channels" => channels(),
-        "diagnosis" => {
+        "answer" => {
             let keys: String = keys().map(|(key, meaning)| format!("- `{key}`: {}\n", escaped(meaning))).collect();
             format!("{keys}\n## The numbers on which a verdict turns\n\n{}", numbers())
         }

@@ -36,7 +36,7 @@ pub enum ImportError {
         message: String,
     },
     /// What the files do not tell: everything at once, each with the flag to pass.
-    #[error("the files do not tell everything that is needed: {}; pass what is asked for and import again", .0.join("; "))]
+    #[error("the files do not contain everything that is needed: {}; pass what is asked for and import again", .0.join("; "))]
     Undecided(
         /// What is not known, and the flag that says it.
         Vec<String>,

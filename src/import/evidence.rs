@@ -355,7 +355,7 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
         }
         _ => {
             verdict.doubt =
-                Some("the recordings do not tell its sign: positive must turn the ship to starboard".to_owned());
+                Some("the recordings do not determine its sign: positive must turn the ship to starboard".to_owned());
         }
     }
     Ok(verdict)

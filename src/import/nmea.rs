@@ -350,7 +350,7 @@ pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Vec<Log>, ImportError> {
     }
     let (clock, times, how) = times(&records);
     if times.iter().flatten().count() < 2 {
-        let message = "no sentence tells a time; RMC, GGA or ZDA is needed, or a time before each sentence".to_owned();
+        let message = "no sentence has a time; RMC, GGA or ZDA is needed, or a time before each sentence".to_owned();
         return Err(ImportError::File { path: path.to_owned(), message });
     }
     let untimed = records.iter().zip(&times).filter(|(r, t)| t.is_none() && !r.values.is_empty()).count();

@@ -101,11 +101,11 @@ fn refusal(first: &Log, second: &Log, column: &str, from: f64) -> ImportError {
     let [a, b] = [first, second].map(|log| log.path.display());
     let from = if first.clock == Clock::Utc { written(from) } else { format!("{from:.0} s") };
     let what = if first.path == second.path {
-        format!("{a} tells `{column}` twice over the same time, from {from} on, since its clock steps back")
+        format!("{a} has `{column}` twice over the same time, from {from} on, since its clock steps back")
     } else {
-        format!("{a} and {b} both tell `{column}` over the same time, from {from} on, and not the same")
+        format!("{a} and {b} both have `{column}` over the same time, from {from} on, and not the same")
     };
     ImportError::Choice(format!(
-        "{what}; which one belongs to the other files is not told: take the column out of one of them, or import each recording with its own files"
+        "{what}; nothing says which one belongs to the other files: take the column out of one of them, or import each recording with its own files"
     ))
 }

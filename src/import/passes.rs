@@ -62,7 +62,7 @@ pub fn passes(t: &[f64], repeats: impl Fn(Range<usize>, Range<usize>) -> bool) -
 pub fn stepped_back(passes: usize, place: &str) -> String {
     let times = if passes == 2 { "once".to_owned() } else { format!("{} times", passes - 1) };
     format!(
-        "its clock steps back {times}, first at {place}, over time that was told before: what follows is a recording of its own (summer time that ends, or another ship; write UTC to keep one recording)"
+        "its clock steps back {times}, first at {place}, over time that it has passed before: what follows is a recording of its own (summer time that ends, or another ship; write UTC to keep one recording)"
     )
 }
 

@@ -4,6 +4,7 @@
 mod axes;
 mod axis;
 mod canvas;
+mod compact;
 mod csv;
 mod data;
 mod error;

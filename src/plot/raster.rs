@@ -2,6 +2,7 @@
 //! What the shapes are and where they lie was decided before; nothing here knows of axes or data.
 
 use super::canvas::{Anchor, Canvas, Run, Shape, Type};
+use super::compact::encode;
 use super::error::FigureError;
 use super::font::{HALF_CAPITAL, advances, font};
 use super::geometry::{Px, Rect};
@@ -20,16 +21,7 @@ const SCALE: f32 = SAMPLES as f32;
 /// The sheet as PNG.
 pub(super) fn png(sheet: &Canvas) -> Result<Vec<u8>, FigureError> {
     let (width, height) = (sheet.width, sheet.height);
-    let rgb = pixels(sheet)?;
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Fast);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&rgb)?;
-    writer.finish()?;
-    Ok(bytes)
+    encode(&pixels(sheet)?, width, height)
 }
 
 /// The sheet as red, green and blue of each pixel, row by row.

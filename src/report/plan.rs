@@ -211,7 +211,7 @@ pub fn isolability_figure(plan: &Plan) -> Figure {
         .panel_size(420 + side, 280 + side)
         .caption(
             "Share of the gain in log-likelihood of the mechanism of a row that the mechanism of a column takes over on these trials: 1 for \
-             two that they cannot tell apart.",
+             two that they do not distinguish.",
         )
         .with(Panel::new("", axis(), axis()).with(Layer::new("share taken over", RECORDED, map)))
 }

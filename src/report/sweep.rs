@@ -114,7 +114,7 @@ pub fn profiles_figure(profiles: &[Profile], limit: f64) -> Figure {
         .columns(3)
         .panel_size(660, 520)
         .caption(
-            "Twice the fall of the log-likelihood with a parameter held at a value and all others fitted again; dashed: what its standard \
+            "Twice the fall of the log-likelihood with a parameter fixed at a value and all others fitted again; dashed: what its standard \
              error alone says. The 95 % interval lies below the horizontal line. A profile that leaves its panel, or has no point, is at \
              values that constraints or the other parameters refuse.",
         )
@@ -135,7 +135,7 @@ pub fn pairs_figure(pairs: &[Pair]) -> Figure {
         .columns(2)
         .panel_size(960, 820)
         .caption(
-            "Twice the fall of the log-likelihood with two parameters held and all others fitted again; 95 % of both lie where it is below \
+            "Twice the fall of the log-likelihood with two parameters fixed and all others fitted again; 95 % of both lie where it is below \
              about 6.",
         )
         .with_all(pairs.iter().map(panel))

@@ -13,22 +13,26 @@ use indicatif::{ProgressBar, ProgressStyle};
 use trimtab::files::{Lock, write_whole};
 use trimtab::progress::Teller;
 use trimtab::ranks::Ranks;
+use trimtab_experiments::conceal::campaign::arms::failed;
 use trimtab_experiments::conceal::campaign::calibration::calibration;
 use trimtab_experiments::conceal::campaign::figure::figure;
 use trimtab_experiments::conceal::campaign::plan::{PUSH_SEED, Planned, SEED, ci_slice, plan};
-use trimtab_experiments::conceal::campaign::rows::{Rows, put_in_order, read, row};
+use trimtab_experiments::conceal::campaign::rows::{Rows, listed, put_in_order, read, row};
 use trimtab_experiments::conceal::campaign::summary::{summary, table};
 use trimtab_experiments::conceal::error::ConcealError;
 use trimtab_experiments::conceal::judge::score::Score;
 use trimtab_experiments::conceal::runner::Runner;
-use trimtab_experiments::folders::exit;
+use trimtab_experiments::folders::{Published, exit};
 
 /// Makes, diagnoses and judges concealed cases, and compares the scores with the aims.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the results (`cases.csv`, `summary.csv`, two figures) and for each case while it runs.
-    #[arg(long, default_value = "figures/concealed")]
+    /// Folder for the table of every answer (`cases.csv`) and for each case while it runs.
+    #[arg(long, default_value = "target/concealed")]
     out: PathBuf,
+    /// Folder for `summary.csv`, the cases with a wrong answer (`failed.csv`) and two figures.
+    #[command(flatten)]
+    published: Published,
     /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json`.
     #[arg(long, default_value = "target/release/trimtab")]
     tool: PathBuf,
@@ -222,7 +226,11 @@ impl Drop for Bar {
 fn summarise(a: &Arguments, scores: &[Score]) -> Result<(), ConcealError> {
     let table = table(&summary(scores));
     println!("{table}");
-    let path = a.out.join("summary.csv");
+    let folder = a.published.folder(&a.out).map_err(|source| ConcealError::file(&a.out, source))?;
+    let path = folder.join("failed.csv");
+    let failures = listed(scores.iter().filter(|s| failed(s)))?;
+    write_whole(&path, failures.as_bytes()).map_err(|source| ConcealError::file(&path, source))?;
+    let path = folder.join("summary.csv");
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(table.header()).map_err(|e| ConcealError::content(&path, &e))?;
     for row in table.rows() {
@@ -231,7 +239,7 @@ fn summarise(a: &Arguments, scores: &[Score]) -> Result<(), ConcealError> {
     let text = writer.into_inner().map_err(|e| ConcealError::content(&path, &e))?;
     write_whole(&path, &text).map_err(|source| ConcealError::file(&path, source))?;
     for (name, figure) in [("concealed", figure(scores)), ("calibration", calibration(scores))] {
-        let stem = a.out.join(name);
+        let stem = folder.join(name);
         figure.save(&stem).map_err(|e| ConcealError::content(&stem, &e))?;
     }
     Ok(())

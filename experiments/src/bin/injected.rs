@@ -8,9 +8,11 @@ use std::time::Duration;
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
 use trimtab::report::Table;
-use trimtab_experiments::folders::exit;
+use trimtab_experiments::folders::{Published, exit};
 use trimtab_experiments::injected::error::InjectedError;
+use trimtab_experiments::injected::failure::failures;
 use trimtab_experiments::injected::figure::figure;
 use trimtab_experiments::injected::plan::{Planned, SEED, ci_slice, plan, sample};
 use trimtab_experiments::injected::results::{Results, in_order, missing};
@@ -21,9 +23,12 @@ use trimtab_experiments::injected::summary::{by_strength, scored, summary, table
 /// Injects known effects into recordings of real ships, diagnoses them, and compares the answers with the truth.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the results (`cases.csv`, `scores.csv`, `summary.csv`, `strengths.csv`, the figure) and for each case while it runs.
+    /// Folder for the tables of every answer (`cases.csv`) and its scores (`scores.csv`), and for each case while it runs.
     #[arg(long)]
     out: PathBuf,
+    /// Folder for `summary.csv`, `strengths.csv`, the cases with a wrong answer (`failed.csv`) and the figure.
+    #[command(flatten)]
+    published: Published,
     /// The program that diagnoses, called as `TOOL --threads 1 diagnose STUDY --json`.
     #[arg(long, default_value = "target/release/trimtab")]
     tool: PathBuf,
@@ -102,7 +107,8 @@ fn run(a: &Arguments) -> Result<(), InjectedError> {
         left.sort_by_key(|c| c.seed);
         execute(a, &left, &results)?;
     }
-    summarise(&a.out, &in_order(&path, &whole)?)
+    let folder = a.published.folder(&a.out).map_err(|source| InjectedError::file(&a.out, source))?;
+    summarise(&a.out, folder, &in_order(&path, &whole)?)
 }
 
 /// Number of cases by kind and set.
@@ -162,18 +168,22 @@ fn write(path: &Path, table: &Table) -> Result<(), InjectedError> {
     writer.flush().map_err(|source| InjectedError::file(path, source))
 }
 
-fn summarise(out: &Path, rows: &[Row]) -> Result<(), InjectedError> {
+/// Writes rows with a header.
+fn list<T: Serialize>(path: &Path, rows: &[T]) -> Result<(), InjectedError> {
+    let mut writer = csv::Writer::from_path(path).map_err(|e| InjectedError::content(path, &e))?;
+    rows.iter().try_for_each(|row| writer.serialize(row)).map_err(|e| InjectedError::content(path, &e))?;
+    writer.flush().map_err(|source| InjectedError::file(path, source))
+}
+
+fn summarise(out: &Path, folder: &Path, rows: &[Row]) -> Result<(), InjectedError> {
     let (aims, strengths) = (table(&summary(rows)), by_strength(rows));
     println!("{aims}\n{strengths}");
-    write(&out.join("summary.csv"), &aims)?;
-    write(&out.join("strengths.csv"), &strengths)?;
-    let path = out.join("scores.csv");
-    let mut writer = csv::Writer::from_path(&path).map_err(|e| InjectedError::content(&path, &e))?;
-    for (_, score) in scored(rows) {
-        writer.serialize(score).map_err(|e| InjectedError::content(&path, &e))?;
-    }
-    writer.flush().map_err(|source| InjectedError::file(&path, source))?;
-    let stem = out.join("injected");
+    write(&folder.join("summary.csv"), &aims)?;
+    write(&folder.join("strengths.csv"), &strengths)?;
+    let scored = scored(rows);
+    list(&out.join("scores.csv"), &scored.iter().map(|(_, score)| score).collect::<Vec<_>>())?;
+    list(&folder.join("failed.csv"), &failures(&scored))?;
+    let stem = folder.join("injected");
     figure(rows).save(&stem).map_err(|e| InjectedError::content(&stem, &e))?;
     Ok(())
 }

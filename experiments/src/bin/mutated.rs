@@ -10,19 +10,22 @@ use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use trimtab::files::write_whole;
 use trimtab_experiments::conceal::error::ConcealError;
-use trimtab_experiments::folders::exit;
+use trimtab_experiments::folders::{Published, exit};
 use trimtab_experiments::mutated::plan::{CASES, Planned, SEED, plan};
 use trimtab_experiments::mutated::row::Row;
 use trimtab_experiments::mutated::runner::Runner;
 use trimtab_experiments::mutated::summary::table;
 use trimtab_experiments::rows::Rows;
 
-/// Damages a sound study in thousands of ways, asks every command about each, and counts the answers that changed without a word.
+/// Damages a sound study in thousands of ways, asks every command about each, and counts the answers that changed without a warning.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the results (`answers.csv`, `summary.csv`) and for each study while it is asked about.
+    /// Folder for the table of every answer (`answers.csv`) and for each study while it is asked about.
     #[arg(long)]
     out: PathBuf,
+    /// Folder for `summary.csv` and the wrong answers (`failed.csv`).
+    #[command(flatten)]
+    published: Published,
     /// The program.
     #[arg(long, default_value = "target/release/trimtab")]
     tool: PathBuf,
@@ -74,11 +77,12 @@ fn run(a: &Arguments) -> Result<(), ConcealError> {
     bar.finish_and_clear();
     // A folder of studies that cannot be removed does no harm.
     let _ = std::fs::remove_dir_all(a.out.join("studies"));
-    summarise(&a.out, &path)
+    let folder = a.published.folder(&a.out).map_err(|source| ConcealError::file(&a.out, source))?;
+    summarise(folder, &path)
 }
 
-/// Puts the rows in order, each command of a case once, and counts.
-fn summarise(out: &Path, path: &Path) -> Result<(), ConcealError> {
+/// Puts the rows in order, each command of a case once, counts, and lists the wrong answers.
+fn summarise(folder: &Path, path: &Path) -> Result<(), ConcealError> {
     let mut rows: Vec<Row> = Rows::read(path)?;
     rows.sort_by(|a, b| (a.case, &a.command).cmp(&(b.case, &b.command)));
     rows.dedup_by(|a, b| (a.case, &a.command) == (b.case, &b.command));
@@ -89,6 +93,10 @@ fn summarise(out: &Path, path: &Path) -> Result<(), ConcealError> {
     // No name of a class or a change has a comma but the one that is quoted here.
     let quoted = |cells: &Vec<String>| cells.iter().map(|c| format!("\"{c}\"")).collect::<Vec<_>>();
     let text = line(counts.header()) + &counts.rows().iter().map(|row| line(&quoted(row))).collect::<String>();
-    let summary = out.join("summary.csv");
-    write_whole(&summary, text.as_bytes()).map_err(|source| ConcealError::file(&summary, source))
+    let failed: Vec<Row> = rows.into_iter().filter(|row| !row.right).collect();
+    for (name, text) in [("summary.csv", text), ("failed.csv", Rows::table(&failed)?)] {
+        let path = folder.join(name);
+        write_whole(&path, text.as_bytes()).map_err(|source| ConcealError::file(&path, source))?;
+    }
+    Ok(())
 }

@@ -10,6 +10,7 @@ pub mod case;
 pub mod configuration;
 pub mod effect;
 pub mod error;
+pub mod failure;
 pub mod figure;
 pub mod operation;
 pub mod plan;

@@ -48,7 +48,7 @@ const GLOSSARY: [(&str, &str); 15] = [
         "confirmed",
         "unseen recordings are better with the finding by log-likelihood or by free simulation (the 95 % interval of the gain is above zero), not worse by the other, and every repetition of the analysis finds it",
     ),
-    ("suspected", "the training runs speak for the finding, and unseen recordings cannot tell or are missing"),
+    ("suspected", "the training runs support the finding, and unseen recordings do not decide or are missing"),
     ("test run, unseen recording", "a run that only the proof uses: no step before has seen it"),
     (
         "free simulation",
@@ -119,7 +119,7 @@ pub(super) fn data(d: &Diagnosis, from: &Provenance) -> Section {
     section = match from.doubts.as_deref() {
         None => section,
         Some([]) => section.text("The audit of the recordings found neither errors nor warnings."),
-        Some(doubts) => section.text("The audit of the recordings tells:").list(doubts),
+        Some(doubts) => section.text("The audit of the recordings found:").list(doubts),
     };
     let mut files = Table::new(["file", "last change (UTC)", "SHA-256"]);
     for f in from.files.iter().take(MOST_FILES) {

@@ -39,7 +39,7 @@ fn grade_sentence(f: &Finding) -> String {
             format!("confirmed: unseen recordings are better with it, and no repetition misses it ({tested})")
         }
         _ => format!(
-            "suspected: the training runs speak for it ({tested}), and unseen recordings cannot tell or are missing"
+            "suspected: the training runs support it ({tested}), and unseen recordings do not decide or are missing"
         ),
     }
 }
@@ -157,7 +157,7 @@ fn gains(h: &FindingProof, i: usize) -> Markup {
             }
         })
     };
-    let agreement = "Gain in log-likelihood of what their sensors say of each other";
+    let agreement = "Gain in log-likelihood of their sensors' kinematic consistency";
     let keys = ["log_likelihood_gain", "log_likelihood_ci95"];
     let all = [
         one(agreement, ["agreement_gain", "agreement_ci95"], h.agreement_gain, h.agreement_ci95, 1.0, ""),

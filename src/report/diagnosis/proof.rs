@@ -18,7 +18,7 @@ pub(super) fn gains(h: &FindingProof) -> Vec<String> {
         gain.map(|gain| format!("{of} {}{interval}", say(gain)))
     };
     let whole = |v: f64| fixed(v, 0);
-    let agreement = "what their sensors say of each other likelier by";
+    let agreement = "log-likelihood of their sensors' kinematic consistency by";
     [
         gain(agreement, h.agreement_gain, h.agreement_ci95, &whole),
         gain("cVDM better by", h.improvement, h.improvement_ci95, &percent),

@@ -122,7 +122,9 @@ pub(super) fn grade_label(grade: Grade) -> (&'static str, &'static str) {
 fn withdrawn_because(f: &Finding) -> &'static str {
     match f.grade {
         Grade::Refuted => "unseen runs refute it",
-        Grade::RefutedTogether => "with it, what was found predicts unseen runs worse beyond chance, all together",
+        Grade::RefutedTogether => {
+            "all findings together predict unseen runs significantly worse, and it improves them least"
+        }
         Grade::Immaterial if f.is_unresolved_clock() => "it is measurable, and less than half a sample period",
         Grade::Immaterial => "it is measurable, and too small to matter",
         Grade::NotIsolated => {
@@ -130,10 +132,10 @@ fn withdrawn_because(f: &Finding) -> &'static str {
              of the compass, the scale of the log) can take over nearly all of its effect; the same runs on opposite headings would part them"
         }
         Grade::EulerSteps => {
-            "explicit Euler steps of one sample period in the program that made the recordings, or values held until the next sample, \
+            "explicit Euler steps of one sample period in the program that made the recordings, or values that stay constant until the next sample, \
              explain them as well"
         }
-        Grade::Unstable => "most repetitions on the same recordings told otherwise do not find it",
+        Grade::Unstable => "most repetitions on transformed recordings do not find it",
         Grade::Undetermined => "the interval of its size contains zero",
         Grade::Confirmed | Grade::Suspected => "the model does not follow the recordings without it or with it",
     }
@@ -162,12 +164,12 @@ pub(super) fn error_rates(r: &ErrorRates) -> String {
         text += &format!("; with what was found in them, it was found again in {found}");
     }
     if let Some(covered) = r.covered {
-        text += &format!(", and its 95 % intervals held the value in {covered}");
+        text += &format!(", and its 95 % intervals contained the value in {covered}");
     }
     text
 }
 
-/// Whether the answer is the same on the same recordings told otherwise.
+/// Whether the answer is the same on transformed recordings.
 pub(super) fn stability(s: &Stability) -> String {
     let differing = s.variants.iter().filter(|v| !v.same).map(|v| {
         let found = if v.findings.is_empty() { "nothing named".to_owned() } else { v.findings.join(", ") };
@@ -180,7 +182,7 @@ pub(super) fn stability(s: &Stability) -> String {
     } else {
         format!("the improved model diagnosed again names further: {}", s.further.join(", "))
     };
-    format!("same answer in {} of {} repetitions on recordings told otherwise{but}; {again}", s.same, s.of)
+    format!("same answer in {} of {} repetitions on transformed recordings{but}; {again}", s.same, s.of)
 }
 
 /// What is wrong with the recordings: whatever must be corrected first, and a few notes of each kind.

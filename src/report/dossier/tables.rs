@@ -460,7 +460,7 @@ pub(super) fn error_rates(e: &Reader) -> Markup {
     let kinds = [
         ("false_alarms", "something named in simulated studies in which nothing is missing"),
         ("found_again", "the first finding found again in simulated studies that have it"),
-        ("covered", "its 95 % intervals that held the simulated value"),
+        ("covered", "its 95 % intervals that contain the simulated value"),
     ];
     let row = |(key, words): (&str, &str)| {
         let s = e.at(key);
@@ -549,7 +549,7 @@ fn findings(heading: &str, list: &Reader, none: &str) -> Markup {
         "p",
         "improvement of cVDM [%]",
         "gain in log-likelihood",
-        "the same, of what their sensors say of each other",
+        "the same, for the kinematic consistency of their sensors",
         "unseen recordings",
     ];
     html! {

@@ -39,6 +39,19 @@ pub fn reached(score: &Score) -> bool {
     }
 }
 
+/// Weakest signal-to-noise ratio at which a detection has an aim.
+const WEAKEST: f64 = 6.0;
+
+/// Whether some answer about a case is wrong, or the case has no score. That an effect weaker than any with an aim is not detected is
+/// no failure.
+pub fn failed(score: &Score) -> bool {
+    let s = score;
+    let aimed = s.snr_asked.is_none_or(|snr| snr >= WEAKEST);
+    let false_claim = [s.false_alarm, s.wrong_confident, s.absorbed_named].contains(&Some(true));
+    let missed = [s.first_right, s.in_set, s.right_equation, s.covered, s.some_right_none_wrong];
+    !s.error.is_empty() || false_claim || missed.contains(&Some(false)) || (aimed && s.detected == Some(false))
+}
+
 /// Families in which the flow straightening at the rudder differs between port and starboard by one known number.
 pub const LOPSIDED: [Family; 3] = [Family::Mmg, Family::Tanker, Family::Flap];
 
@@ -113,5 +126,20 @@ pub fn named_right(score: &Score) -> Option<bool> {
         (Some(alarm), _) => Some(!alarm),
         (None, Some(false)) => Some(false),
         (None, _) => score.first_right,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_case_fails_by_a_wrong_answer_and_not_by_a_weak_effect_that_is_not_detected() {
+        let found = Score { snr_asked: Some(6.0), detected: Some(true), first_right: Some(true), ..Score::default() };
+        assert!(!failed(&found) && failed(&Score { covered: Some(false), ..found.clone() }));
+        let missed = Score { snr_asked: Some(6.0), detected: Some(false), ..Score::default() };
+        assert!(failed(&missed) && !failed(&Score { snr_asked: Some(3.0), ..missed }));
+        assert!(failed(&Score { false_alarm: Some(true), ..Score::default() }));
+        assert!(failed(&Score { error: "stopped".into(), ..found }));
     }
 }

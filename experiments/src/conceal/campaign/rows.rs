@@ -87,6 +87,14 @@ pub fn row(score: &Score) -> Result<String, ConcealError> {
     text(score, false)
 }
 
+/// Scores as a file with the columns of the results.
+///
+/// # Errors
+/// A score that CSV cannot express.
+pub fn listed<'a>(mut scores: impl Iterator<Item = &'a Score>) -> Result<String, ConcealError> {
+    scores.try_fold(header()?, |all, score| Ok(all + &row(score)?))
+}
+
 /// The line of the column names.
 fn header() -> Result<String, ConcealError> {
     let both = text(&Score::default(), true)?;
