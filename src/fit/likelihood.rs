@@ -419,7 +419,7 @@ pub(super) fn check_ranks(cost: &Cost) -> Result<(), FitError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{RK4, model, noise, runs};
+    use crate::diagnose::example::{RK4, at, model, noise, runs};
     use crate::fit::{Fit, fit};
 
     fn settings() -> FitSettings {
@@ -475,6 +475,33 @@ mod tests {
             assert!((value - p.value).abs() < 4.5 * error, "{}: {value} {} +- {error}", p.name, p.value);
         }
         assert_eq!(found.model.free(), truth.free(), "what was estimated along is not free in the fitted model");
+        Ok(())
+    }
+
+    #[test]
+    fn what_a_session_adds_is_fitted_beside_its_parameter_and_their_sum_keeps_the_bounds() -> Result<(), FitError> {
+        let mut truth = model();
+        let Some(i) = truth.index("rudder_offset.offset") else { return Err(FitError::NothingFree) };
+        truth.sessions.insert("a".into(), vec![(i, 0.03)]);
+        let runs = runs(&truth, 9);
+        let column = Column::tangent(&truth, i);
+        let fitted = |upper: f64| {
+            let mut start = model();
+            start.parameters[i].upper = upper;
+            let mut found = at(&start);
+            let deviation = FreeParameter { column, sessions: Some(vec!["a".into()]), prior: None };
+            found.free.extend([deviation, FreeParameter::common(column, None)]);
+            let prior = NoisePrior::around(&found.noise);
+            within_limits(&found, RK4, &runs, &prior, ConstraintSettings::default())
+        };
+        let sum = |found: &Estimate| found.model.values_in("a")[i];
+        let wide = fitted(0.35)?;
+        assert!((sum(&wide) - 0.03).abs() < 0.003, "{}", sum(&wide));
+        assert!(wide.model.parameters[i].value.abs() < 0.003);
+        assert_eq!(wide.free.len(), at(&model()).free.len() + 2);
+        let narrow = fitted(0.02)?;
+        assert!(sum(&narrow) <= 0.02 + 1e-6 && sum(&narrow) > 0.019, "{}", sum(&narrow));
+        assert!(narrow.log_posterior < wide.log_posterior);
         Ok(())
     }
 

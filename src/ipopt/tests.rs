@@ -1,7 +1,7 @@
 //! The solver on problems whose answers are known, and on callers that misbehave.
 //! What concerns the checks of a problem alone is tested beside them.
 
-use super::{HessianMode, IpoptError, IterationReport, Nlp, OptionValue, Options, Solution, Status, solve};
+use super::{Counts, HessianMode, IpoptError, IterationReport, Nlp, OptionValue, Options, Solution, Status, solve};
 
 const INF: f64 = f64::INFINITY;
 

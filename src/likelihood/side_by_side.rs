@@ -5,7 +5,7 @@ use super::covariance::{self, Discrete, Square, Told, Z, initial, predict, sum_a
 use super::directions::{Directions, Prepared};
 use super::noise::Noise;
 use super::pass::{GATE, Gains, Pass, Tangent, Wanted, boost};
-use super::step_map::{Jacobians, Slope, carry, exact, no_slope, none, slope_at};
+use super::step_map::{Jacobians, Slope, Stages, carry, exact, no_slope, none, slope_at};
 use crate::recording::Run;
 use crate::sensitivity::chain::StateSlope;
 use crate::sensitivity::local::side_by_side;
@@ -91,6 +91,8 @@ struct Filtering<'f, P: Plain> {
     /// The columns' part in the accelerations at the start and at the end of a step.
     rates: [Vec<[P; 3]>; 2],
     room: Vec<[P; 3]>,
+    /// Room for steps whose stages are differentiated.
+    stages: Stages<P>,
     score: Vec<P>,
     information: Products<P>,
     log_likelihood: P,
@@ -241,6 +243,7 @@ impl<'f, P: Plain> Filtering<'f, P> {
             basis: Basis::new(forces),
             rates,
             room,
+            stages: Stages::new(if wanted.exact { parameters } else { 0 }),
             score: vec![P::zero(); parameters],
             information,
             log_likelihood: P::zero(),
@@ -469,7 +472,6 @@ impl<'f, P: Plain> Filtering<'f, P> {
         }
         let Prepared { dynamics, series, .. } = &self.prepared;
         let faded = push.map(|w| w * self.noise.fade);
-        let mut through: Vec<StateSlope<P>> = Vec::new();
         let next = 1 - self.last;
         let mut end = None;
         if self.smooth {
@@ -477,14 +479,13 @@ impl<'f, P: Plain> Filtering<'f, P> {
             carry(&self.ends[self.last], &self.ends[next], self.dt, &mut self.jacobians);
             self.last = next;
         } else {
-            through.resize(if self.wanted.exact { parameters } else { 0 }, [P::zero(); STATES]);
             let integration = self.directions.integration;
-            self.jacobians = exact(&self.prepared, integration, self.dt, from, state, push, &mut through);
+            self.jacobians = exact(&self.prepared, integration, self.dt, from, state, push, &mut self.stages);
         }
         if !any {
             return;
         }
-        if through.is_empty() && parameters > 0 {
+        if !self.wanted.exact && parameters > 0 {
             // The parameters act through the accelerations: the trapezoidal rule carries them over the step. Any predictable
             // sensitivity leaves the score unbiased, so that this costs no more than a little power.
             let ends = &mut self.ends;
@@ -492,7 +493,9 @@ impl<'f, P: Plain> Filtering<'f, P> {
             self.prepared.rates(local, later, image, &faded, &mut self.room, &mut self.rates[1]);
         }
         self.push(k, state);
-        self.move_slopes(&through);
+        let columns = std::mem::take(&mut self.stages.columns);
+        self.move_slopes(Stages::by_parameters(&columns));
+        self.stages.columns = columns;
         self.rates.swap(0, 1);
     }
 

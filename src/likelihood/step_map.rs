@@ -113,8 +113,30 @@ pub(super) fn carry<P: Plain>(start: &Slope<P>, end: &Slope<P>, h: f64, (a, gamm
     }
 }
 
-/// The exact Jacobians of a step that begins at instant `from`, and into `parameters`, where it is not empty, the derivatives by the
-/// columns: every stage of the method carries the variational equation along.
+/// Room for the stages of a step.
+pub(super) struct Stages<P> {
+    /// Derivatives of the state, by the state and the force where the step began and by the parameters.
+    pub columns: Vec<StateSlope<P>>,
+    /// The columns' own part in the accelerations at each stage; that of the state is 0.
+    own: [Vec<[P; 3]>; 4],
+    room: Vec<[P; 3]>,
+}
+
+impl<P: Plain> Stages<P> {
+    /// For so many parameters.
+    pub fn new(parameters: usize) -> Self {
+        let own = std::array::from_fn(|_| vec![[P::zero(); 3]; W + parameters]);
+        Self { columns: vec![[P::zero(); STATES]; W + parameters], own, room: Vec::new() }
+    }
+
+    /// The derivatives by the parameters in the columns of a step.
+    pub fn by_parameters(columns: &[StateSlope<P>]) -> &[StateSlope<P>] {
+        columns.get(W..).unwrap_or_default()
+    }
+}
+
+/// The exact Jacobians of a step that begins at instant `from`, and in `stages` the derivatives by the columns it was made for: every
+/// stage of the method carries the variational equation along.
 pub(super) fn exact<P: Plain>(
     prepared: &Prepared<P>,
     integration: Integration,
@@ -122,16 +144,15 @@ pub(super) fn exact<P: Plain>(
     from: usize,
     state: &[P; STATES],
     push: &[P; 3],
-    parameters: &mut [StateSlope<P>],
+    Stages { columns, own, room }: &mut Stages<P>,
 ) -> Jacobians<P> {
     const FIXED: usize = W;
-    let width = parameters.len();
+    let width = columns.len() - FIXED;
     let count = integration.substeps.max(1);
     let h = dt / count as f64;
-    let mut columns = vec![[P::zero(); STATES]; FIXED + width];
+    columns.fill([P::zero(); STATES]);
     (0..STATES).for_each(|i| columns[i][i] = P::one());
-    let mut own: [Vec<[P; 3]>; 4] = std::array::from_fn(|_| vec![[P::zero(); 3]; FIXED + width]);
-    let (mut room, mut slope) = (Vec::new(), no_slope());
+    let mut slope = no_slope();
     // The rates at a stage, and the part in the accelerations that force and parameters have there.
     let mut stage = |x: &[P; STATES], when: usize, own: &mut [[P; 3]]| -> Local<P> {
         let local = slope_at(&prepared.dynamics, x, push, &prepared.series[when], &mut slope);
@@ -139,7 +160,7 @@ pub(super) fn exact<P: Plain>(
             own[STATES + l] = std::array::from_fn(|i| slope[3 + i][STATES + l]);
         }
         if width > 0 {
-            prepared.rates(&local, when, x, push, &mut room, &mut own[FIXED..]);
+            prepared.rates(&local, when, x, push, room, &mut own[FIXED..]);
         }
         local.0
     };
@@ -149,7 +170,7 @@ pub(super) fn exact<P: Plain>(
         match integration.method {
             Method::Euler => {
                 let local = stage(&x, from + i, &mut own[0]);
-                euler::<P, true>(&local, h, &mut columns, &own[0]);
+                euler::<P, true>(&local, h, columns, &own[0]);
                 x = moved(&x, h, &local.rates);
             }
             Method::Rk4 => {
@@ -167,7 +188,6 @@ pub(super) fn exact<P: Plain>(
             }
         }
     }
-    parameters.copy_from_slice(&columns[FIXED..]);
     (
         std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i])),
         std::array::from_fn(|i| std::array::from_fn(|l| columns[STATES + l][i])),
