@@ -5,7 +5,7 @@
 mod support;
 
 use support::{STAR, add, commanded, model, runs, truth_noise};
-use trimtab::diagnose::grade::LawGrade;
+use trimtab::diagnose::proof::grade::LawGrade;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::model::Model;
 use trimtab::parameter::Parity;
@@ -334,14 +334,16 @@ fn a_push_is_named_with_its_windows_by_recording() {
     let d = pushed_for(&[([0.0, 5e4, 1e6], |i| i % 4 == 1)], WITHIN);
     assert_eq!(d.findings.first().map(|f| f.mechanism.as_str()), Some("push"), "{}", d.headline);
     let windows = &d.findings[0].windows;
-    let right = |w: &&trimtab::diagnose::push::Window| {
+    let right = |w: &&trimtab::diagnose::evidence::push::Window| {
         let number: usize = w.run.trim_start_matches("run ").parse().unwrap();
         number % 4 == 1 && (w.start - WITHIN[0]).abs() <= 20.0 && (w.end - WITHIN[1]).abs() <= 20.0
     };
     let found: Vec<_> = windows.iter().filter(right).collect();
     assert!(windows.len() >= 6 && found.len() + 1 >= windows.len(), "{windows:?}");
     // To the sample of two seconds, not to the time block of the search.
-    let off = |w: &&&trimtab::diagnose::push::Window| 0.5 * ((w.start - WITHIN[0]).abs() + (w.end - WITHIN[1]).abs());
+    let off = |w: &&&trimtab::diagnose::evidence::push::Window| {
+        0.5 * ((w.start - WITHIN[0]).abs() + (w.end - WITHIN[1]).abs())
+    };
     let mean = found.iter().map(|w| off(&w)).sum::<f64>() / found.len() as f64;
     assert!(mean < 2.5, "edges off by {mean} s: {windows:?}");
 }

@@ -6,7 +6,7 @@ use std::process::Command;
 use std::time::Duration;
 
 use trimtab::diagnose::Settings;
-use trimtab::diagnose::baseline::Refitted;
+use trimtab::diagnose::search::baseline::Refitted;
 use trimtab::evaluate::{EvaluationSettings, Judging};
 use trimtab::fit::FitSettings;
 use trimtab::model::Model;

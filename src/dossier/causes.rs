@@ -1,7 +1,7 @@
 //! Causes of error as a diagnosis has them: found, refuted, tried and not named, excluded from a size on, and not excluded.
 //! Its numbers are those of `diagnosis.json`, repeated; no test is made here.
 
-use crate::diagnose::finding::{GENERIC, PUSH, PUSH_TITLE};
+use crate::diagnose::proof::finding::{GENERIC, PUSH, PUSH_TITLE};
 use crate::model::Model;
 use serde::Serialize;
 use serde_json::Value;

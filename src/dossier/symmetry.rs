@@ -2,7 +2,7 @@
 //! What is mirrored and turned is defined where diagnoses are repeated, in [`crate::diagnose::stability`].
 
 use super::check::{Check, apart};
-use crate::diagnose::stability::CHANGES;
+use crate::diagnose::proof::stability::CHANGES;
 use crate::evaluate::{Judging, predict};
 use crate::model::Model;
 use crate::recording::{Run, measured, or_nan};

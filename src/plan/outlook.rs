@@ -1,10 +1,10 @@
 //! What the trials together show of each mechanism: whether it is identifiable, from which size on, and what takes over its gain.
 //! The tests are the diagnosis' own, at measurements without error; how trials are chosen is decided elsewhere.
 
-use crate::diagnose::candidate::{Candidate, Extent};
-use crate::diagnose::screen::Screen;
+use crate::diagnose::answer::summary::{absorbed, detectable};
+use crate::diagnose::evidence::candidate::{Candidate, Extent};
+use crate::diagnose::search::screen::Screen;
 use crate::diagnose::settings::{FORM_TOLERANCE, Settings};
-use crate::diagnose::summary::{absorbed, detectable};
 use crate::model::Model;
 use serde::Serialize;
 
@@ -63,7 +63,7 @@ pub struct Isolability {
 /// What the trials show of every mechanism, by name.
 pub(super) fn outlooks(s: &Screen, list: &[Candidate], settings: &Settings, model: &Model) -> Vec<Outlook> {
     let (sizes, hidden) = (detectable(s, list, settings, model), absorbed(s, list));
-    let of = |row: &crate::diagnose::screen::Row| {
+    let of = |row: &crate::diagnose::search::screen::Row| {
         let mechanism = list[row.candidate].mechanism;
         let size = sizes.iter().find(|d| d.mechanism == mechanism.name);
         let hidden = hidden.iter().find(|a| a.mechanism == mechanism.name);

@@ -3,8 +3,8 @@
 
 use super::outlook::{Pair, TOLERANCE, share};
 use super::sail::Sailed;
-use crate::diagnose::candidate::{Candidate, Extent, append};
-use crate::diagnose::screen::{Screen, screen};
+use crate::diagnose::evidence::candidate::{Candidate, Extent, append};
+use crate::diagnose::search::screen::{Screen, screen};
 use crate::diagnose::settings::IDENTIFIABLE_SHARE;
 use crate::likelihood::estimate::{Estimate, base_of, restrictions, run_evidence};
 use crate::likelihood::evidence::{Evidence, RunEvidence};

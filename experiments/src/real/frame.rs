@@ -3,8 +3,8 @@
 
 use nalgebra::{DMatrix, DVector};
 use trimtab::audit::settled;
-use trimtab::diagnose::admit::followed;
-use trimtab::diagnose::prove::{HeldOut, prove};
+use trimtab::diagnose::evidence::admit::followed;
+use trimtab::diagnose::proof::prove::{HeldOut, prove};
 use trimtab::diagnose::{Diagnosis, Settings};
 use trimtab::evaluate::Judging;
 use trimtab::likelihood::estimate::{Effort, FreeParameter, base_of, estimate, evidence, passes, restrictions};

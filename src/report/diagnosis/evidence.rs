@@ -4,7 +4,7 @@
 use super::names::title_of;
 use super::picture::{Picture, shown};
 use crate::diagnose::Diagnosis;
-use crate::diagnose::diagnosis::Ranked;
+use crate::diagnose::answer::diagnosis::Ranked;
 use crate::plot::{Axis, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, Mark, ORANGE, PURPLE, Panel, RECORDED, SKY};
 use statrs::distribution::{ContinuousCDF, Normal};
 

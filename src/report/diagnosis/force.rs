@@ -4,7 +4,7 @@
 use super::picture::{Picture, shown};
 use super::stages::{Series, stages, to_earth};
 use crate::diagnose::Diagnosis;
-use crate::diagnose::diagnosis::Trace;
+use crate::diagnose::answer::diagnosis::Trace;
 use crate::numerals::sig;
 use crate::plot::{Axis, BASELINE, Figure, GREY, Layer, Panel, RECORDED, SKY, east_north};
 use crate::report::units::Units;

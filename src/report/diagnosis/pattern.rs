@@ -4,7 +4,7 @@
 use super::picture::Picture;
 use super::stages::{Series, stages, to_earth};
 use crate::diagnose::Diagnosis;
-use crate::diagnose::diagnosis::Trace;
+use crate::diagnose::answer::diagnosis::Trace;
 use crate::numerals::sig;
 use crate::plot::{Axis, BASELINE, Color, Figure, GREY, Layer, Legend, Marker, Panel, nice_step};
 use crate::report::units::Units;

@@ -2,7 +2,7 @@
 //! The numbers are thinned to what a screen shows; errors are taken from the proof.
 
 use crate::diagnose::Diagnosis;
-use crate::diagnose::sailed::{MOST_RUNS, Sailed};
+use crate::diagnose::answer::sailed::{MOST_RUNS, Sailed};
 use crate::numerals::sig;
 use crate::plot::{Axis, BASELINE, Color, FITTED, Figure, FigureError, Layer, Panel, RECORDED, east_north};
 use crate::state::STATES;

@@ -2,7 +2,7 @@
 //! It draws nothing.
 
 use crate::diagnose::Diagnosis;
-use crate::diagnose::diagnosis::Trace;
+use crate::diagnose::answer::diagnosis::Trace;
 use crate::plot::{BASELINE, Color, FITTED};
 
 /// The unknown force along a run, at one stage of the diagnosis \[N, N, N m\].
