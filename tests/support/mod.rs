@@ -3,6 +3,8 @@
 
 #![allow(dead_code)]
 
+#[cfg(feature = "cli")]
+pub mod study;
 pub mod written;
 
 use rand::SeedableRng;
