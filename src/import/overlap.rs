@@ -1,11 +1,11 @@
 //! Files and parts of files that tell the same quantity over the same time: recordings of their own, or refused, never sorted together.
 //! Parts that complete one another, such as positions in one file and rudder angles in another, share a clock.
 
-use super::choose::Choices;
-use super::clock::written;
+use super::columns::choose::Choices;
+use super::columns::log::{Clock, Column, Log, Meaning};
 use super::error::ImportError;
-use super::log::{Clock, Column, Log, Meaning};
-use super::passes::FEW;
+use super::formats::clock::written;
+use super::formats::passes::FEW;
 use crate::recording::Channel;
 use std::collections::BTreeSet;
 

@@ -1,15 +1,15 @@
 //! The import of files as a whole: read, choose, decide units, make rows, cut into recordings.
 //! It writes nothing: the files of a study are made from its result in `study`.
 
-use super::choose::{Choices, Chosen, Unused, choose};
-use super::clock::written;
+use super::columns::choose::{Choices, Chosen, Unused, choose};
+use super::columns::fills::take_out;
+use super::columns::log::{Clock, Log, Meaning};
+use super::columns::take::{Signals, Taken, take};
 use super::error::ImportError;
-use super::fills::take_out;
-use super::log::{Clock, Log, Meaning};
+use super::formats::clock::written;
+use super::formats::read::read;
 use super::overlap::{range, shifts};
-use super::read::read;
 use super::rows::{Rows, rows};
-use super::take::{Signals, Taken, take};
 use crate::recording::Channel;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;

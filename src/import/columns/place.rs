@@ -1,10 +1,10 @@
 //! Latitudes and longitudes of columns as metres on a plane: degrees, radians or degrees and minutes, without what is no fix.
 //! Which columns they are is chosen elsewhere, and no axis is turned here.
 
-use super::error::ImportError;
 use super::geodesy::{Plane, from_minutes};
 use super::log::Column;
 use super::signal::{Signal, Tidied, size_below};
+use crate::import::error::ImportError;
 
 /// Positions of a ship.
 pub struct Places {

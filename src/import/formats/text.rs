@@ -1,17 +1,17 @@
 //! Reads text files of columns: CSV in the layouts that loggers write.
 //! What a column means and its unit are not decided here, but for what its header says.
 
-use super::choose::Choices;
 use super::clock::{
     DateOrder, NumericTime, are_digits_of_day, date_order, date_time, digits_of_day, is_date_alone, numeric_time,
     past_midnight, spread, time_of_day, two_orders,
 };
-use super::error::ImportError;
 use super::layout::{Delimiter, Layout, comment, decimal_comma, decoded, layout, number, too_wide};
-use super::log::{Clock, Column, Log};
 use super::marks::{Marks, signs};
-use super::names::{is_ships_name, is_unit, meaning, name_and_unit, time_rank};
 use super::passes::{FEW, OTHERWISE, passes, stepped_back};
+use crate::import::columns::choose::Choices;
+use crate::import::columns::log::{Clock, Column, Log};
+use crate::import::columns::names::{is_ships_name, is_unit, meaning, name_and_unit, time_rank};
+use crate::import::error::ImportError;
 use crate::recording::Quantity;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;

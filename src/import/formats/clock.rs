@@ -1,7 +1,7 @@
 //! Times as loggers write them, to seconds: ISO 8601, date and time apart, epochs, time of day, spreadsheet days.
 //! A time without a zone counts as UTC; no daylight saving is guessed.
 
-use super::log::Clock;
+use crate::import::columns::log::Clock;
 use jiff::civil::DateTime;
 use jiff::fmt::rfc2822;
 use jiff::tz::TimeZone;

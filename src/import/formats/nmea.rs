@@ -2,11 +2,11 @@
 //! Checksums are verified; lines that fail are counted and told, and makers' own sentences are not read.
 
 use super::clock::{DAY, DateOrder, date_time, digits_of_day, past_midnight};
-use super::error::ImportError;
 use super::layout::decoded;
-use super::log::{Clock, Column, Log, Meaning};
 use super::passes::{FEW, passes, stepped_back};
-use super::signal::median;
+use crate::import::columns::log::{Clock, Column, Log, Meaning};
+use crate::import::columns::signal::median;
+use crate::import::error::ImportError;
 use crate::recording::Channel;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -84,7 +84,7 @@ impl Sentence<'_> {
 
     /// Degrees and minutes with the letter of the hemisphere.
     fn place(&self, i: usize, negative: &str) -> Option<f64> {
-        super::geodesy::from_minutes(self.signed(i, negative)?)
+        crate::import::columns::geodesy::from_minutes(self.signed(i, negative)?)
     }
 
     /// Whether the status at a field is not `V`, which says that the data are not valid.

@@ -2,13 +2,13 @@
 //! Of several columns for one quantity one is taken and the others are told; units and signs are not decided here.
 
 use super::agree::{Sight, heading};
-use super::error::ImportError;
 use super::log::{Column, Log, Meaning};
 use super::motion::Track;
 use super::names::{is_second_choice, is_shaft, is_unit, reading, source};
 use super::place::places;
 use super::signal::Signal;
 use crate::error::suggestion;
+use crate::import::error::ImportError;
 use crate::recording::{CHANNELS, Channel, Quantity};
 use std::collections::{BTreeMap, HashMap};
 

@@ -1,13 +1,13 @@
 //! Reads Parquet files: flat columns of numbers, times or text, of any of the usual compressions.
 //! Nested columns are left out and told.
 
-use super::choose::Choices;
 use super::clock::{DateOrder, NumericTime, date_time, numeric_time, spread};
-use super::error::ImportError;
 use super::layout::number;
-use super::log::{Clock, Column, Log};
-use super::names::{meaning, name_and_unit, time_rank};
 use super::passes::{FEW, OTHERWISE, passes, stepped_back};
+use crate::import::columns::choose::Choices;
+use crate::import::columns::log::{Clock, Column, Log};
+use crate::import::columns::names::{meaning, name_and_unit, time_rank};
+use crate::import::error::ImportError;
 use ::parquet::basic::{ConvertedType, LogicalType, TimeUnit};
 use ::parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use ::parquet::data_type::{ByteArray, DataType};

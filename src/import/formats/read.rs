@@ -1,13 +1,13 @@
 //! Reads a file of any format that is known, by its content rather than its name.
 //! How each format is read is in the files beside it.
 
-use super::choose::Choices;
-use super::error::ImportError;
 use super::foreign::foreign;
-use super::log::Log;
 use super::nmea::{is_nmea, read_nmea};
 use super::parquet::{is_parquet, read_parquet};
 use super::text::read_text;
+use crate::import::columns::choose::Choices;
+use crate::import::columns::log::Log;
+use crate::import::error::ImportError;
 use crate::written::bytes_of;
 use std::path::Path;
 

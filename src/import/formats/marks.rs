@@ -2,8 +2,8 @@
 //! They stand in the field of the number, before or after it, or in a column of their own.
 
 use super::layout::number;
-use super::log::Meaning;
-use super::names::is_unit;
+use crate::import::columns::log::Meaning;
+use crate::import::columns::names::is_unit;
 use crate::recording::Channel;
 use std::collections::BTreeSet;
 

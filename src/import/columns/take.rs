@@ -3,12 +3,12 @@
 
 use super::agree::heading;
 use super::choose::{Choices, Chosen, Unused};
-use super::error::ImportError;
 use super::evidence::{Given, Known, Verdict, direction, other, rotation, rudder, speed, yaw_rate};
 use super::log::{Column, Meaning};
 use super::motion::Track;
 use super::place::places;
 use super::signal::{Signal, Tidied, median};
+use crate::import::error::ImportError;
 use crate::recording::Channel;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
