@@ -3,56 +3,33 @@
 //!
 //! [`audit_study`] is what `trimtab check` shows; [`audit_runs`] and [`settled`] are asked before a fit and before a diagnosis.
 
-mod across;
-mod clocks;
-mod course;
+mod agreement;
 #[cfg(test)]
 mod example;
-mod fill;
-mod fixes;
-mod frozen;
-mod gaps;
-mod gear;
-mod held;
 mod issue;
-mod jumps;
-mod kinematics;
-mod length;
 mod limits;
 mod model;
-mod orders;
-mod plateau;
-mod pooled;
-mod propeller;
-mod receiver;
-mod reckoning;
+mod motion;
 mod record;
-mod response;
 mod runs;
-mod scales;
-mod scatter;
-mod series;
-mod signs;
-mod sources;
-mod stuck;
 mod study;
-mod sums;
-mod units;
+mod values;
 
-pub use across::{Evidence, across};
+pub use agreement::across::{Evidence, across};
 pub use issue::{Issue, Severity, Shared};
-pub use kinematics::Kinematics;
 pub use model::audit_model;
-pub use plateau::{Part, Plateau};
-pub use receiver::{Jump, jumps, piece, settled};
+pub use motion::kinematics::Kinematics;
+pub use motion::plateau::{Part, Plateau};
+pub use motion::response::Curve;
+pub use motion::sums::Sums;
 pub use record::{Audit, ChannelSummary, Responses, Stretch, audit};
-pub use response::Curve;
 pub use runs::audit_runs;
 pub use study::{StudyAudit, audit_each, audit_study};
-pub use sums::Sums;
+pub use values::receiver::{Jump, jumps, piece, settled};
 
 #[cfg(test)]
 mod tests {
+    use super::agreement::propeller;
     use super::*;
     use crate::recording::{Channel, ColumnMap, Recording};
     use crate::ship::Ship;

@@ -1,18 +1,18 @@
 //! The audit of one recording: every question put to it, and the ranges of its channels.
 //! Each question is in a file of its own; the study as a whole is in `study`.
 
-use super::fill::fills;
-use super::fixes::{fixes, headings};
-use super::frozen::frozen;
-use super::gaps::completeness;
+use super::agreement::reckoning::Reckoned;
+use super::agreement::signs::{Actuators, Track};
+use super::agreement::units::{Turning, magnitudes, still};
 use super::issue::{Issue, Severity};
-use super::jumps::outliers;
-use super::kinematics::Kinematics;
-use super::reckoning::Reckoned;
-use super::response::{Curve, gyro, propeller, receiver, rudder, sway};
-use super::series::Series;
-use super::signs::{Actuators, Track};
-use super::units::{Turning, magnitudes, still};
+use super::motion::kinematics::Kinematics;
+use super::motion::response::{Curve, gyro, propeller, receiver, rudder, sway};
+use super::motion::series::Series;
+use super::values::fill::fills;
+use super::values::fixes::{fixes, headings};
+use super::values::frozen::frozen;
+use super::values::gaps::completeness;
+use super::values::jumps::outliers;
 use crate::recording::{Channel, Recording};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;

@@ -1,10 +1,10 @@
 //! The audit of runs, asked before a fit and before a diagnosis: what contradicts itself, and what stands still.
 //! It puts the questions of a recording's audit to all runs together; what a model makes of the runs is asked elsewhere.
 
-use super::frozen::frozen;
 use super::issue::Issue;
+use super::motion::series::Series;
 use super::record::{Responses, agreement};
-use super::series::Series;
+use super::values::frozen::frozen;
 use crate::recording::Run;
 
 /// What is wrong with runs by themselves: units, signs and axes that contradict each other over all runs together, which block any

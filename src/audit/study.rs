@@ -1,11 +1,11 @@
 //! The audit of a study: every recording, what comes of cutting it, and what a diagnosis would leave out.
 //! It asks nothing of its own of a recording; the questions are in the files beside it.
 
-use super::across::{Evidence, across};
+use super::agreement::across::{Evidence, across};
 use super::issue::{Issue, Severity, Shared};
 use super::limits::LEVER_LONGEST;
-use super::receiver::settled;
 use super::record::{Audit, examined};
+use super::values::receiver::settled;
 use crate::recording::{Recording, RecordingError, Split, WindowSettings};
 use crate::ship::Ship;
 use crate::study::{Listed, Study, StudyError};

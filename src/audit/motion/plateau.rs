@@ -1,9 +1,9 @@
 //! Plateaus: stretches over which a channel holds one value, with the sums of a regression inside them and beside them.
 //! It judges nothing; what is unlike the other runs is told in `stuck`.
 
-use super::limits::STUCK_WINDOWS;
 use super::series::{Series, constant};
 use super::sums::Sums;
+use crate::audit::limits::STUCK_WINDOWS;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 

@@ -1,18 +1,18 @@
 //! Signs and axes: the track against the recorded velocity, sway against the slide of the track, the turn against the rudder.
 //! Wrong units of velocity show here too, by their gain; heading against yaw rate is in `units`.
 
-use super::clocks::Pair;
-use super::course::Course;
-use super::issue::{Issue, Severity};
-use super::kinematics::{Kinematics, Proportion};
-use super::limits::{
+use super::units::{SPEED_GAINS, known_gain};
+use crate::audit::issue::{Issue, Severity};
+use crate::audit::limits::{
     AGAINST, AGAINST_RUDDER, AGAINST_TURN, ASTERN_SHARE, ASTERN_SPEED, CALIBRATED, COHERENT, EXPLAINS, LEVER_SHARE,
     LEVER_TURN, MIRROR_LEAVES, MIRRORED, NOT_MIRRORED, SIGN_EVIDENCE, SWAY_COHERENCE, SWAY_LEAVES, TRACK_ANGLES,
     TRACK_ERRORS, TURNED, UNTURNED,
 };
-use super::response::Curve;
-use super::series::Series;
-use super::units::{SPEED_GAINS, known_gain};
+use crate::audit::motion::clocks::Pair;
+use crate::audit::motion::course::Course;
+use crate::audit::motion::kinematics::{Kinematics, Proportion};
+use crate::audit::motion::response::Curve;
+use crate::audit::motion::series::Series;
 use crate::numerals::sig;
 use crate::recording::Channel;
 use std::collections::BTreeMap;

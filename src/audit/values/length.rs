@@ -1,8 +1,8 @@
 //! One recording that is shorter than all others, which have one length: its file may have been cut.
 //! Runs of several lengths say nothing.
 
-use super::issue::{Issue, Severity, Shared};
-use super::limits::LENGTH_RUNS;
+use crate::audit::issue::{Issue, Severity, Shared};
+use crate::audit::limits::LENGTH_RUNS;
 use crate::numerals::sig;
 use crate::recording::Recording;
 use serde::{Deserialize, Serialize};

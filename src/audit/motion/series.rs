@@ -1,7 +1,7 @@
 //! The motion that an audit reads, whether of a recording or of runs cut from one: columns by channel, NaN where a value is missing.
 //! It judges nothing; the questions are in the files beside it.
 
-use super::limits::SPAN;
+use crate::audit::limits::SPAN;
 use crate::recording::{Channel, Recording, Run, STATE_CHANNELS, local, slope};
 use crate::state::STATES;
 use crate::statistics::mean;

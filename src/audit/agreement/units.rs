@@ -1,13 +1,13 @@
 //! Units: actuators too small for theirs, and the gains by which a wrong unit or sign shows where two channels tell the same motion.
 //! Here heading is held against yaw rate; the track against velocity is in `signs`.
 
-use super::clocks::Pair;
-use super::issue::{Issue, Severity};
-use super::kinematics::{Kinematics, Proportion};
-use super::limits::{
+use crate::audit::issue::{Issue, Severity};
+use crate::audit::limits::{
     AGAINST_TURN, APART, CALIBRATED, COHERENT, SAME_GAIN, SMALL_RATE, SMALL_RUDDER, SMALL_RUDDER_TURNS, STILL_RUDDER,
 };
-use super::series::Series;
+use crate::audit::motion::clocks::Pair;
+use crate::audit::motion::kinematics::{Kinematics, Proportion};
+use crate::audit::motion::series::Series;
 use crate::recording::{Channel, Recording};
 
 /// Actuators too small for their unit.

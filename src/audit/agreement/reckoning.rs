@@ -1,15 +1,15 @@
 //! Dead reckoning, one run against all others: whether velocity and heading lead to the recorded track as they do in the other runs.
 //! A sway velocity of another sign or unit shows here, and a track that jumps or runs late; how fast the track runs is in `signs`.
 
-use super::issue::{Issue, Severity, Shared};
-use super::limits::{
+use crate::audit::issue::{Issue, Severity, Shared};
+use crate::audit::limits::{
     POOLED_RUNS, RECKONED_EVIDENCE, RECKONED_LEAVES, RECKONED_LENGTH, RECKONED_ROWS, RECKONED_UNLIKE, RECKONED_UNUSUAL,
 };
-use super::pooled::coefficients;
-use super::response::integral;
-use super::series::Series;
-use super::sources::Sources;
-use super::sums::Sums;
+use crate::audit::motion::pooled::coefficients;
+use crate::audit::motion::response::integral;
+use crate::audit::motion::series::Series;
+use crate::audit::motion::sources::Sources;
+use crate::audit::motion::sums::Sums;
 use crate::numerals::sig;
 use crate::recording::Channel;
 use crate::statistics::median;

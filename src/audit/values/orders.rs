@@ -1,8 +1,8 @@
 //! A rudder that leaps: what was recorded is the order, not the angle that the rudder had.
 //! It asks one channel of each run; what runs together say of clocks is asked elsewhere.
 
-use super::issue::{Issue, Severity};
-use super::limits::{ORDERED_DEGREES, ORDERED_LEAP};
+use crate::audit::issue::{Issue, Severity};
+use crate::audit::limits::{ORDERED_DEGREES, ORDERED_LEAP};
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording};
 use serde::{Deserialize, Serialize};

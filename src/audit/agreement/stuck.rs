@@ -1,13 +1,13 @@
 //! A rudder or a propeller whose log stood still: it holds one value over a stretch in which the motion is not what it does with that value
 //! in the other runs, while the rest of the run is. Channels of the motion that stand still are in `frozen` and `held`.
 
-use super::limits::{EXPLAINS, STUCK_UNLIKE};
-use super::plateau::Plateau;
-use super::pooled::Pool;
-use super::response::Curve;
+use crate::audit::limits::{EXPLAINS, STUCK_UNLIKE};
+use crate::audit::motion::plateau::Plateau;
+use crate::audit::motion::pooled::Pool;
+use crate::audit::motion::response::Curve;
 
 /// The plateau of each run over which the channel is stuck, the one that the motion contradicts most.
-pub(super) fn stuck<'c>(curves: &[Option<&'c Curve>], pool: &Pool<'_>) -> Vec<Option<&'c Plateau>> {
+pub(in crate::audit) fn stuck<'c>(curves: &[Option<&'c Curve>], pool: &Pool<'_>) -> Vec<Option<&'c Plateau>> {
     let usual = pool.usual();
     let most = |curve: &Option<&'c Curve>| {
         let (share, plateau) = unlike((*curve)?, pool, usual?)?;
@@ -35,9 +35,9 @@ fn unlike<'c>(curve: &'c Curve, pool: &Pool<'_>, usual: f64) -> Option<(f64, &'c
 mod tests {
     use super::*;
     use crate::audit::example::noise;
-    use crate::audit::pooled::actuated;
-    use crate::audit::response::rudder;
-    use crate::audit::series::Series;
+    use crate::audit::motion::pooled::actuated;
+    use crate::audit::motion::response::rudder;
+    use crate::audit::motion::series::Series;
     use crate::recording::{Channel, Recording};
     use std::ops::Range;
 

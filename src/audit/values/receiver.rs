@@ -1,8 +1,8 @@
 //! What a receiver did that no ship can: jumps, values held while the ship sailed on, and a wild first fix.
 //! It judges recordings by themselves, before any model is asked; what a force could have done it leaves alone.
 
-use super::issue::{Issue, Severity};
-use super::limits::{BEYOND_FORCE, BEYOND_NOISE, CAUGHT_UP, ENOUGH, SIDE};
+use crate::audit::issue::{Issue, Severity};
+use crate::audit::limits::{BEYOND_FORCE, BEYOND_NOISE, CAUGHT_UP, ENOUGH, SIDE};
 use crate::numerals::sig;
 use crate::recording::{Channel, Run, or_nan};
 use crate::state::STATES;

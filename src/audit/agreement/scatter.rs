@@ -1,9 +1,9 @@
 //! How velocities scatter from row to row: a sensor has the same noise in every run, so that a run in another unit stands out by it.
 //! It also speaks where the ship sails straight on, and what the other channels tell of a velocity is lost in noise.
 
-use super::issue::{Issue, Severity, Shared};
-use super::limits::{ENOUGH, POOLED_RUNS, SCATTER_ALIKE, SCATTER_SAME};
-use super::sources::Sources;
+use crate::audit::issue::{Issue, Severity, Shared};
+use crate::audit::limits::{ENOUGH, POOLED_RUNS, SCATTER_ALIKE, SCATTER_SAME};
+use crate::audit::motion::sources::Sources;
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording};
 use crate::statistics::median;

@@ -1,8 +1,8 @@
 //! A rudder or a propeller that leaps in one run faster than its gear moves it in any other: its values were held, or lost, before.
 //! Gear whose limit the other runs do not show is not judged; orders that leap in most runs are in `orders`.
 
-use super::issue::{Issue, Severity, Shared};
-use super::limits::{GEAR_BEYOND, GEAR_REACHED, GEAR_RUNS, GEAR_STEP};
+use crate::audit::issue::{Issue, Severity, Shared};
+use crate::audit::limits::{GEAR_BEYOND, GEAR_REACHED, GEAR_RUNS, GEAR_STEP};
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording};
 use serde::{Deserialize, Serialize};

@@ -1,13 +1,13 @@
 //! One run against all others: whether rudder and propeller act in it as they do in the other runs, or to the other side, later, or not.
 //! The coefficients are those of the other runs, so that a short run says more than its own regression would.
 
-use super::limits::{
-    EXPLAINS, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE, POOLED_STILL, POOLED_UNUSUAL,
-    SCALE_EVIDENCE,
-};
 use super::response::Curve;
 use super::sources::Sources;
 use super::sums::Sums;
+use crate::audit::limits::{
+    EXPLAINS, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE, POOLED_STILL, POOLED_UNUSUAL,
+    SCALE_EVIDENCE,
+};
 use crate::statistics::median;
 use nalgebra::{DMatrix, DVector};
 
@@ -36,7 +36,7 @@ fn total<'c>(curves: impl Iterator<Item = &'c Curve>) -> Option<Sums> {
 }
 
 /// Coefficients from sums; `less` is taken out of them.
-pub(super) fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
+pub(in crate::audit) fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
     let n = sum.response.len();
     let of = |i: usize, all: &[f64], some: Option<&[f64]>| all[i] - some.map_or(0.0, |some| some[i]);
     let a = DMatrix::from_fn(n, n, |i, j| of(i * n + j, &sum.columns, less.map(|l| &l.columns[..])));
@@ -48,7 +48,7 @@ pub(super) fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> 
 }
 
 /// Runs of one sample period in which a channel is of the usual size, and against which a run is held.
-pub(super) struct Pool<'c> {
+pub(in crate::audit) struct Pool<'c> {
     step: f64,
     known: Vec<&'c Curve>,
     sum: Sums,
@@ -58,7 +58,7 @@ impl<'c> Pool<'c> {
     /// Those of some runs in which the `size` of the channel is at most so many times that of the middle one: a run with a damaged
     /// sample would outweigh all others. The middle one is of those in which the channel moves: where most runs are sailed at one rate of
     /// the propeller, what it does is in the others. `None` for fewer than [`POOLED_RUNS`].
-    pub(super) fn new(curves: &[Option<&'c Curve>], size: impl Fn(&Curve) -> f64, most: f64) -> Option<Self> {
+    pub(in crate::audit) fn new(curves: &[Option<&'c Curve>], size: impl Fn(&Curve) -> f64, most: f64) -> Option<Self> {
         let step = curves.iter().flatten().next()?.step;
         let sizes = || curves.iter().flatten().map(|c| size(c));
         let largest = sizes().fold(0.0, f64::max);
@@ -70,7 +70,7 @@ impl<'c> Pool<'c> {
     }
 
     /// Its runs.
-    pub(super) fn runs(&self) -> impl Iterator<Item = &'c Curve> {
+    pub(in crate::audit) fn runs(&self) -> impl Iterator<Item = &'c Curve> {
         self.known.iter().copied()
     }
 
@@ -80,17 +80,17 @@ impl<'c> Pool<'c> {
     }
 
     /// Whether a run has their sample period, so that their coefficients are its own.
-    pub(super) fn is_alike(&self, curve: &Curve) -> bool {
+    pub(in crate::audit) fn is_alike(&self, curve: &Curve) -> bool {
         is_step(curve, self.step)
     }
 
     /// Coefficients of all runs but this one.
-    pub(super) fn others(&self, curve: &Curve) -> Option<Vec<f64>> {
+    pub(in crate::audit) fn others(&self, curve: &Curve) -> Option<Vec<f64>> {
         coefficients(&self.sum, self.has(curve).then(|| curve.at_zero()))
     }
 
     /// What the coefficients of the others usually leave of a run, squared and by window; `None` where they leave nothing.
-    pub(super) fn usual(&self) -> Option<f64> {
+    pub(in crate::audit) fn usual(&self) -> Option<f64> {
         let square = |c: &Curve| Some(c.at_zero().left(&self.others(c)?) / c.rows);
         median(self.runs().filter_map(square)).filter(|u| *u > 0.0)
     }
@@ -101,7 +101,7 @@ fn is_step(curve: &Curve, step: f64) -> bool {
 }
 
 /// What is odd in each run, in their order, against the pool, and in the recording from which it is cut. `worth` says which lags \\[s\\] matter.
-pub(super) fn odd(
+pub(in crate::audit) fn odd(
     curves: &[Option<&Curve>],
     pool: &Pool,
     sources: &Sources,
@@ -137,14 +137,14 @@ fn to_the_other_side(curve: &Curve, others: &[f64]) -> Vec<f64> {
 }
 
 /// The runs against which what an actuator does is held.
-pub(super) fn actuated<'c>(curves: &[Option<&'c Curve>]) -> Option<Pool<'c>> {
+pub(in crate::audit) fn actuated<'c>(curves: &[Option<&'c Curve>]) -> Option<Pool<'c>> {
     let size = |c: &Curve| c.at_zero().columns.first().copied().unwrap_or(0.0) / c.rows;
     Pool::new(curves, size, POOLED_SIZE)
 }
 
 /// What the coefficients of the other runs leave of each run at the lag that its own regression finds, as a share of what they leave at
 /// none; `None` where there are too few others.
-pub(super) fn shares_at_best(curves: &[Option<&Curve>], pool: &Pool) -> Vec<Option<f64>> {
+pub(in crate::audit) fn shares_at_best(curves: &[Option<&Curve>], pool: &Pool) -> Vec<Option<f64>> {
     let share = |curve: &Option<&Curve>| {
         let curve = curve.filter(|c| pool.is_alike(c))?;
         let (others, best) = (pool.others(curve)?, curve.best());
@@ -196,8 +196,8 @@ fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option
 mod tests {
     use super::*;
     use crate::audit::example::noise;
-    use crate::audit::response::rudder;
-    use crate::audit::series::Series;
+    use crate::audit::motion::response::rudder;
+    use crate::audit::motion::series::Series;
     use crate::recording::{Channel, Recording};
 
     /// A run that answers to its channel with 0.8, against 0.8 to the other side in the other runs; `sign` is what its own regression

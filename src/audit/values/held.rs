@@ -3,12 +3,12 @@
 //! asked only where they never are in the rest of the run, and leap from the value at last.
 
 use super::gear::ACTUATORS;
-use super::issue::{Issue, Severity, Shared};
-use super::limits::{
+use crate::audit::issue::{Issue, Severity, Shared};
+use crate::audit::limits::{
     HELD_BESIDE, HELD_CHANCE, HELD_CHANGES, HELD_DIGITS, HELD_LEAP, HELD_REST, HELD_ROWS, HELD_ROWS_MOVING, HELD_SAME,
     HELD_SELDOM, HELD_STEPS,
 };
-use super::series::{changes, constant};
+use crate::audit::motion::series::{changes, constant};
 use crate::recording::{Channel, Recording, STATE_CHANNELS};
 use crate::statistics::median;
 use serde::{Deserialize, Serialize};

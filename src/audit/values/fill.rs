@@ -1,8 +1,8 @@
 //! Fill values: numbers such as -9999 or 9.97e36 that stand for a missing one and were read as measured.
 //! Values that no ship reaches are refused where the file is read; here are those that a channel without limits lets through.
 
-use super::issue::{Issue, Severity};
-use super::limits::{FILL_APART, FILL_KINDS, FILL_ROWS};
+use crate::audit::issue::{Issue, Severity};
+use crate::audit::limits::{FILL_APART, FILL_KINDS, FILL_ROWS};
 use crate::recording::{Channel, Recording, STATE_CHANNELS, usual_fill};
 
 /// Tells the fill values, and gives the recording without them, for the other questions; `None` where there are none.

@@ -1,11 +1,11 @@
 //! Frozen channels: those that hold one value while what the other channels tell says that they should not.
 //! A receiver that holds its value and then catches up is in `receiver`, since its samples can be left out.
 
-use super::issue::{Issue, Severity};
-use super::limits::{
+use crate::audit::issue::{Issue, Severity};
+use crate::audit::limits::{
     FROZEN_CHANGES, FROZEN_DIFFERENCES, FROZEN_LEVEL, FROZEN_RANGE, FROZEN_ROWS, FROZEN_SELDOM, FROZEN_SPANS,
 };
-use super::series::{Series, changes, constant};
+use crate::audit::motion::series::{Series, changes, constant};
 use crate::recording::{Channel, STATE_CHANNELS};
 use crate::statistics::{median, quantile};
 use std::ops::Range;

@@ -1,13 +1,13 @@
 //! One run against all others: whether a rudder, a propeller rate or a sway velocity is in another unit, or of another sign.
 //! It asks with the coefficients that the other runs have; lags are in `pooled`, and what contradicts itself within a run is in `units`.
 
-use super::issue::{Issue, Severity, Shared};
-use super::limits::{POOLED_UNUSUAL, SCALE_COHERENCE, SCALE_EVIDENCE, SCALE_LEAVES, SCALE_SAME, SCALE_SIZE};
-use super::pooled::Pool;
-use super::record::Responses;
-use super::response::Curve;
-use super::sources::Sources;
-use super::sums::Sums;
+use crate::audit::issue::{Issue, Severity, Shared};
+use crate::audit::limits::{POOLED_UNUSUAL, SCALE_COHERENCE, SCALE_EVIDENCE, SCALE_LEAVES, SCALE_SAME, SCALE_SIZE};
+use crate::audit::motion::pooled::Pool;
+use crate::audit::motion::response::Curve;
+use crate::audit::motion::sources::Sources;
+use crate::audit::motion::sums::Sums;
+use crate::audit::record::Responses;
 use crate::numerals::sig;
 use crate::recording::Channel;
 
@@ -140,7 +140,7 @@ pub fn scales(runs: &[(&str, &Responses)], sources: &Sources) -> Vec<Shared> {
 mod tests {
     use super::*;
     use crate::audit::example::noise;
-    use crate::audit::series::Series;
+    use crate::audit::motion::series::Series;
     use crate::recording::Recording;
 
     /// A run in which the rudder swings: yaw and sway answer it as they do in every run, with noise; `factors` are those of v and of the

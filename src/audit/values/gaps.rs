@@ -1,7 +1,7 @@
 //! Gaps: missing values, rows without time, uneven steps, columns that are not used, channels that are derived or bridged.
 //! It asks only what is there; whether what is there can be true is asked by the other files.
 
-use super::issue::{Issue, Severity};
+use crate::audit::issue::{Issue, Severity};
 use crate::error::suggestion;
 use crate::recording::{CHANNELS, Channel, Recording, STATE_CHANNELS};
 use std::ops::Range;

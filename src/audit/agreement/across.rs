@@ -1,27 +1,27 @@
 //! What only a comparison of runs shows: clocks that differ, one run in another unit, the same data on both sides of the split.
 //! The evidence of each run is gathered where the run is audited; no recording is read here.
 
-use super::gear::{ACTUATORS, Fastest, leaps as gear_leaps};
-use super::held::{Repeats, held, repeats};
-use super::issue::{Issue, Severity, Shared};
-use super::length::{Length, shorter};
-use super::limits::{
+use super::propeller::{advance, advance_ratio, is_unpowered, unpowered};
+use super::reckoning::{Reckoned, reckoned};
+use super::scales::scales;
+use super::scatter::{Scatter, scatters};
+use super::signs::Effect;
+use super::stuck::stuck;
+use crate::audit::issue::{Issue, Severity, Shared};
+use crate::audit::limits::{
     EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, LEVER_LAG, POOLED_EVIDENCE, SAME_LAG, SESSION_SHARE,
     SHARED_ROWS, SHARED_SHARE,
 };
-use super::orders::{Leap, ordered};
-use super::plateau::Plateau;
-use super::pooled::{Odd, actuated, odd, shares_at_best};
-use super::propeller::{advance, advance_ratio, is_unpowered, unpowered};
-use super::reckoning::{Reckoned, reckoned};
-use super::record::Responses;
-use super::response::Curve;
-use super::scales::scales;
-use super::scatter::{Scatter, scatters};
-use super::series::mean_square;
-use super::signs::Effect;
-use super::sources::Sources;
-use super::stuck::stuck;
+use crate::audit::motion::plateau::Plateau;
+use crate::audit::motion::pooled::{Odd, actuated, odd, shares_at_best};
+use crate::audit::motion::response::Curve;
+use crate::audit::motion::series::mean_square;
+use crate::audit::motion::sources::Sources;
+use crate::audit::record::Responses;
+use crate::audit::values::gear::{ACTUATORS, Fastest, leaps as gear_leaps};
+use crate::audit::values::held::{Repeats, held, repeats};
+use crate::audit::values::length::{Length, shorter};
+use crate::audit::values::orders::{Leap, ordered};
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording, Split};
 use crate::ship::Ship;
@@ -74,7 +74,13 @@ pub struct Evidence {
 
 impl Evidence {
     /// That of a run, from the part of its recording that the study uses.
-    pub(super) fn of(run: &Listed, recording: &Recording, ship: &Ship, responses: Responses, issues: &[Issue]) -> Self {
+    pub(in crate::audit) fn of(
+        run: &Listed,
+        recording: &Recording,
+        ship: &Ship,
+        responses: Responses,
+        issues: &[Issue],
+    ) -> Self {
         let of_fault = |fault| issues.iter().filter(|i| i.fault == fault).filter_map(|i| i.channel).collect();
         Self {
             run: run.labels.run.clone(),

@@ -1,10 +1,10 @@
 //! Responses: how the motion answers what is recorded of rudder, propeller, gyro and receiver, with each of many lags between them.
 //! It gives evidence on lag and sign, run by run; what is told of it is decided in `signs` and `across`.
 
-use super::limits::{LAG_LONGEST, RESPONSE_STEPS};
 use super::plateau::{Plateau, plateaus};
 use super::series::{Series, mean_square};
 use super::sums::{Gathered, Sums};
+use crate::audit::limits::{LAG_LONGEST, RESPONSE_STEPS};
 use crate::recording::Channel;
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,8 @@
 //! Fixes: positions between which no ship sails, by a wrong position or by a wrong time stamp, and headings across north.
 //! Whether track and velocity agree over a whole run is in `signs`.
 
-use super::issue::{Issue, Severity};
-use super::limits::{FASTEST, FIX_FAR, FIX_OPPOSITE, FIX_SHARE, FIX_SPEED, RESOLUTION_CHANGES, RESOLUTIONS};
+use crate::audit::issue::{Issue, Severity};
+use crate::audit::limits::{FASTEST, FIX_FAR, FIX_OPPOSITE, FIX_SHARE, FIX_SPEED, RESOLUTION_CHANGES, RESOLUTIONS};
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording, across_the_wrap};
 use crate::statistics::{median, quantile};

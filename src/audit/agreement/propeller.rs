@@ -1,8 +1,8 @@
 //! The propeller rate against the ship's speed: an advance ratio that no propeller has tells a wrong unit of the one or the other.
 //! What the propeller's thrust is, is the model's affair.
 
-use super::issue::{Issue, Severity};
-use super::limits::{POWERED, RATIO_APART, RATIO_INSIDE, RATIO_SAMPLES, SAILED, UNDER_WAY};
+use crate::audit::issue::{Issue, Severity};
+use crate::audit::limits::{POWERED, RATIO_APART, RATIO_INSIDE, RATIO_SAMPLES, SAILED, UNDER_WAY};
 use crate::numerals::sig;
 use crate::recording::{Channel, Recording};
 use crate::ship::Ship;

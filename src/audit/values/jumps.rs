@@ -1,8 +1,8 @@
 //! Damaged single values: rows that lie far from their neighbours, inside a run and at its ends, from which simulation starts.
 //! Positions that jump are in `fixes`; jumps that last are in `receiver`, since a run is parted there.
 
-use super::issue::{Issue, Severity};
-use super::limits::{
+use crate::audit::issue::{Issue, Severity};
+use crate::audit::limits::{
     APART_SHARE, END_WINDOWS, FAR, FAR_SHARE, FAR_SHARE_AT_ENDS, FEW, FEW_SHARE, FEW_SHARE_APART, LOST_SAME,
     MEDIAN_ROWS, OUTSIDE_SHARE, TAIL,
 };

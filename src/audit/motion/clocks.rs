@@ -1,8 +1,8 @@
 //! Clocks: how much later one channel tells a motion than another.
 //! Which channels are compared is decided by those that differentiate and smooth them.
 
-use super::issue::{Issue, Severity};
-use super::limits::{LAG_LONGEST, LAG_STEPS, PAIR_HALVES, PAIR_LEAVES, PAIR_STEPS};
+use crate::audit::issue::{Issue, Severity};
+use crate::audit::limits::{LAG_LONGEST, LAG_STEPS, PAIR_HALVES, PAIR_LEAVES, PAIR_STEPS};
 use crate::recording::Channel;
 
 /// Two series of one motion, of the longest stretch offered.
