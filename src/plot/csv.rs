@@ -2,8 +2,8 @@
 //! It writes the numbers that the caller gave, not those that fit on the axes.
 
 use super::axis::Axis;
+use super::drawing::extent::lies;
 use super::error::FigureError;
-use super::extent::lies;
 use super::figure::{Figure, Panel};
 use super::layer::{Layer, Mark};
 use crate::files::plain_cell;

@@ -2,9 +2,9 @@
 //! It holds what the images show, thinned to what a screen can; how it is drawn there is not decided here.
 
 use super::axis::{Axis, Scale, drawable, limits};
-use super::extent::extents;
+use super::drawing::extent::extents;
+use super::drawing::heatmap::{cell_colors, cell_words};
 use super::figure::{Figure, Legend, Panel};
-use super::heatmap::{cell_colors, cell_words};
 use super::layer::{Layer, Mark, Marker, Stroke};
 use super::palette::Color;
 use serde_json::{Value, json};

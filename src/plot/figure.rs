@@ -2,8 +2,8 @@
 //! It holds layers, axes and sizes; `output` turns a figure into PNG, SVG and CSV.
 
 use super::axis::Axis;
+use super::drawing::style::EDGE;
 use super::layer::Layer;
-use super::style::EDGE;
 
 /// A position in the earth frame (x m north, y m east) as a point of a track panel: (east, north).
 #[must_use]

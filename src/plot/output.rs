@@ -1,10 +1,10 @@
 //! A figure as an image or a file: PNG, SVG, and the CSV behind them.
 //! How it is laid out is in `layout`, and how an image is made in `raster` and `svg`.
 
+use super::drawing::layout::draw;
 use super::error::FigureError;
 use super::figure::Figure;
-use super::layout::draw;
-use super::{pdf, raster, svg};
+use super::sheet::{pdf, raster, svg};
 use crate::files::write_whole;
 use std::path::{Path, PathBuf};
 

@@ -1,12 +1,12 @@
 //! Where the ticks of an axis fall and how they read.
 //! Pure arithmetic: the range of the axis is given, and nothing here draws.
 
-use super::axis::{Axis, Scale, drawable};
 use crate::numerals::superscript;
+use crate::plot::axis::{Axis, Scale, drawable};
 
 /// An axis with its ends and ticks decided.
 #[derive(Clone, Debug)]
-pub(super) struct Ruler {
+pub(in crate::plot) struct Ruler {
     pub lo: f64,
     pub hi: f64,
     log: bool,
@@ -47,7 +47,7 @@ const FEWEST: usize = 3;
 const SPARE: f64 = 18.0;
 
 /// Decides the ticks of an axis `length` px long whose labels need `room(label)` px each.
-pub(super) fn ruler(
+pub(in crate::plot) fn ruler(
     axis: &Axis,
     (lo, hi): (f64, f64),
     length: f64,

@@ -2,10 +2,10 @@
 //! What the shapes are and where they lie was decided before; nothing here knows of axes or data.
 
 use super::canvas::{Anchor, Canvas, Run, Shape, Type};
-use super::error::FigureError;
 use super::font::{HALF_CAPITAL, advances, bytes, font};
 use super::geometry::Px;
-use super::palette::Color;
+use crate::plot::error::FigureError;
+use crate::plot::palette::Color;
 use ab_glyph::Font;
 use pdf_writer::types::{CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str};
@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use subsetter::GlyphRemapper;
 
 /// Points to a pixel: figures are laid out for screens of double density, of which 192 px are an inch.
-pub(super) const POINTS: f32 = 72.0 / 192.0;
+pub(in crate::plot) const POINTS: f32 = 72.0 / 192.0;
 /// A circle in four arcs has its control points so far from their ends, over the radius.
 const ARC: f32 = 0.552_284_8;
 /// Level of compression, 0 to 10.
@@ -31,7 +31,7 @@ struct Letters {
 }
 
 /// The sheet as a PDF document of one page, without a date, so that the same sheet gives the same bytes.
-pub(super) fn pdf(sheet: &Canvas) -> Result<Vec<u8>, FigureError> {
+pub(in crate::plot) fn pdf(sheet: &Canvas) -> Result<Vec<u8>, FigureError> {
     let mut letters = [Letters::default(), Letters::default()];
     for shape in &sheet.shapes {
         if let Shape::Text { text, style, .. } = shape {

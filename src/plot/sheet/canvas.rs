@@ -4,11 +4,11 @@
 //! Coordinates stay fractional until then, which is what keeps slow curves and ship outlines smooth.
 
 use super::geometry::{Px, Rect, clip_path, clip_polygon, cut_dashes};
-use super::palette::Color;
+use crate::plot::palette::Color;
 
 /// The end of a text that is at the point it is placed on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Anchor {
+pub(in crate::plot) enum Anchor {
     Start,
     Middle,
     End,
@@ -16,7 +16,7 @@ pub(super) enum Anchor {
 
 /// The way a text runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Run {
+pub(in crate::plot) enum Run {
     Across,
     /// Turned a quarter to the left, as the label of a vertical axis.
     Up,
@@ -24,7 +24,7 @@ pub(super) enum Run {
 
 /// How a text looks.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Type {
+pub(in crate::plot) struct Type {
     pub size: f32,
     pub bold: bool,
     pub color: Color,
@@ -32,7 +32,7 @@ pub(super) struct Type {
 
 /// Something drawn on the sheet, already cut to its clip.
 #[derive(Clone, Debug)]
-pub(super) enum Shape {
+pub(in crate::plot) enum Shape {
     Polygon {
         corners: Vec<Px>,
         color: Color,
@@ -62,7 +62,7 @@ pub(super) enum Shape {
 }
 
 /// The sheet.
-pub(super) struct Canvas {
+pub(in crate::plot) struct Canvas {
     pub width: u32,
     pub height: u32,
     pub shapes: Vec<Shape>,

@@ -2,10 +2,10 @@
 //! What the shapes are and where they lie was decided before; nothing here knows of axes or data.
 
 use super::canvas::{Canvas, Run, Shape};
-use super::error::FigureError;
 use super::font::HALF_CAPITAL;
 use super::geometry::Px;
 use super::pen::{failed, rgba, text_style};
+use crate::plot::error::FigureError;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -13,7 +13,7 @@ use plotters::prelude::*;
 const TENTHS: f32 = 10.0;
 
 /// The sheet as an SVG document, shown at half its size: figures are laid out for screens of double density.
-pub(super) fn svg(sheet: &Canvas) -> Result<String, FigureError> {
+pub(in crate::plot) fn svg(sheet: &Canvas) -> Result<String, FigureError> {
     let size = (sheet.width * TENTHS as u32, sheet.height * TENTHS as u32);
     let mut drawn = String::new();
     {
@@ -70,8 +70,8 @@ fn svg_shape(area: &DrawingArea<SVGBackend<'_>, Shift>, shape: &Shape) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::canvas::{Anchor, Type};
     use crate::plot::palette::Color;
+    use crate::plot::sheet::canvas::{Anchor, Type};
 
     #[test]
     fn text_in_svg_is_escaped() {

@@ -2,11 +2,11 @@
 //! Pure arithmetic: nothing here draws.
 
 /// A point of the sheet: px from the left, px from the top.
-pub(super) type Px = (f32, f32);
+pub(in crate::plot) type Px = (f32, f32);
 
 /// A rectangle of the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rect {
+pub(in crate::plot) struct Rect {
     pub left: f32,
     pub top: f32,
     pub right: f32,
@@ -36,12 +36,12 @@ impl Rect {
 }
 
 /// The rectangle with two opposite corners.
-pub(super) fn between(a: Px, b: Px) -> Rect {
+pub(in crate::plot) fn between(a: Px, b: Px) -> Rect {
     Rect { left: a.0.min(b.0), top: a.1.min(b.1), right: a.0.max(b.0), bottom: a.1.max(b.1) }
 }
 
 /// The drawn parts of a dashed path; the whole path when `dash` is empty.
-pub(super) fn cut_dashes(path: &[Px], dash: &[f32]) -> Vec<Vec<Px>> {
+pub(in crate::plot) fn cut_dashes(path: &[Px], dash: &[f32]) -> Vec<Vec<Px>> {
     if dash.is_empty() || dash.iter().any(|&d| d <= 0.0) {
         return vec![path.to_vec()];
     }
@@ -78,7 +78,7 @@ pub(super) fn cut_dashes(path: &[Px], dash: &[f32]) -> Vec<Vec<Px>> {
 }
 
 /// The parts of a path inside a rectangle (Liang and Barsky 1984, segment by segment).
-pub(super) fn clip_path(path: &[Px], clip: Rect) -> Vec<Vec<Px>> {
+pub(in crate::plot) fn clip_path(path: &[Px], clip: Rect) -> Vec<Vec<Px>> {
     let mut pieces: Vec<Vec<Px>> = Vec::new();
     let mut open = false;
     for pair in path.windows(2) {
@@ -114,7 +114,7 @@ fn clip_segment(a: Px, b: Px, clip: Rect) -> Option<(Px, Px, bool)> {
 }
 
 /// The part of a polygon inside a rectangle (Sutherland and Hodgman 1974).
-pub(super) fn clip_polygon(polygon: &[Px], clip: Rect) -> Vec<Px> {
+pub(in crate::plot) fn clip_polygon(polygon: &[Px], clip: Rect) -> Vec<Px> {
     type Side = (fn(Px, Rect) -> f32, fn(Px, Rect) -> Px);
     // Signed distance inside each side, and the projection onto it that undoes rounding.
     let sides: [Side; 4] = [

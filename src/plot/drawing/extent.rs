@@ -1,28 +1,28 @@
 //! The room that the data of a panel take: the smallest ranges that show every layer.
 //! It looks at numbers only; where they fall on a sheet is in `frame`.
 
-use super::axis::{Extent, drawable};
-use super::figure::Panel;
-use super::layer::{Layer, Mark};
 use super::shapes::hull;
+use crate::plot::axis::{Extent, drawable};
+use crate::plot::figure::Panel;
+use crate::plot::layer::{Layer, Mark};
 
 /// Whether bars and boxes of a panel lie: the categories are on the y axis only.
-pub(super) fn lies(panel: &Panel) -> bool {
+pub(in crate::plot) fn lies(panel: &Panel) -> bool {
     panel.y.labels().is_some() && panel.x.labels().is_none()
 }
 
 /// Whether a layer is drawn below the grid.
-pub(super) fn is_span(layer: &Layer) -> bool {
+pub(in crate::plot) fn is_span(layer: &Layer) -> bool {
     matches!(layer.mark, Mark::HSpan(..) | Mark::VSpan(..))
 }
 
 /// Whether a layer has one bar or box for each category.
-pub(super) fn is_grouped(layer: &Layer) -> bool {
+pub(in crate::plot) fn is_grouped(layer: &Layer) -> bool {
     matches!(layer.mark, Mark::Bars { .. } | Mark::Boxes(_))
 }
 
 /// Whether a layer has anything to show.
-pub(super) fn has_data(layer: &Layer) -> bool {
+pub(in crate::plot) fn has_data(layer: &Layer) -> bool {
     let pair = |&(x, y): &(f64, f64)| drawable(x) && drawable(y);
     match &layer.mark {
         Mark::Line(points) | Mark::Scatter(points, _) => points.iter().any(pair),
@@ -37,7 +37,7 @@ pub(super) fn has_data(layer: &Layer) -> bool {
 }
 
 /// The smallest ranges that show all layers of a panel.
-pub(super) fn extents(panel: &Panel) -> (Extent, Extent) {
+pub(in crate::plot) fn extents(panel: &Panel) -> (Extent, Extent) {
     let mut room = Room { x: Extent::new(&panel.x.scale), y: Extent::new(&panel.y.scale), lying: lies(panel) };
     for layer in &panel.layers {
         room.add(&layer.mark);
@@ -116,7 +116,7 @@ impl Room {
 }
 
 /// Quantile of sorted values by linear interpolation; `None` for no values.
-pub(super) fn quantile(sorted: &[f64], q: f64) -> Option<f64> {
+pub(in crate::plot) fn quantile(sorted: &[f64], q: f64) -> Option<f64> {
     let position = q * sorted.len().checked_sub(1)? as f64;
     let i = position as usize;
     let next = sorted.get(i + 1).unwrap_or(&sorted[i]);

@@ -1,12 +1,12 @@
 //! The legend: a strip that names the series with a sample of each, and never lies over the data.
 //! Which strips a figure has and where they go is decided in `layout`.
 
-use super::canvas::{Anchor, Canvas, Run};
-use super::font::text_width;
-use super::geometry::{Px, Rect};
-use super::layer::{Layer, Mark};
 use super::shapes::{arrow, dashes, draw_marker, hull, softened, whisker};
 use super::style::{LABEL, cut, ink};
+use crate::plot::layer::{Layer, Mark};
+use crate::plot::sheet::canvas::{Anchor, Canvas, Run};
+use crate::plot::sheet::font::text_width;
+use crate::plot::sheet::geometry::{Px, Rect};
 
 /// Width of a sample, px.
 const SWATCH: f32 = 46.0;
@@ -15,7 +15,7 @@ const ROW: f32 = 36.0;
 
 /// Names of series with a sample of each, in rows.
 #[derive(Default)]
-pub(super) struct Strip<'a> {
+pub(in crate::plot) struct Strip<'a> {
     rows: Vec<Vec<Entry<'a>>>,
 }
 

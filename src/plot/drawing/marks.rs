@@ -1,20 +1,20 @@
 //! How each kind of layer is drawn, in a frame that turns values into pixels.
 //! Axes, titles and legends are drawn elsewhere.
 
-use super::axis::{Scale, drawable};
-use super::canvas::{Anchor, Canvas, Run, Type};
 use super::extent::{is_grouped, lies, quantile};
-use super::figure::Panel;
 use super::frame::Frame;
-use super::geometry::{Px, Rect, between};
 use super::heatmap::cells;
-use super::layer::{Layer, Mark, Marker};
-use super::palette::Color;
 use super::shapes::{arrow, dashes, draw_marker, hull, softened, whisker};
 use super::style::{INK, NOTE, ink};
+use crate::plot::axis::{Scale, drawable};
+use crate::plot::figure::Panel;
+use crate::plot::layer::{Layer, Mark, Marker};
+use crate::plot::palette::Color;
+use crate::plot::sheet::canvas::{Anchor, Canvas, Run, Type};
+use crate::plot::sheet::geometry::{Px, Rect, between};
 
 /// Draws one layer; `group` counts the layers of bars and boxes before it.
-pub(super) fn draw_layer(frame: &Frame, canvas: &mut Canvas, panel: &Panel, layer: &Layer, group: usize) {
+pub(in crate::plot) fn draw_layer(frame: &Frame, canvas: &mut Canvas, panel: &Panel, layer: &Layer, group: usize) {
     let (color, width) = (layer.color, layer.width);
     let mut brush = Brush { frame, canvas, color, width, dash: dashes(layer.stroke, width) };
     match &layer.mark {
@@ -54,7 +54,7 @@ pub(super) fn draw_layer(frame: &Frame, canvas: &mut Canvas, panel: &Panel, laye
 }
 
 /// Writes the remarks of a panel, each anchored by the side of the plot it is on, so that it stays inside.
-pub(super) fn draw_remarks(frame: &Frame, canvas: &mut Canvas, panel: &Panel) {
+pub(in crate::plot) fn draw_remarks(frame: &Frame, canvas: &mut Canvas, panel: &Panel) {
     let plot = frame.plot;
     for layer in &panel.layers {
         let Mark::Text((x, y)) = layer.mark else { continue };

@@ -2,11 +2,11 @@
 //! What the shapes are and where they lie was decided before; nothing here knows of axes or data.
 
 use super::canvas::{Anchor, Canvas, Run, Shape, Type};
-use super::error::FigureError;
 use super::font::{HALF_CAPITAL, advances, font};
 use super::geometry::{Px, Rect};
-use super::palette::Color;
 use super::pen::{failed, rgba, text_style};
+use crate::plot::error::FigureError;
+use crate::plot::palette::Color;
 use ab_glyph::Font;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -18,7 +18,7 @@ const MOST_PIXELS: u64 = 40_000_000;
 const SAMPLES: u32 = 3;
 const SCALE: f32 = SAMPLES as f32;
 /// The sheet as PNG.
-pub(super) fn png(sheet: &Canvas) -> Result<Vec<u8>, FigureError> {
+pub(in crate::plot) fn png(sheet: &Canvas) -> Result<Vec<u8>, FigureError> {
     let (width, height) = (sheet.width, sheet.height);
     let rgb = pixels(sheet)?;
     let mut bytes = Vec::new();
@@ -280,7 +280,7 @@ mod tests {
     #[test]
     fn text_stands_with_its_capitals_about_the_point_and_as_wide_as_measured() {
         let (size, at) = (40.0, (150.0, 150.0));
-        let width = crate::plot::font::text_width("HHHHH", size, false);
+        let width = crate::plot::sheet::font::text_width("HHHHH", size, false);
         for (run, anchor, from) in [
             (Run::Across, Anchor::Start, 150.0),
             (Run::Across, Anchor::Middle, 150.0 - 0.5 * width),

@@ -1,22 +1,22 @@
 //! The embedded font: how wide a text is, letter by letter.
 //! It draws nothing; the font is also registered with plotters here, so that none of the system is needed.
 
-use super::error::FigureError;
+use crate::plot::error::FigureError;
 use ab_glyph::{Font, FontRef};
 use plotters::style::{FontStyle, register_font};
 use std::sync::OnceLock;
 
 /// The name DejaVu Sans is registered under. Viewers of an SVG that lack it fall back on fonts of the same letter widths.
-pub(super) const FAMILY: &str = "DejaVu Sans, Bitstream Vera Sans, Verdana, sans-serif";
+pub(in crate::plot) const FAMILY: &str = "DejaVu Sans, Bitstream Vera Sans, Verdana, sans-serif";
 /// Half the height of a capital letter over the font size: text is placed by the middle of its capitals.
-pub(super) const HALF_CAPITAL: f32 = 0.365;
+pub(in crate::plot) const HALF_CAPITAL: f32 = 0.365;
 struct Fonts {
     regular: FontRef<'static>,
     bold: FontRef<'static>,
 }
 
 /// The embedded font, registered with plotters at the first call.
-pub(super) fn font(bold: bool) -> Result<&'static FontRef<'static>, FigureError> {
+pub(in crate::plot) fn font(bold: bool) -> Result<&'static FontRef<'static>, FigureError> {
     static FONTS: OnceLock<Option<Fonts>> = OnceLock::new();
     let load = |style: FontStyle, bytes: &'static [u8]| {
         register_font(FAMILY, style, bytes).ok()?;
@@ -32,19 +32,19 @@ pub(super) fn font(bold: bool) -> Result<&'static FontRef<'static>, FigureError>
 }
 
 /// The file of the embedded font.
-pub(super) fn bytes(bold: bool) -> &'static [u8] {
+pub(in crate::plot) fn bytes(bold: bool) -> &'static [u8] {
     if bold { dejavu::sans::bold() } else { dejavu::sans::regular() }
 }
 
 /// Width of a text in px.
-pub(super) fn text_width(text: &str, size: f32, bold: bool) -> f32 {
+pub(in crate::plot) fn text_width(text: &str, size: f32, bold: bool) -> f32 {
     // Without a font no image can be made, so the width is never used.
     let Ok(font) = font(bold) else { return 0.0 };
     advances(font, text, size).last().map_or(0.0, |&(_, end)| end)
 }
 
 /// Where each letter of a text starts and ends, in px from the start of the text.
-pub(super) fn advances(font: &FontRef<'_>, text: &str, size: f32) -> Vec<(f32, f32)> {
+pub(in crate::plot) fn advances(font: &FontRef<'_>, text: &str, size: f32) -> Vec<(f32, f32)> {
     let em = size / font.units_per_em().unwrap_or(1.0);
     let mut previous = None;
     let mut end = 0.0;

@@ -1,16 +1,16 @@
 //! The plot of a panel: its rectangle on the sheet, its two axes, and where a point falls.
 //! It draws nothing.
 
-use super::axis::{Scale, equal_aspect, limits};
 use super::extent::extents;
-use super::figure::Panel;
-use super::font::text_width;
-use super::geometry::{Px, Rect};
 use super::style::TICK;
 use super::ticks::{Ruler, ruler};
+use crate::plot::axis::{Scale, equal_aspect, limits};
+use crate::plot::figure::Panel;
+use crate::plot::sheet::font::text_width;
+use crate::plot::sheet::geometry::{Px, Rect};
 
 /// The axes of a panel on its plot rectangle.
-pub(super) struct Frame {
+pub(in crate::plot) struct Frame {
     pub plot: Rect,
     pub x: Ruler,
     pub y: Ruler,

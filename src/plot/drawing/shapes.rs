@@ -1,13 +1,13 @@
 //! Shapes that a plot and its legend share: markers, arrows, whiskers, dashes and ship outlines.
 //! They are drawn where they are asked for; no axis is known here.
 
-use super::canvas::Canvas;
-use super::geometry::{Px, Rect};
-use super::layer::{Marker, Stroke};
-use super::palette::Color;
+use crate::plot::layer::{Marker, Stroke};
+use crate::plot::palette::Color;
+use crate::plot::sheet::canvas::Canvas;
+use crate::plot::sheet::geometry::{Px, Rect};
 
 /// Drawn and left-out lengths of a line, px; none for a solid one.
-pub(super) fn dashes(stroke: Stroke, width: f32) -> Vec<f32> {
+pub(in crate::plot) fn dashes(stroke: Stroke, width: f32) -> Vec<f32> {
     match stroke {
         Stroke::Solid => vec![],
         Stroke::Dashed => vec![5.0 * width.max(2.0), 3.0 * width.max(2.0)],
@@ -16,12 +16,12 @@ pub(super) fn dashes(stroke: Stroke, width: f32) -> Vec<f32> {
 }
 
 /// The colour of large solid areas: opaque, so that the grid does not show through.
-pub(super) fn softened(color: Color) -> Color {
+pub(in crate::plot) fn softened(color: Color) -> Color {
     color.mix(Color::rgb(255, 255, 255), 0.12)
 }
 
 /// The outline of a ship as (east, north), bow at half a length ahead of the pose.
-pub(super) fn hull([x, y, psi]: [f64; 3], length: f64, beam: f64) -> [(f64, f64); 9] {
+pub(in crate::plot) fn hull([x, y, psi]: [f64; 3], length: f64, beam: f64) -> [(f64, f64); 9] {
     const SHAPE: [(f64, f64); 9] = [
         (0.5, 0.0),
         (0.42, 0.27),
@@ -41,7 +41,7 @@ pub(super) fn hull([x, y, psi]: [f64; 3], length: f64, beam: f64) -> [(f64, f64)
 }
 
 /// An interval: a line with a cap at each end.
-pub(super) fn whisker(canvas: &mut Canvas, a: Px, b: Px, cap: f32, width: f32, color: Color) {
+pub(in crate::plot) fn whisker(canvas: &mut Canvas, a: Px, b: Px, cap: f32, width: f32, color: Color) {
     canvas.stroke(&[a, b], width, &[], color);
     let lying = (a.1 - b.1).abs() < 0.01;
     let (dx, dy) = if lying { (0.0, cap) } else { (cap, 0.0) };
@@ -51,7 +51,7 @@ pub(super) fn whisker(canvas: &mut Canvas, a: Px, b: Px, cap: f32, width: f32, c
 }
 
 /// An arrow from `a` to `b`.
-pub(super) fn arrow(canvas: &mut Canvas, a: Px, b: Px, width: f32, color: Color) {
+pub(in crate::plot) fn arrow(canvas: &mut Canvas, a: Px, b: Px, width: f32, color: Color) {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let length = dx.hypot(dy);
     if length < 1.5 {
@@ -66,7 +66,7 @@ pub(super) fn arrow(canvas: &mut Canvas, a: Px, b: Px, width: f32, color: Color)
 }
 
 /// A point of a series, `r` px in radius.
-pub(super) fn draw_marker(canvas: &mut Canvas, (x, y): Px, marker: Marker, r: f32, color: Color) {
+pub(in crate::plot) fn draw_marker(canvas: &mut Canvas, (x, y): Px, marker: Marker, r: f32, color: Color) {
     match marker {
         Marker::Circle => canvas.disc((x, y), r, color),
         Marker::Square => {

@@ -1,16 +1,16 @@
 //! The axes of a panel as drawn: grid, ticks, labels, and the margins they need around the plot.
 //! Ranges and ticks are decided before; the layers between the axes are drawn in `marks`.
 
-use super::axis::Axis;
-use super::canvas::{Anchor, Canvas, Run};
-use super::figure::Panel;
-use super::font::text_width;
 use super::frame::Frame;
-use super::geometry::Rect;
 use super::heatmap::heatmap;
-use super::palette::Color;
 use super::style::{FRAME, HEADING, LABEL, LEADING, TICK, fit_lines, ink};
 use super::ticks::Ruler;
+use crate::plot::axis::Axis;
+use crate::plot::figure::Panel;
+use crate::plot::palette::Color;
+use crate::plot::sheet::canvas::{Anchor, Canvas, Run};
+use crate::plot::sheet::font::text_width;
+use crate::plot::sheet::geometry::Rect;
 
 /// Grid lines at the ticks, and between them on logarithmic axes.
 const GRID: Color = Color::rgb(226, 226, 226);
@@ -20,7 +20,7 @@ const TICK_GAP: f32 = 14.0;
 
 /// Space around a plot for titles and labels, px.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Margins {
+pub(in crate::plot) struct Margins {
     pub left: f32,
     pub right: f32,
     pub top: f32,
@@ -40,7 +40,7 @@ impl Margins {
 }
 
 /// The title of a panel in lines that fit.
-pub(super) fn title_lines(panel: &Panel, width: f32) -> Vec<String> {
+pub(in crate::plot) fn title_lines(panel: &Panel, width: f32) -> Vec<String> {
     fit_lines(&panel.title, HEADING, true, width, 3).0
 }
 
@@ -77,7 +77,7 @@ const NAMES: f32 = 0.36;
 const NAME_LINES: usize = 6;
 
 /// The height that a plot needs so that every name along its y axis is whole, px.
-pub(super) fn least_height(panel: &Panel, cell_w: f32) -> f32 {
+pub(in crate::plot) fn least_height(panel: &Panel, cell_w: f32) -> f32 {
     let lines = |label: &String| fit_lines(label, TICK, false, NAMES * cell_w, NAME_LINES).0.len();
     let most = |labels: &[String]| labels.iter().map(lines).max().unwrap_or(1);
     panel.y.labels().map_or(0.0, |labels| labels.len() as f32 * (most(labels) as f32 * TICK * LEADING + 1.0))
@@ -88,7 +88,7 @@ fn widest<'a>(texts: impl Iterator<Item = &'a String>) -> f32 {
 }
 
 /// The margins a panel needs in a cell this wide, with a legend strip this high above its plot.
-pub(super) fn margins(frame: &Frame, panel: &Panel, cell_w: f32, strip: f32) -> Margins {
+pub(in crate::plot) fn margins(frame: &Frame, panel: &Panel, cell_w: f32, strip: f32) -> Margins {
     let plot = frame.plot;
     let y_ticks = match panel.y.labels() {
         Some(labels) => widest(row_labels(plot, labels, cell_w).0.iter().flatten()),
@@ -126,7 +126,7 @@ pub(super) fn margins(frame: &Frame, panel: &Panel, cell_w: f32, strip: f32) -> 
 }
 
 /// The grid of a panel; axes of categories have none.
-pub(super) fn grid(frame: &Frame, canvas: &mut Canvas, panel: &Panel) {
+pub(in crate::plot) fn grid(frame: &Frame, canvas: &mut Canvas, panel: &Panel) {
     let Rect { left, top, right, bottom } = frame.plot;
     let lines = |ruler: &Ruler, axis: &Axis| -> Vec<(f64, Color)> {
         let minor = ruler.minor.iter().map(|&v| (v, MINOR));
@@ -142,7 +142,7 @@ pub(super) fn grid(frame: &Frame, canvas: &mut Canvas, panel: &Panel) {
 }
 
 /// Ticks and labels below the plot.
-pub(super) fn x_axis(frame: &Frame, canvas: &mut Canvas, axis: &Axis) {
+pub(in crate::plot) fn x_axis(frame: &Frame, canvas: &mut Canvas, axis: &Axis) {
     let Rect { left, right, .. } = frame.plot;
     let below = x_ticks(frame, canvas, axis);
     let lines = fit_lines(&axis.label, LABEL, false, frame.plot.width(), 2).0;
@@ -189,7 +189,7 @@ fn x_ticks(frame: &Frame, canvas: &mut Canvas, axis: &Axis) -> f32 {
 }
 
 /// Ticks and labels to the left of the plot, in a cell this wide.
-pub(super) fn y_axis(frame: &Frame, canvas: &mut Canvas, axis: &Axis, cell_w: f32) {
+pub(in crate::plot) fn y_axis(frame: &Frame, canvas: &mut Canvas, axis: &Axis, cell_w: f32) {
     let Rect { left, top, bottom, .. } = frame.plot;
     let ticks = if let Some(labels) = axis.labels() {
         let (labels, stride) = row_labels(frame.plot, labels, cell_w);

@@ -1,41 +1,41 @@
 //! How text looks in a figure: its sizes and colours, and how it is broken into lines that fit.
 //! It places nothing on the sheet.
 
-use super::canvas::Type;
-use super::font::text_width;
-use super::palette::Color;
+use crate::plot::palette::Color;
+use crate::plot::sheet::canvas::Type;
+use crate::plot::sheet::font::text_width;
 
 /// Title of the figure, px.
-pub(super) const TITLE: f32 = 30.0;
+pub(in crate::plot) const TITLE: f32 = 30.0;
 /// Title of a panel, px.
-pub(super) const HEADING: f32 = 25.0;
+pub(in crate::plot) const HEADING: f32 = 25.0;
 /// Labels of axes and entries of the legend, px.
-pub(super) const LABEL: f32 = 24.0;
+pub(in crate::plot) const LABEL: f32 = 24.0;
 /// Labels of ticks, px.
-pub(super) const TICK: f32 = 22.0;
+pub(in crate::plot) const TICK: f32 = 22.0;
 /// Remarks in a plot, px.
-pub(super) const NOTE: f32 = 20.0;
+pub(in crate::plot) const NOTE: f32 = 20.0;
 /// Around the figure, px.
-pub(super) const EDGE: f32 = 24.0;
+pub(in crate::plot) const EDGE: f32 = 24.0;
 /// From one line of text to the next, over the font size.
-pub(super) const LEADING: f32 = 1.3;
+pub(in crate::plot) const LEADING: f32 = 1.3;
 /// Colour of text.
-pub(super) const INK: Color = Color::rgb(30, 30, 30);
+pub(in crate::plot) const INK: Color = Color::rgb(30, 30, 30);
 /// Colour of frames and ticks.
-pub(super) const FRAME: Color = Color::rgb(110, 110, 110);
+pub(in crate::plot) const FRAME: Color = Color::rgb(110, 110, 110);
 
 /// Plain text of a size.
-pub(super) const fn ink(size: f32) -> Type {
+pub(in crate::plot) const fn ink(size: f32) -> Type {
     Type { size, bold: false, color: INK }
 }
 
 /// Bold text of a size.
-pub(super) const fn bold(size: f32) -> Type {
+pub(in crate::plot) const fn bold(size: f32) -> Type {
     Type { size, bold: true, color: INK }
 }
 
 /// Breaks a text at its spaces into at most `most` lines of `width` px; tells whether it did so without cutting anything.
-pub(super) fn fit_lines(text: &str, size: f32, bold: bool, width: f32, most: usize) -> (Vec<String>, bool) {
+pub(in crate::plot) fn fit_lines(text: &str, size: f32, bold: bool, width: f32, most: usize) -> (Vec<String>, bool) {
     let mut lines: Vec<String> = vec![];
     for word in text.split_whitespace() {
         match lines.last_mut() {
@@ -60,7 +60,7 @@ pub(super) fn fit_lines(text: &str, size: f32, bold: bool, width: f32, most: usi
 }
 
 /// A text, ended by an ellipsis where it would be wider than `width` px.
-pub(super) fn cut(text: &str, size: f32, bold: bool, width: f32) -> String {
+pub(in crate::plot) fn cut(text: &str, size: f32, bold: bool, width: f32) -> String {
     if text_width(text, size, bold) <= width {
         return text.to_owned();
     }

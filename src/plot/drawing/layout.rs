@@ -2,18 +2,18 @@
 //! It decides nothing about the data: ranges and ticks come from `frame`, layers from `marks`, pixels from `canvas`.
 
 use super::axes::{Margins, grid, least_height, margins, title_lines, x_axis, y_axis};
-use super::canvas::{Anchor, Canvas, Run, Type};
 use super::extent::{has_data, is_grouped, is_span};
-use super::figure::{Figure, Legend, Panel};
 use super::frame::Frame;
-use super::geometry::{Px, Rect};
 use super::heatmap::{color_bar, heatmap};
 use super::legend::Strip;
 use super::marks::{draw_layer, draw_remarks};
 use super::style::{EDGE, FRAME, HEADING, LEADING, TITLE, bold, fit_lines, ink};
+use crate::plot::figure::{Figure, Legend, Panel};
+use crate::plot::sheet::canvas::{Anchor, Canvas, Run, Type};
+use crate::plot::sheet::geometry::{Px, Rect};
 
 /// The sheet of a figure.
-pub(super) fn draw(figure: &Figure) -> Canvas {
+pub(in crate::plot) fn draw(figure: &Figure) -> Canvas {
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let cell = (figure.panel_width.max(300) as f32, figure.panel_height.max(200) as f32);
     let width = cell.0 * columns as f32 + 2.0 * EDGE;
@@ -177,11 +177,11 @@ fn draw_panel(frame: &Frame, canvas: &mut Canvas, panel: &Panel, cell_w: f32) {
 mod tests {
     use super::*;
     use crate::plot::axis::Axis;
-    use crate::plot::canvas::Shape;
     use crate::plot::figure::Width;
-    use crate::plot::font::text_width;
     use crate::plot::layer::Layer;
     use crate::plot::palette::{BASELINE, FITTED};
+    use crate::plot::sheet::canvas::Shape;
+    use crate::plot::sheet::font::text_width;
 
     /// Figures of the kinds that the commands draw.
     fn figures() -> Vec<Figure> {

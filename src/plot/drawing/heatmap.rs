@@ -1,23 +1,23 @@
 //! Heat maps: the range of their colours, their cells and the bar that explains them.
 //! Nothing else of a panel is drawn here.
 
-use super::axis::{Axis, Extent, Scale, drawable};
-use super::canvas::{Anchor, Canvas, Run, Type};
-use super::figure::Panel;
-use super::font::text_width;
 use super::frame::Frame;
-use super::geometry::{Rect, between};
-use super::layer::Mark;
-use super::palette::{self, Color};
 use super::style::{FRAME, INK, NOTE, TICK, cut, ink};
 use super::ticks::ruler;
 use crate::numerals::{fixed, sig};
+use crate::plot::axis::{Axis, Extent, Scale, drawable};
+use crate::plot::figure::Panel;
+use crate::plot::layer::Mark;
+use crate::plot::palette::{self, Color};
+use crate::plot::sheet::canvas::{Anchor, Canvas, Run, Type};
+use crate::plot::sheet::font::text_width;
+use crate::plot::sheet::geometry::{Rect, between};
 
 /// The colour of a cell without a value.
 const EMPTY: Color = Color::rgb(235, 235, 235);
 
 /// The heat map of a panel, if it has one: the name and the range of its colours.
-pub(super) fn heatmap(panel: &Panel) -> Option<(&str, (f64, f64))> {
+pub(in crate::plot) fn heatmap(panel: &Panel) -> Option<(&str, (f64, f64))> {
     panel.layers.iter().find_map(|layer| match &layer.mark {
         Mark::Heatmap { values, range, .. } => Some((layer.name.as_str(), color_range(values, *range))),
         _ => None,
@@ -44,14 +44,14 @@ fn cell_color(v: f64, (lo, hi): (f64, f64)) -> Color {
 }
 
 /// The colour of every cell; those without a value are grey.
-pub(super) fn cell_colors(values: &[Vec<f64>], range: Option<(f64, f64)>) -> Vec<Vec<Color>> {
+pub(in crate::plot) fn cell_colors(values: &[Vec<f64>], range: Option<(f64, f64)>) -> Vec<Vec<Color>> {
     let range = color_range(values, range);
     let of = |&v: &f64| if drawable(v) { cell_color(v, range) } else { EMPTY };
     values.iter().map(|row| row.iter().map(of).collect()).collect()
 }
 
 /// The value of every cell in words.
-pub(super) fn cell_words(values: &[Vec<f64>], range: Option<(f64, f64)>) -> Vec<Vec<String>> {
+pub(in crate::plot) fn cell_words(values: &[Vec<f64>], range: Option<(f64, f64)>) -> Vec<Vec<String>> {
     let range = color_range(values, range);
     values.iter().map(|row| row.iter().map(|&v| cell_text(v, range)).collect()).collect()
 }
@@ -68,7 +68,7 @@ fn cell_text(v: f64, (lo, hi): (f64, f64)) -> String {
 }
 
 /// The cells of a heat map, each with its value where that fits.
-pub(super) fn cells(
+pub(in crate::plot) fn cells(
     frame: &Frame,
     canvas: &mut Canvas,
     values: &[Vec<f64>],
@@ -100,7 +100,7 @@ pub(super) fn cells(
 }
 
 /// The scale of the colours, to the right of the plot.
-pub(super) fn color_bar(plot: Rect, canvas: &mut Canvas, name: &str, (lo, hi): (f64, f64)) {
+pub(in crate::plot) fn color_bar(plot: Rect, canvas: &mut Canvas, name: &str, (lo, hi): (f64, f64)) {
     let bar = Rect { left: plot.right + 22.0, right: plot.right + 46.0, ..plot };
     const STEPS: usize = 64;
     for i in 0..STEPS {

@@ -2,18 +2,18 @@
 //! It draws nothing: `raster` and `svg` do, each with its own elements.
 
 use super::canvas::{Anchor, Run, Type};
-use super::error::FigureError;
 use super::font::FAMILY;
-use super::palette::Color;
+use crate::plot::error::FigureError;
+use crate::plot::palette::Color;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-pub(super) fn rgba(color: Color) -> RGBAColor {
+pub(in crate::plot) fn rgba(color: Color) -> RGBAColor {
     // Three digits of an opacity are plenty, and spare an SVG the tail of the conversion.
     RGBAColor(color.r, color.g, color.b, (f64::from(color.alpha) * 1e3).round() / 1e3)
 }
 
-pub(super) fn text_style(style: Type, size: f64, run: Run, anchor: Anchor) -> TextStyle<'static> {
+pub(in crate::plot) fn text_style(style: Type, size: f64, run: Run, anchor: Anchor) -> TextStyle<'static> {
     let weight = if style.bold { FontStyle::Bold } else { FontStyle::Normal };
     let turn = match run {
         Run::Across => FontTransform::None,
@@ -30,6 +30,6 @@ pub(super) fn text_style(style: Type, size: f64, run: Run, anchor: Anchor) -> Te
         .pos(Pos::new(side, VPos::Top))
 }
 
-pub(super) fn failed<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> FigureError {
+pub(in crate::plot) fn failed<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> FigureError {
     FigureError::Drawing(error.to_string())
 }
