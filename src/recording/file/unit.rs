@@ -175,7 +175,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(super::super::seeded())]
+        #![proptest_config(crate::recording::seeded())]
         #[test]
         fn a_value_written_in_any_unit_is_read_back(value in -1e4..1e4f64, which in 0..UNITS.len()) {
             let u = UNITS[which];

@@ -1,7 +1,7 @@
 //! Which channel a name of everyday use stands for: `rudder`, `rpm` or `heading`, in a column map or in a header.
 //! It helps messages alone: nothing is read by such a name.
 
-use super::channel::{CHANNELS, Channel};
+use crate::recording::channel::{CHANNELS, Channel};
 
 /// Everyday words that are not in the channels' own description.
 const EVERYDAY: [(&str, Channel); 24] = [

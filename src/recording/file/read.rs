@@ -2,13 +2,13 @@
 //! What follows (time, frames, reference point, derived channels) is `convert.rs`.
 
 use super::blank::Blank;
-use super::channel::{CHANNELS, Channel, ChannelInfo};
-use super::error::RecordingError;
 use super::lines::LineNumbers;
 use super::map::{Column, ColumnMap, Decimal, Delimiter, SpeedReference};
-use super::record::Recording;
 use super::unit::UNITS;
 use crate::error::suggestion;
+use crate::recording::channel::{CHANNELS, Channel, ChannelInfo};
+use crate::recording::error::RecordingError;
+use crate::recording::record::Recording;
 use std::borrow::Cow;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};

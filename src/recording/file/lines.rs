@@ -3,7 +3,7 @@
 
 /// Line numbers by row, rising.
 #[derive(Clone, Debug, Default)]
-pub(super) struct LineNumbers {
+pub(in crate::recording) struct LineNumbers {
     /// First row of each stretch of successive lines, and its line.
     stretches: Vec<(usize, usize)>,
     rows: usize,

@@ -17,9 +17,9 @@
 //! ```
 
 use super::blank::Blank;
-use super::channel::{CHANNELS, Channel};
-use super::error::RecordingError;
 use crate::error::suggestion;
+use crate::recording::channel::{CHANNELS, Channel};
+use crate::recording::error::RecordingError;
 use crate::written::{Kind, Mistake, line_at, read_text, read_toml, told};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
