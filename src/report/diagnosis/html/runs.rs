@@ -14,7 +14,7 @@ const SERIES: [(&str, Color, u8, f64); 3] =
     [("recorded", RECORDED, 0, 1.8), ("base model, refitted", BASELINE, 1, 1.8), ("improved model", FITTED, 0, 1.8)];
 
 /// The numbers of the runs for the script of the page; nothing without a run.
-pub(super) fn numbers(d: &Diagnosis) -> Option<Value> {
+pub(in crate::report::diagnosis) fn numbers(d: &Diagnosis) -> Option<Value> {
     let series: Vec<Value> = SERIES
         .iter()
         .map(|(name, c, dash, width)| {
@@ -80,7 +80,7 @@ fn first(d: &Diagnosis) -> Option<usize> {
 ///
 /// # Errors
 /// As [`Figure::svg`].
-pub(super) fn picture(d: &Diagnosis, all: usize) -> Result<Option<Markup>, FigureError> {
+pub(in crate::report::diagnosis) fn picture(d: &Diagnosis, all: usize) -> Result<Option<Markup>, FigureError> {
     let Some(s) = first(d).map(|i| &d.sailed[i]) else { return Ok(None) };
     let svg = track(s).svg()?;
     // Inside a page the element needs no name space, and its width follows from the style.

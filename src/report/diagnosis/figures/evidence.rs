@@ -1,11 +1,11 @@
 //! Figures of the evidence: which mechanism explains the data, and which ones are similar in their effects.
 //! The statistics are the diagnosis's own.
 
-use super::names::title_of;
 use super::picture::{Picture, shown};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::answer::diagnosis::Ranked;
 use crate::plot::{Axis, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, Mark, ORANGE, PURPLE, Panel, RECORDED, SKY};
+use crate::report::diagnosis::names::title_of;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Mechanisms in the figure of the ranking, and in that of similarity.
@@ -50,7 +50,7 @@ fn outcome(d: &Diagnosis, r: &Ranked) -> usize {
 }
 
 /// Evidence for each mechanism, the strongest first.
-pub(super) fn ranking(d: &Diagnosis) -> Option<Picture> {
+pub(in crate::report::diagnosis) fn ranking(d: &Diagnosis) -> Option<Picture> {
     if d.ranking.is_empty() {
         return None;
     }
@@ -93,7 +93,7 @@ pub(super) fn ranking(d: &Diagnosis) -> Option<Picture> {
 }
 
 /// Similarity of the mechanisms with the strongest evidence, as far as they are in a pair at all.
-pub(super) fn confusability(d: &Diagnosis) -> Option<Picture> {
+pub(in crate::report::diagnosis) fn confusability(d: &Diagnosis) -> Option<Picture> {
     if d.confusable.is_empty() {
         return None;
     }

@@ -10,13 +10,13 @@ pub struct Picture {
     pub stem: &'static str,
     /// What is to be seen, in one or two sentences.
     pub caption: String,
-    /// Heading of the part of the report, as in [`super::parts`].
+    /// Heading of the part of the report, as in [`crate::report::diagnosis::parts`].
     pub part: &'static str,
     /// The figure.
     pub figure: Figure,
 }
 
 /// That not everything is shown; nothing where it is.
-pub(super) fn shown(count: usize, of: usize, what: &str) -> String {
+pub(in crate::report::diagnosis) fn shown(count: usize, of: usize, what: &str) -> String {
     if count < of { format!(" {count} of {of} {what} are shown.") } else { String::new() }
 }

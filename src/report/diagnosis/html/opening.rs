@@ -1,11 +1,11 @@
 //! What a reader of the page sees first: the verdict in a sentence, three numbers, and one picture with the runs to choose.
 //! The numbers are those of the document; which three are shown is decided here.
 
-use super::names::title_of;
-use super::quantity::{count, quantity};
-use super::verdict::{grade_label, subject, title};
 use crate::diagnose::{Diagnosis, Finding};
 use crate::numerals::{fixed, plural, sig};
+use crate::report::diagnosis::names::title_of;
+use crate::report::diagnosis::quantity::{count, quantity};
+use crate::report::diagnosis::verdict::{grade_label, subject, title};
 use maud::{Markup, html};
 
 /// A number to be seen first: what it is, and in words what it means.
@@ -15,7 +15,7 @@ struct Number {
 }
 
 /// Verdict, sentence, what was diagnosed, and the three numbers.
-pub(super) fn opening(d: &Diagnosis, study: &str) -> Markup {
+pub(in crate::report::diagnosis) fn opening(d: &Diagnosis, study: &str) -> Markup {
     html! {
         p.subject {
             (title(d))

@@ -10,7 +10,7 @@ const RUNS: usize = 40;
 const COEFFICIENTS: usize = 20;
 
 /// cVDM of each test run before and after, the worst before first.
-pub(super) fn held_out(d: &Diagnosis) -> Option<Picture> {
+pub(in crate::report::diagnosis) fn held_out(d: &Diagnosis) -> Option<Picture> {
     let h = d.held_out.as_ref()?;
     let cvdm = |v: Option<f64>| v.unwrap_or(f64::NAN);
     let both = h.runs_before.iter().zip(&h.runs_after);
@@ -44,7 +44,7 @@ pub(super) fn held_out(d: &Diagnosis) -> Option<Picture> {
 }
 
 /// How far the model's own parameters moved when the findings were added.
-pub(super) fn moves(d: &Diagnosis) -> Option<Picture> {
+pub(in crate::report::diagnosis) fn moves(d: &Diagnosis) -> Option<Picture> {
     if d.moves.is_empty() || d.findings.is_empty() {
         return None;
     }
@@ -58,7 +58,7 @@ pub(super) fn moves(d: &Diagnosis) -> Option<Picture> {
 }
 
 /// The hull coefficients furthest from their priors.
-pub(super) fn hull_budget(d: &Diagnosis) -> Option<Picture> {
+pub(in crate::report::diagnosis) fn hull_budget(d: &Diagnosis) -> Option<Picture> {
     let mut budget: Vec<(&str, f64)> = d.hull_budget.iter().map(|b| (b.name.as_str(), b.used)).collect();
     budget.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
     let all = budget.len();

@@ -1,15 +1,15 @@
 //! One finding of the page: how well it is supported, how large it is, where it acts, what proves it, and what else it could be.
 //! All of it is in the document; nothing is concluded here.
 
-use super::names::{about, title_of};
-use super::phrases::{equations, p_value, window};
-use super::quantity::{count, quantity};
-use super::verdict::{grade_label, size, withdrawn};
 use crate::diagnose::proof::finding::Amplitude;
 use crate::diagnose::proof::unseen::FindingProof;
 use crate::diagnose::{Diagnosis, Finding};
 use crate::numerals::{fixed, plural, sig};
 use crate::physics::Kind;
+use crate::report::diagnosis::names::{about, title_of};
+use crate::report::diagnosis::phrases::{equations, p_value, window};
+use crate::report::diagnosis::quantity::{count, quantity};
+use crate::report::diagnosis::verdict::{grade_label, size, withdrawn};
 use crate::report::html::Section;
 use crate::report::units::Units;
 use maud::{Markup, html};
@@ -18,7 +18,7 @@ use maud::{Markup, html};
 const WINDOWS: usize = 6;
 
 /// The section of the `i`-th finding.
-pub(super) fn section(d: &Diagnosis, i: usize) -> Option<Section> {
+pub(in crate::report::diagnosis) fn section(d: &Diagnosis, i: usize) -> Option<Section> {
     let f = d.findings.get(i)?;
     let units = Units::of(&d.base.ship);
     let (words, class) = grade_label(f.grade);
@@ -179,7 +179,7 @@ fn rivals(d: &Diagnosis, f: &Finding) -> String {
 }
 
 /// What was tried and is not named, each with its reason; nothing where nothing was withdrawn.
-pub(super) fn withdrawn_section(d: &Diagnosis) -> Option<Section> {
+pub(in crate::report::diagnosis) fn withdrawn_section(d: &Diagnosis) -> Option<Section> {
     let units = Units::of(&d.base.ship);
     let one = |f| {
         let text = withdrawn(f, units);
@@ -190,7 +190,7 @@ pub(super) fn withdrawn_section(d: &Diagnosis) -> Option<Section> {
 }
 
 /// Words with a capital at their start.
-pub(super) fn capitalised(words: &str) -> String {
+pub(in crate::report::diagnosis) fn capitalised(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

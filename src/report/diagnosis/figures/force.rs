@@ -14,7 +14,7 @@ use crate::report::units::Units;
 const RESOLVED: f64 = 5.99;
 
 /// Tracks with the unknown force as arrows, a row for each stage.
-pub(super) fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Option<Picture> {
+pub(in crate::report::diagnosis) fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Option<Picture> {
     if runs.is_empty() {
         return None;
     }
@@ -90,7 +90,7 @@ fn arrows(t: &Trace, force: Series, metres: f64) -> (Vec<Arrow>, Vec<Arrow>) {
 }
 
 /// The unknown force over time, a row for each equation.
-pub(super) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Picture> {
+pub(in crate::report::diagnosis) fn forces(d: &Diagnosis, runs: &[&Trace]) -> Option<Picture> {
     if runs.is_empty() {
         return None;
     }

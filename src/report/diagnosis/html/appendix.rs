@@ -76,12 +76,12 @@ const GLOSSARY: [(&str, &str); 15] = [
 ];
 
 /// The glossary.
-pub(super) fn glossary() -> Section {
+pub(in crate::report::diagnosis) fn glossary() -> Section {
     Section::new("Words").markup(html! { dl { @for (word, meaning) in GLOSSARY { dt { (word) } dd { (meaning) } } } })
 }
 
 /// The ship's particulars.
-pub(super) fn ship(d: &Diagnosis) -> Section {
+pub(in crate::report::diagnosis) fn ship(d: &Diagnosis) -> Section {
     let (ship, hull) = (&d.base.ship, &d.base.ship.hull);
     let mut table = Table::new(["particular", "value", "unit"]);
     let rows = [
@@ -103,7 +103,7 @@ pub(super) fn ship(d: &Diagnosis) -> Section {
 }
 
 /// Sessions with their runs, and the files with dates and checksums.
-pub(super) fn data(d: &Diagnosis, from: &Provenance) -> Section {
+pub(in crate::report::diagnosis) fn data(d: &Diagnosis, from: &Provenance) -> Section {
     let mut section = Section::new("Data");
     let mut sessions: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
     for t in &d.traces {
@@ -147,7 +147,7 @@ pub(super) fn data(d: &Diagnosis, from: &Provenance) -> Section {
 }
 
 /// The command, the version and the settings that decide.
-pub(super) fn command(d: &Diagnosis, from: &Provenance) -> Section {
+pub(in crate::report::diagnosis) fn command(d: &Diagnosis, from: &Provenance) -> Section {
     let s = &d.settings;
     let withheld = if s.withhold.is_empty() { String::new() } else { format!(" Withheld: {}.", s.withhold.join(", ")) };
     let section = Section::new("Command and version").text(&format!(

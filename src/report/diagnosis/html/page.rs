@@ -3,17 +3,17 @@
 
 use super::appendix::{Provenance, command, data, glossary, ship};
 use super::finding::{section, withdrawn_section};
-use super::findings::model;
-use super::limits::{limits, next_trial, still_open};
-use super::location::location;
 use super::opening::opening;
-use super::picture::Picture;
-use super::proof::proof;
 use super::runs::{numbers, picture};
-use super::verdict::{error_rates, notes, stability};
 use crate::diagnose::Diagnosis;
 use crate::numerals::{fixed, sig};
 use crate::plot::FigureError;
+use crate::report::diagnosis::figures::picture::Picture;
+use crate::report::diagnosis::findings::model;
+use crate::report::diagnosis::limits::{limits, next_trial, still_open};
+use crate::report::diagnosis::location::location;
+use crate::report::diagnosis::proof::proof;
+use crate::report::diagnosis::verdict::{error_rates, notes, stability};
 use crate::report::html::{Page, Section};
 use crate::report::table::Table;
 use crate::report::units::Units;
@@ -33,7 +33,7 @@ pub fn page(d: &Diagnosis, study: &str, pictures: &[Picture], from: &Provenance)
         page = page.numbers("runs", numbers);
     }
     let mut sections: Vec<Section> = (0..d.findings.len()).filter_map(|i| section(d, i)).collect();
-    sections.extend(super::law::section(d));
+    sections.extend(crate::report::diagnosis::law::section(d));
     sections.extend(withdrawn_section(d));
     sections.extend(body(d, pictures, from));
     sections.extend([glossary(), ship(d), data(d, from), command(d, from)]);
@@ -71,7 +71,11 @@ fn evidence(d: &Diagnosis) -> Vec<String> {
     let strongest = d.ranking.first().filter(|_| d.findings.is_empty());
     let mut lines = vec![format!("{} mechanisms were tested one at a time in the base model", d.ranking.len())];
     lines.extend(strongest.map(|r| {
-        format!("strongest candidate, not named: {}, {} after correction", r.title, super::phrases::p_value(r.p))
+        format!(
+            "strongest candidate, not named: {}, {} after correction",
+            r.title,
+            crate::report::diagnosis::phrases::p_value(r.p)
+        )
     }));
     lines
 }
@@ -85,7 +89,7 @@ fn cannot_show(d: &Diagnosis) -> Section {
     for s in d.detectable.iter().filter(|s| s.size.is_finite()) {
         let (factor, unit) = units.human(&s.unit);
         table.row([
-            super::names::title_of(&d.model, &s.mechanism).to_owned(),
+            crate::report::diagnosis::names::title_of(&d.model, &s.mechanism).to_owned(),
             sig(s.size * factor, 3),
             unit.to_owned(),
         ]);

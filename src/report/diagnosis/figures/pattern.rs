@@ -57,7 +57,7 @@ fn heading(t: &Trace, k: usize) -> Option<f64> {
 }
 
 /// Mean unknown force against heading, propeller, rudder and drift, a row for each equation.
-pub(super) fn pattern(d: &Diagnosis) -> Option<Picture> {
+pub(in crate::report::diagnosis) fn pattern(d: &Diagnosis) -> Option<Picture> {
     if d.traces.is_empty() {
         return None;
     }
@@ -117,7 +117,7 @@ fn tenth(d: &Diagnosis, of: Abscissa<'_>) -> Option<f64> {
 }
 
 /// Mean horizontal force by heading of the ship, as arrows in earth axes.
-pub(super) fn compass(d: &Diagnosis) -> Option<Picture> {
+pub(in crate::report::diagnosis) fn compass(d: &Diagnosis) -> Option<Picture> {
     if d.traces.is_empty() {
         return None;
     }
@@ -163,7 +163,7 @@ fn rose(stage: &str, color: Color, arrows: impl Iterator<Item = [(f64, f64); 2]>
 }
 
 /// Mean unexplained force in each region of state and inputs.
-pub(super) fn regions(d: &Diagnosis) -> Option<Picture> {
+pub(in crate::report::diagnosis) fn regions(d: &Diagnosis) -> Option<Picture> {
     if d.location.regions.is_empty() {
         return None;
     }

@@ -6,12 +6,12 @@ use crate::diagnose::answer::diagnosis::Trace;
 use crate::plot::{BASELINE, Color, FITTED};
 
 /// The unknown force along a run, at one stage of the diagnosis \[N, N, N m\].
-pub(super) type Series = fn(&Trace) -> &[[f64; 3]];
+pub(in crate::report::diagnosis) type Series = fn(&Trace) -> &[[f64; 3]];
 /// Name, colour and force of a stage.
-pub(super) type Stage = (&'static str, Color, Series);
+pub(in crate::report::diagnosis) type Stage = (&'static str, Color, Series);
 
 /// The stages that there are: before, and after where something was found.
-pub(super) fn stages(d: &Diagnosis) -> Vec<Stage> {
+pub(in crate::report::diagnosis) fn stages(d: &Diagnosis) -> Vec<Stage> {
     let mut out: Vec<Stage> = vec![("base model", BASELINE, |t| &t.before)];
     if d.location_after.is_some() {
         out.push(("with the findings", FITTED, |t| &t.after));
@@ -20,7 +20,7 @@ pub(super) fn stages(d: &Diagnosis) -> Vec<Stage> {
 }
 
 /// The three runs on which the unknown force is largest in its own standard deviations, above all where the findings remove it.
-pub(super) fn telling(d: &Diagnosis) -> Vec<&Trace> {
+pub(in crate::report::diagnosis) fn telling(d: &Diagnosis) -> Vec<&Trace> {
     let size = |force: &[[f64; 3]], sd: &[[f64; 3]]| {
         let terms = force.iter().zip(sd).flat_map(|(f, s)| (0..3).map(move |e| (f[e] / s[e]).powi(2)));
         let finite: Vec<f64> = terms.filter(|v| v.is_finite()).collect();
@@ -33,7 +33,7 @@ pub(super) fn telling(d: &Diagnosis) -> Vec<&Trace> {
 }
 
 /// The horizontal part of a force on the body, to north and east, at heading `psi` \[rad\].
-pub(super) fn to_earth(psi: f64, force: &[f64; 3]) -> [f64; 2] {
+pub(in crate::report::diagnosis) fn to_earth(psi: f64, force: &[f64; 3]) -> [f64; 2] {
     let (s, c) = psi.sin_cos();
     [c * force[0] - s * force[1], s * force[0] + c * force[1]]
 }
