@@ -1,7 +1,7 @@
 //! The library's errors as exceptions of Python, word for word.
 //! It words nothing of its own but what only a caller in Python can do wrong.
 
-use crate::cli::error::CliError;
+use crate::cli::shared::error::CliError;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;

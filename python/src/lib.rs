@@ -26,7 +26,7 @@ mod trial;
 mod window;
 mod work;
 
-use cli::processor::{Build, build};
+use cli::shared::processor::{Build, build};
 use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;

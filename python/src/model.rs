@@ -1,8 +1,8 @@
 //! A manoeuvring model in Python: parameters by name, simulation, standard trials.
 //! The library holds the physics.
 
-use crate::cli::error::CliError;
 use crate::cli::fit::fitted_text;
+use crate::cli::shared::error::CliError;
 use crate::convert::{finite, frame, records, word};
 use crate::errors::Raised;
 use crate::inputs::{inputs, state};

@@ -1,7 +1,7 @@
 //! A ship in Python: read from its file, or estimated from its main dimensions.
 //! The library reads and estimates.
 
-use crate::cli::error::CliError;
+use crate::cli::shared::error::CliError;
 use crate::convert::{document, warn};
 use crate::errors::{Raised, fault};
 use crate::model::Model;

@@ -1,14 +1,14 @@
 //! `trimtab demo`: the whole mission on an embedded case, from recordings to the physics that the model lacks.
 //! It calls the other commands' functions, and writes the study so that a user can repeat each command on it.
 
-use super::answer::Answer;
 use super::diagnose::{continued, prepared, write_diagnosis};
-use super::error::CliError;
-use super::figures::FigureArgs;
-use super::lines::filled;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::lines::filled;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Output, OutputArgs};
+use super::shared::progress::progress;
 use super::{evaluate, fit};
 use serde::Serialize;
 use serde_json::Value;

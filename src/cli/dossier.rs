@@ -1,14 +1,14 @@
 //! `trimtab dossier`: the validation dossier of a model on one page, in the order of ITTC 7.5-02-06-03.
 //! The library computes what `evaluate`, `maneuver`, `diagnose` and `check` do; this file reads, calls and writes.
 
-use super::answer::Answer;
-use super::audited::{AcceptArgs, audited};
 use super::diagnose::prepared;
-use super::error::CliError;
 use super::evaluate::{baseline, baseline_path};
-use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, Pruned};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::audited::{AcceptArgs, audited};
+use super::shared::error::CliError;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Output, OutputArgs, Pruned};
+use super::shared::progress::progress;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use trimtab::audit::{audit_model, audit_study};

@@ -1,13 +1,13 @@
 //! `trimtab evaluate`: how well a model predicts the test runs, beside a baseline.
 //! The library computes the measures; this file prints, tabulates and draws them.
 
-use super::answer::Answer;
-use super::audited::{AcceptArgs, audited_over};
-use super::error::CliError;
-use super::figures::FigureArgs;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::audited::{AcceptArgs, audited_over};
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Each, Output, OutputArgs, Pruned, csv_text};
+use super::shared::progress::progress;
 use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Outlying, Proof, Summary, predict, prove};

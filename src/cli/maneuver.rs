@@ -1,13 +1,13 @@
 //! `trimtab maneuver`: the standard trials with any model, their measures, and the IMO criteria beside them.
 //! The library sails and measures the trials; this file prints, tabulates and draws them.
 
-use super::answer::Answer;
-use super::audited::model_alone;
-use super::error::CliError;
-use super::figures::FigureArgs;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::audited::model_alone;
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Output, OutputArgs};
+use super::shared::progress::progress;
 use clap::Subcommand;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -362,7 +362,7 @@ fn finish<M: Listed>(
     let table = measures_csv(trials);
     let rows = table.rows().iter().cloned();
     let header: Vec<&str> = table.header().iter().map(String::as_str).collect();
-    output.table(&format!("{stem}_measures.csv"), &super::output::csv_text(&header, rows)?);
+    output.table(&format!("{stem}_measures.csv"), &super::shared::output::csv_text(&header, rows)?);
     output.figure(stem, figure);
     Ok(())
 }

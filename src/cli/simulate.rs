@@ -1,12 +1,12 @@
 //! `trimtab simulate`: simulates the recordings of a study from their recorded start with their recorded inputs.
 //! It compares no models; it prints how far each simulation is from the measured motion.
 
-use super::answer::Answer;
-use super::audited::{AcceptArgs, audited};
-use super::error::CliError;
-use super::figures::FigureArgs;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
+use super::shared::answer::Answer;
+use super::shared::audited::{AcceptArgs, audited};
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Each, Output, OutputArgs, Pruned, csv_text};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;

@@ -1,14 +1,14 @@
 //! `trimtab sweep`: what the recordings of a study determine of its model's parameters.
 //! The library fits; this file reads the arguments, prints and writes files.
 
-use super::answer::Answer;
-use super::audited::{AcceptArgs, audited};
-use super::error::CliError;
-use super::figures::FigureArgs;
 use super::fit::fit_windows;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::audited::{AcceptArgs, audited};
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Output, OutputArgs, csv_text};
+use super::shared::progress::progress;
 use serde::Serialize;
 use trimtab::fit::Fit;
 use trimtab::ranks::Ranks;

@@ -1,10 +1,10 @@
 //! `trimtab new`: a ship file from length, breadth, draught and type, or from a ship file with values missing.
 //! The library estimates; this file reads the arguments, prints and writes.
 
-use super::answer::Answer;
-use super::error::CliError;
-use super::output::{is_new, print, print_file, print_json};
-use super::terminal::tell;
+use crate::cli::shared::answer::Answer;
+use crate::cli::shared::error::CliError;
+use crate::cli::shared::output::{is_new, print, print_file, print_json};
+use crate::cli::shared::terminal::tell;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 use trimtab::error::suggestion;

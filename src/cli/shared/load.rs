@@ -301,7 +301,7 @@ fn in_ship_file(error: CliError, ship: &Path) -> CliError {
     }
 }
 
-pub(super) fn read_model(path: &Path, ship: Ship) -> Result<Model, CliError> {
+pub(in crate::cli) fn read_model(path: &Path, ship: Ship) -> Result<Model, CliError> {
     Model::read(path, ship).map_err(|error| {
         // The texts of these two errors begin with the path.
         let named = matches!(error, ModelError::Read { .. } | ModelError::Parse { .. } | ModelError::Several(_));

@@ -1,11 +1,11 @@
 //! `trimtab check`: audits the recordings of a study before a fit or a diagnosis uses them.
 //! The library's `check` defines the audit; this file prints it.
 
-use super::answer::Answer;
-use super::error::CliError;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text};
-use super::progress::progress;
+use crate::cli::shared::answer::Answer;
+use crate::cli::shared::error::CliError;
+use crate::cli::shared::load::{Loaded, StudyArgs};
+use crate::cli::shared::output::{Output, OutputArgs, csv_text};
+use crate::cli::shared::progress::progress;
 use trimtab::audit::{Audit, Issue, Severity, StudyAudit, audit_model, audit_study};
 use trimtab::numerals::{fixed, number_of, sig};
 use trimtab::report::Table;

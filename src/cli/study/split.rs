@@ -1,9 +1,9 @@
 //! `trimtab split`: one long log, or the recordings of a study, into runs.
 //! The library tells manoeuvres, sessions and sides; this file reads the arguments, prints and writes the table.
 
-use super::answer::Answer;
-use super::error::CliError;
-use super::output::{Output, OutputArgs};
+use crate::cli::shared::answer::Answer;
+use crate::cli::shared::error::CliError;
+use crate::cli::shared::output::{Output, OutputArgs};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

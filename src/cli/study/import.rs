@@ -1,11 +1,11 @@
 //! `trimtab import`: makes a whole study of what ships and loggers write.
 //! The library reads, decides and splits; this file reads the arguments, writes the study and says what was found.
 
-use super::answer::Answer;
-use super::error::CliError;
-use super::output::{Output, OutputArgs};
-use super::progress::progress;
 use super::split::{SplitArgs, by_kind};
+use crate::cli::shared::answer::Answer;
+use crate::cli::shared::error::CliError;
+use crate::cli::shared::output::{Output, OutputArgs};
+use crate::cli::shared::progress::progress;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
