@@ -51,5 +51,4 @@ pub use pipeline::diagnose;
 pub use proof::finding::Finding;
 pub use proof::grade::Grade;
 pub use search::decide::Verdict;
-pub use search::signal::Signal;
 pub use settings::Settings;

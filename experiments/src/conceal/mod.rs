@@ -22,6 +22,7 @@ pub mod recorded;
 pub mod runner;
 pub mod sail;
 pub mod seal;
+pub mod signal;
 pub mod spec;
 pub mod strength;
 pub mod track;

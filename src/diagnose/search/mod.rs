@@ -30,5 +30,4 @@ pub(super) mod residual;
 pub mod screen;
 pub(super) mod select;
 pub(super) mod selected;
-pub mod signal;
 pub(super) mod together;

@@ -7,8 +7,6 @@ use crate::likelihood::settings::{COST, CUSTOM, Effort, HULLS, Number, SEEDS, nu
 pub const AS_IT_IS: Effort = Effort { rounds: 0, noise_rounds: 0, noise_iterations: 0 };
 /// Ship and noise beside the error of a sensor that is held.
 pub const TOGETHER_EFFORT: Effort = Effort { rounds: 8, noise_rounds: 3, noise_iterations: 6 };
-/// The base model of a signal-to-noise ratio: noise within a few per cent.
-pub const SIGNAL: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6 };
 /// The start of a model that is given its mechanisms: parameters and noise are estimated again with them.
 pub const GIVEN_START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_iterations: 6 };
 /// The one fit of a model that is given its mechanisms.

@@ -1,19 +1,23 @@
 //! The signal-to-noise ratio of an effect for the diagnosis, by which concealed effects are graded.
 //! It decides nothing and names nothing.
 
-use crate::diagnose::evidence::candidate::{Candidate, append, candidates};
-use crate::diagnose::settings::{SIGNAL, Settings};
-use crate::likelihood::estimate::{Estimate, base_of, estimate, evidence, passes, restrictions};
-use crate::likelihood::evidence::{Base, Evidence};
-use crate::likelihood::filter::{Column, Filter, Wanted};
-use crate::likelihood::noise::NoisePrior;
-use crate::likelihood::noise_fit::guess;
-use crate::likelihood::parameters::base_parameters;
-use crate::model::{Model, ModelError};
-use crate::recording::Run;
-use crate::simulate::Integration;
-use crate::state::{Inputs, State};
 use nalgebra::DVector;
+use trimtab::diagnose::Settings;
+use trimtab::diagnose::evidence::candidate::{Candidate, append, candidates};
+use trimtab::likelihood::estimate::{Estimate, base_of, estimate, evidence, passes, restrictions};
+use trimtab::likelihood::evidence::{Base, Evidence};
+use trimtab::likelihood::filter::{Column, Filter, Wanted};
+use trimtab::likelihood::noise::NoisePrior;
+use trimtab::likelihood::noise_fit::guess;
+use trimtab::likelihood::parameters::base_parameters;
+use trimtab::likelihood::settings::Effort;
+use trimtab::model::{Model, ModelError};
+use trimtab::recording::Run;
+use trimtab::simulate::Integration;
+use trimtab::state::{Inputs, State};
+
+/// Rounds of the base model: noise within a few per cent.
+const ROUNDS: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6 };
 
 /// The base model fitted to runs without an effect, ready to measure the same runs with it.
 pub struct Signal {
@@ -36,7 +40,7 @@ impl Signal {
         let integration = settings.integration();
         let free = base_parameters(&full, settings.nuisance);
         let first = guess(without, &full);
-        let null = estimate(&full, integration, without, &free, &first, &NoisePrior::around(&first), SIGNAL);
+        let null = estimate(&full, integration, without, &free, &first, &NoisePrior::around(&first), ROUNDS);
         let candidates = candidates(&full, &[]);
         let mut columns: Vec<Column> = free.iter().map(|f| f.column).collect();
         let groups = append(&mut columns, &candidates);
@@ -107,33 +111,5 @@ impl Signal {
     fn base(&self, difference: &Evidence) -> Base {
         let base = base_of(difference, &self.null.model, &self.null.free);
         Base { score: DVector::from_fn(self.null.free.len(), |i, _| difference.total.score[i]), ..base }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::diagnose::example::{model, runs, with};
-
-    #[test]
-    fn no_change_has_no_signal_and_twice_the_effect_has_twice_the_signal() -> Result<(), ModelError> {
-        let without = runs(&model(), 6);
-        let signal = Signal::new(&model(), &without, &Settings::default())?;
-        let of = |north: f64| signal.ratio(&runs(&with(&[("current.north", north)]), 6), "current");
-        assert!(signal.ratio(&without, "current") < 1e-9);
-        let (once, twice) = (of(0.01), of(0.02));
-        assert!(once > 0.3 && (twice / once - 2.0).abs() < 0.1, "{once} {twice}");
-        assert_eq!(signal.ratio(&without, "no such mechanism"), 0.0);
-        Ok(())
-    }
-
-    #[test]
-    fn a_force_in_a_window_is_seen_there_and_not_where_it_is_absent() -> Result<(), ModelError> {
-        let without = runs(&model(), 6);
-        let signal = Signal::new(&model(), &without, &Settings::default())?;
-        let with = runs(&with(&[("earth_force.north", 4000.0)]), 6);
-        assert!(signal.ratio_in(&with, &[(1, 20, 40)]) > 2.0);
-        assert!(signal.ratio_in(&without, &[(1, 20, 40)]) < 1e-9);
-        Ok(())
     }
 }
