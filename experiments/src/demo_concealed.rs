@@ -52,7 +52,7 @@ fn programme(craft: &Craft) -> Vec<Plan> {
     sailed.map(placed).collect()
 }
 
-/// The files: name within the library's `src/demo`, and content. Nothing where the catalogue has no such effect.
+/// The files: name within the library's `src/study/demo`, and content. Nothing where the catalogue has no such effect.
 pub fn files() -> Option<[(&'static str, String); 3]> {
     let entry: &'static Entry = find(EFFECT)?;
     let spec = Spec::null(FAMILY, SEED);
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn the_embedded_trials_are_those_that_are_generated() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/demo");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/study/demo");
         for (name, text) in files().expect("the effect is in the catalogue") {
             let embedded = std::fs::read_to_string(folder.join(name)).expect("the file is committed");
             assert!(

@@ -19,8 +19,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use trimtab::files::write_whole;
 use trimtab::model::Prior;
-use trimtab::ranges::Limited;
-use trimtab::uncertainty::Uncertainty;
+use trimtab::numbers::ranges::Limited;
+use trimtab::numbers::uncertainty::Uncertainty;
 use trimtab::{Integration, Scenario};
 
 /// A manoeuvring model of one ship: terms (forces with a name, an equation and units) and their parameters.

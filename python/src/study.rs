@@ -20,7 +20,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
-use trimtab::audit::audit_study;
+use trimtab::recording::audit::audit_study;
 use trimtab::recording::{Run, Runs, Split};
 
 /// Which runs of a study are meant.

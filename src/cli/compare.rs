@@ -9,10 +9,10 @@ use super::shared::load::{Loaded, StudyArgs};
 use super::shared::output::{Output, OutputArgs, csv_text};
 use std::path::PathBuf;
 use trimtab::evaluate::{Estimate, Judging, Ranked, Ranking, rank};
-use trimtab::numerals::{DASH, interval, sig};
-use trimtab::plot::{Axis, FITTED, Figure, Layer, Panel};
+use trimtab::numbers::numerals::{DASH, interval, sig};
 use trimtab::recording::Split;
 use trimtab::report::Table;
+use trimtab::report::plot::{Axis, FITTED, Figure, Layer, Panel};
 
 const LONG: &str = "\
 Simulates the test runs of a study with each of several models and compares their cVDM (mean deviation in all dimensions, percent of \

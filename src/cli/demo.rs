@@ -13,16 +13,16 @@ use super::{evaluate, fit};
 use serde::Serialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use trimtab::audit::{Severity, audit_study};
-use trimtab::demo::{self, Concealed};
 use trimtab::diagnose::{Diagnosis, Grade, diagnose};
 use trimtab::evaluate::{Estimate, Evaluation};
+use trimtab::files::ranks::Ranks;
 use trimtab::files::{Origin, ResultFolder};
 use trimtab::fit::Fit;
-use trimtab::numerals::{DASH, number_of, sig};
-use trimtab::ranks::Ranks;
+use trimtab::numbers::numerals::{DASH, number_of, sig};
+use trimtab::recording::audit::{Severity, audit_study};
 use trimtab::recording::{Run, Runs, Split};
 use trimtab::report::diagnosis::next_commands;
+use trimtab::study::demo::{self, Concealed};
 
 const LONG: &str = "\
 Runs the whole job on a built-in case: forty recordings of a coastal container ship of 85 m, with the noise of ordinary \

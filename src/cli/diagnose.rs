@@ -11,9 +11,9 @@ use super::shared::load::{Loaded, StudyArgs, no_mechanism};
 use super::shared::output::{Output, OutputArgs, print, print_json};
 use super::shared::progress::progress;
 use serde_json::Value;
-use trimtab::audit::Issue;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::evaluate::Judging;
+use trimtab::recording::audit::Issue;
 use trimtab::recording::{Run, Runs, Split};
 use trimtab::report::diagnosis::{NEXT_WORDS, document, keys_listing, next_commands, page, pictures, summary};
 

@@ -11,14 +11,14 @@ use super::shared::output::{Output, OutputArgs, Pruned};
 use super::shared::progress::progress;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use trimtab::audit::{audit_model, audit_study};
 use trimtab::diagnose::{Settings, diagnose};
-use trimtab::dossier::{Question, dossier};
 use trimtab::evaluate::Judging;
+use trimtab::evaluate::maneuver::SEED;
 use trimtab::files::{Manifest, sha256_of};
-use trimtab::maneuver::SEED;
+use trimtab::recording::audit::{audit_model, audit_study};
 use trimtab::recording::{Run, Split};
 use trimtab::report::diagnosis::document;
+use trimtab::report::dossier::content::{Question, dossier};
 use trimtab::report::dossier::{page, summary};
 
 const LONG: &str = "\

@@ -11,15 +11,15 @@ use super::shared::progress::progress;
 use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Outlying, Proof, Summary, predict, prove};
+use trimtab::files::ranks::Ranks;
 use trimtab::model::Model;
-use trimtab::numerals::{DASH, sig, sig_above};
-use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
-use trimtab::ranks::Ranks;
+use trimtab::numbers::numerals::{DASH, sig, sig_above};
+use trimtab::recording::validity::Coverage;
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
+use trimtab::report::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
+use trimtab::ship::state::STATE_NAMES;
 use trimtab::simulate::Integration;
-use trimtab::state::STATE_NAMES;
-use trimtab::validity::Coverage;
 
 const LONG: &str = "\
 Simulates the recordings of a study with two models and compares both with the measured motion, first on the test runs: \
@@ -406,7 +406,7 @@ fn improvement(s: &Summary) -> Figure {
     let title = format!("Improvement on the baseline, {} runs (95 % intervals)", s.group);
     let caption = "Relative improvement on the baseline of the mean deviation (MD) of each dimension, of cVDM, of their mean over \
                    dimensions (mARI) and of the variance of cVDM (consistency), with 95 % intervals over runs.";
-    Figure::new(title).panel_size(1200, 620).caption(caption).legend(trimtab::plot::Legend::Off).with(
+    Figure::new(title).panel_size(1200, 620).caption(caption).legend(trimtab::report::plot::Legend::Off).with(
         Panel::new("", axis, Axis::new("improvement [%]").including(0.0))
             .with(Layer::bars_with_intervals("improvement", FITTED, bars))
             .with(Layer::h_line("none", GREY, 0.0)),

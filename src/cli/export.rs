@@ -6,8 +6,8 @@ use super::shared::error::CliError;
 use super::shared::load::read_model;
 use super::shared::output::{is_new, print, print_file};
 use std::path::{Path, PathBuf};
-use trimtab::export::export;
 use trimtab::files::write_whole;
+use trimtab::model::export::export;
 use trimtab::ship::Ship;
 use trimtab::study::Study;
 

@@ -6,7 +6,7 @@ use super::shared::error::CliError;
 use super::shared::lines::filled;
 use super::shared::output::{print, print_json};
 use clap::Command;
-use trimtab::error::suggestion;
+use trimtab::files::suggestion;
 use trimtab::guide::reference::tables;
 use trimtab::guide::schema::{WITH_SCHEMA, schema};
 use trimtab::guide::{CHAPTERS, Chapter, chapter};

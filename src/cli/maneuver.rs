@@ -11,22 +11,22 @@ use super::shared::progress::progress;
 use clap::Subcommand;
 use serde::Serialize;
 use std::path::PathBuf;
-use trimtab::files::Names;
-use trimtab::maneuver::{
+use trimtab::evaluate::maneuver::{
     Approach, DRAWS, Drawn, Ended, ManeuverSettings, Measured, SEED, Side, Trial, calm_water, drawn, set_intervals,
     stopping_trial, turning_trial, zigzag_trial,
 };
+use trimtab::files::Names;
 use trimtab::model::Model;
-use trimtab::numerals::sig;
-use trimtab::plot::Figure;
+use trimtab::numbers::numerals::sig;
+use trimtab::numbers::uncertainty::Uncertainty;
+use trimtab::recording::validity::{self, Coverage};
 use trimtab::report::maneuver::{
     Listed, criteria_note, criteria_table, ended_note, measures_csv, measures_table, stopping_figure, track_csv,
     turning_figure, zigzag_figure,
 };
-use trimtab::state::Inputs;
-use trimtab::uncertainty::Uncertainty;
-use trimtab::units::GRAVITY;
-use trimtab::validity::{self, Coverage};
+use trimtab::report::plot::Figure;
+use trimtab::ship::state::Inputs;
+use trimtab::ship::units::GRAVITY;
 
 const LONG: &str = "\
 Simulates a standard manoeuvring trial to both sides with the model of a study, or another given with --model, and measures \

@@ -29,7 +29,7 @@ use shared::wanted::wanted;
 use shared::{arguments, processor, style};
 use std::ffi::OsString;
 use study::{check, import, new, split};
-use trimtab::ranks::{Ranks, Traffic};
+use trimtab::files::ranks::{Ranks, Traffic};
 use trimtab::report::{USUAL, set_width};
 
 const AFTER_HELP: &str = "\

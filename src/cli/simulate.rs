@@ -14,12 +14,12 @@ use trimtab::evaluate::{Outcome, Outlying, outcome, outlying, predict_all, start
 use trimtab::files::Names;
 use trimtab::fit::FitSettings;
 use trimtab::model::Model;
-use trimtab::numerals::{DASH, sig, sig_above};
-use trimtab::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
+use trimtab::numbers::numerals::{DASH, sig, sig_above};
+use trimtab::recording::validity::{self, Count, Coverage};
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
+use trimtab::report::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
 use trimtab::simulate::Trajectory;
-use trimtab::validity::{self, Count, Coverage};
 
 const LONG: &str = "\
 Simulates every recording of a study (or every window of it, where the study cuts them) with the study's model or another: \

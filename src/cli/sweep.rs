@@ -10,15 +10,15 @@ use super::shared::load::{Loaded, StudyArgs};
 use super::shared::output::{Output, OutputArgs, csv_text};
 use super::shared::progress::progress;
 use serde::Serialize;
+use trimtab::evaluate::sweep::{Pair, Profile, Sensitivity, SweepSettings, pair, profile, sensitivities};
+use trimtab::files::ranks::Ranks;
 use trimtab::fit::Fit;
-use trimtab::ranks::Ranks;
+use trimtab::numbers::statistics::student_quantile;
 use trimtab::recording::{Runs, Split};
 use trimtab::report::Table;
 use trimtab::report::sweep::{
     pairs_figure, pairs_table, points_table, profiles_figure, profiles_table, sensitivities_table,
 };
-use trimtab::statistics::student_quantile;
-use trimtab::sweep::{Pair, Profile, Sensitivity, SweepSettings, pair, profile, sensitivities};
 
 const LONG: &str = "\
 Fits the model to the training runs, and then asks what these runs determine: each parameter is held at values around its \

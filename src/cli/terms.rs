@@ -6,10 +6,10 @@ use super::shared::error::CliError;
 use super::shared::output::{Output, OutputArgs, csv_text};
 use serde::Serialize;
 use std::path::PathBuf;
-use trimtab::error::suggestion;
-use trimtab::parameter::ParameterInfo;
+use trimtab::files::suggestion;
 use trimtab::report::terms::{Entry, listing, summary};
 use trimtab::ship::Ship;
+use trimtab::ship::parameter::ParameterInfo;
 use trimtab::terms::CATALOGUE;
 
 const LONG: &str = "\

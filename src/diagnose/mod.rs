@@ -41,6 +41,7 @@ pub mod evidence;
 pub(crate) mod example;
 pub mod law;
 mod pipeline;
+pub mod plan;
 pub mod proof;
 pub mod search;
 pub mod settings;

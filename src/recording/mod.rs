@@ -1,14 +1,18 @@
 //! Recordings: one run of a ship, as measured; files in, checked channels out in SI units, radians and the project's frames.
 //! It neither simulates nor judges: doubts about a readable recording are raised by `check`, forces belong to the terms.
 
+pub mod audit;
 mod channel;
 mod convert;
 mod error;
 mod file;
+pub mod import;
 mod local;
 mod record;
 mod run;
+pub mod split;
 mod store;
+pub mod validity;
 mod window;
 mod wrap;
 

@@ -6,12 +6,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 use std::path::Path;
-use trimtab::dynamics::Dynamics;
-use trimtab::export::{Export, export};
 use trimtab::model::Model;
+use trimtab::model::dynamics::Dynamics;
+use trimtab::model::export::{Export, export};
 use trimtab::physics::Form;
 use trimtab::ship::Ship;
-use trimtab::state::{Inputs, State};
+use trimtab::ship::state::{Inputs, State};
 
 fn model(form: Form) -> Model {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/ships/tanker.toml");

@@ -1,16 +1,16 @@
 //! The trials that `trimtab maneuver` sails: in calm water whatever a model has found around the ship, with intervals from a covariance.
-//! The measures themselves are tested in `src/maneuver/tests.rs` and against recordings in `tests/library/trials.rs`.
+//! The measures themselves are tested in `src/evaluate/maneuver/tests.rs` and against recordings in `tests/library/trials.rs`.
 
 use crate::support::study::{Study, at, contains_all};
 use std::path::Path;
-use trimtab::maneuver::{
+use trimtab::evaluate::maneuver::{
     Approach, ManeuverSettings, Measured, Side, Trial, Turning, calm_water, drawn, set_intervals, stopping_trial,
     turning_trial, zigzag_trial,
 };
 use trimtab::model::Model;
+use trimtab::numbers::uncertainty::Uncertainty;
 use trimtab::physics::Form;
 use trimtab::ship::Ship;
-use trimtab::uncertainty::Uncertainty;
 
 fn model(terms: &[&str], values: &[(&str, f64)]) -> Model {
     let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/b.toml"))).unwrap();

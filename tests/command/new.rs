@@ -1,12 +1,12 @@
 //! `trimtab new`: a ship file from length, breadth, draught and type is one that every command takes, with estimates near real ships.
-//! Not the single formulas, whose tests are beside them in `src/particulars`.
+//! Not the single formulas, whose tests are beside them in `src/ship/particulars`.
 
 use crate::support::study::{Study, at, contains_all};
 use std::path::Path;
-use trimtab::maneuver::{Ended, ManeuverSettings, Side, turning_trial, zigzag_trial};
+use trimtab::evaluate::maneuver::{Ended, ManeuverSettings, Side, turning_trial, zigzag_trial};
 use trimtab::model::Model;
-use trimtab::particulars::{Entry, Estimated, KINDS, Kind, Origin, estimate};
 use trimtab::ship::Ship;
+use trimtab::ship::particulars::{Entry, Estimated, KINDS, Kind, Origin, estimate};
 
 fn given(dimensions: [f64; 3]) -> toml::Table {
     let [l, b, d] = dimensions;

@@ -192,7 +192,7 @@ fn a_diagnosis_and_an_evaluation_give_the_same_proof_to_the_last_digit() {
     // The interval of the improvement is that of a ratio over the six recordings, and ends at an exact prediction.
     let of = |scores: &[Value]| scores.iter().map(|s| s["cvdm"].as_f64().unwrap()).collect::<Vec<f64>>();
     let clusters: Vec<(f64, f64)> = of(after).into_iter().zip(of(before)).collect();
-    let [low, high] = trimtab::statistics::interval_of_ratio(&clusters).unwrap();
+    let [low, high] = trimtab::numbers::statistics::interval_of_ratio(&clusters).unwrap();
     for (end, own) in [1.0 - high, (1.0 - low).min(1.0)].into_iter().enumerate() {
         assert!((proof["ci95"][end].as_f64().unwrap() - own).abs() < 1e-5, "{} {own}", proof["ci95"]);
     }

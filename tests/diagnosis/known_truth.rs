@@ -4,10 +4,10 @@ use crate::support::{STAR, add, commanded, model, runs, truth_noise};
 use trimtab::diagnose::proof::grade::LawGrade;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::model::Model;
-use trimtab::parameter::Parity;
 use trimtab::physics::Form;
 use trimtab::recording::{Channel, Labels, Measured, Recording, Run, WindowSettings};
-use trimtab::state::Inputs;
+use trimtab::ship::parameter::Parity;
+use trimtab::ship::state::Inputs;
 
 /// Thirty training runs and ten test runs of a ship with physics that the base model lacks.
 fn case(set: &[(&str, f64)], sessions: &[&str], seed: u64) -> Diagnosis {

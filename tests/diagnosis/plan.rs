@@ -6,12 +6,12 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use std::path::Path;
 use std::process::{Command, Output};
 use trimtab::Settings;
-use trimtab::maneuver::ManeuverSettings;
+use trimtab::diagnose::plan::{Kind, Outlook, Plan, PlanSettings, PlannedTrial, Question, plan};
+use trimtab::evaluate::maneuver::ManeuverSettings;
 use trimtab::model::Model;
-use trimtab::plan::{Kind, Outlook, Plan, PlanSettings, PlannedTrial, Question, plan};
 
 fn model() -> Model {
-    trimtab::demo::example().unwrap().model
+    trimtab::study::demo::example().unwrap().model
 }
 
 /// A plan of these trials with sparse samples.
@@ -109,7 +109,8 @@ fn trimtab(folder: &Path, arguments: &[&str]) -> Output {
 /// Ship, model and a study whose recordings do not exist.
 fn study(plan: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    for (name, text) in trimtab::demo::files().iter().filter(|(n, _)| ["ship.toml", "model.toml"].contains(&n.as_str()))
+    for (name, text) in
+        trimtab::study::demo::files().iter().filter(|(n, _)| ["ship.toml", "model.toml"].contains(&n.as_str()))
     {
         std::fs::write(folder.path().join(name), text).unwrap();
     }

@@ -5,9 +5,9 @@ use crate::support;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
+use trimtab::evaluate::maneuver::ManeuverSettings;
+use trimtab::evaluate::sweep::{SweepSettings, pair, profile, sensitivities};
 use trimtab::fit::{FitSettings, fit};
-use trimtab::maneuver::ManeuverSettings;
-use trimtab::sweep::{SweepSettings, pair, profile, sensitivities};
 
 #[test]
 fn a_profile_is_the_standard_error_of_what_the_data_determine_and_a_pair_holds_its_profiles() {
@@ -52,7 +52,7 @@ fn json(folder: &Path, arguments: &[&str]) -> Value {
 #[test]
 fn the_commands_say_which_parameters_are_determined_and_which_model_predicts_better() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, text) in trimtab::demo::files() {
+    for (name, text) in trimtab::study::demo::files() {
         let path = folder.path().join(name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, text).unwrap();

@@ -10,8 +10,8 @@ use trimtab::model::Model;
 use trimtab::physics::Form;
 use trimtab::recording::{Run, RunStore, Runs, Split};
 use trimtab::ship::Ship;
+use trimtab::ship::state::Inputs;
 use trimtab::simulate::{Integration, Scenario, simulate};
-use trimtab::state::Inputs;
 
 const DT: f64 = 1.0;
 const SAMPLES: usize = 121;

@@ -4,11 +4,11 @@
 use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use trimtab::diagnose::plan::PlanSettings;
+use trimtab::evaluate::maneuver::ManeuverSettings;
 use trimtab::guide::CHAPTERS;
 use trimtab::guide::reference::{Table, listing, tables};
-use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::ModelFile;
-use trimtab::plan::PlanSettings;
 use trimtab::{ColumnMap, EvaluationSettings, FitSettings, Model, Settings, Ship, Study};
 
 const BEGIN: &str = "<!-- generated: TRIMTAB_WRITE_GUIDE=1 cargo test --test house guide -->\n";
@@ -110,7 +110,7 @@ fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
 
 #[test]
 fn every_file_shown_in_the_guide_can_be_read() {
-    let ship = trimtab::demo::example().unwrap().model.ship;
+    let ship = trimtab::study::demo::example().unwrap().model.ship;
     let (at, mut read) = (Path::new("file.toml"), 0);
     for chapter in CHAPTERS {
         for block in blocks(chapter.text, "toml") {

@@ -7,37 +7,21 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Modules of the library from the bottom up: a module uses its own line and those before it.
-const LAYERS: [&[&str]; 16] = [
-    &[
-        "units",
-        "error",
-        "numerals",
-        "ranks",
-        "state",
-        "ship",
-        "particulars",
-        "parameter",
-        "uncertainty",
-        "ranges",
-        "files",
-        "written",
-        "progress",
-    ],
+const LAYERS: [&[&str]; 14] = [
+    &["ship", "files", "numbers"],
     &["physics"],
     &["terms"],
-    &["model", "dynamics"],
+    &["model"],
     &["simulate"],
-    &["sensitivity"],
-    &["statistics", "recording", "study", "audit", "check", "validity", "demo", "export"],
-    &["import", "split"],
+    &["recording", "study"],
     &["ipopt", "likelihood"],
     &["fit"],
-    &["evaluate", "maneuver"],
+    &["evaluate"],
     &["diagnose"],
-    &["plan", "sweep", "dossier"],
-    &["plot", "report"],
+    &["report"],
     &["guide"],
-    &["cli", "main"],
+    &["cli"],
+    &["main"],
 ];
 
 /// Lines a function may have.

@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use trimtab::audit::{Issue, Severity, StudyAudit, audit_study};
-use trimtab::demo;
 use trimtab::recording::Channel;
+use trimtab::recording::audit::{Issue, Severity, StudyAudit, audit_study};
 use trimtab::ship::Ship;
 use trimtab::study::Study;
+use trimtab::study::demo;
 
 /// Rudder and propeller move in this run, the ship turns to starboard and back, and it trains; as do the next ones.
 const RUN: &str = "ship_a_011";

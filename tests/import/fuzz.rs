@@ -9,13 +9,13 @@ use std::path::Path;
 use std::sync::{LazyLock, Mutex};
 use std::thread::ThreadId;
 use std::time::{Duration, Instant};
-use trimtab::audit::audit_study;
 use trimtab::files::Manifest;
-use trimtab::import::{ImportSettings, import, recording_csv};
 use trimtab::model::Model;
+use trimtab::recording::audit::audit_study;
+use trimtab::recording::import::{ImportSettings, import, recording_csv};
+use trimtab::recording::split::{SplitPart, SplitSettings, split};
 use trimtab::recording::{ColumnMap, Gaps, Labels, Recording, Split, WindowSettings};
 use trimtab::ship::Ship;
-use trimtab::split::{SplitPart, SplitSettings, split};
 use trimtab::study::Study;
 
 /// What files of users have in wrong places.
@@ -192,7 +192,7 @@ fn example(name: &str) -> Vec<u8> {
     text.split_inclusive('\n').take(60).collect::<String>().into_bytes()
 }
 
-static FILES: LazyLock<Vec<(String, String)>> = LazyLock::new(trimtab::demo::files);
+static FILES: LazyLock<Vec<(String, String)>> = LazyLock::new(trimtab::study::demo::files);
 
 static SHIP: LazyLock<Ship> = LazyLock::new(|| ship(&example("ship.toml")).unwrap());
 

@@ -4,8 +4,8 @@
 use crate::support::study::{Study, contains_all};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use trimtab::import::{Choices, ImportSettings, Imported, import};
 use trimtab::recording::Channel;
+use trimtab::recording::import::{Choices, ImportSettings, Imported, import};
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 const KNOT: f64 = 1852.0 / 3600.0;

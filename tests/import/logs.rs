@@ -5,12 +5,12 @@ use crate::support::study::{self, Study, at, contains_all};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
-use trimtab::import::{Choices, ImportSettings, Imported, import};
 use trimtab::model::Model;
 use trimtab::recording::Channel;
+use trimtab::recording::import::{Choices, ImportSettings, Imported, import};
 use trimtab::ship::Ship;
+use trimtab::ship::state::Inputs;
 use trimtab::simulate::{Integration, Scenario, simulate};
-use trimtab::state::Inputs;
 
 /// Midday of 1 May 2024 in UTC [s since 1970].
 const START: f64 = 1_714_564_800.0;
@@ -51,7 +51,7 @@ const PROGRAMME: [(usize, f64, f64); 19] = [
 ];
 
 fn demo(name: &str) -> String {
-    trimtab::demo::files().into_iter().find(|(n, _)| n == name).unwrap().1
+    trimtab::study::demo::files().into_iter().find(|(n, _)| n == name).unwrap().1
 }
 
 /// The demo's ship with the published parameters, sailed through the programme.

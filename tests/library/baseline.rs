@@ -4,8 +4,8 @@
 use crate::support::{model, runs, truth_noise};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::evidence::candidate::Extent;
+use trimtab::diagnose::proof::baseline::{Refitted, Told, oracle};
 use trimtab::diagnose::proof::prove::mean_cvdm;
-use trimtab::diagnose::search::baseline::{Refitted, Told, oracle};
 use trimtab::likelihood::noise::Noise;
 use trimtab::model::Model;
 use trimtab::recording::Run;

@@ -3,15 +3,15 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
-use trimtab::dynamics::Dynamics;
+use trimtab::model::dynamics::Dynamics;
 use trimtab::report::terms::{listing, summary};
-use trimtab::sensitivity::{Column, Columns, Plain};
+use trimtab::simulate::sensitivity::{Column, Columns, Plain};
 type Seeded = trimtab_ad::Dual<Lanes, FEW>;
 use trimtab::model::{BASE, Model};
-use trimtab::parameter::Parity;
 use trimtab::physics::{CHUNK, Curvature, FEW, Form, Gradient, Lanes, NumDual, Number, Reach};
 use trimtab::ship::Ship;
-use trimtab::state::{Force, Inputs, STATES, State};
+use trimtab::ship::parameter::Parity;
+use trimtab::ship::state::{Force, Inputs, STATES, State};
 use trimtab::terms::CATALOGUE;
 use trimtab_ad::Scalar;
 

@@ -3,12 +3,12 @@
 
 use std::f64::consts::PI;
 use std::path::Path;
-use trimtab::dynamics::Dynamics;
+use trimtab::model::dynamics::Dynamics;
 use trimtab::model::{Model, ModelError};
 use trimtab::physics::{Form, Gradient};
 use trimtab::ship::Ship;
+use trimtab::ship::state::{Force, Inputs, STATES, State};
 use trimtab::simulate::{Integration, Method, Scenario, simulate};
-use trimtab::state::{Force, Inputs, STATES, State};
 use trimtab::terms::crossflow::strip_integrals;
 
 fn ship(letter: &str) -> Ship {

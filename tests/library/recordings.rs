@@ -2,7 +2,7 @@
 //! The data are not part of the project; without them every test here is skipped with a message.
 
 use std::path::{Path, PathBuf};
-use trimtab::audit::{Severity, audit};
+use trimtab::recording::audit::{Severity, audit};
 use trimtab::recording::{Channel, Recording, Split};
 use trimtab::study::Study;
 

@@ -8,8 +8,8 @@ use std::path::Path;
 use trimtab::model::Model;
 use trimtab::physics::Form;
 use trimtab::ship::Ship;
+use trimtab::ship::state::Inputs;
 use trimtab::simulate::{Integration, Method, Scenario, simulate};
-use trimtab::state::Inputs;
 
 fn ship(letter: &str) -> Ship {
     let path = format!("{}/experiments/ships/{letter}.toml", env!("CARGO_MANIFEST_DIR"));

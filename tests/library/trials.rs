@@ -2,7 +2,7 @@
 //! The data are not part of the project; without them every test here is skipped with a message.
 
 use std::path::{Path, PathBuf};
-use trimtab::maneuver::{Track, turning, turning_execute, zigzag, zigzag_executes};
+use trimtab::evaluate::maneuver::{Track, turning, turning_execute, zigzag, zigzag_executes};
 use trimtab::study::Study;
 
 /// Length between perpendiculars \[m\].

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use trimtab::diagnose::evidence::candidate::Extent;
-use trimtab::diagnose::search::baseline::{Told, oracle};
+use trimtab::diagnose::proof::baseline::{Told, oracle};
 
 use super::campaign::plan::Planned;
 use super::error::ConcealError;

@@ -9,7 +9,7 @@ use trimtab::diagnose::Settings;
 use trimtab::model::Model;
 use trimtab::recording::{Run, Split};
 use trimtab::ship::Ship;
-use trimtab::state::Inputs;
+use trimtab::ship::state::Inputs;
 
 use super::effects::effect::{Class, Entry};
 use super::error::ConcealError;

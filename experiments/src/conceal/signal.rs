@@ -13,8 +13,8 @@ use trimtab::likelihood::parameters::base_parameters;
 use trimtab::likelihood::settings::Effort;
 use trimtab::model::{Model, ModelError};
 use trimtab::recording::Run;
+use trimtab::ship::state::{Inputs, State};
 use trimtab::simulate::Integration;
-use trimtab::state::{Inputs, State};
 
 /// Rounds of the base model: noise within a few per cent.
 const ROUNDS: Effort = Effort { rounds: 6, noise_rounds: 2, noise_iterations: 6 };

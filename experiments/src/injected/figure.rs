@@ -1,8 +1,8 @@
 //! The figure of the campaign on real recordings: names by strength, nulls, invariances, sizes and faults of sensors.
 //! It only counts and draws.
 
-use trimtab::plot::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, PURPLE, Panel};
-use trimtab::statistics::Share;
+use trimtab::numbers::statistics::Share;
+use trimtab::report::plot::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, PURPLE, Panel};
 
 use super::row::Row;
 use super::score::Score;

@@ -3,8 +3,8 @@
 
 use std::collections::HashMap;
 
+use trimtab::numbers::statistics::{Share, median};
 use trimtab::report::Table;
-use trimtab::statistics::{Share, median};
 
 use super::plan::is_strong;
 use super::row::Row;

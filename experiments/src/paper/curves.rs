@@ -9,9 +9,9 @@ use super::target::Target;
 use crate::truth::captive::{Range, towing};
 use trimtab::fit::{CovarianceKind, Fit};
 use trimtab::model::Model;
-use trimtab::numerals::{DASH, fixed, sig};
-use trimtab::plot::{Axis, BASELINE, FITTED, Figure, LIMIT, Layer, Marker, ORANGE, PURPLE, Panel, TRUTH};
+use trimtab::numbers::numerals::{DASH, fixed, sig};
 use trimtab::report::Table;
+use trimtab::report::plot::{Axis, BASELINE, FITTED, Figure, LIMIT, Layer, Marker, ORANGE, PURPLE, Panel, TRUTH};
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
 

@@ -8,12 +8,12 @@ use super::scenarios::SHOWN;
 use super::sheet::{Sheet, cell};
 use super::target::Target;
 use trimtab::evaluate::{Comparison, Outcome};
-use trimtab::numerals::sig;
-use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel};
+use trimtab::numbers::numerals::sig;
+use trimtab::numbers::statistics::quantile;
 use trimtab::recording::Split;
 use trimtab::report::Table;
-use trimtab::state::STATES;
-use trimtab::statistics::quantile;
+use trimtab::report::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel};
+use trimtab::ship::state::STATES;
 
 /// Error distributions.
 pub static DISTRIBUTIONS: Artefact = Artefact {

@@ -10,7 +10,7 @@ use super::target::Target;
 use trimtab::evaluate::{EvaluationSettings, Judging, prove};
 use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::{Model, Prior};
-use trimtab::numerals::{DASH, fixed, sig};
+use trimtab::numbers::numerals::{DASH, fixed, sig};
 use trimtab::physics::Form;
 use trimtab::report::Table;
 

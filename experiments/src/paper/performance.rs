@@ -9,12 +9,12 @@ use super::target::Target;
 use std::fmt::Write;
 use trimtab::evaluate::{Estimate, EvaluationSettings, Judging, Summary, predict, prove};
 use trimtab::model::Model;
-use trimtab::numerals::{DASH, fixed};
-use trimtab::plot::{Axis, FITTED, Figure, GREY, Layer, Panel};
+use trimtab::numbers::numerals::{DASH, fixed};
 use trimtab::recording::{Run, Split, measured};
 use trimtab::report::Table;
+use trimtab::report::plot::{Axis, FITTED, Figure, GREY, Layer, Panel};
+use trimtab::ship::state::{STATE_NAMES, STATE_UNITS};
 use trimtab::simulate::{Integration, Method};
-use trimtab::state::{STATE_NAMES, STATE_UNITS};
 
 /// Overall performance.
 pub static PERFORMANCE: Artefact = Artefact {

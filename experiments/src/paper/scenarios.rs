@@ -11,11 +11,11 @@ use super::sheet::{Sheet, cell};
 use super::target::Target;
 use std::fmt::Write;
 use trimtab::evaluate::{Comparison, predict};
-use trimtab::numerals::{DASH, fixed, sig};
-use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, east_north};
+use trimtab::numbers::numerals::{DASH, fixed, sig};
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
-use trimtab::state::{STATE_NAMES, STATES};
+use trimtab::report::plot::{Axis, BASELINE, Color, FITTED, Figure, Layer, ORANGE, Panel, TRUTH, east_north};
+use trimtab::ship::state::{STATE_NAMES, STATES};
 
 /// Figures 3 to 6.
 pub static SCENARIOS: Artefact = Artefact {

@@ -8,9 +8,9 @@ use super::error::PaperError;
 use super::sheet::{Sheet, cell};
 use super::target::Target;
 use crate::truth::dataset::{Split, period};
-use trimtab::numerals::{DASH, fixed};
-use trimtab::plot::{Axis, FITTED, Figure, GREY, Layer, Marker, Panel};
+use trimtab::numbers::numerals::{DASH, fixed};
 use trimtab::report::Table;
+use trimtab::report::plot::{Axis, FITTED, Figure, GREY, Layer, Marker, Panel};
 
 /// Table 1.
 pub static TABLE1: Artefact = Artefact {

@@ -9,9 +9,9 @@ use super::target::Target;
 use std::fmt::Write;
 use trimtab::fit::Fit;
 use trimtab::model::ELEVEN;
-use trimtab::numerals::{DASH, sig};
-use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREEN, GREY, Layer, Marker, ORANGE, PURPLE, Panel};
+use trimtab::numbers::numerals::{DASH, sig};
 use trimtab::report::Table;
+use trimtab::report::plot::{Axis, BASELINE, FITTED, Figure, GREEN, GREY, Layer, Marker, ORANGE, PURPLE, Panel};
 
 /// Table 2.
 pub static TABLE2: Artefact = Artefact {
@@ -66,7 +66,7 @@ impl Row {
         let ends = match self.interval {
             None => DASH.to_owned(),
             Some([lo, hi]) if lo == hi => "held by constraints".to_owned(),
-            Some([lo, hi]) => trimtab::numerals::interval(lo, hi, 4),
+            Some([lo, hi]) => trimtab::numbers::numerals::interval(lo, hi, 4),
         };
         let [a, b, c, d, e] = [self.baseline, self.captive, self.guess, self.paper, self.ours].map(show);
         [self.symbol.to_owned(), self.unit.to_owned(), a, b, c, d, e, ends]

@@ -5,7 +5,7 @@ use trimtab::diagnose::proof::finding::Amplitude;
 use trimtab::diagnose::proof::prove::HeldOut;
 use trimtab::diagnose::{Diagnosis, Settings, diagnose};
 use trimtab::model::Model;
-use trimtab::numerals::{fixed, sig};
+use trimtab::numbers::numerals::{fixed, sig};
 use trimtab::recording::Run;
 use trimtab::report::Table;
 

@@ -7,12 +7,12 @@ use super::published::PublishedMmg;
 use trimtab::evaluate::{Comparison, EvaluationSettings, Outcome, Summary, compare, predict, summarise};
 use trimtab::fit::Fit;
 use trimtab::model::Model;
-use trimtab::numerals::fixed;
-use trimtab::plot::{
-    Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, ORANGE, PURPLE, Panel, RECORDED, east_north,
-};
+use trimtab::numbers::numerals::fixed;
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
+use trimtab::report::plot::{
+    Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, ORANGE, PURPLE, Panel, RECORDED, east_north,
+};
 use trimtab::simulate::Trajectory;
 
 /// Model files that are fitted, in the order of the tables.
@@ -168,7 +168,7 @@ impl Judged {
     }
 
     fn color(candidate: usize) -> Color {
-        [BASELINE, ORANGE, PURPLE, trimtab::plot::SKY, GREEN, FITTED][candidate.min(5)]
+        [BASELINE, ORANGE, PURPLE, trimtab::report::plot::SKY, GREEN, FITTED][candidate.min(5)]
     }
 
     /// Mean cVDM by manoeuvre, a bar a candidate.

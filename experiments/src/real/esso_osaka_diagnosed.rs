@@ -11,10 +11,10 @@ use super::pull::{Pull, pulls};
 use super::runs::{by_recording, runs, sessions, without_term, without_wind};
 use trimtab::diagnose::Settings;
 use trimtab::model::Model;
-use trimtab::numerals::{fixed, sig};
-use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, RECORDED};
+use trimtab::numbers::numerals::{fixed, sig};
+use trimtab::numbers::statistics::median;
 use trimtab::recording::{Run, Split};
-use trimtab::statistics::median;
+use trimtab::report::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, ORANGE, PURPLE, Panel, RECORDED};
 
 /// Span over which changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 const SPAN: f64 = 20.0;

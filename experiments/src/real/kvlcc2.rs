@@ -3,16 +3,16 @@
 
 use super::error::RealError;
 use super::hull::{Hull, settings};
-use trimtab::fit::Fit;
-use trimtab::maneuver::{
+use trimtab::evaluate::maneuver::{
     Approach, ManeuverSettings, Side, Track, turning, turning_execute, turning_trial, zigzag, zigzag_executes,
     zigzag_trial,
 };
+use trimtab::fit::Fit;
 use trimtab::model::Model;
-use trimtab::numerals::fixed;
-use trimtab::plot::{Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, Panel, RECORDED, east_north};
+use trimtab::numbers::numerals::fixed;
 use trimtab::recording::{Run, Split};
 use trimtab::report::Table;
+use trimtab::report::plot::{Axis, BASELINE, Color, FITTED, Figure, GREEN, Layer, Legend, Panel, RECORDED, east_north};
 
 /// Rudder angle of the turning circles \[rad\].
 const HARD_OVER: f64 = 35.0 * std::f64::consts::PI / 180.0;
@@ -158,7 +158,7 @@ impl Outcome {
             .map(|(m, (theta, approach))| turning_trial(m, theta, approach, side, HARD_OVER))
             .collect();
         let length = models[0].ship.hull.lpp;
-        type Read = fn(&trimtab::maneuver::Turning) -> Option<f64>;
+        type Read = fn(&trimtab::evaluate::maneuver::Turning) -> Option<f64>;
         let lengths: [(&str, Read); 4] = [
             ("advance", |t| t.advance),
             ("transfer", |t| t.transfer),

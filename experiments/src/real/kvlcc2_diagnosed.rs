@@ -10,10 +10,10 @@ use super::mend::Mend;
 use super::runs::{runs, without_term};
 use trimtab::diagnose::Settings;
 use trimtab::model::Model;
-use trimtab::numerals::{fixed, sig};
-use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED};
+use trimtab::numbers::numerals::{fixed, sig};
+use trimtab::numbers::statistics::median;
 use trimtab::recording::{Run, Split};
-use trimtab::statistics::median;
+use trimtab::report::plot::{Axis, BASELINE, FITTED, Figure, GREEN, Layer, Panel, RECORDED};
 
 /// Span over which changes of position and heading are compared with integrals of velocity and yaw rate \[s\].
 pub const SPAN: f64 = 40.0;

@@ -4,14 +4,14 @@
 use super::error::RealError;
 use super::hull::{Hull, settings};
 use super::kvlcc2;
+use trimtab::evaluate::maneuver::ManeuverSettings;
 use trimtab::evaluate::{outcome, predict_all};
 use trimtab::fit::{Fit, FitError, MultiStart, Rule, fit, multi_start};
-use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::Model;
-use trimtab::numerals::{fixed, sig};
-use trimtab::plot::Figure;
+use trimtab::numbers::numerals::{fixed, sig};
 use trimtab::recording::{Run, Split};
 use trimtab::report::Table;
+use trimtab::report::plot::Figure;
 
 /// Upper limits of the resistance under which the freed fit is repeated \[N\]; about 35 N is right.
 pub const LIMITS: [Option<f64>; 5] = [Some(60.0), Some(100.0), Some(200.0), Some(400.0), None];

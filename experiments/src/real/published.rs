@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use trimtab::recording::Run;
+use trimtab::ship::state::STATES;
 use trimtab::simulate::Trajectory;
-use trimtab::state::STATES;
 
 /// Why the published parameters could not be read.
 #[derive(Debug, thiserror::Error)]

@@ -96,7 +96,7 @@ fn published_simulator_reaches_the_recorded_speeds_and_turns_the_right_way() {
     window.initial = [0.0, 0.0, 0.0, 0.05, 0.0, 0.0];
     // Straight ahead at the rate of the faster turns, for as long as it takes.
     let first = window.inputs[0];
-    window.inputs = vec![trimtab::state::Inputs { n: 10.0, delta: 0.0, ..first }; 600];
+    window.inputs = vec![trimtab::ship::state::Inputs { n: 10.0, delta: 0.0, ..first }; 600];
     let straight = published.simulate(&window);
     let [_, _, psi, u, v, _] = *straight.states.last().unwrap();
     assert!(straight.diverged_at.is_none() && (0.3..0.5).contains(&u), "{u}");

@@ -5,11 +5,11 @@ use super::error::CliError;
 use super::load::Loaded;
 use super::progress::progress;
 use serde::{Deserialize, Serialize};
-use trimtab::audit::{Issue, Severity, across, audit_each, audit_model};
-use trimtab::error::suggestion;
+use trimtab::files::ranks::Ranks;
+use trimtab::files::suggestion;
 use trimtab::model::Model;
-use trimtab::ranks::Ranks;
 use trimtab::recording::Channel;
+use trimtab::recording::audit::{Issue, Severity, across, audit_each, audit_model};
 
 /// Arguments of the commands that compute with recordings.
 #[derive(Clone, Debug, clap::Args)]

@@ -3,13 +3,13 @@
 
 use std::path::PathBuf;
 use trimtab::diagnose::DiagnoseError;
+use trimtab::diagnose::plan::PlanError;
+use trimtab::evaluate::maneuver::ManeuverError;
 use trimtab::files::FolderError;
 use trimtab::fit::FitError;
-use trimtab::import::ImportError;
-use trimtab::maneuver::ManeuverError;
 use trimtab::model::ModelError;
-use trimtab::plan::PlanError;
-use trimtab::plot::FigureError;
+use trimtab::recording::import::ImportError;
+use trimtab::report::plot::FigureError;
 use trimtab::ship::ShipError;
 use trimtab::study::StudyError;
 

@@ -3,7 +3,7 @@
 
 use clap::ValueEnum;
 use std::collections::BTreeMap;
-use trimtab::plot::{Figure, Format, Width};
+use trimtab::report::plot::{Figure, Format, Width};
 
 /// Arguments that every command with figures has.
 #[derive(Clone, Debug, clap::Args)]

@@ -9,20 +9,20 @@ use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use trimtab::diagnose::Settings;
-use trimtab::error::suggestion;
+use trimtab::diagnose::plan::PlanSettings;
 use trimtab::evaluate::EvaluationSettings;
+use trimtab::evaluate::maneuver::ManeuverSettings;
+use trimtab::files::ranks::Ranks;
+use trimtab::files::suggestion;
 use trimtab::fit::{FitError, FitSettings};
-use trimtab::maneuver::ManeuverSettings;
 use trimtab::model::{Model, ModelError};
-use trimtab::numerals::sig;
-use trimtab::plan::PlanSettings;
-use trimtab::ranges::Limited;
-use trimtab::ranks::Ranks;
+use trimtab::numbers::numerals::sig;
+use trimtab::numbers::ranges::Limited;
+use trimtab::numbers::uncertainty::Uncertainty;
 use trimtab::recording::{ColumnMap, Run, Runs, Split, Windows};
 use trimtab::report::diagnosis::mechanism_names;
 use trimtab::ship::{Ship, parameter_line};
 use trimtab::study::{Listed, Study};
-use trimtab::uncertainty::Uncertainty;
 
 /// A largest yaw rate that is so many times the one recorded, or its inverse, was hardly meant: degrees for radians are 57 times.
 const FAR_YAW_RATE: f64 = 20.0;

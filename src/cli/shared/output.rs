@@ -16,11 +16,11 @@ use std::collections::BTreeMap;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
+use trimtab::files::ranks::Ranks;
 use trimtab::files::{FolderError, Kept, Log, Origin, ResultFolder, plain_cell, sha256, utc};
-use trimtab::plot::{Figure, FigureError};
-use trimtab::ranks::Ranks;
 use trimtab::report::Table;
 use trimtab::report::diagnosis::{Provenance, SourceFile};
+use trimtab::report::plot::{Figure, FigureError};
 
 /// Arguments that every command with results has.
 #[derive(Clone, Debug, clap::Args)]

@@ -6,7 +6,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-use trimtab::progress::{Teller, left, words};
+use trimtab::files::progress::{Teller, left, words};
 
 /// Says what a computation is doing, until it is finished or dropped.
 pub struct Progress {

@@ -6,8 +6,8 @@ use crate::cli::shared::error::CliError;
 use crate::cli::shared::load::{Loaded, StudyArgs};
 use crate::cli::shared::output::{Output, OutputArgs, csv_text};
 use crate::cli::shared::progress::progress;
-use trimtab::audit::{Audit, Issue, Severity, StudyAudit, audit_model, audit_study};
-use trimtab::numerals::{fixed, number_of, sig};
+use trimtab::numbers::numerals::{fixed, number_of, sig};
+use trimtab::recording::audit::{Audit, Issue, Severity, StudyAudit, audit_model, audit_study};
 use trimtab::report::Table;
 
 const LONG: &str = "\

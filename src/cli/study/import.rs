@@ -11,13 +11,15 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use trimtab::files::write_whole;
-use trimtab::import::{Choices, ImportSettings, Imported, Origins, Taken, Unused, import, recording_csv, study_files};
 use trimtab::model::Model;
-use trimtab::numerals::{fixed, sig};
+use trimtab::numbers::numerals::{fixed, sig};
+use trimtab::recording::import::{
+    Choices, ImportSettings, Imported, Origins, Taken, Unused, import, recording_csv, study_files,
+};
+use trimtab::recording::split::{Sessions, SplitPart, SplitRun, runs_csv, shortest_run, split};
 use trimtab::recording::{ColumnMap, Recording};
 use trimtab::report::Table;
 use trimtab::ship::Ship;
-use trimtab::split::{Sessions, SplitPart, SplitRun, runs_csv, shortest_run, split};
 
 const LONG: &str = "\
 Makes a study folder of the files that ships and loggers write, so that `trimtab check` and \
@@ -303,7 +305,7 @@ fn whole_runs(recordings: &[(String, Recording)]) -> String {
 }
 
 fn report<'a>(args: &'a Args, imported: &'a Imported, runs: &'a [SplitRun], skipped: usize) -> Report<'a> {
-    let recording = |r: &'a trimtab::import::ImportedRecording| RecordingReport {
+    let recording = |r: &'a trimtab::recording::import::ImportedRecording| RecordingReport {
         name: &r.name,
         start: r.start.as_deref(),
         rows: r.rows.t.len(),

@@ -7,12 +7,12 @@ use crate::cli::shared::output::{is_new, print, print_file, print_json};
 use crate::cli::shared::terminal::tell;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
-use trimtab::error::suggestion;
+use trimtab::files::suggestion;
+use trimtab::files::written::{Kind as Written, read_tables, read_text, told};
 use trimtab::files::{plain_cell, write_whole};
-use trimtab::numerals::sig;
-use trimtab::particulars::{Entry, Estimated, KINDS, Kind, Origin, estimate};
+use trimtab::numbers::numerals::sig;
 use trimtab::report::Table as Listing;
-use trimtab::written::{Kind as Written, read_tables, read_text, told};
+use trimtab::ship::particulars::{Entry, Estimated, KINDS, Kind, Origin, estimate};
 
 const LONG: &str = "\
 Writes a ship file with every value that you do not give estimated by the published regressions of the field, each with its \

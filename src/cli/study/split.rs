@@ -7,10 +7,10 @@ use crate::cli::shared::output::{Output, OutputArgs};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use trimtab::numerals::fixed;
+use trimtab::numbers::numerals::fixed;
+use trimtab::recording::split::{Kind, Sessions, SplitPart, SplitRun, SplitSettings, TestBy, runs_csv, split};
 use trimtab::recording::{ColumnMap, Recording, Split};
 use trimtab::report::Table;
-use trimtab::split::{Kind, Sessions, SplitPart, SplitRun, SplitSettings, TestBy, runs_csv, split};
 use trimtab::study::{Study, StudyError};
 
 const LONG: &str = "\

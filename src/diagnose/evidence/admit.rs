@@ -1,12 +1,12 @@
 //! The audit of recordings and integration step by the base model, before any physics is claimed.
 //! It judges data and numerics only; what recordings show by themselves is in `audit`.
 
-use crate::audit::{Issue, Severity, audit_runs, piece};
 use crate::diagnose::settings::{COMPARED, FEW_LOST_SHARE, LOST_MEASUREMENTS};
 use crate::likelihood::filter::{Filter, GATE, Pass, Wanted};
 use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::numerals::sig;
+use crate::recording::audit::{Issue, Severity, audit_runs, piece};
 use crate::recording::{Channel, Run, STATE_CHANNELS};
 use crate::simulate::{Integration, Method};
 use crate::state::{STATE_NAMES, STATES};

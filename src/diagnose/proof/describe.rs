@@ -3,7 +3,6 @@
 
 use super::finding::{Amplitude, Equations, Finding, GENERIC, PUSH, PUSH_TITLE};
 use super::grade::Grade;
-use crate::audit::Issue;
 use crate::diagnose::evidence::admit::Admission;
 use crate::diagnose::evidence::candidate::{Candidate, Extent};
 use crate::diagnose::evidence::forces::forces_of;
@@ -22,6 +21,7 @@ use crate::likelihood::filter::Column;
 use crate::model::Model;
 use crate::numerals::sig;
 use crate::physics::Kind;
+use crate::recording::audit::Issue;
 use crate::recording::{Channel, Run};
 use std::collections::BTreeSet;
 

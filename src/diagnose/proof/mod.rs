@@ -7,9 +7,11 @@
 //! | [`influence`] | how far a finding changes what is predicted |
 //! | [`unseen`], [`prove`] | a finding, and all findings, on unseen runs |
 //! | `weigh`, [`grade`] | the tests of a finding, and its grade, a pure function of them |
+//! | [`baseline`] | rival methods, for comparison with the diagnosis |
 //! | `improved` | the model with the findings as a file holds it |
 //! | [`stability`] | whether an answer stays when the recordings are turned, mirrored, cut or thinned |
 
+pub mod baseline;
 pub(super) mod describe;
 pub mod finding;
 pub mod grade;

@@ -2,12 +2,12 @@
 //! [`crate::evaluate::prove`] judges it, and in likelihood. It fits nothing.
 
 use super::unseen::interval_of_improvement;
-use crate::audit::settled;
 use crate::evaluate::{Comparison, Judging, Outcome, outcome, predict_all, summarise};
 use crate::likelihood::filter::{Filter, GATE, Pass, Wanted};
 use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::recording::Run;
+use crate::recording::audit::settled;
 use crate::simulate::Integration;
 use crate::state::STATES;
 use crate::statistics::mean;

@@ -3,11 +3,11 @@
 
 use super::finding::Finding;
 use super::grade::is_unstable;
-use crate::audit::piece;
 use crate::diagnose::search::decide::Verdict;
 use crate::model::Model;
 use crate::parameter::Parity;
 use crate::recording::Run;
+use crate::recording::audit::piece;
 use crate::state::Inputs;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;

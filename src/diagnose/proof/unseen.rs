@@ -2,7 +2,6 @@
 //! sensor, what their sensors say of each other. It computes gains and their intervals over recordings; what follows from them is decided elsewhere.
 
 use super::grade::GainTest;
-use crate::audit::settled;
 use crate::diagnose::evidence::candidate::Candidate;
 use crate::diagnose::evidence::kinematic;
 use crate::diagnose::settings::INDISTINGUISHABLE;
@@ -11,6 +10,7 @@ use crate::likelihood::filter::{Filter, Wanted};
 use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::recording::Run;
+use crate::recording::audit::settled;
 use crate::simulate::Integration;
 use crate::statistics::interval_of_sum;
 use serde::Serialize;

@@ -2,7 +2,6 @@
 //! What physics it lacks is tested elsewhere; here recordings and integration step are audited.
 
 use super::decide::is_euler;
-use crate::audit::{Issue, settled};
 use crate::diagnose::evidence::admit::{Admission, admit, followed};
 use crate::diagnose::settings::{EULER_EXACT, EULER_HOPELESS, Effort, FIRST, LOSS_ROUNDS, REFIT, SETTLE, Settings};
 use crate::likelihood::estimate::{Estimate, estimate, log_posterior, passes};
@@ -10,6 +9,7 @@ use crate::likelihood::noise::NoisePrior;
 use crate::likelihood::noise_fit::guess;
 use crate::likelihood::parameters::base_parameters;
 use crate::model::{Model, ModelError};
+use crate::recording::audit::{Issue, settled};
 use crate::recording::{Measured, Run};
 use crate::simulate::{Integration, Method};
 use std::borrow::Cow;

@@ -10,7 +10,6 @@ use super::problem::Problem;
 use super::screen::{Screen, screen};
 use super::selected::Selected;
 use super::together::leading;
-use crate::audit::Issue;
 use crate::diagnose::evidence::candidate::{Candidate, applies, candidates};
 use crate::diagnose::evidence::locate::{Location, locate, pushes_left};
 use crate::diagnose::evidence::push::PUSH;
@@ -19,6 +18,7 @@ use crate::diagnose::settings::{SETTLE, Settings};
 use crate::likelihood::estimate::{Estimate, calm_noise};
 use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::recording::Run;
+use crate::recording::audit::Issue;
 use crate::simulate::Integration;
 
 /// The base model with every test of what it lacks.

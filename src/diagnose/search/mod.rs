@@ -17,7 +17,6 @@
 
 pub(super) mod alike;
 pub mod base;
-pub mod baseline;
 pub(super) mod compete;
 pub mod decide;
 pub(super) mod eligible;

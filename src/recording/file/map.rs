@@ -17,10 +17,10 @@
 //! ```
 
 use super::blank::Blank;
-use crate::error::suggestion;
+use crate::files::suggestion;
+use crate::files::written::{Kind, Mistake, line_at, read_text, read_toml, told};
 use crate::recording::channel::{CHANNELS, Channel};
 use crate::recording::error::RecordingError;
-use crate::written::{Kind, Mistake, line_at, read_text, read_toml, told};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;

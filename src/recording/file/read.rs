@@ -5,7 +5,7 @@ use super::blank::Blank;
 use super::lines::LineNumbers;
 use super::map::{Column, ColumnMap, Decimal, Delimiter, SpeedReference};
 use super::unit::UNITS;
-use crate::error::suggestion;
+use crate::files::suggestion;
 use crate::recording::channel::{CHANNELS, Channel, ChannelInfo};
 use crate::recording::error::RecordingError;
 use crate::recording::record::Recording;

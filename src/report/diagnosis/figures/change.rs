@@ -3,7 +3,7 @@
 
 use super::picture::{Picture, shown};
 use crate::diagnose::Diagnosis;
-use crate::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Legend, Marker, Panel};
+use crate::report::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Legend, Marker, Panel};
 
 /// Runs and coefficients shown at most.
 const RUNS: usize = 40;

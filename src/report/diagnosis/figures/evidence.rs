@@ -4,8 +4,10 @@
 use super::picture::{Picture, shown};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::answer::diagnosis::Ranked;
-use crate::plot::{Axis, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, Mark, ORANGE, PURPLE, Panel, RECORDED, SKY};
 use crate::report::diagnosis::names::title_of;
+use crate::report::plot::{
+    Axis, Color, FITTED, Figure, GREEN, GREY, LIMIT, Layer, Mark, ORANGE, PURPLE, Panel, RECORDED, SKY,
+};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Mechanisms in the figure of the ranking, and in that of similarity.

@@ -6,7 +6,7 @@ use super::stages::{Series, stages, to_earth};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::answer::diagnosis::Trace;
 use crate::numerals::sig;
-use crate::plot::{Axis, BASELINE, Figure, GREY, Layer, Panel, RECORDED, SKY, east_north};
+use crate::report::plot::{Axis, BASELINE, Figure, GREY, Layer, Panel, RECORDED, SKY, east_north};
 use crate::report::units::Units;
 
 /// Squared length beyond which a horizontal force is resolved, in its standard deviations: 95 % of chi-squared with two degrees

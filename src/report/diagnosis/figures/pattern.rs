@@ -6,7 +6,7 @@ use super::stages::{Series, stages, to_earth};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::answer::diagnosis::Trace;
 use crate::numerals::sig;
-use crate::plot::{Axis, BASELINE, Color, Figure, GREY, Layer, Legend, Marker, Panel, nice_step};
+use crate::report::plot::{Axis, BASELINE, Color, Figure, GREY, Layer, Legend, Marker, Panel, nice_step};
 use crate::report::units::Units;
 use crate::units::GRAVITY;
 use std::collections::BTreeMap;

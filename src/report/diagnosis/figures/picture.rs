@@ -1,7 +1,7 @@
 //! A figure of a diagnosis with its caption and the part of the report it belongs to.
 //! What it shows is drawn elsewhere.
 
-use crate::plot::Figure;
+use crate::report::plot::Figure;
 
 /// A figure with its file name and the part of the report it belongs to.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 
 use crate::diagnose::Diagnosis;
 use crate::diagnose::answer::diagnosis::Trace;
-use crate::plot::{BASELINE, Color, FITTED};
+use crate::report::plot::{BASELINE, Color, FITTED};
 
 /// The unknown force along a run, at one stage of the diagnosis \[N, N, N m\].
 pub(in crate::report::diagnosis) type Series = fn(&Trace) -> &[[f64; 3]];

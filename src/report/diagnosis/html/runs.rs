@@ -4,7 +4,7 @@
 use crate::diagnose::Diagnosis;
 use crate::diagnose::answer::sailed::{MOST_RUNS, Sailed};
 use crate::numerals::sig;
-use crate::plot::{Axis, BASELINE, Color, FITTED, Figure, FigureError, Layer, Panel, RECORDED, east_north};
+use crate::report::plot::{Axis, BASELINE, Color, FITTED, Figure, FigureError, Layer, Panel, RECORDED, east_north};
 use crate::state::STATES;
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
