@@ -1,16 +1,16 @@
 //! The concealed case of `trimtab demo`: forty trials of ship A under an effect that no file of the study names, with sensor noise.
 //! The effect and its size are fixed here, before any diagnosis; the library embeds the recordings and, apart from them, the answer.
 
-use crate::conceal::craft::Craft;
-use crate::conceal::design::{Design, Plan, plans};
 use crate::conceal::effects::catalogue::find;
 use crate::conceal::effects::effect::Entry;
 use crate::conceal::family::Family;
-use crate::conceal::noise::{Noise, Rows};
-use crate::conceal::recorded::activate;
-use crate::conceal::sail::{Active, Method, World, sail};
+use crate::conceal::sailing::craft::Craft;
+use crate::conceal::sailing::design::{Design, Plan, plans};
+use crate::conceal::sailing::noise::{Noise, Rows};
+use crate::conceal::sailing::recorded::activate;
+use crate::conceal::sailing::sail::{Active, Method, World, sail};
+use crate::conceal::sailing::track::{PERIOD, Track};
 use crate::conceal::spec::Spec;
-use crate::conceal::track::{PERIOD, Track};
 use crate::truth::dataset::SEED;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

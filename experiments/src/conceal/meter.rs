@@ -14,11 +14,11 @@ use trimtab::ship::state::Inputs;
 use super::effects::effect::{Class, Entry};
 use super::error::ConcealError;
 use super::family::Family;
-use super::recorded::Recorded;
+use super::sailing::recorded::Recorded;
+use super::sailing::track::PERIOD;
 use super::seal;
 use super::signal::Signal;
 use super::strength::{ForceMeter, Meter};
-use super::track::PERIOD;
 
 /// The ratio of the first accepted mechanism that has a test, on the runs to train on; of one force in their windows where effects
 /// have windows. Effects without a test (gusts, those outside the catalogue) are graded by [`ForceMeter`].

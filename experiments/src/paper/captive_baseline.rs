@@ -123,8 +123,8 @@ fn polynomial(points: &[RudderPoint], degree: usize, value: impl Fn(&RudderPoint
 
 #[cfg(test)]
 mod tests {
-    use super::super::case::initial_model;
     use super::*;
+    use crate::paper::case::initial_model;
     use crate::truth::motion::Force;
     use trimtab::physics::Form;
     use trimtab::terms::rudder::Rudder;

@@ -8,7 +8,7 @@ use trimtab::report::plot::FigureError;
 use trimtab::ship::ShipError;
 use trimtab::study::StudyError;
 
-use super::published::PublishedError;
+use super::hulls::published::PublishedError;
 
 /// Why an experiment on a real hull could not run.
 #[derive(Debug, thiserror::Error)]

@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use super::blend::smooth_step;
+use super::laws::blend::smooth_step;
 use super::motion::{Force, Particulars};
 use super::simulator::{Inertia, Propulsion, Truth};
 

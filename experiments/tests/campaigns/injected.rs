@@ -5,13 +5,13 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use crate::support::{alone, program};
+use trimtab_experiments::injected::answers::results::{Results, in_order, missing};
+use trimtab_experiments::injected::answers::row::Row;
+use trimtab_experiments::injected::answers::summary::scored;
 use trimtab_experiments::injected::configuration::{Configuration, Sessions, Turned, Unseen};
 use trimtab_experiments::injected::plan::{Planned, ci_slice, plan};
-use trimtab_experiments::injected::results::{Results, in_order, missing};
-use trimtab_experiments::injected::row::Row;
 use trimtab_experiments::injected::runner::Runner;
 use trimtab_experiments::injected::set::SETS;
-use trimtab_experiments::injected::summary::scored;
 
 /// A seed for development: the published one is used once, by the campaign.
 const SEED: u64 = 31;

@@ -7,12 +7,12 @@ use trimtab::fit::MultiStart;
 use trimtab::recording::Split;
 use trimtab_experiments::real::agreement::Agreement;
 use trimtab_experiments::real::error::{RealError, is_absent};
-use trimtab_experiments::real::esso_osaka::{self, BASELINES};
 use trimtab_experiments::real::hull::Hull;
-use trimtab_experiments::real::kvlcc2;
-use trimtab_experiments::real::kvlcc2_diagnosed::{self, ONE_SIDED, PUT_BACK};
-use trimtab_experiments::real::kvlcc2_hsva::{self, STARTS};
-use trimtab_experiments::real::published::PublishedMmg;
+use trimtab_experiments::real::hulls::esso_osaka::{self, BASELINES};
+use trimtab_experiments::real::hulls::kvlcc2;
+use trimtab_experiments::real::hulls::kvlcc2_diagnosed::{self, ONE_SIDED, PUT_BACK};
+use trimtab_experiments::real::hulls::kvlcc2_hsva::{self, STARTS};
+use trimtab_experiments::real::hulls::published::PublishedMmg;
 
 /// The value, or none after saying that the recordings are absent.
 fn present<T>(result: Result<T, RealError>) -> Option<T> {

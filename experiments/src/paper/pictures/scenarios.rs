@@ -4,11 +4,11 @@
 //! The rule: the test runs in order of their cVDM improvement over the published baseline; *excellent* is the run at the 90th
 //! percentile, *moderate* the one at the 50th, by nearest rank.
 
-use super::artefact::Artefact;
-use super::case::Case;
-use super::error::PaperError;
-use super::sheet::{Sheet, cell};
-use super::target::Target;
+use crate::paper::artefact::Artefact;
+use crate::paper::case::Case;
+use crate::paper::error::PaperError;
+use crate::paper::sheet::{Sheet, cell};
+use crate::paper::target::Target;
 use std::fmt::Write;
 use trimtab::evaluate::{Comparison, predict};
 use trimtab::numbers::numerals::{DASH, fixed, sig};

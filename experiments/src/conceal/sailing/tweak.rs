@@ -3,10 +3,10 @@
 
 use crate::truth::hd::Hd;
 use crate::truth::large_drift::LargeDrift;
+use crate::truth::laws::slipstream::{Propeller, Rudder};
 use crate::truth::mmg::Mmg;
 use crate::truth::motion::Particulars;
 use crate::truth::simulator::{AddedMass, Inertia};
-use crate::truth::slipstream::{Propeller, Rudder};
 
 /// What an effect changes in the ship at one instant. Neutral: factors 1, additions 0.
 #[derive(Debug, Clone, Copy, PartialEq)]

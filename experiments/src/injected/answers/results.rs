@@ -4,9 +4,9 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use super::error::InjectedError;
-use super::plan::Planned;
 use super::row::Row;
+use crate::injected::error::InjectedError;
+use crate::injected::plan::Planned;
 use crate::rows::Rows;
 
 /// The file of results, open for further rows.

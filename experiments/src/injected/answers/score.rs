@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 
 use super::row::{Found, Proof, Row, cell};
-use super::set::Set;
+use crate::injected::set::Set;
 use crate::rivals::NOTHING;
 
 /// Mechanisms that a calm basin does not have.

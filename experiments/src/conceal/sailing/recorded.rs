@@ -6,11 +6,11 @@ use rand_chacha::ChaCha8Rng;
 
 use super::craft::{Craft, LENGTH};
 use super::design::{Plan, plans};
-use super::effects::effect::{Draw, Entry, Window};
 use super::noise::{Noise, Rows};
 use super::sail::{Active, Method, World, sail};
-use super::spec::{Background, Spec};
 use super::track::{PERIOD, STEPS, Track};
+use crate::conceal::effects::effect::{Draw, Entry, Window};
+use crate::conceal::spec::{Background, Spec};
 
 /// The recordings of a case, as they are written.
 #[derive(Debug, Clone, PartialEq)]

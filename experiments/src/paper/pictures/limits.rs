@@ -2,11 +2,11 @@
 //! The paper has no such table. The eleven parameters alone gain less on our captive baseline than the paper's fit on its own
 //! baseline, and these are the possible reasons.
 
-use super::artefact::Artefact;
-use super::case::{Case, initial_model};
-use super::error::PaperError;
-use super::sheet::{Sheet, cell};
-use super::target::Target;
+use crate::paper::artefact::Artefact;
+use crate::paper::case::{Case, initial_model};
+use crate::paper::error::PaperError;
+use crate::paper::sheet::{Sheet, cell};
+use crate::paper::target::Target;
 use trimtab::evaluate::{EvaluationSettings, Judging, prove};
 use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::{Model, Prior};

@@ -1,11 +1,11 @@
 //! Overall performance: mARI, cVDM improvement and consistency of the fit against both baselines, beside the paper's.
 //! It also measures the error of the integration itself; single runs are in other files.
 
-use super::artefact::Artefact;
-use super::case::Case;
-use super::error::PaperError;
-use super::sheet::{Sheet, cell};
-use super::target::Target;
+use crate::paper::artefact::Artefact;
+use crate::paper::case::Case;
+use crate::paper::error::PaperError;
+use crate::paper::sheet::{Sheet, cell};
+use crate::paper::target::Target;
 use std::fmt::Write;
 use trimtab::evaluate::{Estimate, EvaluationSettings, Judging, Summary, predict, prove};
 use trimtab::model::Model;

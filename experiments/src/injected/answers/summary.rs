@@ -6,12 +6,12 @@ use std::collections::HashMap;
 use trimtab::numbers::statistics::{Share, median};
 use trimtab::report::Table;
 
-use super::plan::is_strong;
 use super::row::Row;
 use super::score::{Score, score};
-use super::set::SETS;
 pub use crate::conceal::campaign::summary::table;
 use crate::conceal::campaign::summary::{Found, Line};
+use crate::injected::plan::is_strong;
+use crate::injected::set::SETS;
 
 /// A row with its score.
 pub type Scored<'a> = (&'a Row, Score);

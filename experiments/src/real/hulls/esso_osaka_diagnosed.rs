@@ -1,14 +1,14 @@
 //! Esso Osaka, diagnosed with a calm-water model and without its wind; the findings are compared with the withheld anemometer.
 //! Sensors are mended by the recordings' own kinematics before any model is used; no setting was chosen by its outcome.
 
-use super::agreement::Agreement;
-use super::case::Case;
-use super::error::RealError;
-use super::frame::{Frame, Step};
-use super::hull::Hull;
-use super::mend::{Mend, held, jumps};
-use super::pull::{Pull, pulls};
-use super::runs::{by_recording, runs, sessions, without_term, without_wind};
+use crate::real::agreement::Agreement;
+use crate::real::case::Case;
+use crate::real::error::RealError;
+use crate::real::frame::{Frame, Step};
+use crate::real::hull::Hull;
+use crate::real::mend::{Mend, held, jumps};
+use crate::real::pull::{Pull, pulls};
+use crate::real::runs::{by_recording, runs, sessions, without_term, without_wind};
 use trimtab::diagnose::Settings;
 use trimtab::model::Model;
 use trimtab::numbers::numerals::{fixed, sig};

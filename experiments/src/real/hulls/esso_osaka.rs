@@ -1,9 +1,9 @@
 //! Esso Osaka, 3 m: models fitted to training runs, judged on test runs beside two baselines that use no recording.
 //! The baselines are the empirical model (Clarke, Inoue) and the published low-speed MMG simulator, both in calm water.
 
-use super::error::RealError;
-use super::hull::Hull;
 use super::published::PublishedMmg;
+use crate::real::error::RealError;
+use crate::real::hull::Hull;
 use trimtab::evaluate::{Comparison, EvaluationSettings, Outcome, Summary, compare, predict, summarise};
 use trimtab::fit::Fit;
 use trimtab::model::Model;

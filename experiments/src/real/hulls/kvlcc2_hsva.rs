@@ -1,9 +1,9 @@
 //! KVLCC2 at HSVA: fitted to nine zigzags of the 7 m model, judged on four that no fit has seen; and the same fit repeated
 //! from other starts and under other limits of the resistance, which should all end at one optimum.
 
-use super::error::RealError;
-use super::hull::{Hull, settings};
 use super::kvlcc2;
+use crate::real::error::RealError;
+use crate::real::hull::{Hull, settings};
 use trimtab::evaluate::maneuver::ManeuverSettings;
 use trimtab::evaluate::{outcome, predict_all};
 use trimtab::fit::{Fit, FitError, MultiStart, Rule, fit, multi_start};

@@ -1,13 +1,13 @@
 //! KVLCC2, diagnosed: tests in a calm basin without wind, current or waves, of a ship with one screw and so of unlike sides.
 //! The zigzags are diagnosed; the turning circles are for the proof only.
 
-use super::agreement::Agreement;
-use super::case::Case;
-use super::error::RealError;
-use super::frame::{Answer, Frame, Step};
-use super::hull::Hull;
-use super::mend::Mend;
-use super::runs::{runs, without_term};
+use crate::real::agreement::Agreement;
+use crate::real::case::Case;
+use crate::real::error::RealError;
+use crate::real::frame::{Answer, Frame, Step};
+use crate::real::hull::Hull;
+use crate::real::mend::Mend;
+use crate::real::runs::{runs, without_term};
 use trimtab::diagnose::Settings;
 use trimtab::model::Model;
 use trimtab::numbers::numerals::{fixed, sig};

@@ -6,7 +6,7 @@
 //! rudder inflow after Yoshimura ahead and Kitagawa astern. Axes as everywhere: x forward, y to starboard, origin midship,
 //! rudder positive to starboard. Wind is left out.
 
-use crate::truth::crossflow::integrals;
+use crate::truth::laws::crossflow::integrals;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};

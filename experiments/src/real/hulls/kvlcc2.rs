@@ -1,8 +1,8 @@
 //! KVLCC2: fitted to the zigzags of the free-running tests, judged on their turning circles, which no fit has seen.
 //! Predictions are trials simulated from the approach of the tests; no sample of a recorded turn enters them.
 
-use super::error::RealError;
-use super::hull::{Hull, settings};
+use crate::real::error::RealError;
+use crate::real::hull::{Hull, settings};
 use trimtab::evaluate::maneuver::{
     Approach, ManeuverSettings, Side, Track, turning, turning_execute, turning_trial, zigzag, zigzag_executes,
     zigzag_trial,
@@ -127,7 +127,7 @@ fn from_execute(track: &Track, execute: usize) -> Track {
 
 impl Outcome {
     /// An outcome of models without trials or fits yet.
-    pub(super) fn new(models: &[&Model]) -> Self {
+    pub(in crate::real) fn new(models: &[&Model]) -> Self {
         Self {
             models: models.iter().map(|m| m.name.clone()).collect(),
             fits: Vec::new(),
@@ -188,7 +188,7 @@ impl Outcome {
     }
 
     /// Adds a zigzag with the rudder at `angles[0]` and put over at a heading of `angles[1]` \[rad\].
-    pub(super) fn add_zigzag(
+    pub(in crate::real) fn add_zigzag(
         &mut self,
         test: &Run,
         angles: [f64; 2],
@@ -325,7 +325,7 @@ impl Outcome {
     }
 
     /// Heading of the zigzags over time, under a title.
-    pub(super) fn zigzags_titled(&self, title: &str) -> Figure {
+    pub(in crate::real) fn zigzags_titled(&self, title: &str) -> Figure {
         let panels = self.zigzags.iter().enumerate().map(|(i, z)| {
             Panel::new(&z.name, Axis::new("time from the first execute [s]"), Axis::new("heading [deg]"))
                 .with_all(self.layers(z, i == 0, |t, k| (t.t[k], t.states[k][2].to_degrees())))

@@ -1,12 +1,12 @@
 //! Distributions of the errors over all runs: mean deviation of each dimension and cVDM, baselines beside the fit.
 //! It makes no summary; the overall performance does.
 
-use super::artefact::Artefact;
-use super::case::Case;
-use super::error::PaperError;
 use super::scenarios::SHOWN;
-use super::sheet::{Sheet, cell};
-use super::target::Target;
+use crate::paper::artefact::Artefact;
+use crate::paper::case::Case;
+use crate::paper::error::PaperError;
+use crate::paper::sheet::{Sheet, cell};
+use crate::paper::target::Target;
 use trimtab::evaluate::{Comparison, Outcome};
 use trimtab::numbers::numerals::sig;
 use trimtab::numbers::statistics::quantile;

@@ -6,8 +6,8 @@ use trimtab::report::plot::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORAN
 
 use super::row::Row;
 use super::score::Score;
-use super::set::{SETS, Set};
 use super::summary::{Scored, changes, scored, strong, unchanged};
+use crate::injected::set::{SETS, Set};
 
 /// Strengths of single effects.
 const STEPS: [f64; 4] = [0.25, 0.5, 1.0, 2.0];

@@ -5,8 +5,8 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::family::Family;
 use super::tweak::Tweak;
+use crate::conceal::family::Family;
 use crate::truth::integrate::bisected_rate;
 use crate::truth::motion::{Contributions, Force, Inputs, Particulars};
 use crate::truth::simulator::Truth;

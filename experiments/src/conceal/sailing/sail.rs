@@ -6,10 +6,10 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::craft::Craft;
 use super::design::Plan;
-use super::effects::effect::{Entry, Instant, Physics, Window};
 use super::helm::Helmsman;
 use super::track::{Fine, INNER, PERIOD, STEPS, Track};
 use super::tweak::Tweak;
+use crate::conceal::effects::effect::{Entry, Instant, Physics, Window};
 use crate::truth::integrate::{moved, runge_kutta};
 use crate::truth::motion::{Inputs, State};
 

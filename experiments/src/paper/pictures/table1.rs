@@ -1,12 +1,12 @@
 //! Table 1 of the paper: what the data sets cover, ours beside the paper's.
 //! It concerns the data alone, not a fit.
 
-use super::artefact::Artefact;
-use super::case::Case;
-use super::coverage::{Spread, printed_statistics, statistics};
-use super::error::PaperError;
-use super::sheet::{Sheet, cell};
-use super::target::Target;
+use crate::paper::artefact::Artefact;
+use crate::paper::case::Case;
+use crate::paper::coverage::{Spread, printed_statistics, statistics};
+use crate::paper::error::PaperError;
+use crate::paper::sheet::{Sheet, cell};
+use crate::paper::target::Target;
 use crate::truth::dataset::{Split, period};
 use trimtab::numbers::numerals::{DASH, fixed};
 use trimtab::report::Table;

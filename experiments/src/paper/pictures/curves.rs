@@ -1,11 +1,11 @@
 //! Figure 2 of the paper: resistance, lift and drag curves, fitted beside both baselines, with the bands the constraints leave.
 //! Captive tests on the truth simulators are shown as points; no fit has used them.
 
-use super::artefact::Artefact;
-use super::captive_baseline::{rudder_points, rudder_rows};
-use super::case::Case;
-use super::error::PaperError;
-use super::target::Target;
+use crate::paper::artefact::Artefact;
+use crate::paper::captive_baseline::{rudder_points, rudder_rows};
+use crate::paper::case::Case;
+use crate::paper::error::PaperError;
+use crate::paper::target::Target;
 use crate::truth::captive::{Range, towing};
 use trimtab::fit::{CovarianceKind, Fit};
 use trimtab::model::Model;
@@ -122,7 +122,8 @@ impl Curve {
             return rows.iter().map(|row| (row.u, -row.force.hull.x * self.units[1])).collect();
         }
         let points = rudder_points(&case.captive_baseline, &rudder_rows(case.ship, truth.as_ref()));
-        let y = |p: &super::captive_baseline::RudderPoint| if self.parameters.start == 4 { p.lift } else { p.drag };
+        let y =
+            |p: &crate::paper::captive_baseline::RudderPoint| if self.parameters.start == 4 { p.lift } else { p.drag };
         // One in five is enough to see the scatter.
         points.iter().step_by(5).map(|p| (p.attack / self.units[0], y(p))).collect()
     }

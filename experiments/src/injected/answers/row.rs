@@ -3,11 +3,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::effect::{Expected, Injection};
-use super::plan::Planned;
 use super::said::{Finding, HeldOut, Interval, Said};
-use super::seal::{Manifest, Witness};
 use crate::conceal::error::ConcealError;
+use crate::injected::effect::{Expected, Injection};
+use crate::injected::plan::Planned;
+use crate::injected::seal::{Manifest, Witness};
 use crate::process::Ended;
 use crate::rivals::Refit;
 

@@ -1,11 +1,11 @@
 //! Table 2 of the paper: fitted parameters with 95 % intervals, beside both baselines, the initial guess and the paper's p*.
 //! The paper's p* belongs to other ships: it is a comparison, not a target.
 
-use super::artefact::Artefact;
-use super::case::Case;
-use super::error::PaperError;
-use super::sheet::{Sheet, cell};
-use super::target::Target;
+use crate::paper::artefact::Artefact;
+use crate::paper::case::Case;
+use crate::paper::error::PaperError;
+use crate::paper::sheet::{Sheet, cell};
+use crate::paper::target::Target;
 use std::fmt::Write;
 use trimtab::fit::Fit;
 use trimtab::model::ELEVEN;
