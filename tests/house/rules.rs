@@ -36,6 +36,15 @@ const CIRCLES: &[&[&str]] = &[];
 /// Functions that are still too long: file, name.
 const LONG: &[(&str, &str)] = &[];
 
+/// Files that a folder may have before it needs folders.
+const FULLEST: usize = 15;
+
+/// Folders that have more.
+const FULL: &[&str] = &["python/src", "src/fit", "src/terms"];
+
+/// Public modules at the root of the library.
+const FRONT: usize = 15;
+
 fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -138,6 +147,23 @@ fn no_function_is_too_long() {
     }
     let listed = LONG.iter().map(|(a, b)| ((*a).to_owned(), (*b).to_owned())).collect();
     assert_listed("no function has more than 80 lines", found, listed);
+}
+
+#[test]
+fn no_folder_is_too_full() {
+    let mut files: BTreeMap<String, usize> = BTreeMap::new();
+    for file in ["src", "ad", "experiments", "python/src", "tests"].iter().flat_map(|f| sources(f)) {
+        let folder = file.rsplit_once('/').map_or("", |(folder, _)| folder);
+        *files.entry(folder.to_owned()).or_default() += 1;
+    }
+    let found = files.into_iter().filter(|(_, n)| *n > FULLEST).map(|(folder, _)| folder).collect();
+    assert_listed("no folder has more than 15 files", found, FULL.iter().map(|f| (*f).to_owned()).collect());
+}
+
+#[test]
+fn few_modules_are_at_the_front() {
+    let front = text("src/lib.rs").lines().filter(|l| l.starts_with("pub mod ")).count();
+    assert!((1..=FRONT).contains(&front), "{front} public modules at the root; put some below others");
 }
 
 #[test]
