@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::path::Path;
 use trimtab::fit::{Cost, Derivatives};
 use trimtab::model::Model;
-use trimtab::plot::{Axis, BLUE, Figure, GREEN, GREY, Layer, Panel, VERMILLION};
+use trimtab::report::plot::{Axis, BLUE, Figure, GREEN, GREY, Layer, Panel, VERMILLION};
 
 #[path = "support/case.rs"]
 #[allow(dead_code, reason = "settings of a fit are for the bench alone")]

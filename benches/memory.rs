@@ -16,10 +16,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use trimtab::model::Model;
-use trimtab::plot::{Axis, BLUE, Color, Figure, GREEN, GREY, Layer, ORANGE, Panel, VERMILLION};
+use trimtab::report::plot::{Axis, BLUE, Color, Figure, GREEN, GREY, Layer, ORANGE, Panel, VERMILLION};
 use trimtab::ship::Ship;
+use trimtab::ship::state::Inputs;
 use trimtab::simulate::{Integration, Scenario, simulate};
-use trimtab::state::Inputs;
 
 type Failure = Box<dyn Error + Send + Sync>;
 
@@ -146,7 +146,7 @@ fn run(binary: &Path, command: &str, study: &Path) -> Result<Taken, Failure> {
 
 /// Makes recordings of ship A with sensor noise under rudder and shaft orders drawn from the seed, two at least.
 fn make(folder: &Path, rows: usize, steps: usize) -> Result<(), Failure> {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/demo");
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/study/demo");
     std::fs::create_dir_all(folder.join("recordings"))?;
     for name in ["ship.toml", "model.toml", "baseline.toml"] {
         std::fs::copy(source.join(name), folder.join(name))?;

@@ -3,7 +3,7 @@
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use trimtab::{ColumnMap, FitSettings, Form, Labels, Model, Recording, Ship, Split, WindowSettings, demo, fit};
+use trimtab::{ColumnMap, FitSettings, Form, Labels, Model, Recording, Ship, Split, WindowSettings, fit, study::demo};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();

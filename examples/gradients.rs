@@ -3,7 +3,7 @@
 
 use std::error::Error;
 use trimtab::fit::{Cost, CostOptions, Derivatives};
-use trimtab::{FitSettings, demo, fit};
+use trimtab::{FitSettings, fit, study::demo};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let study = demo::example()?;

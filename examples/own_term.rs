@@ -5,11 +5,11 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::error::Error;
-use trimtab::parameter::ParameterInfo;
 use trimtab::physics::{Flow, Group, Instant, Kind, Mechanism, Physics, Probe, Reach, Term, TermInfo, Validity};
+use trimtab::ship::parameter::ParameterInfo;
 use trimtab::{
     Channel, Diagnosis, FitSettings, Force, Form, Inputs, Integration, Labels, Method, Model, Recording, Run, Scenario,
-    Settings, Split, WindowSettings, demo, diagnose, fit, report, simulate, terms,
+    Settings, Split, WindowSettings, diagnose, fit, report, simulate, study::demo, terms,
 };
 use trimtab_ad::Scalar;
 

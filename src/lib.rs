@@ -10,7 +10,7 @@
 //!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
 //!     // A model with eleven free parameters, 32 recordings to fit it to, and 8 that are kept aside.
-//!     let study = trimtab::demo::example()?;
+//!     let study = trimtab::study::demo::example()?;
 //!
 //!     // Least squares through the simulation, with exact gradients.
 //!     let settings = FitSettings::default();
@@ -42,8 +42,8 @@
 //! | fit recordings of your own | [`recording`], [`study`], `examples/fit_csv.rs` |
 //! | write a physical effect of your own | [`physics`], [`terms`], `examples/own_term.rs` |
 //! | choose how derivatives are taken | [`fit::Derivatives`], `examples/gradients.rs` |
-//! | simulate | [`simulate`](mod@simulate), [`maneuver`] |
-//! | know where a term's law is valid | [`validity`] |
+//! | simulate | [`simulate`](mod@simulate), [`evaluate::maneuver`] |
+//! | know where a term's law is valid | [`recording::validity`] |
 //! | use numbers that carry derivatives elsewhere | the crate [`trimtab_ad`], which knows no ship |
 //!
 //! Units are SI and radians; x is north, y east, psi clockwise from north, v, r and delta positive to starboard.
@@ -73,48 +73,30 @@
 //!   machine since about 2015): `rustflags = ["-C", "target-cpu=x86-64-v3"]` under `[build]`. Without, results are the same and
 //!   a fit takes several times as long.
 
-pub mod audit;
-pub mod demo;
 pub mod diagnose;
-pub mod dossier;
-pub mod dynamics;
-pub mod error;
 pub mod evaluate;
-pub mod export;
 pub mod files;
 pub mod fit;
 pub mod guide;
-pub mod import;
-pub mod ipopt;
+pub(crate) mod ipopt;
 pub mod likelihood;
-pub mod maneuver;
 pub mod model;
-pub mod numerals;
-pub mod parameter;
-pub mod particulars;
+pub mod numbers;
 pub mod physics;
-pub mod plan;
-#[cfg(feature = "plot")]
-pub mod plot;
-pub mod progress;
-pub mod ranges;
-pub mod ranks;
 pub mod recording;
 pub mod report;
-pub mod sensitivity;
 pub mod ship;
 pub mod simulate;
-pub mod split;
-pub mod state;
-pub mod statistics;
 pub mod study;
-#[cfg(feature = "ipopt")]
-pub mod sweep;
 pub mod terms;
-pub mod uncertainty;
-pub mod units;
-pub mod validity;
-pub mod written;
+
+// Short names of the crate's vocabulary, within the crate.
+pub(crate) use files::ranks;
+pub(crate) use model::dynamics;
+pub(crate) use numbers::{numerals, ranges, statistics, uncertainty};
+pub(crate) use recording::validity;
+pub(crate) use ship::{parameter, state, units};
+pub(crate) use simulate::sensitivity;
 
 pub use diagnose::{Diagnosis, Settings, Verdict, diagnose};
 pub use evaluate::{Evaluation, EvaluationSettings, Judging, prove};

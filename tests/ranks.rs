@@ -13,7 +13,7 @@ const TRIMTAB: &str = env!("CARGO_BIN_EXE_trimtab");
 /// The study of the demo with so many of its training runs, in a folder of its own.
 fn study(train: usize) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    for (name, text) in trimtab::demo::files() {
+    for (name, text) in trimtab::study::demo::files() {
         let mut met = 0;
         let keeps = |line: &&str| {
             met += usize::from(line.ends_with("train"));

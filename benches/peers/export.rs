@@ -51,7 +51,7 @@ fn write_json(path: &Path, value: &Value) -> Result<()> {
 }
 
 fn header(first: &[&str], prefix: &str) -> Vec<String> {
-    let states = trimtab::state::STATE_NAMES.iter().map(|name| format!("{prefix}{name}"));
+    let states = trimtab::ship::state::STATE_NAMES.iter().map(|name| format!("{prefix}{name}"));
     first.iter().map(ToString::to_string).chain(states).collect()
 }
 

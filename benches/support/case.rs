@@ -7,8 +7,8 @@ use trimtab::model::Model;
 use trimtab::physics::Form;
 use trimtab::recording::{Run, Split, measured};
 use trimtab::ship::Ship;
+use trimtab::ship::state::Inputs;
 use trimtab::simulate::{Integration, Scenario, simulate};
-use trimtab::state::Inputs;
 
 const STAR: [f64; 11] = [-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370];
 const RUNS: usize = 165;

@@ -10,7 +10,7 @@ pub const TRAIN: usize = 32;
 /// Test runs taken, the first of the data set.
 pub const TEST: usize = 8;
 
-/// The files: name within the library's `src/demo`, and content.
+/// The files: name within the library's `src/study/demo`, and content.
 pub fn files() -> [(&'static str, String); 3] {
     let mut runs = String::from("file,name,manoeuvre,split\n");
     let mut rows = String::from("run,t [s],x [m],y [m],psi [rad],u [m/s],v [m/s],r [rad/s],n [rps],delta [rad]\n");
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn the_embedded_files_are_those_that_are_generated() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/demo");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/study/demo");
         for (name, text) in files() {
             let embedded = std::fs::read_to_string(folder.join(name)).expect("the file is committed");
             assert!(

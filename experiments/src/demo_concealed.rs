@@ -1,16 +1,16 @@
 //! The concealed case of `trimtab demo`: forty trials of ship A under an effect that no file of the study names, with sensor noise.
 //! The effect and its size are fixed here, before any diagnosis; the library embeds the recordings and, apart from them, the answer.
 
-use crate::conceal::craft::Craft;
-use crate::conceal::design::{Design, Plan, plans};
 use crate::conceal::effects::catalogue::find;
 use crate::conceal::effects::effect::Entry;
 use crate::conceal::family::Family;
-use crate::conceal::noise::{Noise, Rows};
-use crate::conceal::recorded::activate;
-use crate::conceal::sail::{Active, Method, World, sail};
+use crate::conceal::sailing::craft::Craft;
+use crate::conceal::sailing::design::{Design, Plan, plans};
+use crate::conceal::sailing::noise::{Noise, Rows};
+use crate::conceal::sailing::recorded::activate;
+use crate::conceal::sailing::sail::{Active, Method, World, sail};
+use crate::conceal::sailing::track::{PERIOD, Track};
 use crate::conceal::spec::Spec;
-use crate::conceal::track::{PERIOD, Track};
 use crate::truth::dataset::SEED;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -52,7 +52,7 @@ fn programme(craft: &Craft) -> Vec<Plan> {
     sailed.map(placed).collect()
 }
 
-/// The files: name within the library's `src/demo`, and content. Nothing where the catalogue has no such effect.
+/// The files: name within the library's `src/study/demo`, and content. Nothing where the catalogue has no such effect.
 pub fn files() -> Option<[(&'static str, String); 3]> {
     let entry: &'static Entry = find(EFFECT)?;
     let spec = Spec::null(FAMILY, SEED);
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn the_embedded_trials_are_those_that_are_generated() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/demo");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/study/demo");
         for (name, text) in files().expect("the effect is in the catalogue") {
             let embedded = std::fs::read_to_string(folder.join(name)).expect("the file is committed");
             assert!(

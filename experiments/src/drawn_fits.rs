@@ -167,7 +167,7 @@ pub fn drawn(sources: &[Source], seed: u64, case: usize) -> Result<Row, ConcealE
 /// [`ConcealError`] if they cannot be written.
 pub fn own(folder: &Path) -> Result<Vec<PathBuf>, ConcealError> {
     let mut out = Vec::new();
-    for (name, files) in [("example", trimtab::demo::files()), ("trials", trimtab::demo::trials())] {
+    for (name, files) in [("example", trimtab::study::demo::files()), ("trials", trimtab::study::demo::trials())] {
         for (file, text) in files {
             let path = folder.join(name).join(file);
             let fail = |source| ConcealError::file(&path, source);

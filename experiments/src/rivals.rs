@@ -6,14 +6,14 @@ use std::process::Command;
 use std::time::Duration;
 
 use trimtab::diagnose::Settings;
-use trimtab::diagnose::baseline::Refitted;
+use trimtab::diagnose::proof::baseline::Refitted;
 use trimtab::evaluate::{EvaluationSettings, Judging};
+use trimtab::files::written::Mistake;
 use trimtab::fit::FitSettings;
 use trimtab::model::Model;
 use trimtab::recording::{Run, Split};
 use trimtab::ship::Ship;
 use trimtab::study::Study;
-use trimtab::written::Mistake;
 
 use crate::conceal::error::ConcealError;
 use crate::process;

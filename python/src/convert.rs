@@ -18,7 +18,7 @@ pub fn document<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<
 /// A word of a setting, such as `"likelihood"`, as the value it stands for.
 pub fn word<T: DeserializeOwned>(name: &str, given: &str, known: &[&str]) -> PyResult<T> {
     serde_json::from_value(serde_json::Value::from(given)).map_err(|_| {
-        let near = trimtab::error::suggestion(given, known.iter().copied());
+        let near = trimtab::files::suggestion(given, known.iter().copied());
         let all: Vec<String> = known.iter().map(|k| format!("\"{k}\"")).collect();
         PyValueError::new_err(format!("{name} = \"{given}\"{near}: give one of {}", all.join(", ")))
     })

@@ -2,8 +2,8 @@
 //! The library diagnoses.
 
 use crate::cli::diagnose::prepared;
-use crate::cli::error::CliError;
-use crate::cli::load::{Loaded, no_mechanism};
+use crate::cli::shared::error::CliError;
+use crate::cli::shared::load::{Loaded, no_mechanism};
 use crate::convert::{document, frame, records};
 use crate::errors::{DiagnosisFailed, Raised};
 use crate::fit::goes_on;

@@ -1,15 +1,15 @@
 //! The library's errors as exceptions of Python, word for word.
 //! It words nothing of its own but what only a caller in Python can do wrong.
 
-use crate::cli::error::CliError;
+use crate::cli::shared::error::CliError;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use trimtab::evaluate::maneuver::ManeuverError;
 use trimtab::fit::FitError;
-use trimtab::maneuver::ManeuverError;
 use trimtab::model::ModelError as LibraryModelError;
-use trimtab::particulars::EstimateError;
 use trimtab::ship::ShipError as LibraryShipError;
+use trimtab::ship::particulars::EstimateError;
 use trimtab::study::StudyError as LibraryStudyError;
 
 create_exception!(

@@ -12,9 +12,9 @@ use pyo3::types::PyDict;
 use serde_json::Value;
 use std::path::PathBuf;
 use trimtab::FitSettings;
-use trimtab::error::suggestion;
+use trimtab::files::suggestion;
 use trimtab::fit::FitError;
-use trimtab::ranges::Limited;
+use trimtab::numbers::ranges::Limited;
 use trimtab::recording::Run;
 
 /// What a caller sets of a fit; what is absent is as the study says.

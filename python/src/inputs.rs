@@ -4,9 +4,9 @@
 use crate::convert::vector;
 use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use trimtab::error::suggestion;
+use trimtab::files::suggestion;
 use trimtab::recording::CHANNELS;
-use trimtab::state::{Inputs, STATE_NAMES, STATE_UNITS, STATES};
+use trimtab::ship::state::{Inputs, STATE_NAMES, STATE_UNITS, STATES};
 
 /// Columns beside those that a recording has as they are: name, smallest and largest value, unit and meaning.
 const AROUND: [(&str, [f64; 2], &str); 8] = [

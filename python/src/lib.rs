@@ -26,7 +26,7 @@ mod trial;
 mod window;
 mod work;
 
-use cli::processor::{Build, build};
+use cli::shared::processor::{Build, build};
 use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
@@ -53,7 +53,7 @@ fn set_threads(count: Option<usize>) -> PyResult<()> {
 /// The files of the example study, name and text: forty recordings of a simulated container ship of 85 m.
 #[pyfunction]
 fn example_files() -> Vec<(String, String)> {
-    trimtab::demo::files()
+    trimtab::study::demo::files()
 }
 
 /// The catalogue of terms: records with name, title, equation, source and parameters (name, symbol, unit, about).

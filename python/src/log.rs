@@ -1,7 +1,7 @@
 //! A study from what ships and loggers write, for the function of the package that names its arguments.
 //! It is the command `trimtab import`, with its report as a dictionary instead of on the screen.
 
-use crate::cli::import::{Args, made};
+use crate::cli::study::import::{Args, made};
 use crate::convert::document;
 use crate::errors::{Raised, TrimtabError};
 use crate::work::{Line, whole};
@@ -21,6 +21,6 @@ pub fn import_files(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<(Strin
         Ok((done.text, done.report))
     };
     let (text, report) =
-        whole(py, |()| Ok(true), work)?.map_err(|error: crate::cli::error::CliError| error.raised())?;
+        whole(py, |()| Ok(true), work)?.map_err(|error: crate::cli::shared::error::CliError| error.raised())?;
     Ok((text, document(py, &report)?))
 }

@@ -1,8 +1,8 @@
 //! A manoeuvring model in Python: parameters by name, simulation, standard trials.
 //! The library holds the physics.
 
-use crate::cli::error::CliError;
 use crate::cli::fit::fitted_text;
+use crate::cli::shared::error::CliError;
 use crate::convert::{finite, frame, records, word};
 use crate::errors::Raised;
 use crate::inputs::{inputs, state};
@@ -19,8 +19,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use trimtab::files::write_whole;
 use trimtab::model::Prior;
-use trimtab::ranges::Limited;
-use trimtab::uncertainty::Uncertainty;
+use trimtab::numbers::ranges::Limited;
+use trimtab::numbers::uncertainty::Uncertainty;
 use trimtab::{Integration, Scenario};
 
 /// A manoeuvring model of one ship: terms (forces with a name, an equation and units) and their parameters.

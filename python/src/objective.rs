@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use trimtab::fit::constraints::{Row, rows, speed_range};
 use trimtab::fit::{Cost, FitError, FitSettings, Goal, Quadratic, bounds};
 use trimtab::recording::Run;
-use trimtab::state::STATE_NAMES;
+use trimtab::ship::state::STATE_NAMES;
 
 /// What the cost is of.
 struct Question {

@@ -2,7 +2,7 @@
 //! It differentiates nothing.
 
 use trimtab::physics::{Lanes, NumDual};
-use trimtab::sensitivity::Plain;
+use trimtab::simulate::sensitivity::Plain;
 use trimtab_ad::{Along, Dual, Scalar};
 
 /// A number of the physics as plain numbers side by side, with derivatives or without.

@@ -1,7 +1,7 @@
 //! A ship in Python: read from its file, or estimated from its main dimensions.
 //! The library reads and estimates.
 
-use crate::cli::error::CliError;
+use crate::cli::shared::error::CliError;
 use crate::convert::{document, warn};
 use crate::errors::{Raised, fault};
 use crate::model::Model;
@@ -10,9 +10,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
-use trimtab::error::suggestion;
+use trimtab::files::suggestion;
 use trimtab::files::write_whole;
-use trimtab::particulars::{KINDS, Kind, estimate};
+use trimtab::ship::particulars::{KINDS, Kind, estimate};
 
 /// A ship: its fixed particulars in SI units, x forward of midship, y to starboard.
 ///
@@ -26,7 +26,7 @@ pub struct Ship {
     /// The text of a model file with the spreads of the estimates as priors.
     model: Option<String>,
     /// Where each value is from.
-    entries: Vec<trimtab::particulars::Entry>,
+    entries: Vec<trimtab::ship::particulars::Entry>,
 }
 
 impl Ship {

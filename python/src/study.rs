@@ -1,10 +1,10 @@
 //! A study in Python: ship, model and recordings, and what can be asked of them.
 //! It reads as the commands do, with the same checks and the same words; the library computes.
 
-use crate::cli::audited::{AcceptArgs, audited, examined};
-use crate::cli::error::CliError;
 use crate::cli::evaluate::judge;
-use crate::cli::load::{Loaded, StudyArgs};
+use crate::cli::shared::audited::{AcceptArgs, audited, examined};
+use crate::cli::shared::error::CliError;
+use crate::cli::shared::load::{Loaded, StudyArgs};
 use crate::convert::{document, warn};
 use crate::diagnosis::{Asked, Diagnosis};
 use crate::errors::Raised;
@@ -20,7 +20,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
-use trimtab::audit::audit_study;
+use trimtab::recording::audit::audit_study;
 use trimtab::recording::{Run, Runs, Split};
 
 /// Which runs of a study are meant.

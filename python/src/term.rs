@@ -8,8 +8,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
 use trimtab::Force;
-use trimtab::parameter::ParameterInfo;
 use trimtab::physics::{AnyTerm, Flow, Group, Instant, Physics, Reach, TermInfo, Validity};
+use trimtab::ship::parameter::ParameterInfo;
 
 /// The first exception of a force since the last work; the work that it spoilt raises it.
 static FAILED: Mutex<Option<PyErr>> = Mutex::new(None);
@@ -172,7 +172,7 @@ fn parameter(key: String, told: &Bound<'_, PyAny>) -> PyResult<(ParameterInfo, O
     for entry in told.keys() {
         let entry: String = entry.extract()?;
         if !KNOWN.contains(&entry.as_str()) {
-            let near = trimtab::error::suggestion(&entry, KNOWN.iter().copied());
+            let near = trimtab::files::suggestion(&entry, KNOWN.iter().copied());
             return Err(PyValueError::new_err(format!(
                 "parameter \"{key}\": unknown `{entry}`{near}; it may have {}",
                 KNOWN.join(", ")

@@ -5,7 +5,7 @@ use crate::convert::{frame, matrix};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use trimtab::state::{STATE_NAMES, STATES};
+use trimtab::ship::state::{STATE_NAMES, STATES};
 
 /// A simulated run: `t` [s] of shape (K,), `states` of shape (K, 6) with the columns x north, y east [m], psi clockwise from north
 /// [rad, not wrapped], u forward, v to starboard [m/s, over ground], r to starboard [rad/s].

@@ -11,12 +11,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
 use serde_json::Value;
-use trimtab::error::suggestion;
-use trimtab::maneuver::{
+use trimtab::evaluate::maneuver::{
     Approach, DRAWS, ManeuverError, ManeuverSettings, Measured, SEED, Side, Track, calm_water, drawn, set_intervals,
     stopping_trial, turning_trial, zigzag_trial,
 };
-use trimtab::state::{STATE_NAMES, STATES};
+use trimtab::files::suggestion;
+use trimtab::ship::state::{STATE_NAMES, STATES};
 
 /// One trial with its measures, beside the criteria of IMO MSC.137(76).
 #[pyclass(module = "trimtab", frozen)]
@@ -26,7 +26,7 @@ pub struct Trial {
 }
 
 impl Trial {
-    fn of<M: Serialize>(trial: trimtab::maneuver::Trial<M>) -> Result<Self, serde_json::Error> {
+    fn of<M: Serialize>(trial: trimtab::evaluate::maneuver::Trial<M>) -> Result<Self, serde_json::Error> {
         Ok(Self { whole: serde_json::to_value(&trial)?, track: trial.track })
     }
 
@@ -167,7 +167,7 @@ pub fn sail(
         }
         _ => {}
     }
-    trimtab::ranges::Limited::limits(&settings).map_err(|e| PyValueError::new_err(e.to_string()))?;
+    trimtab::numbers::ranges::Limited::limits(&settings).map_err(|e| PyValueError::new_err(e.to_string()))?;
     let draws = Draws { count: draws.unwrap_or(DRAWS), seed: seed.unwrap_or(SEED) };
     let trials = short(py, || sailed(&inner, kind, &settings, as_found, &draws))?.map_err(Raised::raised)?;
     trials.map_err(|e| fault(&format!("cannot write the measures ({e})")))
@@ -209,9 +209,9 @@ fn sailed(
 fn finished<M: Measured + Send + Serialize>(
     approach: &Approach,
     theta: &[f64],
-    drawn: &[trimtab::maneuver::Drawn],
+    drawn: &[trimtab::evaluate::maneuver::Drawn],
     again: impl Fn(&[f64]) -> Option<Approach> + Sync,
-    sail: impl Fn(&Approach, &[f64]) -> Vec<trimtab::maneuver::Trial<M>> + Sync,
+    sail: impl Fn(&Approach, &[f64]) -> Vec<trimtab::evaluate::maneuver::Trial<M>> + Sync,
 ) -> Result<Vec<Trial>, serde_json::Error> {
     let mut trials = sail(approach, theta);
     set_intervals(&mut trials, drawn, |theta| Some(sail(&again(theta)?, theta)));

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 use trimtab::recording::{Run, Split};
-use trimtab::state::{STATE_NAMES, STATES};
+use trimtab::ship::state::{STATE_NAMES, STATES};
 
 /// A stretch of a recording on equal steps: what a simulation is given, and what it is compared with.
 #[pyclass(module = "trimtab", frozen)]

@@ -1,18 +1,18 @@
 //! `trimtab compare`: several models on the same unseen runs.
 //! The library judges them; this file reads the arguments and prints.
 
-use super::answer::Answer;
-use super::audited::{AcceptArgs, audited};
-use super::error::CliError;
-use super::figures::FigureArgs;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text};
+use super::shared::answer::Answer;
+use super::shared::audited::{AcceptArgs, audited};
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Output, OutputArgs, csv_text};
 use std::path::PathBuf;
 use trimtab::evaluate::{Estimate, Judging, Ranked, Ranking, rank};
-use trimtab::numerals::{DASH, interval, sig};
-use trimtab::plot::{Axis, FITTED, Figure, Layer, Panel};
+use trimtab::numbers::numerals::{DASH, interval, sig};
 use trimtab::recording::Split;
 use trimtab::report::Table;
+use trimtab::report::plot::{Axis, FITTED, Figure, Layer, Panel};
 
 const LONG: &str = "\
 Simulates the test runs of a study with each of several models and compares their cVDM (mean deviation in all dimensions, percent of \

@@ -1,28 +1,28 @@
 //! `trimtab demo`: the whole mission on an embedded case, from recordings to the physics that the model lacks.
 //! It calls the other commands' functions, and writes the study so that a user can repeat each command on it.
 
-use super::answer::Answer;
 use super::diagnose::{continued, prepared, write_diagnosis};
-use super::error::CliError;
-use super::figures::FigureArgs;
-use super::lines::filled;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::lines::filled;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Output, OutputArgs};
+use super::shared::progress::progress;
 use super::{evaluate, fit};
 use serde::Serialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use trimtab::audit::{Severity, audit_study};
-use trimtab::demo::{self, Concealed};
 use trimtab::diagnose::{Diagnosis, Grade, diagnose};
 use trimtab::evaluate::{Estimate, Evaluation};
+use trimtab::files::ranks::Ranks;
 use trimtab::files::{Origin, ResultFolder};
 use trimtab::fit::Fit;
-use trimtab::numerals::{DASH, number_of, sig};
-use trimtab::ranks::Ranks;
+use trimtab::numbers::numerals::{DASH, number_of, sig};
+use trimtab::recording::audit::{Severity, audit_study};
 use trimtab::recording::{Run, Runs, Split};
 use trimtab::report::diagnosis::next_commands;
+use trimtab::study::demo::{self, Concealed};
 
 const LONG: &str = "\
 Runs the whole job on a built-in case: forty recordings of a coastal container ship of 85 m, with the noise of ordinary \

@@ -1,19 +1,19 @@
 //! `trimtab diagnose`: where the simulation differs from the recordings, which physics is missing, and the proof on unseen runs.
 //! The library makes the diagnosis, its report and its figures; this file calls it, shows progress and writes files.
 
-use super::answer::Answer;
-use super::audited::{AcceptArgs, examined};
-use super::error::CliError;
-use super::figures::FigureArgs;
 use super::fit::{fitted_text, model_text};
-use super::lines::{WIDTH, filled};
-use super::load::{Loaded, StudyArgs, no_mechanism};
-use super::output::{Output, OutputArgs, print, print_json};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::audited::{AcceptArgs, examined};
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::lines::{WIDTH, filled};
+use super::shared::load::{Loaded, StudyArgs, no_mechanism};
+use super::shared::output::{Output, OutputArgs, print, print_json};
+use super::shared::progress::progress;
 use serde_json::Value;
-use trimtab::audit::Issue;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::evaluate::Judging;
+use trimtab::recording::audit::Issue;
 use trimtab::recording::{Run, Runs, Split};
 use trimtab::report::diagnosis::{NEXT_WORDS, document, keys_listing, next_commands, page, pictures, summary};
 

@@ -1,24 +1,24 @@
 //! `trimtab dossier`: the validation dossier of a model on one page, in the order of ITTC 7.5-02-06-03.
 //! The library computes what `evaluate`, `maneuver`, `diagnose` and `check` do; this file reads, calls and writes.
 
-use super::answer::Answer;
-use super::audited::{AcceptArgs, audited};
 use super::diagnose::prepared;
-use super::error::CliError;
 use super::evaluate::{baseline, baseline_path};
-use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, Pruned};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::audited::{AcceptArgs, audited};
+use super::shared::error::CliError;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Output, OutputArgs, Pruned};
+use super::shared::progress::progress;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use trimtab::audit::{audit_model, audit_study};
 use trimtab::diagnose::{Settings, diagnose};
-use trimtab::dossier::{Question, dossier};
 use trimtab::evaluate::Judging;
+use trimtab::evaluate::maneuver::SEED;
 use trimtab::files::{Manifest, sha256_of};
-use trimtab::maneuver::SEED;
+use trimtab::recording::audit::{audit_model, audit_study};
 use trimtab::recording::{Run, Split};
 use trimtab::report::diagnosis::document;
+use trimtab::report::dossier::content::{Question, dossier};
 use trimtab::report::dossier::{page, summary};
 
 const LONG: &str = "\

@@ -1,25 +1,25 @@
 //! `trimtab evaluate`: how well a model predicts the test runs, beside a baseline.
 //! The library computes the measures; this file prints, tabulates and draws them.
 
-use super::answer::Answer;
-use super::audited::{AcceptArgs, audited_over};
-use super::error::CliError;
-use super::figures::FigureArgs;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::audited::{AcceptArgs, audited_over};
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Each, Output, OutputArgs, Pruned, csv_text};
+use super::shared::progress::progress;
 use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::evaluate::{Comparison, Estimate, Evaluation, Judging, Outcome, Outlying, Proof, Summary, predict, prove};
+use trimtab::files::ranks::Ranks;
 use trimtab::model::Model;
-use trimtab::numerals::{DASH, sig, sig_above};
-use trimtab::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
-use trimtab::ranks::Ranks;
+use trimtab::numbers::numerals::{DASH, sig, sig_above};
+use trimtab::recording::validity::Coverage;
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
+use trimtab::report::plot::{Axis, BASELINE, FITTED, Figure, GREY, Layer, Panel, RECORDED, east_north};
+use trimtab::ship::state::STATE_NAMES;
 use trimtab::simulate::Integration;
-use trimtab::state::STATE_NAMES;
-use trimtab::validity::Coverage;
 
 const LONG: &str = "\
 Simulates the recordings of a study with two models and compares both with the measured motion, first on the test runs: \
@@ -406,7 +406,7 @@ fn improvement(s: &Summary) -> Figure {
     let title = format!("Improvement on the baseline, {} runs (95 % intervals)", s.group);
     let caption = "Relative improvement on the baseline of the mean deviation (MD) of each dimension, of cVDM, of their mean over \
                    dimensions (mARI) and of the variance of cVDM (consistency), with 95 % intervals over runs.";
-    Figure::new(title).panel_size(1200, 620).caption(caption).legend(trimtab::plot::Legend::Off).with(
+    Figure::new(title).panel_size(1200, 620).caption(caption).legend(trimtab::report::plot::Legend::Off).with(
         Panel::new("", axis, Axis::new("improvement [%]").including(0.0))
             .with(Layer::bars_with_intervals("improvement", FITTED, bars))
             .with(Layer::h_line("none", GREY, 0.0)),

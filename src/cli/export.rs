@@ -1,13 +1,13 @@
 //! `trimtab export`: a fitted ship as coefficients for other programs.
 //! The library converts; this file reads the arguments, prints and writes.
 
-use super::answer::Answer;
-use super::error::CliError;
-use super::load::read_model;
-use super::output::{is_new, print, print_file};
+use super::shared::answer::Answer;
+use super::shared::error::CliError;
+use super::shared::load::read_model;
+use super::shared::output::{is_new, print, print_file};
 use std::path::{Path, PathBuf};
-use trimtab::export::export;
 use trimtab::files::write_whole;
+use trimtab::model::export::export;
 use trimtab::ship::Ship;
 use trimtab::study::Study;
 

@@ -1,25 +1,25 @@
 //! `trimtab fit`: fits the free parameters of a study's model to its training runs, and reports estimates with intervals.
 //! The library makes the fit and its report; this file calls it, shows progress and writes files.
 
-use super::answer::Answer;
-use super::audited::{AcceptArgs, audited_over};
-use super::error::CliError;
-use super::figures::FigureArgs;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::audited::{AcceptArgs, audited_over};
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Output, OutputArgs, csv_text};
+use super::shared::progress::progress;
 use std::collections::BTreeMap;
+use trimtab::files::ranks::Ranks;
 use trimtab::files::{Kept, seal};
 use trimtab::fit::{Fit, FitSettings, MultiStart, StartRow, fit_over, multi_start_over};
 use trimtab::model::{Model, ModelFile};
-use trimtab::numerals::sig;
-use trimtab::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
-use trimtab::ranks::Ranks;
+use trimtab::numbers::numerals::sig;
+use trimtab::numbers::uncertainty::Uncertainty;
 use trimtab::recording::{Run, RunStore, Runs, Split};
+use trimtab::report::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
 use trimtab::report::{USUAL, at_width};
 use trimtab::terms::resistance::Resistance;
 use trimtab::terms::rudder::Rudder;
-use trimtab::uncertainty::Uncertainty;
 
 const LONG: &str = "\
 Fits the free parameters of the model to the training runs of the study with exact gradients, under the constraints of \

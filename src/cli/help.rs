@@ -1,12 +1,12 @@
 //! `trimtab help`: a chapter of the guide, the help of a command, or the JSON schema of a file.
 //! The guide's text is the library's; this file brings it to the width of a terminal.
 
-use super::answer::Answer;
-use super::error::CliError;
-use super::lines::filled;
-use super::output::{print, print_json};
+use super::shared::answer::Answer;
+use super::shared::error::CliError;
+use super::shared::lines::filled;
+use super::shared::output::{print, print_json};
 use clap::Command;
-use trimtab::error::suggestion;
+use trimtab::files::suggestion;
 use trimtab::guide::reference::tables;
 use trimtab::guide::schema::{WITH_SCHEMA, schema};
 use trimtab::guide::{CHAPTERS, Chapter, chapter};
@@ -140,8 +140,8 @@ fn flush(text: &mut String, paragraph: &mut String) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::lines::WIDTH;
     use super::*;
+    use crate::cli::shared::lines::WIDTH;
 
     #[test]
     fn markdown_becomes_lines_of_80_characters() {

@@ -1,32 +1,32 @@
 //! `trimtab maneuver`: the standard trials with any model, their measures, and the IMO criteria beside them.
 //! The library sails and measures the trials; this file prints, tabulates and draws them.
 
-use super::answer::Answer;
-use super::audited::model_alone;
-use super::error::CliError;
-use super::figures::FigureArgs;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::audited::model_alone;
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Output, OutputArgs};
+use super::shared::progress::progress;
 use clap::Subcommand;
 use serde::Serialize;
 use std::path::PathBuf;
-use trimtab::files::Names;
-use trimtab::maneuver::{
+use trimtab::evaluate::maneuver::{
     Approach, DRAWS, Drawn, Ended, ManeuverSettings, Measured, SEED, Side, Trial, calm_water, drawn, set_intervals,
     stopping_trial, turning_trial, zigzag_trial,
 };
+use trimtab::files::Names;
 use trimtab::model::Model;
-use trimtab::numerals::sig;
-use trimtab::plot::Figure;
+use trimtab::numbers::numerals::sig;
+use trimtab::numbers::uncertainty::Uncertainty;
+use trimtab::recording::validity::{self, Coverage};
 use trimtab::report::maneuver::{
     Listed, criteria_note, criteria_table, ended_note, measures_csv, measures_table, stopping_figure, track_csv,
     turning_figure, zigzag_figure,
 };
-use trimtab::state::Inputs;
-use trimtab::uncertainty::Uncertainty;
-use trimtab::units::GRAVITY;
-use trimtab::validity::{self, Coverage};
+use trimtab::report::plot::Figure;
+use trimtab::ship::state::Inputs;
+use trimtab::ship::units::GRAVITY;
 
 const LONG: &str = "\
 Simulates a standard manoeuvring trial to both sides with the model of a study, or another given with --model, and measures \
@@ -362,7 +362,7 @@ fn finish<M: Listed>(
     let table = measures_csv(trials);
     let rows = table.rows().iter().cloned();
     let header: Vec<&str> = table.header().iter().map(String::as_str).collect();
-    output.table(&format!("{stem}_measures.csv"), &super::output::csv_text(&header, rows)?);
+    output.table(&format!("{stem}_measures.csv"), &super::shared::output::csv_text(&header, rows)?);
     output.figure(stem, figure);
     Ok(())
 }

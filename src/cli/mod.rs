@@ -1,50 +1,36 @@
 //! The command line: one file a command, and what the commands share (arguments, loading, output, exit codes).
 //! The library computes; a command only reads arguments, calls it, and prints.
 
-mod answer;
-mod arguments;
-pub mod audited;
-mod check;
 mod compare;
 mod demo;
 pub mod diagnose;
 mod dossier;
-pub mod error;
 pub mod evaluate;
 mod export;
-mod figures;
 pub mod fit;
 mod help;
-pub mod import;
-mod lines;
-pub mod load;
 mod maneuver;
-mod new;
-mod output;
 mod plan;
-pub mod processor;
-mod progress;
+pub mod shared;
 mod shell;
 mod simulate;
-mod split;
-mod style;
+pub mod study;
 mod sweep;
-mod terminal;
 mod terms;
-mod unreached;
-mod wanted;
 
-use answer::Answer;
 use clap::error::ContextKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use error::CliError;
-use processor::Build;
-use progress::tell_progress;
+use shared::answer::Answer;
+use shared::error::CliError;
+use shared::processor::Build;
+use shared::progress::tell_progress;
+use shared::terminal::{plain, tell};
+use shared::wanted::wanted;
+use shared::{arguments, processor, style};
 use std::ffi::OsString;
-use terminal::{plain, tell};
-use trimtab::ranks::{Ranks, Traffic};
+use study::{check, import, new, split};
+use trimtab::files::ranks::{Ranks, Traffic};
 use trimtab::report::{USUAL, set_width};
-use wanted::wanted;
 
 const AFTER_HELP: &str = "\
 Begin with

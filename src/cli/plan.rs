@@ -1,18 +1,18 @@
 //! `trimtab plan`: what planned trials and sensors would show, before going to sea.
 //! The library simulates and tests the trials; this file reads the arguments, prints and writes files.
 
-use super::answer::Answer;
-use super::error::CliError;
-use super::figures::FigureArgs;
-use super::load::{Loaded, StudyArgs, read_model};
-use super::output::{Output, OutputArgs, csv_text};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::load::{Loaded, StudyArgs, read_model};
+use super::shared::output::{Output, OutputArgs, csv_text};
+use super::shared::progress::progress;
 use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::diagnose::Settings;
-use trimtab::maneuver::ManeuverSettings;
+use trimtab::diagnose::plan::{Plan, PlanSettings, Question, plan};
+use trimtab::evaluate::maneuver::ManeuverSettings;
 use trimtab::model::Model;
-use trimtab::plan::{Plan, PlanSettings, Question, plan};
 use trimtab::report::Table;
 use trimtab::report::plan::{detectable_table, isolability_figure, isolability_table, summary, trials_table};
 use trimtab::ship::Ship;

@@ -1,9 +1,9 @@
 //! `trimtab completions` and `trimtab man`: what a shell and a manual know of the command line, written from its definition.
 //! It installs nothing; the help says where the files belong.
 
-use super::answer::Answer;
-use super::error::CliError;
-use super::output::{Output, OutputArgs, print, print_file};
+use super::shared::answer::Answer;
+use super::shared::error::CliError;
+use super::shared::output::{Output, OutputArgs, print, print_file};
 use clap::Command;
 use clap_complete::Shell;
 use clap_mangen::Man;

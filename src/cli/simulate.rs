@@ -1,12 +1,12 @@
 //! `trimtab simulate`: simulates the recordings of a study from their recorded start with their recorded inputs.
 //! It compares no models; it prints how far each simulation is from the measured motion.
 
-use super::answer::Answer;
-use super::audited::{AcceptArgs, audited};
-use super::error::CliError;
-use super::figures::FigureArgs;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Each, Output, OutputArgs, Pruned, csv_text};
+use super::shared::answer::Answer;
+use super::shared::audited::{AcceptArgs, audited};
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Each, Output, OutputArgs, Pruned, csv_text};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;
@@ -14,12 +14,12 @@ use trimtab::evaluate::{Outcome, Outlying, outcome, outlying, predict_all, start
 use trimtab::files::Names;
 use trimtab::fit::FitSettings;
 use trimtab::model::Model;
-use trimtab::numerals::{DASH, sig, sig_above};
-use trimtab::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
+use trimtab::numbers::numerals::{DASH, sig, sig_above};
+use trimtab::recording::validity::{self, Count, Coverage};
 use trimtab::recording::{Run, Split, or_nan};
 use trimtab::report::Table;
+use trimtab::report::plot::{BLUE, Figure, GREY, Layer, Panel, RECORDED, east_north};
 use trimtab::simulate::Trajectory;
-use trimtab::validity::{self, Count, Coverage};
 
 const LONG: &str = "\
 Simulates every recording of a study (or every window of it, where the study cuts them) with the study's model or another: \

@@ -1,24 +1,24 @@
 //! `trimtab sweep`: what the recordings of a study determine of its model's parameters.
 //! The library fits; this file reads the arguments, prints and writes files.
 
-use super::answer::Answer;
-use super::audited::{AcceptArgs, audited};
-use super::error::CliError;
-use super::figures::FigureArgs;
 use super::fit::fit_windows;
-use super::load::{Loaded, StudyArgs};
-use super::output::{Output, OutputArgs, csv_text};
-use super::progress::progress;
+use super::shared::answer::Answer;
+use super::shared::audited::{AcceptArgs, audited};
+use super::shared::error::CliError;
+use super::shared::figures::FigureArgs;
+use super::shared::load::{Loaded, StudyArgs};
+use super::shared::output::{Output, OutputArgs, csv_text};
+use super::shared::progress::progress;
 use serde::Serialize;
+use trimtab::evaluate::sweep::{Pair, Profile, Sensitivity, SweepSettings, pair, profile, sensitivities};
+use trimtab::files::ranks::Ranks;
 use trimtab::fit::Fit;
-use trimtab::ranks::Ranks;
+use trimtab::numbers::statistics::student_quantile;
 use trimtab::recording::{Runs, Split};
 use trimtab::report::Table;
 use trimtab::report::sweep::{
     pairs_figure, pairs_table, points_table, profiles_figure, profiles_table, sensitivities_table,
 };
-use trimtab::statistics::student_quantile;
-use trimtab::sweep::{Pair, Profile, Sensitivity, SweepSettings, pair, profile, sensitivities};
 
 const LONG: &str = "\
 Fits the model to the training runs, and then asks what these runs determine: each parameter is fixed at values around its \

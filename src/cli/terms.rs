@@ -1,15 +1,15 @@
 //! `trimtab terms`: the catalogue of physical effects, with equation, source and parameters.
 //! The library holds the catalogue and its listing; this file prints them.
 
-use super::answer::Answer;
-use super::error::CliError;
-use super::output::{Output, OutputArgs, csv_text};
+use super::shared::answer::Answer;
+use super::shared::error::CliError;
+use super::shared::output::{Output, OutputArgs, csv_text};
 use serde::Serialize;
 use std::path::PathBuf;
-use trimtab::error::suggestion;
-use trimtab::parameter::ParameterInfo;
+use trimtab::files::suggestion;
 use trimtab::report::terms::{Entry, listing, summary};
 use trimtab::ship::Ship;
+use trimtab::ship::parameter::ParameterInfo;
 use trimtab::terms::CATALOGUE;
 
 const LONG: &str = "\

@@ -3,9 +3,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use super::candidate::{Candidate, candidates};
-use super::finding::{Amplitude, Equations, Finding};
-use super::grade::Grade;
+use super::evidence::candidate::{Candidate, candidates};
+use super::proof::finding::{Amplitude, Equations, Finding};
+use super::proof::grade::Grade;
 use crate::dynamics::Dynamics;
 use crate::likelihood::estimate::Estimate;
 use crate::likelihood::filter::Column;

@@ -1,88 +1,55 @@
 //! The diagnosis: where recordings and simulation part, which physics was left out, and the proof on unseen runs.
-//! It draws and prints nothing: its one answer is the document in [`diagnosis`].
+//! It draws and prints nothing: its one answer is the document in [`answer::diagnosis`].
+//!
+//! | room | what | uses |
+//! |---|---|---|
+//! | [`settings`] | every number that can turn a verdict | |
+//! | [`evidence`] | what is computed of recordings before a mechanism is chosen | `settings` |
+//! | [`search`] | which mechanisms are selected, and the decision on all tests | `evidence` |
+//! | [`proof`] | every finding by itself, on unseen runs | `search` |
+//! | [`law`] | a law for what the catalogue does not hold; port against starboard | `proof` |
+//! | [`answer`] | verdict, error rates, document | `law` |
+//! | `pipeline` | the steps in order | all |
 //!
 //! The steps, each a function from one named type to the next ([`diagnose`] runs them in order):
 //!
 //! | step | what it gives |
 //! |---|---|
-//! | audit of the recordings | [`base::AuditedRuns`] |
-//! | fit of the base model, its parameters and noise | [`base::BaseFit`] |
-//! | location of unknown forces, score test of every mechanism | `event::BaseTests` |
-//! | a push that is found before any mechanism | `event::Opening` |
-//! | forward selection: comparison of refits, removal, replacement | `select::Selection` |
-//! | tests of what the selected mechanisms leave | `residual::Residual` |
-//! | table of tests | [`decide::TestTable`] |
-//! | decision, a pure function of the table | [`decide::Decision`] |
-//! | every finding by itself: interval, size, unseen runs | `weigh::Weight` |
-//! | its grade, a pure function of these | [`grade::Grade`] |
-//! | verdict and what is named, withdrawn findings taken out | `answer::Answer` |
-//! | the same analysis on recordings told otherwise | [`stability::Stability`] |
+//! | audit of the recordings | [`search::base::AuditedRuns`] |
+//! | fit of the base model, its parameters and noise | [`search::base::BaseFit`] |
+//! | location of unknown forces, score test of every mechanism | `search::event::BaseTests` |
+//! | a push that is found before any mechanism | `search::event::Opening` |
+//! | forward selection: comparison of refits, removal, replacement | `search::select::Selection` |
+//! | tests of what the selected mechanisms leave | `search::residual::Residual` |
+//! | table of tests | [`search::decide::TestTable`] |
+//! | decision, a pure function of the table | [`search::decide::Decision`] |
+//! | every finding by itself: interval, size, unseen runs | `proof::weigh::Weight` |
+//! | its grade, a pure function of these | [`proof::grade::Grade`] |
+//! | verdict and what is named, withdrawn findings taken out | `answer::analysis::Answer` |
+//! | the same analysis on transformed recordings | [`proof::stability::Stability`] |
 //! | where the catalogue does not hold what is missing, a law for it | [`law::Law`] |
-//! | the same analysis on simulated recordings | [`calibrate::ErrorRates`] |
-//! | proof of all findings on held-out runs | [`prove::HeldOut`] |
-//! | document | [`diagnosis::Diagnosis`] |
+//! | the same analysis on simulated recordings | [`answer::calibrate::ErrorRates`] |
+//! | proof of all findings on held-out runs | [`proof::prove::HeldOut`] |
+//! | document | [`answer::diagnosis::Diagnosis`] |
 //!
-//! One noise model (sensors, unknown force, initial states) is behind every step, and every number that can turn a verdict is in
-//! [`settings`].
+//! One noise model (sensors, unknown force, initial states) is behind every step. A room uses those above it in the table.
 
-pub mod admit;
-mod alike;
-mod answer;
-pub mod base;
-pub mod baseline;
-mod blocks;
-pub mod calibrate;
-pub mod candidate;
-mod compete;
-mod conclude;
-pub mod decide;
-mod describe;
-pub mod diagnosis;
-mod eligible;
+pub mod answer;
 mod error;
-mod event;
+pub mod evidence;
 #[cfg(test)]
 pub(crate) mod example;
-pub mod finding;
-mod forces;
-pub mod generic;
-pub mod grade;
-mod improved;
-pub mod influence;
-mod kinematic;
 pub mod law;
-pub mod locate;
-mod monomial;
 mod pipeline;
-pub mod place;
-pub mod present;
-mod problem;
-pub mod prove;
-pub mod push;
-pub mod region;
-mod residual;
-pub mod sailed;
-pub mod screen;
-mod select;
-mod selected;
-mod set_aside;
+pub mod plan;
+pub mod proof;
+pub mod search;
 pub mod settings;
-pub mod sides;
-pub mod signal;
-mod sparse;
-pub mod stability;
-pub(crate) mod summary;
-mod together;
-pub mod unseen;
-mod wald;
-mod weigh;
-mod words;
 
-pub use decide::Verdict;
-pub use diagnosis::Diagnosis;
+pub use answer::diagnosis::Diagnosis;
 pub use error::DiagnoseError;
-pub use finding::Finding;
-pub use grade::Grade;
 pub use pipeline::diagnose;
+pub use proof::finding::Finding;
+pub use proof::grade::Grade;
+pub use search::decide::Verdict;
 pub use settings::Settings;
-pub use signal::Signal;

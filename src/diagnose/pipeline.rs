@@ -1,25 +1,25 @@
 //! The diagnosis from end to end: each step a function from one named type to the next.
 //! It holds no arithmetic and no threshold; these are in the steps and in the settings.
 
-use super::answer::Answer;
-use super::base::Question;
-use super::calibrate::ErrorRates;
-use super::decide::Unlisted;
-use super::describe::kinds;
-use super::diagnosis::{Diagnosis, Trace};
+use super::answer::analysis::Answer;
+use super::answer::calibrate::ErrorRates;
+use super::answer::diagnosis::{Diagnosis, Trace};
+use super::answer::sailed::{Sailed, sailed};
+use super::answer::summary::{absorbed, adequacy, budget, confusable, detectable, moves, ranking, traces};
+use super::answer::words::{Missing, Said, headline, next_trial};
 use super::error::DiagnoseError;
-use super::generic::corrected;
-use super::improved::{trimmed, uncertainty};
+use super::evidence::generic::corrected;
+use super::evidence::set_aside::Divided;
 use super::law::Law;
-use super::prove::{HeldOut, prove};
-use super::sailed::{Sailed, sailed};
-use super::screen::screen;
-use super::set_aside::Divided;
+use super::law::sides::sides;
+use super::proof::describe::kinds;
+use super::proof::improved::{trimmed, uncertainty};
+use super::proof::prove::{HeldOut, prove};
+use super::proof::stability::Stability;
+use super::search::base::Question;
+use super::search::decide::Unlisted;
+use super::search::screen::screen;
 use super::settings::Settings;
-use super::sides::sides;
-use super::stability::Stability;
-use super::summary::{absorbed, adequacy, budget, confusable, detectable, moves, ranking, traces};
-use super::words::{Missing, Said, headline, next_trial};
 use crate::likelihood::estimate::Estimate;
 use crate::model::Model;
 use crate::ranges::Limited;
@@ -182,9 +182,9 @@ fn report(question: &Question, answer: Answer, written: &Written, proof: Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::decide::Verdict;
     use crate::diagnose::example::{model, runs, with};
-    use crate::diagnose::grade::Grade;
+    use crate::diagnose::proof::grade::Grade;
+    use crate::diagnose::search::decide::Verdict;
     use std::sync::Mutex;
 
     #[test]

@@ -25,12 +25,15 @@
 
 mod compare;
 mod cvdm;
+pub mod maneuver;
 mod outlying;
 mod prove;
 mod ranking;
 mod settings;
 mod start;
 mod summary;
+#[cfg(feature = "ipopt")]
+pub mod sweep;
 
 pub use compare::{Comparison, compare, predict, predict_all};
 pub use cvdm::{Deviation, Outcome, outcome};

@@ -9,8 +9,12 @@ mod lock;
 mod log;
 mod manifest;
 mod name;
+pub mod progress;
+pub mod ranks;
 mod seal;
+mod suggestion;
 mod whole;
+pub mod written;
 
 pub use cell::plain_cell;
 pub use date::utc;
@@ -21,4 +25,5 @@ pub use log::Log;
 pub use manifest::{Entry, Input, MANIFEST, Manifest, TIMING, Timing};
 pub use name::{Names, file_name};
 pub use seal::{Broken, intact, seal};
+pub use suggestion::suggestion;
 pub use whole::{fill_whole, write_whole};

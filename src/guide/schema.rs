@@ -2,11 +2,11 @@
 //! They are those of the types that read the files; ranges of numbers are checked by the readers and are not in them.
 
 use crate::diagnose::Settings;
+use crate::diagnose::plan::PlanSettings;
 use crate::evaluate::EvaluationSettings;
+use crate::evaluate::maneuver::ManeuverSettings;
 use crate::fit::FitSettings;
-use crate::maneuver::ManeuverSettings;
 use crate::model::ModelFile;
-use crate::plan::PlanSettings;
 use crate::recording::{CHANNELS, ColumnMap};
 use crate::ship::{COEFFICIENTS, Ship};
 use crate::study::study_schema;

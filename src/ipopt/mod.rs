@@ -37,8 +37,10 @@
 
 #[cfg(feature = "ipopt")]
 mod ffi;
+mod history;
 #[cfg(feature = "ipopt")]
 mod nlp;
+#[cfg(feature = "ipopt")]
 mod options;
 #[cfg(feature = "ipopt")]
 mod problem;
@@ -49,9 +51,11 @@ mod status;
 #[cfg(all(test, feature = "ipopt"))]
 mod tests;
 
+pub use history::DEFAULT_HISTORY;
 #[cfg(feature = "ipopt")]
 pub use nlp::{IterationReport, Multipliers, Nlp};
-pub use options::{DEFAULT_HISTORY, HessianMode, OptionValue, Options};
+#[cfg(feature = "ipopt")]
+pub use options::{HessianMode, OptionValue, Options};
 #[cfg(feature = "ipopt")]
 pub use problem::Counts;
 #[cfg(feature = "ipopt")]

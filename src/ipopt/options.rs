@@ -3,10 +3,6 @@
 
 use std::fmt;
 
-/// Number of past steps the limited-memory Hessian keeps unless told otherwise. Ipopt's own 6 suits thousands of variables;
-/// with a few dozen, a longer memory costs nothing and saves most of the iterations.
-pub const DEFAULT_HISTORY: usize = 50;
-
 /// Where the Hessian of the Lagrangian comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HessianMode {

@@ -1,8 +1,9 @@
 //! The part of a program that stays fixed during a solve, checked, and the context that the callbacks work on.
 //! It calls neither Ipopt nor anything unsafe.
 
+use super::history::DEFAULT_HISTORY;
 use super::nlp::{Multipliers, Nlp};
-use super::options::{DEFAULT_HISTORY, HessianMode, Options};
+use super::options::{HessianMode, Options};
 use super::status::IpoptError;
 
 /// What Ipopt is told in place of an infinite bound; it takes anything beyond 1e19 for "none".

@@ -538,8 +538,8 @@ mod tests {
 
     #[test]
     fn the_score_of_a_column_does_not_depend_on_the_columns_beside_it_nor_much_on_the_rule_over_a_step() {
-        use crate::diagnose::candidate::{append, candidates};
-        use crate::diagnose::generic::GenericLaw;
+        use crate::diagnose::evidence::candidate::{append, candidates};
+        use crate::diagnose::evidence::generic::GenericLaw;
         let m = with(&[("current.north", 0.1), ("mean_wind.east", 5.0)]);
         let runs = runs(&model(), 3);
         let mut columns: Vec<Column> =

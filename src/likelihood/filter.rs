@@ -70,7 +70,7 @@ impl<'a> Filter<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::candidate::{append, candidates};
+    use crate::diagnose::evidence::candidate::{append, candidates};
     use crate::diagnose::example::{RK4, column, model, noise, runs, with};
     use crate::simulate::Method;
     use crate::state::STATES;

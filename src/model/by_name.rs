@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn a_parameter_is_held_bounded_and_given_a_prior_by_name_or_symbol() {
-        let mut model = crate::demo::example().unwrap().model;
+        let mut model = crate::study::demo::example().unwrap().model;
         let of = |model: &Model, name: &str| model.parameters[model.find(name).unwrap()].clone();
         model.hold("p5").unwrap();
         assert!(!of(&model, "rudder.lift1").free && of(&model, "rudder.lift0").free);
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_told_and_changes_nothing() {
-        let mut model = crate::demo::example().unwrap().model;
+        let mut model = crate::study::demo::example().unwrap().model;
         let before = format!("{:?}", model.parameters);
         assert!(model.hold("rudder.lift9").unwrap_err().to_string().contains("did you mean"));
         assert!(model.bound("p6", f64::NAN, 1.0).unwrap_err().to_string().contains("within the bounds"));

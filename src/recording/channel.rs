@@ -1,7 +1,7 @@
 //! The channels a recording can have: name, quantity, sign convention and the range a ship can reach.
 //! How a channel is found in a file is not here (`map.rs`, `read.rs`), nor what a channel does to the ship (the terms).
 
-use super::unit::Quantity;
+use super::file::unit::Quantity;
 use crate::state::recorded_inputs;
 use serde::{Deserialize, Serialize};
 

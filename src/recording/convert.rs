@@ -1,14 +1,14 @@
 //! From raw channels to the project's frames: range and time checks, unwrapped heading, body velocities at midship, derived channels.
 //! Nothing is smoothed here and nothing invented: a channel that is derived is derived because the column map asks for it.
 
-use super::blank::usual_fill;
 use super::channel::{CHANNELS, Channel};
 use super::error::RecordingError;
-use super::lines::LineNumbers;
+use super::file::blank::usual_fill;
+use super::file::lines::LineNumbers;
+use super::file::map::{ColumnMap, Derived, VelocityFrame};
+use super::file::unit::Quantity;
 use super::local::slope;
-use super::map::{ColumnMap, Derived, VelocityFrame};
 use super::record::{GAP_IN_STEPS, Recording};
-use super::unit::Quantity;
 use super::wrap::{repair, unwrap};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -532,7 +532,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(super::super::seeded())]
+        #![proptest_config(crate::recording::seeded())]
         #[test]
         fn unwrapping_undoes_wrapping(steps in prop::collection::vec(-3.0..3.0f64, 2..60)) {
             let mut sum = 0.5;

@@ -66,7 +66,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        #![proptest_config(super::super::seeded())]
+        #![proptest_config(crate::recording::seeded())]
         #[test]
         fn a_quadratic_is_recovered_from_any_sampling(
             c in prop::array::uniform3(-5.0..5.0f64), at in -1.0..11.0f64, jitter in prop::collection::vec(0.0..0.5f64, 11)

@@ -3,7 +3,7 @@
 
 use super::channel::{CHANNELS, Channel};
 use super::error::RecordingError;
-use super::lines::LineNumbers;
+use super::file::lines::LineNumbers;
 use super::wrap::repair;
 use std::ops::Range;
 use std::path::{Path, PathBuf};

@@ -627,8 +627,8 @@ fn polar<'a>(magnitude: &'a [f64], direction: &'a [f64], sign: f64) -> impl Iter
 
 #[cfg(test)]
 mod tests {
-    use super::super::or_nan;
     use super::*;
+    use crate::recording::or_nan;
     use proptest::prelude::*;
 
     fn labels() -> Labels {
@@ -840,7 +840,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(super::super::seeded())]
+        #![proptest_config(crate::recording::seeded())]
         #[test]
         fn resampling_keeps_straight_lines(step in 0.03..3.0f64, jitter in prop::collection::vec(-0.015..0.015f64, 200)) {
             let mut channels = straight(200, 0.1);

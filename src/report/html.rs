@@ -2,7 +2,7 @@
 //! Nothing comes from outside the file, so that it reads the same offline, printed, and years later.
 
 use super::table::Table;
-use crate::plot::Figure;
+use crate::report::plot::Figure;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::{Map, Value};
 
@@ -174,7 +174,7 @@ impl Page {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::{Axis, FITTED, Layer, Panel};
+    use crate::report::plot::{Axis, FITTED, Layer, Panel};
 
     fn page() -> String {
         let figure = Figure::new("R(u) < 80 kN").with(

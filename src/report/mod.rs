@@ -12,6 +12,8 @@ mod html;
 pub mod maneuver;
 mod paragraph;
 pub mod plan;
+#[cfg(feature = "plot")]
+pub mod plot;
 #[cfg(feature = "ipopt")]
 pub mod sweep;
 mod table;

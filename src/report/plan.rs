@@ -1,11 +1,11 @@
 //! A plan for people: its tables, its summary for a terminal, and the isolability matrix as a figure.
 //! It converts units and computes nothing else.
 
+use crate::diagnose::plan::{Outlook, Parting, Plan, Sailed};
 use crate::numerals::{DASH, fixed, sig};
-use crate::plan::{Outlook, Parting, Plan, Sailed};
-#[cfg(feature = "plot")]
-use crate::plot::{Axis, Figure, Layer, Mark, Panel, RECORDED};
 use crate::report::paragraph::wrapped;
+#[cfg(feature = "plot")]
+use crate::report::plot::{Axis, Figure, Layer, Mark, Panel, RECORDED};
 use crate::report::table::Table;
 use crate::report::width::width;
 

@@ -1,12 +1,12 @@
 //! A sweep for people: profiles and sensitivities as tables, and their figures.
-//! The fits behind them are [`crate::sweep`]'s.
+//! The fits behind them are [`crate::evaluate::sweep`]'s.
 
+use crate::evaluate::sweep::{Pair, Profile, Sensitivity};
 use crate::numerals::{DASH, interval, sig};
 use crate::report::table::Table;
-use crate::sweep::{Pair, Profile, Sensitivity};
 
 #[cfg(feature = "plot")]
-use crate::plot::{Axis, FITTED, Figure, GREY, Layer, Mark, Panel, RECORDED};
+use crate::report::plot::{Axis, FITTED, Figure, GREY, Layer, Mark, Panel, RECORDED};
 
 /// What a profile says of a parameter, in a word or two.
 fn shape(p: &Profile) -> &'static str {

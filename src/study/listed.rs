@@ -4,8 +4,8 @@
 use super::error::StudyError;
 use super::file::RunEntry;
 use super::split::{SplitRule, UNNAMED, draw};
+use crate::files::written::{Mistake, told};
 use crate::recording::{Labels, Split};
-use crate::written::{Mistake, told};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 

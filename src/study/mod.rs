@@ -1,6 +1,7 @@
 //! A study: one TOML file that names ship, model and recordings, says how runs are cut into windows, and which train and which test.
 //! It opens recordings and hands out windows; ship, model and the tables of the commands are read by those who use them.
 
+pub mod demo;
 mod error;
 mod file;
 mod listed;

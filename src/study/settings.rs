@@ -2,8 +2,8 @@
 //! The settings of fit, evaluation, diagnosis and trials are read by those who use them.
 
 use super::file::{InitialKind, StudyFile};
+use crate::files::written::Mistake;
 use crate::recording::{Initial, WindowSettings, key_line};
-use crate::written::Mistake;
 
 /// The window settings of a study file, for every run; `from`, `to` and `draught` are set run by run.
 ///

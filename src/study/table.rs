@@ -3,9 +3,9 @@
 
 use super::error::StudyError;
 use super::file::RunEntry;
-use crate::error::suggestion;
+use crate::files::suggestion;
+use crate::files::written::{Mistake, read_text, told};
 use crate::recording::Split;
-use crate::written::{Mistake, read_text, told};
 use csv::StringRecord;
 use std::path::Path;
 

@@ -3,20 +3,22 @@
 
 #![allow(dead_code)]
 
+#[cfg(feature = "cli")]
+pub mod study;
 pub mod written;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::path::Path;
-use trimtab::dynamics::Dynamics;
 use trimtab::likelihood::noise::{GROUP_OF, Noise, SensorNoise};
 use trimtab::model::Model;
+use trimtab::model::dynamics::Dynamics;
 use trimtab::physics::Form;
 use trimtab::recording::{Measured, Run, Split, measured};
 use trimtab::ship::Ship;
+use trimtab::ship::state::{Force, Inputs, State};
 use trimtab::simulate::{Integration, Method, driven, step};
-use trimtab::state::{Force, Inputs, State};
 
 pub const STAR: [f64; 11] = [-0.017, 34187.0, -12568.0, 1594.0, -0.039, 3.193, 0.205, -4.882, 0.048, 0.0746, 1.370];
 

@@ -16,7 +16,7 @@ pub struct Study {
 impl Study {
     pub fn new() -> Self {
         let study = Self { folder: tempfile::tempdir().unwrap() };
-        let files = trimtab::demo::files();
+        let files = trimtab::study::demo::files();
         let runs = &files.iter().find(|(name, _)| name == "runs.csv").unwrap().1;
         let (mut listed, mut test, mut train) = (String::from("file,name,manoeuvre,split\n"), 0, 0);
         for line in runs.lines().skip(1) {

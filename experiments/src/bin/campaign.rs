@@ -10,9 +10,9 @@ use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use trimtab::files::progress::Teller;
+use trimtab::files::ranks::Ranks;
 use trimtab::files::{Lock, write_whole};
-use trimtab::progress::Teller;
-use trimtab::ranks::Ranks;
 use trimtab_experiments::conceal::campaign::arms::failed;
 use trimtab_experiments::conceal::campaign::calibration::calibration;
 use trimtab_experiments::conceal::campaign::figure::figure;

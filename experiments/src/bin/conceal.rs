@@ -6,11 +6,11 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use trimtab_experiments::conceal::case::Case;
-use trimtab_experiments::conceal::design::Design;
 use trimtab_experiments::conceal::effects::catalogue::catalogue;
 use trimtab_experiments::conceal::error::ConcealError;
 use trimtab_experiments::conceal::family::Family;
 use trimtab_experiments::conceal::meter::DiagnosisMeter;
+use trimtab_experiments::conceal::sailing::design::Design;
 use trimtab_experiments::conceal::spec::{Background, Spec, Strength};
 use trimtab_experiments::folders::exit;
 

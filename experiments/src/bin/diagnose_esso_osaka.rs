@@ -9,8 +9,8 @@ use trimtab_experiments::folders::{Folder, exit};
 use trimtab_experiments::real::agreement::table;
 use trimtab_experiments::real::case::findings_table;
 use trimtab_experiments::real::error::RealError;
-use trimtab_experiments::real::esso_osaka_diagnosed;
 use trimtab_experiments::real::frame::steps_table;
+use trimtab_experiments::real::hulls::esso_osaka_diagnosed;
 use trimtab_experiments::real::output::{write_csv, write_png};
 use trimtab_experiments::real::pull::pulls_table;
 

@@ -10,7 +10,7 @@ use trimtab_experiments::real::agreement::table;
 use trimtab_experiments::real::case::{findings_table, sides_table};
 use trimtab_experiments::real::error::RealError;
 use trimtab_experiments::real::frame::steps_table;
-use trimtab_experiments::real::kvlcc2_diagnosed;
+use trimtab_experiments::real::hulls::kvlcc2_diagnosed;
 use trimtab_experiments::real::output::{write_csv, write_png};
 
 /// Diagnoses KVLCC2 from its zigzags and proves the findings on its turning circles.

@@ -11,14 +11,14 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use trimtab::report::Table;
 use trimtab_experiments::folders::{Published, exit};
+use trimtab_experiments::injected::answers::failure::failures;
+use trimtab_experiments::injected::answers::figure::figure;
+use trimtab_experiments::injected::answers::results::{Results, in_order, missing};
+use trimtab_experiments::injected::answers::row::Row;
+use trimtab_experiments::injected::answers::summary::{by_strength, scored, summary, table};
 use trimtab_experiments::injected::error::InjectedError;
-use trimtab_experiments::injected::failure::failures;
-use trimtab_experiments::injected::figure::figure;
 use trimtab_experiments::injected::plan::{Planned, SEED, ci_slice, plan, sample};
-use trimtab_experiments::injected::results::{Results, in_order, missing};
-use trimtab_experiments::injected::row::Row;
 use trimtab_experiments::injected::runner::Runner;
-use trimtab_experiments::injected::summary::{by_strength, scored, summary, table};
 
 /// Injects known effects into recordings of real ships, diagnoses them, and compares the answers with the truth.
 #[derive(Parser)]

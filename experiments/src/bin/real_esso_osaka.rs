@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use trimtab_experiments::folders::{Folder, exit};
 use trimtab_experiments::real::error::RealError;
-use trimtab_experiments::real::esso_osaka;
+use trimtab_experiments::real::hulls::esso_osaka;
 use trimtab_experiments::real::output::{write_csv, write_png};
 
 /// Fits Esso Osaka and prints the errors on test runs beside those of two baselines.

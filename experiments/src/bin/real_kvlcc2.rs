@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use trimtab_experiments::folders::{Folder, exit};
 use trimtab_experiments::real::error::RealError;
-use trimtab_experiments::real::kvlcc2;
+use trimtab_experiments::real::hulls::kvlcc2;
 use trimtab_experiments::real::output::{write_csv, write_png};
 
 /// Fits KVLCC2 to its zigzags and prints its turning circles beside the measured ones.

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use trimtab_experiments::folders::{Folder, exit};
 use trimtab_experiments::real::error::RealError;
-use trimtab_experiments::real::kvlcc2_hsva::{self, LIMITS, STARTS, repeats_table};
+use trimtab_experiments::real::hulls::kvlcc2_hsva::{self, LIMITS, STARTS, repeats_table};
 use trimtab_experiments::real::output::{write_csv, write_png};
 
 /// Fits KVLCC2 to nine zigzags of its 7 m model and prints four others beside the measured ones.

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use trimtab::diagnose::baseline::{Told, oracle};
-use trimtab::diagnose::candidate::Extent;
+use trimtab::diagnose::evidence::candidate::Extent;
+use trimtab::diagnose::proof::baseline::{Told, oracle};
 
 use super::campaign::plan::Planned;
 use super::error::ConcealError;

@@ -3,8 +3,8 @@
 
 use super::effects::effect::Class;
 use super::error::ConcealError;
-use super::recorded::{Recorded, activate, record};
-use super::sail::Active;
+use super::sailing::recorded::{Recorded, activate, record};
+use super::sailing::sail::Active;
 use super::spec::{Background, Spec, Strength};
 use super::strength::{Meter, solve};
 

@@ -5,19 +5,20 @@ use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Mutex;
 
-use trimtab::diagnose::{Settings, Signal};
+use trimtab::diagnose::Settings;
 use trimtab::model::Model;
 use trimtab::recording::{Run, Split};
 use trimtab::ship::Ship;
-use trimtab::state::Inputs;
+use trimtab::ship::state::Inputs;
 
 use super::effects::effect::{Class, Entry};
 use super::error::ConcealError;
 use super::family::Family;
-use super::recorded::Recorded;
+use super::sailing::recorded::Recorded;
+use super::sailing::track::PERIOD;
 use super::seal;
+use super::signal::Signal;
 use super::strength::{ForceMeter, Meter};
-use super::track::PERIOD;
 
 /// The ratio of the first accepted mechanism that has a test, on the runs to train on; of one force in their windows where effects
 /// have windows. Effects without a test (gusts, those outside the catalogue) are graded by [`ForceMeter`].
@@ -146,6 +147,16 @@ mod tests {
         let ratio = |case: &Case| meter.snr(entry, &case.recorded, &none.recorded).unwrap();
         assert_eq!(ratio(&none), 0.0);
         assert!((ratio(&strong) / ratio(&weak) - 2.0).abs() < 0.1, "{} {}", ratio(&strong), ratio(&weak));
+    }
+
+    #[test]
+    fn neither_equal_runs_nor_a_mechanism_outside_the_catalogue_have_a_ratio() {
+        let meter = DiagnosisMeter::new(Family::Hd).unwrap();
+        let none = case(&meter, "heading_bias", 0.0);
+        let runs = runs(&none.recorded, &none.recorded);
+        let signal = Signal::new(&meter.model, &runs, &meter.settings).unwrap();
+        assert!(signal.ratio(&runs, "current") < 1e-9 && signal.ratio_in(&runs, &[(0, 20, 40)]) < 1e-9);
+        assert_eq!(signal.ratio(&runs, "no such mechanism"), 0.0);
     }
 
     #[test]

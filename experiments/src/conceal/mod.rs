@@ -9,23 +9,17 @@
 pub mod baselines;
 pub mod campaign;
 pub mod case;
-pub mod craft;
-pub mod design;
 pub mod effects;
 pub mod error;
 pub mod family;
-pub mod helm;
 pub mod judge;
 pub mod meter;
-pub mod noise;
-pub mod recorded;
 pub mod runner;
-pub mod sail;
+pub mod sailing;
 pub mod seal;
+pub mod signal;
 pub mod spec;
 pub mod strength;
-pub mod track;
-pub mod tweak;
 
 #[cfg(test)]
 mod tests;

@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::case::Case;
-use super::craft::LENGTH;
 use super::effects::effect::{Class, Compare};
 use super::effects::hull::THRUSTER;
 use super::error::ConcealError;
 use super::family::Family;
-use super::sail::Active;
+use super::sailing::craft::LENGTH;
+use super::sailing::sail::Active;
+use super::sailing::track::PERIOD;
 use super::spec::Spec;
-use super::track::PERIOD;
 
 /// One concealed effect, as the judge is told.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -60,7 +60,7 @@ pub struct Manifest {
     pub structure: Vec<String>,
     /// The effects.
     pub answers: Vec<Answer>,
-    /// Port-starboard difference of the flow straightening, where there is one ([`super::craft::Craft::asymmetry`]).
+    /// Port-starboard difference of the flow straightening, where there is one ([`super::sailing::craft::Craft::asymmetry`]).
     pub asymmetry: Option<f64>,
     /// SHA-256 of every file of the study.
     pub files: BTreeMap<String, String>,

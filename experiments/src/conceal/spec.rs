@@ -3,11 +3,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::design::Design;
 use super::effects::catalogue::{catalogue, find};
 use super::effects::effect::Entry;
 use super::error::ConcealError;
 use super::family::Family;
+use super::sailing::design::Design;
 
 /// The strength asked of an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

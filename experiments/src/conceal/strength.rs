@@ -3,9 +3,9 @@
 
 use super::effects::effect::Entry;
 use super::error::ConcealError;
-use super::recorded::Recorded;
-use super::sail::GUST_TIME;
-use super::track::PERIOD;
+use super::sailing::recorded::Recorded;
+use super::sailing::sail::GUST_TIME;
+use super::sailing::track::PERIOD;
 
 /// Measures how visible an effect is: sqrt of the noncentrality of the best test for it, from recordings with and without it
 /// that have the same ship, plans, gusts and noise.

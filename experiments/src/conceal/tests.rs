@@ -4,11 +4,11 @@
 use std::collections::BTreeSet;
 
 use super::case::Case;
-use super::design::Design;
 use super::effects::catalogue::catalogue;
 use super::effects::effect::Class;
 use super::error::ConcealError;
 use super::family::Family;
+use super::sailing::design::Design;
 use super::seal;
 use super::spec::{Background, Spec, Strength};
 use super::strength::ForceMeter;

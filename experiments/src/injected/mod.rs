@@ -6,21 +6,15 @@
 //! after the diagnosis has ended. Most cases name a partner: the same configuration with nothing injected, so that what is
 //! found with it less what is found without it is what was injected.
 
+pub mod answers;
 pub mod case;
 pub mod configuration;
 pub mod effect;
 pub mod error;
-pub mod failure;
-pub mod figure;
 pub mod operation;
 pub mod plan;
 pub mod record;
-pub mod results;
-pub mod row;
 pub mod runner;
-pub mod said;
-pub mod score;
 pub mod seal;
 pub mod set;
-pub mod summary;
 pub mod symmetry;

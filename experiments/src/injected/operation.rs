@@ -310,9 +310,9 @@ pub fn without_wind(record: &mut Record) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::record::COLUMNS;
-    use super::super::record::tests::example;
     use super::*;
+    use crate::injected::record::COLUMNS;
+    use crate::injected::record::tests::example;
 
     fn injected(operation: &Operation) -> (Record, Record) {
         let before = example(40);

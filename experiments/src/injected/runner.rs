@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
+use super::answers::row::Row;
+use super::answers::said::Said;
 use super::error::InjectedError;
 use super::plan::{Kind, Planned};
-use super::row::Row;
-use super::said::Said;
 use super::seal;
 use crate::process::{self, Ended};
 use crate::rivals::{Content, Refit, sparse_regression};

@@ -54,9 +54,9 @@ impl Record {
 
 #[cfg(test)]
 mod tests {
-    use super::super::record::COLUMNS;
-    use super::super::record::tests::example;
     use super::*;
+    use crate::injected::record::COLUMNS;
+    use crate::injected::record::tests::example;
 
     fn close(a: &Record, b: &Record) {
         assert_eq!(a.len(), b.len());

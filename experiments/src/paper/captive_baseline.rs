@@ -13,9 +13,9 @@ use crate::truth::integrate::trimmed_rate;
 use crate::truth::ships::ShipId;
 use crate::truth::simulator::Truth;
 use nalgebra::{DMatrix, DVector};
-use trimtab::dynamics::Dynamics;
 use trimtab::model::Model;
-use trimtab::state::{Inputs, State};
+use trimtab::model::dynamics::Dynamics;
+use trimtab::ship::state::{Inputs, State};
 
 /// One row of a rudder sweep, read with the inflow of the model that is to use the curves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,8 +123,8 @@ fn polynomial(points: &[RudderPoint], degree: usize, value: impl Fn(&RudderPoint
 
 #[cfg(test)]
 mod tests {
-    use super::super::case::initial_model;
     use super::*;
+    use crate::paper::case::initial_model;
     use crate::truth::motion::Force;
     use trimtab::physics::Form;
     use trimtab::terms::rudder::Rudder;

@@ -13,8 +13,8 @@ use trimtab::model::Model;
 use trimtab::physics::Form;
 use trimtab::recording::{self, Split, measured};
 use trimtab::ship::Ship;
+use trimtab::ship::state::Inputs;
 use trimtab::simulate::{Integration, Method};
-use trimtab::state::Inputs;
 
 /// Settings that may differ from the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]

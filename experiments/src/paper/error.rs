@@ -17,7 +17,7 @@ pub enum PaperError {
     Fit(#[from] trimtab::fit::FitError),
     /// A figure could not be made.
     #[error(transparent)]
-    Figure(#[from] trimtab::plot::FigureError),
+    Figure(#[from] trimtab::report::plot::FigureError),
     /// Captive tests that do not determine a parameter.
     #[error("{ship}: the captive tests do not determine the {what}; widen their programme")]
     Captive {

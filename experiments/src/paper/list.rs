@@ -2,7 +2,8 @@
 //! It makes none.
 
 use super::artefact::Artefact;
-use super::{curves, distributions, gradient, limits, performance, scenarios, table1, table2};
+use super::gradient;
+use super::pictures::{curves, distributions, limits, performance, scenarios, table1, table2};
 
 /// Every table and figure.
 pub static ARTEFACTS: [&Artefact; 9] = [

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
-use trimtab::plot::{Format, Width};
+use trimtab::report::plot::{Format, Width};
 
 use super::artefact::Artefact;
 use super::case::{Case, Setup};

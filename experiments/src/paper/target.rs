@@ -4,8 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use super::error::PaperError;
-use trimtab::plot::{Figure, Format, Width};
 use trimtab::report::Table;
+use trimtab::report::plot::{Figure, Format, Width};
 
 /// A folder, and the formats and width of figures.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@
 use super::error::RealError;
 use super::hull::Hull;
 use nalgebra::{DMatrix, DVector};
-use trimtab::numerals::{fixed, sig};
+use trimtab::numbers::numerals::{fixed, sig};
 use trimtab::recording::{Channel, Recording};
 use trimtab::report::Table;
 

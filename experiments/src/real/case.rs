@@ -1,11 +1,11 @@
 //! The diagnoses of the experiments on real hulls, and their tables of findings and of the ship's two sides.
 //! The diagnosis itself is the library's.
 
-use trimtab::diagnose::finding::Amplitude;
-use trimtab::diagnose::prove::HeldOut;
+use trimtab::diagnose::proof::finding::Amplitude;
+use trimtab::diagnose::proof::prove::HeldOut;
 use trimtab::diagnose::{Diagnosis, Settings, diagnose};
 use trimtab::model::Model;
-use trimtab::numerals::{fixed, sig};
+use trimtab::numbers::numerals::{fixed, sig};
 use trimtab::recording::Run;
 use trimtab::report::Table;
 

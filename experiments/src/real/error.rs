@@ -4,11 +4,11 @@
 use std::path::PathBuf;
 
 use trimtab::model::ModelError;
-use trimtab::plot::FigureError;
+use trimtab::report::plot::FigureError;
 use trimtab::ship::ShipError;
 use trimtab::study::StudyError;
 
-use super::published::PublishedError;
+use super::hulls::published::PublishedError;
 
 /// Why an experiment on a real hull could not run.
 #[derive(Debug, thiserror::Error)]
@@ -40,7 +40,7 @@ pub enum RealError {
     Diagnose(#[from] trimtab::diagnose::DiagnoseError),
     /// A standard trial.
     #[error(transparent)]
-    Maneuver(#[from] trimtab::maneuver::ManeuverError),
+    Maneuver(#[from] trimtab::evaluate::maneuver::ManeuverError),
     /// The published parameters.
     #[error(transparent)]
     Published(#[from] PublishedError),

@@ -2,9 +2,8 @@
 //! runs. It is no diagnosis: nothing is screened or named.
 
 use nalgebra::{DMatrix, DVector};
-use trimtab::audit::settled;
-use trimtab::diagnose::admit::followed;
-use trimtab::diagnose::prove::{HeldOut, prove};
+use trimtab::diagnose::evidence::admit::followed;
+use trimtab::diagnose::proof::prove::{HeldOut, prove};
 use trimtab::diagnose::{Diagnosis, Settings};
 use trimtab::evaluate::Judging;
 use trimtab::likelihood::estimate::{Effort, FreeParameter, base_of, estimate, evidence, passes, restrictions};
@@ -12,8 +11,9 @@ use trimtab::likelihood::evidence::Test;
 use trimtab::likelihood::filter::Column;
 use trimtab::likelihood::noise::{Noise, NoisePrior};
 use trimtab::model::{Model, Prior};
-use trimtab::numerals::{fixed, sig};
+use trimtab::numbers::numerals::{fixed, sig};
 use trimtab::recording::Run;
+use trimtab::recording::audit::settled;
 use trimtab::report::Table;
 use trimtab::simulate::Integration;
 

@@ -4,15 +4,10 @@
 pub mod agreement;
 pub mod case;
 pub mod error;
-pub mod esso_osaka;
-pub mod esso_osaka_diagnosed;
 pub mod frame;
 pub mod hull;
-pub mod kvlcc2;
-pub mod kvlcc2_diagnosed;
-pub mod kvlcc2_hsva;
+pub mod hulls;
 pub mod mend;
 pub mod output;
-pub mod published;
 pub mod pull;
 pub mod runs;

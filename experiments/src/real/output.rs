@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use trimtab::plot::Figure;
 use trimtab::report::Table;
+use trimtab::report::plot::Figure;
 
 use super::error::RealError;
 

@@ -2,7 +2,7 @@
 //! The forces come from a question asked of a frame; here they are only compared and tabulated.
 
 use nalgebra::{Matrix2, Vector2};
-use trimtab::numerals::fixed;
+use trimtab::numbers::numerals::fixed;
 use trimtab::recording::Run;
 use trimtab::report::Table;
 

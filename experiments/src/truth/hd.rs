@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use super::blend::smooth_step;
+use super::laws::blend::smooth_step;
 use super::motion::{Force, Particulars};
 use super::simulator::{Inertia, Propulsion, Truth};
 
@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn accelerations_agree_with_the_library_s_model_of_this_equation() {
-        use trimtab::state as lib;
+        use trimtab::ship::state as lib;
         let text = include_str!("../../ships/a.toml");
         let ship = trimtab::ship::Ship::parse(text, std::path::Path::new("a.toml")).unwrap();
         let mut model = trimtab::model::Model::new(ship, "check", trimtab::physics::Form::Paper, &[]).unwrap();
@@ -308,8 +308,11 @@ mod tests {
         ] {
             let state = lib::State { x: 0.0, y: 0.0, psi: 0.4, u, v, r };
             let inputs = lib::Inputs::actuators(0.0, n, delta);
-            let (rates, _) =
-                trimtab::dynamics::Dynamics::new(&model, theta.clone()).rates(&state, &inputs, &lib::Force::zero());
+            let (rates, _) = trimtab::model::dynamics::Dynamics::new(&model, theta.clone()).rates(
+                &state,
+                &inputs,
+                &lib::Force::zero(),
+            );
             let own = truth.inertia().accelerations([u, v, r], &truth.force(u, v, r, n, delta).total());
             for (i, (a, b)) in own.iter().zip(&rates[3..]).enumerate() {
                 let unit = [1e-3, 1e-3, 2e-5][i];

@@ -7,10 +7,10 @@
 
 use std::f64::consts::PI;
 
-use super::crossflow;
+use super::laws::crossflow;
+use super::laws::slipstream::{Propeller, Rudder};
 use super::motion::{Force, Particulars};
 use super::simulator::{AddedMass, Inertia, Propulsion, Truth};
-use super::slipstream::{Propeller, Rudder};
 
 /// Hull coefficients, on 1/2 rho L d (force) and 1/2 rho L^2 d (moment).
 #[derive(Debug, Clone, Copy, PartialEq)]

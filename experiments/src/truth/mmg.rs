@@ -10,11 +10,11 @@
 
 use std::f64::consts::PI;
 
-use super::blend::smooth_step;
-use super::crossflow;
+use super::laws::blend::smooth_step;
+use super::laws::crossflow;
+use super::laws::slipstream::{Propeller, Rudder};
 use super::motion::{Force, Particulars};
 use super::simulator::{AddedMass, Inertia, Propulsion, Truth};
-use super::slipstream::{Propeller, Rudder};
 
 /// Hull coefficients. Primes: forces on 1/2 rho L d U^2, moments on 1/2 rho L^2 d U^2, v' = v/U, r' = r L/U.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -237,7 +237,7 @@ impl Truth for Mmg {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::truth::propeller::OpenWater;
+    use crate::truth::laws::propeller::OpenWater;
     use crate::truth::ships::{kvlcc2, ship_a};
 
     /// The standard method as printed in the source, with its quotients by U and J.

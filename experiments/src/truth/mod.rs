@@ -6,22 +6,19 @@
 //! again. Axes: x forward, y starboard, psi clockwise from north, r > 0 bow to starboard, delta > 0 turns the ship to starboard;
 //! origin midship; SI units, radians, rps.
 
-pub mod blend;
 pub mod captive;
-pub mod crossflow;
 pub mod dataset;
 pub mod hd;
 pub mod helmsman;
 pub mod integrate;
 pub mod large_drift;
+pub mod laws;
 pub mod mmg;
 pub mod motion;
 pub mod programme;
-pub mod propeller;
 pub mod reference;
 pub mod ships;
 pub mod simulator;
-pub mod slipstream;
 pub mod trial;
 
 #[cfg(test)]

@@ -6,11 +6,11 @@
 //! from the Motora charts; interaction from published collections of MMG formulas. What no formula gives is marked "assumed".
 
 use super::large_drift::{self, LargeDrift};
+use super::laws::propeller::OpenWater;
+use super::laws::slipstream::{Propeller, Rudder};
 use super::mmg::{self, Mmg};
 use super::motion::Particulars;
-use super::propeller::OpenWater;
 use super::simulator::{AddedMass, Truth};
-use super::slipstream::{Propeller, Rudder};
 
 /// Sea water \[kg/m^3\].
 pub const SEA_WATER: f64 = 1025.0;

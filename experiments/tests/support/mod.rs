@@ -1,12 +1,16 @@
 //! What several tests of the experiments need: the program, built from the source as it is.
 //! No test is here.
 
-// Helpers of tests may unwrap.
-#![allow(clippy::unwrap_used)]
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
+
+/// Held while a campaign runs: each takes all processors, and its limits of time suppose that no other one does.
+pub fn alone() -> MutexGuard<'static, ()> {
+    static CAMPAIGN: Mutex<()> = Mutex::new(());
+    CAMPAIGN.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// The program, built if it is missing or older than its source: `cargo test --workspace` has built it.
 pub fn program() -> PathBuf {

@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn residuals_one_by_one_add_up_to_cost_gradient_and_gauss_newton() {
-        let example = crate::demo::example().unwrap();
+        let example = crate::study::demo::example().unwrap();
         for derivatives in [Derivatives::Lanes, Derivatives::NumDual] {
             let options = FitSettings { derivatives, ..FitSettings::default() }.cost_options();
             let cost = Cost::new(&example.model, &example.train, options).unwrap();
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn what_a_residual_compares_is_where_its_value_was_measured() {
-        let example = crate::demo::example().unwrap();
+        let example = crate::study::demo::example().unwrap();
         let mut runs = example.train[..3].to_vec();
         runs[1].measured.iter_mut().for_each(|m| m[4] = None);
         runs[2].measured[7][0] = None;

@@ -5,8 +5,8 @@ use super::law::law;
 use super::names::about;
 use super::phrases::{adequacy_words, amplitude, p_value};
 use crate::diagnose::Diagnosis;
-use crate::diagnose::finding::Amplitude;
-use crate::diagnose::sides::Sides;
+use crate::diagnose::law::sides::Sides;
+use crate::diagnose::proof::finding::Amplitude;
 use crate::numerals::sig;
 use crate::report::units::Units;
 

@@ -6,8 +6,8 @@ use super::phrases::p_value;
 use super::quantity::quantity;
 #[cfg(feature = "plot")]
 use crate::diagnose::Diagnosis;
-use crate::diagnose::grade::LawGrade;
 use crate::diagnose::law::{Law, LawTerm, Visited};
+use crate::diagnose::proof::grade::LawGrade;
 use crate::numerals::{interval, sig};
 #[cfg(feature = "plot")]
 use crate::report::html::Section;

@@ -3,8 +3,8 @@
 
 use super::phrases::{equations, forces, p_value, percent, window};
 use crate::diagnose::Diagnosis;
-use crate::diagnose::place::Place;
-use crate::diagnose::push::Window;
+use crate::diagnose::evidence::place::Place;
+use crate::diagnose::evidence::push::Window;
 use crate::numerals::fixed;
 use crate::physics::Kind;
 use crate::report::units::Units;

@@ -1,7 +1,7 @@
 //! The names of mechanisms and parameters, and the plain words for them.
 //! The catalogue holds both; only what it does not hold is worded here.
 
-use crate::diagnose::finding::{GENERIC, PUSH, PUSH_TITLE};
+use crate::diagnose::proof::finding::{GENERIC, PUSH, PUSH_TITLE};
 use crate::model::Model;
 use crate::terms::CATALOGUE;
 

@@ -1,9 +1,9 @@
 //! Phrases that several parts of a diagnosis share: p-values, shares, amplitudes and forces with their intervals.
 //! Which of them are written, and about what, is decided in the parts.
 
-use crate::diagnose::finding::Amplitude;
-use crate::diagnose::locate::EquationShare;
-use crate::diagnose::push::Window;
+use crate::diagnose::evidence::locate::EquationShare;
+use crate::diagnose::evidence::push::Window;
+use crate::diagnose::proof::finding::Amplitude;
 use crate::numerals::{fixed, sig};
 use crate::report::units::{EQUATIONS, Units};
 

@@ -3,7 +3,7 @@
 
 use super::phrases::percent;
 use crate::diagnose::Diagnosis;
-use crate::diagnose::unseen::FindingProof;
+use crate::diagnose::proof::unseen::FindingProof;
 use crate::numerals::{DASH, fixed, number_of, sig};
 
 /// A cVDM in words.

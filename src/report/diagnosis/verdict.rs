@@ -4,12 +4,12 @@
 use super::names::title_of;
 use super::phrases::{amplitude, p_value, percent};
 use super::proof::gains;
-use crate::audit::Issue;
-use crate::diagnose::calibrate::ErrorRates;
-use crate::diagnose::stability::Stability;
+use crate::diagnose::answer::calibrate::ErrorRates;
+use crate::diagnose::proof::stability::Stability;
 use crate::diagnose::{Diagnosis, Finding, Grade, Verdict};
 use crate::numerals::{fixed, number_of, sig};
 use crate::physics::Kind;
+use crate::recording::audit::Issue;
 use crate::report::units::Units;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -275,8 +275,8 @@ fn size_of(f: &Finding, session: Option<&str>, units: Units) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::audit::Severity;
     use crate::recording::Channel;
+    use crate::recording::audit::Severity;
 
     #[test]
     fn every_issue_to_correct_is_written_and_only_notes_beyond_two_of_a_kind_are_counted() {

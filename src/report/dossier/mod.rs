@@ -1,6 +1,7 @@
 //! A dossier for people: a summary for the terminal and one HTML page, both read from the JSON document.
-//! It computes nothing beyond units, and says nothing that the document does not hold.
+//! It computes nothing beyond units, and says nothing that the document does not hold; the document is made in [`content`].
 
+pub mod content;
 #[cfg(feature = "plot")]
 mod page;
 #[cfg(feature = "plot")]

@@ -1,8 +1,8 @@
 //! A dossier in a few lines for the terminal: claim, errors on test runs, checks, causes, and what is missing.
 //! The page has the rest.
 
-use crate::dossier::Dossier;
 use crate::numerals::{number_of, sig};
+use crate::report::dossier::content::Dossier;
 use crate::report::table::Table;
 
 /// The summary.

@@ -1,9 +1,9 @@
 //! What is measured on a trial, drawn into its figure: advance, transfer and tactical diameter on a circle, overshoots on a zigzag.
 //! The measures are those of the trial; nothing is measured here.
 
-use crate::maneuver::{Intervals, Side, Track, Trial, Turning, Zigzag};
+use crate::evaluate::maneuver::{Intervals, Side, Track, Trial, Turning, Zigzag};
 use crate::numerals::{fixed, sig};
-use crate::plot::{Color, Layer, Marker, east_north};
+use crate::report::plot::{Color, Layer, Marker, east_north};
 
 /// The state of a track at a time \[s\], or the last one before it.
 fn state_at(track: &Track, time: f64) -> Option<[f64; 6]> {

@@ -2,9 +2,9 @@
 //! Nothing is computed here beyond units; measures are in `tables`.
 
 use super::annotate::{circles, overshoots};
-use crate::maneuver::{Side, Stopping, Track, Trial, Turning, Zigzag};
+use crate::evaluate::maneuver::{Side, Stopping, Track, Trial, Turning, Zigzag};
 use crate::numerals::sig;
-use crate::plot::{Axis, BLUE, Color, Figure, GREY, Layer, Legend, Panel, VERMILLION, east_north};
+use crate::report::plot::{Axis, BLUE, Color, Figure, GREY, Layer, Legend, Panel, VERMILLION, east_north};
 use crate::ship::Ship;
 
 /// Colour of a side.

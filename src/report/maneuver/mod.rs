@@ -1,5 +1,5 @@
 //! Trials for people: figures, tables and notes.
-//! The trials and their measures are [`crate::maneuver`]'s.
+//! The trials and their measures are [`crate::evaluate::maneuver`]'s.
 
 #[cfg(feature = "plot")]
 mod annotate;

@@ -1,8 +1,8 @@
 //! Trials in words and numbers: measures in ship lengths, criteria, notes, and the track as CSV.
 //! It converts units and computes nothing else.
 
-use crate::maneuver::imo::{Criterion, SHORTEST};
-use crate::maneuver::{Ended, Measured, Stopping, Track, Trial, Turning, Zigzag};
+use crate::evaluate::maneuver::imo::{Criterion, SHORTEST};
+use crate::evaluate::maneuver::{Ended, Measured, Stopping, Track, Trial, Turning, Zigzag};
 use crate::numerals::{DASH, fixed, sig};
 use crate::report::table::Table;
 use crate::ship::Ship;

@@ -1,7 +1,7 @@
 //! Which scores of a campaign are compared with each other: selections of cases, rival methods and models, families and colours.
 //! It counts nothing.
 
-use trimtab::plot::{BASELINE, BLUE, Color, FITTED, GREY, ORACLE, ORANGE, PURPLE, SKY};
+use trimtab::report::plot::{BASELINE, BLUE, Color, FITTED, GREY, ORACLE, ORANGE, PURPLE, SKY};
 
 use super::plan::OTHER_HULLS;
 use crate::conceal::family::Family;

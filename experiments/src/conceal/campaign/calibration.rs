@@ -1,8 +1,8 @@
 //! The figure of calibration over many studies: nominal levels against the rates that were measured on concealed cases.
 //! It only counts and draws.
 
-use trimtab::plot::{Axis, BLUE, Figure, GREEN, LIMIT, Layer, ORANGE, PURPLE, Panel, SKY};
-use trimtab::statistics::{Share, normal_quantile};
+use trimtab::numbers::statistics::{Share, normal_quantile};
+use trimtab::report::plot::{Axis, BLUE, Figure, GREEN, LIMIT, Layer, ORANGE, PURPLE, Panel, SKY};
 
 use super::arms::{nulls, reached};
 use crate::conceal::judge::score::Score;

@@ -3,12 +3,12 @@
 
 use std::collections::BTreeSet;
 
-use trimtab::plot::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, Panel};
+use trimtab::report::plot::{Axis, BLUE, Color, Figure, GREEN, LIMIT, Layer, ORANGE, Panel};
 
 use super::arms::{LOPSIDED, MODELS, Question, SHOWN, WAYS, arm, lopsided, named_right, reached, single};
 use super::plan::OTHER_HULLS;
 use crate::conceal::judge::score::Score;
-use trimtab::statistics::{Share, median};
+use trimtab::numbers::statistics::{Share, median};
 
 /// Strengths of the single effects.
 const STEPS: [f64; 4] = [3.0, 6.0, 12.0, 24.0];

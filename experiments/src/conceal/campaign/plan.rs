@@ -1,10 +1,10 @@
 //! The plan of the campaign: which concealed cases are made, by arms, each with a key and a seed of its own.
 //! It makes no case.
 
-use crate::conceal::design::Design;
 use crate::conceal::effects::catalogue::{catalogue, find};
 use crate::conceal::effects::effect::{Class, Entry};
 use crate::conceal::family::Family;
+use crate::conceal::sailing::design::Design;
 use crate::conceal::seal::digest;
 use crate::conceal::spec::{Background, Spec, Strength};
 

@@ -8,7 +8,7 @@ use super::arms::{
 };
 use super::plan::OTHERS;
 use crate::conceal::judge::score::Score;
-use trimtab::statistics::{Share, mean, median};
+use trimtab::numbers::statistics::{Share, mean, median};
 
 /// The result of one line.
 #[derive(Debug, Clone, Copy, PartialEq)]

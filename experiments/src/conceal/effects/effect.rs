@@ -4,9 +4,9 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use crate::conceal::craft::Craft;
-use crate::conceal::track::Fine;
-use crate::conceal::tweak::Tweak;
+use crate::conceal::sailing::craft::Craft;
+use crate::conceal::sailing::track::Fine;
+use crate::conceal::sailing::tweak::Tweak;
 use crate::truth::motion::{Inputs, State};
 
 /// What kind of answer an effect calls for.

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use super::effect::{ChannelOf, Class, Compare, Draw, Entry, FORCE, Instant, Physics, vector};
-use crate::conceal::tweak::Tweak;
+use crate::conceal::sailing::tweak::Tweak;
 
 const AIR: f64 = 1.225;
 const GRAVITY: f64 = 9.806_65;

@@ -2,8 +2,8 @@
 //! No form here is the fitter's: strips with Yoshimura's weights, plain cubic, second-order roll, a thruster with a cut-off.
 
 use super::effect::{ChannelOf, Class, Compare, Draw, Entry, FORCE, Instant, Physics, Window, ramp};
-use crate::conceal::tweak::Tweak;
-use crate::truth::crossflow;
+use crate::conceal::sailing::tweak::Tweak;
+use crate::truth::laws::crossflow;
 
 const GRAVITY: f64 = 9.806_65;
 

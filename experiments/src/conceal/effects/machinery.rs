@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use super::effect::{Class, Compare, Draw, Entry, FORCE, Instant, Physics, ramp};
-use crate::conceal::tweak::Tweak;
+use crate::conceal::sailing::tweak::Tweak;
 use crate::truth::motion::{Inputs, State};
 
 /// Side force of the screw, right-handed: astern to port at the stern.

@@ -2,7 +2,7 @@
 //! Random sensor noise is not here: it is in every case (`noise`).
 
 use super::effect::{Compare, Entry, Physics, SENSOR, vector};
-use crate::conceal::track::Fine;
+use crate::conceal::sailing::track::Fine;
 
 /// A constant added to one entry of the state.
 struct Bias {

@@ -163,7 +163,7 @@ impl Diagnosis {
 mod tests {
     use super::*;
     use crate::conceal::judge::rules::judge;
-    use crate::conceal::{case::Case, design::Design, family::Family, spec::Spec, strength::ForceMeter};
+    use crate::conceal::{case::Case, family::Family, sailing::design::Design, spec::Spec, strength::ForceMeter};
     use proptest::prelude::*;
     use std::sync::LazyLock;
 

@@ -6,10 +6,10 @@ use rand_chacha::ChaCha8Rng;
 use std::fmt::Write;
 use trimtab::fit::{Cost, CostOptions, Derivatives, FitSettings, Hessian};
 use trimtab::model::Model;
-use trimtab::numerals::{DASH, fixed, sig};
-use trimtab::plot::{Axis, BLUE, Color, Figure, Layer, Legend, ORANGE, Panel, SKY, VERMILLION};
+use trimtab::numbers::numerals::{DASH, fixed, sig};
 use trimtab::recording::Run;
 use trimtab::report::Table;
+use trimtab::report::plot::{Axis, BLUE, Color, Figure, Layer, Legend, ORANGE, Panel, SKY, VERMILLION};
 
 use super::measure::{Course, INTEGRATION, course, of_rounds};
 use crate::freed::free_more;
@@ -130,8 +130,11 @@ fn unit(model: &Model, runs: &[Run]) -> Result<[f64; 2], PaperError> {
     let options = CostOptions { integration: INTEGRATION, ..FitSettings::default().cost_options() };
     let cost = Cost::new(model, runs, options)?;
     let p: Vec<f64> = model.free().iter().map(|i| model.parameters[*i].value).collect();
+    let alone = || {
+        std::hint::black_box(cost.value(&p));
+    };
     let mut simulated: [Task; 2] = [
-        ("cost".to_owned(), Box::new(|| drop(std::hint::black_box(cost.value(&p))))),
+        ("cost".to_owned(), Box::new(alone)),
         ("gradient".to_owned(), Box::new(|| drop(std::hint::black_box(cost.with_gradient(&p))))),
     ];
     let times = least(UNIT_ROUNDS, &mut simulated);

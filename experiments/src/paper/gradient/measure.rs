@@ -3,8 +3,8 @@
 
 use trimtab::fit::{Cost, CostOptions, Derivatives, FitSettings, Hessian, Progress, fit};
 use trimtab::model::Model;
-use trimtab::plot::{BLUE, Color, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
 use trimtab::recording::Run;
+use trimtab::report::plot::{BLUE, Color, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
 use trimtab::simulate::{Integration, Method};
 
 use crate::interleaved::{Repeats, Task, processor_time, repeats};

@@ -2,10 +2,10 @@
 //! It computes nothing but ratios.
 
 use trimtab::model::Model;
-use trimtab::numerals::{DASH, fixed, sig};
-use trimtab::plot::{Axis, BLUE, Figure, Layer, Legend, ORANGE, Panel, SKY, VERMILLION};
+use trimtab::numbers::numerals::{DASH, fixed, sig};
 use trimtab::recording::Run;
 use trimtab::report::Table;
+use trimtab::report::plot::{Axis, BLUE, Figure, Layer, Legend, ORANGE, Panel, SKY, VERMILLION};
 
 use super::measure::{Course, WAYS, Way, accuracies, courses, gradient_times};
 use crate::paper::artefact::Artefact;

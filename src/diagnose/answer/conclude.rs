@@ -1,0 +1,106 @@
+//! The verdict once every finding has its grade: what is left of the decision on the tests, as a pure function.
+//! It estimates nothing and knows no runs.
+
+use crate::diagnose::proof::finding::Finding;
+use crate::diagnose::proof::grade::Grade;
+use crate::diagnose::search::decide::{Verdict, named};
+
+/// The verdict, from the one that the tests of the kept model give, the grades of what was withdrawn, whether a mechanism led and was
+/// rejected for its own coefficients, and whether the base holds.
+///
+/// A model that does not follow the recordings is no base for any name. What unseen runs refute was significant on the training runs:
+/// something is there, but not this law; so it is with what was rejected. What is too small to matter, or not determined, leaves nothing that could be named.
+pub fn conclude(decided: Verdict, withdrawn: &[Grade], rejected: bool, base_holds: bool) -> Verdict {
+    match decided {
+        Verdict::Sensor | Verdict::Numerics if base_holds => decided,
+        _ if !base_holds => Verdict::Insufficient,
+        Verdict::NothingMissing | Verdict::Random
+            if rejected || withdrawn.iter().any(|g| matches!(g, Grade::Refuted | Grade::RefutedTogether)) =>
+        {
+            Verdict::NotInCatalogue
+        }
+        // Something fixed on the earth or to one side, and no heading that tells which.
+        Verdict::NotInCatalogue if withdrawn.contains(&Grade::NotIsolated) => Verdict::Insufficient,
+        _ => decided,
+    }
+}
+
+/// Puts what unseen runs confirm before what is suspected, each in the order in which it was found, and gives the verdict that the first
+/// of them makes: a suspected sensor does not stand above a confirmed force.
+pub fn lead(decided: Verdict, findings: &mut [Finding]) -> Verdict {
+    findings.sort_by_key(|f| f.grade != Grade::Confirmed);
+    match (decided, findings.first()) {
+        (Verdict::Named | Verdict::OneOf | Verdict::Sensor, Some(first)) => {
+            named(first.kind, first.confidence_set.len())
+        }
+        _ => decided,
+    }
+}
+
+/// What is confirmed by itself is suspected where all findings together make unseen runs worse than the base model: each may then stand
+/// for a part of something else, and what is not written is not confirmed.
+pub fn cap(findings: &mut [Finding], worse_together: bool) {
+    let confirmed = findings.iter_mut().filter(|f| worse_together && f.grade == Grade::Confirmed);
+    confirmed.for_each(|f| f.grade = Grade::Suspected);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::finding;
+    use crate::physics::Kind;
+
+    #[test]
+    fn a_confirmed_force_leads_a_suspected_sensor() {
+        let of = |name: &str, kind: Kind, grade: Grade| Finding { kind, grade, ..finding(name, name, &[name]) };
+        let clocks = |grade: Grade| of("time_skew", Kind::Sensor, grade);
+        let current = |grade: Grade| of("current", Kind::Environment, grade);
+        let order = |mut findings: Vec<Finding>| {
+            let verdict = lead(Verdict::Sensor, &mut findings);
+            (verdict, findings.iter().map(|f| f.mechanism.clone()).collect::<Vec<_>>())
+        };
+        let names = |a: &str, b: &str| vec![a.to_owned(), b.to_owned()];
+        let (sure, maybe) = (Grade::Confirmed, Grade::Suspected);
+        assert_eq!(order(vec![clocks(maybe), current(sure)]), (Verdict::Named, names("current", "time_skew")));
+        for grades in [[sure, sure], [maybe, maybe], [sure, maybe]] {
+            let found = order(vec![clocks(grades[0]), current(grades[1])]);
+            assert_eq!(found, (Verdict::Sensor, names("time_skew", "current")));
+        }
+        let mut both = [clocks(maybe), finding("current", "current", &["current", "mean_wind"])];
+        both[1].grade = sure;
+        assert_eq!(lead(Verdict::Sensor, &mut both), Verdict::OneOf);
+        assert_eq!(lead(Verdict::Insufficient, &mut both), Verdict::Insufficient);
+    }
+
+    #[test]
+    fn a_refuted_name_leaves_something_that_is_not_in_the_catalogue() {
+        for quiet in [Verdict::NothingMissing, Verdict::Random] {
+            assert_eq!(conclude(quiet, &[Grade::Immaterial, Grade::Refuted], false, true), Verdict::NotInCatalogue);
+            assert_eq!(conclude(quiet, &[], true, true), Verdict::NotInCatalogue);
+            for grade in [Grade::Immaterial, Grade::Undetermined] {
+                assert_eq!(conclude(quiet, &[grade], false, true), quiet);
+            }
+        }
+        assert_eq!(conclude(Verdict::NotInCatalogue, &[Grade::NotIsolated], false, true), Verdict::Insufficient);
+        assert_eq!(conclude(Verdict::Named, &[Grade::Refuted], true, true), Verdict::Named);
+        assert_eq!(conclude(Verdict::Insufficient, &[Grade::Refuted], false, true), Verdict::Insufficient);
+    }
+
+    #[test]
+    fn nothing_is_confirmed_where_all_findings_together_make_unseen_runs_worse() {
+        let of = |grade: Grade| Finding { grade, ..finding("current", "current", &["current"]) };
+        for (worse, left) in [(true, Grade::Suspected), (false, Grade::Confirmed)] {
+            let mut findings = [of(Grade::Confirmed), of(Grade::Suspected)];
+            cap(&mut findings, worse);
+            assert_eq!(findings.map(|f| f.grade), [left, Grade::Suspected]);
+        }
+    }
+
+    #[test]
+    fn nothing_is_concluded_on_a_base_that_does_not_hold() {
+        for decided in [Verdict::Named, Verdict::OneOf, Verdict::NothingMissing, Verdict::NotInCatalogue] {
+            assert_eq!(conclude(decided, &[], false, false), Verdict::Insufficient);
+            assert_eq!(conclude(decided, &[], false, true), decided);
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! The answer: what is named and withdrawn, the verdict, the study's error rates, and the document that holds all of it.
+//! No mechanism is searched for here.
+//!
+//! | file | what |
+//! |---|---|
+//! | `analysis` | one analysis with its verdict, and its repetition on transformed recordings |
+//! | `conclude` | the verdict, a pure function of grades and tests |
+//! | [`calibrate`] | error rates on simulated recordings |
+//! | [`sailed`] | runs as recorded and simulated, for pictures |
+//! | [`diagnosis`] | the document |
+//! | `summary`, `words` | its lists; the verdict in a sentence |
+
+pub(super) mod analysis;
+pub mod calibrate;
+mod conclude;
+pub mod diagnosis;
+pub mod sailed;
+pub(crate) mod summary;
+pub(super) mod words;

@@ -1,0 +1,290 @@
+//! The grade of a finding as a pure function of its tests: what the unseen runs, its interval and its size say of it.
+//! It estimates nothing and knows no runs; every number it compares with is in the settings.
+
+use crate::diagnose::settings::{FORM_TOLERANCE, MATERIAL_SHARE, RESOLVED_SAMPLES};
+use serde::Serialize;
+
+/// How well a finding is supported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Grade {
+    /// Unseen runs are better with it: by one of log-likelihood and free simulation beyond chance, and not worse by the other.
+    Confirmed,
+    /// The training runs speak for it; unseen runs cannot tell, or there are none.
+    Suspected,
+    /// Unseen runs are worse with it by log-likelihood or free simulation, the interval below zero: it is not named and not written to the
+    /// improved model.
+    Refuted,
+    /// Unseen runs are not worse with it by itself, but with all that was found together, and it does least for them of what was found: it is
+    /// neither named nor written.
+    RefutedTogether,
+    /// Significant, but it changes predictions by less than matters, or a clock by less than is resolved.
+    Immaterial,
+    /// The interval of its size does not exclude zero.
+    Undetermined,
+    /// Weather nearly all of whose effect the ship's own parameters and the zeros and scales of its sensors can take over, on the headings
+    /// that were sailed.
+    NotIsolated,
+    /// A clock, a point of the positions or an actuator that is late, and explicit Euler steps of one sample period explain it as well:
+    /// these recordings cannot tell it from a coarse simulation or from values held until the next sample.
+    EulerSteps,
+    /// Most repetitions on the same recordings told otherwise do not find it.
+    Unstable,
+}
+
+impl Grade {
+    /// Whether a finding of this grade is named.
+    pub fn is_named(self) -> bool {
+        matches!(self, Self::Confirmed | Self::Suspected)
+    }
+
+    /// Whether a finding of this grade may stay in the model, though it is not named: it is there, and what it does would be taken for
+    /// something else.
+    pub fn may_be_carried(self) -> bool {
+        matches!(self, Self::Immaterial | Self::EulerSteps)
+    }
+}
+
+/// A gain on unseen runs, positive for the better, with its 95 % interval over recordings where there are enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GainTest {
+    /// The gain.
+    pub gain: f64,
+    /// Its interval.
+    pub ci95: Option<[f64; 2]>,
+}
+
+impl GainTest {
+    pub(in crate::diagnose) fn is_above_zero(&self) -> bool {
+        self.ci95.is_some_and(|[low, _]| low > 0.0)
+    }
+
+    pub(in crate::diagnose) fn is_below_zero(&self) -> bool {
+        self.ci95.is_some_and(|[_, high]| high < 0.0)
+    }
+}
+
+/// What is known of one finding beside its significance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FindingTests {
+    /// Whether the interval of its size excludes zero, whichever of its parameters brings it.
+    pub excludes_zero: bool,
+    /// For weather, the share of its information that is left beside the ship's own parameters and the errors of its sensors, in the worst
+    /// direction; 1 for all else.
+    pub isolated: f64,
+    /// By how much it changes predictions of the training runs, as a share of the error there is, in the channel where that is most.
+    pub change: f64,
+    /// The least time in its interval by which it shifts a sensor's clock, in sample periods, where it does so.
+    pub shift: Option<f64>,
+    /// For a clock and for an actuator, the share of its gain in log-posterior that explicit Euler steps of one sample period take over; 0
+    /// for all else.
+    pub by_steps: f64,
+    /// Gain in log-likelihood of unseen runs.
+    pub likelihood: Option<GainTest>,
+    /// Improvement of the free simulation of unseen runs.
+    pub prediction: Option<GainTest>,
+    /// For an error of a sensor, gain in log-likelihood of what the sensors of unseen runs say of each other, where they tell.
+    pub agreement: Option<GainTest>,
+}
+
+/// Whether a mechanism that so many of the repetitions find is not stable enough to be named: fewer than half of them.
+pub fn is_unstable(found: usize, repetitions: usize) -> bool {
+    2 * found < repetitions
+}
+
+impl FindingTests {
+    /// Whether unseen runs are worse with it beyond chance by one measure at least: what simulates them worse is no improvement, however
+    /// likely it makes them, and nothing is named beside its refutation.
+    pub fn is_refuted(&self) -> bool {
+        refute(&[self.likelihood, self.prediction, self.agreement])
+    }
+
+    /// Whether it is too small to matter: a clock by the sensor's own resolution, all else by how little it changes predictions. A position
+    /// that is late by many samples is off by less than a free simulation is after a minute, and late all the same.
+    fn is_immaterial(&self) -> bool {
+        self.shift.map_or(self.change < MATERIAL_SHARE, |s| s < RESOLVED_SAMPLES)
+    }
+}
+
+/// Whether unseen runs are worse beyond chance by one measure.
+fn refute(measures: &[Option<GainTest>]) -> bool {
+    measures.iter().flatten().any(GainTest::is_below_zero)
+}
+
+/// Whether unseen runs are better: by one measure beyond chance, and worse by none, of log-likelihood and free simulation, or, for an error
+/// of a sensor that they show themselves, by what their sensors say of each other.
+fn confirm(likelihood: Option<GainTest>, prediction: Option<GainTest>, agreement: Option<GainTest>) -> bool {
+    let is_shown = agreement.is_some_and(|g| g.is_above_zero());
+    let is_judged = is_shown || likelihood.is_some() && prediction.is_some();
+    let measures = [likelihood, prediction, agreement];
+    let mut known = measures.iter().flatten();
+    is_judged && known.clone().any(GainTest::is_above_zero) && known.all(|g| g.gain >= 0.0)
+}
+
+/// How well a law for what the catalogue does not hold is supported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LawGrade {
+    /// Unseen runs are better with it, as for [`Grade::Confirmed`].
+    Confirmed,
+    /// The training runs speak for it; unseen runs cannot tell, or there are none.
+    Exploratory,
+    /// Unseen runs are worse with it, as for [`Grade::Refuted`].
+    Refuted,
+}
+
+impl LawGrade {
+    /// The grade that gains on unseen runs give.
+    pub fn new(likelihood: Option<GainTest>, prediction: Option<GainTest>) -> Self {
+        if refute(&[likelihood, prediction]) {
+            Self::Refuted
+        } else if confirm(likelihood, prediction, None) {
+            Self::Confirmed
+        } else {
+            Self::Exploratory
+        }
+    }
+}
+
+/// The grade that the tests of a finding give it. What is determined and too small to matter is neither confirmed nor refuted.
+pub fn grade(tests: &FindingTests) -> Grade {
+    let small = tests.excludes_zero && tests.isolated >= FORM_TOLERANCE && tests.is_immaterial();
+    if small {
+        Grade::Immaterial
+    } else if tests.is_refuted() {
+        Grade::Refuted
+    } else if !tests.excludes_zero {
+        Grade::Undetermined
+    } else if tests.isolated < FORM_TOLERANCE {
+        // What is left is no more than the form of the ship's own forces is known.
+        Grade::NotIsolated
+    } else if tests.by_steps > 1.0 - FORM_TOLERANCE {
+        Grade::EulerSteps
+    } else if confirm(tests.likelihood, tests.prediction, tests.agreement) {
+        Grade::Confirmed
+    } else {
+        Grade::Suspected
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BETTER: Option<GainTest> = Some(GainTest { gain: 20.0, ci95: Some([5.0, 35.0]) });
+    const UNDECIDED: Option<GainTest> = Some(GainTest { gain: 3.0, ci95: Some([-5.0, 11.0]) });
+    const WORSE: Option<GainTest> = Some(GainTest { gain: -9.0, ci95: Some([-15.0, -3.0]) });
+
+    fn sound() -> FindingTests {
+        FindingTests {
+            excludes_zero: true,
+            isolated: 1.0,
+            change: 0.5,
+            shift: None,
+            by_steps: 0.0,
+            likelihood: BETTER,
+            prediction: BETTER,
+            agreement: None,
+        }
+    }
+
+    #[test]
+    fn a_sensors_error_is_confirmed_by_the_sensors_of_unseen_runs_alone_and_refuted_by_them() {
+        let alone = |agreement| FindingTests { likelihood: None, prediction: None, agreement, ..sound() };
+        assert_eq!(grade(&alone(BETTER)), Grade::Confirmed);
+        assert_eq!(grade(&alone(UNDECIDED)), Grade::Suspected);
+        assert_eq!(grade(&alone(WORSE)), Grade::Refuted);
+        assert_eq!(grade(&FindingTests { agreement: WORSE, ..sound() }), Grade::Refuted);
+        assert_eq!(grade(&FindingTests { agreement: UNDECIDED, ..sound() }), Grade::Confirmed);
+        let little_worse = Some(GainTest { gain: -4.0, ci95: Some([-9.0, 1.0]) });
+        assert_eq!(grade(&FindingTests { agreement: little_worse, ..sound() }), Grade::Suspected);
+        assert_eq!(grade(&FindingTests { excludes_zero: false, ..alone(BETTER) }), Grade::Undetermined);
+    }
+
+    #[test]
+    fn a_finding_is_confirmed_where_unseen_runs_are_better_by_one_measure_and_not_worse_by_the_other() {
+        assert_eq!(grade(&sound()), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { prediction: UNDECIDED, ..sound() }), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { likelihood: UNDECIDED, ..sound() }), Grade::Confirmed);
+        let little_worse = Some(GainTest { gain: -0.01, ci95: Some([-0.2, 0.1]) });
+        assert_eq!(grade(&FindingTests { prediction: little_worse, ..sound() }), Grade::Suspected);
+        assert_eq!(grade(&FindingTests { likelihood: little_worse, ..sound() }), Grade::Suspected);
+    }
+
+    #[test]
+    fn a_clock_matters_by_its_resolution_and_all_else_by_what_it_changes() {
+        let small = FindingTests { change: 0.01, ..sound() };
+        assert_eq!(grade(&small), Grade::Immaterial);
+        assert_eq!(grade(&FindingTests { shift: Some(6.0), ..small }), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { shift: Some(0.3), ..sound() }), Grade::Immaterial);
+    }
+
+    #[test]
+    fn without_unseen_runs_or_with_too_few_it_is_suspected() {
+        for undecided in [None, UNDECIDED, Some(GainTest { gain: 50.0, ci95: None })] {
+            let tests = FindingTests { likelihood: undecided, prediction: undecided, ..sound() };
+            assert_eq!(grade(&tests), Grade::Suspected);
+        }
+        for tests in [FindingTests { likelihood: None, ..sound() }, FindingTests { prediction: None, ..sound() }] {
+            assert_eq!(grade(&tests), Grade::Suspected);
+        }
+    }
+
+    #[test]
+    fn unseen_runs_that_are_worse_by_one_measure_refute_it_whatever_the_other_says() {
+        let little_worse = Some(GainTest { gain: -0.01, ci95: Some([-0.2, 0.1]) });
+        for tests in [
+            FindingTests { likelihood: WORSE, prediction: WORSE, ..sound() },
+            FindingTests { likelihood: WORSE, prediction: little_worse, ..sound() },
+            FindingTests { likelihood: little_worse, prediction: WORSE, ..sound() },
+            FindingTests { likelihood: UNDECIDED, prediction: WORSE, ..sound() },
+            FindingTests { likelihood: WORSE, prediction: UNDECIDED, ..sound() },
+            FindingTests { likelihood: WORSE, prediction: None, ..sound() },
+            FindingTests { likelihood: WORSE, ..sound() },
+            FindingTests { prediction: WORSE, ..sound() },
+            FindingTests { likelihood: WORSE, prediction: WORSE, excludes_zero: false, change: 0.0, ..sound() },
+        ] {
+            assert_eq!(grade(&tests), Grade::Refuted);
+        }
+    }
+
+    #[test]
+    fn unseen_runs_grade_a_law_as_they_grade_a_finding() {
+        let little_worse = Some(GainTest { gain: -0.01, ci95: Some([-0.2, 0.1]) });
+        let all = [None, BETTER, UNDECIDED, WORSE, little_worse];
+        for (likelihood, prediction) in all.iter().flat_map(|a| all.map(|b| (*a, b))) {
+            let expected = match grade(&FindingTests { likelihood, prediction, ..sound() }) {
+                Grade::Confirmed => LawGrade::Confirmed,
+                Grade::Refuted => LawGrade::Refuted,
+                _ => LawGrade::Exploratory,
+            };
+            assert_eq!(LawGrade::new(likelihood, prediction), expected, "{likelihood:?} {prediction:?}");
+        }
+        assert_eq!(LawGrade::new(BETTER, UNDECIDED), LawGrade::Confirmed);
+        assert_eq!(LawGrade::new(BETTER, WORSE), LawGrade::Refuted);
+        assert_eq!(LawGrade::new(None, None), LawGrade::Exploratory);
+    }
+
+    #[test]
+    fn an_interval_through_zero_and_a_change_too_small_to_matter_are_not_named() {
+        assert_eq!(grade(&FindingTests { excludes_zero: false, ..sound() }), Grade::Undetermined);
+        assert_eq!(grade(&FindingTests { isolated: 0.09, ..sound() }), Grade::NotIsolated);
+        assert_eq!(grade(&FindingTests { change: 0.049, ..sound() }), Grade::Immaterial);
+        assert_eq!(grade(&FindingTests { change: 0.05, ..sound() }), Grade::Confirmed);
+        // A clock that is off by less than half a sample.
+        assert_eq!(grade(&FindingTests { shift: Some(0.49), ..sound() }), Grade::Immaterial);
+        assert_eq!(grade(&FindingTests { shift: Some(0.5), ..sound() }), Grade::Confirmed);
+        // One that steps of a coarse simulation explain as well.
+        let clock = FindingTests { shift: Some(1.0), ..sound() };
+        assert_eq!(grade(&FindingTests { by_steps: 0.89, ..clock }), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { by_steps: 0.91, ..clock }), Grade::EulerSteps);
+        assert_eq!(grade(&FindingTests { by_steps: 0.91, shift: Some(0.49), ..clock }), Grade::Immaterial);
+        assert!([Grade::Immaterial, Grade::EulerSteps].iter().all(|g| g.may_be_carried() && !g.is_named()));
+        assert!([Grade::Refuted, Grade::Suspected, Grade::Undetermined].iter().all(|g| !g.may_be_carried()));
+        // What is too small to matter is not refuted either, but it is not kept against the unseen runs.
+        let small = FindingTests { change: 0.01, likelihood: WORSE, prediction: WORSE, ..sound() };
+        assert!(grade(&small) == Grade::Immaterial && small.is_refuted());
+        assert!(is_unstable(2, 6) && !is_unstable(3, 6) && !is_unstable(0, 0) && !Grade::Unstable.is_named());
+        assert!(!Grade::Immaterial.is_named() && !Grade::Undetermined.is_named() && Grade::Suspected.is_named());
+    }
+}

@@ -1,0 +1,339 @@
+//! What every selected mechanism is worth by itself: the model with it against the model refitted without it, on the training runs
+//! and on unseen ones. It computes the tests of a finding; the grade is a pure function of them.
+
+use super::describe::{Intervals, mechanism_finding, push_finding, sensor_findings};
+use super::finding::{Amplitude, Finding, are_times};
+use super::grade::{FindingTests, Grade, grade};
+use super::influence::{Following, change};
+use super::prove::mean_cvdm;
+use super::unseen::{FindingProof, agreement};
+use crate::diagnose::search::base::Question;
+use crate::diagnose::search::event::BaseTests;
+use crate::diagnose::search::problem::Problem;
+use crate::diagnose::search::residual::{Kept, Left};
+use crate::diagnose::search::selected::Selected;
+use crate::diagnose::settings::{AS_IT_IS, REFIT, SETTLE};
+use crate::evaluate::predict_all;
+use crate::likelihood::estimate::Estimate;
+use crate::physics::{Kind, Mechanism};
+use crate::recording::Run;
+use crate::simulate::{Integration, MOST_SUBSTEPS, Method, Trajectory};
+use crate::statistics::median;
+
+/// Clocks that differ, in the catalogue.
+const CLOCKS: &str = "time_skew";
+
+/// A selected mechanism with what speaks for and against it.
+pub struct Weight {
+    /// The grade.
+    pub grade: Grade,
+    /// What the grade follows from.
+    pub tests: FindingTests,
+    /// Unseen runs.
+    pub proof: Option<FindingProof>,
+    /// The model without it, refitted.
+    pub without: Estimate,
+}
+
+impl Weight {
+    /// Whether it stays in the model, though it is not named: unseen runs must not speak against it.
+    pub fn is_carried(&self) -> bool {
+        self.grade.may_be_carried() && !self.tests.is_refuted()
+    }
+
+    /// Whether the sensors of unseen runs show it themselves.
+    fn is_shown(&self) -> bool {
+        self.proof.as_ref().is_some_and(FindingProof::is_shown)
+    }
+
+    /// How much it gains on unseen runs, for an order among those that are withdrawn.
+    fn gain(&self) -> f64 {
+        self.tests.likelihood.map_or(0.0, |g| g.gain)
+    }
+}
+
+/// Weighs every mechanism that is kept, in their order.
+pub fn weigh(question: &Question, kept: &Kept, held_out: &[Run]) -> Vec<Weight> {
+    let Some(left) = &kept.left else { return Vec::new() };
+    (question.progress)("weighing every finding by itself");
+    let (found, fit) = (&kept.selection.estimate, &kept.selection.tests.fit);
+    let intervals = Intervals::new(found, &fit.runs, &left.screen);
+    let with = predict_all(&found.model, &fit.runs, fit.integration);
+    kept.selection.mechanisms.iter().map(|m| weight(question, kept, m, &intervals, &with, held_out)).collect()
+}
+
+fn weight(
+    question: &Question,
+    kept: &Kept,
+    of: &Selected,
+    intervals: &Intervals,
+    with: &[Trajectory],
+    held_out: &[Run],
+) -> Weight {
+    let (tests, found) = (&kept.selection.tests, &kept.selection.estimate);
+    let (fit, candidate) = (&tests.fit, &tests.candidates[of.candidate]);
+    // Without the only mechanism the model is the base model, which is fitted already.
+    let without = if kept.selection.mechanisms.len() == 1 {
+        fit.estimate.clone()
+    } else {
+        let (model, free) = candidate.removed(found, &of.extent);
+        tests.problem(question.settings).estimate(&model, &free, &found.noise, REFIT)
+    };
+    let amplitudes = intervals.amplitudes(found, candidate, &of.extent);
+    let proof = (!held_out.is_empty()).then(|| proof(question, kept, of, &without, held_out));
+    let mut tests = FindingTests {
+        excludes_zero: intervals.excludes_zero(found, candidate, &of.extent),
+        isolated: isolated(tests, of),
+        change: change(&fit.runs, &predict_all(&without.model, &fit.runs, fit.integration), with),
+        shift: (candidate.mechanism.kind == Kind::Sensor).then(|| shift(&amplitudes, &fit.runs)).flatten(),
+        by_steps: 0.0,
+        likelihood: proof.as_ref().and_then(FindingProof::likelihood),
+        prediction: proof.as_ref().and_then(FindingProof::prediction),
+        agreement: proof.as_ref().and_then(FindingProof::agreement),
+    };
+    // Costs an estimate, and only what would be named needs it.
+    let like_a_clock = |m: &Mechanism| m.kind == Kind::Sensor && (m.name == CLOCKS || m.look_alikes.contains(&CLOCKS));
+    let may_be_steps = like_a_clock(candidate.mechanism) || candidate.mechanism.kind == Kind::Actuator;
+    if may_be_steps && grade(&tests).is_named() {
+        tests.by_steps = by_steps(question, kept, &without);
+    }
+    Weight { grade: grade(&tests), tests, proof, without }
+}
+
+/// A mechanism on unseen runs: an error of a sensor by what their sensors show themselves, all else against the model `without` it, refitted.
+fn proof(question: &Question, kept: &Kept, of: &Selected, without: &Estimate, held_out: &[Run]) -> FindingProof {
+    let (tests, found) = (&kept.selection.tests, &kept.selection.estimate);
+    let candidate = &tests.candidates[of.candidate];
+    let is_sensor = candidate.mechanism.kind == Kind::Sensor;
+    let (alone, _) = candidate.removed(found, &of.extent);
+    let asked = is_sensor.then(|| agreement(&alone, &found.model, held_out, &tests.candidates));
+    let agreement = asked.flatten();
+    if let Some(shown) = agreement.filter(|g| g.is_above_zero()) {
+        return FindingProof::shown(shown, held_out);
+    }
+    let judging = &question.settings.judging;
+    let integration = tests.fit.integration;
+    FindingProof::new(&without.model, &found.model, &found.noise, integration, held_out, judging).beside(agreement)
+}
+
+/// The least share of its information that is left to the weather of a set: what cannot be told from a member that the ship takes over is
+/// taken over with it. 1 for what is no weather.
+fn isolated(tests: &BaseTests, of: &Selected) -> f64 {
+    let is_weather = |i: &&usize| tests.candidates[**i].mechanism.is_weather();
+    let left = of.set.iter().filter(is_weather).map(|i| tests.screen.isolated(*i, &of.extent, &tests.candidates));
+    left.fold(1.0, f64::min)
+}
+
+/// The share of what a clock, a sensor's error like it or an actuator's lag gains over the model `without` it that explicit Euler steps of
+/// one sample period of the recordings gain in its place: with such steps positions are late by a sample and the ship answers its
+/// actuators late, and so it is where values are held until the next.
+fn by_steps(question: &Question, kept: &Kept, without: &Estimate) -> f64 {
+    let steps = median(kept.selection.tests.fit.runs.iter().map(|r| r.dt / r.recorded_dt)).unwrap_or(1.0);
+    let substeps = (steps.round() as usize).clamp(1, MOST_SUBSTEPS);
+    let fine = kept.selection.tests.problem(question.settings);
+    let coarse = Problem { integration: Integration { method: Method::Euler, substeps }, ..fine };
+    let found = &kept.selection.estimate;
+    // All three with noise estimated along, so that no reading is ahead for its rounds.
+    let settled = |p: &Problem, e: &Estimate| p.estimate(&e.model, &e.free, &found.noise, SETTLE).log_posterior;
+    let base = settled(&fine, without);
+    let gain = settled(&fine, found) - base;
+    if gain > 0.0 { ((settled(&coarse, without) - base) / gain).max(0.0) } else { 0.0 }
+}
+
+/// The least time by which a clock is off, in sample periods of the recordings: the end of its interval that is nearer to zero, of the
+/// largest of its parameters; `None` for what is no time.
+fn shift(amplitudes: &[Amplitude], runs: &[Run]) -> Option<f64> {
+    let period = median(runs.iter().map(|r| r.recorded_dt))?;
+    let least = |a: &Amplitude| f64::max(a.ci95[0], -a.ci95[1]).max(0.0);
+    are_times(amplitudes).then(|| amplitudes.iter().map(least).fold(0.0, f64::max) / period)
+}
+
+/// The mechanism that is withdrawn first: of those that their grade neither names nor keeps in the model, the one that gains least on
+/// unseen runs.
+pub fn weakest(weights: &[Weight]) -> Option<usize> {
+    let goes = |w: &Weight| !w.grade.is_named() && !w.is_carried();
+    let going = weights.iter().enumerate().filter(|(_, w)| goes(w));
+    going.min_by(|a, b| a.1.gain().total_cmp(&b.1.gain())).map(|(i, _)| i)
+}
+
+/// Where all that is kept makes unseen runs worse beyond chance, in the models that are written, and no part did so by itself, the part
+/// that does least for them: it is withdrawn first. What stands beside a name, a push too, must not refute it.
+pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight], held_out: &[Run]) -> Option<usize> {
+    if weights.is_empty() || held_out.is_empty() {
+        return None;
+    }
+    let (tests, judging) = (&kept.selection.tests, &question.settings.judging);
+    let written = |e: &Estimate| tests.problem(question.settings).within_limits(e);
+    let [base, found] = [&tests.fit.estimate, &kept.selection.estimate].map(written);
+    let proof = FindingProof::new(&base.model, &found.model, &found.noise, tests.fit.integration, held_out, judging);
+    let simulated = proof.prediction().is_some_and(|g| g.is_below_zero());
+    if !simulated && !proof.likelihood().is_some_and(|g| g.is_below_zero()) {
+        return None;
+    }
+    let index = does_least(weights, simulated)?;
+    if let [alone] = weights {
+        // It was weighed before, by models that need not keep inside their bounds.
+        (alone.grade, alone.proof) = (Grade::Refuted, Some(proof));
+    } else {
+        weights[index].grade = Grade::RefutedTogether;
+    }
+    Some(index)
+}
+
+/// What is kept, with the ship of the base model where all that the model has of it, named or not, are errors of sensors that the sensors of
+/// the unseen runs show themselves, and the ship that was refitted beside these errors simulates the unseen runs worse: it was never in
+/// question.
+pub fn with_ship_held(question: &Question, mut kept: Kept, weights: &[Weight], held_out: &[Run]) -> Kept {
+    if weights.is_empty() || !weights.iter().all(Weight::is_shown) {
+        return kept;
+    }
+    let (tests, found) = (&kept.selection.tests, &kept.selection.estimate);
+    let base = &tests.fit.estimate;
+    let error = |e: &Estimate| mean_cvdm(&e.model, held_out, &question.settings.judging);
+    // A ship that is lost has no error.
+    if let Some(before) = error(base)
+        && error(found).is_none_or(|after| after > before)
+    {
+        let own = found.free.iter().filter(|f| base.free.iter().all(|b| b.column.parameter != f.column.parameter));
+        let (mut model, mut free) = (base.model.clone(), base.free.clone());
+        for f in own {
+            f.set(&mut model, f.value(&found.model));
+            free.push(f.clone());
+        }
+        kept.selection.estimate = tests.problem(question.settings).estimate(&model, &free, &found.noise, AS_IT_IS);
+    }
+    kept
+}
+
+/// The mechanism that gains least on unseen runs, in free simulation or in log-likelihood, of those that their sensors do not show
+/// themselves.
+fn does_least(weights: &[Weight], simulated: bool) -> Option<usize> {
+    let gain = |w: &Weight| if simulated { w.tests.prediction.map_or(0.0, |g| g.gain) } else { w.gain() };
+    let doubted = weights.iter().enumerate().filter(|(_, w)| !w.is_shown());
+    doubted.min_by(|a, b| gain(a.1).total_cmp(&gain(b.1))).map(|(i, _)| i)
+}
+
+/// A mechanism with its weight, as a finding.
+fn weighed(kept: &Kept, mechanism: &Selected, weight: &Weight, intervals: &Intervals) -> Finding {
+    let finding = mechanism_finding(mechanism, &kept.selection, intervals);
+    Finding { grade: weight.grade, held_out: weight.proof.clone(), change: Some(weight.tests.change), ..finding }
+}
+
+/// A mechanism that was tried and withdrawn, as a finding with its grade.
+pub fn withdrawn(kept: &Kept, left: &Left, index: usize, weight: &Weight) -> Finding {
+    let intervals = Intervals::new(&kept.selection.estimate, &kept.selection.tests.fit.runs, &left.screen);
+    weighed(kept, &kept.selection.mechanisms[index], weight, &intervals)
+}
+
+/// The mechanisms that stay in the model and are not named, or else those that are named, as findings with their grades.
+fn mechanisms(kept: &Kept, weights: &[Weight], are_carried: bool) -> Vec<Finding> {
+    let Some(left) = &kept.left else { return Vec::new() };
+    let intervals = Intervals::new(&kept.selection.estimate, &kept.selection.tests.fit.runs, &left.screen);
+    let some = kept.selection.mechanisms.iter().zip(weights).filter(|(m, _)| m.carried == are_carried);
+    some.map(|(m, weight)| weighed(kept, m, weight, &intervals)).collect()
+}
+
+/// The mechanisms that stay in the model and are not named, as findings with their grades.
+pub fn carried(kept: &Kept, weights: &[Weight]) -> Vec<Finding> {
+    mechanisms(kept, weights, true)
+}
+
+/// The findings, the strongest first: faults of sensors, mechanisms with their weights, a push.
+pub fn findings(kept: &Kept, weights: &[Weight]) -> Vec<Finding> {
+    let tests = &kept.selection.tests;
+    let mut out = if tests.is_blocked() { sensor_findings(&tests.fit.admission) } else { Vec::new() };
+    out.extend(mechanisms(kept, weights, false));
+    out.extend(kept.push.as_ref().map(|p| push_finding(p, &tests.location)));
+    out
+}
+
+/// Whether the model that is kept, or else the base model, follows the recordings: the runs that are simulated better than by
+/// steady motion outweigh the others. Without this nothing that is added to a model means anything.
+pub struct Base {
+    /// The better of the two.
+    pub following: Following,
+    /// Whether it holds.
+    pub holds: bool,
+}
+
+impl Base {
+    /// Judges both models on the training runs.
+    pub fn new(question: &Question, kept: &Kept) -> Self {
+        let fit = &kept.selection.tests.fit;
+        let of = |e: &Estimate| {
+            let predicted = predict_all(&e.model, &fit.runs, fit.integration);
+            Following::new(&e.model, &fit.runs, &predicted, question.settings.judging.max_yaw_rate)
+        };
+        let (base, found) = (of(&fit.estimate), of(&kept.selection.estimate));
+        let following = if found.rank_share > base.rank_share { found } else { base };
+        Self { holds: following.holds(), following }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{model, runs};
+    use crate::diagnose::proof::grade::GainTest;
+
+    fn weight(grade: Grade, gain: f64) -> Weight {
+        let likelihood = Some(GainTest { gain, ci95: None });
+        let tests = FindingTests {
+            excludes_zero: true,
+            isolated: 1.0,
+            change: 1.0,
+            shift: None,
+            by_steps: 0.0,
+            likelihood,
+            prediction: None,
+            agreement: None,
+        };
+        Weight { grade, tests, proof: None, without: crate::diagnose::example::at(&model()) }
+    }
+
+    #[test]
+    fn the_first_to_go_is_the_one_that_gains_least_of_those_that_are_not_named() {
+        let all = [
+            weight(Grade::Confirmed, -90.0),
+            weight(Grade::Refuted, -20.0),
+            weight(Grade::Undetermined, -30.0),
+            weight(Grade::Immaterial, -80.0),
+        ];
+        assert_eq!(weakest(&all), Some(2));
+        assert_eq!(weakest(&all[..1]), None);
+        assert_eq!(weakest(&[]), None);
+    }
+
+    #[test]
+    fn what_the_sensors_of_unseen_runs_show_themselves_stays_whatever_the_ship_predicts() {
+        let shown = FindingProof::shown(GainTest { gain: 9.0, ci95: Some([4.0, 14.0]) }, &runs(&model(), 3));
+        let proven = Weight { proof: Some(shown), ..weight(Grade::Confirmed, -50.0) };
+        assert_eq!(does_least(&[weight(Grade::Suspected, 3.0), proven], false), Some(0));
+        let shown = FindingProof::shown(GainTest { gain: 9.0, ci95: Some([4.0, 14.0]) }, &runs(&model(), 3));
+        assert_eq!(does_least(&[Weight { proof: Some(shown), ..weight(Grade::Confirmed, -50.0) }], false), None);
+    }
+
+    #[test]
+    fn of_what_is_refuted_together_the_one_goes_that_does_least_by_the_measure_that_refutes() {
+        let of = |likelihood: f64, improvement: f64| {
+            let w = weight(Grade::Confirmed, likelihood);
+            Weight {
+                tests: FindingTests { prediction: Some(GainTest { gain: improvement, ci95: None }), ..w.tests },
+                ..w
+            }
+        };
+        let all = [of(50.0, 0.1), of(5.0, 0.3), of(20.0, -0.1)];
+        assert_eq!((does_least(&all, true), does_least(&all, false), does_least(&[], true)), (Some(2), Some(1), None));
+    }
+
+    #[test]
+    fn only_times_are_shifts_and_they_count_in_sample_periods() {
+        let runs = runs(&model(), 3);
+        let of = |unit: &str, value: f64| Amplitude::within("a.b".into(), value, unit, 0.1, 2.0);
+        // The sample period is 3 s, and the interval of -0.8 s reaches to -0.6 s.
+        assert!((shift(&[of("s", -0.8), of("s", 0.3)], &runs).unwrap() - 0.2).abs() < 1e-12);
+        assert_eq!(shift(&[of("s", 0.1)], &runs), Some(0.0));
+        assert_eq!(shift(&[of("s", 0.6), of("m", 0.3)], &runs), None);
+        assert_eq!(shift(&[], &runs), None);
+    }
+}

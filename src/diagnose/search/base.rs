@@ -1,0 +1,191 @@
+//! The base model: what is free in it, and its fit to recordings that were audited, with parameters and noise.
+//! What physics it lacks is tested elsewhere; here recordings and integration step are audited.
+
+use super::decide::is_euler;
+use crate::diagnose::evidence::admit::{Admission, admit, followed};
+use crate::diagnose::settings::{EULER_EXACT, EULER_HOPELESS, Effort, FIRST, LOSS_ROUNDS, REFIT, SETTLE, Settings};
+use crate::likelihood::estimate::{Estimate, estimate, log_posterior, passes};
+use crate::likelihood::noise::NoisePrior;
+use crate::likelihood::noise_fit::guess;
+use crate::likelihood::parameters::base_parameters;
+use crate::model::{Model, ModelError};
+use crate::recording::audit::{Issue, settled};
+use crate::recording::{Measured, Run};
+use crate::simulate::{Integration, Method};
+use std::borrow::Cow;
+
+/// The inputs that all steps of a diagnosis share.
+pub struct Question<'a> {
+    /// The model as the user gave it.
+    pub model: &'a Model,
+    /// The user's model with every term of the catalogue at its neutral value.
+    pub full: Model,
+    /// The user's settings.
+    pub settings: &'a Settings,
+    /// Receives the name of each step.
+    pub progress: &'a (dyn Fn(&str) + Sync),
+}
+
+impl<'a> Question<'a> {
+    /// Adds the catalogue's terms to the user's model.
+    ///
+    /// # Errors
+    /// When they cannot be added (a singular mass matrix, for instance).
+    pub fn new(
+        model: &'a Model,
+        settings: &'a Settings,
+        progress: &'a (dyn Fn(&str) + Sync),
+    ) -> Result<Self, ModelError> {
+        Ok(Self { model, full: model.complete()?, settings, progress })
+    }
+}
+
+/// Recordings without the faults of their receivers.
+pub struct AuditedRuns {
+    /// Runs to locate, name and model with.
+    pub runs: Vec<Run>,
+    /// What was mended in them.
+    pub issues: Vec<Issue>,
+}
+
+impl AuditedRuns {
+    /// Parts runs where positions jump and leaves out what was not measured; `length` is that of the ship \[m\].
+    pub fn new<'r>(runs: impl Into<Cow<'r, [Run]>>, length: f64) -> Self {
+        let (runs, issues) = settled(runs, length);
+        Self { runs, issues }
+    }
+}
+
+/// The base model fitted to audited runs.
+pub struct BaseFit {
+    /// Its estimate.
+    pub estimate: Estimate,
+    /// The prior of every noise estimate.
+    pub prior: NoisePrior,
+    /// The runs, without what the filter cannot follow.
+    pub runs: Vec<Run>,
+    /// How steps are integrated.
+    pub integration: Integration,
+    /// The audit of runs and integration.
+    pub admission: Admission,
+}
+
+impl BaseFit {
+    /// Fits parameters and noise, leaves out what the filter cannot follow, and audits recordings and integration step.
+    pub fn new(question: &Question, audited: AuditedRuns) -> Self {
+        let AuditedRuns { runs: mut kept, mut issues } = audited;
+        let integration = question.settings.integration();
+        (question.progress)("estimating parameters and noise of the base model");
+        let free = base_parameters(&question.full, question.settings.nuisance);
+        let first_noise = guess(&kept, &question.full);
+        let prior = NoisePrior::around(&first_noise);
+        let fit = |runs: &[Run]| estimate(&question.full, integration, runs, &free, &first_noise, &prior, FIRST);
+        let mut base = fit(&kept);
+        let filtered = |base: &Estimate, runs: &[Run]| passes(&base.model, integration, &[], runs, &base.noise, false);
+        let mut at = filtered(&base, &kept);
+        // Without these stretches the estimate is better, and further stretches may show.
+        for _ in 0..LOSS_ROUNDS {
+            let (without, lost) = followed(&kept, &at);
+            issues.extend(lost);
+            let Some(without) = without else { break };
+            kept = without;
+            base = fit(&kept);
+            at = filtered(&base, &kept);
+        }
+        (question.progress)("auditing recordings and integration step");
+        let mut admission = admit(&base.model, integration, &base.noise, &kept, &at);
+        admission.issues.extend(issues);
+        Self { estimate: base, prior, runs: kept, integration, admission }.read_as_euler()
+    }
+
+    /// The base fit with explicit Euler steps of one sample period, where the recordings were made so: such steps reproduce them to
+    /// rounding. A late clock of noisy recordings looks alike and is no reason.
+    fn read_as_euler(mut self) -> Self {
+        if !is_made_by_euler(&self.runs) {
+            return self;
+        }
+        let coarse = Integration { method: Method::Euler, substeps: 1 };
+        let Estimate { model, noise, free, log_posterior: fine, .. } = &self.estimate;
+        self.admission.euler_gain = log_posterior(model, coarse, &self.runs, free, noise) - fine;
+        if self.admission.euler_gain > -EULER_HOPELESS {
+            // Both readings with parameters of their own: a fit bends them to hide the error of a step.
+            let fit = |e: &Estimate, effort: Effort| {
+                estimate(&e.model, coarse, &self.runs, &e.free, &e.noise, &self.prior, effort)
+            };
+            let fitted = fit(&self.estimate, REFIT);
+            self.admission.euler_gain = fitted.log_posterior - fine;
+            if is_euler(self.admission.euler_gain) {
+                self.estimate = fit(&fitted, SETTLE);
+                (self.integration, self.admission.integration) = (coarse, coarse);
+            }
+        }
+        self
+    }
+}
+
+/// Whether explicit Euler steps of one sample period, `x' - x = dt (u cos psi - v sin psi)` and alike for y, reproduce the recorded
+/// positions, and steps of second order do not.
+fn is_made_by_euler(runs: &[Run]) -> bool {
+    let (mut euler, mut trapezoid) = (0.0, 0.0);
+    for run in runs {
+        let rate = |m: &Measured| {
+            let (sin, cos) = m[2]?.sin_cos();
+            let (u, v) = (m[3]?, m[4]?);
+            Some([u * cos - v * sin, u * sin + v * cos])
+        };
+        for pair in run.measured.windows(2) {
+            let (Some(a), Some(b)) = (rate(&pair[0]), rate(&pair[1])) else { continue };
+            for c in 0..2 {
+                let (Some(from), Some(to)) = (pair[0][c], pair[1][c]) else { continue };
+                euler += (to - from - run.dt * a[c]).powi(2);
+                trapezoid += (to - from - 0.5 * run.dt * (a[c] + b[c])).powi(2);
+            }
+        }
+    }
+    euler < EULER_EXACT * EULER_EXACT * trapezoid
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{EULER, SAMPLES, made_by_euler, model, runs, sailed};
+    use crate::likelihood::parameters::NUISANCE;
+
+    fn question<'a>(model: &'a Model, settings: &'a Settings) -> Question<'a> {
+        Question { model, full: model.clone(), settings, progress: &|_| () }
+    }
+
+    #[test]
+    fn every_nuisance_coefficient_has_a_prior_and_the_models_own_parameters_come_first() {
+        let model = model();
+        let (own, all) = (base_parameters(&model, false), base_parameters(&model, true));
+        assert_eq!((own.len(), all.len()), (11, 11 + NUISANCE.len()));
+        assert!(own.iter().all(|f| f.prior.is_none()) && all[11..].iter().all(|f| f.prior.is_some()));
+    }
+
+    #[test]
+    fn a_sound_recording_is_fitted_whole_and_not_read_as_euler() {
+        let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let audited = AuditedRuns::new(runs(&model, 6), model.ship.hull.lpp);
+        let base = BaseFit::new(&question(&model, &settings), audited);
+        assert!(!is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
+        assert_eq!((base.admission.samples, base.integration), (6 * SAMPLES, settings.integration()));
+        assert!(base.admission.issues.is_empty(), "{:?}", base.admission.issues);
+    }
+
+    #[test]
+    fn recordings_made_by_explicit_euler_are_read_as_euler() {
+        let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let mut runs = made_by_euler(&model, 6);
+        // With the errors of sensors nobody can say so.
+        assert!(!is_made_by_euler(&runs));
+        for r in &mut runs {
+            // As a file holds them, to a hundredth of a millimetre.
+            r.measured = sailed(&model, r, EULER).iter().map(|s| s.map(|v| Some((v * 1e5).round() / 1e5))).collect();
+        }
+        assert!(is_made_by_euler(&runs));
+        let base = BaseFit::new(&question(&model, &settings), AuditedRuns::new(runs, 85.0));
+        assert!(is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
+        assert_eq!((base.integration, base.admission.integration), (EULER, EULER));
+    }
+}

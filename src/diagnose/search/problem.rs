@@ -1,0 +1,117 @@
+//! What every refit of one diagnosis shares: runs, integration, candidates, the noise's prior and the user's settings.
+//! It holds them and decides nothing.
+
+use crate::diagnose::evidence::candidate::Candidate;
+use crate::diagnose::settings::{Effort, Settings};
+#[cfg(feature = "ipopt")]
+use crate::fit::within_limits;
+use crate::likelihood::estimate::{Estimate, FreeParameter, estimate};
+use crate::likelihood::noise::{Noise, NoisePrior};
+use crate::model::Model;
+use crate::recording::Run;
+use crate::simulate::Integration;
+
+/// What every refit shares.
+#[derive(Clone, Copy)]
+pub struct Problem<'a> {
+    /// How steps are integrated.
+    pub integration: Integration,
+    /// The runs.
+    pub runs: &'a [Run],
+    /// The mechanisms that may be named.
+    pub candidates: &'a [Candidate],
+    /// The prior of every noise estimate.
+    pub prior: &'a NoisePrior,
+    /// The user's settings.
+    pub settings: &'a Settings,
+}
+
+impl Problem<'_> {
+    /// Estimates free parameters and noise from where a model is.
+    pub fn estimate(&self, model: &Model, free: &[FreeParameter], noise: &Noise, effort: Effort) -> Estimate {
+        estimate(model, self.integration, self.runs, free, noise, self.prior, effort)
+    }
+
+    /// Estimates again from where an estimate is.
+    pub fn again(&self, found: &Estimate, effort: Effort) -> Estimate {
+        self.estimate(&found.model, &found.free, &found.noise, effort)
+    }
+
+    /// An estimate as a fit by likelihood ends, within bounds and constraints: what a file may hold. In the search a hull coefficient that is
+    /// carried is kept by its prior alone, which knows no sign, so that it may have ended where it drives the ship. Where no fit is possible
+    /// the values are put back within their bounds.
+    #[cfg(feature = "ipopt")]
+    pub fn within_limits(&self, found: &Estimate) -> Estimate {
+        let constraints = self.settings.constraints;
+        let fitted = within_limits(found, self.integration, self.runs, self.prior, constraints);
+        fitted.unwrap_or_else(|_| inside_bounds(found))
+    }
+
+    /// An estimate with its values within their bounds: this build has no Ipopt to fit the others to that.
+    #[cfg(not(feature = "ipopt"))]
+    pub fn within_limits(&self, found: &Estimate) -> Estimate {
+        inside_bounds(found)
+    }
+}
+
+/// An estimate with its values put back within their bounds.
+fn inside_bounds(estimate: &Estimate) -> Estimate {
+    let mut found = estimate.clone();
+    let outside: Vec<&FreeParameter> = estimate.free.iter().filter(|f| is_outside(f, &estimate.model)).collect();
+    outside.into_iter().for_each(|f| put_inside(f, &mut found.model));
+    found
+}
+
+/// The parameter with what is added to it where it acts.
+fn total(f: &FreeParameter, model: &Model) -> f64 {
+    let addition = if f.sessions.is_some() { f.value(model) } else { 0.0 };
+    model.parameters[f.column.parameter].value + addition
+}
+
+fn is_outside(f: &FreeParameter, model: &Model) -> bool {
+    let p = &model.parameters[f.column.parameter];
+    !(p.lower..=p.upper).contains(&total(f, model))
+}
+
+fn put_inside(f: &FreeParameter, model: &mut Model) {
+    let p = &model.parameters[f.column.parameter];
+    let inside = total(f, model).clamp(p.lower, p.upper);
+    let value = if f.sessions.is_some() { inside - p.value } else { inside };
+    f.set(model, value);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::evidence::candidate::candidates;
+    use crate::diagnose::example::{RK4, at, column, model, runs};
+    use crate::diagnose::settings::SETTLE;
+    use crate::model::Prior;
+
+    #[test]
+    fn a_carried_coefficient_that_ends_outside_its_bounds_is_written_at_the_bound_and_the_rest_is_estimated_again() {
+        let (m, settings) = (model(), Settings::default());
+        let (list, prior, runs) = (candidates(&m, &[]), NoisePrior::around(&at(&m).noise), runs(&m, 6));
+        let problem = Problem { integration: RK4, runs: &runs, candidates: &list, prior: &prior, settings: &settings };
+        let damping = column(&m, "hull.Nrr");
+        let p = &m.parameters[damping.parameter];
+        // Sure that the damping drives, against the runs.
+        let sure = Prior { mean: p.upper + 3.0 * p.scale, sd: 1e-3 * p.scale };
+        let free =
+            [FreeParameter::common(damping, Some(sure)), FreeParameter::common(column(&m, "rudder.lift1"), None)];
+        let mut start = m.clone();
+        start.parameters[damping.parameter].value = sure.mean;
+        let outside = problem.estimate(&start, &free, &at(&m).noise, SETTLE);
+        assert!(free[0].value(&outside.model) > p.upper);
+        let inside = problem.within_limits(&outside);
+        let reached = inside.model.parameters[damping.parameter].value;
+        assert!(reached <= p.upper && reached > p.upper - 1e-3 * p.scale, "{reached} {}", p.upper);
+        let lift = |e: &Estimate| free[1].value(&e.model);
+        assert!((lift(&inside) - lift(&at(&m))).abs() < (lift(&outside) - lift(&at(&m))).abs(), "the rest follows");
+        let again = problem.within_limits(&inside);
+        assert!((again.log_posterior - inside.log_posterior).abs() < 0.1);
+        let put = inside_bounds(&outside);
+        assert_eq!(put.model.parameters[damping.parameter].value, p.upper);
+        assert_eq!(lift(&put), lift(&outside));
+    }
+}

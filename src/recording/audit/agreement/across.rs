@@ -1,0 +1,569 @@
+//! What only a comparison of runs shows: clocks that differ, one run in another unit, the same data on both sides of the split.
+//! The evidence of each run is gathered where the run is audited; no recording is read here.
+
+use super::propeller::{advance, advance_ratio, is_unpowered, unpowered};
+use super::reckoning::{Reckoned, reckoned};
+use super::scales::scales;
+use super::scatter::{Scatter, scatters};
+use super::signs::Effect;
+use super::stuck::stuck;
+use crate::numerals::sig;
+use crate::recording::audit::issue::{Issue, Severity, Shared};
+use crate::recording::audit::limits::{
+    EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, LEVER_LAG, POOLED_EVIDENCE, SAME_LAG, SESSION_SHARE,
+    SHARED_ROWS, SHARED_SHARE,
+};
+use crate::recording::audit::motion::plateau::Plateau;
+use crate::recording::audit::motion::pooled::{Odd, actuated, odd, shares_at_best};
+use crate::recording::audit::motion::response::Curve;
+use crate::recording::audit::motion::series::mean_square;
+use crate::recording::audit::motion::sources::Sources;
+use crate::recording::audit::record::Responses;
+use crate::recording::audit::values::gear::{ACTUATORS, Fastest, leaps as gear_leaps};
+use crate::recording::audit::values::held::{Repeats, held, repeats};
+use crate::recording::audit::values::length::{Length, shorter};
+use crate::recording::audit::values::orders::{Leap, ordered};
+use crate::recording::{Channel, Recording, Split};
+use crate::ship::Ship;
+use crate::study::Listed;
+use serde::{Deserialize, Serialize};
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::PathBuf;
+
+/// Channels that dead reckoning compares.
+const TRACK: [Channel; 6] = [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R];
+
+/// What of a run is compared with other runs.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Evidence {
+    run: String,
+    /// The file from which it is cut, and the column map by which it is read.
+    source: (PathBuf, Option<PathBuf>),
+    session: String,
+    split: Split,
+    /// Root mean square speed \[m/s\]; 0 where none was recorded.
+    speed: f64,
+    /// Median advance ratio.
+    ratio: Option<f64>,
+    responses: Responses,
+    /// Channels of the wrong sign.
+    turned: Vec<Channel>,
+    /// Channels with damaged single values, from which no lag is told.
+    damaged: Vec<Channel>,
+    /// Channels of the motion that were not recorded, and not derived, and what to do.
+    lacks: Vec<(Channel, String)>,
+    /// Whether something is told of its track by itself, so that dead reckoning has no more to say.
+    track_told: bool,
+    /// Whether its propeller never turns though it sails.
+    unpowered: bool,
+    /// The largest leap of the rudder.
+    leap: Option<Leap>,
+    /// The fastest change of rudder and propeller.
+    fastest: [Option<Fastest>; 2],
+    /// How its velocities scatter.
+    scatter: Scatter,
+    /// What its channels repeat.
+    repeats: Vec<Repeats>,
+    /// Its length, if the study uses all of it.
+    length: Option<Length>,
+    /// Fingerprints of the rows in which the ship's motion changed.
+    rows: Vec<u64>,
+}
+
+impl Evidence {
+    /// That of a run, from the part of its recording that the study uses.
+    pub(in crate::recording::audit) fn of(
+        run: &Listed,
+        recording: &Recording,
+        ship: &Ship,
+        responses: Responses,
+        issues: &[Issue],
+    ) -> Self {
+        let of_fault = |fault| issues.iter().filter(|i| i.fault == fault).filter_map(|i| i.channel).collect();
+        Self {
+            run: run.labels.run.clone(),
+            source: (run.file.clone(), run.column_map.clone()),
+            session: run.labels.session.clone(),
+            split: run.labels.split,
+            speed: recording.get(Channel::U).and_then(mean_square).unwrap_or(0.0).sqrt(),
+            ratio: advance_ratio(recording, ship),
+            responses,
+            turned: of_fault("sign_error"),
+            damaged: of_fault("outlier"),
+            lacks: issues
+                .iter()
+                .filter(|i| i.fault == "not_recorded")
+                .filter_map(|i| Some((i.channel?, i.next_step.clone())))
+                .collect(),
+            track_told: issues.iter().any(|i| {
+                i.severity > Severity::Note && i.fault != "lever" && i.channel.is_some_and(|c| TRACK.contains(&c))
+            }),
+            unpowered: is_unpowered(recording, ship),
+            leap: Leap::of(recording),
+            fastest: ACTUATORS.map(|channel| Fastest::of(recording, channel)),
+            scatter: Scatter::of(recording),
+            repeats: repeats(recording),
+            length: Length::of(recording).filter(|_| run.from.is_none() && run.to.is_none()),
+            rows: fingerprints(recording),
+        }
+    }
+}
+
+/// A number for every row whose motion differs from the row before: of heading, velocities and actuators to the last bit, wherever
+/// the position is counted from and whatever the clock says.
+fn fingerprints(recording: &Recording) -> Vec<u64> {
+    const SEEN: [Channel; 6] = [Channel::Psi, Channel::U, Channel::V, Channel::R, Channel::N, Channel::Delta];
+    let columns: Vec<&[f64]> = SEEN.iter().filter_map(|c| recording.get(*c)).collect();
+    let moving =
+        |row: usize| columns.iter().any(|c| c[row] != c[row - 1]) && columns.iter().all(|c| c[row].is_finite());
+    let number = |row: usize| {
+        let mut hasher = DefaultHasher::new();
+        columns.iter().for_each(|c| c[row].to_bits().hash(&mut hasher));
+        hasher.finish()
+    };
+    if columns.len() < 4 { Vec::new() } else { (1..recording.len()).filter(|row| moving(*row)).map(number).collect() }
+}
+
+/// Everything that a comparison of the runs shows.
+pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
+    let mut found = Vec::new();
+    let sources = Sources::of(runs.iter().map(|r| &r.source));
+    let ratios = sources.medians(&runs.iter().map(|r| r.ratio).collect::<Vec<_>>());
+    for (run, issue) in runs.iter().zip(advance(&ratios, ship)) {
+        found.extend(issue.map(|issue| Shared { runs: vec![run.run.clone()], issue }));
+    }
+    let sailing: Vec<f64> = runs.iter().map(|r| r.speed * r.speed).filter(|s| *s > 0.0).collect();
+    let speed = (sailing.iter().sum::<f64>() / sailing.len().max(1) as f64).sqrt();
+    let time = ship.hull.lpp / speed.max(ship.small_speed());
+    for pair in &PAIRS {
+        found.extend(late(runs, &sources, pair, time));
+        found.extend(sessions(runs, pair, time));
+    }
+    found.extend(lacking(runs));
+    let leaps: Vec<Leap> = runs.iter().filter_map(|r| r.leap).collect();
+    let every = || runs.iter().map(|r| r.run.clone()).collect::<Vec<_>>();
+    if !runs.is_empty() && runs.iter().all(|r| r.unpowered) {
+        found.push(Shared { runs: every(), issue: unpowered() });
+    }
+    found.extend(ordered(&leaps, time).map(|issue| Shared { runs: every(), issue }));
+    let responses: Vec<(&str, &Responses)> = runs.iter().map(|r| (r.run.as_str(), &r.responses)).collect();
+    let scattered: Vec<(&str, Scatter)> = runs.iter().map(|r| (r.run.as_str(), r.scatter)).collect();
+    let clear = |r: &&Evidence| !r.track_told && !found.iter().any(|f| f.runs == [r.run.as_str()]);
+    let tracked: Vec<(&Evidence, &Reckoned)> =
+        runs.iter().filter(clear).filter_map(|r| Some((r, r.responses.reckoned.as_ref()?))).collect();
+    let tracks: Vec<(&str, &Reckoned)> = tracked.iter().map(|(r, track)| (r.run.as_str(), *track)).collect();
+    let apart = reckoned(&tracks, &Sources::of(tracked.iter().map(|(r, _)| &r.source)), ship.hull.lpp);
+    for shared in scales(&responses, &sources).into_iter().chain(scatters(&scattered, &sources)).chain(apart) {
+        let same = |f: &Shared| f.runs == shared.runs && f.issue.channel == shared.issue.channel;
+        if !found.iter().any(same) {
+            found.push(shared);
+        }
+    }
+    for (i, channel) in ACTUATORS.into_iter().enumerate() {
+        // A damaged value leaps too.
+        let moved = |r: &Evidence| !r.damaged.contains(&channel);
+        let of: Vec<(&str, Option<&Fastest>)> =
+            runs.iter().map(|r| (r.run.as_str(), r.fastest[i].as_ref().filter(|_| moved(r)))).collect();
+        found.extend(gear_leaps(channel, &of));
+    }
+    let repeated: Vec<(&str, &[Repeats])> = runs.iter().map(|r| (r.run.as_str(), &r.repeats[..])).collect();
+    found.extend(held(&repeated));
+    let lengths: Vec<(&str, Option<Length>)> = runs.iter().map(|r| (r.run.as_str(), r.length)).collect();
+    found.extend(shorter(&lengths));
+    found.extend(shared_rows(runs));
+    found
+}
+
+/// Channels that a few runs lack and most have: what is summed over channels is another number for these runs.
+fn lacking(runs: &[Evidence]) -> Vec<Shared> {
+    let lacks = |run: &Evidence, channel: Channel| run.lacks.iter().any(|(c, _)| *c == channel);
+    let few = |channel: Channel| 2 * runs.iter().filter(|r| lacks(r, channel)).count() < runs.len();
+    let told = |run: &Evidence, channel: Channel, next: &str| {
+        let text = format!(
+            "{} was not recorded, as it was in most runs: cost and cVDM of this run are of fewer channels",
+            channel.info().words
+        );
+        let next = format!("{next}; or leave the run out");
+        let issue = Issue::new(Severity::Error, "not_recorded", text, next).of(channel);
+        Shared { runs: vec![run.run.clone()], issue }
+    };
+    let of = |run| move |(channel, next): &(Channel, String)| few(*channel).then(|| told(run, *channel, next));
+    runs.iter().flat_map(|run| run.lacks.iter().filter_map(of(run))).collect()
+}
+
+/// A channel and the motion that it is held against.
+struct Pair {
+    channel: Channel,
+    of: fn(&Responses) -> Option<&Curve>,
+    /// Whether the channel acts on the motion, and does not only tell of it.
+    acts: bool,
+    /// Up to which lag behind and ahead of the motion, as shares of the time in which the ship sails its length, all runs may have another
+    /// cause than a clock.
+    excused: [f64; 2],
+    /// With a lag of all runs at most this share of the squares is left.
+    leaves: f64,
+    motion: &'static str,
+}
+
+impl Pair {
+    /// The response of a run in which no value of the channel is damaged.
+    fn curve<'r>(&self, run: &'r Evidence) -> Option<&'r Curve> {
+        (self.of)(&run.responses).filter(|_| !run.damaged.contains(&self.channel))
+    }
+}
+
+/// Rudder and propeller cause the motion, so that only a wrong clock has them behind it; ahead of it they may be by the lag of steering
+/// gear and engines. An antenna off midship tells a position early or late.
+///
+/// The yaw answers the rudder by way of the sway too, which is recorded with noise, or over ground in a current. What is left of that looks
+/// like a rudder that is late by a part of the ship's own lag, whoever steers it by the heading, and explains little: in sound zigzags it
+/// leaves 0.75 to 0.85 of the squares; a rudder that is late by a fifth of the time in which the ship sails its length leaves 0.6 or less.
+const PAIRS: [Pair; 4] = [
+    Pair {
+        channel: Channel::Delta,
+        of: |r| r.rudder.as_ref(),
+        acts: true,
+        excused: [SESSION_SHARE, LAG_SHARE],
+        leaves: LAG_LEAVES,
+        motion: "the yaw of the ship",
+    },
+    Pair {
+        channel: Channel::N,
+        of: |r| r.propeller.as_ref(),
+        acts: true,
+        excused: [SESSION_SHARE, LAG_SHARE],
+        leaves: 1.0,
+        motion: "the surge of the ship",
+    },
+    Pair {
+        channel: Channel::R,
+        of: |r| r.gyro.as_ref(),
+        acts: false,
+        excused: [SESSION_SHARE; 2],
+        leaves: 1.0,
+        motion: "the heading",
+    },
+    Pair {
+        channel: Channel::X,
+        of: |r| r.receiver.as_ref(),
+        acts: false,
+        excused: [LEVER_LAG; 2],
+        leaves: 1.0,
+        motion: "velocity and heading",
+    },
+];
+
+/// Curves of several runs as one: twice the negative log-likelihood at the lags that all have.
+struct Sum {
+    step: f64,
+    lags: Vec<isize>,
+    total: Vec<f64>,
+    /// Independent samples that the residuals are worth.
+    samples: f64,
+}
+
+impl Sum {
+    /// Of those with the step of the first; `None` without any.
+    fn of<'c>(curves: impl Iterator<Item = &'c Curve> + Clone) -> Option<Self> {
+        let step = curves.clone().next()?.step;
+        let alike = |c: &&Curve| (c.step / step - 1.0).abs() < 0.01;
+        let shortest = curves.clone().filter(alike).map(|c| c.lags.last().copied().unwrap_or(0)).min()?;
+        let mut sum: Option<Self> = None;
+        for curve in curves.filter(alike) {
+            let inside = |lag: &isize| lag.abs() <= shortest;
+            let terms = curve.lags.iter().zip(&curve.left).filter(|(lag, _)| inside(lag));
+            let terms: Vec<f64> = terms.map(|(_, left)| curve.samples * left.ln()).collect();
+            match &mut sum {
+                None => {
+                    let lags = curve.lags.iter().copied().filter(inside).collect();
+                    sum = Some(Self { step, lags, total: terms, samples: curve.samples });
+                }
+                Some(sum) => {
+                    sum.total.iter_mut().zip(terms).for_each(|(total, term)| *total += term);
+                    sum.samples += curve.samples;
+                }
+            }
+        }
+        sum
+    }
+
+    fn best(&self) -> usize {
+        (0..self.total.len()).min_by(|i, j| self.total[*i].total_cmp(&self.total[*j])).unwrap_or(0)
+    }
+
+    /// Whether a place is at the end of the lags, so that a longer one might be better.
+    fn at_end(&self, place: usize) -> bool {
+        place == 0 || place + 1 == self.lags.len()
+    }
+
+    fn seconds(&self, place: usize) -> f64 {
+        self.lags[place] as f64 * self.step
+    }
+
+    /// Twice the log-likelihood ratio of one place over another.
+    fn evidence(&self, place: usize, over: usize) -> f64 {
+        self.total[over] - self.total[place]
+    }
+
+    /// Share of the squares at one place that is left at another, the geometric mean over the runs.
+    fn share(&self, place: usize, of: usize) -> f64 {
+        (-self.evidence(place, of) / self.samples).exp()
+    }
+}
+
+/// Whether a curve tells of the motion at all, at its best lag and with the right sign.
+fn telling(curve: &Curve) -> bool {
+    let best = curve.best();
+    let explained = curve.left[best] <= EXPLAINS * curve.without && curve.effect(best) > LAG_EVIDENCE;
+    explained && curve.sign[best] > 0.0
+}
+
+/// What is late or early: in all runs together, and of rudder and propeller in those runs that differ from that; the lag of sensors is told
+/// run by run.
+fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Shared> {
+    let beyond = |seconds: f64, share: f64, step: f64| seconds.abs() > (share * time).max(LAG_STEPS[0] * step);
+    let excused = |seconds: f64| pair.excused[usize::from(seconds < 0.0)];
+    // What acts to the wrong side, or on a motion that is told to the wrong side, is as good as late by half a period.
+    let sound = |r: &&Evidence| !r.turned.iter().any(|c| [pair.channel, Channel::R, Channel::U].contains(c));
+    let of_sound = runs.iter().filter(sound).filter_map(|r| Some((r, pair.curve(r)?)));
+    let curves: Vec<(&Evidence, &Curve)> = of_sound.filter(|(_, c)| telling(c)).collect();
+    // Where several runs show that the sign is turned, it may be so in the others.
+    let turned_in = runs.iter().filter(|r| r.turned.contains(&pair.channel)).count();
+    let all = Sum::of(curves.iter().map(|(_, c)| *c)).filter(|_| curves.len() > 1 && turned_in < 2).and_then(|sum| {
+        let (best, zero) = (sum.best(), sum.lags.iter().position(|lag| *lag == 0)?);
+        let explains = sum.share(best, zero) <= pair.leaves;
+        let sure = sum.evidence(best, zero) > LAG_EVIDENCE && explains && !sum.at_end(best);
+        let seconds = sum.seconds(best);
+        (sure && beyond(seconds, excused(seconds), sum.step)).then_some(seconds)
+    });
+    let known = |seconds: f64| all.is_some_and(|all| (seconds - all).abs() <= SAME_LAG * all.abs());
+    let lag = |curve: &Curve| {
+        let (best, zero) = (curve.best(), curve.zero());
+        let seconds = curve.seconds(best);
+        let better = curve.evidence(best, zero) > LAG_EVIDENCE && curve.left[best] <= LAG_LEAVES * curve.left[zero];
+        let inside = best > 0 && best + 1 < curve.lags.len();
+        // One run tells it by itself where it is beyond what gear, engines and filters do.
+        let long = beyond(seconds, excused(seconds).max(LAG_SHARE), curve.step);
+        (long && better && inside && !known(seconds)).then_some(seconds)
+    };
+    let among_others: Vec<Option<&Curve>> = runs.iter().map(|r| pair.curve(r)).collect();
+    // Only an actuator acts on the motion in the same way in all runs.
+    let pool = actuated(&among_others).filter(|_| pair.acts);
+    let shares = pool.as_ref().map(|pool| shares_at_best(&among_others, pool));
+    // What a run says by itself, the other runs must not contradict, nor those that are cut from the same recording.
+    let agreed = |run: &Evidence, seconds: f64| {
+        let Some(place) = runs.iter().position(|r| std::ptr::eq(r, run)) else { return false };
+        let losses = |other: usize| {
+            let curve: &Curve = among_others[other]?;
+            Some([curve.zero(), curve.at(seconds)?].map(|lag| curve.samples * curve.left[lag].ln()))
+        };
+        let share = shares.as_ref().and_then(|shares| shares[place]);
+        share.is_none_or(|share| share <= LAG_LEAVES) && sources.agree(place, losses)
+    };
+    let told = |(run, curve): &(&Evidence, &Curve)| {
+        let issue = lagging(pair, lag(curve).filter(|lag| pair.acts && agreed(run, *lag))?, "", pair.motion);
+        Some(Shared { runs: vec![run.run.clone()], issue })
+    };
+    let step = curves.first().map_or(0.0, |(_, c)| c.step);
+    let worth = |seconds: f64| beyond(seconds, SESSION_SHARE, step) && all.is_none();
+    let odd_told = |odd: Odd| match odd {
+        Odd::Turned => turned(pair),
+        Odd::Late(seconds) => lagging(pair, seconds, "", pair.motion),
+        Odd::Unanswered => unanswered(pair),
+    };
+    let by_others = pool.as_ref().map_or_else(Vec::new, |pool| {
+        let odd = odd(&among_others, pool, sources, worth).into_iter().map(|odd| odd.map(odd_told));
+        let stuck = stuck(&among_others, pool).into_iter().map(|plateau| plateau.map(|p| stands_still(pair, p)));
+        let of_run =
+            |(run, issue): (&Evidence, Option<Issue>)| Some(Shared { runs: vec![run.run.clone()], issue: issue? });
+        runs.iter().zip(odd).chain(runs.iter().zip(stuck)).filter_map(of_run).collect()
+    });
+    let together = all.map(|seconds| Shared {
+        runs: curves.iter().map(|(run, _)| run.run.clone()).collect(),
+        issue: lagging(pair, seconds, "", pair.motion),
+    });
+    let mut found: Vec<Shared> = together.into_iter().chain(curves.iter().filter_map(told)).collect();
+    let also = turned_as_others(runs, pair).into_iter().chain(turned_in_a_session(runs, pair));
+    for shared in also.chain(by_others) {
+        if !found.iter().any(|f| f.runs == shared.runs) {
+            found.push(shared);
+        }
+    }
+    found
+}
+
+/// Runs that show an actuator of the wrong sign less clearly than is needed for one run by itself, where several others show it.
+fn turned_as_others(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
+    let known = runs.iter().filter(|r| r.turned.contains(&pair.channel)).count();
+    let turns = |run: &&Evidence| {
+        let none = !run.turned.iter().any(|c| [pair.channel, Channel::R, Channel::U].contains(c));
+        none && pair.curve(run).is_some_and(|curve| {
+            let zero = curve.zero();
+            curve.side() < -POOLED_EVIDENCE && curve.left[zero] < EXPLAINS * curve.without
+        })
+    };
+    let also = runs.iter().filter(|_| pair.acts && known > 1).filter(turns);
+    let text = format!("acts on {} to the other side than it must, as in other runs", pair.motion);
+    let next = format!("set `sign = -1` for `{}` in a column map", pair.channel);
+    let issue = Issue::new(Severity::Error, "sign_error", text, next).of(pair.channel);
+    also.map(|run| Shared { runs: vec![run.run.clone()], issue: issue.clone() }).collect()
+}
+
+/// The runs of a session in which an actuator has the wrong sign, where all of them together show what these do not show for sure by
+/// themselves, and none shows that its sign is right.
+fn turned_in_a_session(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
+    // The motion itself must be told to its own side.
+    let sound = |r: &Evidence| !r.turned.iter().any(|c| [Channel::R, Channel::U].contains(c));
+    let mut sessions: BTreeMap<&str, Vec<(&Evidence, &Curve)>> = BTreeMap::new();
+    for run in runs.iter().filter(|r| pair.acts && sound(r)) {
+        if let Some(curve) = pair.curve(run) {
+            sessions.entry(&run.session).or_default().push((run, curve));
+        }
+    }
+    sessions.retain(|_, of| {
+        let mut effect = Effect::default();
+        of.iter().for_each(|(_, curve)| effect.add(Some(curve)));
+        of.len() > 1 && effect.turned() && of.iter().all(|(_, curve)| curve.side() <= POOLED_EVIDENCE)
+    });
+    let told = |session: &str, (run, _): &(&Evidence, &Curve)| {
+        let text = format!(
+            "acts on {} to the other side than it must, as the runs of session `{session}` show together",
+            pair.motion
+        );
+        let next = format!("set `sign = -1` for `{}` in a column map of these runs", pair.channel);
+        let issue = Issue::new(Severity::Error, "sign_error", text, next).of(pair.channel);
+        Shared { runs: vec![run.run.clone()], issue }
+    };
+    let untold = |(run, _): &&(&Evidence, &Curve)| !run.turned.contains(&pair.channel);
+    sessions.iter().flat_map(|(session, of)| of.iter().filter(untold).map(|run| told(session, run))).collect()
+}
+
+/// The doubt about an actuator of the wrong sign.
+fn turned(pair: &Pair) -> Issue {
+    let text = format!("acts on {} to the other side than in the other runs", pair.motion);
+    let next = format!(
+        "is its sign that of the other runs? set `sign = -1` for `{}` in a column map of this run",
+        pair.channel
+    );
+    Issue::new(Severity::Error, "sign_error", text, next).of(pair.channel)
+}
+
+/// The doubt about an actuator that the motion does not answer.
+fn unanswered(pair: &Pair) -> Issue {
+    let text = format!("moves, and {} does not answer it as in the other runs", pair.motion);
+    let next = "is it of this run, in its unit and at its time? compare it with the log, or leave the run out";
+    Issue::new(Severity::Warning, "unanswered", text, next.to_owned()).of(pair.channel)
+}
+
+/// The doubt about an actuator that is stuck.
+fn stands_still(pair: &Pair, plateau: &Plateau) -> Issue {
+    let text = format!(
+        "holds one value for {} s, and {} there is not what it is with such a value in the other runs",
+        sig(plateau.seconds, 3),
+        pair.motion
+    );
+    let next = "did its log stand still, or did something else push the ship (a tug, a hand)? leave the fields blank, so that they count \
+                as a dropout, or cut the run there with `from` or `to`";
+    Issue::new(Severity::Warning, "frozen", text, next).of(pair.channel).at(plateau.lines)
+}
+
+/// The doubt about a lag \[s\]: `whose` begins the text, `than` is what it is compared with.
+fn lagging(pair: &Pair, seconds: f64, whose: &str, than: &str) -> Issue {
+    let order = if seconds > 0.0 { "behind" } else { "ahead of" };
+    let text = format!("{whose}runs about {} s {order} {than}", sig(seconds.abs(), 2));
+    let also = if pair.channel == Channel::X { " (and for `y`)" } else { "" };
+    let delay = format!("`delay = {}` for `{}`{also} in a column map", sig(seconds, 2), pair.channel);
+    let next = if whose.is_empty() {
+        format!("{delay} takes it back, if its clock is wrong")
+    } else {
+        format!("{delay} takes it back; `delay = {{ \"SESSION\" = ... }}` does so in one session")
+    };
+    Issue::new(Severity::Warning, "clock", text, next).of(pair.channel)
+}
+
+/// Twice the log-likelihood ratio of a run for one lag over another; 0 where it does not have both.
+fn gain(curve: &Curve, from: isize, to: isize) -> f64 {
+    let at = |lag: isize| curve.lags.iter().position(|l| *l == lag);
+    at(from).zip(at(to)).map_or(0.0, |(from, to)| curve.evidence(to, from))
+}
+
+/// Sessions in which a channel has another lag than in all others.
+fn sessions(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
+    let mut names: Vec<&str> = Vec::new();
+    for run in runs {
+        if !names.contains(&run.session.as_str()) {
+            names.push(&run.session);
+        }
+    }
+    let curves = |inside: bool, name: &str| {
+        let name = name.to_owned();
+        let wanted = move |r: &&Evidence| (r.session == name) == inside;
+        runs.iter().filter(wanted).filter_map(|r| (pair.of)(&r.responses)).filter(|c| telling(c)).collect::<Vec<_>>()
+    };
+    let differing = |name: &&str| {
+        let (own, others) = (curves(true, name), curves(false, name));
+        // A session of one run is a run: whatever is wrong with it is told there.
+        if own.len() < 2 || others.len() < 2 {
+            return None;
+        }
+        let (own, others) = (Sum::of(own.into_iter())?, Sum::of(others.into_iter())?);
+        let (best, usual) = (own.best(), others.best());
+        let same = own.lags.iter().position(|lag| *lag == others.lags[usual])?;
+        let apart = own.seconds(best) - others.seconds(usual);
+        let worth = apart.abs() > (SESSION_SHARE * time).max(LAG_STEPS[0] * own.step);
+        // Not by the one run that says so most.
+        let spoken = |c: &Curve| gain(c, own.lags[same], own.lags[best]);
+        let most = curves(true, name).into_iter().map(spoken).fold(0.0, f64::max);
+        let sure = own.evidence(best, same) - most > LAG_EVIDENCE && !own.at_end(best);
+        (worth && sure && (own.step / others.step - 1.0).abs() < 0.01).then_some((name.to_string(), apart))
+    };
+    let found: Vec<(String, f64)> = names.iter().filter_map(differing).collect();
+    // With two sessions each differs from the other: one doubt, of the later one in the list.
+    let found = if names.len() == 2 { found.into_iter().skip(1).collect() } else { found };
+    let told = |(name, seconds): (String, f64)| {
+        let than = format!("{}, compared with the other sessions", pair.motion);
+        let issue = lagging(pair, seconds, &format!("in session `{name}` it "), &than);
+        let runs = runs.iter().filter(|r| r.session == name).map(|r| r.run.clone()).collect();
+        Shared { runs, issue }
+    };
+    found.into_iter().map(told).collect()
+}
+
+/// Runs that share rows: on both sides of the split they prove nothing, on one side they count twice.
+fn shared_rows(runs: &[Evidence]) -> Vec<Shared> {
+    let mut owners: HashMap<u64, usize> = HashMap::new();
+    let mut found = Vec::new();
+    for (i, run) in runs.iter().enumerate() {
+        let mut common: BTreeMap<usize, usize> = BTreeMap::new();
+        for row in &run.rows {
+            match owners.entry(*row) {
+                Entry::Occupied(owner) if *owner.get() != i => *common.entry(*owner.get()).or_default() += 1,
+                Entry::Occupied(_) => {}
+                Entry::Vacant(free) => drop(free.insert(i)),
+            }
+        }
+        for (other, rows) in common {
+            let other = &runs[other];
+            let shorter = run.rows.len().min(other.rows.len());
+            if rows >= SHARED_ROWS && rows as f64 >= SHARED_SHARE * shorter as f64 {
+                let issue = sharing(run, other, &format!("share {rows} of {shorter} rows"));
+                found.push(Shared { runs: vec![other.run.clone(), run.run.clone()], issue });
+            }
+        }
+    }
+    found
+}
+
+fn sharing(run: &Evidence, other: &Evidence, rows: &str) -> Issue {
+    if run.split == other.split {
+        let text = format!("runs {} and {} {rows}: these count twice", other.run, run.run);
+        let next = "leave one of them out, or cut them with `from` and `to` so that they do not overlap";
+        return Issue::new(Severity::Warning, "shared_data", text, next);
+    }
+    let (train, test) = if run.split == Split::Train { (run, other) } else { (other, run) };
+    let text = format!("run {} to train on and run {} to test on {rows}: the test proves nothing", train.run, test.run);
+    let next = "keep both on one side of the split, or cut them with `from` and `to` so that they do not overlap";
+    Issue::new(Severity::Error, "shared_data", text, next)
+}

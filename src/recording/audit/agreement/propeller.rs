@@ -1,0 +1,68 @@
+//! The propeller rate against the ship's speed: an advance ratio that no propeller has tells a wrong unit of the one or the other.
+//! What the propeller's thrust is, is the model's affair.
+
+use crate::numerals::sig;
+use crate::recording::audit::issue::{Issue, Severity};
+use crate::recording::audit::limits::{POWERED, RATIO_APART, RATIO_INSIDE, RATIO_SAMPLES, SAILED, UNDER_WAY};
+use crate::recording::{Channel, Recording};
+use crate::ship::Ship;
+use crate::statistics::median;
+use std::f64::consts::TAU;
+
+/// Wrong units of a propeller rate, and by what factor they change it.
+const UNITS: [(f64, &str); 4] = [
+    (TAU, "the column is in rad/s and was declared rps"),
+    (60.0, "the column is in rpm and was declared rps"),
+    (1.0 / TAU, "the column is in rps and was declared rad/s"),
+    (1.0 / 60.0, "the column is in rps and was declared rpm"),
+];
+
+/// The median advance ratio where the ship sails ahead under power; `None` where it does too seldom.
+pub fn advance_ratio(recording: &Recording, ship: &Ship) -> Option<f64> {
+    let (n, u) = recording.get(Channel::N).zip(recording.get(Channel::U))?;
+    let slow = ship.small_speed();
+    let fastest = n.iter().copied().filter(|n| n.is_finite()).fold(0.0, f64::max);
+    let ahead = n.iter().zip(u).filter(|(n, u)| **n > POWERED * fastest && **u > UNDER_WAY * slow);
+    let ratios: Vec<f64> = ahead.map(|(n, u)| u / (n * ship.propeller.diameter)).collect();
+    if ratios.len() < RATIO_SAMPLES { None } else { median(ratios) }
+}
+
+/// Holds the ratios of all runs against those that ships have, and each against the others: a berthing is no voyage, so that one run
+/// is in doubt with all others, or where it is far from them.
+pub fn advance(ratios: &[Option<f64>], ship: &Ship) -> Vec<Option<Issue>> {
+    let [low, high] = SAILED;
+    let usual = median(ratios.iter().flatten().copied());
+    let alone = ratios.iter().flatten().count() == 1;
+    let doubtful = |ratio: f64| {
+        let others = usual.unwrap_or(ratio);
+        let apart = ratio > RATIO_APART * others || ratio < others / RATIO_APART;
+        let outside = |r: f64| !(low..=high).contains(&r);
+        if alone { outside(ratio) } else { outside(others) != apart }
+    };
+    let told = |ratio: &Option<f64>| ratio.filter(|r| doubtful(*r)).map(|r| doubt(r, ship));
+    ratios.iter().map(told).collect()
+}
+
+fn doubt(ratio: f64, ship: &Ship) -> Issue {
+    let [low, high] = SAILED;
+    let fits =
+        |(factor, _): &&(f64, &str)| (RATIO_INSIDE[0] * low..=RATIO_INSIDE[1] * high).contains(&(ratio * factor));
+    let meaning = UNITS.iter().find(fits).map_or(String::new(), |(_, meaning)| format!(": {meaning}"));
+    let text = format!("the advance ratio u / (n D) is {} in the median{meaning}", sig(ratio, 2));
+    let next = format!("check `unit` of n in a column map, and D = {} m in the ship file", ship.propeller.diameter);
+    Issue::new(Severity::Warning, "advance_ratio", text, next).of(Channel::N)
+}
+
+/// Whether the propeller stands still in every row of a ship that sails.
+pub fn is_unpowered(recording: &Recording, ship: &Ship) -> bool {
+    let Some((n, u)) = recording.get(Channel::N).zip(recording.get(Channel::U)) else { return false };
+    let sails = u.iter().any(|u| *u > UNDER_WAY * ship.small_speed());
+    sails && n.iter().all(|n| *n == 0.0 || n.is_nan()) && n.contains(&0.0)
+}
+
+/// The doubt where that is so in every run.
+pub fn unpowered() -> Issue {
+    let text = "the propeller never turns in any run, and the ship sails";
+    let next = "map the column of the propeller rate, or give a measured one (`trimtab help columns`): without it a fit takes the ship to be coasting";
+    Issue::new(Severity::Warning, "unpowered", text, next).of(Channel::N)
+}

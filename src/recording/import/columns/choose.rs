@@ -1,0 +1,293 @@
+//! Which column is taken for what: as the user says, as the format says, as its name and the data say.
+//! Of several columns for one quantity one is taken and the others are told; units and signs are not decided here.
+
+use super::agree::{Sight, heading};
+use super::log::{Column, Log, Meaning};
+use super::motion::Track;
+use super::names::{is_second_choice, is_shaft, is_unit, reading, source};
+use super::place::places;
+use super::signal::Signal;
+use crate::files::suggestion;
+use crate::recording::import::error::ImportError;
+use crate::recording::{CHANNELS, Channel, Quantity};
+use std::collections::{BTreeMap, HashMap};
+
+/// What a column of revolutions is.
+const SHAFT: Meaning = Meaning::Channel(Channel::N);
+
+/// What the user says of the columns.
+#[derive(Clone, Debug, Default)]
+pub struct Choices {
+    /// Column name by quantity (`psi`, `lat`, ...); `t` for the time.
+    pub columns: BTreeMap<String, String>,
+    /// Unit by quantity.
+    pub units: BTreeMap<String, String>,
+}
+
+impl Choices {
+    /// What a column is by itself: as the user says, as the format says, as its name says.
+    pub fn meaning(&self, column: &Column) -> Option<Meaning> {
+        let forced = self.columns.iter().find(|(_, name)| name.eq_ignore_ascii_case(&column.name));
+        let forced = forced.and_then(|(quantity, _)| Meaning::from_name(quantity));
+        forced.or(column.meaning).or_else(|| by_name(&column.name, column.unit.as_deref()).map(|(meaning, _)| meaning))
+    }
+
+    /// Checks that each quantity there is, and each unit of it.
+    ///
+    /// # Errors
+    /// [`ImportError::Choice`].
+    pub fn check(&self) -> Result<(), ImportError> {
+        let known = || {
+            let beside = super::log::BESIDE_CHANNELS.iter().map(|(name, ..)| *name);
+            CHANNELS.iter().map(|c| c.name).chain(beside)
+        };
+        let all = self.columns.keys().map(|k| ("--column", k)).chain(self.units.keys().map(|k| ("--unit", k)));
+        for (flag, name) in all {
+            if !known().any(|k| k == name) {
+                let near = suggestion(name, known());
+                let list = known().collect::<Vec<_>>().join(", ");
+                return Err(ImportError::Choice(format!(
+                    "{flag} {name}=...: there is no `{name}`{near}; there are {list}"
+                )));
+            }
+        }
+        for (name, unit) in &self.units {
+            let quantity = Meaning::from_name(name).map_or(Quantity::Time, Meaning::quantity);
+            if quantity.factor(unit).is_none() {
+                let choices = quantity.choices();
+                return Err(ImportError::Choice(format!(
+                    "--unit {name}={unit}: `{unit}` is none of {choices}; pass one of them"
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A column that was not used.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Unused {
+    /// Its name.
+    pub column: String,
+    /// Why, and the flag to use it.
+    pub why: String,
+}
+
+/// The columns of one quantity: one name, in one file or several.
+pub type Chosen<'a> = BTreeMap<Meaning, Vec<&'a Column>>;
+
+/// A column of one name, in one file or several, that may be taken for a quantity.
+struct Candidate<'a> {
+    name: &'a str,
+    columns: Vec<&'a Column>,
+    /// Share of its name that the quantity explains.
+    explained: f64,
+    /// Whether the user says so.
+    forced: bool,
+}
+
+/// The columns that are taken, by what they are, and those that are not. Candidates are ranked by what the user says, whether they
+/// hold values that move, whether the data contradict them, whether their partner is of the same sensor, how much of their name the
+/// quantity explains, whether the file states a unit that fits, and by how well they agree with the data.
+///
+/// # Errors
+/// [`ImportError::Choice`] for a column that no file has.
+pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec<Unused>), ImportError> {
+    let names = named(logs);
+    let forced = forced(&names, choices)?;
+    let mut candidates: BTreeMap<Meaning, Vec<Candidate<'a>>> = BTreeMap::new();
+    let mut unused = Vec::new();
+    for (name, columns) in names {
+        match read(name, &columns, &forced) {
+            Some((meaning, explained)) => {
+                let forced = forced.contains_key(name);
+                candidates.entry(meaning).or_default().push(Candidate { name, columns, explained, forced });
+            }
+            None => unused.push(Unused { column: name.to_owned(), why: "nothing here uses it".to_owned() }),
+        }
+    }
+    let mut order: Vec<Meaning> = candidates.keys().copied().collect();
+    order.sort_by_key(|meaning| (turn(*meaning), *meaning));
+    let (mut chosen, mut sight) = (Chosen::new(), Sight::default());
+    for meaning in order {
+        let Some(list) = candidates.remove(&meaning) else { continue };
+        let partner = leader(meaning).and_then(|leader| chosen.get(&leader)).and_then(|c| c.first());
+        let best = best(&list, meaning, partner.map(|c| c.name.as_str()), &sight);
+        let taken = list.get(best).map_or("", |c| c.name);
+        for (i, candidate) in list.into_iter().enumerate() {
+            if i == best {
+                chosen.insert(meaning, candidate.columns);
+                continue;
+            }
+            let name = candidate.name;
+            let dead = if moves(&candidate.columns) { "" } else { "; it never changes" };
+            let why = format!(
+                "`{taken}` is taken for {}{dead}; the other with `--column {}={name}`",
+                meaning.words(),
+                meaning.name()
+            );
+            unused.push(Unused { column: name.to_owned(), why });
+        }
+        look(&mut sight, meaning, &chosen, choices);
+    }
+    if chosen.contains_key(&Meaning::Channel(Channel::WindDirection))
+        && let Some(angle) = chosen.remove(&Meaning::WindAngle)
+    {
+        let why = "the direction from north is taken for that of the wind".to_owned();
+        unused.extend(angle.first().map(|c| Unused { column: c.name.clone(), why }));
+    }
+    Ok((chosen, unused))
+}
+
+/// The columns of all files by their name, in the order in which they come.
+fn named(logs: &[Log]) -> Vec<(&str, Vec<&Column>)> {
+    let mut at: HashMap<&str, usize> = HashMap::new();
+    let mut found: Vec<(&str, Vec<&Column>)> = Vec::new();
+    for column in logs.iter().flat_map(|log| &log.columns) {
+        let i = *at.entry(&column.name).or_insert(found.len());
+        if i == found.len() {
+            found.push((&column.name, Vec::new()));
+        }
+        found[i].1.push(column);
+    }
+    found
+}
+
+/// What the user says of columns, by their name.
+fn forced(names: &[(&str, Vec<&Column>)], choices: &Choices) -> Result<BTreeMap<String, Meaning>, ImportError> {
+    let mut forced = BTreeMap::new();
+    for (quantity, column) in &choices.columns {
+        let Some(meaning) = Meaning::from_name(quantity) else { continue };
+        let exact = names.iter().find(|(name, _)| name == column);
+        let Some((found, _)) = exact.or_else(|| names.iter().find(|(name, _)| name.eq_ignore_ascii_case(column)))
+        else {
+            let near = suggestion(column, names.iter().map(|(name, _)| *name));
+            let list = names.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+            return Err(ImportError::Choice(format!(
+                "--column {quantity}={column}: no file has a column `{column}`{near}; there are {list}"
+            )));
+        };
+        forced.insert((*found).to_owned(), meaning);
+    }
+    Ok(forced)
+}
+
+/// What a column is, and how much of its name that explains: as the user says, as the format says, as its name says.
+fn read(name: &str, columns: &[&Column], forced: &BTreeMap<String, Meaning>) -> Option<(Meaning, f64)> {
+    let first = columns.first()?;
+    let unit = first.unit.as_deref();
+    if let Some(meaning) = forced.get(name).copied().or(first.meaning) {
+        return Some((meaning, 1.0));
+    }
+    by_name(name, unit)
+}
+
+/// What a name and its unit say.
+fn by_name(name: &str, unit: Option<&str>) -> Option<(Meaning, f64)> {
+    let shaft = || is_shaft(name) && unit.is_some_and(|u| Quantity::Rotation.factor(u).is_some());
+    let by_name = reading(name).filter(|r| unit.is_none_or(|unit| fits(r.meaning, unit)));
+    by_name.map(|r| (r.meaning, r.explained)).or_else(|| shaft().then_some((SHAFT, 0.5)))
+}
+
+/// The order in which quantities are chosen: what others are held against comes first.
+fn turn(meaning: Meaning) -> usize {
+    let first = [
+        Meaning::Latitude,
+        Meaning::Longitude,
+        Meaning::Channel(Channel::X),
+        Meaning::Channel(Channel::Y),
+        Meaning::Channel(Channel::Psi),
+        Meaning::GroundSpeed,
+        Meaning::Course,
+        Meaning::VelocityNorth,
+        Meaning::Channel(Channel::WindSpeed),
+        Meaning::Channel(Channel::ApparentWindSpeed),
+    ];
+    first.iter().position(|m| *m == meaning).unwrap_or(first.len())
+}
+
+/// The quantity with which one stays together: both are of one sensor.
+fn leader(meaning: Meaning) -> Option<Meaning> {
+    let channel = Meaning::Channel;
+    Some(match meaning {
+        Meaning::Longitude | Meaning::GroundSpeed => Meaning::Latitude,
+        Meaning::Course => Meaning::GroundSpeed,
+        Meaning::VelocityEast => Meaning::VelocityNorth,
+        Meaning::WindAngle | Meaning::Channel(Channel::WindDirection) => channel(Channel::WindSpeed),
+        Meaning::Channel(Channel::ApparentWindDirection) => channel(Channel::ApparentWindSpeed),
+        Meaning::Channel(Channel::Y) => channel(Channel::X),
+        Meaning::Channel(Channel::V) => channel(Channel::U),
+        Meaning::Channel(Channel::VWater) => channel(Channel::UWater),
+        Meaning::Channel(Channel::CurrentDirection) => channel(Channel::CurrentSpeed),
+        Meaning::Channel(Channel::WaveDirection) => channel(Channel::WaveHeight),
+        _ => return None,
+    })
+}
+
+fn moves(columns: &[&Column]) -> bool {
+    columns.iter().any(|c| c.v.iter().any(|v| *v != c.v[0]))
+}
+
+/// Names of which more than a half, or nearly all, is explained rank alike within these bounds: a word more or less tells little.
+const NAMED: [f64; 3] = [0.95, 0.65, 0.35];
+/// A column that agrees less with the data than this is contradicted by them: a direction at random has an agreement of nought and a
+/// sound one of nearly one.
+const CONTRADICTED: f64 = 0.4;
+
+/// The first of the best.
+fn best(list: &[Candidate<'_>], meaning: Meaning, partner: Option<&str>, sight: &Sight) -> usize {
+    if list.len() < 2 {
+        return 0;
+    }
+    let samples = |c: &Candidate<'_>| c.columns.iter().map(|c| c.v.len()).sum::<usize>();
+    let most = list.iter().map(samples).max().unwrap_or(0);
+    let rank = |i: &usize| {
+        let c = &list[*i];
+        let agreement = sight.agreement(meaning, &c.columns);
+        let stated = |c: &&Column| c.unit.as_deref().is_some_and(|u| meaning.quantity().factor(u).is_some());
+        (
+            c.forced,
+            (5 * samples(c) > most, moves(&c.columns)),
+            agreement.is_none_or(|a| a > CONTRADICTED),
+            partner.is_none_or(|partner| source(partner) == source(c.name)),
+            NAMED.iter().filter(|bound| c.explained > **bound).count(),
+            !is_second_choice(c.name),
+            c.columns.first().is_some_and(stated),
+            // In tenths: a closer agreement is chance.
+            agreement.map_or(5, |a| (10.0 * a) as usize),
+        )
+    };
+    (0..list.len()).rev().max_by_key(rank).unwrap_or(0)
+}
+
+/// Takes what others are held against from what was just chosen.
+fn look(sight: &mut Sight, meaning: Meaning, chosen: &Chosen<'_>, choices: &Choices) {
+    let of = |meaning: Meaning| chosen.get(&meaning).map(Vec::as_slice);
+    let radians = |meaning: Meaning, columns: &[&Column]| {
+        let unit = choices.units.get(meaning.name()).or(columns.first().and_then(|c| c.unit.as_ref()));
+        unit.is_some_and(|u| Quantity::Angle.factor(u) == Some(1.0))
+    };
+    match meaning {
+        Meaning::Longitude => {
+            let both = of(Meaning::Latitude).zip(of(Meaning::Longitude));
+            let places = both.and_then(|(lat, lon)| {
+                let radians = radians(Meaning::Latitude, lat) && radians(Meaning::Longitude, lon);
+                places(lat, lon, radians).ok().flatten()
+            });
+            sight.track = places.and_then(|p| Track::of(&p.x, &p.y));
+        }
+        Meaning::Channel(Channel::Y) if sight.track.is_none() => {
+            let [x, y] = [Channel::X, Channel::Y].map(|c| of(Meaning::Channel(c)));
+            let signal = |columns| Signal::new(columns, 1.0, 0.0, false).0;
+            sight.track = x.zip(y).and_then(|(x, y)| Track::of(&signal(x), &signal(y)));
+        }
+        Meaning::Channel(Channel::Psi) => sight.psi = of(meaning).map(heading),
+        _ => {}
+    }
+}
+
+/// Whether a quantity may be measured in a unit: a rudder in deg/s is no rudder angle. A spelling that is no unit says nothing, nor does
+/// `ms`, which is written for m/s too.
+fn fits(meaning: Meaning, unit: &str) -> bool {
+    meaning.quantity().factor(unit).is_some() || !is_unit(unit) || Quantity::Time.factor(unit).is_some()
+}

@@ -1,0 +1,15 @@
+//! What columns stand for: names, units, signs and senses, each decided with its evidence, and signals in SI units.
+//! How files are laid out is read elsewhere.
+
+mod agree;
+pub(super) mod choose;
+mod evidence;
+pub(super) mod fills;
+pub(super) mod geodesy;
+pub(super) mod log;
+pub(super) mod motion;
+pub(super) mod names;
+mod place;
+pub(super) mod signal;
+pub(super) mod take;
+mod vocabulary;

@@ -1,0 +1,331 @@
+//! From the columns taken to signals in SI units: each quantity's unit and sign decided with its evidence, positions in metres.
+//! Rows are made elsewhere; here each quantity keeps its own times.
+
+use super::agree::heading;
+use super::choose::{Choices, Chosen, Unused};
+use super::evidence::{Given, Known, Verdict, direction, other, rotation, rudder, speed, yaw_rate};
+use super::log::{Column, Meaning};
+use super::motion::Track;
+use super::place::places;
+use super::signal::{Signal, Tidied, median};
+use crate::recording::Channel;
+use crate::recording::import::error::ImportError;
+use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
+
+/// What a column was taken for.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Taken {
+    /// The quantity: a channel, or `lat`, `lon`, `cog`, `sog`.
+    pub quantity: String,
+    /// The column.
+    pub column: String,
+    /// Its unit.
+    pub unit: String,
+    /// Why it is taken so.
+    pub evidence: String,
+    /// Samples.
+    pub samples: usize,
+    /// Usual step \[s\].
+    pub step: f64,
+}
+
+/// Signals in SI units by quantity, and what is to be told of them.
+#[derive(Default)]
+pub struct Signals {
+    /// By quantity; positions as the channels x and y.
+    pub by: BTreeMap<Meaning, Signal>,
+    /// What each column was taken for.
+    pub taken: Vec<Taken>,
+    /// Columns that are not used.
+    pub unused: Vec<Unused>,
+    /// Warnings and what was put in order.
+    pub notes: Vec<String>,
+    /// Point of the tangent plane \[deg\].
+    pub origin: Option<[f64; 2]>,
+    /// Questions that the data do not answer.
+    asked: Vec<String>,
+}
+
+/// Decides units and signs and makes the signals.
+///
+/// # Errors
+/// [`ImportError::Undecided`] with every question at once, [`ImportError::Choice`] where files contradict each other.
+pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportError> {
+    let mut signals = Signals::default();
+    let mut known = Known::default();
+    let given = |meaning: Meaning| given(meaning, chosen.get(&meaning).map_or(&[], Vec::as_slice), choices);
+    signals.positions(chosen, choices)?;
+    for channel in [Channel::X, Channel::Y] {
+        let meaning = Meaning::Channel(channel);
+        if let Some(columns) = chosen.get(&meaning).filter(|_| !signals.by.contains_key(&meaning)) {
+            let verdict = other(meaning, columns, given(meaning)?.as_ref());
+            signals.put(meaning, columns, verdict);
+        }
+    }
+    let get = |signals: &Signals, channel| signals.by.get(&Meaning::Channel(channel)).cloned();
+    if let (Some(x), Some(y)) = (get(&signals, Channel::X), get(&signals, Channel::Y)) {
+        known.track = Track::of(&x, &y);
+        known.axes_untold =
+            signals.origin.is_none() && !chosen.get(&Meaning::Channel(Channel::X)).is_some_and(|c| names_north(c));
+        let sway = chosen.get(&Meaning::Channel(Channel::V));
+        known.sway = sway.map(|columns| Signal::new(columns, 1.0, 0.0, false).0);
+    }
+    if choices.units.keys().all(|k| !["lat", "lon"].contains(&k.as_str()))
+        && let Some(axis) = known.track.as_ref().and_then(|track| wrong_axis(track, chosen))
+    {
+        signals.turn_axis(axis);
+        known.track = get(&signals, Channel::X).zip(get(&signals, Channel::Y)).and_then(|(x, y)| Track::of(&x, &y));
+    }
+    if let Some(columns) = chosen.get(&Meaning::Variation) {
+        let verdict = other(Meaning::Variation, columns, given(Meaning::Variation)?.as_ref());
+        // Degrees, where no unit is given: a variation of a few of them is small too.
+        let factor = verdict.as_ref().map_or(1f64.to_radians(), |verdict| verdict.factor);
+        let (signal, tidied) = Signal::new(columns, factor, 0.0, true);
+        let name = columns.first().map_or("", |c| c.name.as_str());
+        known.variation = median(signal.v.clone()).map(|v| (v, name.to_owned()));
+        signals.tell(Meaning::Variation, columns, &signal, tidied, "deg", "positive to the east".to_owned());
+    }
+    for meaning in [Meaning::Channel(Channel::Psi), Meaning::Course] {
+        if let Some(columns) = chosen.get(&meaning) {
+            let verdict = direction(meaning, columns, given(meaning)?.as_ref(), &known);
+            signals.put(meaning, columns, verdict);
+        }
+    }
+    known.psi = get(&signals, Channel::Psi);
+    signals.speeds(chosen, &known, choices)?;
+    let r = Meaning::Channel(Channel::R);
+    if let Some(columns) = chosen.get(&r) {
+        let verdict = yaw_rate(r, columns, given(r)?.as_ref(), &known);
+        signals.put(r, columns, verdict);
+    }
+    let turning = known.psi.as_ref().map(|psi| psi.rate(psi.span()));
+    // A recorded rate with many blanks has few stretches that are long enough to be held against a rudder.
+    let whole = |r: &Signal| {
+        let fitted = r.smooth(r.span()).t.len();
+        turning.as_ref().is_none_or(|turning| 2 * fitted > turning.t.len())
+    };
+    known.r = get(&signals, Channel::R).filter(whole).or(turning.clone());
+    if let Some(columns) = chosen.get(&Meaning::WindAngle) {
+        let mut verdict = other(Meaning::WindAngle, columns, given(Meaning::WindAngle)?.as_ref());
+        if let Ok(verdict) = &mut verdict {
+            verdict.evidence += "; an angle from the bow: the direction is heading + angle";
+        }
+        signals.put(Meaning::WindAngle, columns, verdict);
+    }
+    for (meaning, columns) in chosen {
+        let Meaning::Channel(channel) = *meaning else { continue };
+        let verdict = match channel {
+            Channel::Delta | Channel::DeltaOrder => rudder(*meaning, columns, given(*meaning)?.as_ref(), &known),
+            Channel::N | Channel::NOrder => rotation(*meaning, columns, given(*meaning)?.as_ref(), &known),
+            _ if signals.by.contains_key(meaning) || signals.is_told(*meaning) => continue,
+            _ => other(*meaning, columns, given(*meaning)?.as_ref()).map(|verdict| referred(verdict, channel)),
+        };
+        signals.put(*meaning, columns, verdict);
+    }
+    if signals.asked.is_empty() { Ok(signals) } else { Err(ImportError::Undecided(signals.asked)) }
+}
+
+/// Directions agree from this length of their mean on; they do in one sense and not in the other where these are so far apart.
+const AGREE: f64 = 0.8;
+const APART: f64 = 0.3;
+
+/// The axis of position that is counted the wrong way, 0 for north and 1 for east: latitude and longitude against which every direction
+/// turns, from north or south and not from east or west as a mathematician's angle.
+fn wrong_axis(track: &Track, chosen: &Chosen<'_>) -> Option<usize> {
+    if !chosen.contains_key(&Meaning::Latitude) || !chosen.contains_key(&Meaning::Longitude) {
+        return None;
+    }
+    let directions: Vec<&Vec<&Column>> =
+        [Meaning::Channel(Channel::Psi), Meaning::Course].iter().filter_map(|m| chosen.get(m)).collect();
+    let against = |columns: &&Vec<&Column>| {
+        let signal = heading(columns);
+        let [[right, _], [mirrored, turned]] = [track.agreement(&signal, 1.0)?, track.agreement(&signal, -1.0)?];
+        let quarter = (turned / FRAC_PI_2).round().rem_euclid(4.0);
+        let tells = mirrored > AGREE && mirrored > right + APART;
+        (tells && quarter % 2.0 == 0.0).then_some(if quarter == 0.0 { 1 } else { 0 })
+    };
+    let axes: Vec<usize> = directions.iter().map(against).collect::<Option<_>>()?;
+    axes.first().copied().filter(|first| axes.iter().all(|axis| axis == first))
+}
+
+fn plane_words(origin: [f64; 2]) -> String {
+    format!("plane tangent to WGS84 at {} N {} E", origin[0], origin[1])
+}
+
+/// The verdict on a direction of wind, current or waves, with what it counts from.
+fn referred(mut verdict: Verdict, channel: Channel) -> Verdict {
+    let from = match channel {
+        Channel::ApparentWindDirection => "; an angle from the bow",
+        Channel::WindDirection | Channel::CurrentDirection | Channel::WaveDirection => "; from north",
+        _ => "",
+    };
+    verdict.evidence += from;
+    verdict
+}
+
+/// The unit that the user or the files give.
+fn given(meaning: Meaning, columns: &[&Column], choices: &Choices) -> Result<Option<Given>, ImportError> {
+    let quantity = meaning.quantity();
+    if let Some(unit) = choices.units.get(meaning.name()) {
+        return Ok(quantity.factor(unit).map(|factor| Given { unit: unit.clone(), factor, by_user: true }));
+    }
+    let mut units: Vec<&String> = columns.iter().filter_map(|c| c.unit.as_ref()).collect();
+    units.dedup();
+    if let [first, second, ..] = units.as_slice() {
+        let name = columns.first().map_or("", |c| c.name.as_str());
+        return Err(ImportError::Choice(format!(
+            "column `{name}` is in {first} in one file and in {second} in another; import them apart, or rename one of the columns"
+        )));
+    }
+    let unit = units.first().map(|u| (*u).clone());
+    Ok(unit.and_then(|unit| quantity.factor(&unit).map(|factor| Given { unit, factor, by_user: false })))
+}
+
+/// Whether a position is called north by its name.
+fn names_north(columns: &[&Column]) -> bool {
+    columns.iter().any(|c| c.name.to_lowercase().contains("north"))
+}
+
+/// Channels without which nothing can be simulated, or which measure the motion: their unit must be known.
+fn needed(meaning: Meaning) -> bool {
+    use Channel::{Delta, N, Psi, R, U, V, X, Y};
+    match meaning {
+        Meaning::Channel(channel) => [X, Y, Psi, U, V, R, N, Delta].contains(&channel),
+        Meaning::WindAngle | Meaning::Variation => false,
+        _ => true,
+    }
+}
+
+impl Signals {
+    fn is_told(&self, meaning: Meaning) -> bool {
+        self.asked.iter().any(|a| a.contains(&format!("--unit {}=", meaning.name())))
+    }
+
+    /// Takes columns as the verdict says, or keeps the question.
+    fn put(&mut self, meaning: Meaning, columns: &[&Column], verdict: Result<Verdict, String>) {
+        let name = columns.first().map_or("", |c| c.name.as_str());
+        match verdict {
+            Ok(verdict) => {
+                if let Some(doubt) = &verdict.doubt {
+                    self.notes.push(format!("{name}: {doubt}"));
+                }
+                let (signal, tidied) = Signal::new(columns, verdict.factor, verdict.offset, meaning.wraps());
+                self.tell(meaning, columns, &signal, tidied, &verdict.unit, verdict.evidence);
+                self.by.insert(meaning, signal);
+            }
+            Err(question) if needed(meaning) => self.asked.push(question),
+            Err(question) => self.unused.push(Unused { column: name.to_owned(), why: question }),
+        }
+    }
+
+    fn tell(
+        &mut self,
+        meaning: Meaning,
+        columns: &[&Column],
+        signal: &Signal,
+        tidied: Tidied,
+        unit: &str,
+        evidence: String,
+    ) {
+        let name = columns.first().map_or("", |c| c.name.as_str());
+        for (count, what) in [
+            (tidied.out_of_order, "come before an earlier one and are sorted"),
+            (tidied.repeated, "have the time of another and are left out"),
+        ] {
+            if count > 0 {
+                self.notes.push(format!("{name}: {count} samples {what}"));
+            }
+        }
+        self.taken.push(Taken {
+            quantity: meaning.name().to_owned(),
+            column: name.to_owned(),
+            unit: unit.to_owned(),
+            evidence,
+            samples: signal.t.len(),
+            step: signal.step,
+        });
+    }
+
+    /// Latitude and longitude as metres.
+    fn positions(&mut self, chosen: &Chosen<'_>, choices: &Choices) -> Result<(), ImportError> {
+        let (Some(lat), Some(lon)) = (chosen.get(&Meaning::Latitude), chosen.get(&Meaning::Longitude)) else {
+            return Ok(());
+        };
+        let units = [given(Meaning::Latitude, lat, choices)?, given(Meaning::Longitude, lon, choices)?];
+        let radians = units.iter().all(|unit| unit.as_ref().is_some_and(|u| u.factor == 1.0));
+        let Some(places) = places(lat, lon, radians)? else { return Ok(()) };
+        if places.nowhere > 0 {
+            let text = "positions are 0 N 0 E, which receivers write without a fix; taken as missing";
+            self.notes.push(format!("{} {text}", places.nowhere));
+        }
+        if places.far > 100_000.0 {
+            let text = format!(
+                "positions reach {:.0} km from the point of the plane, where distances are {:.2} % short",
+                places.far / 1e3,
+                100.0 * places.far * places.far / 8.1e13
+            );
+            self.notes.push(text);
+        }
+        let why = plane_words(places.origin);
+        let [told_lat, told_lon] = &places.told;
+        self.tell(Meaning::Latitude, lat, told_lat, places.tidied, places.form, why.clone());
+        self.tell(Meaning::Longitude, lon, told_lon, Tidied::default(), places.form, why);
+        self.by.insert(Meaning::Channel(Channel::X), places.x);
+        self.by.insert(Meaning::Channel(Channel::Y), places.y);
+        self.origin = Some(places.origin);
+        Ok(())
+    }
+
+    /// Counts an axis of position the other way, and says so first of all.
+    fn turn_axis(&mut self, axis: usize) {
+        let (channel, meaning) = [(Channel::X, Meaning::Latitude), (Channel::Y, Meaning::Longitude)][axis];
+        if let Some(signal) = self.by.get_mut(&Meaning::Channel(channel)) {
+            signal.v.iter_mut().for_each(|v| *v = -*v);
+        }
+        if let Some(origin) = &mut self.origin {
+            origin[axis] = -origin[axis];
+        }
+        let plane = self.origin.map_or_else(String::new, plane_words);
+        let side = ["south", "west"][axis];
+        let words =
+            format!("counted positive to the {side}, turned: heading and course turn against the track otherwise");
+        for taken in &mut self.taken {
+            let turned = if taken.quantity == meaning.name() { format!("{words}; ") } else { String::new() };
+            taken.evidence = turned + &plane;
+        }
+        let name = meaning.name();
+        let text =
+            format!("WARNING: the {} is {words}; if it is right as it is, pass `--unit {name}=deg`", meaning.words());
+        self.notes.insert(0, text);
+    }
+
+    /// Speeds: over ground alone or in parts, and through water.
+    fn speeds(&mut self, chosen: &Chosen<'_>, known: &Known, choices: &Choices) -> Result<(), ImportError> {
+        let pairs = [
+            [Meaning::GroundSpeed, Meaning::GroundSpeed],
+            [Meaning::VelocityNorth, Meaning::VelocityEast],
+            [Meaning::Channel(Channel::U), Meaning::Channel(Channel::V)],
+            [Meaning::Channel(Channel::UWater), Meaning::Channel(Channel::VWater)],
+        ];
+        for [first, second] in pairs {
+            let mut parts: Vec<(Meaning, &Vec<&Column>)> =
+                [first, second].iter().filter_map(|m| Some((*m, chosen.get(m)?))).collect();
+            parts.dedup_by_key(|(meaning, _)| *meaning);
+            let Some((meaning, columns)) = parts.first() else { continue };
+            let raw: Vec<Signal> = parts.iter().map(|(_, c)| Signal::new(c, 1.0, 0.0, false).0).collect();
+            let mut size = raw[0].clone();
+            if let Some(other) = raw.get(1) {
+                let step = size.step;
+                size.v = size.t.iter().zip(&size.v).map(|(t, v)| v.hypot(other.at(*t, step))).collect();
+            }
+            size.v.iter_mut().for_each(|v| *v = v.abs());
+            let name = columns.first().map_or("", |c| c.name.as_str());
+            let verdict = speed(*meaning, name, &size, given(*meaning, columns, choices)?.as_ref(), known);
+            for (meaning, columns) in parts {
+                self.put(meaning, columns, verdict.clone());
+            }
+        }
+        Ok(())
+    }
+}

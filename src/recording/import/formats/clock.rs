@@ -1,0 +1,383 @@
+//! Times as loggers write them, to seconds: ISO 8601, date and time apart, epochs, time of day, spreadsheet days.
+//! A time without a zone counts as UTC; no daylight saving is guessed.
+
+use crate::recording::import::columns::log::Clock;
+use jiff::civil::DateTime;
+use jiff::fmt::rfc2822;
+use jiff::tz::TimeZone;
+use jiff::{SignedDuration, Timestamp};
+
+/// Seconds of a day.
+pub const DAY: f64 = 86_400.0;
+
+/// Which of day and month comes first in dates with slashes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DateOrder {
+    /// `24/12/2024`
+    DayFirst,
+    /// `12/24/2024`
+    MonthFirst,
+}
+
+/// Dates with the name of the month, as `strptime` has them.
+const NAMED_MONTHS: [&str; 6] = [
+    "%d-%b-%Y %H:%M:%S%.f",
+    "%d %b %Y %H:%M:%S%.f",
+    "%d/%b/%Y %H:%M:%S%.f",
+    "%b %d, %Y %H:%M:%S%.f",
+    "%b %d %Y %H:%M:%S%.f",
+    "%a %b %d %H:%M:%S %Y",
+];
+
+/// Seconds since 1970 of a written date and time; `None` where it is none.
+pub fn date_time(text: &str, order: DateOrder) -> Option<f64> {
+    let text = text.trim().trim_matches('"').trim();
+    if !text.contains(|c: char| c.is_ascii_digit()) || text.len() < 8 || text.len() > 64 {
+        return None;
+    }
+    let text = text.strip_suffix("UTC").or_else(|| text.strip_suffix("GMT")).map_or(text, str::trim_end);
+    let (text, half) = half_of_day(text);
+    if text.as_bytes().windows(3).any(|w| w.iter().all(u8::is_ascii_alphabetic)) {
+        return half.shift(named_month(text)?);
+    }
+    if !text.starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    // A comma may separate the fraction.
+    let iso = reordered(&text.replace(',', "."), order)?;
+    if let Ok(stamp) = iso.parse::<Timestamp>() {
+        return half.shift(seconds(stamp));
+    }
+    let civil: DateTime = iso.trim_end_matches(['Z', 'z']).parse().ok()?;
+    half.shift(utc(civil)?)
+}
+
+fn utc(civil: DateTime) -> Option<f64> {
+    Some(seconds(civil.to_zoned(TimeZone::UTC).ok()?.timestamp()))
+}
+
+fn named_month(text: &str) -> Option<f64> {
+    if let Ok(stamp) = rfc2822::parse(text) {
+        return Some(seconds(stamp.timestamp()));
+    }
+    NAMED_MONTHS.iter().find_map(|format| utc(DateTime::strptime(format, text).ok()?))
+}
+
+/// The half of the day that a clock of twelve hours tells.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Half {
+    Before,
+    After,
+    /// A clock of 24 hours.
+    None,
+}
+
+/// A time without its `AM` or `PM`.
+fn half_of_day(text: &str) -> (&str, Half) {
+    for (end, half) in [("AM", Half::Before), ("PM", Half::After), ("a.m.", Half::Before), ("p.m.", Half::After)] {
+        let at = text.len().saturating_sub(end.len());
+        if let (Some(rest), Some(last)) = (text.get(..at), text.get(at..))
+            && last.eq_ignore_ascii_case(end)
+            && rest.ends_with(|c: char| c.is_ascii_digit() || c == ' ')
+        {
+            return (rest.trim_end(), half);
+        }
+    }
+    (text, Half::None)
+}
+
+impl Half {
+    /// Seconds as a clock of 24 hours has them; `None` where its hour is none of the twelve.
+    fn shift(self, seconds: f64) -> Option<f64> {
+        let hour = (seconds / 3600.0).floor().rem_euclid(24.0);
+        match self {
+            Self::None => Some(seconds),
+            _ if !(1.0..=12.0).contains(&hour) => None,
+            Self::Before => Some(if hour == 12.0 { seconds - 0.5 * DAY } else { seconds }),
+            Self::After => Some(if hour == 12.0 { seconds } else { seconds + 0.5 * DAY }),
+        }
+    }
+}
+
+/// Whether a text is a date without a time of day.
+pub fn is_date_alone(text: &str) -> bool {
+    text.len() <= 12 && !text.contains(':') && date_time(text, DateOrder::DayFirst).is_some()
+}
+
+fn seconds(stamp: Timestamp) -> f64 {
+    stamp.as_second() as f64 + f64::from(stamp.subsec_nanosecond()) * 1e-9
+}
+
+/// The same with the date as ISO 8601 has it: `24.12.2024 10:00` is `2024-12-24 10:00`.
+fn reordered(text: &str, order: DateOrder) -> Option<String> {
+    // Fourteen digits are a date and a time of day.
+    if text.len() >= 14 && text.bytes().take(14).all(|b| b.is_ascii_digit()) {
+        return Some(format!("{}T{}", &text[..8], &text[8..]));
+    }
+    let at = text.find([' ', 'T', '_']).unwrap_or(text.len());
+    let (date, rest) = (text.get(..at)?, text.get(at..)?);
+    let rest = rest.trim_start_matches([' ', 'T', '_']);
+    let separator = date.chars().find(|c| ['.', '/'].contains(c) || (*c == '-' && date.find('-') < Some(4)));
+    let date = match separator {
+        None => date.to_owned(),
+        Some(separator) => {
+            let parts: Vec<&str> = date.split(separator).collect();
+            let [a, b, c] = parts.as_slice() else { return None };
+            let (year, month, day) = match (a.len(), separator, order) {
+                (4, ..) => (*a, *b, *c),
+                (_, '.', _) | (_, _, DateOrder::DayFirst) => (*c, *b, *a),
+                (_, _, DateOrder::MonthFirst) => (*c, *a, *b),
+            };
+            let year = if year.len() == 2 { format!("20{year}") } else { year.to_owned() };
+            format!("{year}-{month:0>2}-{day:0>2}")
+        }
+    };
+    // Ten in the morning without its leading nought.
+    let rest = if rest.find(':') == Some(1) { format!("0{rest}") } else { rest.to_owned() };
+    Some(if rest.is_empty() { date } else { format!("{date}T{}", rest.replace(' ', "")) })
+}
+
+/// Whether a date may have the day or the month first: `05/01/2024`, `5-1-2024`.
+pub fn two_orders(text: &str) -> bool {
+    let digits = text.bytes().take_while(u8::is_ascii_digit).count();
+    (1..=2).contains(&digits) && text[digits..].starts_with(['/', '-'])
+}
+
+/// Whether dates with slashes have the day first; `None` where no date says.
+pub fn date_order<'a>(texts: impl Iterator<Item = &'a str>) -> Option<DateOrder> {
+    for text in texts {
+        let numbers: Vec<u32> =
+            text.split(|c: char| !c.is_ascii_digit()).take(2).filter_map(|n| n.parse().ok()).collect();
+        match numbers.as_slice() {
+            [a, _] if (13..=31).contains(a) => return Some(DateOrder::DayFirst),
+            [_, b] if (13..=31).contains(b) => return Some(DateOrder::MonthFirst),
+            _ => {}
+        }
+    }
+    None
+}
+
+/// Hours that a time since some start may have.
+const MOST_HOURS: u32 = 10_000;
+
+/// Seconds since midnight, or since some start, of a time such as `10:03:05.25`, `10:03 PM`, `03:05.25` or `1 days 02:03:05`.
+pub fn time_of_day(text: &str) -> Option<f64> {
+    let text = text.trim().trim_matches('"').trim_end_matches(['Z', 'z']).replace(',', ".");
+    let (days, text) = text.split_once(" days ").or_else(|| text.split_once(" day ")).unwrap_or(("0", &text));
+    let days: u8 = days.trim().parse().ok()?;
+    let (text, half) = half_of_day(text.trim());
+    let parts: Vec<&str> = text.split(':').collect();
+    let (hours, minutes, seconds) = match parts.as_slice() {
+        [h, m, s] => (h.parse::<u32>().ok()?, m.parse::<u8>().ok()?, s.parse::<f64>().ok()?),
+        // Only seconds have a fraction.
+        [m, s] if s.contains('.') => (0, m.parse().ok()?, s.parse().ok()?),
+        [h, m] => (h.parse().ok()?, m.parse().ok()?, 0.0),
+        _ => return None,
+    };
+    let possible = hours < MOST_HOURS && minutes < 60 && (0.0..61.0).contains(&seconds);
+    let total = f64::from(days) * DAY + 3600.0 * f64::from(hours) + 60.0 * f64::from(minutes) + seconds;
+    possible.then(|| half.shift(total)).flatten()
+}
+
+/// Seconds since midnight of hours, minutes and seconds in one number: `101530.25`.
+pub fn digits_of_day(value: f64) -> Option<f64> {
+    let (hours, minutes, seconds) = ((value / 1e4).floor(), (value / 100.0).floor() % 100.0, value % 100.0);
+    let possible = (0.0..24.0).contains(&hours) && minutes < 60.0 && seconds < 61.0;
+    possible.then_some(3600.0 * hours + 60.0 * minutes + seconds)
+}
+
+/// Whether numbers are times of day as `101530.25`: from 59 they go on to 100, where a count of seconds has the forty between.
+pub fn are_digits_of_day(values: &[f64]) -> bool {
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let (low, high) = finite().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
+    let step = values.windows(2).map(|v| v[1] - v[0]).filter(|s| *s > 0.0).fold(f64::MAX, f64::min);
+    high - low > 100.0 && step <= 30.0 && finite().all(|v| v % 100.0 < 60.0 && digits_of_day(v).is_some())
+}
+
+/// Times of day that go on past midnight.
+pub fn past_midnight(times: &mut [f64]) {
+    let (mut days, mut last) = (0.0, f64::NAN);
+    for t in times.iter_mut().filter(|t| t.is_finite()) {
+        if last - *t > 0.5 * DAY {
+            days += DAY;
+        }
+        last = *t;
+        *t += days;
+    }
+}
+
+/// How numbers are to be read as times: what they count from, the seconds of one, what to subtract first, and why.
+pub struct NumericTime {
+    /// What they count from.
+    pub clock: Clock,
+    /// Seconds of one.
+    pub factor: f64,
+    /// Subtracted first.
+    pub zero: f64,
+    /// In words.
+    pub words: &'static str,
+}
+
+/// What a column of numbers counts, by its size: epochs are unlike any other number.
+pub fn numeric_time(values: &[f64], unit: Option<f64>) -> NumericTime {
+    let mut finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    let middle = finite.len() / 2;
+    let typical = if finite.is_empty() { 0.0 } else { *finite.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    let time = |clock, factor, zero, words| NumericTime { clock, factor, zero, words };
+    // A unit that takes the numbers to a date since 1973 is that of an epoch.
+    if let Some(unit) = unit.filter(|unit| (1e8..1e11).contains(&(typical * unit))) {
+        return time(Clock::Utc, unit, 0.0, "time since 1970");
+    }
+    let own = unit.filter(|unit| typical * unit < 1e8);
+    match typical {
+        _ if own.is_some() => time(Clock::Own, own.unwrap_or(1.0), 0.0, "time from a start of its own"),
+        v if v > 1e17 => time(Clock::Utc, 1e-9, 0.0, "nanoseconds since 1970"),
+        v if v > 1e14 => time(Clock::Utc, 1e-6, 0.0, "microseconds since 1970"),
+        v if v > 1e11 => time(Clock::Utc, 1e-3, 0.0, "milliseconds since 1970"),
+        v if v > 1e8 => time(Clock::Utc, 1.0, 0.0, "seconds since 1970"),
+        // Days of this century until 2050, by what they count from; a second is a hundred-thousandth.
+        v if (36_526.0..54_789.0).contains(&v) && fine(values) => {
+            time(Clock::Utc, DAY, 25_569.0, "days of a spreadsheet")
+        }
+        v if (54_789.0..69_807.0).contains(&v) && fine(values) => {
+            time(Clock::Utc, DAY, 40_587.0, "modified Julian days")
+        }
+        v if (730_486.0..748_749.0).contains(&v) && fine(values) => time(Clock::Utc, DAY, 719_529.0, "days of MATLAB"),
+        v if (2_451_544.0..2_469_808.0).contains(&v) && fine(values) => {
+            time(Clock::Utc, DAY, 2_440_587.5, "Julian days")
+        }
+        _ => time(Clock::Own, 1.0, 0.0, "seconds from a start of its own"),
+    }
+}
+
+/// Whether steps are far below one, as those of days are.
+fn fine(values: &[f64]) -> bool {
+    let mut steps: Vec<f64> = values.windows(2).map(|v| v[1] - v[0]).filter(|s| *s > 0.0).collect();
+    if steps.is_empty() {
+        return false;
+    }
+    let middle = steps.len() / 2;
+    *steps.select_nth_unstable_by(middle, f64::total_cmp).1 < 0.01
+}
+
+/// Spreads times that were rounded over the interval they stand for: ten rows with the same second are a tenth of a second
+/// apart. Gives how many rows share a time, where most do.
+pub fn spread(times: &mut [f64]) -> Option<usize> {
+    let repeats = times.windows(2).filter(|t| t[0] == t[1]).count();
+    if times.len() < 4 || repeats * 3 < times.len() {
+        return None;
+    }
+    let mut groups: Vec<(usize, usize)> = Vec::new();
+    for (i, t) in times.iter().enumerate() {
+        match groups.last_mut() {
+            Some((start, count)) if times[*start] == *t => *count += 1,
+            _ => groups.push((i, 1)),
+        }
+    }
+    let usual = |mut all: Vec<f64>| -> Option<f64> {
+        let middle = all.len() / 2;
+        (!all.is_empty()).then(|| *all.select_nth_unstable_by(middle, f64::total_cmp).1)
+    };
+    let count = usual(groups.iter().map(|(_, count)| *count as f64).collect())?.max(1.0);
+    let step = usual(groups.windows(2).map(|g| times[g[1].0] - times[g[0].0]).filter(|s| *s > 0.0).collect())?;
+    for (g, (start, rows)) in groups.iter().enumerate() {
+        let spacing = step / count.max(*rows as f64);
+        // The first interval may have begun before the file.
+        let late = if g == 0 { step - *rows as f64 * spacing } else { 0.0 };
+        for i in 0..*rows {
+            times[start + i] += late + i as f64 * spacing;
+        }
+    }
+    Some(count as usize)
+}
+
+/// A time as people and file names write it: `2024-05-01 10:00:03`.
+pub fn written(seconds: f64) -> String {
+    let parts = Timestamp::UNIX_EPOCH.checked_add(SignedDuration::from_secs(seconds.floor() as i64));
+    parts.map_or_else(
+        |_| format!("{seconds:.0} s"),
+        |t| t.to_zoned(TimeZone::UTC).strftime("%Y-%m-%d %H:%M:%S").to_string(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_instant_written_in_many_ways_is_one_number() {
+        let same = [
+            "2024-05-01T10:00:03.250Z",
+            "2024-05-01 10:00:03.25",
+            "2024-05-01T12:00:03.25+02:00",
+            "2024-05-01 10:00:03,25 UTC",
+            "01.05.2024 10:00:03.25",
+            "2024/05/01 10:00:03.25",
+            "1/5/2024 10:00:03.25",
+            "1-5-2024 10:00:03.25 AM",
+            "01-May-2024 10:00:03.25",
+            "May 1, 2024 10:00:03.25",
+            "20240501100003.25",
+            "2024-05-01_10:00:03.25",
+        ];
+        for text in same {
+            assert_eq!(date_time(text, DateOrder::DayFirst), Some(1_714_557_603.25), "{text}");
+        }
+        assert_eq!(date_time("5/1/2024 10:00:03.25", DateOrder::MonthFirst), Some(1_714_557_603.25));
+        for text in ["Wed May  1 22:00:03 2024", "Wed, 01 May 2024 22:00:03 +0000", "01/05/2024 10:00:03 pm"] {
+            assert_eq!(date_time(text, DateOrder::DayFirst), Some(1_714_600_803.0), "{text}");
+        }
+        for text in ["12345678.5", "01/05/2024 13:00:03 PM", "engine 1 stopped"] {
+            assert_eq!(date_time(text, DateOrder::DayFirst), None, "{text}");
+        }
+        assert_eq!(written(1_714_557_603.25), "2024-05-01 10:00:03");
+    }
+
+    #[test]
+    fn epochs_are_known_by_their_size_and_spreadsheet_days_by_their_step() {
+        assert_eq!(numeric_time(&[1_714_557_603.0], None).factor, 1.0);
+        assert_eq!(numeric_time(&[1_714_557_603_000.0], None).factor, 1e-3);
+        let days = numeric_time(&[45_413.5, 45_413.500_01], None);
+        assert_eq!((days.clock, (45_413.5 - days.zero) * days.factor), (Clock::Utc, 1_714_564_800.0));
+        assert_eq!(numeric_time(&[0.0, 1.0, 45_000.0], None).clock, Clock::Own);
+        for noon in [60_431.5, 739_373.5, 2_460_432.0] {
+            let days = numeric_time(&[noon, noon + 1e-5], None);
+            assert_eq!((days.clock, (noon - days.zero) * days.factor), (Clock::Utc, 1_714_564_800.0));
+        }
+    }
+
+    #[test]
+    fn times_of_day_are_read_as_people_write_them() {
+        let cases = [
+            ("10:03:05.25", 36_185.25),
+            ("12:03:05 AM", 185.0),
+            ("12:03:05PM", 43_385.0),
+            ("03:05.25", 185.25),
+            ("1 days 00:00:01", 86_401.0),
+            ("25:00:01", 90_001.0),
+        ];
+        for (text, seconds) in cases {
+            assert_eq!(time_of_day(text), Some(seconds), "{text}");
+        }
+        assert_eq!(time_of_day("13:00:00 PM"), None);
+        let clock: Vec<f64> = (0..200).map(|i| f64::from(101_500 + i / 60 * 100 + i % 60)).collect();
+        assert!(are_digits_of_day(&clock) && digits_of_day(101_530.25) == Some(36_930.25));
+        let seconds: Vec<f64> = (0..200).map(f64::from).collect();
+        assert!(!are_digits_of_day(&seconds));
+    }
+
+    #[test]
+    fn rounded_times_are_spread_over_their_seconds() {
+        let mut times = vec![10.0, 10.0, 11.0, 11.0, 11.0, 11.0, 12.0, 12.0, 12.0, 12.0];
+        assert_eq!(spread(&mut times), Some(4));
+        assert_eq!(times, [10.5, 10.75, 11.0, 11.25, 11.5, 11.75, 12.0, 12.25, 12.5, 12.75]);
+        assert_eq!(spread(&mut [1.0, 2.0, 3.0, 4.0, 5.0]), None);
+    }
+
+    #[test]
+    fn a_clock_goes_on_past_midnight() {
+        let mut times = vec![time_of_day("23:59:59").unwrap(), time_of_day("00:00:01.5").unwrap()];
+        past_midnight(&mut times);
+        assert_eq!(times[1] - times[0], 2.5);
+    }
+}

@@ -1,0 +1,12 @@
+//! Files as ships and loggers write them: text, NMEA 0183, Parquet, each read to columns with times.
+//! What a column stands for is decided elsewhere.
+
+pub(super) mod clock;
+mod foreign;
+mod layout;
+mod marks;
+mod nmea;
+mod parquet;
+pub(super) mod passes;
+pub(super) mod read;
+mod text;

@@ -1,0 +1,41 @@
+//! Reads a file of any format that is known, by its content rather than its name.
+//! How each format is read is in the files beside it.
+
+use super::foreign::foreign;
+use super::nmea::{is_nmea, read_nmea};
+use super::parquet::{is_parquet, read_parquet};
+use super::text::read_text;
+use crate::files::written::bytes_of;
+use crate::recording::import::columns::choose::Choices;
+use crate::recording::import::columns::log::Log;
+use crate::recording::import::error::ImportError;
+use std::path::Path;
+
+/// Reads a file, its time as the user says. A file whose own clock starts again several times is as many logs.
+///
+/// # Errors
+/// [`ImportError`]: it cannot be read, is no log, or has no column or no time.
+pub fn read(path: &Path, choices: &Choices) -> Result<Vec<Log>, ImportError> {
+    if path.is_dir() {
+        let message = "is a folder; give the files in it".to_owned();
+        return Err(ImportError::File { path: path.to_owned(), message });
+    }
+    let bytes = bytes_of(path).map_err(|source| ImportError::Read { path: path.to_owned(), source })?;
+    read_bytes(path, &bytes, choices)
+}
+
+/// Reads the content of a file; `path` is for messages.
+///
+/// # Errors
+/// [`ImportError`]: it is no log, or has no column or no time.
+pub fn read_bytes(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log>, ImportError> {
+    if let Some(message) = foreign(bytes) {
+        Err(ImportError::File { path: path.to_owned(), message })
+    } else if is_parquet(bytes) {
+        read_parquet(path, bytes, choices)
+    } else if is_nmea(bytes) {
+        read_nmea(path, bytes)
+    } else {
+        read_text(path, bytes, choices)
+    }
+}

@@ -1,0 +1,422 @@
+//! Reads text files of columns: CSV in the layouts that loggers write.
+//! What a column means and its unit are not decided here, but for what its header says.
+
+use super::clock::{
+    DateOrder, NumericTime, are_digits_of_day, date_order, date_time, digits_of_day, is_date_alone, numeric_time,
+    past_midnight, spread, time_of_day, two_orders,
+};
+use super::layout::{Delimiter, Layout, comment, decimal_comma, decoded, layout, number, too_wide};
+use super::marks::{Marks, signs};
+use super::passes::{FEW, OTHERWISE, passes, stepped_back};
+use crate::recording::Quantity;
+use crate::recording::import::columns::choose::Choices;
+use crate::recording::import::columns::log::{Clock, Column, Log};
+use crate::recording::import::columns::names::{is_ships_name, is_unit, meaning, name_and_unit, time_rank};
+use crate::recording::import::error::ImportError;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use std::path::Path;
+
+/// Share of a column's fields that must be numbers for it to be one, where the others are not all the same few words.
+const NUMBERS: f64 = 0.9;
+/// Words that may stand for a missing value in one column.
+const FEW_WORDS: usize = 2;
+/// Rows that a run has at least, where a file holds several.
+const FEWEST: usize = 10;
+
+/// The lines of a file as fields.
+struct Table<'a> {
+    path: &'a Path,
+    /// Name and unit of each column.
+    names: Vec<(String, Option<String>)>,
+    decimal_comma: bool,
+    /// Number and fields of each line of data.
+    rows: Vec<(usize, Vec<&'a str>)>,
+    notes: Vec<String>,
+}
+
+/// Reads a text file of columns, its time as the user says: a log, or one of each run where a clock of its own starts again.
+///
+/// # Errors
+/// [`ImportError`]: no columns, no time, numbers that can be read in two ways.
+pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log>, ImportError> {
+    let text = decoded(bytes);
+    let fail = |message: &str| ImportError::File { path: path.to_owned(), message: message.to_owned() };
+    if let Some(count) = too_wide(&text) {
+        let next = "a log has a line for each time and a column for each quantity; are rows and columns exchanged?";
+        return Err(fail(&format!("a line has {count} fields; {next}")));
+    }
+    let layout = layout(&text).ok_or_else(|| {
+        fail("no columns are found: lines have no number of fields in common. Give a CSV (commas, semicolons, tabs, upright strokes or blanks), NMEA 0183 or Parquet file")
+    })?;
+    let mut table = table(path, &text, &layout)?;
+    one_ship(&table)?;
+    if table.rows.len() < 2 {
+        let count = ["no line", "one line"][table.rows.len()];
+        return Err(fail(&format!("there is {count} of data; give a file with at least two")));
+    }
+    let Times { clock, t, used, how } = times(&table, choices)?;
+    let columns = columns(&mut table, &used, &t);
+    let decimal =
+        if table.decimal_comma && layout.delimiter != Delimiter::Character(',') { " and decimal commas" } else { "" };
+    let format = format!("text with {}{decimal}; time is {how}", layout.delimiter.words());
+    let log = |columns, notes| Log { path: path.to_owned(), format: format.clone(), clock, columns, notes };
+    let runs = runs(&table, &columns, clock, &t);
+    if let [_, second, ..] = runs.as_slice() {
+        let line = table.rows[second.start].0;
+        table.notes.push(match clock {
+            Clock::Utc => stepped_back(runs.len(), &format!("line {line}")),
+            _ => format!("its time starts again {} times: {} runs", runs.len() - 1, runs.len()),
+        });
+    }
+    let mut logs = Vec::new();
+    for run in runs {
+        let part = |(column, values): &(Column, Vec<f64>)| {
+            let mut column = column.clone();
+            run.clone().for_each(|row| column.push(t[row], values[row]));
+            column
+        };
+        logs.push(log(
+            columns.iter().map(part).filter(|c| !c.v.is_empty()).collect(),
+            std::mem::take(&mut table.notes),
+        ));
+    }
+    Ok(logs)
+}
+
+/// The rows of each run, where the clock steps back over what it told before, or a clock of its own starts again; all rows as one where
+/// they are merely out of order.
+fn runs(table: &Table<'_>, columns: &[(Column, Vec<f64>)], clock: Clock, t: &[f64]) -> Vec<Range<usize>> {
+    let repeats = |before: Range<usize>, after: Range<usize>| {
+        let copy = before.len() == after.len()
+            && before.clone().zip(after.clone()).all(|(a, b)| table.rows[a].1 == table.rows[b].1);
+        let told = |values: &[f64], rows: &Range<usize>| {
+            values[rows.clone()].iter().filter(|v| v.is_finite()).take(FEW).count() == FEW
+        };
+        !copy && columns.iter().any(|(_, values)| told(values, &before) && told(values, &after))
+    };
+    let mut starts: BTreeSet<usize> = passes(t, repeats).into_iter().map(|run| run.start).collect();
+    if clock != Clock::Utc {
+        starts.extend(restarts(t));
+    }
+    let ends: Vec<usize> = starts.iter().copied().skip(1).chain([t.len()]).collect();
+    let runs: Vec<Range<usize>> = starts.into_iter().zip(ends).map(|(start, end)| start..end).collect();
+    let long = clock == Clock::Utc || runs.iter().all(|run| run.len() >= FEWEST);
+    if long { runs } else { std::iter::once(0..t.len()).collect() }
+}
+
+/// First rows of runs that begin where time goes back to the first tenth of the run before.
+fn restarts(t: &[f64]) -> Vec<usize> {
+    let mut found = Vec::new();
+    let (mut begun, mut last) = (f64::NAN, f64::NAN);
+    for (row, time) in t.iter().enumerate().filter(|(_, time)| time.is_finite()) {
+        if begun.is_nan() {
+            begun = *time;
+        }
+        if *time < last && *time - begun < 0.1 * (last - begun) {
+            found.push(row);
+            begun = *time;
+        }
+        last = *time;
+    }
+    found
+}
+
+/// Ships that one file may name before it is taken for the log of many.
+const MOST_NAMED: usize = 3;
+
+/// Refuses a file that holds the rows of several ships: their tracks would be one.
+fn one_ship(table: &Table<'_>) -> Result<(), ImportError> {
+    for field in (0..table.names.len()).filter(|f| is_ships_name(&table.names[*f].0)) {
+        let mut rows: BTreeMap<&str, usize> = BTreeMap::new();
+        for (_, fields) in table.rows.iter().filter(|(_, fields)| !fields[field].is_empty()) {
+            *rows.entry(fields[field]).or_default() += 1;
+        }
+        rows.retain(|_, count| *count >= FEW);
+        // A column in which every row differs is no name.
+        if rows.len() < 2 || 2 * rows.len() > table.rows.len() {
+            continue;
+        }
+        let named: Vec<String> =
+            rows.iter().take(MOST_NAMED).map(|(name, count)| format!("{name} ({count} lines)")).collect();
+        let more = if rows.len() > MOST_NAMED { " and others" } else { "" };
+        let message = format!(
+            "column `{}` names {} ships: {}{more}; write the lines of each to a file of its own, and import one ship at a time",
+            table.names[field].0,
+            rows.len(),
+            named.join(", ")
+        );
+        return Err(ImportError::File { path: table.path.to_owned(), message });
+    }
+    Ok(())
+}
+
+/// The lines below the header, and what the header says.
+fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Result<Table<'a>, ImportError> {
+    let mut lines = text.lines().enumerate().skip(layout.first - 1).map(|(i, line)| (i + 1, line)).peekable();
+    let is_value = |f: &&str| number(f, true).is_some_and(f64::is_finite) || is_time(f);
+    let names_columns = |fields: &[&str]| fields.iter().filter(|f| is_value(f)).count() * 2 < fields.len();
+    let mut header: Vec<&str> = lines.peek().map_or_else(Vec::new, |(_, line)| layout.fields(line));
+    let mut named = names_columns(&header);
+    if named {
+        lines.next();
+    } else if let Some(line) =
+        text.lines().take(layout.first - 1).filter(|l| !l.trim().is_empty()).last().and_then(comment)
+    {
+        // The names may be in the last comment before the data.
+        header = layout.fields(line);
+        named = header.len() == layout.width && names_columns(&header);
+    }
+    let mut names: Vec<(String, Option<String>)> = if named {
+        header.iter().map(|f| name_and_unit(f)).collect()
+    } else {
+        (1..=layout.width).map(|i| (i.to_string(), None)).collect()
+    };
+    // A second line of the header may hold the units.
+    let second: Vec<&str> = lines.peek().map_or_else(Vec::new, |(_, line)| layout.fields(line));
+    let unit_of = |f: &str| f.trim_matches(['[', ']', '(', ')']).trim().to_owned();
+    if named && second.iter().any(|f| is_unit(&unit_of(f))) && !second.iter().any(is_value) {
+        lines.next();
+        for (name, unit) in names.iter_mut().zip(second) {
+            name.1 = Some(unit_of(unit)).filter(|u| is_unit(u)).or(name.1.take());
+        }
+    }
+    let (mut rows, mut damaged, mut repeated) = (Vec::new(), Vec::new(), 0);
+    for (line, content) in lines.filter(|(_, l)| !l.trim().is_empty() && comment(l).is_none()) {
+        let fields = layout.fields(content);
+        if named && fields == header {
+            repeated += 1;
+        } else if fields.len() == names.len() {
+            rows.push((line, fields));
+        } else {
+            damaged.push(line);
+        }
+    }
+    let mut notes = Vec::new();
+    if let Some(first) = damaged.first() {
+        let (count, width) = (damaged.len(), names.len());
+        notes.push(format!("{count} lines do not have {width} fields and are left out, the first is line {first}"));
+    }
+    if repeated > 0 {
+        notes.push(format!("the line of column names comes {repeated} times more and is left out"));
+    }
+    if !named {
+        notes.push(
+            "there is no line of column names: columns are called by their number from 1 (`--column psi=4`)".to_owned(),
+        );
+    }
+    let decimal_comma = commas(path, &rows, layout)?;
+    Ok(Table { path, names, decimal_comma, rows, notes })
+}
+
+/// Whether a comma separates fractions.
+fn commas(path: &Path, rows: &[(usize, Vec<&str>)], layout: &Layout) -> Result<bool, ImportError> {
+    match decimal_comma(rows.iter().flat_map(|(_, fields)| fields.iter().copied())) {
+        Some(told) => Ok(told),
+        None if layout.delimiter != Delimiter::Character(',') => Ok(true),
+        None => {
+            let place = rows.iter().flat_map(|(line, fields)| fields.iter().enumerate().map(move |f| (*line, f)));
+            let (line, field, text) =
+                place.filter(|(_, (_, f))| f.contains(',')).map(|(l, (i, f))| (l, i, *f)).next().unwrap_or((1, 0, ""));
+            let message = format!("`{text}` may be a fraction or thousands; write numbers without commas");
+            Err(ImportError::At { path: path.to_owned(), line, column: field + 1, message })
+        }
+    }
+}
+
+/// Whether a field is a date, a time, or both.
+fn is_time(field: &str) -> bool {
+    field.len() >= 5 && (time_of_day(field).is_some() || date_time(field, DateOrder::DayFirst).is_some())
+}
+
+/// The times of a table.
+struct Times {
+    /// What they count from.
+    clock: Clock,
+    /// That of each row \[s\], NaN where there is none.
+    t: Vec<f64>,
+    /// The fields they are from.
+    used: Vec<usize>,
+    /// How they were read.
+    how: String,
+}
+
+/// The time of each row.
+fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
+    let field = time_field(table, choices.columns.get("t").map(String::as_str))?;
+    let texts = |field: usize| table.rows.iter().map(move |(_, fields)| fields[field]);
+    let first = |field: &usize| texts(*field).find(|t| !t.is_empty()).unwrap_or("");
+    let date = (0..table.names.len()).find(|f| *f != field && is_date_alone(first(f)));
+    let (order, unsure) = order(|| texts(date.unwrap_or(field)));
+    let most = |parse: &dyn Fn(&str) -> bool| texts(field).filter(|t| parse(t)).count() * 2 >= table.rows.len();
+    let name = &table.names[field].0;
+    let numbers: Vec<f64> = texts(field).map(|t| number(t, table.decimal_comma).unwrap_or(f64::NAN)).collect();
+    let digits = are_digits_of_day(&numbers);
+    let of_day = |row: usize| {
+        let told = if digits { digits_of_day(numbers[row]) } else { time_of_day(table.rows[row].1[field]) };
+        told.unwrap_or(f64::NAN)
+    };
+    let day = |row: usize, date: usize| date_time(table.rows[row].1[date], order).unwrap_or(f64::NAN);
+    let rows = 0..table.rows.len();
+    let timed = digits || most(&|t| time_of_day(t).is_some());
+    let dated = date.filter(|date| timed && texts(*date).any(|t| date_time(t, order).is_some()));
+    let mut times = if most(&|t| date_time(t, order).is_some()) {
+        let t = texts(field).map(|t| date_time(t, order).unwrap_or(f64::NAN)).collect();
+        let how = format!("`{name}`, a date and time (UTC where it has no zone{unsure})");
+        Times { clock: Clock::Utc, t, used: vec![field], how }
+    } else if let Some(date) = dated {
+        let how = format!("`{}` and `{name}` (UTC{unsure})", table.names[date].0);
+        let t = rows.map(|row| day(row, date) + of_day(row)).collect();
+        Times { clock: Clock::Utc, t, used: vec![date, field], how }
+    } else if timed {
+        let mut t: Vec<f64> = rows.map(of_day).collect();
+        past_midnight(&mut t);
+        Times { clock: Clock::Day, t, used: vec![field], how: format!("`{name}`, a time of day without a date") }
+    } else {
+        let unit = choices.units.get("t").or(table.names[field].1.as_ref()).and_then(|u| Quantity::Time.factor(u));
+        let NumericTime { clock, factor, zero, words } = numeric_time(&numbers, unit);
+        let t = numbers.iter().map(|t| (t - zero) * factor).collect();
+        Times { clock, t, used: vec![field], how: format!("`{name}`, {words}") }
+    };
+    if times.t.iter().filter(|t| t.is_finite()).count() < 2 {
+        let (line, fields) = &table.rows[0];
+        let message =
+            format!("`{}` in column `{name}` is no time; name the time column with `--column t=NAME`", fields[field]);
+        return Err(ImportError::At { path: table.path.to_owned(), line: *line, column: field + 1, message });
+    }
+    if rounded(table, &times)
+        && let Some(shared) = spread(&mut times.t)
+    {
+        times.how += &format!(", rounded: {shared} rows share a time and are spread over it");
+    }
+    Ok(times)
+}
+
+/// Whether rows that share a time are later ones, whose time was rounded: what is known by name then differs from row to row. Rows that
+/// repeat all but a counter, or that each fill other fields, were written at one time.
+fn rounded(table: &Table<'_>, times: &Times) -> bool {
+    let others = || (0..table.names.len()).filter(|f| !times.used.contains(f));
+    let mut telling: Vec<usize> = others().filter(|f| meaning(&table.names[*f].0).is_some()).collect();
+    if telling.is_empty() {
+        telling = others().collect();
+    }
+    let pairs = || times.t.windows(2).zip(table.rows.windows(2)).filter(|(t, _)| t[0] == t[1]).map(|(_, rows)| rows);
+    let differ = |rows: &&[(usize, Vec<&str>)]| {
+        let [a, b] = [&rows[0].1, &rows[1].1];
+        telling.iter().any(|f| !a[*f].is_empty() && !b[*f].is_empty() && a[*f] != b[*f])
+    };
+    let differing = pairs().filter(differ).count();
+    differing > 0 && differing as f64 >= OTHERWISE * pairs().count() as f64
+}
+
+/// Which of day and month comes first, and what is to be told where no date proves it: then the order is taken in which the days
+/// follow one another, or the day is first.
+fn order<'a, I: Iterator<Item = &'a str>>(texts: impl Fn() -> I) -> (DateOrder, &'static str) {
+    if let Some(order) = date_order(texts()) {
+        return (order, "");
+    }
+    if !texts().any(two_orders) {
+        return (DateOrder::DayFirst, "");
+    }
+    let length = |order: DateOrder| {
+        let times = || texts().filter_map(|t| date_time(t, order));
+        times().fold(f64::MIN, f64::max) - times().fold(f64::MAX, f64::min)
+    };
+    let (day, month) = (length(DateOrder::DayFirst), length(DateOrder::MonthFirst));
+    if month < day {
+        (DateOrder::MonthFirst, ", month before day, since only so the days follow one another")
+    } else if day < month {
+        (DateOrder::DayFirst, ", day before month, since only so the days follow one another")
+    } else {
+        (
+            DateOrder::DayFirst,
+            ", day before month, which no date in it proves: if it is not so, write dates as 2024-05-01",
+        )
+    }
+}
+
+/// The field with the time.
+fn time_field(table: &Table<'_>, wanted: Option<&str>) -> Result<usize, ImportError> {
+    let names = || table.names.iter().map(|(name, _)| name.as_str());
+    if let Some(found) = wanted.and_then(|w| names().position(|n| n.eq_ignore_ascii_case(w))) {
+        return Ok(found);
+    }
+    let rank = |f: &usize| {
+        let texts = || table.rows.iter().take(20).map(|(_, fields)| fields[*f]).filter(|t| !is_date_alone(t));
+        let joined = texts().any(|t| t.len() >= 8 && date_time(t, DateOrder::DayFirst).is_some());
+        (joined, texts().any(is_time), time_rank(&table.names[*f].0))
+    };
+    let best = (0..table.names.len()).rev().max_by_key(rank).filter(|f| rank(f) > (false, false, 0));
+    best.ok_or_else(|| ImportError::File {
+        path: table.path.to_owned(),
+        message: format!(
+            "no column is a time; the columns are {}. Name it with `--column t=NAME`",
+            names().collect::<Vec<_>>().join(", ")
+        ),
+    })
+}
+
+/// The columns of numbers, each with its values by row, NaN where one is missing; letters beside them or in a column of their own are
+/// understood. Tells what no number is.
+fn columns(table: &mut Table<'_>, used: &[usize], times: &[f64]) -> Vec<(Column, Vec<f64>)> {
+    let mut found: Vec<(usize, Column, Vec<f64>)> = Vec::new();
+    let mut others = Vec::new();
+    let mut notes = Vec::new();
+    for field in (0..table.names.len()).filter(|f| !used.contains(f)) {
+        match column(table, field, &mut notes) {
+            Some((column, values)) => found.push((field, column, values)),
+            None => others.push(field),
+        }
+    }
+    let timed = |row: &usize| times[*row].is_finite();
+    for field in others {
+        let name = &table.names[field].0;
+        let texts = || table.rows.iter().map(|(_, fields)| fields[field]);
+        // The column before it, that of the same name, or the one after it.
+        let near = |by: usize| found.iter().position(|(f, ..)| *f + 1 == field + by);
+        let alike = found.iter().position(|(_, c, _)| meaning(name).is_some() && meaning(&c.name) == meaning(name));
+        let signed = [near(0), alike, near(2)].into_iter().flatten().find_map(|at| {
+            let (_, column, values) = &found[at];
+            let free = values.iter().all(|v| v.is_nan() || *v >= 0.0);
+            Some((at, signs(texts(), meaning(&column.name)).filter(|_| free)?))
+        });
+        if let Some((at, signs)) = signed {
+            notes.push(format!("column `{name}` says the sign of `{}`", found[at].1.name));
+            // Nought needs no side.
+            let sign = |(v, s): (&mut f64, f64)| *v *= if *v == 0.0 { 1.0 } else { s };
+            found[at].2.iter_mut().zip(signs).for_each(sign);
+        } else if let Some((row, text)) =
+            texts().enumerate().filter(|(row, _)| timed(row)).find(|(_, t)| number(t, true).is_none())
+            && meaning(name).is_some()
+        {
+            let line = table.rows[row].0;
+            notes.push(format!(
+                "column `{name}` holds what is no number, such as `{text}` in line {line}, and is not used"
+            ));
+        }
+    }
+    table.notes.append(&mut notes);
+    found.into_iter().map(|(_, column, values)| (column, values)).collect()
+}
+
+/// A column of numbers without its samples, and its values; `None` where it has none, or holds text.
+fn column(table: &Table<'_>, field: usize, notes: &mut Vec<String>) -> Option<(Column, Vec<f64>)> {
+    let (name, unit) = &table.names[field];
+    let texts = || table.rows.iter().map(|(_, fields)| fields[field]);
+    let marks = Marks::of(texts(), meaning(name), table.decimal_comma);
+    let name = &if marks.magnetic { format!("{name} magnetic") } else { name.clone() };
+    let values: Vec<Option<f64>> = texts().map(|text| marks.value(text, table.decimal_comma)).collect();
+    let known = values.iter().flatten().filter(|v| v.is_finite()).count();
+    let wrong =
+        || texts().zip(&values).zip(&table.rows).filter(|((_, v), _)| v.is_none()).map(|((t, _), row)| (row.0, t));
+    let (count, words) = (wrong().count(), wrong().map(|(_, text)| text).collect::<BTreeSet<&str>>());
+    let few = words.len() <= FEW_WORDS && known > count;
+    if known == 0 || !(few || known as f64 >= NUMBERS * (known + count) as f64) {
+        return None;
+    }
+    if let Some((line, text)) = wrong().next() {
+        notes.push(format!("column `{name}` holds what is no number in {count} lines, the first is line {line}, field {}: `{text}`; taken as missing", field + 1));
+    }
+    let column = Column { name: name.clone(), unit: unit.clone().or(marks.unit), ..Column::default() };
+    Some((column, values.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect()))
+}

@@ -1,0 +1,20 @@
+//! Import: what ships and loggers write becomes recordings in SI units, with what each column was taken for and why.
+//! It asks only for what the data do not tell, fills no gap, and judges no ship: doubts about a recording are raised by `audit`.
+
+mod columns;
+mod error;
+mod formats;
+mod gaps;
+mod overlap;
+mod rows;
+mod study;
+mod whole;
+
+pub use columns::choose::{Choices, Unused};
+pub use columns::log::{Clock, Column, Log, Meaning};
+pub use columns::take::Taken;
+pub use error::ImportError;
+pub use formats::read::read_bytes;
+pub use rows::Rows;
+pub use study::{Origins, recording_csv, study_files};
+pub use whole::{ImportSettings, Imported, ImportedRecording, SESSION_GAP, import};

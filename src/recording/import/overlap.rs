@@ -1,0 +1,111 @@
+//! Files and parts of files that tell the same quantity over the same time: recordings of their own, or refused, never sorted together.
+//! Parts that complete one another, such as positions in one file and rudder angles in another, share a clock.
+
+use super::columns::choose::Choices;
+use super::columns::log::{Clock, Column, Log, Meaning};
+use super::error::ImportError;
+use super::formats::clock::written;
+use super::formats::passes::FEW;
+use crate::recording::Channel;
+use std::collections::BTreeSet;
+
+/// Recordings of the same time are put further apart than all of them last, by this many seconds: longer than any gap that a session has.
+const APART: f64 = 1e7;
+/// Times closer than this are one \[s\].
+const SAME_TIME: f64 = 1e-6;
+
+/// First and last time of a file.
+pub fn range(log: &Log) -> [f64; 2] {
+    let times = || log.columns.iter().flat_map(|c| c.t.iter().copied());
+    [times().fold(f64::MAX, f64::min), times().fold(f64::MIN, f64::max)]
+}
+
+/// What is to be added to the times of each file \[s\]: those that tell the same over the same time are recordings of their own.
+///
+/// # Errors
+/// [`ImportError::Choice`] for files whose clocks cannot be compared, and for parts of a recording that overlap.
+pub fn shifts(logs: &[Log], choices: &Choices) -> Result<Vec<f64>, ImportError> {
+    let clocks: BTreeSet<u8> = logs.iter().map(|log| log.clock as u8).collect();
+    if clocks.len() > 1 {
+        let list: Vec<String> = logs.iter().map(|log| format!("{}: {}", log.path.display(), log.format)).collect();
+        return Err(ImportError::Choice(format!(
+            "the files count time from different starts, so that they cannot be joined: {}. Import them apart",
+            list.join("; ")
+        )));
+    }
+    let ranges: Vec<[f64; 2]> = logs.iter().map(range).collect();
+    let lasts = ranges.iter().fold(f64::MIN, |m, r| m.max(r[1])) - ranges.iter().fold(f64::MAX, |m, r| m.min(r[0]));
+    // The parts of one file need no other.
+    let one_file = logs.windows(2).all(|pair| pair[0].path == pair[1].path);
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut shifts = Vec::with_capacity(logs.len());
+    for (j, log) in logs.iter().enumerate() {
+        let against = |i: &usize| {
+            let apart = ranges[*i][0] > ranges[j][1] || ranges[j][0] > ranges[*i][1];
+            if apart { None } else { repeated(&logs[*i], log, choices).map(|column| (*i, column)) }
+        };
+        let mut at = groups.len();
+        for (g, group) in groups.iter().enumerate() {
+            let Some((i, column)) = group.iter().find_map(against) else {
+                at = g;
+                break;
+            };
+            if !(one_file || is_whole(&logs[i], choices) && is_whole(log, choices)) {
+                return Err(refusal(&logs[i], log, column, ranges[i][0].max(ranges[j][0])));
+            }
+        }
+        if at == groups.len() {
+            groups.push(Vec::new());
+        }
+        groups[at].push(j);
+        shifts.push(at as f64 * (lasts + APART));
+    }
+    Ok(shifts)
+}
+
+/// A column of the second that the first tells too over the same time, and otherwise.
+fn repeated<'a>(first: &Log, second: &'a Log, choices: &Choices) -> Option<&'a str> {
+    let known = second.columns.iter().filter(|column| choices.meaning(column).is_some());
+    let mut both = known.filter_map(|c| Some((first.columns.iter().find(|other| other.name == c.name)?, c)));
+    // Runs that count from a start of their own may be alike to the last digit.
+    let copies_join = second.clock == Clock::Utc;
+    both.find(|(a, b)| tell_otherwise(a, b, copies_join)).map(|(_, b)| b.name.as_str())
+}
+
+/// Whether two columns both have samples in a common time, and not the same ones where copies join.
+fn tell_otherwise(a: &Column, b: &Column, copies_join: bool) -> bool {
+    let ends = |c: &Column| c.t.iter().fold([f64::MAX, f64::MIN], |[l, h], t| [l.min(*t), h.max(*t)]);
+    let ([a0, a1], [b0, b1]) = (ends(a), ends(b));
+    let (from, to) = (a0.max(b0) - SAME_TIME, a1.min(b1) + SAME_TIME);
+    let inside = |c: &Column| {
+        let mut samples: Vec<[f64; 2]> = c.t.iter().zip(&c.v).map(|(t, v)| [*t, *v]).collect();
+        samples.retain(|s| (from..=to).contains(&s[0]));
+        samples.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        samples
+    };
+    let (a, b) = (inside(a), inside(b));
+    let same = |[t, v]: &[f64; 2]| {
+        let at = a.partition_point(|s| s[0] < t - SAME_TIME);
+        a.get(at).is_some_and(|s| (s[0] - t).abs() <= SAME_TIME && s[1] == *v)
+    };
+    a.len() >= FEW && b.len() >= FEW && !(copies_join && b.iter().all(same))
+}
+
+/// Whether a file has what a recording needs, by itself.
+fn is_whole(log: &Log, choices: &Choices) -> bool {
+    let has = |channel| log.columns.iter().any(|c| choices.meaning(c) == Some(Meaning::Channel(channel)));
+    [Channel::Psi, Channel::Delta, Channel::N].into_iter().all(has)
+}
+
+fn refusal(first: &Log, second: &Log, column: &str, from: f64) -> ImportError {
+    let [a, b] = [first, second].map(|log| log.path.display());
+    let from = if first.clock == Clock::Utc { written(from) } else { format!("{from:.0} s") };
+    let what = if first.path == second.path {
+        format!("{a} has `{column}` twice over the same time, from {from} on, since its clock steps back")
+    } else {
+        format!("{a} and {b} both have `{column}` over the same time, from {from} on, and not the same")
+    };
+    ImportError::Choice(format!(
+        "{what}; nothing says which one belongs to the other files: take the column out of one of them, or import each recording with its own files"
+    ))
+}

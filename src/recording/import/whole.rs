@@ -1,0 +1,355 @@
+//! The import of files as a whole: read, choose, decide units, make rows, cut into recordings.
+//! It writes nothing: the files of a study are made from its result in `study`.
+
+use super::columns::choose::{Choices, Chosen, Unused, choose};
+use super::columns::fills::take_out;
+use super::columns::log::{Clock, Log, Meaning};
+use super::columns::take::{Signals, Taken, take};
+use super::error::ImportError;
+use super::formats::clock::written;
+use super::formats::read::read;
+use super::overlap::{range, shifts};
+use super::rows::{Rows, rows};
+use crate::recording::Channel;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+
+/// How files are imported.
+#[derive(Clone, Debug, Default)]
+pub struct ImportSettings {
+    /// What the user says of the columns.
+    pub choices: Choices,
+    /// A longer gap ends a recording and a session \[s\]; [`SESSION_GAP`] when not given.
+    pub session_gap: Option<f64>,
+}
+
+/// A longer gap ends a recording: after so long wind, current and loading may be others \[s\].
+pub const SESSION_GAP: f64 = 1800.0;
+
+/// Rows that a recording has at least.
+const FEWEST: usize = 10;
+/// A channel that no simulation needs is left out where it is missing in more than this share of the rows.
+const MOSTLY: f64 = 0.02;
+
+/// A recording made from the files.
+#[derive(Clone, Debug)]
+pub struct ImportedRecording {
+    /// Name, fit for a file.
+    pub name: String,
+    /// When it began, where the date is known.
+    pub start: Option<String>,
+    /// The same on the clock of the files \[s\].
+    pub clock_start: f64,
+    /// Its rows; times from its start, or those of its file where that has a clock of its own.
+    pub rows: Rows,
+}
+
+/// What was imported.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// The files: path and what each is.
+    pub files: Vec<(PathBuf, String)>,
+    /// What each column was taken for.
+    pub taken: Vec<Taken>,
+    /// Columns that are not used.
+    pub unused: Vec<Unused>,
+    /// What is to be told besides.
+    pub notes: Vec<String>,
+    /// Point of the tangent plane, latitude and longitude \[deg\].
+    pub origin: Option<[f64; 2]>,
+    /// Where u and v are from.
+    pub velocity: &'static str,
+    /// Channels that the column map derives.
+    pub derive: Vec<&'static str>,
+    /// Channels that are written and not used, for want of values.
+    pub leave_out: Vec<Channel>,
+    /// Longest drop-out that the column map bridges \[s\].
+    pub bridge: Option<f64>,
+    /// The recordings, in order of time.
+    pub recordings: Vec<ImportedRecording>,
+}
+
+/// Reads files of any known format and makes recordings of them.
+///
+/// # Errors
+/// [`ImportError`]: a file that cannot be read, and everything that the files do not tell.
+pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, ImportError> {
+    settings.choices.check()?;
+    let mut logs: Vec<Log> = Vec::new();
+    for file in files {
+        logs.extend(read(file, &settings.choices)?);
+    }
+    logs.iter_mut().for_each(|log| blank_fills(log, &settings.choices));
+    let shifts = shifts(&logs, &settings.choices)?;
+    for (log, shift) in logs.iter_mut().zip(&shifts) {
+        log.columns.iter_mut().for_each(|c| c.t.iter_mut().for_each(|t| *t += shift));
+    }
+    let (chosen, unused) = choose(&logs, &settings.choices)?;
+    let mut signals = take(&chosen, &settings.choices)?;
+    signals.unused.extend(unused);
+    missing(&chosen, &signals, &logs)?;
+    let (table, filled) = rows(&signals);
+    let longest = settings.session_gap.unwrap_or(SESSION_GAP);
+    let ends: Vec<[f64; 2]> = logs.iter().map(range).collect();
+    let starts: Vec<f64> = ends.iter().map(|e| e[0]).collect();
+    let (mut notes, mut recordings) = (filled, Vec::new());
+    for part in table.cut(longest, &starts) {
+        let (Some(first), Some(last)) = (part.t.first().copied(), part.t.last().copied()) else { continue };
+        if part.t.len() < FEWEST {
+            notes.push(format!(
+                "{} rows between longer gaps are too few for a recording and are left out",
+                part.t.len()
+            ));
+            continue;
+        }
+        let own = ends.iter().position(|e| e[0] <= first + 1e-6 && last <= e[1] + 1e-6);
+        let within = own.or_else(|| ends.iter().position(|e| (e[0]..=e[1]).contains(&first)));
+        let shift = within.map_or(0.0, |i| shifts[i]);
+        recordings.push(recording(part, own.map(|i| &logs[i]), shift, &logs));
+    }
+    if recordings.is_empty() {
+        let text = "position and heading are never recorded together; are the clocks of the files the same?";
+        return Err(ImportError::File { path: files.first().cloned().unwrap_or_default(), message: text.to_owned() });
+    }
+    name_apart(&mut recordings);
+    for log in &logs {
+        notes.extend(log.notes.iter().map(|note| format!("{}: {note}", log.path.display())));
+    }
+    // What was turned comes before all else.
+    signals.notes.append(&mut notes);
+    let mut notes = std::mem::take(&mut signals.notes);
+    if !signals.by.contains_key(&Meaning::Channel(Channel::X)) {
+        notes.push("no column is taken for a position: if one is, name it with `--column lat=NAME --column lon=NAME` or `--column x=NAME --column y=NAME`".to_owned());
+    }
+    let (derive, velocity) = derived(&signals, &recordings);
+    let mut read: Vec<(PathBuf, String)> = logs.iter().map(|log| (log.path.clone(), log.format.clone())).collect();
+    read.dedup();
+    let mut imported = Imported {
+        files: read,
+        taken: signals.taken,
+        unused: signals.unused,
+        notes,
+        origin: signals.origin,
+        velocity,
+        derive,
+        leave_out: Vec::new(),
+        bridge: None,
+        recordings,
+    };
+    imported.blank_impossible();
+    imported.part_with_lonely();
+    imported.tell_gaps();
+    Ok(imported)
+}
+
+/// Takes the numbers that stand for missing values out of a log, and notes them.
+fn blank_fills(log: &mut Log, choices: &Choices) {
+    for column in &mut log.columns {
+        for (fill, count) in take_out(column, choices.meaning(column)) {
+            let name = &column.name;
+            log.notes.push(format!(
+                "column `{name}` holds {fill} in {count} lines, far from all other values; taken as missing"
+            ));
+        }
+    }
+}
+
+/// Refuses files that lack what every study needs, with one message for everything.
+fn missing(chosen: &Chosen<'_>, signals: &Signals, logs: &[Log]) -> Result<(), ImportError> {
+    let has = |channel| signals.by.contains_key(&Meaning::Channel(channel));
+    let taken = |meaning: &Meaning| chosen.contains_key(meaning);
+    let mut asked = Vec::new();
+    let mut ask = |words: &str, flags: &str| asked.push(format!("no column is {words}: name it with `{flags}`"));
+    if !has(Channel::Delta) {
+        ask("the rudder angle", "--column delta=NAME");
+    }
+    if !has(Channel::N) {
+        ask("the propeller rate", "--column n=NAME");
+    }
+    if !has(Channel::Psi) {
+        ask("the heading", "--column psi=NAME");
+    }
+    let moves = (has(Channel::X) && has(Channel::Y))
+        || (has(Channel::U) && has(Channel::V))
+        || (taken(&Meaning::Course) && taken(&Meaning::GroundSpeed))
+        || (taken(&Meaning::VelocityNorth) && taken(&Meaning::VelocityEast));
+    if !moves {
+        ask("position or velocity", "--column lat=NAME --column lon=NAME` or `--column cog=NAME --column sog=NAME");
+    }
+    if asked.is_empty() {
+        return Ok(());
+    }
+    let mut names: Vec<&str> = logs.iter().flat_map(|log| log.columns.iter().map(|c| c.name.as_str())).collect();
+    names.sort_unstable();
+    names.dedup();
+    asked.push(format!("the columns with numbers are: {}", names.join(", ")));
+    Err(ImportError::Undecided(asked))
+}
+
+/// A recording with its name and times; `shift` was added to the times of its files.
+fn recording(mut rows: Rows, own: Option<&Log>, shift: f64, logs: &[Log]) -> ImportedRecording {
+    let first = rows.t.first().copied().unwrap_or(0.0) - shift;
+    let clock = logs.first().map_or(Clock::Own, |log| log.clock);
+    let start = (clock == Clock::Utc).then(|| written(first));
+    let zero = if clock == Clock::Own { shift } else { first + shift };
+    rows.t.iter_mut().for_each(|t| *t = ((*t - zero) * 1e6).round() / 1e6);
+    let stem = own.and_then(|log| log.path.file_stem().map(|s| s.to_string_lossy().into_owned()));
+    let dated = start.as_ref().map(|s| s.replace(' ', "_").replace(':', ""));
+    let one_file = logs.windows(2).all(|pair| pair[0].path == pair[1].path);
+    let name = match (one_file, stem, dated) {
+        (true, _, Some(dated)) | (_, None, Some(dated)) => dated,
+        (_, Some(stem), _) => stem,
+        _ => "recording".to_owned(),
+    };
+    let fit = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' };
+    ImportedRecording { name: name.chars().map(fit).collect(), start, clock_start: first, rows }
+}
+
+/// Numbers names that are there twice.
+fn name_apart(recordings: &mut [ImportedRecording]) {
+    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+    for recording in recordings.iter_mut() {
+        let count = seen.entry(recording.name.clone()).or_default();
+        *count += 1;
+        if *count > 1 {
+            recording.name = format!("{}_part{count}", recording.name);
+        }
+    }
+}
+
+/// Which channels are to be derived, and where the velocity is from.
+fn derived(signals: &Signals, recordings: &[ImportedRecording]) -> (Vec<&'static str>, &'static str) {
+    let has = |channel| recordings.iter().all(|r| r.rows.channels.iter().any(|(c, _)| *c == channel));
+    let mut derive = Vec::new();
+    let velocity = if has(Channel::U) && has(Channel::V) {
+        let own = signals.by.contains_key(&Meaning::Channel(Channel::U));
+        let parts = signals.by.contains_key(&Meaning::VelocityNorth);
+        match (own, parts) {
+            (true, _) => "u and v are the recorded ones",
+            (_, true) => "u and v are the velocities to the north and east, turned by the heading",
+            _ => "u = SOG cos(COG - heading), v = SOG sin(COG - heading): over ground, at the antenna",
+        }
+    } else {
+        derive.extend(["u", "v"]);
+        "u and v are derived from position and heading: over ground, at the antenna"
+    };
+    if !has(Channel::R) {
+        derive.push("r");
+    }
+    (derive, velocity)
+}
+
+impl Imported {
+    /// The session of each recording: those that follow one another without a long gap share one. With a date it is called by it.
+    pub fn sessions(&self, session_gap: Option<f64>) -> Vec<String> {
+        let longest = session_gap.unwrap_or(SESSION_GAP);
+        let mut groups: Vec<usize> = Vec::new();
+        let mut last: Option<f64> = None;
+        for recording in &self.recordings {
+            let group = groups.last().copied().unwrap_or(0);
+            let (begin, end) = (recording.clock_start, recording.clock_start + recording.rows.duration());
+            // Without a date nothing says that days differ.
+            let another = recording.start.is_some() && last.is_some_and(|last| begin - last > longest);
+            groups.push(group + usize::from(another));
+            last = Some(end);
+        }
+        let date = |i: usize| self.recordings[i].start.as_ref().and_then(|s| s.get(..10)).unwrap_or("").to_owned();
+        let dates: Vec<String> = (0..groups.len())
+            .map(|i| groups.iter().position(|g| *g == groups[i]).map_or_else(String::new, date))
+            .collect();
+        let name = |i: usize| {
+            let mut same: Vec<usize> =
+                groups.iter().zip(&dates).filter(|(_, d)| **d == dates[i]).map(|(g, _)| *g).collect();
+            same.dedup();
+            match (dates[i].as_str(), same.len(), same.iter().position(|g| *g == groups[i])) {
+                ("", ..) => format!("session {}", groups[i] + 1),
+                (date, 1, _) => date.to_owned(),
+                (date, _, at) => format!("{date} part {}", at.unwrap_or(0) + 1),
+            }
+        };
+        (0..groups.len()).map(name).collect()
+    }
+
+    fn blank_impossible(&mut self) {
+        let mut found: BTreeMap<Channel, (usize, f64)> = BTreeMap::new();
+        for recording in &mut self.recordings {
+            for (channel, count, value) in recording.rows.blank_impossible() {
+                found.entry(channel).or_insert((0, value)).0 += count;
+            }
+        }
+        for (channel, (count, value)) in found {
+            let (words, si) = (channel.info().words, channel.info().quantity.si());
+            self.notes.push(format!(
+                "{words}: {count} values no ship reaches, such as {value:.4} {si}, are taken as missing"
+            ));
+        }
+    }
+
+    /// Leaves out channels that no simulation needs and that are mostly missing, or lack their partner.
+    fn part_with_lonely(&mut self) {
+        use Channel::*;
+        let pairs = [
+            [WindSpeed, WindDirection],
+            [ApparentWindSpeed, ApparentWindDirection],
+            [CurrentSpeed, CurrentDirection],
+            [WaveHeight, WaveDirection],
+            [X, Y],
+        ];
+        let core = [T, X, Y, Psi, U, V, R, N, Delta];
+        let all: BTreeSet<Channel> =
+            self.recordings.iter().flat_map(|r| r.rows.channels.iter().map(|(c, _)| *c)).collect();
+        for channel in all {
+            let of = |r: &ImportedRecording, c: Channel| {
+                r.rows.channels.iter().find(|(other, _)| *other == c).map(|(_, v)| v.clone())
+            };
+            let partner = pairs.iter().find(|p| p.contains(&channel)).map(|[a, b]| if *a == channel { *b } else { *a });
+            let lonely =
+                partner.is_some_and(|p| self.recordings.iter().any(|r| of(r, channel).is_some() != of(r, p).is_some()));
+            let (mut rows, mut absent) = (0, 0);
+            for r in &self.recordings {
+                let own = of(r, channel);
+                for i in 0..r.rows.t.len() {
+                    let complete =
+                        r.rows.channels.iter().filter(|(c, _)| core.contains(c)).all(|(_, v)| v[i].is_finite());
+                    rows += usize::from(complete);
+                    absent += usize::from(complete && own.as_ref().is_none_or(|v| !v[i].is_finite()));
+                }
+            }
+            let sparse = !core.contains(&channel) && channel.interrupts() && absent as f64 > MOSTLY * rows as f64;
+            if lonely {
+                self.recordings.iter_mut().for_each(|r| r.rows.channels.retain(|(c, _)| *c != channel));
+                let partner = partner.map_or("", Channel::name);
+                self.notes.push(format!("{channel} is left out: without {partner} it says nothing"));
+            } else if sparse {
+                self.leave_out.push(channel);
+                self.notes.push(format!(
+                    "{channel} is in the recordings and not used: it is missing in {absent} of {rows} rows, each of which would end a run (`leave_out` in columns.toml)"
+                ));
+            }
+        }
+    }
+
+    fn tell_gaps(&mut self) {
+        let mut notes = Vec::new();
+        for recording in &self.recordings {
+            let rows = &recording.rows;
+            let gaps: Vec<f64> = rows.t.windows(2).map(|t| t[1] - t[0]).filter(|g| *g > 1.5 * rows.step).collect();
+            let longest = gaps.iter().copied().fold(0.0, f64::max);
+            if !gaps.is_empty() {
+                notes.push(format!(
+                    "{}: gaps in time: {}, the longest {longest:.1} s; none is filled",
+                    recording.name,
+                    gaps.len()
+                ));
+            }
+            let absent = rows.channels.iter().filter(|(c, _)| !self.leave_out.contains(c));
+            let absent = absent.map(|(c, v)| (c, v.iter().filter(|v| !v.is_finite()).count())).filter(|(_, n)| *n > 0);
+            let list: Vec<String> = absent.map(|(c, n)| format!("{c} {n}")).collect();
+            if !list.is_empty() {
+                let (name, of) = (&recording.name, rows.t.len());
+                notes.push(format!("{name}: missing values in its {of} rows: {}; none is filled", list.join(", ")));
+            }
+        }
+        self.notes.extend(notes);
+    }
+}

@@ -1,0 +1,11 @@
+//! A sheet of shapes and text, and the files that hold it: PNG, SVG, PDF.
+//! It knows no figure.
+
+pub(super) mod canvas;
+mod compact;
+pub(super) mod font;
+pub(super) mod geometry;
+pub(super) mod pdf;
+mod pen;
+pub(super) mod raster;
+pub(super) mod svg;

@@ -1,0 +1,151 @@
+//! The trials that `trimtab maneuver` sails: in calm water whatever a model has found around the ship, with intervals from a covariance.
+//! The measures themselves are tested in `src/evaluate/maneuver/tests.rs` and against recordings in `tests/library/trials.rs`.
+
+use crate::support::study::{Study, at, contains_all};
+use std::path::Path;
+use trimtab::evaluate::maneuver::{
+    Approach, ManeuverSettings, Measured, Side, Trial, Turning, calm_water, drawn, set_intervals, stopping_trial,
+    turning_trial, zigzag_trial,
+};
+use trimtab::model::Model;
+use trimtab::numbers::uncertainty::Uncertainty;
+use trimtab::physics::Form;
+use trimtab::ship::Ship;
+
+fn model(terms: &[&str], values: &[(&str, f64)]) -> Model {
+    let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/b.toml"))).unwrap();
+    let mut model = Model::new(ship, "b", Form::Regular, terms).unwrap();
+    let star = [-0.027, 5669.0, -1127.0, 538.0, 0.012, 2.42, 0.0, -3.2, 0.047, 0.0, 1.5];
+    model.set_eleven(&star);
+    model.set(values).unwrap();
+    model
+}
+
+fn settings() -> ManeuverSettings {
+    ManeuverSettings { speed: Some(6.0), ..ManeuverSettings::default() }
+}
+
+fn circles(model: &Model, approach: &Approach, theta: &[f64]) -> Vec<Trial<Turning>> {
+    Side::BOTH.map(|side| turning_trial(model, theta, approach, side, 0.61)).to_vec()
+}
+
+#[test]
+fn a_model_with_a_current_sails_the_circles_of_one_without() {
+    let still = model(&[], &[]);
+    let terms = ["current", "mean_wind", "heading_bias", "push", "thruster", "fouling", "time_skew", "shallow"];
+    let found = model(&terms, &[("current.north", 0.171), ("current.east", 0.470), ("heading_bias.bias", 0.02)]);
+    let (calm, left_out) = calm_water(&found);
+    assert_eq!(left_out, ["current", "mean_wind", "heading_bias", "push", "time_skew", "shallow"]);
+    let approach = |m: &Model| settings().approach(m, &m.values()).unwrap();
+    assert_eq!(approach(&calm), approach(&still));
+    let measures = |m: &Model| {
+        let (theta, a) = (m.values(), approach(m));
+        let turns: Vec<Turning> = circles(m, &a, &theta).into_iter().map(|t| t.measures).collect();
+        let zigzag = zigzag_trial(m, &theta, &a, Side::Port, [0.35, 0.35]).measures;
+        (turns, zigzag, stopping_trial(m, &theta, &a).measures)
+    };
+    assert_eq!(measures(&calm), measures(&still));
+    let (moved, _, _) = measures(&found);
+    let diameter = |m: &Turning| m.tactical_diameter.unwrap() / 123.0;
+    assert!((diameter(&moved[0]) - diameter(&measures(&still).0[0])).abs() > 0.1, "the current must matter as found");
+}
+
+/// A covariance of three parameters of which two are correlated.
+fn covariance(scale: f64) -> Uncertainty {
+    let names = ["resistance.quadratic", "rudder.lift1", "hull.Nr"].map(str::to_owned);
+    let sd = [200.0, 0.08, 2.0e8].map(|s| s * scale);
+    let r = [[1.0, 0.3, 0.0], [0.3, 1.0, -0.6], [0.0, -0.6, 1.0]];
+    let table: Vec<Vec<Option<f64>>> =
+        (0..3).map(|i| (0..3).map(|j| Some(r[i][j] * sd[i] * sd[j])).collect()).collect();
+    Uncertainty::new("test", None, &names, &table).unwrap()
+}
+
+#[test]
+fn intervals_are_those_of_linear_propagation_where_the_spread_is_small() {
+    let model = model(&[], &[]);
+    let settings = settings();
+    let sail = |theta: &[f64]| Some(circles(&model, &settings.approach(&model, theta).ok()?, theta));
+    let u = covariance(0.3);
+    let mut trials = sail(&model.values()).unwrap();
+    set_intervals(&mut trials, &drawn(&model, &u, 1000, 3), sail);
+    for name in ["advance", "transfer", "tactical_diameter", "steady_diameter", "time_90"] {
+        let slope = |parameter: &String| {
+            let i = model.index(parameter).unwrap();
+            let h = 0.1
+                * u.matrix[u.parameters.iter().position(|p| p == parameter).unwrap()]
+                    [u.parameters.iter().position(|p| p == parameter).unwrap()]
+                .sqrt();
+            let at = |step: f64| {
+                let mut theta = model.values();
+                theta[i] += step;
+                sail(&theta).unwrap()[0].measures.quantity(name).unwrap()
+            };
+            (at(h) - at(-h)) / (2.0 * h)
+        };
+        let g: Vec<f64> = u.parameters.iter().map(slope).collect();
+        let variance: f64 =
+            (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).map(|(i, j)| g[i] * u.matrix[i][j] * g[j]).sum();
+        let [low, high] = trials[0].intervals[name];
+        let (width, linear) = (high - low, 2.0 * 1.96 * variance.sqrt());
+        assert!((width / linear - 1.0).abs() < 0.15, "{name}: {width} instead of {linear}");
+        let value = trials[0].measures.quantity(name).unwrap();
+        assert!(low < value && value < high, "{name}: {value} in [{low}, {high}]");
+    }
+}
+
+#[test]
+fn a_measure_that_draws_do_not_reach_has_no_interval() {
+    let model = model(&[], &[]);
+    let approach = settings().approach(&model, &model.values()).unwrap();
+    let mut trials = circles(&model, &approach, &model.values());
+    let draws = drawn(&model, &covariance(1.0), 20, 1);
+    set_intervals(&mut trials, &draws, |theta| (theta[0] > f64::INFINITY).then(|| circles(&model, &approach, theta)));
+    assert!(trials.iter().all(|t| t.intervals.is_empty()));
+    set_intervals(&mut trials, &draws, |theta| Some(circles(&model, &approach, theta)));
+    assert!(trials.iter().all(|t| t.intervals.len() == 8), "{:?}", trials[0].intervals);
+}
+
+#[test]
+fn a_fitted_model_file_holds_its_covariance_and_the_trials_tell_it() {
+    let study = Study::new();
+    let fit = study.json(&["fit", "study.toml", "--out", "results"]);
+    let turning = ["maneuver", "turning", "study.toml", "--model", "results/fitted.toml", "--draws", "60"];
+    let said = study.does(&turning);
+    contains_all(&said, &["95 % intervals in brackets: 60 draws", "results/fitted.toml", "seed 1", "advance [L]"]);
+    assert!(!said.contains("Calm water"), "nothing is left out of a model without such terms: {said}");
+    let line = said.lines().find(|l| l.contains("tactical diameter [L]")).unwrap();
+    assert!(line.contains('[') && line.matches(", ").count() >= 2, "an interval a side: {line}");
+    let json = study.json(&turning);
+    assert_eq!(at(&json, "result.draws.count"), 60);
+    let ends = at(&json, "result.trials.0.intervals.advance");
+    let advance = at(&json, "result.trials.0.measures.advance").as_f64().unwrap();
+    assert!(ends[0].as_f64().unwrap() < advance && advance < ends[1].as_f64().unwrap());
+    assert_eq!(study.does(&turning), said, "equal seeds give equal intervals");
+    assert_ne!(study.does(&[&turning[..], &["--seed", "2"]].concat()), said);
+    contains_all(&study.does(&["maneuver", "turning", "study.toml"]), &["No intervals: ", "has no covariance"]);
+
+    let error = at(&fit, "result.estimates.1.standard_error").as_f64().unwrap();
+    let variance = at(&fit, "result.covariance.1.1").as_f64().unwrap();
+    assert!((variance.sqrt() / error - 1.0).abs() < 1e-9 || error == 0.0);
+    study.edit("results/fitted.toml", "\"rudder.lift1\"", "\"rudder.lift9\"");
+    let text = std::fs::read_to_string(study.path("results/fitted.toml")).unwrap();
+    let body: Vec<&str> = text.lines().filter(|l| !l.starts_with('#')).collect();
+    study.write("edited.toml", &body.join("\n"));
+    study.refuses(&["maneuver", "turning", "study.toml", "--model", "edited.toml"]);
+}
+
+#[test]
+fn what_is_left_out_is_said_and_kept_on_request() {
+    let study = Study::new();
+    study.edit("model.toml", "form = \"paper\"", "form = \"paper\"\nterms = [\"current\", \"yaw_rate_bias\"]");
+    study.append("model.toml", "\"current.east\" = { value = 0.5 }\n");
+    let calm = study.does(&["maneuver", "turning", "study.toml"]);
+    contains_all(&calm, &["Calm water: current, yaw_rate_bias left out (`--as-found` keeps them)."]);
+    let found = study.does(&["maneuver", "turning", "study.toml", "--as-found"]);
+    contains_all(&found, &["As found, not in calm water: current, yaw_rate_bias kept."]);
+    let json = study.json(&["maneuver", "turning", "study.toml", "--out", "turning"]);
+    assert_eq!(at(&json, "result.left_out").as_array().unwrap().len(), 2);
+    let table = std::fs::read_to_string(study.path("turning/turning_measures.csv")).unwrap();
+    assert!(table.starts_with("trial,side,measure,unit,value,low95,high95\n"), "{table}");
+    assert_eq!(table.lines().count(), 1 + 2 * 8);
+}

@@ -1,0 +1,559 @@
+//! Import, kind by kind: what loggers write that was once misread, each on a small log of a ship that turns to both sides.
+//! That a log comes back as it was sailed is tested in `logs.rs`; here it is what a column, a clock or a gap is taken for.
+
+use crate::support::study::{Study, contains_all};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use trimtab::recording::Channel;
+use trimtab::recording::import::{Choices, ImportSettings, Imported, import};
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+const KNOT: f64 = 1852.0 / 3600.0;
+
+/// A row of the log: seconds, latitude and longitude [deg], course, heading and rudder [deg], rate of turn [deg/min].
+#[derive(Clone, Copy)]
+struct Row {
+    t: f64,
+    place: [f64; 2],
+    course: f64,
+    heading: f64,
+    rudder: f64,
+    rate: f64,
+}
+
+/// Ten knots on legs to all sides with a zigzag in each, two seconds a row; `current` [m/s] sets to the north.
+fn sailed(current: f64) -> Vec<Row> {
+    let (mut psi, mut r, mut place) = (0.5_f64, 0.0_f64, [36.5_f64, 14.25_f64]);
+    let mut rows = Vec::new();
+    for i in 0..600 {
+        let rudder = match i % 150 {
+            40..50 | 70..80 => 10.0,
+            55..65 => -12.0,
+            // A quarter of a turn, more or less, to the next leg.
+            90..110 => 14.0,
+            _ => 0.0,
+        };
+        r += 2.0 * (0.11 * rudder * DEGREE - r) / 8.0;
+        psi += 2.0 * r;
+        let (north, east) = (10.0 * KNOT * psi.cos() + current, 10.0 * KNOT * psi.sin());
+        place[0] += (2.0 * north / 6.359e6).to_degrees();
+        place[1] += (2.0 * east / (6.386e6 * place[0].to_radians().cos())).to_degrees();
+        let turned = |angle: f64| angle.to_degrees().rem_euclid(360.0);
+        let course = turned(east.atan2(north));
+        rows.push(Row { t: 2.0 * f64::from(i), place, course, heading: turned(psi), rudder, rate: r / DEGREE * 60.0 });
+    }
+    rows
+}
+
+fn iso(t: f64) -> String {
+    let s = t as usize + 36_000;
+    format!("2021-06-03T{:02}:{:02}:{:02}Z", s / 3600, s / 60 % 60, s % 60)
+}
+
+const NAMES: &str = "time,lat,lon,sog_kn,cog,heading,rudder,rpm";
+
+fn fields(row: &Row) -> String {
+    let [lat, lon] = row.place;
+    format!("{},{lat:.7},{lon:.7},10.00,{:.2},{:.2},{:.1},120", iso(row.t), row.course, row.heading, row.rudder)
+}
+
+/// The usual log with further columns behind it.
+fn log(more: &str, value: impl Fn(&Row) -> String) -> String {
+    let mut text = format!("{NAMES}{more}\n");
+    sailed(0.0).iter().for_each(|row| text += &format!("{}{}\n", fields(row), value(row)));
+    text
+}
+
+fn written(text: &str, settings: &ImportSettings) -> Result<Imported, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.csv");
+    std::fs::write(&path, text).unwrap();
+    import(&[path], settings).map_err(|e| e.to_string())
+}
+
+fn read(text: &str) -> Imported {
+    written(text, &ImportSettings::default()).unwrap_or_else(|e| panic!("{e}\n{}", text.lines().next().unwrap()))
+}
+
+fn taken<'a>(imported: &'a Imported, quantity: &str) -> &'a str {
+    imported.taken.iter().find(|t| t.quantity == quantity).map_or("", |t| t.column.as_str())
+}
+
+fn channel(imported: &Imported, recording: usize, channel: Channel) -> &[f64] {
+    let channels = &imported.recordings[recording].rows.channels;
+    &channels.iter().find(|(c, _)| *c == channel).unwrap_or_else(|| panic!("no {channel}")).1
+}
+
+fn notes(imported: &Imported) -> String {
+    imported.notes.join("\n")
+}
+
+/// The largest difference of the headings that were imported from those that were sailed [deg].
+fn off(imported: &Imported) -> f64 {
+    let rows = sailed(0.0);
+    let psi = channel(imported, 0, Channel::Psi);
+    let apart = |(psi, row): (&f64, &Row)| ((psi / DEGREE - row.heading + 180.0).rem_euclid(360.0) - 180.0).abs();
+    psi.iter().zip(&rows).map(apart).fold(0.0, f64::max)
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+#[test]
+fn a_column_is_taken_for_what_it_is_and_not_for_one_word_of_its_name() {
+    let others = [
+        "delta_t",
+        "AW_speed [kn]",
+        "tau_surge",
+        "tau_sway",
+        "last_speed_update",
+        "rudder_rate",
+        "rudder time",
+        "wind speed over ground",
+        "gyro_x",
+        "speed of sound",
+        "COG to waypoint",
+        "rudder_t",
+        "heading error",
+    ];
+    for other in others {
+        // It comes first, and has numbers of a size that would do.
+        let text = log("", |_| String::new());
+        let before = |(i, line): (usize, &str)| {
+            let cell = if i == 0 { other.to_owned() } else { format!("{:.3}", 2.0 + 0.1 * (i % 7) as f64) };
+            let (time, rest) = line.split_once(',').unwrap();
+            format!("{time},{cell},{rest}\n")
+        };
+        let imported = read(&text.lines().enumerate().map(before).collect::<String>());
+        let name = other.split(" [").next().unwrap();
+        for quantity in ["lat", "lon", "sog", "cog", "psi", "delta", "n"] {
+            let column = taken(&imported, quantity);
+            assert!(!column.is_empty() && column != name, "{quantity} is `{column}`");
+        }
+        assert!(["u", "v"].iter().all(|q| taken(&imported, q).is_empty()), "{other}");
+        assert!(off(&imported) < 0.01, "{other}");
+    }
+    let text = log(",yaw_velocity,gyro_z", |row| format!(",{0:.6},{0:.6}", row.rate / 60.0 * DEGREE));
+    let imported = read(&text.replace("heading", "yaw"));
+    assert_eq!(["psi", "r"].map(|q| taken(&imported, q)), ["yaw", "yaw_velocity"]);
+}
+
+#[test]
+fn of_columns_that_are_named_alike_the_one_that_agrees_with_the_data_is_taken() {
+    let text = log(",hdg,Speed A [kn],gyro z,rate of turn [deg/min]", |row| {
+        format!(",{:.1},{:.2},{:.4},{:.3}", (40.0 * row.t).rem_euclid(360.0), 19.0, 0.2 * row.t.sin(), row.rate)
+    });
+    let imported = read(&text.replace("sog_kn", "Speed B [kn]"));
+    let found = ["psi", "sog", "r"].map(|q| taken(&imported, q));
+    assert_eq!(found, ["heading", "Speed B", "rate of turn"]);
+    let why = imported.unused.iter().find(|u| u.column == "Speed A").unwrap();
+    contains_all(&why.why, &["`Speed B` is taken", "--column sog=Speed A"]);
+}
+
+#[test]
+fn a_pair_is_of_one_sensor() {
+    let text = log(",GPS2 lon,GPS2 lat,STW Trans [kn],STW Long [kn]", |row| {
+        format!(",{:.6},{:.6},0.1,9.8", row.place[1] + 0.001, row.place[0])
+    });
+    let imported = read(&text.replace("time,lat,lon", "time,GPS1 lat,GPS1 lon"));
+    assert_eq!(["lat", "lon"].map(|q| taken(&imported, q)), ["GPS1 lat", "GPS1 lon"]);
+    assert_eq!(["u_water", "v_water"].map(|q| taken(&imported, q)), ["STW Long", "STW Trans"]);
+    let second = Choices { columns: [("lat".to_owned(), "GPS2 lat".to_owned())].into(), ..Choices::default() };
+    let text = text.replace("time,lat,lon", "time,GPS1 lat,GPS1 lon");
+    let imported = written(&text, &ImportSettings { choices: second, ..ImportSettings::default() }).unwrap();
+    assert_eq!(taken(&imported, "lon"), "GPS2 lon");
+}
+
+#[test]
+fn a_wind_angle_counts_from_the_bow_and_a_direction_from_north() {
+    let angle = |row: &Row| format!(",8.0,{:.1}", 260.0 - row.heading);
+    let imported = read(&log(",True Wind Speed [m/s],True Wind Angle [deg]", angle));
+    let directions = channel(&imported, 0, Channel::WindDirection);
+    assert!(directions.iter().all(|d| ((d / DEGREE - 260.0 + 180.0).rem_euclid(360.0) - 180.0).abs() < 0.2));
+    let both = |row: &Row| format!(",{:.1},260,8.0", 260.0 - row.heading);
+    let imported = read(&log(",Ground Wind Angle °,Ground Wind Direction °,Ground Wind Speed m/s", both));
+    assert_eq!(taken(&imported, "wind_direction"), "Ground Wind Direction");
+    assert!(channel(&imported, 0, Channel::WindDirection).iter().all(|d| (d / DEGREE + 100.0).abs() < 0.1));
+}
+
+#[test]
+fn a_magnetic_heading_is_brought_to_true_north_by_the_variation_or_told() {
+    let magnetic = |row: &Row| format!("{:.2}", (row.heading + 12.4).rem_euclid(360.0));
+    let with = |name: &str, more: &str| {
+        let text = log(more, |_| if more.is_empty() { String::new() } else { ",-12.4".to_owned() });
+        let rows = sailed(0.0);
+        let turned = text.lines().enumerate().map(|(i, line)| {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            cells[5] = if i == 0 { name.to_owned() } else { magnetic(&rows[i - 1]) };
+            cells.join(",") + "\n"
+        });
+        turned.collect::<String>()
+    };
+    for name in ["Heading [°M]", "Heading magnetic", "HDM"] {
+        let imported = read(&with(name, ",Variation [deg]"));
+        assert!(off(&imported) < 0.05, "{name}: {}", off(&imported));
+        let imported = read(&with(name, ""));
+        assert!((off(&imported) - 12.4).abs() < 0.05);
+        contains_all(&notes(&imported), &["a magnetic heading", "--column variation=NAME"]);
+    }
+    // NMEA: the variation is that of RMC.
+    let text: String = sailed(0.0).iter().map(|row| rmc(row, "N", "E", "12.4,W") + &hdg(row, 12.4)).collect();
+    let imported = read(&text);
+    assert!(off(&imported) < 0.11, "{}", off(&imported));
+}
+
+#[test]
+fn a_steady_angle_of_course_and_heading_is_told_and_that_of_a_current_is_not() {
+    let log = |current: f64, angle: f64| {
+        let mut text = format!("{NAMES}\n");
+        for row in sailed(current) {
+            let turned = Row { heading: (row.heading + angle).rem_euclid(360.0), ..row };
+            text += &(fields(&turned).replace(",10.00,", ",,") + "\n");
+        }
+        text
+    };
+    let imported = read(&log(0.0, 8.0));
+    contains_all(&notes(&imported), &["on straights in opposite directions", "psi = { offset = -0.1"]);
+    for current in [0.0, 0.6] {
+        assert!(!notes(&read(&log(current, 0.0))).contains("opposite directions"), "{current}");
+    }
+}
+
+#[test]
+fn a_heading_in_radians_that_counts_on_through_full_turns_keeps_the_unit_that_the_file_states() {
+    let mut text = NAMES.replace("heading", "heading [rad]") + "\n";
+    for row in sailed(0.0) {
+        text += &format!("{}\n", fields(&Row { heading: (row.heading + 3600.0) * DEGREE, ..row }));
+    }
+    let imported = read(&text);
+    // The log has hundredths of a radian.
+    assert!(off(&imported) < 0.6, "{} {}", off(&imported), notes(&imported));
+}
+
+#[test]
+fn a_longitude_positive_to_the_west_mirrors_no_ship() {
+    let mirrored = |axis: usize| {
+        let mut text = format!("{NAMES}\n");
+        for mut row in sailed(0.0) {
+            row.place[axis] = -row.place[axis];
+            text += &(fields(&row) + "\n");
+        }
+        text
+    };
+    for (axis, side) in ["south", "west"].into_iter().enumerate() {
+        let imported = read(&mirrored(axis));
+        contains_all(&imported.notes[0], &["WARNING", side, "turned"]);
+        assert!(off(&imported) < 0.01);
+        let origin = imported.origin.unwrap();
+        assert!(origin[0] > 36.0 && origin[1] > 14.0, "{origin:?}");
+        let rudder = channel(&imported, 0, Channel::Delta);
+        assert!(rudder[45] > 0.1 && rudder[60] < -0.1);
+    }
+    assert!(!notes(&read(&log("", |_| String::new()))).contains("WARNING"));
+}
+
+fn summed(body: &str) -> String {
+    format!("${body}*{:02X}\r\n", body.bytes().fold(0_u8, |sum, b| sum ^ b))
+}
+
+fn minutes(degrees: f64, width: usize) -> String {
+    let whole = degrees.floor();
+    format!("{whole:0width$}{:08.5}", (degrees - whole) * 60.0)
+}
+
+fn rmc(row: &Row, ns: &str, ew: &str, variation: &str) -> String {
+    let clock = iso(row.t)[11..19].replace(':', "");
+    let [lat, lon] = row.place;
+    let place = format!("{},{ns},{},{ew}", minutes(lat, 2), minutes(lon, 3));
+    summed(&format!("GPRMC,{clock}.00,A,{place},10.0,{:.2},030621,{variation},A", row.course))
+        + &summed(&format!("IIRSA,{:.1},A,,V", row.rudder))
+        + &summed("IIRPM,S,0,120.0,,A")
+}
+
+fn hdg(row: &Row, variation: f64) -> String {
+    summed(&format!("HCHDG,{:.1},,,,", (row.heading + variation).rem_euclid(360.0)))
+}
+
+#[test]
+fn two_talkers_of_one_sentence_are_two_columns() {
+    let hdt = |talker: &str, heading: f64| summed(&format!("{talker}HDT,{heading:.2},T"));
+    let both = |second: &dyn Fn(&Row) -> f64| {
+        let each = |row: &Row| rmc(row, "N", "E", ",") + &hdt("GP", second(row)) + &hdt("HE", row.heading);
+        sailed(0.0).iter().map(each).collect::<String>()
+    };
+    // A dead one, and one that goes round and round.
+    for second in [&(|_: &Row| 123.0) as &dyn Fn(&Row) -> f64, &|row: &Row| (77.0 * row.t).rem_euclid(360.0)] {
+        let imported = read(&both(second));
+        assert_eq!(taken(&imported, "psi"), "HDT heading of HE");
+        assert!(off(&imported) < 0.01, "{}", off(&imported));
+        let other = imported.unused.iter().find(|u| u.column == "HDT heading of GP").unwrap();
+        contains_all(&other.why, &["`HDT heading of HE` is taken"]);
+    }
+    assert!(read(&both(&|_| 123.0)).unused.iter().any(|u| u.why.contains("never changes")));
+}
+
+#[test]
+fn a_makers_own_sentences_are_not_broken_and_positions_are_read_from_gll() {
+    let mut text = String::new();
+    for row in sailed(0.0) {
+        (0..5).for_each(|_| text += &summed("PSXN,23,0.50,-0.30,29.98,0.10"));
+        text += &(rmc(&row, "N", "E", ",") + &summed(&format!("HEHDT,{:.2},T", row.heading)));
+        text += &summed("IIMWD,260.0,T,258.0,M,16.0,N,8.2,M");
+    }
+    let imported = read(&text);
+    assert!(!notes(&imported).contains("broken"), "{}", notes(&imported));
+    contains_all(&notes(&imported), &["PSXN 3000 (a maker's own)"]);
+    assert!((mean(channel(&imported, 0, Channel::WindDirection)) / DEGREE + 100.0).abs() < 0.01);
+    let gll = sailed(0.0).iter().fold(String::new(), |text, row| {
+        let clock = iso(row.t)[11..19].replace(':', "");
+        let [lat, lon] = row.place;
+        let gll = format!("GPGLL,{},N,{},E,{clock}.00,A,A", minutes(lat, 2), minutes(lon, 3));
+        let vwr = format!("WIVWR,{:.1},L,16.0,N,8.2,M,,", 20.0);
+        let hdm = format!("HCHDM,{:.2},M", row.heading);
+        text + &summed(&gll)
+            + &summed(&vwr)
+            + &summed(&hdm)
+            + &summed(&format!("IIRSA,{:.1},A,,V", row.rudder))
+            + &summed("IIRPM,S,0,120.0,,A")
+    });
+    let imported = read(&gll);
+    assert_eq!(["lat", "psi"].map(|q| taken(&imported, q)), ["GLL latitude", "HDM magnetic heading"]);
+    assert!((mean(channel(&imported, 0, Channel::ApparentWindDirection)) / DEGREE + 20.0).abs() < 0.01);
+}
+
+#[test]
+fn a_clock_that_steps_back_begins_a_recording_and_late_rows_do_not() {
+    let rows: Vec<String> = log("", |_| String::new()).lines().map(str::to_owned).collect();
+    // The last 200 rows are told with the clock of 300 rows before.
+    let mut text = rows[..401].join("\n") + "\n";
+    for (i, row) in rows[401..].iter().enumerate() {
+        text += &format!("{},{}\n", iso(2.0 * (100 + i) as f64), row.split_once(',').unwrap().1);
+    }
+    let imported = read(&text);
+    let lengths: Vec<usize> = imported.recordings.iter().map(|r| r.rows.t.len()).collect();
+    assert_eq!(lengths, [400, 200]);
+    assert_eq!(imported.recordings[1].start.as_deref(), Some("2021-06-03 10:03:20"));
+    contains_all(&notes(&imported), &["its clock steps back once, first at line 402"]);
+    // Three rows that come late, and the newest first.
+    let mut late = rows.clone();
+    let three: Vec<String> = late.drain(100..103).collect();
+    drop(late.splice(110..110, three));
+    let newest = [&rows[..1], &rows[1..].iter().rev().cloned().collect::<Vec<_>>()[..]].concat();
+    for text in [late, newest] {
+        let imported = read(&(text.join("\n") + "\n"));
+        assert_eq!((imported.recordings.len(), imported.recordings[0].rows.t.len()), (1, 600));
+    }
+}
+
+#[test]
+fn files_over_one_time_are_recordings_of_their_own_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let text = log("", |_| String::new());
+    let other: String = sailed(0.5).iter().map(|row| fields(row) + "\n").collect();
+    let (a, b) = (file("a.csv", &text), file("b.csv", &format!("{NAMES}\n{other}")));
+    let imported = import(&[a.clone(), b], &ImportSettings::default()).unwrap();
+    assert_eq!(imported.recordings.len(), 2);
+    assert!(imported.recordings.iter().all(|r| r.rows.t.len() == 600 && r.rows.t[0] == 0.0));
+    assert_eq!(imported.recordings[0].start, imported.recordings[1].start);
+    // Both start at nought, and one has a column more.
+    let own = |more: &str| {
+        let mut text = format!("t [s],{}{more}\n", NAMES.split_once(',').unwrap().1);
+        for row in sailed(0.0) {
+            let tail = if more.is_empty() { "" } else { ",3" };
+            let _ = writeln!(text, "{},{}{tail}", row.t, fields(&row).split_once(',').unwrap().1);
+        }
+        text
+    };
+    let both = [file("c.csv", &own("")), file("d.csv", &own(",note"))];
+    assert_eq!(import(&both, &ImportSettings::default()).unwrap().recordings.len(), 2);
+    // A file of headings that are not those of the log.
+    let headings: String = sailed(0.0).iter().map(|row| format!("{},{:.1}\n", iso(row.t), row.heading + 1.0)).collect();
+    let said = import(&[a.clone(), file("e.csv", &format!("time,heading\n{headings}"))], &ImportSettings::default());
+    contains_all(&said.unwrap_err().to_string(), &["a.csv", "e.csv", "both have `heading`", "2021-06-03 10:00:00"]);
+    // A copy is one.
+    let imported = import(&[a, file("f.csv", &text)], &ImportSettings::default()).unwrap();
+    assert_eq!((imported.recordings.len(), imported.recordings[0].rows.t.len()), (1, 600));
+}
+
+#[test]
+fn two_ships_in_one_file_are_refused() {
+    let mut text = format!("{NAMES},MMSI\n");
+    for row in sailed(0.0) {
+        text += &format!("{},219000001\n{},219000002\n", fields(&row), fields(&row));
+    }
+    let said = written(&text, &ImportSettings::default()).unwrap_err();
+    contains_all(&said, &["column `MMSI` names 2 ships", "219000001 (600 lines)", "one ship at a time"]);
+    assert_eq!(read(&log(",MMSI,Ship speed", |_| ",219000001,9".to_owned())).recordings.len(), 1);
+}
+
+#[test]
+fn rows_of_one_time_that_fill_other_fields_were_not_rounded() {
+    let mut text = format!("{NAMES},counter\n");
+    for (i, row) in sailed(0.0).iter().enumerate() {
+        let all = fields(row);
+        let cells: Vec<&str> = all.split(',').collect();
+        text += &format!("{},{},{},{},{},,,,{i}\n", cells[0], cells[1], cells[2], cells[3], cells[4]);
+        text += &format!("{},,,,,{},{},{},{i}\n", cells[0], cells[5], cells[6], cells[7]);
+    }
+    let repeated = log(",counter", |row| format!(",{}", row.t));
+    let twice: String = repeated
+        .lines()
+        .enumerate()
+        .map(|(i, line)| if i == 0 { format!("{line}\n") } else { format!("{line}1\n{line}2\n") })
+        .collect();
+    for text in [text, twice] {
+        let imported = read(&text);
+        assert_eq!(imported.recordings[0].rows.t.len(), 600);
+        assert!(!imported.files[0].1.contains("rounded"), "{}", imported.files[0].1);
+        assert!(off(&imported) < 0.01, "{}", off(&imported));
+    }
+}
+
+#[test]
+fn times_that_are_off_by_half_a_step_are_no_gaps_and_a_missing_row_is_one() {
+    let mut state = 7_u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut text = format!("t [s],{}\n", NAMES.split_once(',').unwrap().1);
+    for row in sailed(0.0) {
+        let t = row.t + 0.98 * 2.0 * (random() - 0.5);
+        let _ = writeln!(text, "{t:.3},{}", fields(&row).split_once(',').unwrap().1);
+    }
+    let imported = read(&text);
+    let rows = &imported.recordings[0].rows;
+    assert!(rows.t.windows(2).all(|t| t[1] - t[0] < 1.5 * rows.step), "{}", notes(&imported));
+    contains_all(&notes(&imported), &["uneven times"]);
+    let lines: Vec<String> = log("", |_| String::new()).lines().map(str::to_owned).collect();
+    let without = [&lines[..300], &lines[301..]].concat().join("\n");
+    let rows = &read(&without).recordings[0].rows;
+    assert_eq!(rows.t.windows(2).filter(|t| t[1] - t[0] > 1.5 * rows.step).count(), 1);
+}
+
+#[test]
+fn a_blank_rate_of_turn_that_the_heading_gives_ends_no_run() {
+    let text = log(",ROT", |row| if row.t % 20.0 == 8.0 { ",".to_owned() } else { format!(",{:.1}", row.rate) });
+    let imported = read(&text);
+    let rates = channel(&imported, 0, Channel::R);
+    let worst = sailed(0.0).iter().zip(rates).map(|(row, r)| (r / DEGREE * 60.0 - row.rate).abs()).fold(0.0, f64::max);
+    assert!(rates.iter().all(|r| r.is_finite()) && worst < 60.0, "{worst}");
+    contains_all(&notes(&imported), &["r: 60 of 600 values are blank and follow from the heading"]);
+}
+
+#[test]
+fn what_blanks_cost_is_told_with_the_bridge_that_keeps_it() {
+    let rows = sailed(0.0);
+    let mut text = format!("{NAMES}\n");
+    for (i, row) in rows.iter().enumerate() {
+        let line = fields(row);
+        let mut cells: Vec<&str> = line.split(',').collect();
+        if i % 9 < 2 {
+            cells[5] = "511";
+        }
+        text += &(cells.join(",") + "\n");
+    }
+    let study = Study::new();
+    study.write("log.csv", &text);
+    let said = study.refuses(&["import", "log.csv", "--ship", "ship.toml", "--out", "own"]);
+    contains_all(
+        &said,
+        &["recorded minutes", "psi 134, u 134, v 134 of 600 rows", "`--bridge 6`", "`bridge = 6.0` in columns.toml"],
+    );
+    study.does(&["import", "log.csv", "--ship", "ship.toml", "--out", "own", "--bridge", "6"]);
+    contains_all(&std::fs::read_to_string(study.path("own/columns.toml")).unwrap(), &["bridge = 6.0"]);
+    let runs = std::fs::read_to_string(study.path("own/runs.csv")).unwrap();
+    let lasts = |line: &str| {
+        let cells: Vec<f64> = line.split(',').filter_map(|c| c.parse().ok()).collect();
+        cells[1] - cells[0]
+    };
+    assert!(runs.lines().skip(1).map(lasts).sum::<f64>() > 1000.0, "{runs}");
+    contains_all(
+        &study.refuses(&["import", "log.csv", "--out", "own", "--bridge=-1"]),
+        &["positive number of seconds"],
+    );
+}
+
+#[test]
+fn names_are_read_in_german_french_italian_and_spanish() {
+    let languages = [
+        "Zeit,Breite,Länge,Fahrt über Grund [kn],Kurs über Grund,Steuerkurs,Ruderlage,Wellendrehzahl [1/min]",
+        "Heure,Latitude,Longitude,Vitesse fond (kn),Route fond,Cap vrai,Angle de barre,Régime hélice [rpm]",
+        "Ora,Latitudine,Longitudine,Velocità al suolo [kn],Rotta,Prua,Angolo timone,Giri elica [rpm]",
+        "Hora,Latitud,Longitud,Velocidad sobre el fondo [kn],Rumbo sobre el fondo,Rumbo,Ángulo de timón,Revoluciones [rpm]",
+    ];
+    let text = log("", |_| String::new());
+    for names in languages {
+        let imported = read(&text.replace(NAMES, names));
+        let found: Vec<&str> = ["lat", "lon", "sog", "cog", "psi", "delta", "n"].map(|q| taken(&imported, q)).to_vec();
+        assert!(found.iter().all(|column| !column.is_empty()), "{names}: {found:?}");
+        assert!(off(&imported) < 0.01, "{names}");
+    }
+}
+
+#[test]
+fn what_is_no_file_or_no_log_is_told_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let say = |path: &Path| import(&[path.to_owned()], &ImportSettings::default()).unwrap_err().to_string();
+    let wide = folder.path().join("wide.csv");
+    std::fs::write(&wide, format!("t{}\n0{}\n", ",x".repeat(1_000_000), ",1".repeat(1_000_000))).unwrap();
+    contains_all(&say(&wide), &["a line has 1000001 fields", "rows and columns exchanged"]);
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStrExt;
+        contains_all(&say(Path::new("/dev/zero")), &["/dev/zero", "a pipe or a device"]);
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        contains_all(&say(&pipe), &["a pipe or a device"]);
+        let odd = folder.path().join(std::ffi::OsStr::from_bytes(b"log\xff.csv"));
+        std::fs::write(&odd, log("", |_| String::new())).unwrap();
+        assert_eq!(import(&[odd], &ImportSettings::default()).unwrap().recordings.len(), 1);
+    }
+}
+
+/// Inputs that once failed, which are not part of the project: each folder has a log and says what is right.
+#[test]
+fn inputs_that_once_failed_are_right() {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/cases");
+    let find = |number: &str| -> Option<PathBuf> {
+        let entries = std::fs::read_dir(&cases).ok()?;
+        entries
+            .flatten()
+            .map(|e| e.path())
+            .find(|p| p.file_name().is_some_and(|n| n.to_string_lossy().starts_with(number)))
+    };
+    let mut seen = 0;
+    let mut each = |number: &str, file: &str, check: &dyn Fn(&Imported)| match find(number) {
+        Some(folder) => {
+            seen += 1;
+            check(&import(&[folder.join(file)], &ImportSettings::default()).unwrap());
+        }
+        None => eprintln!("skipped: no folder {number}* in {}", cases.display()),
+    };
+    each("02", "sail.csv", &|i| assert_eq!(taken(i, "sog"), "Ext_SOG"));
+    each("04", "dt.csv", &|i| assert_eq!(taken(i, "delta"), "rudder"));
+    each("04", "yaw.csv", &|i| assert_eq!(taken(i, "psi"), "yaw"));
+    each("04", "tau.csv", &|i| assert_eq!([taken(i, "u"), taken(i, "v")], ["", ""]));
+    for file in ["few.nmea", "seapath.nmea"] {
+        each("06", file, &|i| assert!(i.files[0].1.contains("NMEA") && !notes(i).contains("broken")));
+    }
+    each("08", "hdg.nmea", &|i| assert!(mean(channel(i, 0, Channel::V)).abs() < 0.1));
+    each("10", "local.csv", &|i| {
+        let rows: Vec<usize> = i.recordings.iter().map(|r| r.rows.t.len()).collect();
+        assert_eq!((rows.len(), rows.iter().sum::<usize>()), (2, 1201));
+    });
+    each("16", "ais.csv", &|i| contains_all(&i.lost(59.0).unwrap(), &["`--bridge", "recorded minutes"]));
+    each("22", "dma.csv", &|i| assert!(channel(i, 0, Channel::R).iter().all(|r| r.is_finite())));
+    let from = |i: &Imported| mean(channel(i, 0, Channel::WindDirection)) / DEGREE;
+    each("23", "wind.csv", &|i| assert!((from(i) + 100.0).abs() < 1.0, "{}", from(i)));
+    each("23", "both.csv", &|i| assert!((from(i) + 100.0).abs() < 1.0, "{}", from(i)));
+    if seen == 0 {
+        eprintln!("skipped: {} is not there", cases.display());
+    }
+}
