@@ -30,8 +30,8 @@
 //! |---|---|
 //! | `nlp` | what a problem must be able to evaluate |
 //! | `options` | how to solve |
-//! | `status` | how a solve ended, or why there is none |
-//! | `problem` | the fixed part of a problem, checked, and what evaluations count |
+//! | `status` | how a solve ended and what it evaluated, or why there is none |
+//! | `problem` | the fixed part of a problem, checked |
 //! | `ffi` | the C interface: the only file of the project that contains `unsafe` |
 //! | `solve` | one solve from the problem to the solution |
 
@@ -57,8 +57,6 @@ pub use nlp::{IterationReport, Multipliers, Nlp};
 #[cfg(feature = "ipopt")]
 pub use options::{HessianMode, OptionValue, Options};
 #[cfg(feature = "ipopt")]
-pub use problem::Counts;
-#[cfg(feature = "ipopt")]
 pub use solve::{Solution, solve};
 #[cfg(feature = "ipopt")]
-pub use status::{IpoptError, Status};
+pub use status::{Counts, IpoptError, Status};

@@ -4,25 +4,10 @@
 use super::history::DEFAULT_HISTORY;
 use super::nlp::{Multipliers, Nlp};
 use super::options::{HessianMode, Options};
-use super::status::IpoptError;
+use super::status::{Counts, IpoptError};
 
 /// What Ipopt is told in place of an infinite bound; it takes anything beyond 1e19 for "none".
 const NO_BOUND: f64 = 2e19;
-
-/// How often each function was evaluated, refusals included.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
-    /// Evaluations of the objective.
-    pub objective: usize,
-    /// Evaluations of its gradient.
-    pub gradient: usize,
-    /// Evaluations of the constraint values.
-    pub constraints: usize,
-    /// Evaluations of the constraints' Jacobian.
-    pub jacobian: usize,
-    /// Evaluations of the Hessian of the Lagrangian.
-    pub hessian: usize,
-}
 
 /// The part of an [`Nlp`] that stays fixed during a solve, checked.
 pub(super) struct Problem {

@@ -4,8 +4,8 @@
 use super::ffi::{Outcome, run};
 use super::nlp::{Multipliers, Nlp};
 use super::options::Options;
-use super::problem::{Context, Counts, Problem, all_finite};
-use super::status::{IpoptError, Status};
+use super::problem::{Context, Problem, all_finite};
+use super::status::{Counts, IpoptError, Status};
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, PoisonError};

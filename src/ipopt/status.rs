@@ -2,7 +2,6 @@
 //! It evaluates nothing.
 
 use super::options::OptionValue;
-use super::problem::Counts;
 use std::fmt;
 
 /// How a solve ended. Its text says in words what happened and what to do next.
@@ -160,6 +159,21 @@ impl fmt::Display for Status {
             }
         }
     }
+}
+
+/// How often each function was evaluated, refusals included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Evaluations of the objective.
+    pub objective: usize,
+    /// Evaluations of its gradient.
+    pub gradient: usize,
+    /// Evaluations of the constraint values.
+    pub constraints: usize,
+    /// Evaluations of the constraints' Jacobian.
+    pub jacobian: usize,
+    /// Evaluations of the Hessian of the Lagrangian.
+    pub hessian: usize,
 }
 
 /// Why there is no [`Solution`](super::Solution): the problem or the options make no sense, or the solve ended before its first point.
