@@ -10,6 +10,7 @@
 //! | [`law`] | a law for what the catalogue does not hold; port against starboard | `proof` |
 //! | [`answer`] | verdict, error rates, document | `law` |
 //! | `pipeline` | the steps in order | all |
+//! | [`plan`] | what planned trials and sensors would show | `answer` |
 //!
 //! The steps, each a function from one named type to the next ([`diagnose`] runs them in order):
 //!
@@ -32,7 +33,7 @@
 //! | proof of all findings on held-out runs | [`proof::prove::HeldOut`] |
 //! | document | [`answer::diagnosis::Diagnosis`] |
 //!
-//! One noise model (sensors, unknown force, initial states) is behind every step. A room uses those above it in the table.
+//! One noise model (sensors, unknown force, initial states) is behind every step. A room uses what its line names and all above that.
 
 pub mod answer;
 mod error;

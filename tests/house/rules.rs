@@ -87,7 +87,7 @@ fn assert_listed<T: Ord + std::fmt::Debug>(rule: &str, found: BTreeSet<T>, liste
     );
 }
 
-/// `src/fit/cost.rs` belongs to `fit`, `src/model.rs` to `model`.
+/// `src/fit/cost.rs` belongs to `fit`, `src/model/mod.rs` to `model`.
 fn module_of(file: &str) -> &str {
     let inner = file.strip_prefix("src/").unwrap_or(file);
     inner.split('/').next().unwrap_or(inner).trim_end_matches(".rs")
