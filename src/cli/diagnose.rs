@@ -11,8 +11,10 @@ use super::shared::load::{Loaded, StudyArgs, no_mechanism};
 use super::shared::output::{Output, OutputArgs, print, print_json};
 use super::shared::progress::progress;
 use serde_json::Value;
+use trimtab::diagnose::answer::models::Whose;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::evaluate::Judging;
+use trimtab::model::Model;
 use trimtab::recording::audit::Issue;
 use trimtab::recording::{Run, Runs, Split};
 use trimtab::report::diagnosis::{NEXT_WORDS, document, keys_listing, next_commands, page, pictures, summary};
@@ -197,11 +199,15 @@ fn write_files(
 ) -> Result<(), CliError> {
     if output.has_folder() {
         output.file("diagnosis.json", (serde_json::to_string_pretty(json)? + "\n").as_bytes());
-        let mut improved = diagnosis.model.clone();
-        improved.name += ", improved";
+        let named = |model: &Model, whose: Whose, suffix: &str| {
+            let mut model = model.clone();
+            model.name += if whose == Whose::Own { "" } else { suffix };
+            model
+        };
+        let [of_improved, of_base] = diagnosis.written;
+        let improved = named(&diagnosis.model, of_improved, ", improved");
         let improved = fitted_text(&improved, diagnosis.uncertainty.clone())?;
-        let mut base = diagnosis.base.clone();
-        base.name += ", refitted";
+        let base = named(&diagnosis.base, of_base, ", refitted");
         output.file("improved.toml", improved.as_bytes());
         output.file("base.toml", model_text(&base)?.as_bytes());
         let (pictures, mut from) = (pictures(diagnosis), output.provenance());

@@ -4,6 +4,7 @@
 use super::answer::analysis::Answer;
 use super::answer::calibrate::ErrorRates;
 use super::answer::diagnosis::{Diagnosis, Trace};
+use super::answer::models::{OnUnseen, Whose, on_unseen, written};
 use super::answer::sailed::{Sailed, sailed};
 use super::answer::summary::{absorbed, adequacy, budget, confusable, detectable, moves, ranking, traces};
 use super::answer::words::{Missing, Said, headline, next_trial};
@@ -56,7 +57,9 @@ pub fn diagnose<'r>(
     let proof: Option<HeldOut> = proof(&question, &answer, &written, &held_out);
     let answer: Answer = answer.capped(proof.as_ref());
     let sailed: Vec<Sailed> = pictured(&question, &answer, &written, &held_out);
-    Ok(Diagnosis { set_aside, stability, error_rates: rates, sailed, ..report(&question, answer, &written, proof) })
+    let models = models(&question, &answer, &written, &held_out);
+    let said = report(&question, answer, &written, proof, models);
+    Ok(Diagnosis { set_aside, stability, error_rates: rates, sailed, ..said })
 }
 
 /// The models that a diagnosis writes, which every command reads, and which the proof compares.
@@ -98,6 +101,15 @@ fn proof(question: &Question, answer: &Answer, written: &Written, held_out: &[Ru
     Some(prove(before, after, Some(&generic), tests.fit.integration, held_out, &question.settings.judging))
 }
 
+/// The study's own model, the base model and the one with what was found, on unseen runs.
+fn models(question: &Question, answer: &Answer, written: &Written, held_out: &[Run]) -> Vec<OnUnseen> {
+    let mut models = vec![(Whose::Own, question.model), (Whose::Base, &written.base.model)];
+    if answer.improves() {
+        models.push((Whose::Improved, &written.found.model));
+    }
+    on_unseen(&models, held_out, &question.settings.judging)
+}
+
 /// How much of the runs lies outside the ranges of a model's terms.
 fn coverage(model: &Model, runs: &[Run]) -> Coverage {
     validity::outside(model, runs.iter().flat_map(validity::samples))
@@ -109,7 +121,13 @@ fn visited(law: Law, traces: &[Trace]) -> Law {
 }
 
 /// Everything that the diagnosis says of one analysis.
-fn report(question: &Question, answer: Answer, written: &Written, proof: Option<HeldOut>) -> Diagnosis {
+fn report(
+    question: &Question,
+    answer: Answer,
+    fits: &Written,
+    proof: Option<HeldOut>,
+    models: Vec<OnUnseen>,
+) -> Diagnosis {
     let (tests, found) = (&answer.kept.selection.tests, answer.improved());
     let (fit, first) = (&tests.fit, &tests.screen);
     let base = &fit.estimate;
@@ -124,8 +142,14 @@ fn report(question: &Question, answer: Answer, written: &Written, proof: Option<
     };
     // What predicts unseen runs worse than the base model is no improvement, however sure its parts are.
     let worse = proof.as_ref().is_some_and(HeldOut::is_worse);
-    let kept = if worse { &written.base } else { &written.found };
-    let improved = trimmed(&kept.model, question.model, &kept.free);
+    let adds = answer.improves() && !worse;
+    let kept = if adds { &fits.found } else { &fits.base };
+    let file = [written(if adds { Whose::Improved } else { Whose::Base }, &models), written(Whose::Base, &models)];
+    let of_file = |whose: Whose, kept: &Estimate| match whose {
+        Whose::Own => question.model.clone(),
+        Whose::Base | Whose::Improved => trimmed(&kept.model, question.model, &kept.free),
+    };
+    let improved = of_file(file[0], kept);
     let traces = traces(&fit.runs, fit.integration, base, last.map(|_| found));
     let verdict = answer.verdict;
     let said = Said {
@@ -166,14 +190,18 @@ fn report(question: &Question, answer: Answer, written: &Written, proof: Option<
         stability: None,
         error_rates: None,
         following: answer.base.following.clone(),
-        improved_is_base: worse || !answer.improves(),
+        improved_is_base: !adds,
+        models,
+        written: file,
         settings: question.settings.clone(),
         sailed: Vec::new(),
         traces,
         validity: coverage(&improved, &fit.runs),
-        uncertainty: uncertainty(kept, &improved, fit.integration, &fit.runs),
+        uncertainty: (file[0] != Whose::Own)
+            .then(|| uncertainty(kept, &improved, fit.integration, &fit.runs))
+            .flatten(),
         model: improved,
-        base: trimmed(&written.base.model, question.model, &written.base.free),
+        base: of_file(file[1], &fits.base),
         findings: answer.findings,
         withdrawn: answer.withdrawn,
     }

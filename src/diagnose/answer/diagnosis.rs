@@ -2,6 +2,7 @@
 //! It holds and computes nothing; the steps that fill it are in other files.
 
 use super::calibrate::ErrorRates;
+use super::models::{OnUnseen, Whose};
 use super::sailed::Sailed;
 use crate::diagnose::evidence::admit::Admission;
 use crate::diagnose::evidence::locate::Location;
@@ -176,6 +177,10 @@ pub struct Diagnosis {
     /// Whether the improved model is the base model, refitted: nothing was found and no law confirmed, or unseen runs are predicted
     /// worse with it.
     pub improved_is_base: bool,
+    /// The study's own model, the base model and the improved one on unseen runs; empty where there are none to judge by.
+    pub models: Vec<OnUnseen>,
+    /// Which of them improved.toml holds, and which base.toml: the study's own where it simulates the unseen runs better.
+    pub written: [Whose; 2],
     /// Audit of recordings and numerics.
     pub admission: Admission,
     /// Noise under the base model.
@@ -222,13 +227,13 @@ pub struct Diagnosis {
     /// The test runs, or without any the training runs, recorded and simulated, for pictures.
     #[serde(skip)]
     pub sailed: Vec<Sailed>,
-    /// The improved model, as a model file.
+    /// The model of improved.toml.
     #[serde(skip)]
     pub model: Model,
     /// Covariance of the improved model's parameters, hull coefficients included; absent where the data do not determine them.
     #[serde(skip)]
     pub uncertainty: Option<Uncertainty>,
-    /// The base model, refitted.
+    /// The model of base.toml.
     #[serde(skip)]
     pub base: Model,
 }

@@ -6,6 +6,7 @@
 //! | `analysis` | one analysis with its verdict, and its repetition on transformed recordings |
 //! | `conclude` | the verdict, a pure function of grades and tests |
 //! | [`calibrate`] | error rates on simulated recordings |
+//! | [`models`] | the study's own model, the base and the improved one on unseen runs, and which is written |
 //! | [`sailed`] | runs as recorded and simulated, for pictures |
 //! | [`diagnosis`] | the document |
 //! | `summary`, `words` | its lists; the verdict in a sentence |
@@ -14,6 +15,7 @@ pub(super) mod analysis;
 pub mod calibrate;
 mod conclude;
 pub mod diagnosis;
+pub mod models;
 pub mod sailed;
 pub(crate) mod summary;
 pub(super) mod words;

@@ -3,6 +3,7 @@
 
 use super::phrases::percent;
 use crate::diagnose::Diagnosis;
+use crate::diagnose::answer::models::{OnUnseen, Whose};
 use crate::diagnose::proof::unseen::FindingProof;
 use crate::numerals::{DASH, fixed, number_of, sig};
 
@@ -41,6 +42,45 @@ pub(super) fn alone(title: &str, h: &FindingProof) -> String {
     format!("{title} by itself, on {}: {}", number_of(h.recordings, "recording"), parts.join(", "))
 }
 
+/// The study's own model, the base model and the improved one side by side on unseen runs, and which of them the files hold.
+fn models(d: &Diagnosis) -> Vec<String> {
+    let name = |whose: Whose| match whose {
+        Whose::Own => "the study's own model",
+        Whose::Base => "the base model, refitted",
+        Whose::Improved => "the improved model",
+    };
+    let line = |s: &OnUnseen| {
+        let distance = |value: Option<f64>, factor: f64, what: &str, unit: &str| {
+            value.map(|v| format!("{what} {} {unit}", sig(v * factor, 3)))
+        };
+        let errors = [
+            distance(s.position, 1.0, "position", "m"),
+            distance(s.heading, 1f64.to_degrees(), "heading", "deg"),
+            distance(s.speed, 1.0, "speed", "m/s"),
+        ];
+        let errors: Vec<String> = errors.into_iter().flatten().collect();
+        format!("{}: mean error {}; cVDM {} %", name(s.model), errors.join(", "), sig(s.cvdm, 3))
+    };
+    let mut lines: Vec<String> = d.models.iter().map(line).collect();
+    match d.written {
+        [Whose::Own, Whose::Own] => {
+            lines.push(
+                "improved.toml and base.toml are the study's own model: it simulates the test runs better".to_owned(),
+            );
+        }
+        [_, Whose::Own] => {
+            lines.push(
+                "base.toml is the study's own model: it simulates the test runs better than its refit".to_owned(),
+            );
+        }
+        [Whose::Own, _] => {
+            lines.push("improved.toml is the study's own model: it simulates the test runs better".to_owned());
+        }
+        _ => {}
+    }
+    lines
+}
+
 /// What the findings gain on the test runs.
 pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     let Some(h) = &d.held_out else {
@@ -56,7 +96,7 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
             number_of(h.runs, "test run"),
             percentage(h.before)
         );
-        return std::iter::once(base).chain(alone_of_law).collect();
+        return std::iter::once(base).chain(alone_of_law).chain(models(d)).collect();
     }
     let gain = h.improvement.map_or(DASH.to_owned(), percent);
     let interval = h.ci95.map_or("no interval with fewer than three recordings".to_owned(), |[low, high]| {
@@ -79,7 +119,8 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     }
     lines.extend(d.findings.iter().filter_map(|f| Some(alone(&f.title, f.held_out.as_ref()?))));
     lines.extend(alone_of_law);
-    if d.improved_is_base {
+    lines.extend(models(d));
+    if d.written[0] == Whose::Base {
         lines.push(
             "improved.toml is the base model, refitted: with the findings unseen runs are simulated worse".to_owned(),
         );

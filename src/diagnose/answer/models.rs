@@ -1,0 +1,103 @@
+//! Three models on runs that no other step has used: the study's own as it was given, the base model (the study's, refitted) and the
+//! improved model; and which of them is written. It fits nothing.
+//!
+//! A file that a diagnosis writes never simulates the unseen runs worse, by mean cVDM, than the model that the study came with.
+
+use crate::evaluate::{Judging, outcome, predict_all};
+use crate::model::Model;
+use crate::recording::Run;
+use crate::statistics::mean;
+use serde::Serialize;
+
+/// Whose model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Whose {
+    /// The study's own, as it was given.
+    Own,
+    /// The study's, with its parameters and the uncertain coefficients estimated.
+    Base,
+    /// The base model with what was found.
+    Improved,
+}
+
+/// How one model simulates the unseen runs freely, as means over those on which none of the models diverges.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OnUnseen {
+    /// Whose model.
+    pub model: Whose,
+    /// Runs on which no model diverges.
+    pub runs: usize,
+    /// Combined variable distance metric \[%\].
+    pub cvdm: f64,
+    /// Distance of the position \[m\], of its components' mean distances.
+    pub position: Option<f64>,
+    /// Mean distance of the heading \[rad\].
+    pub heading: Option<f64>,
+    /// Mean distance of the surge speed \[m/s\].
+    pub speed: Option<f64>,
+}
+
+/// Models on unseen runs; empty where there are none on which every model can be judged.
+pub fn on_unseen(models: &[(Whose, &Model)], runs: &[Run], judging: &Judging) -> Vec<OnUnseen> {
+    let outcomes = |model: &Model| -> Vec<_> {
+        let predicted = predict_all(model, runs, judging.integration);
+        let of = |(run, p)| outcome(run, p, &model.ship, judging.max_yaw_rate).deviation().cloned();
+        runs.iter().zip(&predicted).map(of).collect()
+    };
+    let all: Vec<Vec<_>> = models.iter().map(|(_, model)| outcomes(model)).collect();
+    let judged: Vec<usize> = (0..runs.len()).filter(|i| all.iter().all(|of| of[*i].is_some())).collect();
+    let one = |((whose, _), of): (&(Whose, &Model), &Vec<Option<crate::evaluate::Deviation>>)| {
+        let kept = || judged.iter().filter_map(|i| of[*i].as_ref());
+        let channel = |value: &dyn Fn(&crate::evaluate::Deviation) -> Option<f64>| mean(kept().filter_map(value));
+        Some(OnUnseen {
+            model: *whose,
+            runs: judged.len(),
+            cvdm: mean(kept().map(|d| d.cvdm))?,
+            position: channel(&|d| Some(d.md[0]?.hypot(d.md[1]?))),
+            heading: channel(&|d| d.md[2]),
+            speed: channel(&|d| d.md[3]),
+        })
+    };
+    models.iter().zip(&all).filter_map(one).collect()
+}
+
+/// The model that is written in place of `wanted`: the study's own where it simulates the unseen runs better.
+pub fn written(wanted: Whose, scores: &[OnUnseen]) -> Whose {
+    let cvdm = |whose: Whose| scores.iter().find(|s| s.model == whose).map(|s| s.cvdm);
+    match (cvdm(Whose::Own), cvdm(wanted)) {
+        (Some(own), Some(other)) if own < other => Whose::Own,
+        _ => wanted,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{model, runs, with};
+    use crate::diagnose::settings::Settings;
+
+    #[test]
+    fn the_truth_has_the_least_error_and_is_written_whoever_gave_it() {
+        let truth = with(&[("current.north", 0.4)]);
+        let (unseen, judging, other) = (runs(&truth, 4), Settings::default().judging, model());
+        let scores = on_unseen(&[(Whose::Own, &truth), (Whose::Base, &other)], &unseen, &judging);
+        assert_eq!((scores.len(), scores[0].runs), (2, 4));
+        assert!(scores[0].cvdm < 0.5 * scores[1].cvdm && scores[0].position < scores[1].position, "{scores:?}");
+        assert_eq!(written(Whose::Base, &scores), Whose::Own);
+        let swapped = on_unseen(&[(Whose::Own, &other), (Whose::Base, &truth)], &unseen, &judging);
+        assert_eq!(written(Whose::Base, &swapped), Whose::Base);
+    }
+
+    #[test]
+    fn a_run_on_which_one_model_diverges_counts_for_none_and_without_runs_nothing_is_preferred() {
+        let truth = model();
+        let mut wild = truth.clone();
+        let Some(i) = wild.index("hull.Nr") else { unreachable!("the hull has a yaw damping") };
+        wild.parameters[i].value *= -50.0;
+        let judging = Settings::default().judging;
+        assert!(on_unseen(&[(Whose::Own, &truth), (Whose::Base, &wild)], &runs(&truth, 2), &judging).is_empty());
+        assert!(on_unseen(&[(Whose::Own, &truth)], &[], &judging).is_empty());
+        assert_eq!(written(Whose::Improved, &[]), Whose::Improved);
+    }
+}
