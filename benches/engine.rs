@@ -4,8 +4,11 @@
 use criterion::Criterion;
 use std::hint::black_box;
 use trimtab::fit::{Cost, Derivatives, FitSettings, Hessian, fit};
+use trimtab::likelihood::filter::{Column, Filter, Gains, Wanted};
+use trimtab::likelihood::noise_fit::guess;
 use trimtab::model::Model;
 use trimtab::recording::Run;
+use trimtab::simulate::{Integration, Method};
 
 #[path = "support/by_hand.rs"]
 mod by_hand;
@@ -25,6 +28,10 @@ use interleaved::{Task, least};
 /// Rounds of the interleaved measurement; its figures are minima over them.
 const ROUNDS: usize = 30;
 const FEWER_ROUNDS: usize = 7;
+
+/// Runs and free parameters of the likelihood that is timed.
+const LIKELIHOOD_RUNS: usize = 40;
+const LIKELIHOOD_FREE: usize = 42;
 
 const SOURCES: [(&str, Derivatives); 4] = [
     ("lanes", Derivatives::Lanes),
@@ -154,6 +161,36 @@ fn growth(runs: &[Run], rounds: usize) {
     row("with Gauss-Newton: 60 free over 11 free, both with `symmetric`", "<= 5.5", times[20] / times[11]);
 }
 
+/// A pass over 40 runs of 120 steps that gives log-likelihood, score and Fisher matrix of 42 parameters: with the gains of each point, and
+/// with gains held fixed and every stage of a step differentiated, as a fit by likelihood has it.
+fn likelihood(runs: &[Run], rounds: usize) {
+    let (model, runs) = (freed(LIKELIHOOD_FREE, true), &runs[..LIKELIHOOD_RUNS]);
+    let noise = guess(runs, &model);
+    let integration = Integration { method: Method::Rk4, substeps: 1 };
+    let columns: Vec<Column> = model.free().into_iter().map(|i| Column::tangent(&model, i)).collect();
+    let [alone, with] = [Filter::new(&model, integration, &[]), Filter::new(&model, integration, &columns)];
+    let kept = alone.passes(runs, &noise, Wanted { gains: true, ..Wanted::default() });
+    let gains: Vec<Gains> = kept.into_iter().filter_map(|pass| pass.gains).collect();
+    let moving = Wanted { sums_only: true, ..Wanted::default() };
+    let fixed = Wanted { frozen: Some(&gains), exact: true, ..Wanted::default() };
+    let pass = |filter: &Filter, wanted: Wanted| {
+        let mut sum = 0.0;
+        filter.each(runs, &noise, wanted, |_, pass| pass.log_likelihood, |value| sum += value);
+        _ = black_box(sum);
+    };
+    let mut tasks: Vec<Task> = vec![
+        ("log-likelihood".into(), Box::new(|| pass(&alone, moving))),
+        ("with score and Fisher matrix".into(), Box::new(|| pass(&with, moving))),
+        ("gains held fixed, without derivatives".into(), Box::new(|| pass(&alone, fixed))),
+        ("gains held fixed, with gradient and Fisher matrix".into(), Box::new(|| pass(&with, fixed))),
+    ];
+    let times = least(rounds, &mut tasks);
+    println!("\n| 40 runs of 120 steps, 42 parameters, a pass | least processor time, ms |\n|---|---|");
+    for ((name, _), time) in tasks.iter().zip(&times) {
+        println!("| {name} | {:.2} |", 1e3 * time);
+    }
+}
+
 /// The time of each fit, and the share of it that is not the solver's evaluations of the cost.
 fn shares(model: &Model, runs: &[Run], rounds: usize) {
     println!("\n| full fit | iterations | evaluations | least processor time, s |\n|---|---|---|---|");
@@ -192,6 +229,7 @@ fn main() {
     assert_same_cost(&model, &ByHand::new(&model, &runs), &cost(&model, &runs, Derivatives::Lanes));
     ratios(&model, &runs, rounds);
     growth(&runs, fewer);
+    likelihood(&runs, rounds);
     shares(&model, &runs, if timing { 3 } else { 1 });
     let mut criterion = Criterion::default().configure_from_args();
     evaluations(&mut criterion, &model, &runs);

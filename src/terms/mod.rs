@@ -30,9 +30,11 @@ pub mod propeller;
 pub mod propeller_walk;
 pub mod push;
 pub mod race;
+pub mod rate_gain;
 pub mod resistance;
 pub mod roll;
 pub mod rudder;
+pub mod rudder_gain;
 pub mod rudder_lag;
 pub mod rudder_offset;
 pub mod rudder_rate;
@@ -72,8 +74,10 @@ pub static CATALOGUE: &[&dyn AnyTerm] = &[
     &propeller_walk::PropellerWalk,
     &wake_drift::WakeDrift,
     &thrust_loss::ThrustLoss,
+    &rate_gain::RateGain,
     &engine_lag::EngineLag,
     &race::Race,
+    &rudder_gain::RudderGain,
     &rudder_offset::RudderOffset,
     &rudder_lag::RudderLag,
     &rudder_rate::RudderRate,
