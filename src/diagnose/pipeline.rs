@@ -73,8 +73,8 @@ impl Written {
         let tests = &answer.kept.selection.tests;
         (question.progress)("fitting the models that are written");
         let problem = tests.problem(question.settings);
-        let base = problem.within_limits(&tests.fit.estimate);
-        let found = if answer.improves() { problem.within_limits(answer.improved()) } else { base.clone() };
+        let base = problem.written(&tests.fit.estimate);
+        let found = if answer.improves() { problem.written(answer.improved()) } else { base.clone() };
         Self { base, found }
     }
 }

@@ -132,11 +132,7 @@ impl Task<'_> {
             let attempt = self.attempt(stage, &from, curvature, shared)?;
             evaluated += attempt.evaluated;
             let Attempt { status, solution, at, best: found, .. } = attempt;
-            let better = found.filter(|f| best.as_ref().is_none_or(|b| f.total < b.total));
-            let improved = better
-                .as_ref()
-                .is_some_and(|f| best.as_ref().is_none_or(|b| f.total < b.total - BETTER * b.total.abs()));
-            best = better.or(best);
+            best = found.filter(|f| best.as_ref().is_none_or(|b| f.total < b.total)).or(best);
             let reached = at.as_ref().and_then(|p| stage.total(p).filter(|_| self.has_mass(p)));
             let given_up =
                 shared.watch.is_over() || matches!(status, Status::Panicked(_) | Status::MaxIterations { .. });
@@ -161,7 +157,8 @@ impl Task<'_> {
                 return Ok(Descent { p, status, stop: None, optimum, last: None, is_feasible, evaluated });
             }
             match &best {
-                Some(best) if improved && restarts < stage.restarts && !given_up => again = best.p.clone(),
+                // Not from where this attempt began already.
+                Some(best) if best.p != from.p && restarts < stage.restarts && !given_up => again = best.p.clone(),
                 _ => {
                     let fallback = || at.filter(|_| reached.is_some()).unwrap_or_else(|| start.clone());
                     let p = best.map_or_else(fallback, |b| b.p);

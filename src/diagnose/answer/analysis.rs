@@ -199,7 +199,7 @@ impl Answer {
         if self.findings.is_empty() {
             return Ok(Vec::new());
         }
-        let found = self.kept.selection.tests.problem(question.settings).within_limits(self.improved());
+        let found = self.kept.selection.tests.problem(question.settings).inside_bounds(self.improved());
         let improved = trimmed(&found.model, question.model, &found.free);
         let as_they_are = Change { name: "", model: Model::clone, run: |r| vec![r.clone()] };
         let again = brief(question.settings, &as_they_are, &improved, runs, held_out)?;

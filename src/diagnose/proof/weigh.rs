@@ -163,7 +163,7 @@ pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight]
         return None;
     }
     let (tests, judging) = (&kept.selection.tests, &question.settings.judging);
-    let written = |e: &Estimate| tests.problem(question.settings).within_limits(e);
+    let written = |e: &Estimate| tests.problem(question.settings).inside_bounds(e);
     let [base, found] = [&tests.fit.estimate, &kept.selection.estimate].map(written);
     let proof = FindingProof::new(&base.model, &found.model, &found.noise, tests.fit.integration, held_out, judging);
     let simulated = proof.prediction().is_some_and(|g| g.is_below_zero());
