@@ -218,8 +218,6 @@ struct Reached {
 /// What goes from round to round.
 struct Rounds {
     reached: Reached,
-    /// Whether the first solve begins near its optimum.
-    is_near: bool,
     multipliers: Option<Multipliers>,
     count: usize,
 }
@@ -240,7 +238,7 @@ impl<'t> Task<'t> {
         let posterior = Posterior { task: self, runs, free, noise_prior: NoisePrior::around(&first) };
         let reached = posterior.reached(&self.start, &first);
         let start_log_posterior = reached.value;
-        let mut rounds = Rounds { reached, is_near: false, multipliers: None, count: 0 };
+        let mut rounds = Rounds { reached, multipliers: None, count: 0 };
         let few = stages::drawn(runs);
         if let Some(few) = &few {
             self.approach_by_likelihood(&posterior, few, &priors, &mut rounds, &mut shared)?;
@@ -264,7 +262,7 @@ impl<'t> Task<'t> {
                 break;
             };
             let reached = posterior.reached(&lower, noise);
-            rounds = Rounds { reached, is_near: true, multipliers: None, count: rounds.count };
+            rounds = Rounds { reached, multipliers: None, count: rounds.count };
             descent = self.settled(&posterior, &priors, &[], &mut rounds, &mut shared)?;
         }
         let Rounds { reached, count, .. } = rounds;
@@ -288,7 +286,7 @@ impl<'t> Task<'t> {
         let Posterior { task, free, noise_prior, .. } = posterior;
         let of_few = Posterior { task, runs: few, free: free.clone(), noise_prior: *noise_prior };
         let reached = of_few.reached(&rounds.reached.p, &rounds.reached.noise);
-        let mut near = Rounds { reached, is_near: false, multipliers: None, count: 0 };
+        let mut near = Rounds { reached, multipliers: None, count: 0 };
         let before = std::mem::take(&mut shared.work);
         self.settled(&of_few, priors, &SHORT, &mut near, shared)?;
         let own = std::mem::replace(&mut shared.work, before);
@@ -321,8 +319,7 @@ impl<'t> Task<'t> {
             let mut stage = self.likelihood_stage(&evaluations, &innovations, priors);
             let most = short.iter().find(|(until, _)| round <= *until).map(|(_, most)| *most);
             stage.max_iterations = stage.max_iterations.min(most.unwrap_or(usize::MAX));
-            let near = rounds.is_near && round == 1 || rounds.multipliers.is_some();
-            let from = From { p, near, multipliers: rounds.multipliers.take() };
+            let from = From { p, near: rounds.multipliers.is_some(), multipliers: rounds.multipliers.take() };
             let mut descent = self.descend(&stage, from, &mut Curvature::unknown(p.len()), shared)?;
             let next = posterior.reached(&descent.p, noise);
             let settled = most.is_none() && next.value - before < SETTLED;
@@ -394,7 +391,7 @@ pub(crate) fn within_limits(
     let posterior = Posterior { task: &task, runs, free, noise_prior: *noise_prior };
     let value = posterior.log_density(&task.start, &found.noise);
     let reached = Reached { p: task.start.clone(), noise: found.noise, value };
-    let mut rounds = Rounds { reached, is_near: true, multipliers: None, count: 0 };
+    let mut rounds = Rounds { reached, multipliers: None, count: 0 };
     let end = task.settled(&posterior, &priors, &[], &mut rounds, &mut shared)?;
     task.check_feasible(&end)?;
     let Reached { p, noise, .. } = rounds.reached;
