@@ -31,7 +31,7 @@ pub static BENCHMARK: Artefact = Artefact {
 const SIZES: [usize; 3] = [11, 30, 60];
 
 /// Of the training runs every how many are fitted to.
-const EVERY: usize = 4;
+const EVERY: usize = 6;
 
 /// Random starts, how far each parameter is drawn from p~ as a share of its value, and their seed.
 const STARTS: usize = 20;
@@ -44,7 +44,7 @@ const ROUNDS: usize = 3;
 const UNIT_ROUNDS: usize = 15;
 
 /// Time \[s\] and iterations after which a fit has failed.
-const LIMIT: f64 = 10.0;
+const LIMIT: f64 = 4.0;
 const PATIENCE: usize = 500;
 
 /// Sources of derivatives, with their colours.
