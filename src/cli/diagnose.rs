@@ -14,7 +14,6 @@ use serde_json::Value;
 use trimtab::diagnose::answer::models::Whose;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::evaluate::Judging;
-use trimtab::model::Model;
 use trimtab::recording::audit::Issue;
 use trimtab::recording::{Run, Runs, Split};
 use trimtab::report::diagnosis::{NEXT_WORDS, document, keys_listing, next_commands, page, pictures, summary};
@@ -199,15 +198,11 @@ fn write_files(
 ) -> Result<(), CliError> {
     if output.has_folder() {
         output.file("diagnosis.json", (serde_json::to_string_pretty(json)? + "\n").as_bytes());
-        let named = |model: &Model, whose: Whose, suffix: &str| {
-            let mut model = model.clone();
-            model.name += if whose == Whose::Own { "" } else { suffix };
-            model
-        };
-        let [of_improved, of_base] = diagnosis.written;
-        let improved = named(&diagnosis.model, of_improved, ", improved");
+        let mut improved = diagnosis.model.clone();
+        improved.name += if diagnosis.written == Whose::Own { "" } else { ", improved" };
         let improved = fitted_text(&improved, diagnosis.uncertainty.clone())?;
-        let base = named(&diagnosis.base, of_base, ", refitted");
+        let mut base = diagnosis.base.clone();
+        base.name += ", refitted";
         output.file("improved.toml", improved.as_bytes());
         output.file("base.toml", model_text(&base)?.as_bytes());
         let (pictures, mut from) = (pictures(diagnosis), output.provenance());

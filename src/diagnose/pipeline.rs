@@ -144,12 +144,9 @@ fn report(
     let worse = proof.as_ref().is_some_and(HeldOut::is_worse);
     let adds = answer.improves() && !worse;
     let kept = if adds { &fits.found } else { &fits.base };
-    let file = [written(if adds { Whose::Improved } else { Whose::Base }, &models), written(Whose::Base, &models)];
-    let of_file = |whose: Whose, kept: &Estimate| match whose {
-        Whose::Own => question.model.clone(),
-        Whose::Base | Whose::Improved => trimmed(&kept.model, question.model, &kept.free),
-    };
-    let improved = of_file(file[0], kept);
+    let file = written(if adds { Whose::Improved } else { Whose::Base }, &models);
+    let own = file == Whose::Own;
+    let improved = if own { question.model.clone() } else { trimmed(&kept.model, question.model, &kept.free) };
     let traces = traces(&fit.runs, fit.integration, base, last.map(|_| found));
     let verdict = answer.verdict;
     let said = Said {
@@ -197,11 +194,9 @@ fn report(
         sailed: Vec::new(),
         traces,
         validity: coverage(&improved, &fit.runs),
-        uncertainty: (file[0] != Whose::Own)
-            .then(|| uncertainty(kept, &improved, fit.integration, &fit.runs))
-            .flatten(),
+        uncertainty: if own { None } else { uncertainty(kept, &improved, fit.integration, &fit.runs) },
         model: improved,
-        base: of_file(file[1], &fits.base),
+        base: trimmed(&fits.base.model, question.model, &fits.base.free),
         findings: answer.findings,
         withdrawn: answer.withdrawn,
     }

@@ -179,8 +179,8 @@ pub struct Diagnosis {
     pub improved_is_base: bool,
     /// The study's own model, the base model and the improved one on unseen runs; empty where there are none to judge by.
     pub models: Vec<OnUnseen>,
-    /// Which of them improved.toml holds, and which base.toml: the study's own where it simulates the unseen runs better.
-    pub written: [Whose; 2],
+    /// Which of them improved.toml holds: the study's own where it simulates the unseen runs better.
+    pub written: Whose,
     /// Audit of recordings and numerics.
     pub admission: Admission,
     /// Noise under the base model.
@@ -233,7 +233,7 @@ pub struct Diagnosis {
     /// Covariance of the improved model's parameters, hull coefficients included; absent where the data do not determine them.
     #[serde(skip)]
     pub uncertainty: Option<Uncertainty>,
-    /// The model of base.toml.
+    /// The base model, refitted.
     #[serde(skip)]
     pub base: Model,
 }

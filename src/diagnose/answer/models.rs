@@ -1,7 +1,7 @@
 //! Three models on runs that no other step has used: the study's own as it was given, the base model (the study's, refitted) and the
 //! improved model; and which of them is written. It fits nothing.
 //!
-//! A file that a diagnosis writes never simulates the unseen runs worse, by mean cVDM, than the model that the study came with.
+//! The improved model that is written never simulates the unseen runs worse, by mean cVDM, than the model that the study came with.
 
 use crate::evaluate::{Judging, outcome, predict_all};
 use crate::model::Model;
@@ -62,7 +62,7 @@ pub fn on_unseen(models: &[(Whose, &Model)], runs: &[Run], judging: &Judging) ->
     models.iter().zip(&all).filter_map(one).collect()
 }
 
-/// The model that is written in place of `wanted`: the study's own where it simulates the unseen runs better.
+/// Whose model is written in place of `wanted`: the study's own where it simulates the unseen runs better.
 pub fn written(wanted: Whose, scores: &[OnUnseen]) -> Whose {
     let cvdm = |whose: Whose| scores.iter().find(|s| s.model == whose).map(|s| s.cvdm);
     match (cvdm(Whose::Own), cvdm(wanted)) {

@@ -62,21 +62,8 @@ fn models(d: &Diagnosis) -> Vec<String> {
         format!("{}: mean error {}; cVDM {} %", name(s.model), errors.join(", "), sig(s.cvdm, 3))
     };
     let mut lines: Vec<String> = d.models.iter().map(line).collect();
-    match d.written {
-        [Whose::Own, Whose::Own] => {
-            lines.push(
-                "improved.toml and base.toml are the study's own model: it simulates the test runs better".to_owned(),
-            );
-        }
-        [_, Whose::Own] => {
-            lines.push(
-                "base.toml is the study's own model: it simulates the test runs better than its refit".to_owned(),
-            );
-        }
-        [Whose::Own, _] => {
-            lines.push("improved.toml is the study's own model: it simulates the test runs better".to_owned());
-        }
-        _ => {}
+    if d.written == Whose::Own {
+        lines.push("improved.toml is the study's own model: it simulates the test runs better".to_owned());
     }
     lines
 }
@@ -120,7 +107,7 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
     lines.extend(d.findings.iter().filter_map(|f| Some(alone(&f.title, f.held_out.as_ref()?))));
     lines.extend(alone_of_law);
     lines.extend(models(d));
-    if d.written[0] == Whose::Base {
+    if d.written == Whose::Base {
         lines.push(
             "improved.toml is the base model, refitted: with the findings unseen runs are simulated worse".to_owned(),
         );
