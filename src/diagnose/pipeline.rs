@@ -17,7 +17,7 @@ use super::proof::describe::kinds;
 use super::proof::improved::{trimmed, uncertainty};
 use super::proof::prove::{HeldOut, prove};
 use super::proof::stability::Stability;
-use super::search::base::Question;
+use super::search::base::{BaseFit, Question};
 use super::search::decide::Unlisted;
 use super::search::screen::screen;
 use super::settings::Settings;
@@ -25,6 +25,7 @@ use crate::likelihood::estimate::Estimate;
 use crate::model::Model;
 use crate::ranges::Limited;
 use crate::recording::Run;
+use crate::uncertainty::Uncertainty;
 use crate::validity::{self, Coverage};
 use std::borrow::Cow;
 
@@ -120,6 +121,23 @@ fn visited(law: Law, traces: &[Trace]) -> Law {
     law.over(traces.iter().flat_map(|t| t.state.iter().zip(&t.inputs)))
 }
 
+/// Whose model improved.toml holds, that model, and the covariance of its parameters where they were estimated.
+fn file(
+    question: &Question,
+    fit: &BaseFit,
+    kept: &Estimate,
+    adds: bool,
+    models: &[OnUnseen],
+) -> (Whose, Model, Option<Uncertainty>) {
+    let whose = written(if adds { Whose::Improved } else { Whose::Base }, models);
+    if whose == Whose::Own {
+        return (whose, question.model.clone(), None);
+    }
+    let improved = trimmed(&kept.model, question.model, &kept.free);
+    let uncertainty = uncertainty(kept, &improved, fit.integration, &fit.runs);
+    (whose, improved, uncertainty)
+}
+
 /// Everything that the diagnosis says of one analysis.
 fn report(
     question: &Question,
@@ -144,9 +162,7 @@ fn report(
     let worse = proof.as_ref().is_some_and(HeldOut::is_worse);
     let adds = answer.improves() && !worse;
     let kept = if adds { &fits.found } else { &fits.base };
-    let file = written(if adds { Whose::Improved } else { Whose::Base }, &models);
-    let own = file == Whose::Own;
-    let improved = if own { question.model.clone() } else { trimmed(&kept.model, question.model, &kept.free) };
+    let (file, improved, uncertainty) = file(question, fit, kept, adds, &models);
     let traces = traces(&fit.runs, fit.integration, base, last.map(|_| found));
     let verdict = answer.verdict;
     let said = Said {
@@ -194,7 +210,7 @@ fn report(
         sailed: Vec::new(),
         traces,
         validity: coverage(&improved, &fit.runs),
-        uncertainty: if own { None } else { uncertainty(kept, &improved, fit.integration, &fit.runs) },
+        uncertainty,
         model: improved,
         base: trimmed(&fits.base.model, question.model, &fits.base.free),
         findings: answer.findings,
