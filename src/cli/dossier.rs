@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use trimtab::diagnose::{Settings, diagnose};
 use trimtab::evaluate::Judging;
 use trimtab::evaluate::maneuver::SEED;
-use trimtab::files::{Manifest, sha256_of};
+use trimtab::files::{Manifest, settle, sha256_of};
 use trimtab::recording::audit::{audit_model, audit_study};
 use trimtab::recording::{Run, Split};
 use trimtab::report::diagnosis::document;
@@ -151,6 +151,7 @@ fn made(loaded: &Loaded, runs: &[Run], settings: &Settings) -> Result<Option<(Va
 /// The document of an earlier diagnosis of this study.
 fn read(file: &Path, loaded: &Loaded) -> Result<Value, CliError> {
     let wrong = |what: String| CliError::Argument(format!("{}: {what} (--diagnosis)", file.display()));
+    settle(file)?;
     let text = std::fs::read_to_string(file).map_err(|e| wrong(format!("cannot read ({e})")))?;
     let value: Value = serde_json::from_str(&text).map_err(|e| wrong(format!("it is not JSON: {e}")))?;
     if !value["schema"].as_str().is_some_and(|s| s.starts_with("trimtab-diagnosis/")) {

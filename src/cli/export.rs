@@ -6,7 +6,7 @@ use super::shared::error::CliError;
 use super::shared::load::read_model;
 use super::shared::output::{is_new, print, print_file};
 use std::path::{Path, PathBuf};
-use trimtab::files::write_whole;
+use trimtab::files::{settle, write_whole};
 use trimtab::model::export::export;
 use trimtab::ship::Ship;
 use trimtab::study::Study;
@@ -76,6 +76,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         (None, Some(study)) => Study::read_without_runs(study)?.ship,
         (None, None) => return Err(CliError::Argument("give --study or --ship".into())),
     };
+    settle(&args.model)?;
+    settle(&ship)?;
     let exported = export(&read_model(&args.model, Ship::read(&ship)?)?);
     let by_ending = || args.out.as_deref().and_then(Format::by_ending);
     let text = match args.format.or_else(by_ending).unwrap_or(Format::Toml) {

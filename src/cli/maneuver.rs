@@ -5,15 +5,15 @@ use super::shared::answer::Answer;
 use super::shared::audited::model_alone;
 use super::shared::error::CliError;
 use super::shared::figures::FigureArgs;
-use super::shared::load::{Loaded, StudyArgs};
+use super::shared::load::ShipArgs;
 use super::shared::output::{Output, OutputArgs};
 use super::shared::progress::progress;
 use clap::Subcommand;
 use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::evaluate::maneuver::{
-    Approach, DRAWS, Drawn, Ended, ManeuverSettings, Measured, SEED, Side, Trial, calm_water, drawn, set_intervals,
-    stopping_trial, turning_trial, zigzag_trial,
+    Approach, DRAWS, Drawn, Ended, Known, ManeuverSettings, Measured, SEED, Side, Trial, calm_water, drawn_from,
+    of_priors, recorded, set_intervals_from, stopping_trial, turning_trial, zigzag_trial,
 };
 use trimtab::files::Names;
 use trimtab::model::Model;
@@ -27,6 +27,7 @@ use trimtab::report::maneuver::{
 use trimtab::report::plot::Figure;
 use trimtab::ship::state::Inputs;
 use trimtab::ship::units::GRAVITY;
+use trimtab::study::Study;
 
 const LONG: &str = "\
 Simulates a standard manoeuvring trial to both sides with the model of a study, or another given with --model, and measures \
@@ -38,10 +39,13 @@ The trials are sailed in calm water: what the model has of wind, waves, current,
 
 A model file of `trimtab fit` or `trimtab diagnose` holds the covariance of its parameters. The measures then have 95 % \
     intervals: 2.97 [2.85, 3.09] are the value with the estimates and what the covariance moves it by, to first order, from trials \
-    with drawn parameters.
+    with drawn parameters. Without a covariance the priors of the model file are drawn from, and the spreads of the hull coefficients \
+    that are estimated: the intervals then have the middle 95 % of the ships that are drawn. A criterion inside the interval of its measure is open.
 
 The approach is straight ahead at a speed that the propeller holds: give --speed or --rpm, or set them in [maneuver] of \
-    the study with rudder rate, engine rate and angles; without either the approach is at Froude number 0.15.";
+    the study with rudder rate, engine rate and angles. What is not set is that of the recordings, without them that of the ship file \
+    (`service_speed` of [hull], `rate_deg_s` of [rudder]), else Froude number 0.15 and the usual rate; the first line says which. No \
+    recording is needed: --ship and --model instead of a study.";
 
 /// Sails the standard manoeuvring trials
 #[derive(Debug, clap::Args)]
@@ -70,10 +74,10 @@ Example:
 
 With --out: maneuver_turning.json, turning.png and .csv, turning_measures.csv (a row a trial and a measure: value, low95, high95), the track of each trial as CSV.
 JSON: result.ship, result.length [m], result.left_out[] (terms), result.draws (count, seed, covariance, undetermined[]; where there are \
-    intervals), result.approach (speed [m/s], n [rps], balanced, rudder_rate [rad/s], step [s]), \
+    intervals), result.approach (speed [m/s], n [rps], balanced, rudder_rate [rad/s], step [s], speed_source and rudder_rate_source: set, propeller_rate, recordings, ship_file or usual), \
     result.trials[] with name, side, ended, intervals (by measure: low and high, in the units of the measures), measures (advance, transfer, tactical_diameter [m], time_90, time_180 [s], \
     steady.diameter [m], .speed [m/s], .speed_loss [-], .drift [rad], .yaw_rate [rad/s]; absent: not reached), and criteria[] \
-    with name, measured, limit, unit, verdict (met, not_met, not_applicable), binding (L >= 100 m); result.validity \
+    with name, measured, interval, limit, unit, verdict (met, not_met, open, not_applicable), binding (L >= 100 m); result.validity \
     (share_outside of the samples sailed; outside[] with term, quantity, range, share, met).";
 
 const ZIGZAG: &str = "\
@@ -116,7 +120,7 @@ struct ZigzagArgs {
 #[derive(Debug, clap::Args)]
 struct TrialArgs {
     #[command(flatten)]
-    study: StudyArgs,
+    study: ShipArgs,
     /// Approach speed [m/s]; instead of `speed` in [maneuver].
     #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
     speed: Option<f64>,
@@ -173,7 +177,10 @@ struct Prepared {
     /// Sessions whose additions are left out.
     sessions: usize,
     model_path: PathBuf,
+    /// What is known of the parameters, by a fit or before it.
     uncertainty: Option<Uncertainty>,
+    /// Whether a fit says so.
+    of_a_fit: bool,
     /// Draws of it.
     drawn: Vec<Drawn>,
     seed: u64,
@@ -186,9 +193,10 @@ impl Prepared {
         output: &mut Output,
         change: impl FnOnce(&mut ManeuverSettings),
     ) -> Result<Self, CliError> {
-        let loaded = Loaded::new(&args.study)?;
+        let loaded = args.study.load(Study::read_with_any_runs)?;
         output.reads(&loaded, false);
         let mut settings = loaded.maneuver_settings()?;
+        settings.recorded = recorded(&loaded.study);
         if args.speed.is_some() || args.rpm.is_some() {
             (settings.speed, settings.n_rpm) = (args.speed, args.rpm);
         }
@@ -200,10 +208,26 @@ impl Prepared {
             if args.as_found { (loaded.model.clone(), Vec::new(), around) } else { (calm, around, Vec::new()) };
         let theta = model.values();
         let approach = settings.approach(&model, &theta).map_err(|error| CliError::Maneuver { path, error })?;
-        let (model_path, uncertainty) = loaded.uncertainty()?;
-        let drawn = uncertainty.as_ref().map_or_else(Vec::new, |u| drawn(&model, u, args.draws, args.seed));
+        let (model_path, fitted) = loaded.uncertainty()?;
+        let of_a_fit = fitted.is_some();
+        let uncertainty = fitted.or_else(|| of_priors(&model));
+        let known = if of_a_fit { Known::ByFit } else { Known::Before };
+        let drawn = uncertainty.as_ref().map_or_else(Vec::new, |u| drawn_from(known, &model, u, args.draws, args.seed));
         let (model_path, sessions, seed) = (model_path.to_owned(), model.sessions.len(), args.seed);
-        Ok(Self { model, theta, settings, approach, left_out, kept, sessions, model_path, uncertainty, drawn, seed })
+        Ok(Self {
+            model,
+            theta,
+            settings,
+            approach,
+            left_out,
+            kept,
+            sessions,
+            model_path,
+            of_a_fit,
+            uncertainty,
+            drawn,
+            seed,
+        })
     }
 
     /// Sets the intervals of trials, which `sail` sails for an approach and a parameter vector.
@@ -213,7 +237,8 @@ impl Prepared {
         sail: impl Fn(&Approach, &[f64]) -> Vec<Trial<M>> + Sync,
     ) {
         // The approach of a draw holds the speed with the thrust and the resistance of that draw.
-        set_intervals(trials, &self.drawn, |theta| {
+        let known = if self.of_a_fit { Known::ByFit } else { Known::Before };
+        set_intervals_from(known, trials, &self.drawn, |theta| {
             Some(sail(&self.settings.approach(&self.model, theta).ok()?, theta))
         });
     }
@@ -237,8 +262,9 @@ impl Prepared {
         }
         match self.draws() {
             Some(d) => {
+                let what = if self.of_a_fit { "the covariance in" } else { "the priors of" };
                 notes.push(format!(
-                    "95 % intervals in brackets: {} draws of the covariance in {} ({}), seed {}.",
+                    "95 % intervals in brackets: {} draws of {what} {} ({}), seed {}.",
                     d.count,
                     self.model_path.display(),
                     d.covariance,
@@ -252,12 +278,15 @@ impl Prepared {
                 }
             }
             None if self.uncertainty.is_none() => notes.push(format!(
-                "No intervals: {} has no covariance; fitted.toml of `trimtab fit --out` has one.",
+                "No intervals: {} has no covariance and no priors; fitted.toml of `trimtab fit --out` has a covariance.",
                 self.model_path.display()
             )),
             None => {}
         }
-        notes.join("\n")
+        if let Some(doubt) = self.uncertainty.as_ref().and_then(|u| u.doubt.as_ref()) {
+            notes.push(format!("Of the fit: {doubt}"));
+        }
+        notes.iter().map(|note| format!("\n{note}")).collect()
     }
 }
 
@@ -372,14 +401,16 @@ fn text<M: Listed>(p: &Prepared, trials: &[Trial<M>]) -> String {
     let a = &p.approach;
     let held = if a.balanced { "in balance" } else { "not in balance" };
     let mut text = format!(
-        "{}, model {}: L = {} m, approach {} m/s (Froude number {}) at {} rpm, {held}; rudder rate {} deg/s\n{}\n\n{}\n\n{}",
+        "{}, model {}: L = {} m, approach {} m/s ({}; Froude number {}) at {} rpm, {held}; rudder rate {} deg/s ({}){}\n\n{}\n\n{}",
         ship.name,
         p.model.name,
         sig(ship.hull.lpp, 4),
         sig(a.speed, 4),
+        a.speed_source.words(),
         sig(a.speed / (GRAVITY * ship.hull.lpp).sqrt(), 2),
         sig(a.n * 60.0, 4),
         sig(a.rudder_rate.to_degrees(), 3),
+        a.rudder_rate_source.words(),
         p.notes(),
         measures_table(ship, trials),
         criteria_table(trials.iter().map(|t| (t.name.as_str(), t.criteria.as_slice()))),

@@ -4,7 +4,7 @@
 use super::shared::answer::Answer;
 use super::shared::error::CliError;
 use super::shared::figures::FigureArgs;
-use super::shared::load::{Loaded, StudyArgs, read_model};
+use super::shared::load::ShipArgs;
 use super::shared::output::{Output, OutputArgs, csv_text};
 use super::shared::progress::progress;
 use serde::Serialize;
@@ -15,7 +15,7 @@ use trimtab::evaluate::maneuver::ManeuverSettings;
 use trimtab::model::Model;
 use trimtab::report::Table;
 use trimtab::report::plan::{detectable_table, isolability_figure, isolability_table, summary, trials_table};
-use trimtab::ship::Ship;
+use trimtab::study::Study;
 
 const LONG: &str = "\
 Says before going to sea what planned trials and sensors would show. The trials are simulated with
@@ -84,15 +84,8 @@ not run.";
 #[derive(Debug, clap::Args)]
 #[command(long_about = LONG, after_long_help = AFTER)]
 pub struct Args {
-    /// The study: a TOML file that names ship and model; its recordings need not exist.
-    #[arg(value_name = "STUDY", required_unless_present = "ship")]
-    study: Option<PathBuf>,
-    /// Ship file, where there is no study; needs --model.
-    #[arg(long, value_name = "FILE", conflicts_with = "study", requires = "model")]
-    ship: Option<PathBuf>,
-    /// Model file, instead of the study's.
-    #[arg(long, value_name = "FILE")]
-    model: Option<PathBuf>,
+    #[command(flatten)]
+    study: ShipArgs,
     /// Two mechanisms (see `trimtab terms`): looks for the cheapest trials that part them.
     #[arg(long, value_name = "A,B", value_delimiter = ',', num_args = 1)]
     part: Vec<String>,
@@ -121,27 +114,14 @@ struct Prepared {
 
 impl Prepared {
     fn new(args: &Args) -> Result<Self, CliError> {
-        if let Some(study) = &args.study {
-            let loaded = Loaded::without_runs(&StudyArgs { study: study.clone(), model: args.model.clone() })?;
-            return Ok(Self {
-                path: study.clone(),
-                files: loaded.files(false),
-                plan: loaded.plan_settings()?,
-                maneuver: loaded.maneuver_settings()?,
-                diagnose: loaded.diagnose_settings()?,
-                model: loaded.model,
-            });
-        }
-        let (Some(ship), Some(model)) = (&args.ship, &args.model) else {
-            return Err(CliError::Argument("give a STUDY, or --ship and --model".into()));
-        };
+        let loaded = args.study.load(Study::read_without_runs)?;
         Ok(Self {
-            path: ship.clone(),
-            files: vec![ship.clone(), model.clone()],
-            model: read_model(model, Ship::read(ship)?)?,
-            plan: PlanSettings::default(),
-            maneuver: ManeuverSettings::default(),
-            diagnose: Settings::default(),
+            path: loaded.study.path.clone(),
+            files: loaded.files(false),
+            plan: loaded.plan_settings()?,
+            maneuver: loaded.maneuver_settings()?,
+            diagnose: loaded.diagnose_settings()?,
+            model: loaded.model,
         })
     }
 }

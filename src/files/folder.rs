@@ -12,13 +12,19 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Error, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Instant, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
 /// Folder in the folder of results for what is not in its place yet.
 const ASIDE: &str = ".trimtab-unfinished";
 
 /// File there with the files of an earlier result that are to be removed.
 const STALE: &str = "stale.json";
+
+/// File there with the manifest before: a file that does not agree with it was edited.
+const BEFORE: &str = "before.json";
+
+/// How often, and how long each time, a reader waits for another process that is putting a result into its places.
+const WAITS: (usize, Duration) = (100, Duration::from_millis(20));
 
 /// Folder there with the files of the result.
 const FILES: &str = "files";
@@ -107,6 +113,7 @@ pub struct ResultFolder {
     before: Manifest,
     inputs: Vec<Seen>,
     files: BTreeMap<String, String>,
+    left: BTreeSet<String>,
     began: (SystemTime, Instant),
     // Dropped last: what is aside is removed under the lock.
     aside: Aside,
@@ -163,6 +170,14 @@ impl ResultFolder {
     /// # Errors
     /// Every [`FolderError`] but [`FolderError::InputChanged`].
     pub fn open(folder: &Path, command: &str, expected: &[&str]) -> Result<Self, FolderError> {
+        Self::open_with(folder, command, expected, &[])
+    }
+
+    /// As [`Self::open`]; the files `edited` are there for the user to edit, and are looked at only where the command writes them anew.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn open_with(folder: &Path, command: &str, expected: &[&str], edited: &[&str]) -> Result<Self, FolderError> {
         if folder.is_file() {
             return Err(FolderError::NoFolder { path: folder.to_owned() });
         }
@@ -187,13 +202,14 @@ impl ResultFolder {
             before,
             inputs: Vec::new(),
             files: BTreeMap::new(),
+            left: BTreeSet::new(),
             began: (SystemTime::now(), Instant::now()),
             aside,
             _lock: lock,
         };
         let own = opened.before.results.get(command).into_iter().flat_map(|entry| entry.files.keys());
         let names: BTreeSet<&str> = own.map(String::as_str).chain(expected.iter().copied()).collect();
-        names.iter().try_for_each(|name| opened.may_take(name))?;
+        names.iter().filter(|name| !edited.contains(name)).try_for_each(|name| opened.may_take(name))?;
         Ok(opened)
     }
 
@@ -272,6 +288,11 @@ impl ResultFolder {
         Ok(())
     }
 
+    /// Leaves a file of the result before as it is: it is not removed, and is one of this result too where nobody has changed it.
+    pub fn leave(&mut self, name: &str) {
+        self.left.insert(name.to_owned());
+    }
+
     /// A file in the folder that can be seen while the command runs.
     pub fn kept(&self, name: &str) -> Kept {
         Kept { aside: self.aside().join(name), path: self.folder.join(name) }
@@ -305,7 +326,7 @@ impl ResultFolder {
     /// folder next puts it into its places.
     fn stage(&self, origin: Origin) -> Result<(), FolderError> {
         let mut stale = self.before.results.get(&self.command).map(|e| e.files.clone()).unwrap_or_default();
-        stale.retain(|name, _| !self.files.contains_key(name));
+        stale.retain(|name, _| !self.files.contains_key(name) && !self.left.contains(name));
         let mut times = timings(&self.folder).map_err(manifest_error(self.folder.join(TIMING)))?;
         let (began, clock) = self.began;
         let timing = Timing {
@@ -316,6 +337,7 @@ impl ResultFolder {
         times.insert(self.command.clone(), timing);
         let (aside, fail) = (self.aside(), write_error(&self.folder));
         json(&stale).and_then(|text| write_whole(&aside.join(STALE), &text)).map_err(&fail)?;
+        json(&self.before).and_then(|text| write_whole(&aside.join(BEFORE), &text)).map_err(&fail)?;
         json(&times).and_then(|text| write_whole(&aside.join(TIMING), &text)).map_err(&fail)?;
         json(&self.manifest(origin)).and_then(|text| write_whole(&aside.join(MANIFEST), &text)).map_err(&fail)
     }
@@ -341,11 +363,18 @@ impl ResultFolder {
             arguments: origin.arguments,
             settings: origin.settings,
             inputs,
-            files: self.files.clone(),
+            files: self.files.clone().into_iter().chain(self.unchanged()).collect(),
             replaced: BTreeMap::new(),
         };
         manifest.results.insert(self.command.clone(), entry);
         manifest
+    }
+
+    /// The files of this command's result before that are left and that nobody has changed, with their digests.
+    fn unchanged(&self) -> Vec<(String, String)> {
+        let own = self.before.results.get(&self.command).map(|entry| &entry.files);
+        let left = self.left.iter().filter_map(|name| Some((name.clone(), own?.get(name)?.clone())));
+        left.filter(|(name, digest)| sha256_of(&self.folder.join(name)).is_ok_and(|found| found == *digest)).collect()
     }
 
     /// Whether a file of this name may be written: none is there, or one that a manifest lists and nobody has changed, or a
@@ -356,9 +385,9 @@ impl ResultFolder {
             return Ok(());
         }
         match self.before.digest(name) {
-            Some(listed) if sha256_of(&path).is_ok_and(|digest| digest == listed) => Ok(()),
+            Some(listed) if is_own(&path, listed) => Ok(()),
             Some(_) => Err(FolderError::Edited { path, command, kept: None }),
-            None if std::fs::read_to_string(&path).is_ok_and(|text| intact(&text) == Ok(true)) => Ok(()),
+            None if is_model(&path) => Ok(()),
             None => Err(FolderError::Foreign { path, command, kept: None }),
         }
     }
@@ -390,8 +419,65 @@ fn stamp(path: &Path) -> Option<(u64, SystemTime)> {
     Some((about.len(), about.modified().ok()?))
 }
 
+/// Puts a result into its places that a process was stopped with, in the folder of `path` or one above it: whoever reads a file there
+/// has the result before or the new one, and no mixture.
+///
+/// # Errors
+/// [`FolderError`]; where another process is at it and does not come to its end, [`FolderError::Lock`].
+pub fn settle(path: &Path) -> Result<(), FolderError> {
+    let Ok(here) = std::path::absolute(".") else { return Ok(()) };
+    let path = here.join(path);
+    for folder in path.ancestors() {
+        let aside = folder.join(ASIDE);
+        let unfinished = || aside.join(MANIFEST).is_file();
+        for wait in 0.. {
+            if !unfinished() {
+                break;
+            }
+            match Lock::take(folder) {
+                Ok(_lock) if unfinished() => place(folder, &aside)?,
+                Ok(_) => {}
+                Err(_) if wait < WAITS.0 => std::thread::sleep(WAITS.1),
+                Err(source) => return Err(FolderError::Lock { path: folder.to_owned(), source }),
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether a file is as it was written.
+fn is_own(path: &Path, listed: &str) -> bool {
+    sha256_of(path).is_ok_and(|digest| digest == listed)
+}
+
+/// Whether a file is a model file as trimtab wrote it.
+fn is_model(path: &Path) -> bool {
+    std::fs::read_to_string(path).is_ok_and(|text| intact(&text) == Ok(true))
+}
+
+/// Whether a file that is in the place of one that is aside may be replaced: the user may have edited it since the process was stopped.
+fn check_edited(folder: &Path, aside: &Path) -> Result<(), FolderError> {
+    // Who wrote no list of the files before was stopped by an earlier version.
+    let Ok(text) = std::fs::read(aside.join(BEFORE)) else { return Ok(()) };
+    let before: Manifest = serde_json::from_slice(&text).unwrap_or_default();
+    let new = std::fs::read(aside.join(MANIFEST)).unwrap_or_default();
+    let new: Manifest = serde_json::from_slice(&new).unwrap_or_default();
+    let files = aside.join(FILES);
+    for name in listed(&files).map_err(write_error(&files))? {
+        let (path, name) = (folder.join(&name), slashed(&name));
+        let known = [&before, &new].iter().any(|manifest| manifest.digest(&name).is_some_and(|d| is_own(&path, d)));
+        if !known && !is_model(&path) && std::fs::symlink_metadata(&path).is_ok() {
+            let command = new.results.iter().find(|(_, entry)| entry.files.contains_key(&name));
+            let command = command.map_or_else(|| "trimtab".to_owned(), |(command, _)| command.clone());
+            return Err(FolderError::Edited { path, command, kept: Some(files) });
+        }
+    }
+    Ok(())
+}
+
 /// Puts what is aside, of which the manifest is there, into its places. Done in part, it can be done again.
 fn place(folder: &Path, aside: &Path) -> Result<(), FolderError> {
+    check_edited(folder, aside)?;
     // Without a manifest the folder does not pass for whole meanwhile.
     remove(&folder.join(MANIFEST))?;
     let stale = std::fs::read(aside.join(STALE)).unwrap_or_default();
@@ -645,11 +731,59 @@ mod tests {
                 &|| mv(MANIFEST, aside.join(MANIFEST)),
             ];
             all[..steps].iter().for_each(|step| step());
-            drop(ResultFolder::open(folder.path(), "evaluate", &[]).unwrap());
+            // Who writes into the folder next makes it whole, and so does who reads a file of it.
+            match steps % 2 {
+                0 => drop(ResultFolder::open(folder.path(), "evaluate", &[]).unwrap()),
+                _ => settle(&at("runs/1")).unwrap(),
+            }
             assert_whole(folder.path());
             assert_eq!(there(folder.path()), ["a", "runs/1"], "after {steps} steps");
             assert_eq!(fs::read_to_string(at("a")).unwrap(), "new");
         }
+    }
+
+    #[test]
+    fn a_file_that_is_edited_after_its_placing_was_stopped_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        result(folder.path(), "fit", &["a", "b"]).unwrap();
+        let mut open = ResultFolder::open(folder.path(), "fit", &[]).unwrap();
+        open.write("a", b"new a").unwrap();
+        open.write("b", b"new b").unwrap();
+        open.stage(Origin::default()).unwrap();
+        open.aside.0 = None;
+        drop(open);
+        fs::remove_file(at(MANIFEST)).unwrap();
+        fs::rename(at(ASIDE).join(FILES).join("a"), at("a")).unwrap();
+        fs::write(at("b"), "edited").unwrap();
+        for _ in 0..2 {
+            let error = ResultFolder::open(folder.path(), "evaluate", &[]).unwrap_err();
+            assert!(matches!(&error, FolderError::Edited { path, .. } if path.ends_with("b")), "{error}");
+            assert!(settle(&at("a")).is_err());
+            assert_eq!(fs::read_to_string(at("b")).unwrap(), "edited");
+        }
+        fs::rename(at("b"), at("c")).unwrap();
+        settle(&at("a")).unwrap();
+        assert_whole(folder.path());
+        assert_eq!(["a", "b", "c"].map(|name| fs::read_to_string(at(name)).unwrap()), ["new a", "new b", "edited"]);
+    }
+
+    #[test]
+    fn a_file_that_is_left_stays_and_is_listed_while_nobody_changes_it() {
+        let folder = tempfile::tempdir().unwrap();
+        result(folder.path(), "import", &["runs.csv", "ship.toml"]).unwrap();
+        let again = || {
+            let mut open = ResultFolder::open(folder.path(), "import", &["runs.csv"]).unwrap();
+            open.write("runs.csv", b"more").unwrap();
+            open.leave("ship.toml");
+            open.complete(Origin::default()).unwrap();
+            assert_whole(folder.path());
+            entry(folder.path(), "import").files.contains_key("ship.toml")
+        };
+        assert!(again());
+        fs::write(folder.path().join("ship.toml"), "edited").unwrap();
+        assert!(!again());
+        assert_eq!(fs::read_to_string(folder.path().join("ship.toml")).unwrap(), "edited");
     }
 
     #[test]

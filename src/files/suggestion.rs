@@ -1,8 +1,14 @@
 //! Help for error messages that every boundary shares: what a mistyped name was probably meant to be.
 //! The error types themselves stand with the code that returns them.
 
+/// Bytes of the longest name that may be a misspelt one: comparing takes the product of the lengths.
+const LONGEST: usize = 200;
+
 /// `", did you mean `x`?"` for the nearest known name, or nothing when none is near.
 pub fn suggestion<'a>(found: &str, known: impl Iterator<Item = &'a str>) -> String {
+    if found.len() > LONGEST {
+        return String::new();
+    }
     known
         .map(|k| (strsim::jaro_winkler(&found.to_lowercase(), &k.to_lowercase()), k))
         .filter(|(score, _)| *score > 0.75)

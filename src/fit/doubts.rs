@@ -21,6 +21,7 @@ use crate::numerals::{number_of, sig};
 use crate::ranks::{ExactSums, Ranks};
 use crate::recording::Run;
 use crate::state::STATES;
+use crate::statistics::quantile;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -36,6 +37,20 @@ pub const LOSS_LIMIT: f64 = 0.5;
 
 /// How many residuals may count as one before they are called clustered.
 pub const LIKENESS_LIMIT: f64 = 2.0;
+
+/// A recording is apart where its residuals have this many times the variance, over its sensors', of three quarters of the recordings:
+/// an order of magnitude, as for [`MODEL_ERROR_LIMIT`],
+pub const APART_TIMES: f64 = 10.0;
+
+/// and the model describes the middle recording to so many times the noise of its sensors. Where it lacks physics, hard manoeuvres stand
+/// apart from others for that reason.
+pub const APART_MIDDLE: f64 = 3.0;
+
+/// Recordings from which one can stand apart.
+const APART_RECORDINGS: usize = 4;
+
+/// Recordings that are named.
+const NAMED: usize = 3;
 
 /// Noise below which no sensor goes, as a share of what a residual is measured in (path length, pi, speed, r_max).
 const FINEST: f64 = 1e-6;
@@ -72,10 +87,12 @@ pub enum DoubtKind {
     WindowsTooLong,
     /// Residuals of a run or a recording are alike.
     Clustered,
+    /// A few recordings are described far worse than the others, which are described down to the noise of their sensors.
+    Apart,
 }
 
 /// The statistics behind the doubts; one is absent where there are too few samples for it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ResidualStatistics {
     /// Variance of the residuals over that of the sensors.
     pub model_error: Option<f64>,
@@ -87,6 +104,11 @@ pub struct ResidualStatistics {
     pub loss: Option<[f64; 2]>,
     /// How many successive residuals of a run count as one.
     pub likeness: Option<f64>,
+    /// Variance of the residuals over that of the sensors in the middle recording.
+    pub middle: Option<f64>,
+    /// The recordings that are described far worse than the others, with that number, the worst first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub apart: Vec<(String, f64)>,
 }
 
 /// Weighted residuals of one run: an entry is NaN where nothing was measured.
@@ -131,11 +153,29 @@ impl ResidualStatistics {
             limit: MODEL_ERROR_LIMIT,
             sentence: format!(
                 "the residuals have {} times the variance of the sensors' noise, so that the estimates make up for physics \
-                 that the model lacks (see `trimtab diagnose`)",
+                 that the model lacks (see `trimtab diagnose`), or for a number of the ship file that is not this ship's",
                 sig(value, 2)
             ),
         });
-        [model_error, self.too_long(), self.clustered(covariances, parameters)].into_iter().flatten().collect()
+        [self.set_apart(), model_error, self.too_long(), self.clustered(covariances, parameters)]
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+
+    fn set_apart(&self) -> Option<Doubt> {
+        let ((_, value), middle) = (self.apart.first()?, self.middle?);
+        let named: Vec<String> =
+            self.apart.iter().take(NAMED).map(|(name, ratio)| format!("{name} ({})", sig(*ratio, 2))).collect();
+        let more = self.apart.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let sentence = format!(
+            "of {}{more} the residuals have so many times the variance of the sensors' noise, and {} times in the middle recording: is \
+             its rudder, propeller rate, gain, zero or time another than in the others? (`trimtab check`; fit without it and compare)",
+            named.join(", "),
+            sig(middle, 2)
+        );
+        Some(Doubt { kind: DoubtKind::Apart, value: *value, limit: APART_TIMES * middle, sentence })
     }
 
     fn too_long(&self) -> Option<Doubt> {
@@ -214,6 +254,8 @@ struct Tally {
     quarters: BTreeMap<String, [f64; 2]>,
     /// Mean squares in sway and yaw rate in the first and the last quarter, and the variance measured.
     lost: ExactSums,
+    /// The sums of `squares`, by recording.
+    recordings: BTreeMap<String, [f64; 4 * STATES]>,
     /// Residuals of some runs, evenly drawn.
     drawn: Vec<Residuals>,
 }
@@ -222,7 +264,7 @@ impl Tally {
     /// Of no run yet.
     fn new() -> Self {
         let (squares, lost) = (ExactSums::new(4 * STATES), ExactSums::new(3));
-        Self { squares, quarters: BTreeMap::new(), lost, drawn: Vec::new() }
+        Self { squares, quarters: BTreeMap::new(), lost, recordings: BTreeMap::new(), drawn: Vec::new() }
     }
 
     /// Adds a run, which is kept for autocorrelations where it was drawn for them.
@@ -232,8 +274,11 @@ impl Tally {
             let second = |w: &[[f64; STATES]]| w[2][c] - 2.0 * w[1][c] + w[0][c];
             let seconds = run.values.windows(3).map(second).filter(|d| d.is_finite());
             let (differences, triples) = seconds.fold((0.0, 0.0), |(sum, n), d| (sum + d * d / 6.0, n + 1.0));
-            let of_channel = [square, count, differences, triples].into_iter().enumerate();
-            of_channel.for_each(|(i, x)| self.squares.add(4 * c + i, x));
+            let own = self.recordings.entry(run.recording.clone()).or_insert([0.0; 4 * STATES]);
+            for (i, x) in [square, count, differences, triples].into_iter().enumerate() {
+                self.squares.add(4 * c + i, x);
+                own[4 * c + i] += x;
+            }
         }
         let quarter = run.values.len() / 4;
         if quarter >= 2 {
@@ -264,7 +309,10 @@ impl Tally {
     /// The statistics of the runs of all ranks.
     fn statistics(self, ranks: &Ranks) -> ResidualStatistics {
         let growth = growth(ranks, &self.quarters);
+        let (middle, apart) = apart(ranks, &self.recordings);
         ResidualStatistics {
+            middle,
+            apart,
             model_error: model_error(ranks, self.squares),
             growth: growth.map(|g| g.0),
             growth_error: growth.and_then(|g| g.1),
@@ -274,10 +322,29 @@ impl Tally {
     }
 }
 
+/// The middle recording's variance of residuals over that of its sensors, and the recordings that are far above the others' by it.
+fn apart(ranks: &Ranks, recordings: &BTreeMap<String, [f64; 4 * STATES]>) -> (Option<f64>, Vec<(String, f64)>) {
+    let own: Vec<(String, f64)> =
+        recordings.iter().filter_map(|(name, sums)| Some((name.clone(), over_noise(sums)?))).collect();
+    let mut all: Vec<(String, f64)> = ranks.gather(&own).into_iter().flatten().collect();
+    all.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let sorted: Vec<f64> = all.iter().rev().map(|(_, ratio)| *ratio).collect();
+    let middle = quantile(&sorted, 0.5).filter(|_| sorted.len() >= APART_RECORDINGS);
+    let most = quantile(&sorted, 0.75).unwrap_or(f64::INFINITY);
+    let sound = middle.is_some_and(|middle| middle <= APART_MIDDLE);
+    all.retain(|(_, ratio)| sound && *ratio > MODEL_ERROR_LIMIT && *ratio > APART_TIMES * most);
+    (middle, all)
+}
+
 /// Mean square of the residuals over that of the sensors' noise.
 fn model_error(ranks: &Ranks, sums: ExactSums) -> Option<f64> {
+    over_noise(&ranks.total(sums)?)
+}
+
+/// The same from the sums of some runs.
+fn over_noise(sums: &[f64]) -> Option<f64> {
     let (mut square, mut noise) = (0.0, 0.0);
-    for of_channel in ranks.total(sums)?.chunks(4) {
+    for of_channel in sums.chunks(4) {
         let [sum, count, differences, triples] = [0, 1, 2, 3].map(|i| of_channel[i]);
         if triples > 0.0 {
             square += sum;
@@ -428,6 +495,20 @@ mod tests {
         assert!((40.0..60.0).contains(&ratio), "{ratio}");
         assert!(found.likeness.unwrap() > 10.0);
         assert!(found.growth.unwrap() < 0.5);
+    }
+
+    #[test]
+    fn a_recording_that_is_described_far_worse_than_the_others_is_named() {
+        let wave = |w: usize, k: usize, size: f64| size * (0.1 * k as f64 + w as f64).sin();
+        let one = view(&made(0.01, |w, k| wave(w, k, if w / 2 == 5 { 0.2 } else { 0.0 })));
+        assert!(one.apart.len() == 1 && one.apart[0].0 == "recording 5" && one.apart[0].1 > 100.0, "{one:?}");
+        let said = one.set_apart().unwrap().sentence;
+        assert!(said.contains("of recording 5 (") && said.contains("in the middle recording"), "{said}");
+        // Where the model describes none of them, and where hard trials leave somewhat more, none stands apart.
+        for sizes in [[0.2, 0.1], [0.02, 0.0], [0.2, 0.03]] {
+            let found = view(&made(0.01, |w, k| wave(w, k, sizes[usize::from(w / 2 != 5)])));
+            assert_eq!(found.apart, [], "{sizes:?}: {found:?}");
+        }
     }
 
     #[test]

@@ -163,7 +163,9 @@ impl Fit {
     /// The covariance as a model file keeps it; nothing where the data determine no parameter.
     pub fn uncertainty(&self) -> Option<Uncertainty> {
         let names: Vec<String> = self.estimates.iter().map(|e| e.name.clone()).collect();
-        Uncertainty::new(self.covariance_kind.words(), Some(self.freedom), &names, &self.covariance)
+        let found = Uncertainty::new(self.covariance_kind.words(), Some(self.freedom), &names, &self.covariance)?;
+        let sound = self.converged && self.doubts.is_empty();
+        Some(Uncertainty { doubt: (!sound).then(|| self.headline.clone()), ..found })
     }
 }
 

@@ -38,6 +38,9 @@ pub const ELEVEN: [&str; 11] = [
     "rudder.drag2",
 ];
 
+/// Largest value of a parameter as a multiple of its scale, the size of a relevant change: no ship's is near it.
+const LARGEST_VALUE: f64 = 1e9;
+
 /// Why a model could not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -281,25 +284,84 @@ pub struct ModelFile {
     pub covariance: Option<Uncertainty>,
 }
 
-/// What a model file may say of one parameter; a key left out takes the term's value.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+/// What a model file may say of one parameter, `"rudder.lift1" = { value = 0.9, free = false }`; a key left out takes the term's value. A
+/// plain number is a value, `"rudder.lift1" = 0.9`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Setting {
     /// Value, and start of a fit.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
     /// Whether a fit may change it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub free: Option<bool>,
     /// Lower bound.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub lower: Option<f64>,
     /// Upper bound.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub upper: Option<f64>,
     /// Prior.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub prior: Option<PriorSetting>,
+}
+
+/// What a model file may say of one parameter; a key left out takes the term's value, and a plain number is a value.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct SettingTable {
+    /// Value, and start of a fit.
+    #[serde(default)]
+    value: Option<f64>,
+    /// Whether a fit may change it.
+    #[serde(default)]
+    free: Option<bool>,
+    /// Lower bound.
+    #[serde(default)]
+    lower: Option<f64>,
+    /// Upper bound.
+    #[serde(default)]
+    upper: Option<f64>,
+    /// Prior.
+    #[serde(default)]
+    prior: Option<PriorSetting>,
+}
+
+impl JsonSchema for Setting {
+    fn schema_name() -> Cow<'static, str> {
+        "Setting".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let table = SettingTable::json_schema(generator);
+        json_schema!({ "anyOf": [{ "type": "number", "description": "Its value." }, table] })
+    }
+}
+
+impl<'de> Deserialize<'de> for Setting {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumberOrTable;
+        impl<'de> serde::de::Visitor<'de> for NumberOrTable {
+            type Value = Setting;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a number or a table { value = ... }")
+            }
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Setting, E> {
+                Ok(Setting { value: Some(value), ..Setting::default() })
+            }
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Setting, E> {
+                self.visit_f64(value as f64)
+            }
+            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Setting, E> {
+                self.visit_f64(value as f64)
+            }
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<Setting, A::Error> {
+                let table = SettingTable::deserialize(serde::de::value::MapAccessDeserializer::new(map))?;
+                let SettingTable { value, free, lower, upper, prior } = table;
+                Ok(Setting { value, free, lower, upper, prior })
+            }
+        }
+        deserializer.deserialize_any(NumberOrTable)
+    }
 }
 
 /// What a model file may say of the hull as a whole.
@@ -576,6 +638,13 @@ impl Model {
         }
         if !p.value.is_finite() {
             return wrong(p.value, "its `value` must be finite; correct it, or leave it out".to_owned());
+        }
+        let most = LARGEST_VALUE * p.scale.abs().max((p.info.default)(&self.ship).abs()).max(1.0);
+        if p.value.abs() > most {
+            return wrong(
+                p.value,
+                format!("its `value` is beyond {most:.0e}, where nothing can be computed with; correct it"),
+            );
         }
         let prior = p.prior?;
         let known = prior.sd > 0.0 && prior.sd.is_finite() && prior.mean.is_finite();

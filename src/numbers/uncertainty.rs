@@ -21,6 +21,9 @@ pub struct Uncertainty {
     /// Parameters that were free and are not in it, as the data do not determine them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub undetermined: Vec<String>,
+    /// Why the fit behind it is in doubt, in words; absent where nothing was found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<String>,
     /// The covariance: a row a parameter, in their units.
     pub matrix: Vec<Vec<f64>>,
 }
@@ -38,8 +41,17 @@ impl Uncertainty {
             freedom,
             parameters: named(&inside),
             undetermined: named(&outside),
+            doubt: None,
             matrix,
         })
+    }
+
+    /// From standard deviations of parameters that are known independently of each other; nothing where there is none.
+    pub fn independent(kind: &str, known: &[(String, f64)]) -> Option<Self> {
+        let names: Vec<String> = known.iter().map(|(name, _)| name.clone()).collect();
+        let entry = |i: usize, j: usize| Some(if i == j { known[i].1 * known[i].1 } else { 0.0 });
+        let table: Vec<Vec<_>> = (0..known.len()).map(|i| (0..known.len()).map(|j| entry(i, j)).collect()).collect();
+        Self::new(kind, None, &names, &table)
     }
 
     /// What is wrong with it, for a model that has the parameters for which `has` holds; nothing if nothing is.

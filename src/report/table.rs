@@ -3,6 +3,7 @@
 
 use super::paragraph::wrapped;
 use super::width::width;
+use crate::files::plain;
 use crate::numerals::{DASH, sig};
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Width, presets};
 use std::fmt;
@@ -136,8 +137,9 @@ impl Table {
     /// The table as Markdown, numbers to four significant digits.
     #[must_use]
     pub fn markdown(&self) -> String {
-        let cell = |text: &String| short(text).replace('|', "\\|").replace('\n', " ");
-        let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(cell).collect::<Vec<_>>().join(" | "));
+        let line = |cells: &[String]| {
+            format!("| {} |\n", cells.iter().map(|c| markdown_cell(&short(c))).collect::<Vec<_>>().join(" | "))
+        };
         let sides: String = (0..self.header.len()).map(|i| if self.is_numeric(i) { "---:|" } else { "---|" }).collect();
         let rows: String = self.rows.iter().map(|row| line(row)).collect();
         format!("{}|{sides}\n{rows}", line(&self.header))
@@ -152,10 +154,26 @@ fn short(cell: &str) -> String {
     }
 }
 
-/// A cell without characters that mean something to LaTeX.
+/// A cell without characters that mean something to Markdown, HTML in it, or a terminal.
+fn markdown_cell(cell: &str) -> String {
+    let mut text = String::with_capacity(cell.len());
+    for c in plain(cell).chars() {
+        match c {
+            '&' => text += "&amp;",
+            '<' => text += "&lt;",
+            '>' => text += "&gt;",
+            '|' | '\\' | '`' | '*' => text.extend(['\\', c]),
+            '\n' => text.push(' '),
+            other => text.push(other),
+        }
+    }
+    text
+}
+
+/// A cell without characters that mean something to LaTeX or a terminal.
 fn latex_cell(cell: &str) -> String {
     let mut text = String::with_capacity(cell.len());
-    for c in cell.chars() {
+    for c in plain(cell).chars() {
         match c {
             '&' | '%' | '$' | '#' | '_' | '{' | '}' => text.extend(['\\', c]),
             '\\' => text += "\\textbackslash{}",
@@ -223,5 +241,13 @@ mod tests {
         );
         let text = "| parameter | value | 95 % |\n|---|---:|---:|\n| rudder.lift_1 | 3.193 | [3.1, 3.3] |\n";
         assert!(table.markdown().starts_with(text) && table.markdown().contains("a\\|b"), "{}", table.markdown());
+    }
+
+    #[test]
+    fn a_cell_is_neither_html_nor_a_command_to_a_terminal() {
+        let mut table = Table::new(["run"]);
+        table.row(["<script>alert(1)</script>\u{1b}[2J"]);
+        assert!(table.markdown().contains("&lt;script&gt;alert(1)&lt;/script&gt;\\\\u{1b}[2J"), "{}", table.markdown());
+        assert!(!table.latex().contains('\u{1b}'), "{}", table.latex());
     }
 }

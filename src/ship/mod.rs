@@ -128,6 +128,9 @@ pub struct HullParticulars {
     /// Water density rho \[kg/m3\].
     #[serde(default = "default_density")]
     pub water_density: f64,
+    /// Service speed \[m/s\]: the approach of trials where nothing was recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub service_speed: Option<f64>,
 }
 
 fn default_gyration() -> f64 {
@@ -187,6 +190,9 @@ pub struct RudderParticulars {
     /// Propeller race factor kappa \[-\].
     #[serde(default = "default_race")]
     pub race: f64,
+    /// Rate at which the steering gear turns the rudder \[deg/s\]: that of trials where nothing was recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_deg_s: Option<f64>,
 }
 
 fn default_straightening() -> f64 {
@@ -424,6 +430,25 @@ impl Ship {
         let h = &self.hull;
         let tiny = f64::MIN_POSITIVE;
         let mut ranges = Vec::new();
+        if let Some(speed) = h.service_speed {
+            let fastest = (GRAVITY * h.lpp).sqrt();
+            ranges.push(range(
+                "hull.service_speed",
+                speed,
+                tiny,
+                fastest,
+                "the service speed in m/s, up to a Froude number of 1",
+            ));
+        }
+        if let Some(rate) = self.rudder.rate_deg_s {
+            ranges.push(range(
+                "rudder.rate_deg_s",
+                rate,
+                tiny,
+                200.0,
+                "the rate of the rudder in deg/s, about 2.3 of a ship",
+            ));
+        }
         if let Some(a) = &self.above_water {
             let lateral = h.lpp * (h.lpp + h.breadth);
             ranges.extend([

@@ -4,6 +4,7 @@
 use super::error::StudyError;
 use super::file::RunEntry;
 use super::split::{SplitRule, UNNAMED, draw};
+use crate::files::plain;
 use crate::files::written::{Mistake, told};
 use crate::recording::{Labels, Split};
 use std::collections::HashMap;
@@ -49,8 +50,8 @@ pub(super) fn label(
         let name = name_of(&e);
         let labels = Labels {
             // Without a word that days differ, one hull under one sky: a session is what may differ in something hidden.
-            session: e.session.filter(|s| !s.is_empty()).unwrap_or_else(|| UNNAMED.to_owned()),
-            manoeuvre: e.manoeuvre.filter(|s| !s.is_empty()).unwrap_or_else(|| UNNAMED.to_owned()),
+            session: shown(e.session),
+            manoeuvre: shown(e.manoeuvre),
             run: name,
             split: e.split.unwrap_or(Split::Train),
         };
@@ -69,7 +70,12 @@ pub(super) fn label(
 /// The name of a run: its own, or that of its file without the ending.
 fn name_of(entry: &RunEntry) -> String {
     let stem = || entry.file.file_stem().map(|s| s.to_string_lossy().into_owned());
-    entry.name.clone().or_else(stem).unwrap_or_default()
+    plain(&entry.name.clone().or_else(stem).unwrap_or_default()).into_owned()
+}
+
+/// A session or a kind of manoeuvre as given.
+fn shown(given: Option<String>) -> String {
+    given.filter(|s| !s.is_empty()).map_or_else(|| UNNAMED.to_owned(), |s| plain(&s).into_owned())
 }
 
 /// What is wrong with the runs as they are listed.

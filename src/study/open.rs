@@ -66,6 +66,23 @@ impl Study {
         Ok(Self::without_runs(&text_of(path)?, path)?.0)
     }
 
+    /// Reads a study file with its recordings where they can be listed, else without them: for what needs none.
+    ///
+    /// # Errors
+    /// [`StudyError`], with file and line.
+    pub fn read_with_any_runs(path: &Path) -> Result<Self, StudyError> {
+        Self::read(path).or_else(|_| Self::read_without_runs(path))
+    }
+
+    /// A study of a ship and a model alone, with the settings that are used where a study has none.
+    ///
+    /// # Errors
+    /// None that a file can cause.
+    pub fn of_ship(ship: &Path, model: &Path) -> Result<Self, StudyError> {
+        let bare = Self::without_runs("name = \"\"\nship = \"\"\nmodel = \"\"\n", ship)?.0;
+        Ok(Self { ship: ship.to_owned(), model: model.to_owned(), ..bare })
+    }
+
     /// Checks the text of a study file that stands, or would stand, at `path`.
     ///
     /// # Errors

@@ -382,7 +382,12 @@ fn nothing_that_controls_a_terminal_is_printed() {
     }
     let simulated = study.json(&["simulate", "study.toml"]);
     let first = at(&simulated, "result.runs.0.run").as_str().unwrap().to_owned();
-    assert_eq!(first, "\u{1b}]0;title\u{7}\u{9b}31m\u{202e}run");
+    assert_eq!(first, "\\u{1b}]0;title\\u{7}\\u{9b}31m\\u{202e}run", "a name is made plain where it is read");
+    study.does(&["check", "study.toml", "--out", "checked", "--tables", "latex,markdown"]);
+    let written = files(&study.path("checked"));
+    for (name, bytes) in written.iter().filter(|(name, _)| !name.ends_with("manifest.json")) {
+        assert!(!bytes.contains(&0x1b), "{name}");
+    }
     let message = study.refuses(&["check", "\u{1b}[31mnowhere.toml"]);
     contains_all(&message, &["\\u{1b}[31mnowhere.toml"]);
 }

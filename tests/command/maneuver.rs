@@ -3,9 +3,10 @@
 
 use crate::support::study::{Study, at, contains_all};
 use std::path::Path;
+use trimtab::evaluate::maneuver::imo::Verdict;
 use trimtab::evaluate::maneuver::{
-    Approach, ManeuverSettings, Measured, Side, Trial, Turning, calm_water, drawn, set_intervals, stopping_trial,
-    turning_trial, zigzag_trial,
+    Approach, Known, ManeuverSettings, Measured, Side, Trial, Turning, calm_water, drawn, drawn_from, set_intervals,
+    set_intervals_from, stopping_trial, turning_trial, zigzag_trial,
 };
 use trimtab::model::Model;
 use trimtab::numbers::uncertainty::Uncertainty;
@@ -122,7 +123,8 @@ fn a_fitted_model_file_holds_its_covariance_and_the_trials_tell_it() {
     assert!(ends[0].as_f64().unwrap() < advance && advance < ends[1].as_f64().unwrap());
     assert_eq!(study.does(&turning), said, "equal seeds give equal intervals");
     assert_ne!(study.does(&[&turning[..], &["--seed", "2"]].concat()), said);
-    contains_all(&study.does(&["maneuver", "turning", "study.toml"]), &["No intervals: ", "has no covariance"]);
+    let before = study.does(&["maneuver", "turning", "study.toml", "--draws", "20"]);
+    contains_all(&before, &["20 draws of the priors of ", "model.toml (spreads before any data"]);
 
     let error = at(&fit, "result.estimates.1.standard_error").as_f64().unwrap();
     let variance = at(&fit, "result.covariance.1.1").as_f64().unwrap();
@@ -148,4 +150,46 @@ fn what_is_left_out_is_said_and_kept_on_request() {
     let table = std::fs::read_to_string(study.path("turning/turning_measures.csv")).unwrap();
     assert!(table.starts_with("trial,side,measure,unit,value,low95,high95\n"), "{table}");
     assert_eq!(table.lines().count(), 1 + 2 * 8);
+}
+
+#[test]
+fn a_trial_needs_no_recording_and_says_where_speed_and_rudder_rate_are_from() {
+    let study = Study::new();
+    study.edit("study.toml", "speed = 6.0 ", "# ");
+    let trial = |more: &[&str]| study.does(&[&["maneuver", "turning", "study.toml", "--draws", "0"], more].concat());
+    contains_all(&trial(&[]), &["m/s (of the recordings; "]);
+    contains_all(&trial(&["--speed", "4"]), &["approach 4.000 m/s (as set; "]);
+    contains_all(&trial(&["--rpm", "100"]), &["(held by the propeller rate; "]);
+    let text = std::fs::read_to_string(study.path("study.toml")).unwrap();
+    let alone: String = text.lines().filter(|l| !l.starts_with("runs")).map(|l| format!("{l}\n")).collect();
+    study.write("study.toml", &alone);
+    contains_all(&trial(&[]), &["(usual for its length; ", "deg/s (usual for its length)"]);
+    study.edit("ship.toml", "[propeller]", "service_speed = 5.25\n[propeller]");
+    study.edit("ship.toml", "[rudder]", "[rudder]\nrate_deg_s = 3.5");
+    contains_all(&trial(&[]), &["approach 5.250 m/s (of the ship file; ", "rudder rate 3.50 deg/s (of the ship file)"]);
+    let by_ship = ["--ship", "ship.toml", "--model", "model.toml", "--draws", "0"];
+    assert_eq!(study.does(&[&["maneuver", "turning"][..], &by_ship].concat()), trial(&[]));
+    study.edit("ship.toml", "service_speed = 5.25", "service_speed = 525");
+    contains_all(&study.refuses(&["maneuver", "turning", "study.toml"]), &["ship.toml:", "hull.service_speed"]);
+}
+
+#[test]
+fn a_criterion_inside_the_interval_of_its_measure_is_open() {
+    let model = model(&[], &[]);
+    let settings = settings();
+    let sail = |theta: &[f64]| Some(circles(&model, &settings.approach(&model, theta).ok()?, theta));
+    let verdicts = |known, scale| {
+        let mut trials = sail(&model.values()).unwrap();
+        let advance = trials[0].measures.advance.unwrap() / 123.0;
+        // A limit just above what is measured.
+        trials[0].criteria[0].limit = Some(advance + 0.01);
+        let draws = drawn_from(known, &model, &covariance(scale), 40, 3);
+        set_intervals_from(known, &mut trials, &draws, sail);
+        let ends = trials[0].criteria[0].interval.unwrap();
+        assert!(ends[0] <= advance && advance <= ends[1], "{ends:?} {advance}");
+        trials[0].criteria[0].verdict
+    };
+    for known in [Known::ByFit, Known::Before] {
+        assert_eq!((verdicts(known, 1.0), verdicts(known, 1e-4)), (Verdict::Open, Verdict::Met), "{known:?}");
+    }
 }

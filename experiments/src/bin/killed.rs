@@ -62,10 +62,12 @@ fn table(rows: &[Row]) -> Table {
         "command",
         "kills",
         "still running",
+        "between renames",
         "earlier results",
         "new results",
         "no list",
         "mixed",
+        "edit lost",
         "not mended",
     ]);
     let mut by_command: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
@@ -77,10 +79,12 @@ fn table(rows: &[Row]) -> Table {
             command.to_owned(),
             rows.len().to_string(),
             count(&|row| row.running),
+            count(&|row| row.placing),
             count(&|row| row.left == Left::Earlier),
             count(&|row| row.left == Left::New),
             count(&|row| row.left == Left::Unlisted),
             count(&|row| row.left == Left::Mixed),
+            count(&|row| !row.edit_kept),
             count(&|row| !row.mended),
         ]);
     }

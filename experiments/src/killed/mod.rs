@@ -4,12 +4,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
-use trimtab::files::{MANIFEST, Manifest, TIMING, sha256_of};
+use trimtab::files::{MANIFEST, Manifest, TIMING, settle, sha256_of};
 
 use crate::conceal::error::ConcealError;
 use crate::mutated::files::{Files, sound, write};
@@ -26,6 +26,14 @@ pub const COMMANDS: [(&str, &[&str]); 5] = [
 
 /// Kills fall within this many times the time that the command takes.
 const SPREAD: f64 = 1.05;
+/// Every so many kills the command is killed while it puts its files into their places, which a kill at random hardly ever meets.
+const BETWEEN: usize = 2;
+/// Longest time from where that begins to the kill: on a disk it takes a fraction of a millisecond a file.
+const PLACING: Duration = Duration::from_millis(3);
+/// What a user writes into a file of results.
+const EDITED: &[u8] = b"edited by hand\n";
+/// The folder of what is not in its place yet, in that of results, and the file in it that says that all is there.
+const MARK: &str = ".trimtab-unfinished/manifest.json";
 /// Seed of the two studies.
 const STUDY: u64 = 7;
 /// Longest time for a command that is not killed.
@@ -59,8 +67,13 @@ pub struct Row {
     pub at: f64,
     /// Whether the command was still running.
     pub running: bool,
-    /// What it left.
+    /// Whether it was putting its files into their places.
+    pub placing: bool,
+    /// What it left, as one who reads a file of it finds it.
     pub left: Left,
+    /// Whether a file that a user edited before the next command, while files were not in their places yet, was still as edited after it;
+    /// true where none was edited.
+    pub edit_kept: bool,
     /// Whether the next run of the command made the folder as it is without a kill, with nothing left over.
     pub mended: bool,
 }
@@ -165,17 +178,46 @@ impl Killer {
             let mut asked = self.command("one", command);
             asked.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
             let mut child = asked.spawn().map_err(fail)?;
-            std::thread::sleep(one.time.mul_f64(at));
+            let begun = Instant::now();
+            let mark = results.join(MARK);
+            if kill.is_multiple_of(BETWEEN) {
+                while !mark.is_file() && child.try_wait().map_err(fail)?.is_none() {
+                    std::hint::spin_loop();
+                }
+                std::thread::sleep(PLACING.mul_f64(at / SPREAD));
+            } else {
+                std::thread::sleep(one.time.mul_f64(at).saturating_sub(begun.elapsed()));
+            }
             let running = child.try_wait().map_err(fail)?.is_none();
             // A command that has ended cannot be killed.
             let _ = child.kill();
             child.wait().map_err(fail)?;
+            let placing = mark.is_file();
+            let edit_kept = !placing || self.keeps_an_edit(&results, command)?;
+            settle(&results).map_err(|e| ConcealError::content(&results, &e.to_string()))?;
             let left = left(&results, &other, &one)?;
             let again = self.run("one", command).is_ok();
             let mended = again && agrees(&read(&results)?, &one) && listed(&results);
-            each(Row { kill, command: command.0.to_owned(), at, running, left, mended })?;
+            each(Row { kill, command: command.0.to_owned(), at, running, placing, left, edit_kept, mended })?;
         }
         Ok(())
+    }
+
+    /// Whether a file of the earlier result that a user edits now, of which the new one is not in its place yet, is as edited after the
+    /// command is run again. The file is then put aside, as the command asks.
+    fn keeps_an_edit(&self, results: &Path, command: (&str, &[&str])) -> Result<bool, ConcealError> {
+        let waiting = results.join(MARK).with_file_name("files");
+        let fail = |source| ConcealError::file(results, source);
+        let staged = read(&waiting)?;
+        let Some(name) = staged.keys().find(|name| !name.ends_with(".toml") && results.join(name).is_file()) else {
+            return Ok(true);
+        };
+        let path = results.join(name);
+        std::fs::write(&path, EDITED).map_err(fail)?;
+        let refused = self.run("one", command).is_err();
+        let kept = std::fs::read(&path).map_err(fail)? == EDITED;
+        std::fs::remove_file(&path).map_err(fail)?;
+        Ok(refused && kept)
     }
 }
 

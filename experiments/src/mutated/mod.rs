@@ -4,7 +4,9 @@
 pub mod answer;
 pub mod damage;
 pub mod edit;
+pub mod fate;
 pub mod files;
+pub mod logger;
 pub mod plan;
 pub mod row;
 pub mod runner;

@@ -74,6 +74,35 @@ impl Runner {
         workers::each(cases, workers, &|planned| each(self.one(planned)?))
     }
 
+    /// The sound study's files.
+    pub fn sound(&self) -> &Files {
+        &self.sound
+    }
+
+    /// The folder of the sound study.
+    pub(super) fn sound_folder(&self) -> PathBuf {
+        self.folder.join("sound")
+    }
+
+    /// The folder for a changed study.
+    pub(super) fn folder_of(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    /// How a command on the study in a folder ended, and all that it said.
+    pub(super) fn text(&self, folder: &Path, command: &str) -> Result<(Ended, String), ConcealError> {
+        let ended = process::run(self.command(folder, command), self.limit)
+            .map_err(|source| ConcealError::file(&self.tool, source))?;
+        let text = format!("{}{}", ended.messages, ended.output);
+        Ok((ended, text))
+    }
+
+    /// By how many of its standard errors the estimate that moved most moved from that of the sound study; `None` without a fit.
+    pub(super) fn fit_moved(&self, folder: &Path) -> Result<Option<f64>, ConcealError> {
+        let (_, answer) = self.ask(folder, "fit", f64::INFINITY)?;
+        Ok(answer.map(|answer| answer.moved(&self.answers["fit"])))
+    }
+
     /// The rows of one case.
     ///
     /// # Errors

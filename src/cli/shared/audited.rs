@@ -9,7 +9,7 @@ use trimtab::files::ranks::Ranks;
 use trimtab::files::suggestion;
 use trimtab::model::Model;
 use trimtab::recording::Channel;
-use trimtab::recording::audit::{Issue, Severity, across, audit_each, audit_model};
+use trimtab::recording::audit::{Issue, Lone, Severity, across, audit_each, audit_model};
 
 /// Arguments of the commands that compute with recordings.
 #[derive(Clone, Debug, clap::Args)]
@@ -99,11 +99,12 @@ fn examined_over(ranks: &Ranks, loaded: &Loaded, args: &AcceptArgs) -> Result<Au
     }
     let own = loaded.part(ranks, |_| true).study;
     let bar = progress(format!("auditing {} recordings", own.runs.len()));
-    let audit = audit_each(&own, &loaded.model.ship);
+    let mut audit = audit_each(&own, &loaded.model.ship);
     bar.finish_and_clear();
+    let evidence: Vec<_> = ranks.gather(&audit.evidence).into_iter().flatten().collect();
+    audit.weigh(&Lone::of(&evidence));
     let found = audit.recordings.iter().flat_map(|a| a.issues.iter().map(|i| (a.run.as_str(), i)));
     let own: Vec<Doubt> = found.filter_map(|(run, issue)| told(&[run.to_owned()], issue)).collect();
-    let evidence: Vec<_> = ranks.gather(&audit.evidence).into_iter().flatten().collect();
     let compared = across(&evidence, &loaded.model.ship);
     let (single, several): (Vec<_>, Vec<_>) = compared.iter().partition(|shared| shared.runs.len() == 1);
     let single = single.iter().filter_map(|shared| told(&shared.runs, &shared.issue));

@@ -13,7 +13,7 @@ use trimtab::diagnose::plan::PlanSettings;
 use trimtab::evaluate::EvaluationSettings;
 use trimtab::evaluate::maneuver::ManeuverSettings;
 use trimtab::files::ranks::Ranks;
-use trimtab::files::suggestion;
+use trimtab::files::{settle, suggestion};
 use trimtab::fit::{FitError, FitSettings};
 use trimtab::model::{Model, ModelError};
 use trimtab::numbers::numerals::sig;
@@ -22,7 +22,7 @@ use trimtab::numbers::uncertainty::Uncertainty;
 use trimtab::recording::{ColumnMap, Run, Runs, Split, Windows};
 use trimtab::report::diagnosis::mechanism_names;
 use trimtab::ship::{Ship, parameter_line};
-use trimtab::study::{Listed, Study};
+use trimtab::study::{Listed, Study, StudyError};
 
 /// A largest yaw rate that is so many times the one recorded, or its inverse, was hardly meant: degrees for radians are 57 times.
 const FAR_YAW_RATE: f64 = 20.0;
@@ -38,6 +38,35 @@ pub struct StudyArgs {
     pub model: Option<PathBuf>,
 }
 
+/// Arguments of the commands that need no recording.
+#[derive(Clone, Debug, clap::Args)]
+pub struct ShipArgs {
+    /// The study: a TOML file that names ship and model; its recordings need not exist.
+    #[arg(value_name = "STUDY", required_unless_present = "ship")]
+    study: Option<PathBuf>,
+    /// Ship file, where there is no study; needs --model.
+    #[arg(long, value_name = "FILE", conflicts_with = "study", requires = "model")]
+    ship: Option<PathBuf>,
+    /// Model file, instead of the study's, such as the `fitted.toml` written by `trimtab fit --out`.
+    #[arg(long, value_name = "FILE")]
+    model: Option<PathBuf>,
+}
+
+impl ShipArgs {
+    /// The study that `read` makes of its path, or one of ship and model alone.
+    pub fn load(&self, read: impl Fn(&Path) -> Result<Study, StudyError>) -> Result<Loaded, CliError> {
+        let (path, study) = match (&self.study, &self.ship, &self.model) {
+            (Some(path), ..) => {
+                settle(path)?;
+                (path, read(path)?)
+            }
+            (None, Some(ship), Some(model)) => (ship, Study::of_ship(ship, model)?),
+            _ => return Err(CliError::Argument("give a STUDY, or --ship and --model".into())),
+        };
+        Loaded::read(&StudyArgs { study: path.clone(), model: self.model.clone() }, study)
+    }
+}
+
 /// A study with its ship and model.
 pub struct Loaded {
     /// The study.
@@ -51,6 +80,7 @@ pub struct Loaded {
 impl Loaded {
     /// Reads study, ship, model, settings and column maps; what is wrong with any of them is told at once.
     pub fn new(args: &StudyArgs) -> Result<Self, CliError> {
+        settle(&args.study)?;
         let loaded = Self::read(args, Study::read(&args.study)?)?;
         for doubt in loaded.unreached() {
             tell(&format!("warning: {doubt}"));
@@ -61,6 +91,9 @@ impl Loaded {
     /// A study with its ship and model, or everything that is wrong with these and with the settings.
     pub fn read(args: &StudyArgs, study: Study) -> Result<Self, CliError> {
         let path = args.model.clone().unwrap_or_else(|| study.model.clone());
+        let files = study.runs.iter().flat_map(|run| run.column_map.iter().chain([&run.file]));
+        let folders: BTreeSet<&Path> = files.chain([&path, &study.ship]).filter_map(|file| file.parent()).collect();
+        folders.into_iter().try_for_each(settle)?;
         let mut errors = Vec::new();
         let model = match Ship::read(&study.ship) {
             Ok(ship) => read_model(&path, ship).map_err(|e| errors.push(in_ship_file(e, &study.ship))).ok(),
@@ -105,11 +138,6 @@ impl Loaded {
         unreached(&self.study, &self.model, &self.model_path)
     }
 
-    /// Reads study, ship and model, not the list of recordings, which need not exist.
-    pub fn without_runs(args: &StudyArgs) -> Result<Self, CliError> {
-        Self::read(args, Study::read_without_runs(&args.study)?)
-    }
-
     /// The covariance of the model's parameters, where its file has one, and that file.
     pub fn uncertainty(&self) -> Result<(&Path, Option<Uncertainty>), CliError> {
         let path = self.model_path.as_path();
@@ -119,6 +147,7 @@ impl Loaded {
 
     /// Another model of the same ship.
     pub fn other_model(&self, path: &Path) -> Result<Model, CliError> {
+        settle(path)?;
         read_model(path, self.model.ship.clone())
     }
 

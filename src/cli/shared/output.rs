@@ -89,10 +89,15 @@ fn expected(command: &str) -> &'static [&'static str] {
     }
 }
 
+/// Files of a command that are there for the user to edit.
+fn edited(command: &str) -> &'static [&'static str] {
+    if command == "import" { &["ship.toml", "model.toml"] } else { &[] }
+}
+
 impl Output {
     /// Opens the output of a command and makes its folder ready, so that a long computation does not fail at its end.
     pub fn new(command: &'static str, args: &OutputArgs) -> Result<Self, CliError> {
-        let open = |folder: &PathBuf| ResultFolder::open(folder, command, expected(command));
+        let open = |folder: &PathBuf| ResultFolder::open_with(folder, command, expected(command), edited(command));
         let folder = args.out.as_ref().map(open).transpose()?;
         let (settings, audited, logs, failure) = (BTreeMap::new(), None, Vec::new(), None);
         let (drawing, captions) = (Drawing::default(), Captions::default());
@@ -189,6 +194,13 @@ impl Output {
     /// command ends, after its answer.
     pub fn file(&mut self, name: impl AsRef<Path>, bytes: &[u8]) {
         self.put(|folder| Ok(folder.write(name, bytes)?));
+    }
+
+    /// Leaves a file in the folder as it is.
+    pub fn leave(&mut self, name: &str) {
+        if let Some(folder) = &mut self.folder {
+            folder.leave(name);
+        }
     }
 
     /// Writes a table of the result, CSV text of [`csv_text`], and the same in the other forms that are asked for.

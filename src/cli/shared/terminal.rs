@@ -2,35 +2,14 @@
 //! Names of runs, columns and files come from users' files; they reach the terminal through here only.
 
 use super::style::told;
-use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{Result, Write};
-
-/// Whether a character controls a terminal, beside ends of lines and tabulators: controls (C0, DEL, C1) and marks of direction.
-fn controls(c: char) -> bool {
-    (c.is_control() && c != '\n' && c != '\t')
-        || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-}
-
-/// A text with every character that controls a terminal written as its number, such as `\u{1b}`.
-pub fn plain(text: &str) -> Cow<'_, str> {
-    if !text.chars().any(controls) {
-        return Cow::Borrowed(text);
-    }
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        if controls(c) {
-            shown.extend(c.escape_unicode());
-        } else {
-            shown.push(c);
-        }
-    }
-    Cow::Owned(shown)
-}
+pub use trimtab::files::plain;
+use trimtab::files::{controls, readable};
 
 /// Prints a line on standard error; without a reader there is nothing to do about it.
 pub fn tell(line: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{}", told(&plain(line)));
+    let _ = writeln!(std::io::stderr().lock(), "{}", told(&plain(&readable(line))));
 }
 
 /// A writer of JSON whose strings have such characters as `\uXXXX`; JSON itself asks this only below U+0020. Each call of `write`

@@ -110,6 +110,8 @@ fn grouped(audit: &StudyAudit) -> Vec<(Vec<&str>, &Issue)> {
         let whole = |i: &Issue| i.lines.is_none() && i.fault != "unreadable";
         let same = |i: &Issue| (i.severity, i.fault, i.channel) == (issue.severity, issue.fault, issue.channel);
         match told.iter_mut().find(|(runs, i)| !runs.is_empty() && whole(i) && whole(issue) && same(i)) {
+            // A run may have it more than once.
+            Some((runs, _)) if runs.contains(&run) => {}
             Some((runs, _)) => runs.push(run),
             None => told.push((vec![run], issue)),
         }
@@ -209,7 +211,7 @@ mod tests {
         let runs = vec![
             recording("a", vec![jump(3), note, span()]),
             recording("b", vec![sign(), jump(4)]),
-            recording("c", vec![span(), sign()]),
+            recording("c", vec![span(), sign(), span()]),
         ];
         let text = told(runs);
         let lines: Vec<&str> = text.lines().filter(|l| l.starts_with("error") || l.starts_with("warning")).collect();
@@ -223,7 +225,7 @@ mod tests {
             ]
         );
         assert!(text.contains(": as listed; 1 window to train on, 2 to test on."), "{text}");
-        assert!(text.ends_with("\n\n4 errors, 2 warnings, 1 note (notes in --out and --json)."), "{text}");
+        assert!(text.ends_with("\n\n5 errors, 2 warnings, 1 note (notes in --out and --json)."), "{text}");
         assert!(text.contains("1 error, 1 warning"), "{text}");
     }
 

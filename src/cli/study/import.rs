@@ -10,7 +10,6 @@ use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use trimtab::files::write_whole;
 use trimtab::model::Model;
 use trimtab::numbers::numerals::{fixed, sig};
 use trimtab::recording::import::{
@@ -213,10 +212,14 @@ pub fn made(args: &Args) -> Result<Made, CliError> {
         let path = args.out.join(file);
         let given = [("ship.toml", args.ship.is_some()), ("model.toml", args.model.is_some())].contains(&(*file, true));
         match *file {
-            // These are for the user to edit: they are no result that a second import may replace.
-            "ship.toml" | "model.toml" if path.exists() && !given => kept.push(*file),
-            "ship.toml" | "model.toml" => {
-                write_whole(&path, text.as_bytes()).map_err(|source| CliError::Write { path, source })?;
+            // These are for the user to edit: what is there stays, but for one that is given anew.
+            "ship.toml" | "model.toml" if path.exists() && !given => {
+                output.leave(file);
+                kept.push(*file);
+            }
+            // The file that is given may be the one that is there.
+            "ship.toml" | "model.toml" if std::fs::read(&path).is_ok_and(|there| there == text.as_bytes()) => {
+                output.leave(file);
             }
             _ => output.file(file, text.as_bytes()),
         }

@@ -15,7 +15,7 @@ use crate::files::suggestion;
 use crate::likelihood::estimate::Estimate;
 use crate::likelihood::parameters::base_parameters;
 use crate::model::Model;
-use crate::ranges::Limited;
+use crate::ranges::{Limited, within};
 use crate::recording::Run;
 use serde::Serialize;
 
@@ -74,7 +74,15 @@ pub fn plan(question: &Question, pair: Option<[&str; 2]>, progress: &(dyn Fn(&st
     progress("sailing the trials");
     let usual = |error| PlanError::Approach { trial: "trials".into(), error };
     let approach = maneuver.approach(model, &model.values()).map_err(usual)?;
-    let step = plan.sensors.step.unwrap_or(STEP_LENGTHS * model.ship.hull.lpp / approach.speed);
+    let length_time = model.ship.hull.lpp / approach.speed;
+    let step = plan.sensors.step.unwrap_or(STEP_LENGTHS * length_time);
+    // What is simulated and tested grows with the samples; what they show does not, below a thousandth of the time of a ship length.
+    within(
+        "step",
+        step,
+        &(1e-3 * length_time..=length_time),
+        "the sample period, a tenth of the time in which the ship sails its length",
+    )?;
     let basin = Basin { model, maneuver, sensors: &plan.sensors, integration: diagnose.integration(), step };
     let programme = PlannedTrial::programme(approach.speed);
     let trials = basin.sail(if plan.trials.is_empty() { &programme } else { &plan.trials })?;

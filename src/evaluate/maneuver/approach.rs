@@ -2,6 +2,7 @@
 //! No trial is simulated here.
 
 use super::error::ManeuverError;
+use super::recorded::Recorded;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::ranges::{Limited, OutOfRange, within};
@@ -14,7 +15,8 @@ use std::ops::RangeInclusive;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ManeuverSettings {
-    /// Approach speed \[m/s\]; Froude number 0.15 when neither `speed` nor `n_rpm` is given.
+    /// Approach speed \[m/s\]; when neither `speed` nor `n_rpm` is given that of the recordings, without recordings the service speed of
+    /// the ship file, and Froude number 0.15 where that has none.
     pub speed: Option<f64>,
     /// Propeller rate of the approach \[rpm\]; the rate that holds `speed` when left out.
     pub n_rpm: Option<f64>,
@@ -22,8 +24,8 @@ pub struct ManeuverSettings {
     pub turning_deg: Option<f64>,
     /// Rudder and heading angle of each zigzag \[deg\]; 10/10 and 20/20.
     pub zigzag_deg: Option<Vec<[f64; 2]>>,
-    /// Rudder rate \[deg/s\]; 2.32 (35 deg to 30 deg across in 28 s, SOLAS), for models below 20 m that of a 200 m ship in
-    /// model time.
+    /// Rudder rate \[deg/s\]; that of the recordings, without recordings `rate_deg_s` of the ship file, else 2.32 (35 deg to 30 deg across
+    /// in 28 s, SOLAS), for models below 20 m that of a 200 m ship in model time.
     pub rudder_rate_deg_s: Option<f64>,
     /// Propeller rate of the crash stop \[rpm\], negative astern; minus the approach rate.
     pub astern_rpm: Option<f64>,
@@ -31,6 +33,44 @@ pub struct ManeuverSettings {
     pub engine_rate_rpm_s: Option<f64>,
     /// Integration step \[s\], Runge-Kutta of order 4; a fiftieth of a ship length at approach speed.
     pub step: Option<f64>,
+    /// What the recordings of the study show of both.
+    #[serde(skip)]
+    pub recorded: Recorded,
+}
+
+/// Where a quantity of the approach is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Source {
+    /// Set for the trial.
+    Set,
+    /// Held by the propeller rate that was set for the trial.
+    PropellerRate,
+    /// The recordings of the study.
+    Recordings,
+    /// The ship file.
+    ShipFile,
+    /// What is usual for a ship of this length.
+    Usual,
+}
+
+impl Source {
+    /// The first of the values that are given, in the order in which they count.
+    fn first(set: Option<f64>, recorded: Option<f64>, ship: Option<f64>, usual: f64) -> (f64, Self) {
+        let given = [(set, Self::Set), (recorded, Self::Recordings), (ship, Self::ShipFile)];
+        given.into_iter().find_map(|(value, source)| Some((value?, source))).unwrap_or((usual, Self::Usual))
+    }
+
+    /// `as set`, `of the recordings`, ...
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Set => "as set",
+            Self::PropellerRate => "held by the propeller rate",
+            Self::Recordings => "of the recordings",
+            Self::ShipFile => "of the ship file",
+            Self::Usual => "usual for its length",
+        }
+    }
 }
 
 /// A balanced approach, in SI units.
@@ -38,12 +78,16 @@ pub struct ManeuverSettings {
 pub struct Approach {
     /// Approach speed U0 \[m/s\].
     pub speed: f64,
+    /// Where it is from.
+    pub speed_source: Source,
     /// Propeller rate \[rps\], kept through turning circle and zigzag.
     pub n: f64,
     /// Whether `n` holds `speed` on a straight course; false when both were given.
     pub balanced: bool,
     /// Rudder rate \[rad/s\].
     pub rudder_rate: f64,
+    /// Where it is from.
+    pub rudder_rate_source: Source,
     /// Propeller rate of the crash stop \[rps\].
     pub astern: f64,
     /// Rate at which the propeller rate changes \[rps/s\].
@@ -80,12 +124,13 @@ impl ManeuverSettings {
             let meaning = "an approach speed in m/s, up to a Froude number of 1, where no displacement ship sails; is it in knots?";
             within("speed", speed, &(0.0..=(fastest * 100.0).round() / 100.0), meaning)?;
         }
-        let (speed, n, balanced) = match (self.speed, self.n_rpm) {
-            (Some(speed), Some(rpm)) => (speed, rpm / 60.0, false),
-            (None, Some(rpm)) => (balanced_speed(model, theta, rpm / 60.0)?, rpm / 60.0, true),
-            (speed, None) => {
-                let speed = speed.unwrap_or(FROUDE * (GRAVITY * length).sqrt());
-                (speed, balanced_rate(model, theta, speed)?, true)
+        let (speed, speed_source, n, balanced) = match (self.speed, self.n_rpm) {
+            (Some(speed), Some(rpm)) => (speed, Source::Set, rpm / 60.0, false),
+            (None, Some(rpm)) => (balanced_speed(model, theta, rpm / 60.0)?, Source::PropellerRate, rpm / 60.0, true),
+            (set, None) => {
+                let usual = FROUDE * (GRAVITY * length).sqrt();
+                let (speed, source) = Source::first(set, self.recorded.speed, model.ship.hull.service_speed, usual);
+                (speed, source, balanced_rate(model, theta, speed)?, true)
             }
         };
         let step = 0.02 * length / speed;
@@ -95,13 +140,21 @@ impl ManeuverSettings {
         }
         let step = self.step.unwrap_or(step);
         let usual = if length < 20.0 { 2.32 * (200.0 / length).sqrt() } else { 2.32 };
+        let (rudder_rate, rudder_rate_source) = Source::first(
+            self.rudder_rate_deg_s,
+            self.recorded.rudder_rate.map(f64::to_degrees),
+            model.ship.rudder.rate_deg_s,
+            usual,
+        );
         let astern = self.astern_rpm.map_or(-n, |rpm| rpm / 60.0);
         let engine = (n - astern).abs().max(1e-3) * speed / (2.0 * length);
         Ok(Approach {
             speed,
+            speed_source,
             n,
             balanced,
-            rudder_rate: self.rudder_rate_deg_s.unwrap_or(usual).to_radians(),
+            rudder_rate: rudder_rate.to_radians(),
+            rudder_rate_source,
             astern,
             engine_rate: self.engine_rate_rpm_s.map_or(engine, |rate| rate / 60.0),
             step,

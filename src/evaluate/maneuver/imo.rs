@@ -13,16 +13,19 @@ pub enum Verdict {
     Met,
     /// Not met.
     NotMet,
+    /// The 95 % interval of the measure reaches to both sides of the limit.
+    Open,
     /// The trial has no such criterion, or did not reach the measure.
     NotApplicable,
 }
 
 impl Verdict {
-    /// `met`, `NOT met` or `not applicable`.
+    /// `met`, `NOT met`, `open` or `not applicable`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Met => "met",
             Self::NotMet => "NOT met",
+            Self::Open => "open",
             Self::NotApplicable => "not applicable",
         }
     }
@@ -36,6 +39,9 @@ pub struct Criterion {
     /// What was measured, in `unit`; absent when it was not reached.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<f64>,
+    /// 95 % interval of what was measured, in `unit`; absent where it is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interval: Option<[f64; 2]>,
     /// Largest value allowed, in `unit`; absent where there is no criterion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit: Option<f64>,
@@ -56,7 +62,29 @@ fn criterion(ship: &Ship, name: String, measured: Option<f64>, limit: Option<f64
         (Some(_), Some(_)) => Verdict::NotMet,
         _ => Verdict::NotApplicable,
     };
-    Criterion { name, measured, limit, unit, verdict, binding: ship.hull.lpp >= SHORTEST }
+    Criterion { name, measured, interval: None, limit, unit, verdict, binding: ship.hull.lpp >= SHORTEST }
+}
+
+impl Criterion {
+    /// The name of the measure among those of its trial: `tactical_diameter`.
+    pub fn quantity(&self) -> String {
+        self.name.replace(' ', "_")
+    }
+
+    /// Sets the 95 % interval of the measure, in the unit of the criterion. Where it reaches to both sides of the limit the verdict is open.
+    pub(super) fn set_interval(&mut self, interval: [f64; 2]) {
+        self.interval = Some(interval);
+        if self.limit.is_some_and(|limit| interval[0] <= limit && limit < interval[1]) {
+            self.leave_open();
+        }
+    }
+
+    /// Takes a verdict back that is not known.
+    pub(super) fn leave_open(&mut self) {
+        if matches!(self.verdict, Verdict::Met | Verdict::NotMet) {
+            self.verdict = Verdict::Open;
+        }
+    }
 }
 
 /// Turning ability (5.3.1): advance <= 4.5 L and tactical diameter <= 5 L, with the rudder at 35 deg or hard over.

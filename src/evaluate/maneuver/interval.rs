@@ -1,9 +1,10 @@
 //! 95 % intervals of the measures of a trial, from the covariance of the model's parameters: the trial is sailed with drawn parameters.
-//! What the data say is in the covariance; nothing is estimated here.
+//! What the data say is in the covariance, and where there is none the priors are; nothing is estimated here.
 
 use super::measures::Measured;
 use super::trial::{Ended, Intervals, Trial};
-use crate::model::Model;
+use crate::model::{Model, Parameter};
+use crate::ship::COEFFICIENTS;
 use crate::statistics::quantile;
 use crate::uncertainty::Uncertainty;
 use rayon::prelude::*;
@@ -20,12 +21,36 @@ const REACHED: f64 = 0.95;
 /// adds 0.2 deg to an overshoot.
 const STEP: f64 = 0.25;
 
-/// Two parameter vectors, a quarter of a drawn deviation beyond the values of a model and as much before them, each inside the bounds of
+/// What deviations are drawn from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// The covariance of a fit, which is known for small steps alone: measures are moved to first order.
+    ByFit,
+    /// What is known before any data, over its whole spread: measures are read from the ships that are drawn.
+    Before,
+}
+
+impl Known {
+    /// Share of a drawn deviation that is sailed.
+    fn step(self) -> f64 {
+        match self {
+            Self::ByFit => STEP,
+            Self::Before => 1.0,
+        }
+    }
+}
+
+/// Two parameter vectors, a share of a drawn deviation beyond the values of a model and as much before them, each inside the bounds of
 /// its parameters.
 pub type Drawn = [Vec<f64>; 2];
 
 /// `count` draws of the covariance of a model. Equal seeds give equal draws.
 pub fn drawn(model: &Model, uncertainty: &Uncertainty, count: usize, seed: u64) -> Vec<Drawn> {
+    drawn_from(Known::ByFit, model, uncertainty, count, seed)
+}
+
+/// As [`drawn`], from what is known by a fit or before it.
+pub fn drawn_from(known: Known, model: &Model, uncertainty: &Uncertainty, count: usize, seed: u64) -> Vec<Drawn> {
     let places: Vec<Option<usize>> = uncertainty.parameters.iter().map(|name| model.index(name)).collect();
     let vector = |deviation: &[f64], share: f64| {
         let mut theta = model.values();
@@ -36,8 +61,29 @@ pub fn drawn(model: &Model, uncertainty: &Uncertainty, count: usize, seed: u64) 
         }
         theta
     };
-    let both = |d: Vec<f64>| [vector(&d, STEP), vector(&d, -STEP)];
+    let both = |d: Vec<f64>| [vector(&d, known.step()), vector(&d, -known.step())];
     uncertainty.deviations(count, seed).into_iter().map(both).collect()
+}
+
+/// What is known of a model that was not fitted: the standard deviations of its priors, and those that the terms know of estimated hull
+/// coefficients that no file gives, taken as independent; nothing where there are none.
+pub fn of_priors(model: &Model) -> Option<Uncertainty> {
+    let ship = &model.ship;
+    let estimated = |name: &str| {
+        let own = name.strip_prefix("hull.").filter(|own| COEFFICIENTS.iter().any(|(c, _)| c == own));
+        own.is_some_and(|own| !ship.coefficients.contains_key(own) && !ship.coefficients_prime.contains_key(own))
+    };
+    let spread = |(i, p): (usize, &Parameter)| {
+        let default = || {
+            let prior = model.default_prior(i);
+            // A value of the model file's own is no estimate of the ship's.
+            (estimated(&p.name) && p.value == prior.mean).then_some(prior)
+        };
+        let sd = p.prior.or_else(default)?.sd;
+        (sd.is_finite() && sd > 0.0).then(|| (p.name.clone(), sd))
+    };
+    let known: Vec<(String, f64)> = model.parameters.iter().enumerate().filter_map(spread).collect();
+    Uncertainty::independent("spreads before any data, taken as independent", &known)
 }
 
 /// Sets the intervals of trials from the same trials with drawn parameters: the value, and to either side of it what 95 % of the draws
@@ -52,28 +98,78 @@ pub fn set_intervals<M: Measured + Send>(
     draws: &[Drawn],
     sail: impl Fn(&[f64]) -> Option<Vec<Trial<M>>> + Sync,
 ) {
-    let measured = |theta: &Vec<f64>| -> Vec<Vec<Option<f64>>> {
+    set_intervals_from(Known::ByFit, trials, draws, sail);
+}
+
+/// As [`set_intervals`], from draws of what is known by a fit or, over its whole spread, before it: then the interval has the middle 95 %
+/// of the measures of the drawn ships. A criterion of a measure that has no interval, since too few of these ships reach it, is open.
+pub fn set_intervals_from<M: Measured + Send>(
+    known: Known,
+    trials: &mut [Trial<M>],
+    draws: &[Drawn],
+    sail: impl Fn(&[f64]) -> Option<Vec<Trial<M>>> + Sync,
+) {
+    if draws.is_empty() {
+        return;
+    }
+    let measured = |theta: &Vec<f64>| -> Sailed {
         let trials = sail(theta).unwrap_or_default();
         let sound = |t: &Trial<M>| !matches!(t.ended, Ended::Diverged { .. });
         let read = |t: &Trial<M>| M::QUANTITIES.iter().map(|(_, q)| q(&t.measures).filter(|_| sound(t))).collect();
         trials.iter().map(read).collect()
     };
-    let sailed: Vec<[Vec<Vec<Option<f64>>>; 2]> =
-        draws.par_iter().map(|[more, less]| [measured(more), measured(less)]).collect();
+    let sailed: Vec<[Sailed; 2]> = draws.par_iter().map(|[more, less]| [measured(more), measured(less)]).collect();
     for (k, trial) in trials.iter_mut().enumerate() {
         let mut intervals = Intervals::new();
         for (q, (name, read)) in M::QUANTITIES.iter().enumerate() {
-            let moved = |[more, less]: &[Vec<Vec<Option<f64>>>; 2]| {
-                let difference = more.get(k)?[q]? - less.get(k)?[q]?;
-                Some(difference.abs() / (2.0 * STEP)).filter(|x| x.is_finite())
+            let Some(value) = read(&trial.measures) else { continue };
+            let interval = match known {
+                Known::ByFit => to_first_order(&sailed, [k, q], value),
+                Known::Before => middle_of(&sailed, [k, q], value),
             };
-            let mut moves: Vec<f64> = sailed.iter().filter_map(moved).collect();
-            moves.sort_by(f64::total_cmp);
-            let enough = moves.len() as f64 >= REACHED * draws.len() as f64 && moves.len() > 1;
-            if let (true, Some(value), Some(half)) = (enough, read(&trial.measures), quantile(&moves, 0.95)) {
-                intervals.insert(name, [value - half, value + half]);
-            }
+            intervals.extend(interval.map(|ends| (*name, ends)));
         }
         trial.intervals = intervals;
+        judge(trial, known);
+    }
+}
+
+/// Measures of the trials with one parameter vector, a list a trial.
+type Sailed = Vec<Vec<Option<f64>>>;
+
+/// The value, and to either side of it what 95 % of the draws move it by at most, to first order.
+fn to_first_order(sailed: &[[Sailed; 2]], [trial, quantity]: [usize; 2], value: f64) -> Option<[f64; 2]> {
+    let moved = |[more, less]: &[Sailed; 2]| {
+        let difference = more.get(trial)?[quantity]? - less.get(trial)?[quantity]?;
+        Some(difference.abs() / (2.0 * STEP)).filter(|x| x.is_finite())
+    };
+    let mut moves: Vec<f64> = sailed.iter().filter_map(moved).collect();
+    moves.sort_by(f64::total_cmp);
+    let enough = moves.len() as f64 >= REACHED * sailed.len() as f64 && moves.len() > 1;
+    let half = quantile(&moves, 0.95).filter(|_| enough)?;
+    Some([value - half, value + half])
+}
+
+/// The middle 95 % of what was sailed, and the value.
+fn middle_of(sailed: &[[Sailed; 2]], [trial, quantity]: [usize; 2], value: f64) -> Option<[f64; 2]> {
+    let read = |one: &Sailed| one.get(trial).and_then(|t| t[quantity]).filter(|x| x.is_finite());
+    let mut all: Vec<f64> = sailed.iter().flatten().filter_map(read).collect();
+    all.sort_by(f64::total_cmp);
+    let enough = all.len() as f64 >= REACHED * 2.0 * sailed.len() as f64 && all.len() > 1;
+    let [low, high] = [quantile(&all, 0.025).filter(|_| enough)?, quantile(&all, 0.975)?];
+    Some([low.min(value), high.max(value)])
+}
+
+/// Says of each criterion of a trial whether its limit lies inside the interval of its measure.
+fn judge<M: Measured>(trial: &mut Trial<M>, known: Known) {
+    for criterion in &mut trial.criteria {
+        let name = criterion.quantity();
+        // The unit of a criterion is a multiple of that of the measure.
+        let unit = criterion.measured.zip(trial.measures.quantity(&name)).map(|(told, si)| told / si);
+        match (unit.filter(|u| u.is_finite()), trial.intervals.get(name.as_str())) {
+            (Some(unit), Some(ends)) => criterion.set_interval(ends.map(|end| end * unit)),
+            (Some(_), None) if known == Known::Before => criterion.leave_open(),
+            _ => {}
+        }
     }
 }

@@ -246,6 +246,7 @@ fn an_interval_has_its_value_in_the_middle_where_recordings_tell_a_product_and_n
         freedom: None,
         parameters: vec!["rudder.lift1".to_owned(), "flow.wake".to_owned()],
         undetermined: Vec::new(),
+        doubt: None,
         matrix,
     };
     let settings = ManeuverSettings { speed: Some(5.0), ..Default::default() };

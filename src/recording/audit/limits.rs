@@ -25,6 +25,10 @@ pub const APART_SHARE: f64 = 0.5;
 pub const FEW_SHARE_APART: f64 = 0.05;
 /// A rudder or a propeller that is 0 for one row was lost where the values before and after differ by at most this share.
 pub const LOST_SAME: f64 = 0.5;
+/// A rudder that is off by less \[rad\], 1 deg, in one row moves no ship: so much is noise and rounding of a rudder at rest.
+pub const RUDDER_BLIP: f64 = 1.0 * std::f64::consts::PI / 180.0;
+/// A rudder up to this angle \[rad\], 45 deg, at an end of a run is one on its way over: runs are cut where an order is given.
+pub const RUDDER_OVER: f64 = 45.0 * std::f64::consts::PI / 180.0;
 /// Windows from which the scatter at the ends of a run is told; of longer runs every n-th is taken.
 pub const END_WINDOWS: usize = 2000;
 /// Share of the values on each side that does not count for the range of the others.
@@ -289,6 +293,17 @@ pub const LENGTH_RUNS: usize = 6;
 pub const SHARED_ROWS: usize = 20;
 /// and share of the shorter one: simulated runs may have an approach in common.
 pub const SHARED_SHARE: f64 = 0.1;
+
+/// Rounding that two logs of one motion may differ by: of angles \[rad\], of which logs have tenths of a degree,
+pub const COPY_ANGLE: f64 = 0.01;
+/// and of speeds, as a share of that at which a Froude number is 1, and of yaw rates in the time that belongs to it: a ship of 100 m 0.03 m/s
+/// and 0.02 deg/s, of which logs have a tenth of a knot and of a degree a minute.
+pub const COPY_SPEED: f64 = 1e-3;
+/// Share of the rows of the shorter run that agree at one distance where one is a copy. A row of five rounded values agrees by chance in
+/// neither of two trials with noise; half of the rows of a copy do not agree, where a value lies on the edge between two roundings.
+pub const COPY_SHARE: f64 = 0.3;
+/// Rows with the same values that are kept for the comparison.
+pub const COPY_OWNERS: usize = 8;
 
 // --- Jumps that last ---
 

@@ -16,6 +16,7 @@ mod study;
 mod values;
 
 pub use agreement::across::{Evidence, across};
+pub use agreement::lone::Lone;
 pub use issue::{Issue, Severity, Shared};
 pub use model::audit_model;
 pub use motion::kinematics::Kinematics;

@@ -2,6 +2,7 @@
 //! It asks nothing of its own of a recording; the questions are in the files beside it.
 
 use super::agreement::across::{Evidence, across};
+use super::agreement::lone::Lone;
 use super::issue::{Issue, Severity, Shared};
 use super::limits::LEVER_LONGEST;
 use super::record::{Audit, examined};
@@ -40,12 +41,21 @@ impl StudyAudit {
         let own = self.issues.iter().map(|i| i.severity).max();
         own.max(self.recordings.iter().filter_map(Audit::worst).max())
     }
+
+    /// Weighs the doubts of each run by what the others say.
+    pub fn weigh(&mut self, lone: &Lone) {
+        for audit in &mut self.recordings {
+            audit.issues.iter_mut().for_each(|issue| lone.weigh(&audit.run, issue));
+            audit.issues.sort_by_key(|i| std::cmp::Reverse(i.severity));
+        }
+    }
 }
 
 /// Audits every run of a study and cuts it as the study says, for a ship. All runs are audited, whatever is wrong with one, and then
 /// compared with each other.
 pub fn audit_study(study: &Study, ship: &Ship) -> StudyAudit {
     let mut result = audit_each(study, ship);
+    result.weigh(&Lone::of(&result.evidence));
     for Shared { runs, issue } in across(&result.evidence, ship) {
         match &runs[..] {
             [one] => {

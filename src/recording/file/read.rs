@@ -170,8 +170,11 @@ type Beginning = (Option<Vec<HeaderColumn>>, usize, Option<(usize, String)>);
 /// How a file begins.
 fn header<R: BufRead>(lines: &mut Lines<R>, path: &Path, map: &ColumnMap) -> Result<Beginning, RecordingError> {
     let fail = |source| RecordingError::Read { path: path.to_owned(), source };
-    for _ in 0..map.skip_lines {
-        lines.next().map_err(fail)?;
+    for skipped in 0..map.skip_lines {
+        if lines.next().map_err(fail)?.is_none() {
+            let what = format!("`skip_lines` = {} passes over all of its {skipped} lines", map.skip_lines);
+            return Err(RecordingError::Empty { path: path.to_owned(), line: skipped.max(1), what });
+        }
     }
     let mut first = None;
     while first.is_none() {

@@ -11,6 +11,7 @@ use super::formats::read::read;
 use super::overlap::{range, shifts};
 use super::rows::{Rows, rows};
 use crate::recording::Channel;
+use crate::recording::wrap::repair;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
@@ -88,6 +89,7 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     let mut signals = take(&chosen, &settings.choices)?;
     signals.unused.extend(unused);
     missing(&chosen, &signals, &logs)?;
+    mend_heading(&mut signals);
     let (table, filled) = rows(&signals);
     let longest = settings.session_gap.unwrap_or(SESSION_GAP);
     let ends: Vec<[f64; 2]> = logs.iter().map(range).collect();
@@ -140,6 +142,18 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     imported.part_with_lonely();
     imported.tell_gaps();
     Ok(imported)
+}
+
+/// Puts a heading that a logger interpolated across north on the short way round, before velocities are turned by it.
+fn mend_heading(signals: &mut Signals) {
+    let Some(psi) = signals.by.get_mut(&Meaning::Channel(Channel::Psi)) else { return };
+    let mended = repair(&psi.t, &mut psi.v);
+    if mended > 0 {
+        signals.notes.push(format!(
+            "heading: {mended} values lie on the wrong way round between two true ones, as where a logger interpolates across north; \
+             they are put on the short way"
+        ));
+    }
 }
 
 /// Takes the numbers that stand for missing values out of a log, and notes them.

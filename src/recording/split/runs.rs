@@ -121,7 +121,7 @@ pub fn split(parts: &[SplitPart<'_>], settings: &SplitSettings) -> Result<(Vec<S
     }
     if runs.is_empty() {
         return Err(SplitError(format!(
-            "no stretch without a gap lasts {:.0} s, so that there is no run; bridge short drop-outs with `bridge` in a column map",
+            "no stretch without a gap lasts {:.0} s, so that there is no run; bridge short drop-outs (`trimtab import --bridge`, or `bridge` in a column map)",
             SHORTEST * scale
         )));
     }

@@ -115,10 +115,12 @@ pub fn criteria_table<'a>(trials: impl IntoIterator<Item = (&'a str, &'a [Criter
     for (name, criteria) in trials {
         for c in criteria {
             let number = |x: Option<f64>| x.map_or(DASH.into(), |x| fixed(x, 2));
+            let interval =
+                c.interval.map_or(String::new(), |[low, high]| format!(" [{}, {}]", fixed(low, 2), fixed(high, 2)));
             table.row([
                 name.to_owned(),
                 c.name.clone(),
-                number(c.measured),
+                number(c.measured) + &interval,
                 number(c.limit),
                 c.unit.to_owned(),
                 c.verdict.word().to_owned(),

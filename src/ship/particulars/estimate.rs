@@ -121,6 +121,12 @@ impl Main {
         for key in ["hull.lpp", "hull.breadth", "hull.draught"] {
             sheet.keep(key);
         }
+        sheet.take(
+            "hull.service_speed",
+            rounded(self.speed, 4),
+            None,
+            "that the estimates are for; the approach of trials",
+        );
         let density = sheet.take("hull.water_density", 1025.0, None, "sea water; 1000 in fresh water");
         let box_mass = density * length * breadth * draught;
         let given_mass = sheet.given_number("hull.mass");

@@ -10,8 +10,8 @@ use super::stuck::stuck;
 use crate::numerals::sig;
 use crate::recording::audit::issue::{Issue, Severity, Shared};
 use crate::recording::audit::limits::{
-    EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS, LEVER_LAG, POOLED_EVIDENCE, SAME_LAG, SESSION_SHARE,
-    SHARED_ROWS, SHARED_SHARE,
+    COPY_ANGLE, COPY_OWNERS, COPY_SHARE, COPY_SPEED, EXPLAINS, LAG_EVIDENCE, LAG_LEAVES, LAG_SHARE, LAG_STEPS,
+    LEVER_LAG, POOLED_EVIDENCE, SAME_LAG, SESSION_SHARE, SHARED_ROWS, SHARED_SHARE,
 };
 use crate::recording::audit::motion::plateau::Plateau;
 use crate::recording::audit::motion::pooled::{Odd, actuated, odd, shares_at_best};
@@ -25,6 +25,7 @@ use crate::recording::audit::values::length::{Length, shorter};
 use crate::recording::audit::values::orders::{Leap, ordered};
 use crate::recording::{Channel, Recording, Split};
 use crate::ship::Ship;
+use crate::ship::units::GRAVITY;
 use crate::study::Listed;
 use serde::{Deserialize, Serialize};
 use std::collections::hash_map::Entry;
@@ -50,6 +51,8 @@ pub struct Evidence {
     responses: Responses,
     /// Channels of the wrong sign.
     turned: Vec<Channel>,
+    /// Channels that are too small for their unit.
+    small: Vec<Channel>,
     /// Channels with damaged single values, from which no lag is told.
     damaged: Vec<Channel>,
     /// Channels of the motion that were not recorded, and not derived, and what to do.
@@ -70,6 +73,8 @@ pub struct Evidence {
     length: Option<Length>,
     /// Fingerprints of the rows in which the ship's motion changed.
     rows: Vec<u64>,
+    /// The same of its values but for rounding, with the row of each.
+    rounded: Vec<(usize, u64)>,
 }
 
 impl Evidence {
@@ -91,6 +96,7 @@ impl Evidence {
             ratio: advance_ratio(recording, ship),
             responses,
             turned: of_fault("sign_error"),
+            small: of_fault("unit_error"),
             damaged: of_fault("outlier"),
             lacks: issues
                 .iter()
@@ -107,6 +113,26 @@ impl Evidence {
             repeats: repeats(recording),
             length: Length::of(recording).filter(|_| run.from.is_none() && run.to.is_none()),
             rows: fingerprints(recording),
+            rounded: rounded(recording, ship),
+        }
+    }
+
+    /// Name of the run.
+    pub(super) fn name(&self) -> &str {
+        &self.run
+    }
+
+    /// How the motion answers.
+    pub(super) fn responses(&self) -> &Responses {
+        &self.responses
+    }
+
+    /// Whether the run by itself shows this fault of a channel.
+    pub(super) fn shows(&self, fault: &str, channel: Channel) -> bool {
+        match fault {
+            "sign_error" => self.turned.contains(&channel),
+            "unit_error" => self.small.contains(&channel),
+            _ => false,
         }
     }
 }
@@ -124,6 +150,37 @@ fn fingerprints(recording: &Recording) -> Vec<u64> {
         hasher.finish()
     };
     if columns.len() < 4 { Vec::new() } else { (1..recording.len()).filter(|row| moving(*row)).map(number).collect() }
+}
+
+/// As [`fingerprints`], with every value as a multiple of what rounding in a log may change: two recordings of one motion agree in most of
+/// these, though one has fewer digits, and two of which the motion is only alike do not, as a ship's motion and the noise differ by more.
+fn rounded(recording: &Recording, ship: &Ship) -> Vec<(usize, u64)> {
+    let (speed, time) = ((GRAVITY * ship.hull.lpp).sqrt(), (ship.hull.lpp / GRAVITY).sqrt());
+    let units = [
+        (Channel::Psi, COPY_ANGLE),
+        (Channel::U, COPY_SPEED * speed),
+        (Channel::V, COPY_SPEED * speed),
+        (Channel::R, COPY_SPEED / time),
+        (Channel::Delta, COPY_ANGLE),
+    ];
+    let columns: Vec<(&[f64], f64)> = units.iter().filter_map(|(c, unit)| Some((recording.get(*c)?, *unit))).collect();
+    if columns.len() < 4 {
+        return Vec::new();
+    }
+    let row = |i: usize| columns.iter().map(|(v, unit)| (v[i] / unit).round() as i64).collect::<Vec<i64>>();
+    let finite = |i: usize| columns.iter().all(|(v, _)| v[i].is_finite());
+    let mut before = Vec::new();
+    let mut found = Vec::new();
+    for i in (0..recording.len()).filter(|i| finite(*i)) {
+        let now = row(i);
+        if now != before {
+            let mut hasher = DefaultHasher::new();
+            now.hash(&mut hasher);
+            found.push((i, hasher.finish()));
+            before = now;
+        }
+    }
+    found
 }
 
 /// Everything that a comparison of the runs shows.
@@ -173,6 +230,12 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     let lengths: Vec<(&str, Option<Length>)> = runs.iter().map(|r| (r.run.as_str(), r.length)).collect();
     found.extend(shorter(&lengths));
     found.extend(shared_rows(runs));
+    for copy in copies(runs) {
+        let same = |f: &Shared| f.issue.fault == copy.issue.fault && copy.runs.iter().all(|run| f.runs.contains(run));
+        if !found.iter().any(same) {
+            found.push(copy);
+        }
+    }
     found
 }
 
@@ -550,6 +613,37 @@ fn shared_rows(runs: &[Evidence]) -> Vec<Shared> {
             if rows >= SHARED_ROWS && rows as f64 >= SHARED_SHARE * shorter as f64 {
                 let issue = sharing(run, other, &format!("share {rows} of {shorter} rows"));
                 found.push(Shared { runs: vec![other.run.clone(), run.run.clone()], issue });
+            }
+        }
+    }
+    found
+}
+
+/// Runs that are copies of one another but for rounding: at one distance of their rows most values agree.
+fn copies(runs: &[Evidence]) -> Vec<Shared> {
+    let mut owners: HashMap<u64, Vec<(usize, usize)>> = HashMap::new();
+    let mut found = Vec::new();
+    for (i, run) in runs.iter().enumerate() {
+        let mut common: BTreeMap<(usize, isize), usize> = BTreeMap::new();
+        for (row, number) in &run.rounded {
+            for (other, at) in owners.get(number).into_iter().flatten() {
+                *common.entry((*other, *row as isize - *at as isize)).or_default() += 1;
+            }
+        }
+        let mut told: Vec<usize> = Vec::new();
+        for ((other, _), rows) in common {
+            let shorter = run.rounded.len().min(runs[other].rounded.len());
+            if rows >= SHARED_ROWS && rows as f64 >= COPY_SHARE * shorter as f64 && !told.contains(&other) {
+                told.push(other);
+                let issue = sharing(run, &runs[other], &format!("agree in {rows} of {shorter} rows but for rounding"));
+                found.push(Shared { runs: vec![runs[other].run.clone(), run.run.clone()], issue });
+            }
+        }
+        for (row, number) in &run.rounded {
+            let owned = owners.entry(*number).or_default();
+            // A motion that many rows have tells none of them apart.
+            if owned.len() < COPY_OWNERS {
+                owned.push((i, *row));
             }
         }
     }

@@ -2,6 +2,7 @@
 //! Single values are looked at elsewhere.
 
 pub(super) mod across;
+pub(super) mod lone;
 pub(super) mod propeller;
 pub(super) mod reckoning;
 mod scales;

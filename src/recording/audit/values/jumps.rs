@@ -4,7 +4,7 @@
 use crate::recording::audit::issue::{Issue, Severity};
 use crate::recording::audit::limits::{
     APART_SHARE, END_WINDOWS, FAR, FAR_SHARE, FAR_SHARE_AT_ENDS, FEW, FEW_SHARE, FEW_SHARE_APART, LOST_SAME,
-    MEDIAN_ROWS, OUTSIDE_SHARE, TAIL,
+    MEDIAN_ROWS, OUTSIDE_SHARE, RUDDER_BLIP, RUDDER_OVER, TAIL,
 };
 use crate::recording::{Channel, Recording, STATE_CHANNELS};
 use crate::statistics::median;
@@ -66,7 +66,9 @@ fn far(channel: Channel, t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
     // What is set may hold one value for most of a run: its size then counts for its range.
     let range = if set { (high - low).max(high.abs().max(low.abs())) } else { high - low };
     // The usual scatter; beside it a share of the range, since data without noise have none.
-    let usual = (FAR * deviation(from_median.iter().copied())).max(FAR_SHARE * range);
+    let rudder = matches!(channel, Channel::Delta | Channel::DeltaOrder);
+    let least = if rudder { RUDDER_BLIP / APART_SHARE } else { 0.0 };
+    let usual = (FAR * deviation(from_median.iter().copied())).max(FAR_SHARE * range).max(least);
     // The range of what is set: of values that do not stand alone.
     let near = FAR_SHARE * (sorted[sorted.len() - 1] - sorted[0]);
     let pairs = finite.windows(2).filter(|pair| (pair[0] - pair[1]).abs() <= near).flatten();
@@ -87,7 +89,7 @@ fn far(channel: Channel, t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
         far.sort_unstable();
     }
     if set && far.is_empty() {
-        far.extend(set_at_ends(&finite));
+        far.extend(set_at_ends(&finite).into_iter().filter(|k| !rudder || finite[*k].abs() > RUDDER_OVER));
     }
     if matches!(channel, Channel::N | Channel::Delta) {
         far.extend(lost(&finite, usual).filter(|k| !far.contains(k)).collect::<Vec<_>>());
@@ -218,6 +220,16 @@ mod tests {
         // A channel that leaps by any size is not damaged in single rows.
         let leaps = told(Channel::U, |i| u[i], |u| (10..115).step_by(10).for_each(|row| u[row] += 0.03 * row as f64));
         assert!(leaps.is_empty(), "{leaps:?}");
+    }
+
+    #[test]
+    fn a_rudder_at_rest_may_show_one_digit_and_one_on_its_way_over_may_end_a_run() {
+        let rests = |i: usize| if i.is_multiple_of(7) { 5e-4 } else { 0.0 };
+        assert!(told(Channel::Delta, |_| 0.0, |d| d[60] = 0.0017).is_empty());
+        assert!(told(Channel::Delta, rests, |d| d[120] = 0.0908).is_empty());
+        assert!(told(Channel::Delta, rests, |d| d[0] = -0.0908).is_empty());
+        assert_eq!(told(Channel::Delta, rests, |d| d[60] = 0.3), [60]);
+        assert_eq!(told(Channel::Delta, rests, |d| d[120] = 1.2), [120]);
     }
 
     #[test]
