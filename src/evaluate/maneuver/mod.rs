@@ -1,4 +1,4 @@
-//! The standard manoeuvring trials (turning circle, zigzag, crash stop) with any model, and their measures read from a track.
+//! The standard manoeuvring trials (turning circle, zigzag, crash stop, pull-out, spiral) with any model, and their measures read from a track.
 //! It neither fits nor judges a model: a poor model gives poor numbers, and only the IMO criteria are compared with them.
 
 mod approach;
@@ -6,8 +6,13 @@ mod calm;
 mod error;
 pub mod imo;
 mod interval;
+mod measured;
 mod measures;
+mod nomoto;
+mod pullout;
+mod recorded;
 mod sail;
+mod spiral;
 mod stopping;
 mod track;
 mod trial;
@@ -15,10 +20,15 @@ mod turning;
 mod zigzag;
 
 pub use approach::{Approach, ManeuverSettings};
-pub use calm::calm_water;
+pub use calm::{calm_water, calm_water_of_depth};
 pub use error::ManeuverError;
 pub use interval::{DRAWS, Drawn, SEED, drawn, set_intervals};
-pub use measures::{Measured, Quantity, Steady, Stopping, Turning, Zigzag};
+pub use measured::{MeasuredTrial, Measures, Simulated, Taken, measured};
+pub use measures::{Measured, PullOut, Quantity, Spiral, Steady, Stopping, Turning, Zigzag};
+pub use nomoto::Nomoto;
+pub use pullout::{course_stable, pull_out, pull_out_trial};
+pub use recorded::{Found, Kind, PassedOver, approach_speed, find};
+pub use spiral::{spiral, spiral_angles, spiral_trial};
 pub use stopping::{stopping, stopping_trial};
 pub use track::Track;
 pub use trial::{Ended, Intervals, Side, Trial};
