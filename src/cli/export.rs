@@ -17,7 +17,7 @@ Writes the hull, propeller, rudder and resistance of a model as coefficients for
     MATLAB script also runs in Octave and leaves the hull force as a function.
 
 The ship is that of the study, or of --ship. Terms beyond hull, flow, resistance, propeller and rudder, and what a model adds \
-    in single sessions, are left out; the file names the terms.";
+    in single sessions, are left out; the file names the terms. Of a model of form `mmg` the primes are exported as the model has them.";
 
 const AFTER: &str = "\
 Examples:

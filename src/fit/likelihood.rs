@@ -35,7 +35,7 @@ use crate::likelihood::evidence::RunEvidence;
 use crate::likelihood::filter::{Column, Filter, Gains, Pass, Wanted};
 use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::likelihood::noise_fit::guess;
-use crate::likelihood::parameters::{FreeParameter, NUISANCE};
+use crate::likelihood::parameters::{FreeParameter, uncertain_coefficients};
 use crate::model::{Model, Prior};
 use crate::recording::{Run, Runs};
 use crate::simulate::Integration;
@@ -102,8 +102,11 @@ pub(super) struct LikelihoodEnd<'a> {
 /// The model of a fit by likelihood: coefficients that are never known exactly are free too, with priors.
 pub(super) fn with_uncertain_coefficients(model: &Model) -> Model {
     let mut model = model.clone();
-    for name in NUISANCE {
-        let Some(i) = model.index(name).filter(|i| !model.parameters[*i].free) else { continue };
+    let uncertain = uncertain_coefficients(&model);
+    for i in uncertain {
+        if model.parameters[i].free {
+            continue;
+        }
         let prior = model.parameters[i].prior.or(FreeParameter::uncertain(&model, i).prior);
         let p = &mut model.parameters[i];
         // Whatever the prior says, a value beyond its bounds is no ship.

@@ -2,7 +2,8 @@
 //! exactly. It estimates nothing.
 
 use super::pass::Column;
-use crate::model::{Model, Prior};
+use crate::model::{MMG, Model, Prior};
+use crate::physics::Form;
 
 /// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
 pub(crate) const NUISANCE: [&str; 31] = [
@@ -39,6 +40,18 @@ pub(crate) const NUISANCE: [&str; 31] = [
     "sternway.share",
 ];
 
+/// The coefficients of a model that are never known exactly: in form `mmg` those of its terms for those that they replace.
+pub(crate) fn uncertain_coefficients(model: &Model) -> Vec<usize> {
+    let listed =
+        NUISANCE.iter().filter_map(|name| model.index(name)).filter(|i| !model.replaced(model.parameters[*i].info));
+    let of_form = |i: &usize| {
+        let name = &model.parameters[*i].name;
+        model.form == Form::Mmg
+            && MMG.iter().any(|term| name.strip_prefix(term).is_some_and(|rest| rest.starts_with('.')))
+    };
+    listed.chain((0..model.parameters.len()).filter(of_form)).collect()
+}
+
 /// The free parameters of the base: those of the model, and where asked for the nuisance coefficients with their priors.
 pub fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParameter> {
     let mut free: Vec<FreeParameter> = model
@@ -47,8 +60,7 @@ pub fn base_parameters(model: &Model, nuisance: bool) -> Vec<FreeParameter> {
         .map(|i| FreeParameter::common(Column::tangent(model, i), model.parameters[i].prior))
         .collect();
     if nuisance {
-        for name in NUISANCE {
-            let Some(i) = model.index(name).filter(|i| !model.parameters[*i].free) else { continue };
+        for i in uncertain_coefficients(model).into_iter().filter(|i| !model.parameters[*i].free) {
             free.push(FreeParameter::uncertain(model, i));
         }
     }
@@ -96,7 +108,7 @@ impl FreeParameter {
     /// prior alone: a sign that a fit may insist on would make its estimate one-sided and the score tests with it.
     fn limits(&self, model: &Model) -> (f64, f64) {
         let p = &model.parameters[self.column.parameter];
-        if self.prior.is_some() && p.name.starts_with("hull.") {
+        if self.prior.is_some() && (p.name.starts_with("hull.") || p.name.starts_with("mmg_hull.")) {
             return (f64::NEG_INFINITY, f64::INFINITY);
         }
         (p.lower, p.upper)

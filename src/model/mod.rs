@@ -8,7 +8,7 @@ pub mod export;
 use crate::files::intact;
 use crate::files::suggestion;
 use crate::files::written::{Kind, line_at, read_text, read_toml, told};
-use crate::parameter::ParameterInfo;
+use crate::parameter::{ParameterInfo, Start};
 use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number, TermInfo};
 use crate::ship::{COEFFICIENTS, Ship};
 use crate::state::Inputs;
@@ -22,6 +22,9 @@ use std::path::{Path, PathBuf};
 
 /// Terms that every model has, in this order.
 pub const BASE: [&str; 5] = ["flow", "hull", "resistance", "propeller", "rudder"];
+
+/// Terms that a model of form `mmg` has beyond those, in this order.
+pub const MMG: [&str; 3] = ["mmg_hull", "mmg_wake", "mmg_rudder"];
 
 /// Dotted names of the paper's eleven parameters, p0 to p10.
 pub const ELEVEN: [&str; 11] = [
@@ -260,7 +263,8 @@ impl std::fmt::Debug for Model {
 pub struct ModelFile {
     /// Name, for headings.
     pub name: String,
-    /// Low-speed form, `paper` or `regular`.
+    /// Form of the hull: `paper` or `regular`, which differ at low speed and astern, or `mmg`, the standard MMG method with published
+    /// primes (`mmg_hull.Y_v`), which has the terms `mmg_hull`, `mmg_wake` and `mmg_rudder` and no parameter that is free unless said.
     #[serde(default)]
     pub form: Form,
     /// Terms beyond the base terms (flow, hull, resistance, propeller, rudder).
@@ -453,19 +457,19 @@ impl Model {
             catalogue,
             terms: Vec::new(),
         };
-        for term in BASE.iter().chain(extra) {
+        for term in BASE.iter().chain(model.of_form()).chain(extra) {
             model.add_term(term)?;
         }
-        for name in ELEVEN {
-            if let Some(i) = model.index(name) {
-                model.parameters[i].free = true;
-            }
+        for i in 0..model.parameters.len() {
+            model.parameters[i].free = model.free_at_first(&model.parameters[i].name);
         }
         let from_ship = model.ship.parameters.clone();
         for (name, value) in &from_ship {
             // A ship file may give parameters of terms that this model does not use.
             if let Some(i) = model.index(name) {
-                model.parameters[i].value = *value;
+                if !model.replaced(model.parameters[i].info) {
+                    model.parameters[i].value = *value;
+                }
             } else if !model.catalogued().any(|known| known == *name) {
                 let near = match model.find(name) {
                     Ok(i) => format!(", did you mean `{}`?", model.parameters[i].name),
@@ -506,7 +510,7 @@ impl Model {
         let info = term.info();
         self.terms.push(Placed { term, offset: self.parameters.len(), len: info.parameters.len() });
         for parameter in info.parameters {
-            let value = (parameter.default)(&self.ship);
+            let value = self.start(parameter);
             let (lower, upper) = self.default_bounds(info.name, parameter);
             self.parameters.push(Parameter {
                 name: format!("{}.{}", info.name, parameter.name),
@@ -520,6 +524,30 @@ impl Model {
             });
         }
         Ok(())
+    }
+
+    /// The terms that the model's form has beyond the base.
+    fn of_form(&self) -> &'static [&'static str] {
+        if self.form == Form::Mmg { &MMG } else { &[] }
+    }
+
+    /// Where a parameter begins in the model's form, before the ship file's own values.
+    fn start(&self, parameter: &ParameterInfo) -> f64 {
+        match parameter.mmg {
+            Start::Own(value) if self.form == Form::Mmg => value(&self.ship),
+            Start::Replaced if self.form == Form::Mmg => 0.0,
+            Start::Same | Start::Own(_) | Start::Replaced => (parameter.default)(&self.ship),
+        }
+    }
+
+    /// Whether another term of the model's form takes the place of a parameter.
+    pub(crate) fn replaced(&self, parameter: &ParameterInfo) -> bool {
+        self.form == Form::Mmg && matches!(parameter.mmg, Start::Replaced)
+    }
+
+    /// Whether a parameter is free in a model that says nothing of it: the paper's eleven, which form `mmg` replaces.
+    fn free_at_first(&self, name: &str) -> bool {
+        ELEVEN.contains(&name) && self.form != Form::Mmg
     }
 
     /// The terms that can be added to the model.
@@ -717,16 +745,21 @@ impl Model {
         Ok(())
     }
 
-    /// Indices of the hydrodynamic coefficients of the hull.
+    /// Indices of the hydrodynamic coefficients of the hull; in form `mmg` m_x, m_y, J_z and those of `mmg_hull`.
     fn hull_coefficients(&self) -> Vec<usize> {
-        COEFFICIENTS.iter().filter_map(|(name, _)| self.index(&format!("hull.{name}"))).collect()
+        let base = COEFFICIENTS.iter().filter_map(|(name, _)| self.index(&format!("hull.{name}")));
+        let of_mmg = |i: &usize| self.form == Form::Mmg && self.parameters[*i].name.starts_with("mmg_hull.");
+        base.filter(|i| !self.replaced(self.parameters[*i].info))
+            .chain((0..self.parameters.len()).filter(of_mmg))
+            .collect()
     }
 
     /// The prior that `prior = "default"` stands for: the ship's value and the term's spread, which is infinite where the term
     /// knows nothing.
     pub fn default_prior(&self, parameter: usize) -> Prior {
         let p = &self.parameters[parameter];
-        let mean = self.ship.parameters.get(&p.name).copied().unwrap_or_else(|| (p.info.default)(&self.ship));
+        let given = self.ship.parameters.get(&p.name).copied().filter(|_| !self.replaced(p.info));
+        let mean = given.unwrap_or_else(|| self.start(p.info));
         Prior { mean, sd: (p.info.spread)(&self.ship) }
     }
 
@@ -737,7 +770,7 @@ impl Model {
         if term != "hull" || given(&self.ship.coefficients) || given(&self.ship.coefficients_prime) {
             return (info.lower, info.upper);
         }
-        let estimate = (info.default)(&self.ship);
+        let estimate = self.start(info);
         (info.lower.min(estimate), info.upper.max(estimate))
     }
 
@@ -748,10 +781,10 @@ impl Model {
         let hull_is_free = !hull.is_empty() && hull.iter().all(|i| self.parameters[*i].free && as_default(*i));
         let mut parameters = BTreeMap::new();
         for (i, p) in self.parameters.iter().enumerate() {
-            let default = (p.info.default)(&self.ship);
+            let default = self.start(p.info);
             let with_hull = hull_is_free && hull.contains(&i);
             let prior_frees = as_default(i) || with_hull;
-            let free_by_default = ELEVEN.contains(&p.name.as_str()) || prior_frees;
+            let free_by_default = self.free_at_first(&p.name) || prior_frees;
             let (term, _) = p.name.split_once('.').unwrap_or((&p.name, ""));
             let (lower, upper) = self.default_bounds(term, p.info);
             let prior =
@@ -772,7 +805,7 @@ impl Model {
             name: self.name.clone(),
             form: self.form,
             hull: hull_is_free.then_some(HullSetting::Free),
-            terms: self.term_names().iter().filter(|t| !BASE.contains(t)).map(ToString::to_string).collect(),
+            terms: self.further_terms().iter().map(ToString::to_string).collect(),
             parameters,
             sessions: self.sessions.iter().map(|(s, list)| (s.clone(), list.iter().map(name_of).collect())).collect(),
             fitted_ship: Some(FittedShip::of(&self.ship)),
@@ -799,6 +832,12 @@ impl Model {
         self.terms.iter().map(|t| t.term.info().name).collect()
     }
 
+    /// Names of the terms beyond those that every model of this form has, in order.
+    pub fn further_terms(&self) -> Vec<&'static str> {
+        let own = |name: &&str| !BASE.contains(name) && !self.of_form().contains(name);
+        self.term_names().into_iter().filter(own).collect()
+    }
+
     /// Index of a parameter by dotted name.
     pub fn index(&self, name: &str) -> Option<usize> {
         self.parameters.iter().position(|p| p.name == name)
@@ -820,7 +859,8 @@ impl Model {
 
     /// Whether the surge resistance is 0 at every speed: then a ship without other drag never stops.
     pub fn without_resistance(&self) -> bool {
-        let mut curve = self.parameters.iter().filter(|p| p.name.starts_with("resistance."));
+        let of_curve = |p: &&Parameter| p.name.starts_with("resistance.") || p.name == "mmg_hull.R_0";
+        let mut curve = self.parameters.iter().filter(of_curve);
         curve.all(|p| p.value == 0.0)
     }
 

@@ -1,7 +1,7 @@
 //! What the terms share at one instant: water-relative velocity, propeller thrust and rudder inflow.
 //! It gives no force itself; its parameters (wake, thrust, race, straightening) are those of the pseudo-term `flow`.
 
-use super::instant::Instant;
+use super::instant::{Form, Instant};
 use crate::ship::Ship;
 use std::f64::consts::PI;
 use trimtab_ad::{Dual, Scalar};
@@ -18,6 +18,9 @@ macro_rules! modifiers {
             /// Added to the sway-yaw \[kg m\] and yaw-yaw \[kg m2\] entries of the mass matrix per cube of speed through the
             /// water; `None` where no term adds anything.
             pub roll: Option<[S; 2]>,
+            /// Wake in a turn: C_1, the mean of C_2 and half its difference between the sides (term `mmg_wake`); `None` where no
+            /// term gives it.
+            pub wake_turn: Option<[S; 3]>,
             $($(#[$doc])+ pub $name: S,)+
         }
 
@@ -25,7 +28,7 @@ macro_rules! modifiers {
             /// No change to anything.
             #[inline(always)]
             pub fn neutral() -> Self {
-                Self { current: [S::zero(); 2], roll: None, $($name: S::from_f64($neutral),)+ }
+                Self { current: [S::zero(); 2], roll: None, wake_turn: None, $($name: S::from_f64($neutral),)+ }
             }
 
             /// The modifiers in another number.
@@ -34,6 +37,7 @@ macro_rules! modifiers {
                 Adjust {
                     current: self.current.map(&f),
                     roll: self.roll.map(|roll| roll.map(&f)),
+                    wake_turn: self.wake_turn.map(|wake| wake.map(&f)),
                     $($name: f(self.$name),)+
                 }
             }
@@ -101,7 +105,7 @@ pub struct Flow<S: Scalar> {
     pub propulsion: S,
     /// Axial rudder inflow u_R \[m/s\].
     pub rudder_u: S,
-    /// Lateral rudder inflow v_R = -gamma (v + l_R r) \[m/s\].
+    /// Lateral rudder inflow v_R = -gamma (v + l_R r) \[m/s\]; in form `mmg` U beta for -v.
     pub rudder_v: S,
     /// What other terms changed.
     pub adjust: Adjust<S::Coefficient>,
@@ -175,7 +179,12 @@ impl<S: Scalar> Flow<S> {
         let side = v + r * ship.propeller_x();
         let drift = side / (u * u + side * side + tiny).sqrt();
         let relief = drift * adjust.wake_relief - adjust.wake_asymmetry;
-        let wake = (p[index::WAKE] + adjust.wake - drift * relief) * ahead;
+        let mut wake = p[index::WAKE] + adjust.wake - drift * relief;
+        if let Some(turn) = adjust.wake_turn {
+            let kept = S::Coefficient::one() - p[index::WAKE] - adjust.wake;
+            wake -= turning_wake(ship, turn, [v, r], [speed, abs_u]) * kept;
+        }
+        let wake = wake * ahead;
         let advance = (S::one() - wake) * u;
         let screw = [p[index::KT0], p[index::KT1], p[index::KT2], p[index::ASTERN]];
         let thrust = thrust(ship, small, screw, advance, at.inputs.n) * (adjust.thrust * ship.hull.water_density);
@@ -185,7 +194,7 @@ impl<S: Scalar> Flow<S> {
         let race = [p[index::RACE] * adjust.race, p[index::RACE_ASTERN], p[index::WAKE_RATIO]];
         let rudder_u = axial(ship, small, race, advance, thrust);
         let bend = [p[index::STRAIGHTENING], p[index::ASYMMETRY], p[index::LEVER]];
-        let rudder_v = lateral(ship, small, bend, v, r);
+        let rudder_v = lateral(ship, small, bend, across(at.form, v, speed, abs_u), r);
         Self { u, v, r, speed, abs_u, abs_v, abs_r, current, advance, thrust, propulsion, rudder_u, rudder_v, adjust }
     }
 }
@@ -234,13 +243,16 @@ impl<S: Scalar<Coefficient = S>> Flow<S> {
             seeded([race, p[index::RACE_ASTERN], p[index::WAKE_RATIO], self.advance, self.thrust]);
         let by_race = axial(ship, small, [race, race_astern, ratio], advance, thrust).eps;
         let bend = seeded([p[index::STRAIGHTENING], p[index::ASYMMETRY], p[index::LEVER]]);
-        let by_bend = lateral(ship, small, bend, Dual::constant(self.v), Dual::constant(self.r)).eps;
+        let across = across(at.form, self.v, self.speed, self.abs_u);
+        let by_bend = lateral(ship, small, bend, Dual::constant(across), Dual::constant(self.r)).eps;
 
         let positive = zero.less(self.thrust);
-        let kept = S::select(positive, S::one() - p[index::THRUST_DEDUCTION], S::one());
+        let left = S::select(positive, S::one() - p[index::THRUST_DEDUCTION], S::one());
         let by_thrust =
-            |slope: S| Inflow { thrust: slope, propulsion: slope * kept, rudder_u: slope * by_race[4], ..still };
+            |slope: S| Inflow { thrust: slope, propulsion: slope * left, rudder_u: slope * by_race[4], ..still };
+        let gained = |turn| turning_wake(ship, turn, [self.v, self.r], [self.speed, self.abs_u]);
         let advance = -(ahead(self.u, self.abs_u) * self.u);
+        let advance = advance + advance * self.adjust.wake_turn.map_or(zero, gained);
         let wake = by_thrust(by_screw[4] * advance);
         out[index::WAKE] = Inflow { advance, rudder_u: wake.rudder_u + by_race[3] * advance, ..wake };
         out[index::THRUST_DEDUCTION].propulsion = S::select(positive, -self.thrust, zero);
@@ -267,6 +279,29 @@ fn seeded<S: Scalar, const N: usize>(values: [S; N]) -> [Dual<S, N>; N] {
 #[inline(always)]
 fn ahead<S: Scalar>(u: S, abs_u: S) -> S {
     (u / abs_u + 1.0) * 0.5
+}
+
+/// By which share a turn raises 1 - w_P0 (Yasukawa & Yoshimura 2015, eq. 17 and 18): (1 - exp(-C_1 |b|)) (C_2 - 1), with the drift
+/// angle at the propeller b = beta - x_P' r' and C_2 by its side. The change of side is smooth over a thousandth of a radian.
+#[inline(always)]
+fn turning_wake<S: Scalar>(
+    ship: &Ship,
+    [c1, mean, half]: [S::Coefficient; 3],
+    [v, r]: [S; 2],
+    [speed, abs_u]: [S; 2],
+) -> S {
+    const SMOOTH: f64 = 1e-3;
+    let drift = -v.atan2(abs_u) - r * ship.propeller_x() / speed;
+    let size = (drift * drift + SMOOTH * SMOOTH).sqrt();
+    let c2 = drift / size * half + mean;
+    (S::one() - (-(size - SMOOTH) * c1).exp()) * (c2 - 1.0)
+}
+
+/// The lateral velocity at midship that the rudder's inflow is made of \[m/s\]: v, and in form `mmg` -U beta, which the standard
+/// method prints; they agree to second order in the drift angle. Ahead and astern alike.
+#[inline(always)]
+fn across<S: Scalar>(form: Form, v: S, speed: S, abs_u: S) -> S {
+    if form == Form::Mmg { speed * v.atan2(abs_u) } else { v }
 }
 
 /// Thrust over the density of water, before what terms change \[m4/s2\], from k0, k1, k2 and `astern`.
@@ -313,7 +348,7 @@ fn axial<S: Scalar>(
     square * ratio / (square * square + 1e-2 * tiny * tiny).sqrt().sqrt()
 }
 
-/// Lateral rudder inflow v_R \[m/s\] from gamma, dgamma and l_R/L, at a sway velocity \[m/s\] and a yaw rate \[rad/s\].
+/// Lateral rudder inflow v_R \[m/s\] from gamma, dgamma and l_R/L, at a lateral velocity \[m/s\] and a yaw rate \[rad/s\].
 #[inline(always)]
 fn lateral<S: Scalar>(
     ship: &Ship,

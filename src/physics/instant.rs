@@ -14,6 +14,9 @@ pub enum Form {
     Paper,
     /// Fore-aft consistent: the odd (Munk-type) terms change sign with u and resistance opposes motion either way.
     Regular,
+    /// The standard method of the MMG group as Yasukawa & Yoshimura 2015 print it: hull, wake in a turn and rudder from the terms
+    /// `mmg_hull`, `mmg_wake` and `mmg_rudder`, (m + m_x) u r in the sway equation, and the rudder's inflow by the drift angle.
+    Mmg,
 }
 
 /// The instant at which physics is evaluated.

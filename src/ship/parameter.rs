@@ -12,6 +12,17 @@ pub enum Parity {
     Odd,
 }
 
+/// Where a parameter begins in a model of form `mmg`.
+#[derive(Clone, Copy)]
+pub enum Start {
+    /// At its default.
+    Same,
+    /// At this value of the ship.
+    Own(fn(&Ship) -> f64),
+    /// At 0, whatever the ship file sets: another term of that form takes its place.
+    Replaced,
+}
+
 /// One parameter of a term.
 #[derive(Clone, Copy)]
 pub struct ParameterInfo {
@@ -25,6 +36,8 @@ pub struct ParameterInfo {
     pub about: &'static str,
     /// Default for a ship.
     pub default: fn(&Ship) -> f64,
+    /// Where it begins in form `mmg`.
+    pub mmg: Start,
     /// Size of a relevant change \[same unit\]: the solver's scale, and the size at which a nonlinear effect is probed.
     pub scale: fn(&Ship) -> f64,
     /// Prior standard deviation \[same unit\]; infinite for no prior.
@@ -46,6 +59,7 @@ impl ParameterInfo {
             unit,
             about,
             default: |_| 0.0,
+            mmg: Start::Same,
             scale: |_| 1.0,
             spread: |_| f64::INFINITY,
             lower: f64::NEG_INFINITY,
@@ -56,6 +70,11 @@ impl ParameterInfo {
     /// Sets the default.
     pub const fn default(mut self, default: fn(&Ship) -> f64) -> Self {
         self.default = default;
+        self
+    }
+    /// Sets where it begins in form `mmg`.
+    pub const fn in_mmg(mut self, start: Start) -> Self {
+        self.mmg = start;
         self
     }
     /// Sets the scale.

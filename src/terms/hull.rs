@@ -1,7 +1,7 @@
 //! Inertia and hull hydrodynamics in the Spyrou 1996 form, the left-hand side of the paper's eq. (1).
 //! It gives the mass matrix and everything quadratic in (u, v, r); resistance in u alone is a term of its own.
 
-use crate::parameter::ParameterInfo;
+use crate::parameter::{ParameterInfo, Start};
 use crate::physics::Flow;
 use crate::physics::{Adjust, Form, Group, Inertia, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Validity, degrees};
@@ -16,12 +16,17 @@ macro_rules! derivative {
     ($name:literal, $unit:literal, $about:literal) => {
         ParameterInfo::new($name, $name, $unit, $about)
             .default(|s| s.coefficient($name))
+            .in_mmg(Start::Replaced)
             .scale(|s| 0.1 * reference(s, $name))
             .spread(|s| 0.3 * reference(s, $name))
     };
     // Added mass and the damping of a motion by its own force: a force that fed the motion would be energy from nowhere.
     ($name:literal, $unit:literal, $about:literal, negative) => {
         derivative!($name, $unit, $about).bounds(f64::NEG_INFINITY, 0.0)
+    };
+    // The added masses m_x, m_y and J_z, which form `mmg` keeps; all else of it is the term `mmg_hull`.
+    ($name:literal, $unit:literal, $about:literal, mass) => {
+        derivative!($name, $unit, $about, negative).in_mmg(Start::Same)
     };
 }
 
@@ -45,7 +50,8 @@ static INFO: TermInfo = TermInfo {
     group: Group::Hull,
     equation: "(m-Xudot) u' + (Yvdot-Xvr-m) v r + (Yrdot-m xG) r^2 = X; \
                (m-Yvdot) v' + (m xG-Yrdot) r' - Yv U v + (m u-Yr U) r - Yvv v|v| - Yvr v|r| - Yrr r|r| = Y; \
-               (m xG-Nvdot) v' + (Iz-Nrdot) r' - Nv U v + (m xG u-Nr U) r - Nrr r|r| - Nrrv r^2 v/U - Nvvr v^2 r/U = N",
+               (m xG-Nvdot) v' + (Iz-Nrdot) r' - Nv U v + (m xG u-Nr U) r - Nrr r|r| - Nrrv r^2 v/U - Nvvr v^2 r/U = N; \
+               form `mmg`: (m-Xudot) u r in Y, and what is not a mass is `mmg_hull`",
     source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (1) after Spyrou 1996; coefficients by Clarke et al. 1982 and Inoue et al. 1981",
     needs: &[],
     validity: Validity {
@@ -72,11 +78,11 @@ static INFO: TermInfo = TermInfo {
             .default(|s| s.hull.x_g)
             .scale(|s| 0.01 * s.hull.lpp)
             .spread(|s| 0.01 * s.hull.lpp),
-        derivative!("Xudot", "kg", "surge added mass, negative", negative),
-        derivative!("Yvdot", "kg", "sway added mass, negative", negative),
+        derivative!("Xudot", "kg", "surge added mass, negative", mass),
+        derivative!("Yvdot", "kg", "sway added mass, negative", mass),
         derivative!("Yrdot", "kg m", "sway-yaw added mass"),
         derivative!("Nvdot", "kg m", "yaw-sway added mass"),
-        derivative!("Nrdot", "kg m2", "yaw added inertia, negative", negative),
+        derivative!("Nrdot", "kg m2", "yaw added inertia, negative", mass),
         derivative!("Xvr", "kg", "surge force of drift and turn"),
         derivative!("Yv", "kg/m", "linear sway damping", negative),
         derivative!("Yr", "kg", "sway force of turn"),
@@ -104,26 +110,28 @@ impl Term for Hull {
 /// Index of the first damping coefficient: before it are masses, inertia and added masses.
 pub(crate) const DAMPING: usize = 8;
 
-/// Mass \[kg\] and its moment about midship \[kg m\], and the added masses Yvdot \[kg\] and Yrdot \[kg m\], as they turn with the ship.
+/// Mass \[kg\] and its moment about midship \[kg m\], and the added masses Yvdot \[kg\], Yrdot \[kg m\] and, in form `mmg`, Xudot \[kg\],
+/// as they turn with the ship. The other forms have Xudot in their Yr.
 #[inline(always)]
-fn turning<C: Scalar<Coefficient = C>>(p: &[C], a: &Adjust<C>) -> [C; 4] {
-    [p[0] * a.mass, p[0] * a.mass * (p[2] + a.x_g), p[4] * a.added_mass, p[5] * a.added_mass]
+fn turning<C: Scalar<Coefficient = C>>(p: &[C], a: &Adjust<C>, form: Form) -> [C; 5] {
+    let surge = if form == Form::Mmg { p[3] } else { C::zero() };
+    [p[0] * a.mass, p[0] * a.mass * (p[2] + a.x_g), p[4] * a.added_mass, p[5] * a.added_mass, surge]
 }
 
 /// What one of the masses of the term changes, per unit: the mass matrix and the masses that turn with the ship.
 #[derive(Clone, Copy, Debug)]
 pub struct MassSlope<C> {
     matrix: Inertia<C>,
-    turning: [C; 4],
+    turning: [C; 5],
 }
 
 impl<C: Scalar<Coefficient = C>> MassSlope<C> {
     /// By each of the masses from m to Nrdot at the parameters `p` of the term, under what other terms change.
     #[inline(always)]
-    pub fn all(p: &[C], adjust: &Adjust<C>) -> [Self; DAMPING] {
+    pub fn all(p: &[C], adjust: &Adjust<C>, form: Form) -> [Self; DAMPING] {
         let p: [Dual<C, DAMPING>; DAMPING] = std::array::from_fn(|j| Dual::variable(p[j], j));
         let adjust = adjust.map(Dual::constant);
-        let (matrix, turning) = (Inertia::new(&p, &adjust), turning(&p, &adjust));
+        let (matrix, turning) = (Inertia::new(&p, &adjust), turning(&p, &adjust, form));
         std::array::from_fn(|j| Self { matrix: matrix.map(|m| m.eps[j]), turning: turning.map(|m| m.eps[j]) })
     }
 
@@ -131,10 +139,10 @@ impl<C: Scalar<Coefficient = C>> MassSlope<C> {
     /// through the water: the change of the accelerations follows from it as from a force.
     #[inline(always)]
     pub fn force(&self, flow: &Flow<C>, rates: &[C; 3]) -> Force<C> {
-        let [m, moment, yvdot, yrdot] = self.turning;
+        let [m, moment, yvdot, yrdot, xudot] = self.turning;
         let ur = flow.u * flow.r;
         let x = flow.v * flow.r * (m - yvdot) + flow.r * flow.r * (moment - yrdot);
-        Force { x, y: -(ur * m), n: -(ur * moment) } - self.matrix.force(rates)
+        Force { x, y: -(ur * (m - xudot)), n: -(ur * moment) } - self.matrix.force(rates)
     }
 }
 
@@ -149,7 +157,7 @@ fn damping<S: Scalar>(at: &Instant<S>, flow: &Flow<S>) -> [S; 11] {
     let (u, v, r) = (flow.u, flow.v, flow.r);
     let share = match at.form {
         Form::Paper => a.sternway,
-        Form::Regular => S::Coefficient::one(),
+        Form::Regular | Form::Mmg => S::Coefficient::one(),
     };
     let (even, odd) = (flow.speed + (flow.abs_u - flow.speed) * share, flow.speed + (u - flow.speed) * share);
     let (vr, rr) = (v * r, r * flow.abs_r);
@@ -173,13 +181,13 @@ impl<S: Scalar> Physics<S> for Hull {
     /// Everything of eq. (1)'s left-hand side but the accelerations, moved to the right.
     #[inline(always)]
     fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
-        let [m, moment, yvdot, yrdot] = turning(p, &flow.adjust);
+        let [m, moment, yvdot, yrdot, xudot] = turning(p, &flow.adjust, at.form);
         let [vr, y_v, y_r, n_v, n_r, y_vv, y_vr, y_rr, n_rr, n_rrv, n_vvr] = damping(at, flow);
         let p = &p[DAMPING..];
         let ur = flow.u * flow.r;
         Force {
             x: vr * (m + p[0] - yvdot) + flow.r * flow.r * (moment - yrdot),
-            y: y_v * p[1] + y_r * p[2] + y_vv * p[5] + y_vr * p[6] + y_rr * p[7] - ur * m,
+            y: y_v * p[1] + y_r * p[2] + y_vv * p[5] + y_vr * p[6] + y_rr * p[7] - ur * (m - xudot),
             n: n_v * p[3] + n_r * p[4] + n_rr * p[8] + n_rrv * p[9] + n_vvr * p[10] - ur * moment,
         }
     }

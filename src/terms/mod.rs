@@ -24,6 +24,9 @@ pub mod hull_nonlinear;
 pub mod loading;
 pub mod log_scale;
 pub mod mean_wind;
+pub mod mmg_hull;
+pub mod mmg_rudder;
+pub mod mmg_wake;
 pub mod munk;
 pub mod position_lever;
 pub mod propeller;
@@ -62,6 +65,9 @@ pub static CATALOGUE: &[&dyn AnyTerm] = &[
     &resistance::Resistance,
     &propeller::Propeller,
     &rudder::Rudder,
+    &mmg_hull::MmgHull,
+    &mmg_wake::MmgWake,
+    &mmg_rudder::MmgRudder,
     &current::Current,
     &tide::Tide,
     &wind::Wind,

@@ -1,7 +1,7 @@
 //! Surge resistance as a cubic in u, the parameters p1 to p3 of the paper.
 //! It enters the surge equation as -R(u); with the plus sign that the paper prints, R >= 0 would push the ship.
 
-use crate::parameter::ParameterInfo;
+use crate::parameter::{ParameterInfo, Start};
 use crate::physics::Flow;
 use crate::physics::Validity;
 use crate::physics::{Form, Group, Instant, Physics, Reach, Term, TermInfo};
@@ -27,9 +27,11 @@ static INFO: TermInfo = TermInfo {
     },
     mechanisms: &[],
     parameters: &[
-        ParameterInfo::new("linear", "p1", "N s/m", "linear resistance").scale(rate::<1>),
-        ParameterInfo::new("quadratic", "p2", "N s2/m2", "quadratic resistance").scale(rate::<2>),
-        ParameterInfo::new("cubic", "p3", "N s3/m3", "cubic resistance").scale(rate::<3>),
+        ParameterInfo::new("linear", "p1", "N s/m", "linear resistance").in_mmg(Start::Replaced).scale(rate::<1>),
+        ParameterInfo::new("quadratic", "p2", "N s2/m2", "quadratic resistance")
+            .in_mmg(Start::Replaced)
+            .scale(rate::<2>),
+        ParameterInfo::new("cubic", "p3", "N s3/m3", "cubic resistance").in_mmg(Start::Replaced).scale(rate::<3>),
     ],
 };
 
@@ -63,7 +65,7 @@ impl<S: Scalar> Physics<S> for Resistance {
         let u = flow.u;
         let share = match at.form {
             Form::Paper => flow.adjust.sternway,
-            Form::Regular => S::Coefficient::one(),
+            Form::Regular | Form::Mmg => S::Coefficient::one(),
         };
         let square = u * (u + (u.abs() - u) * share);
         let r = u * p[0] + square * p[1] + u * u * u * p[2];

@@ -1,9 +1,9 @@
 //! Rudder forces from a cubic lift and a quadratic drag curve, the parameters p4 to p10 of the paper.
 //! The curves hold up to 45 degrees of attack; beyond 60 degrees the rudder is a flat plate, with a smooth blend between.
 
-use crate::parameter::ParameterInfo;
+use crate::parameter::{ParameterInfo, Start};
 use crate::physics::Flow;
-use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
+use crate::physics::{Form, Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Validity, degrees};
 use crate::state::Force;
 use std::f64::consts::PI;
@@ -37,19 +37,34 @@ static INFO: TermInfo = TermInfo {
     },
     mechanisms: &[],
     parameters: &[
-        ParameterInfo::new("lift0", "p4", "-", "lift coefficient at zero angle").scale(|_| 0.05).odd(),
+        ParameterInfo::new("lift0", "p4", "-", "lift coefficient at zero angle")
+            .in_mmg(Start::Replaced)
+            .scale(|_| 0.05)
+            .odd(),
         ParameterInfo::new("lift1", "p5", "1/rad", "slope of the lift coefficient")
+            .in_mmg(Start::Replaced)
             .default(|_| 2.5)
             .scale(|_| 0.5)
             .bounds(0.0, f64::INFINITY),
-        ParameterInfo::new("lift2", "p6", "1/rad2", "even curvature of the lift coefficient").scale(|_| 0.5).odd(),
-        ParameterInfo::new("lift3", "p7", "1/rad3", "cubic of the lift coefficient").default(|_| -3.0).scale(|_| 1.0),
+        ParameterInfo::new("lift2", "p6", "1/rad2", "even curvature of the lift coefficient")
+            .in_mmg(Start::Replaced)
+            .scale(|_| 0.5)
+            .odd(),
+        ParameterInfo::new("lift3", "p7", "1/rad3", "cubic of the lift coefficient")
+            .in_mmg(Start::Replaced)
+            .default(|_| -3.0)
+            .scale(|_| 1.0),
         ParameterInfo::new("drag0", "p8", "-", "drag coefficient at zero angle")
+            .in_mmg(Start::Replaced)
             .default(|_| 0.02)
             .scale(|_| 0.02)
             .bounds(0.0, f64::INFINITY),
-        ParameterInfo::new("drag1", "p9", "1/rad", "slope of the drag coefficient").scale(|_| 0.1).odd(),
+        ParameterInfo::new("drag1", "p9", "1/rad", "slope of the drag coefficient")
+            .in_mmg(Start::Replaced)
+            .scale(|_| 0.1)
+            .odd(),
         ParameterInfo::new("drag2", "p10", "1/rad2", "curvature of the drag coefficient")
+            .in_mmg(Start::Replaced)
             .default(|_| 1.3)
             .scale(|_| 0.5)
             .bounds(0.0, f64::INFINITY),
@@ -101,7 +116,11 @@ impl<S: Scalar> Blade<S> {
         let pressure = 0.5 * at.ship.hull.water_density * at.ship.rudder.area;
         // L and D with cos g = u_R/U_R and sin g = v_R/U_R: one factor U_R is left, so that no inflow gives no force.
         let speed = (u * u + v * v + 1e-12).sqrt() * pressure;
-        let normal = sin * plate * PLATE_NORMAL;
+        // In form `mmg` the blade is the term `mmg_rudder`, and no plate is added to it.
+        let normal = match at.form {
+            Form::Paper | Form::Regular => sin * plate * PLATE_NORMAL,
+            Form::Mmg => S::zero(),
+        };
         Self {
             lift: [lifting, first, second, second * inside],
             drag: [curve, drag, drag * inside],

@@ -135,7 +135,9 @@ fn every_pointer_to_a_command_a_topic_or_an_option_points_to_something() {
                 does(&[&["help"], rest].concat());
                 continue;
             }
-            ["maneuver", trial, ..] if ["turning", "zigzag", "stopping"].contains(trial) => {
+            ["maneuver", trial, ..]
+                if ["turning", "zigzag", "stopping", "pullout", "spiral", "measure"].contains(trial) =>
+            {
                 vec!["help", "maneuver", trial]
             }
             [first, ..] => vec!["help", first],

@@ -103,7 +103,7 @@ fn a_measure_that_draws_do_not_reach_has_no_interval() {
     set_intervals(&mut trials, &draws, |theta| (theta[0] > f64::INFINITY).then(|| circles(&model, &approach, theta)));
     assert!(trials.iter().all(|t| t.intervals.is_empty()));
     set_intervals(&mut trials, &draws, |theta| Some(circles(&model, &approach, theta)));
-    assert!(trials.iter().all(|t| t.intervals.len() == 8), "{:?}", trials[0].intervals);
+    assert!(trials.iter().all(|t| t.intervals.len() == Turning::QUANTITIES.len()), "{:?}", trials[0].intervals);
 }
 
 #[test]
@@ -149,7 +149,30 @@ fn what_is_left_out_is_said_and_kept_on_request() {
     assert_eq!(at(&json, "result.left_out").as_array().unwrap().len(), 2);
     let table = std::fs::read_to_string(study.path("turning/turning_measures.csv")).unwrap();
     assert!(table.starts_with("trial,side,measure,unit,value,low95,high95\n"), "{table}");
-    assert_eq!(table.lines().count(), 1 + 2 * 8);
+    assert_eq!(table.lines().count(), 1 + 2 * Turning::QUANTITIES.len());
+}
+
+#[test]
+fn pull_outs_and_a_spiral_are_sailed_and_say_whether_the_ship_is_stable_on_its_course() {
+    let study = Study::new();
+    let said = study.does(&["maneuver", "pullout", "study.toml", "--out", "pulled"]);
+    contains_all(&said, &["yaw rate left [deg/s]", "time to 1/e [s]", "on its course."]);
+    assert!(!said.contains("MSC.137"), "there is no criterion for it: {said}");
+    let json = study.json(&["maneuver", "spiral", "study.toml", "--angle", "15", "--depth", "20", "--out", "spiral"]);
+    assert!(at(&json, "result.trials.0.measures.points").as_array().unwrap().len() > 15);
+    let said = study.does(&["maneuver", "spiral", "study.toml", "--depth", "20"]);
+    contains_all(&said, &["width of the loop [deg]", "Water of 20"]);
+    study.refuses(&["maneuver", "turning", "study.toml", "--depth", "1"]);
+}
+
+#[test]
+fn recordings_without_a_trial_are_said_to_have_none() {
+    let study = Study::new();
+    let said = study.does(&["maneuver", "measure", "study.toml", "--out", "measured"]);
+    contains_all(&said, &["no turning circle and no zigzag in 8 recordings"]);
+    let table = std::fs::read_to_string(study.path("measured/measured.csv")).unwrap();
+    assert!(table.starts_with("run,trial,side,at,measure,unit,over_ground,through_water,model"), "{table}");
+    assert_eq!(at(&study.json(&["maneuver", "measure", "study.toml"]), "result.trials").as_array().unwrap().len(), 0);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use trimtab::model::dynamics::Dynamics;
 use trimtab::report::terms::{listing, summary};
 use trimtab::simulate::sensitivity::{Column, Columns, Plain};
 type Seeded = trimtab_ad::Dual<Lanes, FEW>;
-use trimtab::model::{BASE, Model};
+use trimtab::model::{BASE, MMG, Model};
 use trimtab::physics::{CHUNK, Curvature, FEW, Form, Gradient, Lanes, NumDual, Number, Reach};
 use trimtab::ship::Ship;
 use trimtab::ship::parameter::Parity;
@@ -28,9 +28,10 @@ fn extras() -> Vec<&'static str> {
     names().into_iter().filter(|n| !BASE.contains(n)).collect()
 }
 
-/// The base model and one term, every parameter of both moved off its default inside its bounds.
+/// The base model, in form `mmg` for a term of that form, and one term, every parameter of both moved off its default inside its bounds.
 fn probed(term: &str) -> Model {
-    let mut model = Model::new(ship(), "probe", Form::Paper, &[term]).unwrap();
+    let form = if MMG.contains(&term) { Form::Mmg } else { Form::Paper };
+    let mut model = Model::new(ship(), "probe", form, &[term]).unwrap();
     for (i, p) in model.parameters.iter_mut().enumerate() {
         let step = p.scale * [0.6, -0.4, 0.9, -0.7, 0.5][i % 5];
         let moved = if (p.lower..=p.upper).contains(&(p.value + step)) { p.value + step } else { p.value - step };

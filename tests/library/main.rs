@@ -12,6 +12,7 @@ mod baseline;
 mod catalogue;
 mod filter;
 mod laws;
+mod mmg;
 mod model_file;
 mod recordings;
 mod reference;

@@ -171,7 +171,7 @@ impl Killer {
         }
         let [one, other] = [self.expected("one", command)?, self.expected("other", command)?];
         let results = self.results("one");
-        for (kill, at) in (1..).zip(instants.iter().copied()).skip(done) {
+        for (kill, at) in (1_usize..).zip(instants.iter().copied()).skip(done) {
             empty(&results)?;
             write(&other.files, &results).map_err(|source| ConcealError::file(&results, source))?;
             let fail = |source| ConcealError::file(&self.tool, source);

@@ -96,3 +96,46 @@ fn the_trials_of_kvlcc2_agree_with_the_reference_simulation() {
         }
     }
 }
+
+/// The 7 m model of KVLCC2 with the library's form `mmg` and the published primes.
+fn fitted_form() -> trimtab::model::Model {
+    let file = |name: &str| std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("ships").join(name);
+    let ship = trimtab::ship::Ship::read(&file("kvlcc2_7m.toml")).unwrap();
+    trimtab::model::Model::read(&file("kvlcc2_7m_mmg.toml"), ship).unwrap()
+}
+
+#[test]
+fn the_library_in_form_mmg_sails_the_trials_of_kvlcc2_as_this_simulator_does() {
+    use trimtab::evaluate::maneuver::{ManeuverSettings, Side, turning_trial, zigzag_trial};
+    let reference = &references()[0];
+    let approach = reference.approach(0.1);
+    let model = fitted_form();
+    let theta = model.values();
+    let settings = ManeuverSettings {
+        speed: Some(approach.speed),
+        rudder_rate_deg_s: Some(approach.rudder_rate.to_degrees()),
+        step: Some(approach.step),
+        ..ManeuverSettings::default()
+    };
+    let ours = settings.approach(&model, &theta).unwrap();
+    assert!((ours.n / approach.n - 1.0).abs() < 5e-3, "{} {}", ours.n, approach.n);
+    let length = reference.ship.particulars.length;
+    for (side, sign) in [(Side::Starboard, 1.0), (Side::Port, -1.0)] {
+        let angle = 35.0_f64.to_radians();
+        let truth = turning(&reference.ship, &approach, sign * angle).unwrap();
+        let m = turning_trial(&model, &theta, &ours, side, angle).measures;
+        let steady = m.steady.unwrap();
+        let found = [m.advance.unwrap(), m.transfer.unwrap(), m.tactical_diameter.unwrap(), steady.diameter];
+        for (found, expected) in found.iter().map(|x| x / length).zip(truth.measures()) {
+            assert!((found / expected - 1.0).abs() < 5e-3, "{side:?}: {found} instead of {expected}");
+        }
+        for degrees in [10.0_f64, 20.0] {
+            let angle = degrees.to_radians();
+            let truth = zigzag(&reference.ship, &approach, sign * angle).unwrap();
+            let m = zigzag_trial(&model, &theta, &ours, side, [angle; 2]).measures;
+            for (found, expected) in m.overshoots.iter().zip(truth) {
+                assert!((found / expected - 1.0).abs() < 5e-3, "{side:?} {degrees} deg: {found} instead of {expected}");
+            }
+        }
+    }
+}

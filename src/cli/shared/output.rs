@@ -75,6 +75,9 @@ fn expected(command: &str) -> &'static [&'static str] {
         "maneuver turning" => &["maneuver_turning.json", "turning.png", "turning.csv", "turning_measures.csv"],
         "maneuver zigzag" => &["maneuver_zigzag.json", "zigzag.png", "zigzag.csv", "zigzag_measures.csv"],
         "maneuver stopping" => &["maneuver_stopping.json", "stopping.png", "stopping.csv", "stopping_measures.csv"],
+        "maneuver pullout" => &["maneuver_pullout.json", "pullout.png", "pullout.csv", "pullout_measures.csv"],
+        "maneuver spiral" => &["maneuver_spiral.json", "spiral.png", "spiral.csv", "spiral_measures.csv"],
+        "maneuver measure" => &["maneuver_measure.json", "measured.csv"],
         "plan" => &["plan.json", "trials.csv", "detectable.csv", "isolability.csv", "isolability_map.png"],
         "sweep" => {
             &["sweep.json", "profiles.csv", "intervals.csv", "sensitivities.csv", "pairs.csv", "profile_curves.csv"]

@@ -27,6 +27,8 @@ pub struct ManeuverSettings {
     /// Rudder rate \[deg/s\]; that of the recordings, without recordings `rate_deg_s` of the ship file, else 2.32 (35 deg to 30 deg across
     /// in 28 s, SOLAS), for models below 20 m that of a 200 m ship in model time.
     pub rudder_rate_deg_s: Option<f64>,
+    /// Depth of the water \[m\], by the term `shallow`; deep water when left out.
+    pub depth: Option<f64>,
     /// Propeller rate of the crash stop \[rpm\], negative astern; minus the approach rate.
     pub astern_rpm: Option<f64>,
     /// Rate at which the propeller is reversed \[rpm/s\]; from ahead to astern while sailing two ship lengths.
@@ -173,6 +175,7 @@ impl Limited for ManeuverSettings {
             ("rudder_rate_deg_s", self.rudder_rate_deg_s),
             ("engine_rate_rpm_s", self.engine_rate_rpm_s),
             ("step", self.step),
+            ("depth", self.depth),
         ];
         for (key, value) in positive {
             if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {

@@ -1,6 +1,7 @@
-//! The measures of the standard trials: turning circle, zigzag and crash stop.
+//! The measures of the standard trials: turning circle, zigzag, crash stop, pull-out and spiral.
 //! They are data; each trial's own file reads them from a track.
 
+use super::nomoto::Nomoto;
 use serde::Serialize;
 
 /// What a turning circle is measured by. Lengths are of the midship point, from the instant the rudder begins to move,
@@ -29,6 +30,9 @@ pub struct Turning {
     /// The steady turn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steady: Option<Steady>,
+    /// Nomoto's K and T of the first 90 deg.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nomoto: Option<Nomoto>,
 }
 
 /// The steady turn: means over the last 90 deg of heading before the rudder is eased, of a turn of 270 deg or more.
@@ -72,6 +76,9 @@ pub struct Zigzag {
     /// Time from the second to the fourth execute \[s\]: one full cycle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub period: Option<f64>,
+    /// Nomoto's K and T from the first execute to the last, of a zigzag of three executes or more.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nomoto: Option<Nomoto>,
 }
 
 /// What a stop is measured by, from the order to the engine until the ship makes no more way ahead; a measure that was
@@ -95,6 +102,43 @@ pub struct Stopping {
     /// Time \[s\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
+}
+
+/// What a pull-out is measured by; a measure that was not reached is absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PullOut {
+    /// Rudder angle of the turn before \[rad\].
+    pub rudder: f64,
+    /// Speed of the approach \[m/s\].
+    pub approach_speed: f64,
+    /// Steady yaw rate of that turn \[rad/s\].
+    pub turning_rate: f64,
+    /// Steady yaw rate with the rudder amidships again \[rad/s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub residual_rate: Option<f64>,
+    /// Time until the rate has come as near to that as 1/e of the way \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub decay_time: Option<f64>,
+}
+
+/// What a spiral is measured by; a measure that was not reached is absent.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Spiral {
+    /// Largest rudder angle \[rad\].
+    pub rudder: f64,
+    /// Speed of the approach \[m/s\].
+    pub approach_speed: f64,
+    /// Rudder angles between which the ship turns to the side from which it comes \[rad\]; 0 for a ship that is stable on its course.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loop_width: Option<f64>,
+    /// Difference of the two yaw rates with the rudder amidships \[rad/s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loop_height: Option<f64>,
+    /// Rudder angle in the middle of the loop \[rad\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub neutral: Option<f64>,
+    /// Rudder angle \[rad\] and steady yaw rate \[rad/s\], in the order in which they were sailed.
+    pub points: Vec<[f64; 2]>,
 }
 
 /// A measure of a kind of trial: its name, and how it is read.
@@ -121,6 +165,8 @@ impl Measured for Turning {
         ("drift", |m| m.steady.map(|s| s.drift)),
         ("time_90", |m| m.time_90),
         ("time_180", |m| m.time_180),
+        ("nomoto_gain", |m| m.nomoto.map(|n| n.gain)),
+        ("nomoto_time", |m| m.nomoto.map(|n| n.time)),
     ];
 }
 
@@ -130,9 +176,26 @@ impl Measured for Zigzag {
         ("overshoot_2", |m| m.overshoots.get(1).copied()),
         ("overshoot_3", |m| m.overshoots.get(2).copied()),
         ("initial_turning", |m| m.initial_turning),
+        ("execute_2", |m| m.executes.get(1).copied()),
+        ("execute_3", |m| m.executes.get(2).copied()),
         ("reach", |m| m.reach),
         ("period", |m| m.period),
+        ("nomoto_gain", |m| m.nomoto.map(|n| n.gain)),
+        ("nomoto_time", |m| m.nomoto.map(|n| n.time)),
     ];
+}
+
+impl Measured for PullOut {
+    const QUANTITIES: &'static [Quantity<Self>] = &[
+        ("turning_rate", |m| m.residual_rate.map(|_| m.turning_rate)),
+        ("residual_rate", |m| m.residual_rate),
+        ("decay_time", |m| m.decay_time),
+    ];
+}
+
+impl Measured for Spiral {
+    const QUANTITIES: &'static [Quantity<Self>] =
+        &[("loop_width", |m| m.loop_width), ("loop_height", |m| m.loop_height), ("neutral", |m| m.neutral)];
 }
 
 impl Measured for Stopping {

@@ -1,14 +1,19 @@
-//! The standard manoeuvring trials (turning circle, zigzag, crash stop) with any model, and their measures read from a track.
+//! The standard manoeuvring trials (turning circle, zigzag, crash stop, pull-out, spiral) with any model, and their measures read from a track.
 //! It neither fits nor judges a model: a poor model gives poor numbers, and only the IMO criteria are compared with them.
 
 mod approach;
 mod calm;
 mod error;
+mod found;
 pub mod imo;
 mod interval;
+mod measured;
 mod measures;
+mod nomoto;
+mod pullout;
 mod recorded;
 mod sail;
+mod spiral;
 mod stopping;
 mod track;
 mod trial;
@@ -16,11 +21,16 @@ mod turning;
 mod zigzag;
 
 pub use approach::{Approach, ManeuverSettings, Source};
-pub use calm::calm_water;
+pub use calm::{calm_water, calm_water_of_depth};
 pub use error::ManeuverError;
+pub use found::{Found, Kind, PassedOver, approach_speed, find};
 pub use interval::{DRAWS, Drawn, Known, SEED, drawn, drawn_from, of_priors, set_intervals, set_intervals_from};
-pub use measures::{Measured, Quantity, Steady, Stopping, Turning, Zigzag};
+pub use measured::{MeasuredTrial, Measures, Simulated, Taken, measured};
+pub use measures::{Measured, PullOut, Quantity, Spiral, Steady, Stopping, Turning, Zigzag};
+pub use nomoto::Nomoto;
+pub use pullout::{course_stable, pull_out, pull_out_trial};
 pub use recorded::{Recorded, recorded};
+pub use spiral::{spiral, spiral_angles, spiral_trial};
 pub use stopping::{stopping, stopping_trial};
 pub use track::Track;
 pub use trial::{Ended, Intervals, Side, Trial};

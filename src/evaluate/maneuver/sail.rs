@@ -27,10 +27,20 @@ pub(super) fn sail(
     model: &Model,
     theta: &[f64],
     approach: &Approach,
+    helm: impl FnMut(&Track) -> Option<Orders>,
+) -> (Track, Ended) {
+    sail_for(model, theta, approach, 200.0, helm)
+}
+
+/// [`sail`] for at most the time of so many ship lengths at approach speed.
+pub(super) fn sail_for(
+    model: &Model,
+    theta: &[f64],
+    approach: &Approach,
+    lengths: f64,
     mut helm: impl FnMut(&Track) -> Option<Orders>,
 ) -> (Track, Ended) {
     let dt = approach.step;
-    let lengths = 200.0;
     let steps = (lengths * model.ship.hull.lpp / approach.speed / dt).ceil() as usize;
     let integration = Integration { method: Method::Rk4, substeps: 1 };
     let limit = absurd_speed(model);

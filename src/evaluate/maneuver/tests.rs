@@ -272,3 +272,78 @@ fn an_interval_has_its_value_in_the_middle_where_recordings_tell_a_product_and_n
     let ratio = width(trial) / width(&again[0]);
     assert!((ratio / 10f64.sqrt() - 1.0).abs() < 0.05, "{ratio}");
 }
+
+#[test]
+fn a_circle_in_a_current_is_the_same_circle_through_the_water() {
+    let still = rotated(&circle(50.0, 1.0), 0.7);
+    let [north, east] = [0.31, -0.22];
+    let mut carried = still.clone();
+    for (t, s) in carried.t.iter().zip(&mut carried.states) {
+        let (sin, cos) = s[2].sin_cos();
+        (s[0], s[1]) = (s[0] + north * t, s[1] + east * t);
+        (s[3], s[4]) = (s[3] + north * cos + east * sin, s[4] + east * cos - north * sin);
+    }
+    let current = vec![[north, east]; carried.len()];
+    let (water, expected) = (turning(&carried.through_water(&current), 100), turning(&still, 100));
+    for (name, read) in Turning::QUANTITIES {
+        let (a, b) = (read(&water), read(&expected));
+        assert!(a.zip(b).is_some_and(|(a, b)| (a - b).abs() < 1e-9 * b.abs().max(1.0)), "{name}: {a:?} {b:?}");
+    }
+    let ground = turning(&carried, 100).tactical_diameter.unwrap();
+    assert!((ground - expected.tactical_diameter.unwrap()).abs() > 5.0, "the current must matter over ground");
+}
+
+#[test]
+fn the_pull_out_and_the_spiral_agree_on_whether_a_ship_is_stable_on_its_course() {
+    let settings = ManeuverSettings { speed: Some(5.0), ..Default::default() };
+    for (scale, expected) in [(4.0, true), (0.4, false)] {
+        let mut model = model(Form::Regular);
+        let names = ["propeller.side_force", "rudder.lift0", "rudder.lift2", "rudder.drag1"];
+        names.iter().for_each(|name| model.set(&[(*name, 0.0)]).unwrap());
+        // More yaw damping makes a ship stable, less makes it unstable.
+        let i = model.index("hull.Nr").unwrap();
+        let value = model.parameters[i].value;
+        model.set(&[("hull.Nr", scale * value)]).unwrap();
+        let theta = model.values();
+        let approach = settings.approach(&model, &theta).unwrap();
+        let angle = 20f64.to_radians();
+        let pulled = Side::BOTH.map(|side| pull_out_trial(&model, &theta, &approach, side, angle));
+        assert_eq!(course_stable(&pulled), Some(expected), "{:?}", pulled.map(|t| t.measures));
+        let m = spiral_trial(&model, &theta, &approach, angle).measures;
+        let (width, height) = (m.loop_width.unwrap().to_degrees(), m.loop_height.unwrap());
+        let residual = pulled[0].measures.residual_rate.unwrap();
+        assert_eq!(width < 0.5, expected, "{m:?}");
+        // Amidships the two passes are the rates that the pull-outs leave.
+        assert!((height - 2.0 * residual.abs()).abs() < 0.05 * residual.abs() + 1e-4, "{height} {residual}");
+        assert!(m.neutral.unwrap().abs() < 0.2f64.to_radians(), "{m:?}");
+    }
+}
+
+#[test]
+fn the_angles_of_a_spiral_go_from_one_side_to_the_other_and_back() {
+    let angles: Vec<f64> = spiral_angles(20f64.to_radians()).iter().map(|a| a.to_degrees().round()).collect();
+    let half = angles.len() / 2;
+    assert_eq!((angles[0], angles[half], *angles.last().unwrap()), (20.0, -20.0, 20.0));
+    assert!(angles[..=half].windows(2).all(|w| w[1] < w[0]) && angles[half..].windows(2).all(|w| w[1] > w[0]));
+    assert!(angles[half..].iter().eq(angles[..=half].iter().rev()));
+}
+
+#[test]
+fn shallow_water_widens_the_circle_and_a_depth_that_is_less_than_the_ship_needs_is_refused() {
+    let model = model(Form::Regular);
+    let at = |depth: Option<f64>| {
+        let (model, left_out) = calm_water_of_depth(&model, depth).unwrap();
+        assert!(!left_out.contains(&"shallow"));
+        let settings = ManeuverSettings { speed: Some(5.0), ..Default::default() };
+        let theta = model.values();
+        let approach = settings.approach(&model, &theta).unwrap();
+        let m = turning_trial(&model, &theta, &approach, Side::Starboard, settings.turning_angle()).measures;
+        (m.tactical_diameter.unwrap(), approach.n)
+    };
+    let draught = model.ship.hull.draught;
+    let [deep, ocean, shallow] = [None, Some(5e3), Some(1.6 * draught)].map(at);
+    assert!((ocean.0 / deep.0 - 1.0).abs() < 0.01, "{ocean:?} {deep:?}");
+    assert!(shallow.0 > 1.02 * deep.0 && shallow.1 > deep.1, "{shallow:?} {deep:?}");
+    let refused = calm_water_of_depth(&model, Some(1.05 * draught)).unwrap_err();
+    assert!(refused.key == "depth" && refused.to_string().contains("1.2 times the draught"), "{refused}");
+}

@@ -3,6 +3,7 @@
 
 use crate::recording::{Run, or_nan};
 use crate::state::STATES;
+use std::ops::RangeInclusive;
 
 /// States and actuators over time, one entry a sample. Units and signs of [`crate::state::State`]; heading not wrapped.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,6 +27,36 @@ impl Track {
             delta: run.inputs.iter().map(|i| i.delta).collect(),
             n: run.inputs.iter().map(|i| i.n).collect(),
         }
+    }
+
+    /// The samples of a range.
+    pub fn part(&self, samples: RangeInclusive<usize>) -> Self {
+        Self {
+            t: self.t[samples.clone()].to_vec(),
+            states: self.states[samples.clone()].to_vec(),
+            delta: self.delta[samples.clone()].to_vec(),
+            n: self.n[samples].to_vec(),
+        }
+    }
+
+    /// The track through the water: positions less what the current has carried the ship since the first sample, and velocities less
+    /// the current in body axes. `current` is where the water sets to over ground, (north, east) \[m/s\], at each sample.
+    #[must_use]
+    pub fn through_water(&self, current: &[[f64; 2]]) -> Self {
+        let mut track = self.clone();
+        let mut carried = [0.0; 2];
+        for (k, s) in track.states.iter_mut().enumerate().take(current.len()) {
+            if k > 0 {
+                let dt = self.t[k] - self.t[k - 1];
+                for (sum, j) in carried.iter_mut().zip(0..) {
+                    *sum += 0.5 * dt * (current[k - 1][j] + current[k][j]);
+                }
+            }
+            let ([north, east], (sin, cos)) = (current[k], s[2].sin_cos());
+            (s[0], s[1]) = (s[0] - carried[0], s[1] - carried[1]);
+            (s[3], s[4]) = (s[3] - north * cos - east * sin, s[4] + north * sin - east * cos);
+        }
+        track
     }
 
     /// Number of samples.

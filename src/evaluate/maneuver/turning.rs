@@ -4,6 +4,7 @@
 use super::approach::Approach;
 use super::imo;
 use super::measures::{Steady, Turning};
+use super::nomoto::nomoto_of_step;
 use super::sail::{Orders, sail};
 use super::track::Track;
 use super::trial::{Intervals, Side, Trial};
@@ -52,6 +53,7 @@ pub fn turning(track: &Track, execute: usize) -> Turning {
         time_90: quarter.map(|q| q.2),
         time_180: half.map(|h| h.2),
         steady: steady.filter(|s| s.diameter.is_finite()),
+        nomoto: track.first_above(execute, 0.5 * PI, turned).and_then(|end| nomoto_of_step(track, execute, end.sample)),
     }
 }
 

@@ -4,6 +4,7 @@
 use super::approach::Approach;
 use super::imo;
 use super::measures::Zigzag;
+use super::nomoto::nomoto;
 use super::sail::{Orders, sail};
 use super::track::Track;
 use super::trial::{Intervals, Side, Trial};
@@ -51,6 +52,7 @@ pub fn zigzag(track: &Track, executes: &[usize], heading: f64) -> Zigzag {
         initial_turning_time: answered.map(|a| track.time(a) - track.t[first]),
         reach: back.map(|b| track.time(b) - track.t[first]),
         period: (executes.len() > 3).then(|| track.t[executes[3]] - track.t[executes[1]]),
+        nomoto: later.last().filter(|_| later.len() > 1).and_then(|&last| nomoto(track, first, last)),
     }
 }
 

@@ -40,6 +40,9 @@ impl Export {
 
     /// The hull force as a function: what stands on the right of the equations.
     fn hull_force(&self) -> String {
+        if self.equations == super::mmg::EQUATIONS {
+            return super::mmg::MATLAB.to_owned();
+        }
         let regular = self.equations[2].contains("Yv |u| v");
         let (even, odd) = if regular { ("absu(u)", "u") } else { ("U(u,v)", "U(u,v)") };
         format!(

@@ -2,8 +2,9 @@
 //! It converts and simulates nothing: what a term computes is in [`crate::terms`].
 
 mod matlab;
+mod mmg;
 
-use crate::model::{BASE, Model};
+use crate::model::{Model, Parameter};
 use crate::physics::Form;
 use crate::ship::{COEFFICIENTS, Ship};
 use serde::Serialize;
@@ -89,6 +90,7 @@ const MMG_NOTE: &str = "MMG form of Yasukawa & Yoshimura 2015 at midship: (m + m
 /// The equations of motion with U in the linear terms.
 fn equations(form: Form) -> [&'static str; 4] {
     let [y, n] = match form {
+        Form::Mmg => return mmg::EQUATIONS,
         Form::Paper => [
             "Y = Yv U v + Yr U r + Yvv v|v| + Yvr v|r| + Yrr r|r| - m u r",
             "N = Nv U v + Nr U r + Nrr r|r| + Nrrv r^2 v/U + Nvvr v^2 r/U - m x_g u r",
@@ -113,7 +115,9 @@ pub fn export(model: &Model) -> Export {
     let h = &ship.hull;
     let unit = |power: i32| 0.5 * h.water_density * h.lpp.powi(power) * h.draught;
     let mut hull = Vec::new();
-    for p in model.parameters.iter().filter(|p| p.name.starts_with("hull.")) {
+    // Form `mmg` has other terms in place of some; where these are set all the same, they are named as left out.
+    let exported = |p: &&Parameter| !model.replaced(p.info);
+    for p in model.parameters.iter().filter(|p| p.name.starts_with("hull.")).filter(exported) {
         let power = match p.info.name {
             "mass" => Some(2),
             "inertia" => Some(4),
@@ -128,9 +132,15 @@ pub fn export(model: &Model) -> Export {
         hull.push(Coefficient { name, value: p.value, unit: p.info.unit.to_owned(), divided_by, prime, about });
     }
     let prime = |name: &str| hull.iter().find(|c| c.name == name).and_then(|c| c.prime).unwrap_or(0.0);
-    let mmg = mmg(&prime);
-    let base = |name: &str| ["resistance.", "propeller.", "rudder.", "flow."].iter().any(|t| name.starts_with(t));
-    let others = model.parameters.iter().filter(|p| base(&p.name)).map(|p| Coefficient {
+    let mut primes = converted(&prime);
+    if model.form == Form::Mmg {
+        primes.truncate(MASSES);
+        primes.extend(mmg::primes(model));
+    }
+    let with = ["resistance.", "propeller.", "rudder.", "flow.", "mmg_wake.", "mmg_rudder."];
+    let base = |p: &&Parameter| with.iter().any(|t| p.name.starts_with(t));
+    let unnamed = |p: &&Parameter| !exported(p) && p.value != 0.0;
+    let others = model.parameters.iter().filter(base).filter(exported).map(|p| Coefficient {
         name: p.name.clone(),
         value: p.value,
         unit: p.info.unit.to_owned(),
@@ -145,10 +155,13 @@ pub fn export(model: &Model) -> Export {
         frame: FRAME,
         equations: equations(model.form),
         normalisation: NORMALISATION,
-        mmg_note: MMG_NOTE,
-        left_out: model.term_names().iter().filter(|t| !BASE.contains(t)).map(ToString::to_string).collect(),
+        mmg_note: if model.form == Form::Mmg { mmg::NOTE } else { MMG_NOTE },
+        left_out: {
+            let set = model.parameters.iter().filter(unnamed).map(|p| p.name.clone());
+            model.further_terms().iter().map(ToString::to_string).chain(set).collect()
+        },
         particulars: particulars(ship),
-        mmg,
+        mmg: primes,
         others: others.collect(),
         hull,
     }
@@ -178,8 +191,11 @@ fn particulars(ship: &Ship) -> Vec<Particular> {
     ]
 }
 
+/// How many of the MMG primes are masses, inertias and their centre: those that every form has, first in the list.
+const MASSES: usize = 6;
+
 /// The MMG primes from those of the HD form.
-fn mmg(prime: &dyn Fn(&str) -> f64) -> Vec<Prime> {
+fn converted(prime: &dyn Fn(&str) -> f64) -> Vec<Prime> {
     let same = |name: &'static str, definition: &'static str| Prime { name, value: prime(name), definition };
     vec![
         Prime { name: "m", value: prime("mass"), definition: "m / (1/2 rho L^2 d)" },

@@ -2,7 +2,7 @@
 //! Nothing is computed here beyond units; measures are in `tables`.
 
 use super::annotate::{circles, overshoots};
-use crate::evaluate::maneuver::{Side, Stopping, Track, Trial, Turning, Zigzag};
+use crate::evaluate::maneuver::{PullOut, Side, Spiral, Stopping, Track, Trial, Turning, Zigzag};
 use crate::numerals::sig;
 use crate::report::plot::{Axis, BLUE, Color, Figure, GREY, Layer, Legend, Panel, VERMILLION, east_north};
 use crate::ship::Ship;
@@ -137,6 +137,39 @@ pub fn zigzag_figure(ship: &Ship, trials: &[Trial<Zigzag>]) -> Figure {
         figure = figure.with(tracks);
     }
     figure
+}
+
+/// Pull-outs from both sides: yaw rate, rudder, tracks and speed.
+pub fn pull_out_figure(ship: &Ship, trials: &[Trial<PullOut>]) -> Figure {
+    Figure::new(format!("{}: pull-outs", ship.name))
+        .columns(2)
+        .panel_size(900, 560)
+        .caption(
+            "Pull-outs from steady turns to both sides: the yaw rates of a ship that is stable on its course come together with the rudder amidships.",
+        )
+        .with(time_panel("yaw rate r [deg/s]", trials, |t, k| t.states[k][5].to_degrees()))
+        .with(time_panel("rudder delta [deg]", trials, |t, k| t.delta[k].to_degrees()))
+        .with(track_panel("", ship, trials.iter()))
+        .with(time_panel("speed U [m/s]", trials, Track::speed))
+}
+
+/// A spiral: the steady yaw rate over the rudder angle, there and back.
+pub fn spiral_figure(ship: &Ship, trial: &Trial<Spiral>) -> Figure {
+    let points: Vec<(f64, f64)> =
+        trial.measures.points.iter().map(|p| (p[0].to_degrees(), p[1].to_degrees())).collect();
+    let half = points.len() / 2;
+    let pass = |name: &str, color, points: &[(f64, f64)]| Layer::line(name, color, points.iter().copied());
+    let mut panel = Panel::new("", Axis::new("rudder delta [deg]"), Axis::new("steady yaw rate r [deg/s]"))
+        .with(Layer::h_line("no turn", GREY, 0.0).dotted().unlisted());
+    if half > 0 {
+        panel = panel
+            .with(pass("from starboard to port", BLUE, &points[..=half]))
+            .with(pass("from port to starboard", VERMILLION, &points[half..]).dashed());
+    }
+    Figure::new(format!("{}: {}", ship.name, trial.name))
+        .panel_size(900, 640)
+        .caption("Direct spiral: the steady yaw rate at each rudder angle, from starboard to port and back. A ship that is unstable on its course has two rates at small angles.")
+        .with(panel)
 }
 
 /// A crash stop: track, speed, propeller rate and heading.

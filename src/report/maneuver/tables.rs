@@ -2,7 +2,7 @@
 //! It converts units and computes nothing else.
 
 use crate::evaluate::maneuver::imo::{Criterion, SHORTEST};
-use crate::evaluate::maneuver::{Ended, Measured, Stopping, Track, Trial, Turning, Zigzag};
+use crate::evaluate::maneuver::{Ended, Measured, PullOut, Spiral, Stopping, Track, Trial, Turning, Zigzag};
 use crate::numerals::{DASH, fixed, sig};
 use crate::report::table::Table;
 use crate::ship::Ship;
@@ -18,16 +18,34 @@ pub enum Told {
     Degrees,
     /// Seconds.
     Seconds,
+    /// Per second.
+    PerSecond,
+    /// Degrees per second.
+    DegreesPerSecond,
 }
 
 impl Told {
+    /// The SI unit that it is told from.
+    pub fn si(self) -> &'static str {
+        match self {
+            Self::Lengths => "m",
+            Self::Percent => "-",
+            Self::Degrees => "rad",
+            Self::Seconds => "s",
+            Self::PerSecond => "1/s",
+            Self::DegreesPerSecond => "rad/s",
+        }
+    }
+
     /// Unit, factor from SI for a ship of that length \[m\], and decimals.
-    fn scale(self, length: f64) -> (&'static str, f64, usize) {
+    pub(super) fn scale(self, length: f64) -> (&'static str, f64, usize) {
         match self {
             Self::Lengths => ("L", 1.0 / length, 2),
             Self::Percent => ("%", 100.0, 0),
             Self::Degrees => ("deg", 1f64.to_degrees(), 1),
             Self::Seconds => ("s", 1.0, 1),
+            Self::PerSecond => ("1/s", 1.0, 4),
+            Self::DegreesPerSecond => ("deg/s", 1f64.to_degrees(), 3),
         }
     }
 }
@@ -48,6 +66,8 @@ impl Listed for Turning {
         ("drift", "drift", Told::Degrees),
         ("time_90", "time to 90 deg", Told::Seconds),
         ("time_180", "time to 180 deg", Told::Seconds),
+        ("nomoto_gain", "Nomoto K", Told::PerSecond),
+        ("nomoto_time", "Nomoto T", Told::Seconds),
     ];
 }
 
@@ -57,8 +77,28 @@ impl Listed for Zigzag {
         ("overshoot_2", "overshoot 2", Told::Degrees),
         ("overshoot_3", "overshoot 3", Told::Degrees),
         ("initial_turning", "initial turning", Told::Lengths),
+        ("execute_2", "second execute", Told::Seconds),
+        ("execute_3", "third execute", Told::Seconds),
         ("reach", "reach", Told::Seconds),
         ("period", "period", Told::Seconds),
+        ("nomoto_gain", "Nomoto K", Told::PerSecond),
+        ("nomoto_time", "Nomoto T", Told::Seconds),
+    ];
+}
+
+impl Listed for PullOut {
+    const ROWS: &'static [(&'static str, &'static str, Told)] = &[
+        ("turning_rate", "yaw rate of the turn", Told::DegreesPerSecond),
+        ("residual_rate", "yaw rate left", Told::DegreesPerSecond),
+        ("decay_time", "time to 1/e", Told::Seconds),
+    ];
+}
+
+impl Listed for Spiral {
+    const ROWS: &'static [(&'static str, &'static str, Told)] = &[
+        ("loop_width", "width of the loop", Told::Degrees),
+        ("loop_height", "height of the loop", Told::DegreesPerSecond),
+        ("neutral", "rudder in its middle", Told::Degrees),
     ];
 }
 
@@ -94,12 +134,7 @@ pub fn measures_csv<M: Listed>(trials: &[Trial<M>]) -> Table {
     let number = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or(String::new(), |x| x.to_string());
     for t in trials {
         for (key, _, told) in M::ROWS {
-            let unit = match told {
-                Told::Lengths => "m",
-                Told::Percent => "-",
-                Told::Degrees => "rad",
-                Told::Seconds => "s",
-            };
+            let unit = told.si();
             let [low, high] = t.intervals.get(key).map_or([None, None], |ends| ends.map(Some));
             let value = number(t.measures.quantity(key));
             let cells = [&t.name, t.side.word(), key, unit, &value, &number(low), &number(high)];

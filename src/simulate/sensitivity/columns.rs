@@ -46,7 +46,7 @@ pub struct Constants<P> {
 /// What the masses change in a flow.
 #[inline(always)]
 fn masses<P: Plain>(dynamics: &Dynamics<P>, flow: &Flow<P>) -> [MassSlope<P>; DAMPING] {
-    MassSlope::all(dynamics.model().placed()[HULL].part(dynamics.theta()), &flow.adjust)
+    MassSlope::all(dynamics.model().placed()[HULL].part(dynamics.theta()), &flow.adjust, dynamics.model().form)
 }
 
 /// Columns grouped by what their parameters can change.
@@ -112,7 +112,7 @@ impl Columns {
     pub fn constants<P: Plain>(&self, dynamics: &Dynamics<P>) -> Constants<P> {
         let hull = dynamics.model().placed()[HULL].part(dynamics.theta());
         let constant = !self.inertia.is_empty() && dynamics.extras().is_empty();
-        Constants { masses: constant.then(|| MassSlope::all(hull, &Adjust::neutral())) }
+        Constants { masses: constant.then(|| MassSlope::all(hull, &Adjust::neutral(), dynamics.model().form)) }
     }
 
     /// How many columns there are.

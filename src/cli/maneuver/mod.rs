@@ -1,19 +1,22 @@
 //! `trimtab maneuver`: the standard trials with any model, their measures, and the IMO criteria beside them.
 //! The library sails and measures the trials; this file prints, tabulates and draws them.
 
-use super::shared::answer::Answer;
-use super::shared::audited::model_alone;
-use super::shared::error::CliError;
-use super::shared::figures::FigureArgs;
-use super::shared::load::ShipArgs;
-use super::shared::output::{Output, OutputArgs};
-use super::shared::progress::progress;
+mod measure;
+
+use crate::cli::shared::answer::Answer;
+use crate::cli::shared::audited::model_alone;
+use crate::cli::shared::error::CliError;
+use crate::cli::shared::figures::FigureArgs;
+use crate::cli::shared::load::ShipArgs;
+use crate::cli::shared::output::{Output, OutputArgs};
+use crate::cli::shared::progress::progress;
 use clap::Subcommand;
 use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::evaluate::maneuver::{
-    Approach, DRAWS, Drawn, Ended, Known, ManeuverSettings, Measured, SEED, Side, Trial, calm_water, drawn_from,
-    of_priors, recorded, set_intervals_from, stopping_trial, turning_trial, zigzag_trial,
+    Approach, DRAWS, Drawn, Ended, Known, ManeuverError, ManeuverSettings, Measured, SEED, Side, Trial,
+    calm_water_of_depth, course_stable, drawn_from, of_priors, pull_out_trial, recorded, set_intervals_from,
+    spiral_trial, stopping_trial, turning_trial, zigzag_trial,
 };
 use trimtab::files::Names;
 use trimtab::model::Model;
@@ -21,8 +24,8 @@ use trimtab::numbers::numerals::sig;
 use trimtab::numbers::uncertainty::Uncertainty;
 use trimtab::recording::validity::{self, Coverage};
 use trimtab::report::maneuver::{
-    Listed, criteria_note, criteria_table, ended_note, measures_csv, measures_table, stopping_figure, track_csv,
-    turning_figure, zigzag_figure,
+    Listed, criteria_note, criteria_table, ended_note, measures_csv, measures_table, pull_out_figure, spiral_figure,
+    stopping_figure, track_csv, turning_figure, zigzag_figure,
 };
 use trimtab::report::plot::Figure;
 use trimtab::ship::state::Inputs;
@@ -63,10 +66,39 @@ enum Kind {
     /// Zigzags 10/10 and 20/20: overshoots, initial turning, period
     #[command(after_long_help = ZIGZAG)]
     Zigzag(ZigzagArgs),
+    /// Trials found in the recordings: the same measures, with and without a current, beside the model's
+    #[command(after_long_help = measure::AFTER)]
+    Measure(measure::MeasureArgs),
     /// A crash stop: track reach, head reach, lateral deviation, time
     #[command(after_long_help = STOPPING)]
     Stopping(TrialArgs),
+    /// Pull-outs: the yaw rate that is left when the rudder is put amidships in a steady turn
+    #[command(after_long_help = PULLOUT)]
+    Pullout(AngleArgs),
+    /// A direct spiral: the steady yaw rate at each rudder angle, there and back
+    #[command(after_long_help = SPIRAL)]
+    Spiral(AngleArgs),
 }
+
+const PULLOUT: &str = "\
+Example:
+  trimtab maneuver pullout study.toml --model results/fitted.toml --out pullout
+
+A ship whose yaw rates from both sides come together is stable on its course.
+
+With --out: maneuver_pullout.json, pullout.png and .csv, pullout_measures.csv, the track of each trial as CSV.
+JSON: as for turning, with measures rudder [rad], turning_rate, residual_rate [rad/s], decay_time [s]; absent: not reached; result.course_stable.";
+
+const SPIRAL: &str = "\
+Example:
+  trimtab maneuver spiral study.toml --model results/fitted.toml --angle 15 --out spiral
+
+Each rudder angle is held until the yaw rate is steady, for 60 ship lengths at most. A ship that is unstable on its course has a loop: two \
+    rates at small angles. Its width is known to a degree or two, the distance of the angles.
+
+With --out: maneuver_spiral.json, spiral.png and .csv, spiral_measures.csv, the track as CSV.
+JSON: as for turning, with measures rudder, loop_width, neutral [rad], loop_height [rad/s], points[] (rudder angle [rad], yaw rate [rad/s]); \
+    absent: not reached.";
 
 const TURNING: &str = "\
 Example:
@@ -76,7 +108,7 @@ With --out: maneuver_turning.json, turning.png and .csv, turning_measures.csv (a
 JSON: result.ship, result.length [m], result.left_out[] (terms), result.draws (count, seed, covariance, undetermined[]; where there are \
     intervals), result.approach (speed [m/s], n [rps], balanced, rudder_rate [rad/s], step [s], speed_source and rudder_rate_source: set, propeller_rate, recordings, ship_file or usual), \
     result.trials[] with name, side, ended, intervals (by measure: low and high, in the units of the measures), measures (advance, transfer, tactical_diameter [m], time_90, time_180 [s], \
-    steady.diameter [m], .speed [m/s], .speed_loss [-], .drift [rad], .yaw_rate [rad/s]; absent: not reached), and criteria[] \
+    steady.diameter [m], .speed [m/s], .speed_loss [-], .drift [rad], .yaw_rate [rad/s], nomoto.gain [1/s], .time [s], .neutral [rad]; absent: not reached), and criteria[] \
     with name, measured, interval, limit, unit, verdict (met, not_met, open, not_applicable), binding (L >= 100 m); result.validity \
     (share_outside of the samples sailed; outside[] with term, quantity, range, share, met).";
 
@@ -86,7 +118,7 @@ Example:
 
 With --out: maneuver_zigzag.json, zigzag.png and .csv, zigzag_measures.csv, the track of each trial as CSV.
 JSON: as for turning, with measures rudder, heading, overshoots[] [rad], executes[] [s], initial_turning [m], \
-    initial_turning_time, reach, period [s]; absent: not reached.";
+    initial_turning_time, reach, period [s], nomoto (gain [1/s], time [s], neutral [rad]); absent: not reached.";
 
 const STOPPING: &str = "\
 Example:
@@ -118,6 +150,15 @@ struct ZigzagArgs {
 }
 
 #[derive(Debug, clap::Args)]
+struct AngleArgs {
+    /// Rudder angle [deg]: of the turn before a pull-out, the largest of a spiral.
+    #[arg(long, value_name = "DEG", default_value_t = 20.0, allow_negative_numbers = true)]
+    angle: f64,
+    #[command(flatten)]
+    trial: TrialArgs,
+}
+
+#[derive(Debug, clap::Args)]
 struct TrialArgs {
     #[command(flatten)]
     study: ShipArgs,
@@ -127,6 +168,9 @@ struct TrialArgs {
     /// Propeller rate of the approach [rpm]; instead of `n_rpm` in [maneuver].
     #[arg(long, value_name = "RPM", allow_negative_numbers = true)]
     rpm: Option<f64>,
+    /// Depth of the water [m]; instead of `depth` in [maneuver], deep water without either.
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    depth: Option<f64>,
     /// Keep the environment and sensor terms of the model.
     #[arg(long)]
     as_found: bool,
@@ -200,14 +244,17 @@ impl Prepared {
         if args.speed.is_some() || args.rpm.is_some() {
             (settings.speed, settings.n_rpm) = (args.speed, args.rpm);
         }
+        settings.depth = args.depth.or(settings.depth);
         change(&mut settings);
         output.settings("maneuver", &settings)?;
         let path = loaded.study.path.clone();
-        let (calm, around) = calm_water(&loaded.model);
+        let fail = |error| CliError::Maneuver { path: path.clone(), error };
+        let (calm, around) =
+            calm_water_of_depth(&loaded.model, settings.depth).map_err(|error| fail(ManeuverError::Setting(error)))?;
         let (model, left_out, kept) =
             if args.as_found { (loaded.model.clone(), Vec::new(), around) } else { (calm, around, Vec::new()) };
         let theta = model.values();
-        let approach = settings.approach(&model, &theta).map_err(|error| CliError::Maneuver { path, error })?;
+        let approach = settings.approach(&model, &theta).map_err(fail)?;
         let (model_path, fitted) = loaded.uncertainty()?;
         let of_a_fit = fitted.is_some();
         let uncertainty = fitted.or_else(|| of_priors(&model));
@@ -228,6 +275,11 @@ impl Prepared {
             drawn,
             seed,
         })
+    }
+
+    /// The same without intervals.
+    fn without_draws(self) -> Self {
+        Self { drawn: Vec::new(), ..self }
     }
 
     /// Sets the intervals of trials, which `sail` sails for an approach and a parameter vector.
@@ -253,6 +305,11 @@ impl Prepared {
         let mut notes = Vec::new();
         if !self.left_out.is_empty() {
             notes.push(format!("Calm water: {} left out (`--as-found` keeps them).", self.left_out.join(", ")));
+        }
+        if let Some(depth) = self.settings.depth {
+            let ratio = depth / self.model.ship.hull.draught;
+            let limit = if ratio < 1.5 { ", where its law is not valid (from 1.5 on)" } else { "" };
+            notes.push(format!("Water of {} m, h/d = {}, by the term `shallow`{limit}.", sig(depth, 3), sig(ratio, 3)));
         }
         if !self.kept.is_empty() {
             notes.push(format!("As found, not in calm water: {} kept.", self.kept.join(", ")));
@@ -293,6 +350,7 @@ impl Prepared {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer, CliError> {
     match &args.trial {
+        Kind::Measure(args) => return measure::run(args),
         Kind::Turning(TurningArgs { angle, trial: args }) => {
             let mut output = Output::new("maneuver turning", &args.output)?.drawn_as(&args.figures);
             let p = Prepared::new(args, &mut output, |settings| settings.turning_deg = angle.or(settings.turning_deg))?;
@@ -326,8 +384,53 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             finish(&mut output, &p, &trials, "stopping", || stopping_figure(&p.model.ship, &trials[0]))?;
             output.finish(&text(&p, &trials), &report(&p, &trials))
         }
+        Kind::Pullout(args) => pull_out(args),
+        Kind::Spiral(args) => spiral(args),
     }?;
     Ok(Answer::Yes)
+}
+
+/// The pull-outs to both sides.
+fn pull_out(args: &AngleArgs) -> Result<(), CliError> {
+    let mut output = Output::new("maneuver pullout", &args.trial.output)?.drawn_as(&args.trial.figures);
+    let p = Prepared::new(&args.trial, &mut output, |settings| settings.turning_deg = Some(args.angle))?;
+    let angle = p.settings.turning_angle();
+    let sail = |approach: &Approach, theta: &[f64]| {
+        Side::BOTH.map(|side| pull_out_trial(&p.model, theta, approach, side, angle)).to_vec()
+    };
+    let trials = sailed(&p, "pull-out", &sail);
+    finish(&mut output, &p, &trials, "pullout", || pull_out_figure(&p.model.ship, &trials))?;
+    let stable = course_stable(&trials);
+    let said = match stable {
+        Some(true) => "\nThe yaw rates come together: the ship is stable on its course.",
+        Some(false) => "\nThe yaw rates do not come together: the ship is unstable on its course.",
+        None => "",
+    };
+    let report = Steadied { report: report(&p, &trials), course_stable: stable };
+    output.finish(&(text(&p, &trials) + said), &report)
+}
+
+/// A report of pull-outs.
+#[derive(Serialize)]
+struct Steadied<'a, M> {
+    #[serde(flatten)]
+    report: Report<'a, M>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    course_stable: Option<bool>,
+}
+
+/// The spiral.
+fn spiral(args: &AngleArgs) -> Result<(), CliError> {
+    let mut output = Output::new("maneuver spiral", &args.trial.output)?.drawn_as(&args.trial.figures);
+    // A spiral is long, and its loop is no smooth measure of the parameters: it is sailed once.
+    let p =
+        Prepared::new(&args.trial, &mut output, |settings| settings.turning_deg = Some(args.angle))?.without_draws();
+    let angle = p.settings.turning_angle();
+    let trials = sailed(&p, "spiral", &|approach: &Approach, theta: &[f64]| {
+        vec![spiral_trial(&p.model, theta, approach, angle)]
+    });
+    finish(&mut output, &p, &trials, "spiral", || spiral_figure(&p.model.ship, &trials[0]))?;
+    output.finish(&text(&p, &trials), &report(&p, &trials))
 }
 
 /// The trials with the model's parameters, and their intervals.
@@ -391,7 +494,7 @@ fn finish<M: Listed>(
     let table = measures_csv(trials);
     let rows = table.rows().iter().cloned();
     let header: Vec<&str> = table.header().iter().map(String::as_str).collect();
-    output.table(&format!("{stem}_measures.csv"), &super::shared::output::csv_text(&header, rows)?);
+    output.table(&format!("{stem}_measures.csv"), &crate::cli::shared::output::csv_text(&header, rows)?);
     output.figure(stem, figure);
     Ok(())
 }
@@ -415,7 +518,11 @@ fn text<M: Listed>(p: &Prepared, trials: &[Trial<M>]) -> String {
         measures_table(ship, trials),
         criteria_table(trials.iter().map(|t| (t.name.as_str(), t.criteria.as_slice()))),
     );
-    let notes = trials.iter().filter_map(ended_note).chain(criteria_note(ship));
+    let judged = trials.iter().any(|t| !t.criteria.is_empty());
+    if !judged {
+        text.truncate(text.rfind("\n\n").unwrap_or(text.len()));
+    }
+    let notes = trials.iter().filter_map(ended_note).chain(criteria_note(ship).filter(|_| judged));
     for note in notes {
         text += &format!("\n{note}");
     }
