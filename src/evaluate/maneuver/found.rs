@@ -3,7 +3,7 @@
 
 use super::track::Track;
 use super::trial::Side;
-use super::zigzag::zigzag_executes;
+use super::trials::zigzag::zigzag_executes;
 use crate::statistics::median;
 use serde::Serialize;
 use std::f64::consts::PI;

@@ -10,15 +10,11 @@ mod interval;
 mod measured;
 mod measures;
 mod nomoto;
-mod pullout;
 mod recorded;
 mod sail;
-mod spiral;
-mod stopping;
 mod track;
 mod trial;
-mod turning;
-mod zigzag;
+mod trials;
 
 pub use approach::{Approach, ManeuverSettings, Source};
 pub use calm::{calm_water, calm_water_of_depth};
@@ -28,14 +24,14 @@ pub use interval::{DRAWS, Drawn, Known, SEED, drawn, drawn_from, of_priors, set_
 pub use measured::{MeasuredTrial, Measures, Simulated, Taken, measured};
 pub use measures::{Measured, PullOut, Quantity, Spiral, Steady, Stopping, Turning, Zigzag};
 pub use nomoto::Nomoto;
-pub use pullout::{course_stable, pull_out, pull_out_trial};
 pub use recorded::{Recorded, recorded};
-pub use spiral::{spiral, spiral_angles, spiral_trial};
-pub use stopping::{stopping, stopping_trial};
 pub use track::Track;
 pub use trial::{Ended, Intervals, Side, Trial};
-pub use turning::{turning, turning_execute, turning_trial};
-pub use zigzag::{zigzag, zigzag_executes, zigzag_trial};
+pub use trials::pullout::{course_stable, pull_out, pull_out_trial};
+pub use trials::spiral::{spiral, spiral_angles, spiral_trial};
+pub use trials::stopping::{stopping, stopping_trial};
+pub use trials::turning::{turning, turning_execute, turning_trial};
+pub use trials::zigzag::{zigzag, zigzag_executes, zigzag_trial};
 
 #[cfg(test)]
 mod tests;

@@ -1,13 +1,13 @@
 //! The turning circle: its simulation, and advance, transfer, tactical diameter and steady turn read from any track.
 //! The IMO criteria are in `imo`, not here.
 
-use super::approach::Approach;
-use super::imo;
-use super::measures::{Steady, Turning};
-use super::nomoto::nomoto_of_step;
-use super::sail::{Orders, sail};
-use super::track::Track;
-use super::trial::{Intervals, Side, Trial};
+use crate::evaluate::maneuver::approach::Approach;
+use crate::evaluate::maneuver::imo;
+use crate::evaluate::maneuver::measures::{Steady, Turning};
+use crate::evaluate::maneuver::nomoto::nomoto_of_step;
+use crate::evaluate::maneuver::sail::{Orders, sail};
+use crate::evaluate::maneuver::track::Track;
+use crate::evaluate::maneuver::trial::{Intervals, Side, Trial};
 use crate::model::Model;
 use std::f64::consts::PI;
 

@@ -1,11 +1,11 @@
 //! The direct spiral test (Dieudonne 1953): the steady yaw rate at each rudder angle, from one side to the other and back.
 //! There is no IMO criterion for it.
 
-use super::approach::Approach;
-use super::measures::Spiral;
 use super::pullout::steady;
-use super::sail::{Orders, sail_for};
-use super::trial::{Intervals, Side, Trial};
+use crate::evaluate::maneuver::approach::Approach;
+use crate::evaluate::maneuver::measures::Spiral;
+use crate::evaluate::maneuver::sail::{Orders, sail_for};
+use crate::evaluate::maneuver::trial::{Intervals, Side, Trial};
 use crate::model::Model;
 
 /// Rudder angles of ten degrees and less at which the rate is taken \[deg\]: a degree apart near amidships, where a loop is.

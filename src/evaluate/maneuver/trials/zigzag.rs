@@ -1,13 +1,13 @@
 //! The zigzag: its simulation, and executes, overshoots, initial turning and period read from any track.
 //! The IMO criteria are in `imo`, not here.
 
-use super::approach::Approach;
-use super::imo;
-use super::measures::Zigzag;
-use super::nomoto::nomoto;
-use super::sail::{Orders, sail};
-use super::track::Track;
-use super::trial::{Intervals, Side, Trial};
+use crate::evaluate::maneuver::approach::Approach;
+use crate::evaluate::maneuver::imo;
+use crate::evaluate::maneuver::measures::Zigzag;
+use crate::evaluate::maneuver::nomoto::nomoto;
+use crate::evaluate::maneuver::sail::{Orders, sail};
+use crate::evaluate::maneuver::track::Track;
+use crate::evaluate::maneuver::trial::{Intervals, Side, Trial};
 use crate::model::Model;
 
 /// Measures a zigzag of `heading` \[rad\] on a track whose rudder was put over at the samples `executes`.

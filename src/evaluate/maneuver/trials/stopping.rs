@@ -1,12 +1,12 @@
 //! The crash stop: its simulation, and track reach, head reach, lateral deviation and time read from any track.
 //! The IMO criteria are in `imo`, not here.
 
-use super::approach::Approach;
-use super::imo;
-use super::measures::Stopping;
-use super::sail::{Orders, sail};
-use super::track::Track;
-use super::trial::{Intervals, Side, Trial};
+use crate::evaluate::maneuver::approach::Approach;
+use crate::evaluate::maneuver::imo;
+use crate::evaluate::maneuver::measures::Stopping;
+use crate::evaluate::maneuver::sail::{Orders, sail};
+use crate::evaluate::maneuver::track::Track;
+use crate::evaluate::maneuver::trial::{Intervals, Side, Trial};
 use crate::model::Model;
 
 /// Measures a stop on a track whose engine was ordered astern at sample `order`.

@@ -1,11 +1,11 @@
 //! The pull-out test: a steady turn, then the rudder amidships; the yaw rate that is left tells whether the ship is stable on its course.
 //! There is no IMO criterion for it.
 
-use super::approach::Approach;
-use super::measures::PullOut;
-use super::sail::{Orders, sail};
-use super::track::Track;
-use super::trial::{Intervals, Side, Trial};
+use crate::evaluate::maneuver::approach::Approach;
+use crate::evaluate::maneuver::measures::PullOut;
+use crate::evaluate::maneuver::sail::{Orders, sail};
+use crate::evaluate::maneuver::track::Track;
+use crate::evaluate::maneuver::trial::{Intervals, Side, Trial};
 use crate::model::Model;
 use std::f64::consts::TAU;
 
