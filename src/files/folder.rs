@@ -773,7 +773,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         result(folder.path(), "import", &["runs.csv", "ship.toml"]).unwrap();
         let again = || {
-            let mut open = ResultFolder::open(folder.path(), "import", &["runs.csv"]).unwrap();
+            let edited = &["ship.toml"];
+            let mut open = ResultFolder::open_with(folder.path(), "import", &["runs.csv"], edited).unwrap();
             open.write("runs.csv", b"more").unwrap();
             open.leave("ship.toml");
             open.complete(Origin::default()).unwrap();

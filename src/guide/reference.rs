@@ -91,7 +91,8 @@ fn collect(path: &str, schema: &Value, listed: bool, tables: &mut Vec<Table>) {
             collect(&below(key), one, listed, tables);
         }
         if let Some(each) = property.get("additionalProperties").filter(|v| v.is_object()) {
-            collect(&format!("{}.\"NAME\"", below(key)), each, false, tables);
+            let name = format!("{}.\"NAME\"", below(key));
+            inner(each).into_iter().for_each(|(one, _)| collect(&name, one, false, tables));
         }
     }
 }

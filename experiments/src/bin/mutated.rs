@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use trimtab::files::write_whole;
 use trimtab_experiments::conceal::error::ConcealError;
 use trimtab_experiments::folders::{Published, exit};
+use trimtab_experiments::mutated::fate;
 use trimtab_experiments::mutated::plan::{CASES, Planned, SEED, plan};
 use trimtab_experiments::mutated::row::Row;
 use trimtab_experiments::mutated::runner::Runner;
@@ -29,6 +30,9 @@ struct Arguments {
     /// The program.
     #[arg(long, default_value = "target/release/trimtab")]
     tool: PathBuf,
+    /// Asks about faults that loggers produce instead, one of so many of them, and writes them to `faults.csv` in the folder.
+    #[arg(long, value_name = "EVERY")]
+    faults: Option<usize>,
     /// Changed studies.
     #[arg(long, default_value_t = CASES)]
     cases: usize,
@@ -56,6 +60,12 @@ fn missing(rows: &[Row], cases: Vec<Planned>) -> Vec<Planned> {
 }
 
 fn run(a: &Arguments) -> Result<(), ConcealError> {
+    if let Some(every) = a.faults {
+        let runner = Runner::new(a.tool.clone(), Duration::from_secs(a.limit), a.out.join("studies"))?;
+        println!("{}", fate::table(&fate::all(&runner, every, &a.out.join("faults.csv"))?));
+        let _ = std::fs::remove_dir_all(a.out.join("studies"));
+        return Ok(());
+    }
     let path = a.out.join("answers.csv");
     let results: Rows<Row> = Rows::open(&path)?;
     let whole = plan(a.cases, a.seed);

@@ -2,14 +2,17 @@
 //! How commands are run is in `runner`, which faults there are in `logger`.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use trimtab::report::Table;
 
 use super::answer::told;
 use super::files::write;
-use super::logger::Fault;
+use super::logger::{Fault, faults};
 use super::runner::Runner;
 use crate::conceal::error::ConcealError;
+use crate::rows::Rows;
 
 /// The commands that are asked, in the order in which a user asks them.
 const ASKED: [&str; 3] = ["check", "fit", "diagnose"];
@@ -66,11 +69,6 @@ impl Known {
         };
         Ok(Self(ASKED.into_iter().map(said).collect::<Result<_, ConcealError>>()?))
     }
-
-    /// The sound study's own lines that warn of anything.
-    pub fn warnings(&self) -> impl Iterator<Item = &str> {
-        self.0.values().flatten().map(String::as_str)
-    }
 }
 
 /// What becomes of a fault.
@@ -99,4 +97,34 @@ pub fn fate(runner: &Runner, known: &Known, number: usize, fault: &Fault) -> Res
     };
     let _ = std::fs::remove_dir_all(&folder);
     Ok(FaultRow { kind: fault.kind.to_owned(), what: fault.what.clone(), fate, by: by.to_owned(), moved, line })
+}
+
+/// Asks about every fault, or one of so many, and writes a row of each to a file.
+///
+/// # Errors
+/// As [`fate`], and a file that cannot be written.
+pub fn all(runner: &Runner, every: usize, path: &Path) -> Result<Vec<FaultRow>, ConcealError> {
+    let results: Rows<FaultRow> = Rows::open(path)?;
+    let known = Known::new(runner)?;
+    let mut rows = Vec::new();
+    for (number, fault) in faults(runner.sound()).iter().enumerate().step_by(every.max(1)) {
+        let row = fate(runner, &known, number, fault)?;
+        results.append(&row)?;
+        rows.push(row);
+    }
+    Ok(rows)
+}
+
+/// Counts by kind.
+pub fn table(rows: &[FaultRow]) -> Table {
+    let mut table = Table::new(["fault", "faults", "refused", "told", "not visible", "silent"]);
+    let mut kinds: BTreeMap<&str, Vec<&FaultRow>> = BTreeMap::new();
+    rows.iter().for_each(|row| kinds.entry(&row.kind).or_default().push(row));
+    kinds.insert("~ all", rows.iter().collect());
+    for (kind, rows) in kinds {
+        let count = |fate: Fate| rows.iter().filter(|row| row.fate == fate).count().to_string();
+        let counts = [Fate::Refused, Fate::Told, Fate::NotVisible, Fate::Silent].map(count);
+        table.row([kind.to_owned(), rows.len().to_string()].into_iter().chain(counts));
+    }
+    table
 }
