@@ -280,6 +280,12 @@ impl Fit {
         inner.residual_variance * inner.settings.correlated_samples / inner.runs as f64
     }
 
+    /// The noise of a fit by likelihood, as `Objective.noise` has it; None of a fit of trajectories.
+    #[getter]
+    fn noise<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.inner.likelihood.as_ref().map(|likelihood| document(py, &likelihood.noise)).transpose()
+    }
+
     /// Iterations of the solver.
     #[getter]
     fn iterations(&self) -> usize {

@@ -13,6 +13,7 @@ mod diagnosis;
 mod errors;
 mod evaluation;
 mod fit;
+mod function;
 mod inputs;
 mod log;
 mod model;

@@ -1,8 +1,9 @@
 //! What a fit minimises, as a function for anyone's own optimiser: value, exact derivatives, constraints, bounds and scales.
 //! It is the cost that [`trimtab::fit::fit`] minimises, on the same threads; it solves nothing.
 
-use crate::convert::{finite, frame, matrix, records, vector};
+use crate::convert::{document, finite, frame, matrix, records, vector};
 use crate::errors::{FitFailed, Raised, fault};
+use crate::function::{Function, Made, Question};
 use crate::model::Model;
 use crate::study::{Side, Study};
 use crate::work::short;
@@ -13,48 +14,70 @@ use pyo3::types::{PyDict, PyTuple};
 use self_cell::self_cell;
 use std::sync::{Arc, Mutex, PoisonError};
 use trimtab::fit::constraints::{Row, rows, speed_range};
-use trimtab::fit::{Cost, FitError, FitSettings, Goal, Quadratic, bounds};
+use trimtab::fit::{FitError, FitSettings, Goal, Quadratic, bounds, noise_at, with_uncertain_coefficients};
+use trimtab::likelihood::noise::Noise;
+use trimtab::model::Parameter;
 use trimtab::recording::Run;
 use trimtab::ship::state::STATE_NAMES;
-
-/// What the cost is of.
-struct Question {
-    model: trimtab::Model,
-    runs: Arc<Vec<Run>>,
-}
 
 self_cell!(
     struct Held {
         owner: Question,
         #[not_covariant]
-        dependent: Cost,
+        dependent: Function,
     }
 );
+
+/// What a caller asks an objective to be.
+#[derive(Clone)]
+pub struct Wanted {
+    pub model: trimtab::Model,
+    pub settings: FitSettings,
+    pub side: Side,
+    /// Weight of the priors, as a fit has it where absent.
+    pub weight: Option<f64>,
+    /// Whether coefficients that are never known exactly are free in a likelihood.
+    pub uncertain: bool,
+}
 
 /// A prior as a residual: index of the free parameter, mean, standard deviation.
 type PriorTerm = (usize, f64, f64);
 
-/// The weighted trajectory cost of a model against the runs of a study, with exact derivatives by the n free parameters.
+/// What a fit minimises, with exact derivatives by the n free parameters: the trajectory cost, or the likelihood.
+///
+/// The trajectory cost, where `kind` is "trajectory" and a = 1:
 ///
 ///     C(theta) = 1/M sum_i sum_k e^T W_i e + w sum_j ((theta_j - mean_j) / sd_j)^2,      e = recorded - simulated
 ///
 /// over M runs and their samples, W_i = diag(1/L, 1/L, 1/pi, 1/U, 1/U, 1/r_max) with the run's path length L [m] and mean speed
-/// U [m/s] (Papandreou et al. 2025, eq. 5), and the priors with weight w. `theta` has shape (n,), in the parameters' own units and
-/// the order of `names`. Where a simulation diverges `f` is inf, residuals are inf, and derivatives are NaN.
+/// U [m/s] (Papandreou et al. 2025, eq. 5), and the priors with weight w.
 ///
-/// The residuals r of shape (m,) are scaled so that f = sum(r**2): grad = 2 J^T r, gauss_newton = 2 J^T J. SciPy's `least_squares`
-/// minimises half of it, sum(r**2)/2, which has the same minimum.
+/// The likelihood with the gains of the Kalman filter held fixed, where `kind` is "likelihood" and a = 1/2:
 ///
-/// All calls release the interpreter's lock. An objective can be pickled: it then stands for study file, model and settings.
+///     f(theta) = 1/2 sum_k e_k^2 / s_k + w sum_j ((theta_j - mean_j) / sd_j)^2,      e_k = recorded - expected by the filter
+///
+/// with w = 1/2: -f is the logarithm of the posterior up to a constant. `noise` is estimated and the gains and variances s_k are made at
+/// x0; the further theta is from there, the less does f say of the likelihood with gains of its own. `renewed(theta)` makes them
+/// anew, as a fit by likelihood does until it settles.
+///
+/// `theta` has shape (n,), in the parameters' own units and the order of `names`. Where the model leaves the numbers f is inf, residuals
+/// are inf, and derivatives are NaN.
+///
+/// The residuals r of shape (m,) are scaled so that f = a sum(r**2): grad = 2 a J^T r, gauss_newton = 2 a J^T J. SciPy's `least_squares`
+/// minimises sum(r**2)/2, which has the same minimum.
+///
+/// All calls release the interpreter's lock. An objective can be pickled: it then stands for study file, model, settings and gains.
 #[pyclass(module = "trimtab", frozen)]
 pub struct Objective {
     held: Held,
     study: Py<Study>,
-    settings: FitSettings,
-    side: Side,
+    /// What was asked for, with the weight that was found.
+    wanted: Wanted,
     names: Vec<String>,
     priors: Vec<PriorTerm>,
     weight: f64,
+    /// Number of residuals of the data.
+    count: usize,
     x0: Vec<f64>,
     bounds: Vec<(f64, f64)>,
     scales: Vec<f64>,
@@ -63,72 +86,84 @@ pub struct Objective {
     last: Mutex<Option<(Vec<f64>, Arc<Quadratic>)>>,
 }
 
+/// The factor a on the squares of the residuals.
+fn factor(goal: Goal) -> f64 {
+    match goal {
+        Goal::Trajectory => 1.0,
+        Goal::Likelihood => 0.5,
+    }
+}
+
 impl Objective {
-    /// The objective of a model against runs.
+    /// The objective that was asked for, against runs; a likelihood with its gains as they were `made`, or else of the start.
     pub fn new(
         py: Python<'_>,
         study: Py<Study>,
-        model: trimtab::Model,
+        wanted: Wanted,
         runs: Arc<Vec<Run>>,
-        settings: FitSettings,
-        side: Side,
-        weight: Option<f64>,
+        made: Option<Made>,
     ) -> PyResult<Self> {
-        if settings.objective == Goal::Likelihood {
-            return Err(PyValueError::new_err(
-                "objective = \"likelihood\": a fit by likelihood estimates noise and initial states between its solves, so that there is \
-                 no one function of the parameters; use study.fit(objective=\"likelihood\"), or the objective \"trajectory\" here",
-            ));
-        }
+        let Wanted { settings, weight, .. } = &wanted;
         if let Some(weight) = weight.filter(|w| !(w.is_finite() && *w >= 0.0)) {
             return Err(PyValueError::new_err(format!("prior_weight = {weight} must be a number of 0 or more")));
         }
+        let likelihood = settings.objective == Goal::Likelihood;
+        let model = if likelihood && wanted.uncertain {
+            with_uncertain_coefficients(&wanted.model)
+        } else {
+            wanted.model.clone()
+        };
         let free = model.free();
         if free.is_empty() {
             return Err(FitError::NothingFree.raised());
         }
-        let parameters: Vec<_> = free.iter().map(|i| model.parameters[*i].clone()).collect();
+        let parameters: Vec<Parameter> = free.iter().map(|i| model.parameters[*i].clone()).collect();
         let rows = rows(&model, &settings.constraints, speed_range(&*runs)).map_err(Raised::raised)?;
         let bounds = bounds(&model);
-        let x0: Vec<f64> = parameters.iter().zip(&bounds).map(|(p, (lo, hi))| p.value.max(*lo).min(*hi)).collect();
-        let prior = |(j, p): (usize, &trimtab::model::Parameter)| p.prior.map(|prior| (j, prior.mean, prior.sd));
+        let start = parameters.iter().zip(&bounds).map(|(p, (lo, hi))| p.value.max(*lo).min(*hi)).collect();
+        let x0: Vec<f64> = made.as_ref().map_or(start, |made| made.at.clone());
+        let prior = |(j, p): (usize, &Parameter)| p.prior.map(|prior| (j, prior.mean, prior.sd));
         let priors = parameters.iter().enumerate().filter_map(prior).collect();
-        let scale = |p: &trimtab::model::Parameter| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 };
-        let build =
-            || Held::try_new(Question { model, runs }, |q| Cost::new(&q.model, &*q.runs, settings.cost_options()));
-        let held = short(py, build)?.map_err(Raised::raised)?;
+        let scale = |p: &Parameter| if p.scale > 0.0 && p.scale.is_finite() { p.scale } else { 1.0 };
+        let build = || {
+            let of_start = || Made { noise: noise_at(&model, &runs, settings.integration, None, &x0), at: x0.clone() };
+            let made = likelihood.then(|| made.unwrap_or_else(of_start));
+            let held = Held::try_new(Question { model, runs, made }, |question| Function::new(question, settings))?;
+            let count = held.with_dependent(|_, function| function.count());
+            Ok((held, count))
+        };
+        let (held, count) = short(py, build)?.map_err(|error: FitError| error.raised())?;
         let objective = Self {
             held,
             study,
-            settings,
-            side,
             names: parameters.iter().map(|p| p.name.clone()).collect(),
             priors,
-            weight: 0.0,
+            weight: weight.unwrap_or(0.5),
+            count,
             scales: parameters.iter().map(scale).collect(),
             x0,
             bounds,
             rows,
             last: Mutex::new(None),
+            wanted,
         };
-        let weight = match weight {
-            Some(weight) => weight,
-            None => objective.usual_weight(py)?,
+        let weight = match objective.wanted.weight {
+            None if !likelihood => objective.usual_weight(py)?,
+            _ => objective.weight,
         };
-        Ok(Self { weight, ..objective })
+        let wanted = Wanted { weight: Some(weight), ..objective.wanted };
+        Ok(Self { weight, wanted, ..objective })
     }
 
-    /// The weight that a fit gives the priors at its start: what a unit of the cost is worth, from the residuals' variance there.
+    /// The weight that a fit of trajectories gives the priors at its start: what a unit of the cost is worth, from the residuals' variance
+    /// there.
     fn usual_weight(&self, py: Python<'_>) -> PyResult<f64> {
         if self.priors.is_empty() {
             return Ok(0.0);
         }
-        let n = self.names.len();
-        let at_start = |cost: &Cost| {
-            let freedom = cost.residuals().saturating_sub(n).max(1);
-            cost.value(&self.x0).map(|value| value / freedom as f64 * self.settings.correlated_samples)
-        };
-        self.on_cost(py, at_start)?.ok_or_else(|| {
+        let freedom = self.count.saturating_sub(self.names.len()).max(1);
+        let value = self.on_function(py, |function| function.value(&self.x0))?;
+        value.map(|value| value / freedom as f64 * self.wanted.settings.correlated_samples).ok_or_else(|| {
             FitFailed::new_err(
                 "a simulation diverges with the starting parameters, so that the weight of the priors is not known; give prior_weight, \
                  start from other parameters, or use shorter windows",
@@ -136,9 +171,13 @@ impl Objective {
         })
     }
 
-    /// Does something with the cost, without the lock of the interpreter.
-    fn on_cost<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&Cost) -> T + Send) -> PyResult<T> {
-        short(py, || self.held.with_dependent(|_, cost| work(cost)))
+    /// Does something with the function, without the lock of the interpreter.
+    fn on_function<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&Function) -> T + Send) -> PyResult<T> {
+        short(py, || self.held.with_dependent(|_, function| work(function)))
+    }
+
+    fn goal(&self) -> Goal {
+        self.wanted.settings.objective
     }
 
     fn theta(&self, theta: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
@@ -150,7 +189,7 @@ impl Objective {
         if let Some(known) = self.known(theta) {
             return Ok(Some(known));
         }
-        let Some(new) = self.on_cost(py, |cost| cost.quadratic(theta))? else { return Ok(None) };
+        let Some(new) = self.on_function(py, |function| function.quadratic(theta))? else { return Ok(None) };
         let new = Arc::new(new);
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some((theta.to_vec(), Arc::clone(&new)));
         Ok(Some(new))
@@ -190,15 +229,20 @@ impl Objective {
 
     /// Number of residuals, those of the priors included.
     fn count(&self) -> usize {
-        self.held.with_dependent(|_, cost| cost.residuals()) + self.prior_rows()
+        self.count + self.prior_rows()
     }
 
     fn prior_rows(&self) -> usize {
         if self.weight > 0.0 { self.priors.len() } else { 0 }
     }
 
+    /// What a prior's residual is in its standard deviations.
+    fn prior_root(&self) -> f64 {
+        (self.weight / factor(self.goal())).sqrt()
+    }
+
     fn prior_residuals(&self, theta: &[f64]) -> impl Iterator<Item = f64> {
-        let root = self.weight.sqrt();
+        let root = self.prior_root();
         let rows = self.priors[..self.prior_rows()].iter();
         rows.map(move |(j, mean, sd)| root * (theta[*j] - mean) / sd).collect::<Vec<_>>().into_iter()
     }
@@ -206,13 +250,23 @@ impl Objective {
 
 #[pymethods]
 impl Objective {
+    /// "trajectory" or "likelihood".
+    #[getter]
+    fn kind(&self) -> &'static str {
+        match self.goal() {
+            Goal::Trajectory => "trajectory",
+            Goal::Likelihood => "likelihood",
+        }
+    }
+
     /// Dotted names of the n free parameters, in the order of `theta`.
     #[getter]
     fn names(&self) -> Vec<String> {
         self.names.clone()
     }
 
-    /// The model's values of the free parameters, put within the bounds: where a fit starts, shape (n,).
+    /// The model's values of the free parameters, put within the bounds: where a fit starts, shape (n,). Of a likelihood the point of its
+    /// gains, which is the same until it is `renewed`.
     #[getter]
     fn x0<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.x0)
@@ -231,7 +285,7 @@ impl Objective {
         PyArray1::from_slice(py, &self.scales)
     }
 
-    /// Weight w of the priors in the cost; 0 where no free parameter has one.
+    /// Weight w of the priors: 1/2 in a likelihood; in a trajectory cost what a fit gives them, 0 where no free parameter has one.
     #[getter]
     fn prior_weight(&self) -> f64 {
         self.weight
@@ -246,27 +300,27 @@ impl Objective {
     /// Number of runs M.
     #[getter]
     fn runs(&self) -> usize {
-        self.held.with_dependent(|_, cost| cost.runs())
+        self.held.borrow_owner().runs.len()
     }
 
-    /// The cost C(theta); inf where a simulation diverges.
+    /// The value, without a unit; inf where the model leaves the numbers.
     fn f(&self, py: Python<'_>, theta: &Bound<'_, PyAny>) -> PyResult<f64> {
         let theta = self.theta(theta)?;
         let data = match self.known(&theta) {
             Some(known) => Some(known.value),
-            None => self.on_cost(py, |cost| cost.value(&theta))?,
+            None => self.on_function(py, |function| function.value(&theta))?,
         };
         Ok(data.map_or(f64::INFINITY, |value| value + self.prior_value(&theta)))
     }
 
-    /// The exact gradient dC/dtheta, shape (n,).
+    /// The exact gradient df/dtheta, shape (n,).
     fn grad<'py>(&self, py: Python<'py>, theta: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let theta = self.theta(theta)?;
         let quadratic = self.quadratic(py, &theta)?;
         Ok(PyArray1::from_vec(py, self.gradient(&theta, quadratic.as_deref())))
     }
 
-    /// Cost and gradient from one evaluation: `minimize(objective.f_and_grad, ..., jac=True)`.
+    /// Value and gradient from one evaluation: `minimize(objective.f_and_grad, ..., jac=True)`.
     fn f_and_grad<'py>(&self, py: Python<'py>, theta: &Bound<'_, PyAny>) -> PyResult<(f64, Bound<'py, PyArray1<f64>>)> {
         let theta = self.theta(theta)?;
         let quadratic = self.quadratic(py, &theta)?;
@@ -274,7 +328,8 @@ impl Objective {
         Ok((value, PyArray1::from_vec(py, self.gradient(&theta, quadratic.as_deref()))))
     }
 
-    /// The Gauss-Newton matrix 2 J^T J, shape (n, n): the Hessian without the residuals' own curvature.
+    /// The Gauss-Newton matrix 2 a J^T J, shape (n, n): the Hessian without the residuals' own curvature. Of a likelihood it is the
+    /// information of data and priors, whose inverse is near the covariance of the posterior.
     fn gauss_newton<'py>(&self, py: Python<'py>, theta: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let theta = self.theta(theta)?;
         let quadratic = self.quadratic(py, &theta)?;
@@ -282,43 +337,51 @@ impl Objective {
         self.curvature(py, quadratic.as_ref().map(|q| q.gauss_newton.iter().copied()))
     }
 
-    /// The exact Hessian d2C/dtheta2 by second-order dual numbers, shape (n, n); many times as slow as `gauss_newton`.
+    /// The exact Hessian d2f/dtheta2 by second-order dual numbers, shape (n, n); many times as slow as `gauss_newton`. Of a trajectory
+    /// cost alone.
     fn hessian<'py>(&self, py: Python<'py>, theta: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        if self.goal() == Goal::Likelihood {
+            return Err(PyValueError::new_err(
+                "a likelihood has no exact Hessian; use gauss_newton(theta), or differences of grad(theta), which is exact",
+            ));
+        }
         let theta = self.theta(theta)?;
-        let data = self.on_cost(py, |cost| cost.hessian(&theta).map(|h| h.iter().copied().collect::<Vec<f64>>()))?;
+        let data = self.on_function(py, |function| function.hessian(&theta))?;
         self.curvature(py, data)
     }
 
-    /// The residuals r with f = sum(r**2), shape (m,): run after run, sample after sample, channel after channel (see `labels`),
-    /// then one for each prior. inf where a simulation diverges.
+    /// The residuals r with f = a sum(r**2), shape (m,): run after run, sample after sample, channel after channel (see `labels`),
+    /// then one for each prior. Of a likelihood the standardised innovations, without those that were outliers when its gains were made.
+    /// inf where the model leaves the numbers.
     fn residuals<'py>(&self, py: Python<'py>, theta: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let theta = self.theta(theta)?;
-        let values = match self.on_cost(py, |cost| cost.residuals_at(&theta))? {
+        let values = match self.on_function(py, |function| function.residuals_at(&theta))? {
             Some(own) => own.values.into_iter().chain(self.prior_residuals(&theta)).collect(),
             None => vec![f64::INFINITY; self.count()],
         };
         Ok(PyArray1::from_vec(py, values))
     }
 
-    /// The exact derivatives J = dr/dtheta, shape (m, n); NaN where a simulation diverges.
+    /// The exact derivatives J = dr/dtheta, shape (m, n); NaN where the model leaves the numbers.
     fn jacobian<'py>(&self, py: Python<'py>, theta: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let theta = self.theta(theta)?;
         let (n, m) = (self.names.len(), self.count());
-        let Some(own) = self.on_cost(py, |cost| cost.jacobian_at(&theta))? else {
+        let Some(own) = self.on_function(py, |function| function.jacobian_at(&theta))? else {
             return matrix(py, m, n, vec![f64::NAN; m * n]);
         };
         let mut slopes = own.slopes;
         for (j, _, sd) in &self.priors[..self.prior_rows()] {
             let start = slopes.len();
             slopes.resize(start + n, 0.0);
-            slopes[start + j] = self.weight.sqrt() / sd;
+            slopes[start + j] = self.prior_root() / sd;
         }
         matrix(py, m, n, slopes)
     }
 
     /// What each residual compares, as records with run, sample and channel (x, y, psi, u, v, r), or prior and the parameter's name.
     fn labels(&self, py: Python<'_>) -> PyResult<Vec<(String, Option<usize>, String)>> {
-        let compared = self.on_cost(py, |cost| cost.compared())?.ok_or_else(|| fault("the runs cannot be read"))?;
+        let compared =
+            self.on_function(py, |function| function.compared())?.ok_or_else(|| fault("the runs cannot be read"))?;
         let runs = &self.held.borrow_owner().runs;
         let of_run =
             compared.iter().map(|c| (runs[c.run].name.clone(), Some(c.sample), STATE_NAMES[c.channel].to_owned()));
@@ -339,11 +402,41 @@ impl Objective {
         }
     }
 
+    /// The noise of a likelihood: of each group of `sensors` (position [m], heading [rad], speed [m/s], yaw rate [rad/s], in this order) the
+    /// standard deviations of the `white` and the `coloured` part and the correlation `time` [s] of the latter; the standard deviations of
+    /// the unknown `force` in X, Y [N] and N [N m], and its correlation time `force_time` [s]. None of a trajectory cost.
+    #[getter]
+    fn noise<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.held.borrow_owner().made.as_ref().map(|made| document(py, &made.noise)).transpose()
+    }
+
+    /// The likelihood with its gains made anew at `theta`, which is its `x0`, and the noise estimated there from this objective's on.
+    ///
+    /// The estimate of the noise is a local one, and another start may find another: `noise`, such as `Fit.noise`, is taken as it is.
+    #[pyo3(signature = (theta, *, noise=None))]
+    fn renewed(&self, py: Python<'_>, theta: &Bound<'_, PyAny>, noise: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let at = self.theta(theta)?;
+        let Question { model, runs, made } = self.held.borrow_owner();
+        let Some(made) = made else {
+            return Err(PyValueError::new_err(
+                "a trajectory cost has no gains to renew: it is the same function everywhere; study.objective(objective=\"likelihood\") \
+                 has them",
+            ));
+        };
+        let integration = self.wanted.settings.integration;
+        let noise = match noise {
+            Some(given) => noise_of(given)?,
+            None => short(py, || noise_at(model, runs, integration, Some(&made.noise), &at))?,
+        };
+        let made = Some(Made { noise, at });
+        Self::new(py, self.study.clone_ref(py), self.wanted.clone(), Arc::clone(runs), made)
+    }
+
     /// The model with its free parameters at `theta`.
     fn model_at(&self, theta: &Bound<'_, PyAny>) -> PyResult<Model> {
         let theta = self.theta(theta)?;
-        let mut model = self.held.borrow_owner().model.clone();
-        for (i, value) in model.free().into_iter().zip(theta) {
+        let mut model = self.wanted.model.clone();
+        for (i, value) in self.held.borrow_owner().model.free().into_iter().zip(theta) {
             model.parameters[i].value = value;
         }
         Ok(Model::of(model, None))
@@ -354,15 +447,17 @@ impl Objective {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Objective of {} parameters: {} residuals of {} runs>", self.names.len(), self.count(), self.runs())
+        let (kind, count, runs) = (self.kind(), self.count(), self.runs());
+        format!("<Objective ({kind}) of {} parameters: {count} residuals of {runs} runs>", self.names.len())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let settings =
-            serde_json::to_string(&self.settings).map_err(|e| fault(&format!("cannot write the settings ({e})")))?;
-        let model = Model::of(self.held.borrow_owner().model.clone(), None);
-        let arguments = (self.study.clone_ref(py), model, settings, self.side.word(), self.weight).into_pyobject(py)?;
-        Ok((py.get_type::<Self>().getattr("_restore")?, arguments))
+        let Wanted { model, settings, side, uncertain, .. } = &self.wanted;
+        let written = |e| fault(&format!("cannot write the settings ({e})"));
+        let kept = serde_json::to_string(&(settings, &self.held.borrow_owner().made)).map_err(written)?;
+        let model = Model::of(model.clone(), None);
+        let arguments = (self.study.clone_ref(py), model, kept, side.word(), self.weight, *uncertain);
+        Ok((py.get_type::<Self>().getattr("_restore")?, arguments.into_pyobject(py)?))
     }
 
     /// An objective from what a pickle keeps of it.
@@ -371,16 +466,29 @@ impl Objective {
         py: Python<'_>,
         study: Py<Study>,
         model: &Model,
-        settings: &str,
+        kept: &str,
         split: &str,
         weight: f64,
+        uncertain: bool,
     ) -> PyResult<Self> {
-        let settings =
-            serde_json::from_str(settings).map_err(|e| PyValueError::new_err(format!("no objective: {e}")))?;
+        let (settings, made): (FitSettings, Option<Made>) =
+            serde_json::from_str(kept).map_err(|e| PyValueError::new_err(format!("no objective: {e}")))?;
         let side = Side::named(split)?;
         let runs = study.get().windows_of(py, side)?;
-        Self::new(py, study, model.snapshot().model, runs, settings, side, Some(weight))
+        let wanted = Wanted { model: model.snapshot().model, settings, side, weight: Some(weight), uncertain };
+        Self::new(py, study, wanted, runs, made)
     }
+}
+
+/// A noise as `noise` gives it.
+fn noise_of(given: &Bound<'_, PyAny>) -> PyResult<Noise> {
+    let text: String = given.py().import("json")?.call_method1("dumps", (given,))?.extract()?;
+    let noise: Noise = serde_json::from_str(&text)
+        .map_err(|e| PyValueError::new_err(format!("noise: {e}; give what Objective.noise or Fit.noise gives")))?;
+    if noise.to_log().iter().all(|log| log.is_finite()) {
+        return Ok(noise);
+    }
+    Err(PyValueError::new_err("noise: standard deviations and times must be finite numbers above 0"))
 }
 
 fn unit(unit: &str) -> &str {

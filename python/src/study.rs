@@ -11,7 +11,7 @@ use crate::errors::Raised;
 use crate::evaluation::Evaluation;
 use crate::fit::{Fit, Settings, run};
 use crate::model::Model;
-use crate::objective::Objective;
+use crate::objective::{Objective, Wanted};
 use crate::ship::Ship;
 use crate::window::Window;
 use crate::work::{Line, whole};
@@ -278,15 +278,19 @@ impl Study {
 
     /// What a fit minimises, as a function with exact derivatives for an optimiser of one's own: see Objective.
     ///
-    /// `split` says which runs it is of; `prior_weight` is the weight w of the priors, by default what a fit gives them at its start
-    /// (a fit sets it anew from its residuals: `Fit.prior_weight`). `settings` has keys of [fit].
-    #[pyo3(signature = (*, model=None, split="train", prior_weight=None, objective=None, settings=None, accept=Vec::new()))]
+    /// `objective` is "trajectory" or "likelihood", and as the study says without; `split` says which runs it is of. `prior_weight` is the
+    /// weight w of the priors: without, 1/2 in a likelihood, and in a trajectory cost what a fit gives them at its start (a fit sets it
+    /// anew from its residuals: `Fit.prior_weight`). In a likelihood the coefficients of hull, propeller and rudder that are never known
+    /// exactly are free too, with priors, as in a fit; `uncertain=False` leaves them where they are. `settings` has keys of [fit].
+    #[pyo3(signature = (*, model=None, split="train", prior_weight=None, objective=None, uncertain=true, settings=None,
+                        accept=Vec::new()))]
     fn objective(
         slf: &Bound<'_, Self>,
         model: Option<&Model>,
         split: &str,
         prior_weight: Option<f64>,
         objective: Option<&str>,
+        uncertain: bool,
         settings: Option<&Bound<'_, PyDict>>,
         accept: Vec<String>,
     ) -> PyResult<Objective> {
@@ -296,7 +300,9 @@ impl Study {
         own.audit(py, accept, true)?;
         let runs = own.windows_of(py, side)?;
         own.doubt_yaw_rate(py, &runs)?;
-        Objective::new(py, slf.clone().unbind(), own.chosen(model).model, runs, settings, side, prior_weight)
+        let model = own.chosen(model).model;
+        let wanted = Wanted { model, settings, side, weight: prior_weight, uncertain };
+        Objective::new(py, slf.clone().unbind(), wanted, runs, None)
     }
 
     /// How well a model predicts runs beside a baseline, with 95 % intervals over runs: see Evaluation.

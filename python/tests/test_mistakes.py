@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -102,8 +104,8 @@ def test_words_for_settings_that_there_are_not(study: trimtab.Study) -> None:
         study.fit(settings={"max_iteration": 3})
     with pytest.raises(ValueError, match="tolerance"):
         study.fit(tolerance=-1.0)
-    with pytest.raises(ValueError, match="by likelihood"):
-        study.objective(objective="likelihood")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="unknown variant `posterior`.*`likelihood`"):
+        study.objective(objective="posterior")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match='give "train", "test" or "all"'):
         study.windows("training")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="there is no fault `x`"):
@@ -166,3 +168,73 @@ def test_a_ship_of_an_unknown_type_or_without_length() -> None:
 def test_every_error_is_one_to_catch() -> None:
     for error in (trimtab.StudyError, trimtab.ShipError, trimtab.ModelError, trimtab.FitError, trimtab.RecordingsError):
         assert issubclass(error, trimtab.TrimtabError) and issubclass(error, ValueError)
+
+
+RADIANS = {"n": "rps", "delta": "rad"}
+STRAIGHT = {"n": 2.0, "delta": np.zeros(20)}
+GAP = np.where(np.arange(20) == 7, np.nan, 0.0)
+
+# What a newcomer writes, what he is told, and what he then writes from that alone; `s` is the example study, `t` one of its recordings as a table.
+MISTAKES: dict[str, tuple[Callable[[Any, Any], Any], str, Callable[[Any, Any], Any]]] = {
+    "wrong unit": (
+        lambda s, t: s.model.simulate({**STRAIGHT, "n": 120.0}, START, dt=1.0),
+        "divide rpm by 60",
+        lambda s, t: s.model.simulate({**STRAIGHT, "n": 120.0 / 60}, START, dt=1.0),
+    ),
+    "a list of texts for an array": (
+        lambda s, t: s.model.simulate({**STRAIGHT, "delta": ["port 10"] * 20}, START, dt=1.0),
+        "expected numbers in one dimension (a list, a numpy array, a column of a table)",
+        lambda s, t: s.model.simulate({**STRAIGHT, "delta": [0.1] * 20}, START, dt=1.0),
+    ),
+    "NaN": (
+        lambda s, t: s.model.simulate({**STRAIGHT, "delta": GAP}, START, dt=1.0),
+        'inputs["delta"][7] = NaN is not a finite number; fill the gap',
+        lambda s, t: s.model.simulate({**STRAIGHT, "delta": np.nan_to_num(GAP)}, START, dt=1.0),
+    ),
+    "missing column": (
+        lambda s, t: trimtab.Study.from_dataframe(t.rename(columns={"psi": "HDT_true"}), ship=s.ship, columns={"psi": "HDT"}, split=False),
+        "no column `HDT` for psi; its columns are t, x, y, HDT_true",
+        lambda s, t: trimtab.Study.from_dataframe(
+            t.rename(columns={"psi": "HDT_true"}), ship=s.ship, columns={"psi": "HDT_true"}, units={**RADIANS, "psi": "rad"}, split=False
+        ),
+    ),
+    "unknown parameter": (
+        lambda s, t: s.model["rudder.lift_1"],
+        "did you mean `rudder.lift1`?",
+        lambda s, t: s.model["rudder.lift1"],
+    ),
+    "psi in degrees": (
+        lambda s, t: s.model.simulate(STRAIGHT, [0, 0, 270, 5, 0, 0], dt=1.0),
+        "initial_state[2] = 270 is outside -126 to 126; it is the heading, clockwise from north",
+        lambda s, t: s.model.simulate(STRAIGHT, [0, 0, np.radians(270), 5, 0, 0], dt=1.0),
+    ),
+    "float index": (
+        lambda s, t: s.fit(max_iterations=1.0),
+        "'float' object cannot be interpreted as an integer\nwhile processing 'max_iterations'",
+        lambda s, t: s.fit(max_iterations=1),
+    ),
+    "wrong shape": (
+        lambda s, t: s.objective().f([s.objective().x0]),
+        "theta: expected numbers in one dimension",
+        lambda s, t: s.objective().f(s.objective().x0),
+    ),
+    "unknown keyword": (
+        lambda s, t: s.fit(max_iteration=1),
+        "unexpected keyword argument 'max_iteration'",
+        lambda s, t: s.fit(max_iterations=1),
+    ),
+    "file not found": (
+        lambda s, t: trimtab.Study.load(s.path.with_name("studie.toml")),
+        "studie.toml",
+        lambda s, t: trimtab.Study.load(s.path),
+    ),
+}
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_each_of_ten_mistakes_is_mended_from_its_message(name: str, study: trimtab.Study) -> None:
+    wrong, words, right = MISTAKES[name]
+    table = study.windows()[0].to_frame()
+    with pytest.raises((ValueError, TypeError, KeyError), match=told(words)) as raised:
+        wrong(study, table)
+    assert not isinstance(raised.value, SystemError) and "panicked" not in str(raised.value)
+    assert right(study, table) is not None

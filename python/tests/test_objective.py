@@ -174,3 +174,117 @@ def test_the_number_of_threads_changes_no_bit(objective: trimtab.Objective) -> N
 def test_a_study_in_a_temporary_folder_says_why_it_is_not_pickled(tmp_path: Path) -> None:
     with pytest.raises(TypeError, match="folder"):
         pickle.dumps(trimtab.example())
+
+
+@pytest.fixture(scope="module")
+def likelihood(folder: Path) -> trimtab.Objective:
+    return trimtab.Study.load(folder).objective(objective="likelihood")
+
+
+def test_the_derivatives_of_a_likelihood_are_those_of_its_values(likelihood: trimtab.Objective) -> None:
+    # Off the point of the gains, within the bounds.
+    x, scales = likelihood.x0 + 0.02 * likelihood.scales, likelihood.scales
+    grad, jacobian = likelihood.grad(x), likelihood.jacobian(x)
+    for j in range(len(x)):
+        step = np.zeros_like(x)
+        step[j] = 1e-4 * scales[j]
+        above, below = x + step, x - step
+        width = above[j] - below[j]
+        slope = (likelihood.f(above) - likelihood.f(below)) / width
+        assert abs(slope - grad[j]) <= 1e-5 * max(abs(grad[j]), np.sqrt(likelihood.f(x)) / scales[j])
+        column = (likelihood.residuals(above) - likelihood.residuals(below)) / width
+        np.testing.assert_allclose(column, jacobian[:, j], atol=1e-4 * np.abs(jacobian[:, j]).max())
+
+
+def test_value_gradient_and_matrix_of_a_likelihood_follow_from_its_innovations(likelihood: trimtab.Objective) -> None:
+    x = likelihood.x0 + 0.01 * likelihood.scales
+    r, jacobian = likelihood.residuals(x), likelihood.jacobian(x)
+    assert r.shape == (likelihood.size,) and jacobian.shape == (likelihood.size, len(x))
+    assert r @ r / 2 == pytest.approx(likelihood.f(x), rel=1e-10)
+    value, grad = likelihood.f_and_grad(x)
+    assert value == pytest.approx(likelihood(x), rel=1e-12)
+    np.testing.assert_allclose(jacobian.T @ r, grad, atol=1e-9 * np.linalg.norm(jacobian, axis=0).max() * np.linalg.norm(r))
+    matrix = likelihood.gauss_newton(x)
+    size = np.sqrt(np.diag(matrix))
+    np.testing.assert_allclose(jacobian.T @ jacobian / np.outer(size, size), matrix / np.outer(size, size), atol=1e-9)
+    labels = likelihood.labels()
+    priors = [name for run, _, name in labels if run == "prior"]
+    assert len(labels) == likelihood.size and "hull.Yvdot" in priors and likelihood.prior_weight == 0.5
+    # Standardised: about one, were the model right.
+    assert 0.5 < np.sqrt(np.mean(r**2)) < 2.0
+
+
+def test_a_likelihood_is_what_a_fit_by_likelihood_minimises(study: trimtab.Study) -> None:
+    settings = {"constraints": {"off": True}}
+    fit = study.fit(objective="likelihood", settings=settings)
+    start = study.objective(objective="likelihood", settings=settings)
+    assert start.kind == "likelihood" and start.names == [e.name for e in fit.estimates]
+    assert fit.noise is not None
+    there = start.renewed(fit.theta, noise=fit.noise)
+    np.testing.assert_array_equal(there.x0, fit.theta)
+    # With noise and gains of where it ended a Newton step of the parameters that no bound holds back gains next to nothing.
+    away = np.minimum(*(np.abs(fit.theta - bound) for bound in there.bounds)) > 1e-2 * there.scales
+    grad, matrix = (there.grad(fit.theta) * there.scales)[away], there.gauss_newton(fit.theta) * np.outer(there.scales, there.scales)
+    gain = 0.5 * grad @ np.linalg.solve(matrix[np.ix_(away, away)], grad)
+    assert 0.0 <= gain < 0.5 and away.sum() > 20
+    assert there.f(fit.theta) < there.f(start.x0)
+    assert there.noise == fit.noise and len(fit.noise["sensors"]) == 4
+    assert there.model_at(fit.theta).free_names == study.model.free_names
+
+
+def test_gains_are_renewed_where_one_says(study: trimtab.Study) -> None:
+    first = study.objective(objective="likelihood", uncertain=False)
+    assert first.names == study.model.free_names
+    second = first.renewed(first.x0 + 0.1 * first.scales)
+    assert first.noise != second.noise and second.names == first.names
+    x = first.x0
+    assert first.f(x) != second.f(x)
+    again = pickle.loads(pickle.dumps(second))
+    assert again.f(x) == second.f(x) and again.noise == second.noise and again.kind == "likelihood"
+    np.testing.assert_array_equal(again.x0, second.x0)
+    free_of_priors = study.objective(objective="likelihood", prior_weight=0.0)
+    assert free_of_priors.size + len(free_of_priors.names) > study.objective(objective="likelihood").size
+    with pytest.raises(ValueError, match="no gains to renew.*objective=\"likelihood\""):
+        study.objective().renewed(x)
+    with pytest.raises(ValueError, match="give what Objective.noise or Fit.noise gives"):
+        first.renewed(x, noise={"position": 1.0})
+    with pytest.raises(ValueError, match="finite numbers above 0"):
+        first.renewed(x, noise={**(first.noise or {}), "force_time": 0.0})
+    with pytest.raises(ValueError, match="use gauss_newton"):
+        first.hessian(x)
+    x[first.names.index("rudder.lift1")] = 1e12
+    assert first.f(x) == np.inf and np.isnan(first.grad(x)).all() and np.isinf(first.residuals(x)).all()
+    with pytest.raises(trimtab.FitError, match="diverges"):
+        first.renewed(x)
+
+
+def test_twenty_starts_of_pypesto_end_where_one_does(study: trimtab.Study) -> None:
+    optimize = pytest.importorskip("pypesto.optimize")
+    import pypesto
+
+    study.model.fix("resistance", "rudder.lift2", "rudder.lift3", "rudder.drag0", "rudder.drag1")
+    objective = study.objective()
+    scales, n = objective.scales, len(objective.names)
+    # In units of the scales, about the start: pyPESTO draws its starts between bounds.
+    lower, upper = (np.clip(side, objective.x0 - 3 * scales, objective.x0 + 3 * scales) / scales for side in objective.bounds)
+    problem = pypesto.Problem(
+        pypesto.Objective(fun=lambda z: objective.f(z * scales), grad=lambda z: objective.grad(z * scales) * scales),
+        lb=lower,
+        ub=upper,
+        x_names=objective.names,
+    )
+    np.random.seed(1)
+    result = optimize.minimize(
+        problem, optimizer=optimize.ScipyOptimizer("L-BFGS-B"), n_starts=20, progress_bar=False, filename=None
+    )
+    values = np.array(result.optimize_result.fval)
+    assert len(values) == 20 and np.isfinite(values).sum() >= 15
+    best = least_squares(
+        lambda z: objective.residuals(z * scales),
+        np.clip(objective.x0 / scales, lower, upper),
+        jac=lambda z: objective.jacobian(z * scales) * scales,
+        bounds=(lower, upper),
+    )
+    assert n == len(best.x) and values.min() <= 2 * best.cost * (1 + 1e-6)
+    # Most starts find the same optimum.
+    assert (values <= values.min() * (1 + 1e-3)).sum() >= 10

@@ -297,7 +297,7 @@ fn table<P: Plain>(samples: usize, f: impl Fn(usize, usize, usize) -> f64) -> Ve
 }
 
 /// Whether a run can be fitted to.
-fn check(run: &Run, weights: &[f64; STATES]) -> Result<(), FitError> {
+pub(super) fn check(run: &Run, weights: &[f64; STATES]) -> Result<(), FitError> {
     let bad = |what: &str| Err(FitError::BadRun { run: run.recording.clone(), what: what.into() });
     if run.inputs.len() != run.measured.len() || run.inputs.len() < 2 {
         return bad("inputs and measured states must have the same number of samples, at least 2");

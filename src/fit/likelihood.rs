@@ -21,6 +21,7 @@ use super::curvature::Curvature;
 use super::descent::{Descent, From, Shared, Work};
 use super::error::FitError;
 use super::evaluations::Evaluations;
+use super::innovations::{Innovations, NOISE_ITERATIONS};
 use super::limits::Watch;
 use super::objective::Objective;
 use super::problem::{Priors, Progress, Settled, Stage};
@@ -30,16 +31,15 @@ use super::solve::{End, Search};
 use super::stages;
 use super::task::Task;
 use crate::ipopt::Multipliers;
-use crate::likelihood::estimate::{Estimate, fitted_noise, log_posterior, restrictions, run_evidence};
-use crate::likelihood::evidence::RunEvidence;
-use crate::likelihood::filter::{Column, Filter, Gains, Pass, Wanted};
+use crate::likelihood::estimate::{Estimate, fitted_noise, log_posterior};
+use crate::likelihood::filter::Column;
 use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::likelihood::noise_fit::guess;
-use crate::likelihood::parameters::{FreeParameter, uncertain_coefficients};
+use crate::likelihood::parameters::FreeParameter;
 use crate::model::{Model, Prior};
 use crate::recording::{Run, Runs};
 use crate::simulate::Integration;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use serde::Serialize;
 
 /// Rounds of gains and noise at most, in each stage.
@@ -64,9 +64,6 @@ const GRADIENT: f64 = 0.01;
 const ROUGH: f64 = 30.0;
 const CHANGE: f64 = 0.03;
 
-/// Iterations of the noise estimate in a round.
-const NOISE_ITERATIONS: usize = 8;
-
 /// What a fit by likelihood says beside its estimates.
 #[derive(Clone, Debug, Serialize)]
 pub struct Likelihood {
@@ -80,18 +77,6 @@ pub struct Likelihood {
     pub rounds: usize,
 }
 
-/// The negative log-likelihood of runs with the filter's gains held fixed, as a function of the free parameters.
-pub(super) struct Innovations<'a> {
-    task: &'a Task<'a>,
-    runs: &'a [Run],
-    noise: Noise,
-    gains: Vec<Gains>,
-    columns: Vec<Column>,
-    /// The sessions in which each variable acts, `None` for all of them.
-    sessions: Vec<Option<Vec<String>>>,
-    samples: usize,
-}
-
 /// Where a fit by likelihood ended, with the objective of its last round.
 pub(super) struct LikelihoodEnd<'a> {
     pub end: End,
@@ -99,77 +84,13 @@ pub(super) struct LikelihoodEnd<'a> {
     pub likelihood: Likelihood,
 }
 
-/// The model of a fit by likelihood: coefficients that are never known exactly are free too, with priors.
-pub(super) fn with_uncertain_coefficients(model: &Model) -> Model {
-    let mut model = model.clone();
-    let uncertain = uncertain_coefficients(&model);
-    for i in uncertain {
-        if model.parameters[i].free {
-            continue;
-        }
-        let prior = model.parameters[i].prior.or(FreeParameter::uncertain(&model, i).prior);
-        let p = &mut model.parameters[i];
-        // Whatever the prior says, a value beyond its bounds is no ship.
-        (p.free, p.prior) = (true, prior);
-    }
-    model
-}
-
-impl<'a> Innovations<'a> {
-    /// With the gains of the filter at `p`, by the variables `free` of the task.
-    fn new(task: &'a Task<'a>, free: &[FreeParameter], runs: &'a [Run], noise: Noise, p: &[f64]) -> Self {
-        let at = task.model_at(p);
-        let filter = Filter::new(&at, task.settings.integration, &[]);
-        let passes = filter.passes(runs, &noise, Wanted { gains: true, ..Wanted::default() });
-        let gains = passes.into_iter().map(|pass| pass.gains.unwrap_or_default()).collect();
-        let columns = free.iter().map(|f| f.column).collect();
-        let samples = runs.iter().map(|run| run.measured.len()).sum();
-        Self { task, runs, noise, gains, columns, sessions: restrictions(free), samples }
-    }
-
-    /// Half the sum of squared innovations, and what `take` makes of each pass; `None` where the model left the numbers.
-    fn passes(&self, p: &[f64], columns: &[Column], mut take: impl FnMut(DVector<f64>, DMatrix<f64>)) -> Option<f64> {
-        let model = self.task.model_at(p);
-        let filter = Filter::new(&model, self.task.settings.integration, columns);
-        let sessions = if columns.is_empty() { &[] } else { &self.sessions[..] };
-        let wanted = Wanted { frozen: Some(&self.gains), exact: true, ..Wanted::default() };
-        let work = |run: &Run, pass: Pass| {
-            let Pass { score, information, innovations, filtered, .. } = pass;
-            let RunEvidence { score, information, .. } = run_evidence(run, score, information, sessions);
-            // A model that left the numbers has no innovations at all, and would look perfect.
-            let finite = filtered.iter().flatten().all(|z| z.is_finite());
-            let square: f64 = innovations.iter().flatten().filter(|e| !e.is_nan()).map(|e| e * e).sum();
-            (0.5 * square, finite, score, information)
-        };
-        let (mut value, mut is_finite) = (0.0, true);
-        filter.each(self.runs, &self.noise, wanted, work, |(square, finite, score, information)| {
-            value += square;
-            is_finite &= finite;
-            take(score, information);
-        });
-        (is_finite && value.is_finite()).then_some(value)
-    }
-}
-
 impl Objective for Innovations<'_> {
     fn value(&self, p: &[f64]) -> Option<f64> {
-        self.passes(p, &[], |_, _| ())
+        Innovations::value(self, p)
     }
 
     fn quadratic(&self, p: &[f64], _with_matrix: bool) -> Option<Quadratic> {
-        let n = self.columns.len();
-        let (mut gradient, mut information, mut by_run) = (DVector::zeros(n), DMatrix::zeros(n, n), Vec::new());
-        // From the units of the columns to those of the variables.
-        let units = DVector::from_iterator(n, self.columns.iter().map(|column| column.scale));
-        let value = self.passes(p, &self.columns, |score, own| {
-            let score = score.component_div(&units);
-            gradient -= &score;
-            information += own;
-            by_run.push(-score);
-        })?;
-        information.component_div_assign(&(&units * units.transpose()));
-        let finite = gradient.iter().chain(information.iter()).all(|v: &f64| v.is_finite());
-        finite.then_some(Quadratic { value, gradient, gauss_newton: information, by_run })
+        Innovations::quadratic(self, p)
     }
 
     fn hessian(&self, _p: &[f64]) -> Option<DMatrix<f64>> {
@@ -178,7 +99,7 @@ impl Objective for Innovations<'_> {
 
     /// One over the number of samples.
     fn factor(&self) -> f64 {
-        1.0 / self.samples.max(1) as f64
+        1.0 / self.samples().max(1) as f64
     }
 
     /// Most of the squares are noise, which no model takes away.
@@ -195,7 +116,15 @@ struct Posterior<'a> {
     noise_prior: NoisePrior,
 }
 
-impl Posterior<'_> {
+impl<'a> Posterior<'a> {
+    /// The likelihood of runs with the gains of the filter at `p`.
+    fn innovations<'r>(&self, runs: &'r [Run], noise: Noise, p: &[f64]) -> Innovations<'r>
+    where
+        'a: 'r,
+    {
+        Innovations::of(self.task.model, runs, self.task.settings.integration, &self.free, noise, p)
+    }
+
     /// Log-likelihood plus log-priors of parameters and noise.
     fn log_density(&self, p: &[f64], noise: &Noise) -> f64 {
         let (model, integration) = (self.task.model_at(p), self.task.settings.integration);
@@ -251,11 +180,11 @@ impl<'t> Task<'t> {
         let (mut checks, mut is_checked) = ([0, 0], false);
         while descent.may_be_minimum() && !shared.watch.is_over() {
             let Reached { p, noise, .. } = &rounds.reached;
-            let innovations = Innovations::new(self, &posterior.free, runs, *noise, p);
+            let innovations = posterior.innovations(runs, *noise, p);
             let evaluations = Evaluations::of(&innovations);
-            let some = few.as_ref().map(|few| Innovations::new(self, &posterior.free, few, *noise, p));
+            let some = few.as_ref().map(|few| posterior.innovations(few, *noise, p));
             let of_few = some.as_ref().map(|some| Evaluations::of(some));
-            let share = some.as_ref().map_or(1.0, |some| some.samples as f64 / innovations.samples as f64);
+            let share = some.as_ref().map_or(1.0, |some| some.samples() as f64 / innovations.samples() as f64);
             let search = Search { evaluations: of_few.as_ref().unwrap_or(&evaluations), share };
             let stage = self.likelihood_stage(&evaluations, &innovations, &priors);
             let lower = self.lower_nearby(&stage, search, &descent, checks[0], &mut shared)?;
@@ -271,7 +200,7 @@ impl<'t> Task<'t> {
         let Rounds { reached, count, .. } = rounds;
         self.check_feasible(&descent)?;
         let end = self.ended(descent, is_checked, priors, shared.work, checks);
-        let innovations = Innovations::new(self, &posterior.free, runs, reached.noise, &end.p);
+        let innovations = posterior.innovations(runs, reached.noise, &end.p);
         let (log_posterior, noise) = (reached.value, reached.noise);
         let likelihood = Likelihood { start_log_posterior, log_posterior, noise, rounds: count };
         Ok(LikelihoodEnd { end, innovations, likelihood })
@@ -317,7 +246,7 @@ impl<'t> Task<'t> {
             round += 1;
             rounds.count += 1;
             let Reached { p, noise, value: before } = &rounds.reached;
-            let innovations = Innovations::new(self, &posterior.free, posterior.runs, *noise, p);
+            let innovations = posterior.innovations(posterior.runs, *noise, p);
             let evaluations = Evaluations::of(&innovations);
             let mut stage = self.likelihood_stage(&evaluations, &innovations, priors);
             let most = short.iter().find(|(until, _)| round <= *until).map(|(_, most)| *most);
@@ -422,6 +351,7 @@ mod tests {
     use super::*;
     use crate::diagnose::example::{RK4, at, model, noise, runs};
     use crate::fit::{Fit, fit};
+    use nalgebra::DVector;
 
     fn settings() -> FitSettings {
         let mut settings = FitSettings { objective: Goal::Likelihood, integration: RK4, ..FitSettings::default() };
@@ -443,8 +373,8 @@ mod tests {
         let cost = Cost::new(&start, &runs, settings.cost_options())?;
         let task = Task::new(&start, &cost, (&runs[..]).into(), &settings)?;
         let free: Vec<FreeParameter> = start.free().into_iter().map(|i| common(&start, i)).collect();
-        let innovations = Innovations::new(&task, &free, &runs, noise(), &task.start);
-        let Some(quadratic) = innovations.quadratic(&task.start, true) else { return Err(FitError::NoRuns) };
+        let innovations = Innovations::of(&start, &runs, RK4, &free, noise(), &task.start);
+        let Some(quadratic) = innovations.quadratic(&task.start) else { return Err(FitError::NoRuns) };
         for (j, scale) in task.scaling.scales.iter().enumerate() {
             let value = |d: f64| {
                 let mut p = task.start.clone();

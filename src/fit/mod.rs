@@ -18,6 +18,7 @@
 //! | `stages` | runs in shorter pieces, or a few of them, to be fitted first |
 //! | `descent` | one solve through Ipopt, with its restarts |
 //! | `solve` | from the start through the stages to an optimum that was checked |
+//! | `innovations` | the likelihood with the gains of the filter held fixed |
 //! | `likelihood` | the fit by likelihood: noise, gains and parameters in turn |
 //! | `subspace` | directions that constraints leave free |
 //! | `covariance` | covariances, and what the data do not determine |
@@ -38,6 +39,7 @@ mod doubts;
 mod error;
 #[cfg(feature = "ipopt")]
 mod evaluations;
+mod innovations;
 #[cfg(feature = "ipopt")]
 mod likelihood;
 #[cfg(feature = "ipopt")]
@@ -74,6 +76,7 @@ pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 #[cfg(feature = "ipopt")]
 pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;
+pub use innovations::{Innovations, noise_at, with_uncertain_coefficients};
 #[cfg(feature = "ipopt")]
 pub use likelihood::Likelihood;
 #[cfg(feature = "ipopt")]

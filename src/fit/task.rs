@@ -5,6 +5,7 @@ use super::constraints::{self, Row};
 use super::cost::{Cost, CostOptions};
 use super::error::FitError;
 use super::evaluations::Evaluations;
+use super::innovations::model_at;
 use super::scaling::Scaling;
 use super::settings::FitSettings;
 use super::subspace::null_space;
@@ -136,14 +137,7 @@ impl<'a> Task<'a> {
 
     /// The model with the free parameters, and what sessions add to them, at `p`.
     pub fn model_at(&self, p: &[f64]) -> Model {
-        let mut model = self.model.clone();
-        for (i, value) in self.cost.free().iter().zip(p) {
-            model.parameters[*i].value = *value;
-        }
-        for (deviation, value) in self.deviations.iter().zip(&p[self.cost.free().len()..]) {
-            deviation.set(&mut model, *value);
-        }
-        model
+        model_at(self.model, self.cost.free(), &self.deviations, p)
     }
 
     /// Whether the mass matrix at `p` can be inverted, in every session: a point where it cannot is no ship.

@@ -3,7 +3,7 @@
 
 use super::settings::{NOISE_FORCE_SPREAD, NOISE_SIZE_SPREAD, NOISE_TIME_SPREAD, NOISE_WHITE_SPREAD};
 use nalgebra::{SMatrix, SVector};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Measured channels share their noise in groups: position, heading, speed, yaw rate.
 pub const GROUPS: [&str; 4] = ["position", "heading", "speed", "yaw rate"];
@@ -15,7 +15,7 @@ pub const GROUP_OF: [usize; 6] = [0, 0, 1, 2, 2, 3];
 pub const NOISE_PARAMETERS: usize = 16;
 
 /// Noise of one sensor group: white noise plus first-order coloured noise.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SensorNoise {
     /// Standard deviation of the white part \[unit of the channel\].
     pub white: f64,
@@ -26,7 +26,7 @@ pub struct SensorNoise {
 }
 
 /// Sensor noise by group, and an unknown force as a first-order Gauss-Markov (Ornstein-Uhlenbeck) process an equation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
     /// Sensor noise of the groups in [`GROUPS`].
     pub sensors: [SensorNoise; 4],

@@ -57,6 +57,8 @@ pub struct Pass {
     pub information: DMatrix<f64>,
     /// Standardised innovations by sample and channel; NaN where there was no measurement.
     pub innovations: Vec<[f64; STATES]>,
+    /// Derivatives of the standardised innovations by the columns, sample after sample, column after column; empty where not asked for.
+    pub slopes: Vec<[f64; STATES]>,
     /// Filtered state by sample.
     pub filtered: Vec<[f64; Z]>,
     /// Standard deviation of the filtered unknown force in X, Y \[N\], N \[N m\] by sample.
@@ -107,6 +109,8 @@ pub struct Wanted<'a> {
     pub frozen: Option<&'a [Gains]>,
     /// Leave out what is kept by sample: innovations, filtered states and the unknown force's standard deviations.
     pub sums_only: bool,
+    /// Store the derivatives of the standardised innovations; of the parameters alone, without a basis.
+    pub slopes: bool,
     /// Differentiate the parameters through every stage of the step, instead of by the trapezoidal rule over it.
     pub exact: bool,
 }

@@ -111,7 +111,7 @@ pub(super) fn passes<P: Plain>(directions: &Directions, runs: &Together, noise: 
     let mut correction = Correction::none();
     for k in 0..samples {
         filtering.correct(k, &mut correction);
-        filtering.learn(&correction);
+        filtering.learn(k, &correction);
         filtering.record(k);
         if k + 1 < samples {
             filtering.advance(k);
@@ -217,6 +217,7 @@ impl<'f, P: Plain> Filtering<'f, P> {
             score: DVector::zeros(0),
             information: DMatrix::zeros(0, 0),
             innovations: Vec::with_capacity(kept(run)),
+            slopes: Vec::new(),
             filtered: Vec::with_capacity(kept(run)),
             force_sd: Vec::with_capacity(kept(run)),
             tangent: wanted.tangent.then(Tangent::default),
@@ -391,8 +392,8 @@ impl<'f, P: Plain> Filtering<'f, P> {
         }
     }
 
-    /// Carries the sensitivities through a correction, and adds score and information.
-    fn learn(&mut self, correction: &Correction<P>) {
+    /// Carries the sensitivities through the correction of a sample, and adds score and information.
+    fn learn(&mut self, k: usize, correction: &Correction<P>) {
         if self.slopes.is_empty() {
             return;
         }
@@ -417,7 +418,16 @@ impl<'f, P: Plain> Filtering<'f, P> {
             for j in (0..STATES).filter(|j| some[*j]) {
                 self.score[c] = (error[j] * inverse[j]).mul_add(rows[j], self.score[c]);
             }
-            self.information.set(c, &std::array::from_fn(|j| rows[j] * root[j]));
+            let row = std::array::from_fn(|j| rows[j] * root[j]);
+            if self.wanted.slopes {
+                for (lane, ((_, run), pass)) in self.runs.iter().zip(&mut self.passes).enumerate() {
+                    if k < run.measured.len() {
+                        // An innovation falls where what is expected rises.
+                        pass.slopes.push(row.map(|x: P| -x.in_lane(lane)));
+                    }
+                }
+            }
+            self.information.set(c, &row);
         }
         self.information.next_sample();
     }
