@@ -93,7 +93,7 @@ const SPIRAL: &str = "\
 Example:
   trimtab maneuver spiral study.toml --model results/fitted.toml --angle 15 --out spiral
 
-Each rudder angle is held until the yaw rate is steady, for 60 ship lengths at most. A ship that is unstable on its course has a loop: two \
+Each rudder angle is held until the yaw rate is steady, for 150 ship lengths at most. A ship that is unstable on its course has a loop: two \
     rates at small angles. Its width is known to a degree or two, the distance of the angles.
 
 With --out: maneuver_spiral.json, spiral.png and .csv, spiral_measures.csv, the track as CSV.

@@ -296,7 +296,7 @@ fn a_circle_in_a_current_is_the_same_circle_through_the_water() {
 #[test]
 fn the_pull_out_and_the_spiral_agree_on_whether_a_ship_is_stable_on_its_course() {
     let settings = ManeuverSettings { speed: Some(5.0), ..Default::default() };
-    for (scale, expected) in [(4.0, true), (0.4, false)] {
+    for (scale, expected) in [(4.0, true), (0.1, false)] {
         let mut model = model(Form::Regular);
         let names = ["propeller.side_force", "rudder.lift0", "rudder.lift2", "rudder.drag1"];
         names.iter().for_each(|name| model.set(&[(*name, 0.0)]).unwrap());
@@ -312,7 +312,9 @@ fn the_pull_out_and_the_spiral_agree_on_whether_a_ship_is_stable_on_its_course()
         let m = spiral_trial(&model, &theta, &approach, angle).measures;
         let (width, height) = (m.loop_width.unwrap().to_degrees(), m.loop_height.unwrap());
         let residual = pulled[0].measures.residual_rate.unwrap();
-        assert_eq!(width < 0.5, expected, "{m:?}");
+        // The loop of a ship that is hardly unstable is narrower than the angles are apart; its height tells it.
+        assert_eq!(height < 0.02 * m.points[0][1], expected, "{m:?}");
+        assert!(!expected || width < 0.1, "{m:?}");
         // Amidships the two passes are the rates that the pull-outs leave.
         assert!((height - 2.0 * residual.abs()).abs() < 0.05 * residual.abs() + 1e-4, "{height} {residual}");
         assert!(m.neutral.unwrap().abs() < 0.2f64.to_radians(), "{m:?}");

@@ -49,7 +49,7 @@ impl Side {
 pub enum Ended {
     /// Every measure was reached.
     Complete,
-    /// The trial was not complete after the time of 200 ship lengths at approach speed.
+    /// The trial was not complete after the longest time that it is sailed: 200 ship lengths at approach speed, more for pull-out and spiral.
     TimeOut {
         /// Time sailed \[s\].
         after: f64,

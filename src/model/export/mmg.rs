@@ -1,7 +1,6 @@
 //! What is exported of a model of form `mmg`: its equations, and the primes as they are published.
 //! The primes of the other forms, which have to be converted, are in the parent.
 
-use super::Prime;
 use crate::model::Model;
 
 /// The equations of motion, with the primes of the table `mmg`.
@@ -15,10 +14,10 @@ pub(super) const EQUATIONS: [&str; 4] = [
 /// How the coefficients relate to the publication.
 pub(super) const NOTE: &str = "MMG form as Yasukawa & Yoshimura 2015 print it, at midship: (m + m_x) u' - (m + m_y) v r - x_G m r^2 = X; (m + m_y) v' + (m + m_x) u r + x_G m r' = Y; (I_z + J_z) r' + x_G m (v' + u r) = N, with I_z about midship. The two sides of gamma_R are flow.straightening + flow.asymmetry for beta_R < 0 and the difference for beta_R > 0, those of C_2 are mmg_wake.C_2 + mmg_wake.dC_2 for beta_P > 0 and the difference for beta_P < 0.";
 
-/// The primes of `mmg_hull`, as the model has them.
-pub(super) fn primes(model: &Model) -> impl Iterator<Item = Prime> + '_ {
+/// The primes of `mmg_hull` as the model has them: name, value and meaning.
+pub(super) fn primes(model: &Model) -> impl Iterator<Item = (&'static str, f64, &'static str)> + '_ {
     let own = model.parameters.iter().filter(|p| p.name.starts_with("mmg_hull."));
-    own.map(|p| Prime { name: p.info.name, value: p.value, definition: p.info.about })
+    own.map(|p| (p.info.name, p.value, p.info.about))
 }
 
 /// The hull force as a MATLAB function.

@@ -135,7 +135,7 @@ pub fn export(model: &Model) -> Export {
     let mut primes = converted(&prime);
     if model.form == Form::Mmg {
         primes.truncate(MASSES);
-        primes.extend(mmg::primes(model));
+        primes.extend(mmg::primes(model).map(|(name, value, definition)| Prime { name, value, definition }));
     }
     let with = ["resistance.", "propeller.", "rudder.", "flow.", "mmg_wake.", "mmg_rudder."];
     let base = |p: &&Parameter| with.iter().any(|t| p.name.starts_with(t));

@@ -180,7 +180,7 @@ pub fn ended_note<M>(trial: &Trial<M>) -> Option<String> {
     match trial.ended {
         Ended::Complete => None,
         Ended::TimeOut { after } => {
-            Some(format!("{}: not complete after {after:.0} s (200 ship lengths at approach speed).", trial.name))
+            Some(format!("{}: not complete after {after:.0} s, the longest that this trial is sailed.", trial.name))
         }
         Ended::Diverged { after } => Some(format!(
             "{}: the simulation diverged after {after:.1} s; the model is not usable there (set `step` in [maneuver] to rule out the integration).",

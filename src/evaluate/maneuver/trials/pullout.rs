@@ -3,15 +3,17 @@
 
 use crate::evaluate::maneuver::approach::Approach;
 use crate::evaluate::maneuver::measures::PullOut;
-use crate::evaluate::maneuver::sail::{Orders, sail};
+use crate::evaluate::maneuver::sail::{Orders, sail_for};
 use crate::evaluate::maneuver::track::Track;
 use crate::evaluate::maneuver::trial::{Intervals, Side, Trial};
 use crate::model::Model;
 use std::f64::consts::TAU;
 
-/// A yaw rate that moves by less than this share of U0/L over four ship lengths at approach speed is steady: a thousandth of the rate of
-/// a turn on four ship lengths.
-const STEADY: f64 = 5e-4;
+/// A yaw rate that moves by less than this share of U0/L over four ship lengths at approach speed is steady. A rate that falls by 1/e in a
+/// hundred ship lengths is then a hundredth of that of a turn, below what tells a ship unstable.
+const STEADY: f64 = 1e-4;
+/// Ship lengths at approach speed after which a pull-out ends, steady or not.
+const LONGEST: f64 = 600.0;
 /// Ship lengths at approach speed over which a rate must be steady.
 const LENGTHS: f64 = 4.0;
 
@@ -62,7 +64,7 @@ pub fn course_stable(trials: &[Trial<PullOut>]) -> Option<bool> {
 pub fn pull_out_trial(model: &Model, theta: &[f64], approach: &Approach, side: Side, angle: f64) -> Trial<PullOut> {
     let length = model.ship.hull.lpp;
     let mut release = None;
-    let (track, ended) = sail(model, theta, approach, |track| {
+    let (track, ended) = sail_for(model, theta, approach, LONGEST, |track| {
         let turned = track.states.last().map_or(0.0, |s| s[2].abs());
         let since = release.unwrap_or(0);
         let still = steady(track, since, length, approach.speed);

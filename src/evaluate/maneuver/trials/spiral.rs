@@ -11,7 +11,7 @@ use crate::model::Model;
 /// Rudder angles of ten degrees and less at which the rate is taken \[deg\]: a degree apart near amidships, where a loop is.
 const NEAR: [f64; 8] = [10.0, 7.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.0];
 /// Ship lengths at approach speed after which the next angle is taken, steady or not.
-const HELD: f64 = 60.0;
+const HELD: f64 = 150.0;
 
 /// The rudder angles of a spiral in their order \[rad\]: from `largest` to the other side and back.
 pub fn spiral_angles(largest: f64) -> Vec<f64> {
