@@ -410,30 +410,14 @@ mod tests {
     }
 
     #[test]
-    fn what_a_session_adds_is_fitted_beside_its_parameter_and_their_sum_keeps_the_bounds() -> Result<(), FitError> {
-        let mut truth = model();
-        let Some(i) = truth.index("rudder_offset.offset") else { return Err(FitError::NothingFree) };
-        truth.sessions.insert("a".into(), vec![(i, 0.03)]);
-        let runs = runs(&truth, 9);
-        let column = Column::tangent(&truth, i);
-        let fitted = |upper: f64| {
-            let mut start = model();
-            start.parameters[i].upper = upper;
-            let mut found = at(&start);
-            let deviation = FreeParameter { column, sessions: Some(vec!["a".into()]), prior: None };
-            // A zero in all sessions is what the lift of the rudder amidships would take over.
-            let sure = Prior { mean: 0.0, sd: 1e-3 };
-            found.free.extend([deviation, FreeParameter::common(column, Some(sure))]);
-            let prior = NoisePrior::around(&found.noise);
-            within_limits(&found, RK4, &runs, &prior, ConstraintSettings::default())
-        };
-        let sum = |found: &Estimate| found.model.values_in("a")[i];
-        let wide = fitted(0.35)?;
-        assert!((sum(&wide) - 0.03).abs() < 0.004, "{}", sum(&wide));
-        assert_eq!(wide.free.len(), at(&model()).free.len() + 2);
-        let narrow = fitted(0.02)?;
-        assert!(sum(&narrow) <= 0.02 + 1e-6 && sum(&narrow) > 0.019, "{}", sum(&narrow));
-        assert!(narrow.log_posterior < wide.log_posterior);
+    fn an_estimate_off_the_optimum_is_taken_there_within_limits() -> Result<(), FitError> {
+        let (truth, runs) = (model(), runs(&model(), 9));
+        let mut found = at(&off(1.1));
+        found.log_posterior = log_posterior(&found.model, RK4, &runs, &found.free, &found.noise);
+        let prior = NoisePrior::around(&found.noise);
+        let written = within_limits(&found, RK4, &runs, &prior, ConstraintSettings::default())?;
+        assert!(written.log_posterior > found.log_posterior + 1.0);
+        assert_eq!((written.free.len(), written.model.free()), (found.free.len(), truth.free()));
         Ok(())
     }
 

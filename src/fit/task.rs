@@ -262,6 +262,31 @@ mod tests {
     use std::path::Path;
 
     #[test]
+    fn what_sessions_add_is_a_variable_and_its_sum_with_a_free_parameter_a_row() -> Result<(), FitError> {
+        let mut model = crate::diagnose::example::model();
+        let Some(i) = model.index("rudder_offset.offset") else { return Err(FitError::NothingFree) };
+        model.parameters[i].free = true;
+        let runs = crate::diagnose::example::runs(&model, 2);
+        let settings = FitSettings::default();
+        let cost = Cost::new(&model, &runs, settings.cost_options())?;
+        let column = crate::likelihood::filter::Column::tangent(&model, i);
+        let deviation = FreeParameter { column, sessions: Some(vec!["a".into()]), prior: None };
+        let task = Task::new(&model, &cost, (&runs[..]).into(), &settings)?.beside(vec![deviation]);
+        let (n, common) = (task.start.len(), cost.free().iter().position(|j| *j == i).unwrap_or(0));
+        assert_eq!((n, task.bounds.len(), task.scaling.scales.len()), (cost.free().len() + 1, n, n));
+        assert_eq!(task.scaling.sizes.len(), task.rows.len());
+        let mut p = task.start.clone();
+        (p[common], p[n - 1]) = (0.1, 0.05);
+        let at = task.model_at(&p);
+        assert!((at.values_in("a")[i] - 0.15).abs() < 1e-12 && (at.values_in("b")[i] - 0.1).abs() < 1e-12);
+        let Some(row) = task.rows.last() else { return Err(FitError::NothingFree) };
+        assert_eq!((row.rule, row.value(&p), row.violation(&p)), ("bounds", p[common] + p[n - 1], 0.0));
+        p[n - 1] = 0.35;
+        assert!(row.violation(&p) > 0.09 && !task.is_feasible(&p));
+        Ok(())
+    }
+
+    #[test]
     fn no_values_within_the_bounds_make_the_mass_matrix_singular() {
         let path = format!("{}/experiments/ships/a.toml", env!("CARGO_MANIFEST_DIR"));
         let mut model = Model::new(Ship::read(Path::new(&path)).unwrap(), "HD", Form::Paper, &[]).unwrap();
