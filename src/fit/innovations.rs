@@ -304,11 +304,11 @@ mod tests {
         for i in 0..n {
             let gradient: f64 = own.values.iter().zip(own.slopes.chunks(n)).map(|(e, row)| e * row[i]).sum();
             let size = (2.0 * value * sums.gauss_newton[(i, i)]).sqrt();
-            assert!((gradient - sums.gradient[i]).abs() < 1e-9 * size, "{i}: {gradient} {}", sums.gradient[i]);
+            assert!((gradient - sums.gradient[i]).abs() <= 1e-9 * size, "{i}: {gradient} {}", sums.gradient[i]);
             for j in 0..=i {
                 let product: f64 = own.slopes.chunks(n).map(|row| row[i] * row[j]).sum();
                 let size = (sums.gauss_newton[(i, i)] * sums.gauss_newton[(j, j)]).sqrt();
-                assert!((product - sums.gauss_newton[(i, j)]).abs() < 1e-9 * size, "{i} {j}");
+                assert!((product - sums.gauss_newton[(i, j)]).abs() <= 1e-9 * size, "{i} {j}");
             }
         }
         Ok(())
