@@ -97,7 +97,7 @@ fn colours_are_for_terminals_and_no_color_turns_them_off() {
     let study = Study::new();
     let said = |variables: &[(&str, &str)]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_trimtab"));
-        command.args(["maneuver", "turning", "study.toml"]).envs(variables.iter().copied());
+        command.args(["maneuver", "turning", "study.toml", "--draws", "0"]).envs(variables.iter().copied());
         text(&command.current_dir(study.folder.path()).output().unwrap().stdout)
     };
     assert!(!said(&[]).contains('\u{1b}'));
