@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use trimtab::diagnose::{Settings, diagnose};
 use trimtab::evaluate::Judging;
-use trimtab::evaluate::maneuver::{SEED, recorded};
+use trimtab::evaluate::maneuver::SEED;
 use trimtab::files::{Manifest, settle, sha256_of};
 use trimtab::recording::audit::{audit_model, audit_study};
 use trimtab::recording::{Run, Split};
@@ -83,8 +83,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     files.sort();
     files.dedup();
     output.reads_files(&files);
-    let (fit, mut maneuver) = (loaded.fit_settings()?, loaded.maneuver_settings()?);
-    maneuver.recorded = recorded(&loaded.study);
+    let (fit, maneuver) = (loaded.fit_settings()?, loaded.maneuver_settings()?.of_recordings(&loaded.study));
     let judging = Judging::new(&fit, loaded.evaluation_settings()?);
     let settings = diagnosis_settings(&loaded, args)?;
     output.settings("fit", &fit)?;

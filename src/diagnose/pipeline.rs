@@ -15,7 +15,7 @@ use super::law::Law;
 use super::law::sides::sides;
 use super::proof::describe::kinds;
 use super::proof::improved::{trimmed, uncertainty};
-use super::proof::prove::{HeldOut, prove};
+use super::proof::prove::{HeldOut, prove, scores};
 use super::proof::stability::Stability;
 use super::search::base::{BaseFit, Question};
 use super::search::decide::Unlisted;
@@ -58,7 +58,7 @@ pub fn diagnose<'r>(
     let proof: Option<HeldOut> = proof(&question, &answer, &written, &held_out);
     let answer: Answer = answer.capped(proof.as_ref());
     let sailed: Vec<Sailed> = pictured(&question, &answer, &written, &held_out);
-    let models = models(&question, &answer, &written, &held_out);
+    let models = proof.as_ref().map_or_else(Vec::new, |proof| models(&question, &answer, proof, &held_out));
     let said = report(&question, answer, &written, proof, models);
     Ok(Diagnosis { set_aside, stability, error_rates: rates, sailed, ..said })
 }
@@ -102,13 +102,14 @@ fn proof(question: &Question, answer: &Answer, written: &Written, held_out: &[Ru
     Some(prove(before, after, Some(&generic), tests.fit.integration, held_out, &question.settings.judging))
 }
 
-/// The study's own model, the base model and the one with what was found, on unseen runs.
-fn models(question: &Question, answer: &Answer, written: &Written, held_out: &[Run]) -> Vec<OnUnseen> {
-    let mut models = vec![(Whose::Own, question.model), (Whose::Base, &written.base.model)];
+/// The study's own model, the base model and the one with what was found, on the runs of the proof, which has simulated the last two.
+fn models(question: &Question, answer: &Answer, proof: &HeldOut, held_out: &[Run]) -> Vec<OnUnseen> {
+    let own = scores(question.model, held_out, &question.settings.judging);
+    let mut models = vec![(Whose::Own, &own[..]), (Whose::Base, &proof.runs_before[..])];
     if answer.improves() {
-        models.push((Whose::Improved, &written.found.model));
+        models.push((Whose::Improved, &proof.runs_after[..]));
     }
-    on_unseen(&models, held_out, &question.settings.judging)
+    on_unseen(&models)
 }
 
 /// How much of the runs lies outside the ranges of a model's terms.

@@ -8,7 +8,7 @@ use crate::likelihood::evidence::RunEvidence;
 use crate::likelihood::filter::{Column, Filter, Gains, Pass, Wanted};
 use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::likelihood::noise_fit::guess;
-use crate::likelihood::parameters::{FreeParameter, uncertain_coefficients};
+use crate::likelihood::parameters::{FreeParameter, base_parameters, uncertain_coefficients};
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;
@@ -90,15 +90,13 @@ impl<'a> Innovations<'a> {
         p: &[f64],
     ) -> Result<Self, FitError> {
         runs.iter().try_for_each(|run| check(run, &[0.0; STATES]))?;
-        let free = model.free();
+        let free = base_parameters(model, false);
         if runs.is_empty() {
             return Err(FitError::NoRuns);
         }
         if free.is_empty() {
             return Err(FitError::NothingFree);
         }
-        let of = |i: usize| FreeParameter::common(Column::tangent(model, i), model.parameters[i].prior);
-        let free: Vec<FreeParameter> = free.into_iter().map(of).collect();
         let (all, passes) = Self::with_passes(model, runs, integration, &free, noise, p);
         for (run, pass) in runs.iter().zip(&passes) {
             if let Some(k) = pass.filtered.iter().position(|z| !z.iter().all(|z| z.is_finite())) {
@@ -154,7 +152,7 @@ impl<'a> Innovations<'a> {
     /// Number of samples of all runs.
     #[cfg(feature = "ipopt")]
     pub(super) fn samples(&self) -> usize {
-        self.runs.iter().map(|run| run.measured.len()).sum()
+        samples(self.runs)
     }
 
     fn model_at(&self, p: &[f64]) -> Model {
@@ -261,6 +259,12 @@ impl<'a> Innovations<'a> {
         }
         own
     }
+}
+
+/// Number of samples of some runs.
+#[cfg(feature = "ipopt")]
+pub(super) fn samples(runs: &[Run]) -> usize {
+    runs.iter().map(|run| run.measured.len()).sum()
 }
 
 /// Whether a filter stayed within the numbers: a model that left them has no innovations at all, and would look perfect.

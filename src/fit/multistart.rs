@@ -30,6 +30,24 @@ impl Default for MultiStart {
     }
 }
 
+impl MultiStart {
+    /// A model at every start, inside its bounds.
+    pub fn models(&self, model: &Model) -> Vec<Model> {
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        let mut one = |_| {
+            let mut from = model.clone();
+            for i in model.free() {
+                let parameter = &mut from.parameters[i];
+                let size = if parameter.value == 0.0 { parameter.scale } else { parameter.value.abs() };
+                let moved = parameter.value + self.spread * size * random.random_range(-1.0..=1.0);
+                parameter.value = moved.max(parameter.lower).min(parameter.upper);
+            }
+            from
+        };
+        (0..self.count).map(&mut one).collect()
+    }
+}
+
 /// How one start ended.
 #[derive(Debug)]
 pub struct StartOutcome {
@@ -64,7 +82,7 @@ pub fn multi_start(
     starts: &MultiStart,
     mut progress: impl FnMut(usize),
 ) -> Vec<StartOutcome> {
-    let from = drawn(model, starts);
+    let from = starts.models(model);
     let outcome = |(count, from): (usize, &Model)| {
         progress(count);
         StartOutcome { start: free_values(from), outcome: fit(from, runs, settings, &mut |_| true) }
@@ -83,7 +101,7 @@ pub fn multi_start_over(
     known: &BTreeMap<usize, StartRow>,
     mut ended: impl FnMut(usize, &StartRow),
 ) -> Vec<StartRow> {
-    let from = drawn(model, starts);
+    let from = starts.models(model);
     let own = from.iter().enumerate().filter(|(count, _)| ranks.takes(*count));
     let row = |(count, from): (usize, &Model)| {
         let values = free_values(from);
@@ -114,22 +132,6 @@ impl StartRow {
             }
         }
     }
-}
-
-/// The model at every start.
-fn drawn(model: &Model, starts: &MultiStart) -> Vec<Model> {
-    let mut random = ChaCha8Rng::seed_from_u64(starts.seed);
-    let mut one = |_| {
-        let mut from = model.clone();
-        for i in model.free() {
-            let parameter = &mut from.parameters[i];
-            let size = if parameter.value == 0.0 { parameter.scale } else { parameter.value.abs() };
-            let moved = parameter.value + starts.spread * size * random.random_range(-1.0..=1.0);
-            parameter.value = moved.max(parameter.lower).min(parameter.upper);
-        }
-        from
-    };
-    (0..starts.count).map(&mut one).collect()
 }
 
 fn free_values(model: &Model) -> Vec<f64> {

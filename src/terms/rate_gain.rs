@@ -56,16 +56,16 @@ impl<S: Scalar> Physics<S> for RateGain {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
-    use crate::diagnose::example::with;
-    use crate::dynamics::Dynamics;
+    use std::path::Path;
 
     #[test]
     fn a_rate_recorded_at_nine_tenths_is_made_whole_ahead_and_astern() {
-        let model = with(&[("rate_gain.gain", 1.0 / 0.9 - 1.0)]);
-        let dynamics = Dynamics::new(&model, model.values());
+        let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
         let mut driven = [Inputs::actuators(0.0, 1.8, 0.1), Inputs::actuators(1.0, -0.9, 0.1)];
-        dynamics.drive(1.0, &mut driven);
+        RateGain.drive(&[1.0 / 0.9 - 1.0], &ship, 1.0, &mut driven);
         let rates: Vec<f64> = driven.iter().map(|i| i.n).collect();
         assert!((rates[0] - 2.0).abs() < 1e-12 && (rates[1] + 1.0).abs() < 1e-12, "{rates:?}");
         assert!(driven.iter().all(|i| i.delta == 0.1));

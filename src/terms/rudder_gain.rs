@@ -56,16 +56,16 @@ impl<S: Scalar> Physics<S> for RudderGain {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
-    use crate::diagnose::example::with;
-    use crate::dynamics::Dynamics;
+    use std::path::Path;
 
     #[test]
     fn a_gain_of_a_tenth_turns_nine_tenths_of_an_angle_into_nearly_the_whole_of_it() {
-        let model = with(&[("rudder_gain.gain", 0.1)]);
-        let dynamics = Dynamics::new(&model, model.values());
+        let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
         let mut driven = [Inputs::actuators(0.0, 2.0, 0.45), Inputs::actuators(1.0, 2.0, -0.2)];
-        dynamics.drive(1.0, &mut driven);
+        RudderGain.drive(&[0.1], &ship, 1.0, &mut driven);
         let angles: Vec<f64> = driven.iter().map(|i| i.delta).collect();
         assert!((angles[0] - 0.495).abs() < 1e-12 && (angles[1] + 0.22).abs() < 1e-12, "{angles:?}");
         assert!(driven.iter().all(|i| i.n == 2.0));

@@ -15,8 +15,8 @@ use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::evaluate::maneuver::{
     Approach, DRAWS, Drawn, Ended, Known, ManeuverError, ManeuverSettings, Measured, SEED, Side, Trial,
-    calm_water_of_depth, course_stable, drawn_from, of_priors, pull_out_trial, recorded, set_intervals_from,
-    spiral_trial, stopping_trial, turning_trial, zigzag_trial,
+    calm_water_of_depth, course_stable, drawn_from, of_priors, pull_out_trial, set_intervals_from, spiral_trial,
+    stopping_trial, turning_trial, zigzag_trial,
 };
 use trimtab::files::Names;
 use trimtab::model::Model;
@@ -223,8 +223,8 @@ struct Prepared {
     model_path: PathBuf,
     /// What is known of the parameters, by a fit or before it.
     uncertainty: Option<Uncertainty>,
-    /// Whether a fit says so.
-    of_a_fit: bool,
+    /// Which of the two.
+    known: Known,
     /// Draws of it.
     drawn: Vec<Drawn>,
     seed: u64,
@@ -240,12 +240,12 @@ impl Prepared {
         let loaded = args.study.load(Study::read_with_any_runs)?;
         output.reads(&loaded, false);
         let mut settings = loaded.maneuver_settings()?;
-        settings.recorded = recorded(&loaded.study);
         if args.speed.is_some() || args.rpm.is_some() {
             (settings.speed, settings.n_rpm) = (args.speed, args.rpm);
         }
         settings.depth = args.depth.or(settings.depth);
         change(&mut settings);
+        let settings = settings.of_recordings(&loaded.study);
         output.settings("maneuver", &settings)?;
         let path = loaded.study.path.clone();
         let fail = |error| CliError::Maneuver { path: path.clone(), error };
@@ -256,9 +256,8 @@ impl Prepared {
         let theta = model.values();
         let approach = settings.approach(&model, &theta).map_err(fail)?;
         let (model_path, fitted) = loaded.uncertainty()?;
-        let of_a_fit = fitted.is_some();
+        let known = if fitted.is_some() { Known::ByFit } else { Known::Before };
         let uncertainty = fitted.or_else(|| of_priors(&model));
-        let known = if of_a_fit { Known::ByFit } else { Known::Before };
         let drawn = uncertainty.as_ref().map_or_else(Vec::new, |u| drawn_from(known, &model, u, args.draws, args.seed));
         let (model_path, sessions, seed) = (model_path.to_owned(), model.sessions.len(), args.seed);
         Ok(Self {
@@ -270,7 +269,7 @@ impl Prepared {
             kept,
             sessions,
             model_path,
-            of_a_fit,
+            known,
             uncertainty,
             drawn,
             seed,
@@ -289,8 +288,7 @@ impl Prepared {
         sail: impl Fn(&Approach, &[f64]) -> Vec<Trial<M>> + Sync,
     ) {
         // The approach of a draw holds the speed with the thrust and the resistance of that draw.
-        let known = if self.of_a_fit { Known::ByFit } else { Known::Before };
-        set_intervals_from(known, trials, &self.drawn, |theta| {
+        set_intervals_from(self.known, trials, &self.drawn, |theta| {
             Some(sail(&self.settings.approach(&self.model, theta).ok()?, theta))
         });
     }
@@ -319,7 +317,7 @@ impl Prepared {
         }
         match self.draws() {
             Some(d) => {
-                let what = if self.of_a_fit { "the covariance in" } else { "the priors of" };
+                let what = if self.known == Known::ByFit { "the covariance in" } else { "the priors of" };
                 notes.push(format!(
                     "95 % intervals in brackets: {} draws of {what} {} ({}), seed {}.",
                     d.count,

@@ -3,9 +3,8 @@
 //!
 //! The improved model that is written never simulates the unseen runs worse, by mean cVDM, than the model that the study came with.
 
-use crate::evaluate::{Judging, outcome, predict_all};
-use crate::model::Model;
-use crate::recording::Run;
+use crate::diagnose::proof::prove::RunScore;
+use crate::state::STATES;
 use crate::statistics::mean;
 use serde::Serialize;
 
@@ -38,28 +37,25 @@ pub struct OnUnseen {
     pub speed: Option<f64>,
 }
 
-/// Models on unseen runs; empty where there are none on which every model can be judged.
-pub fn on_unseen(models: &[(Whose, &Model)], runs: &[Run], judging: &Judging) -> Vec<OnUnseen> {
-    let outcomes = |model: &Model| -> Vec<_> {
-        let predicted = predict_all(model, runs, judging.integration);
-        let of = |(run, p)| outcome(run, p, &model.ship, judging.max_yaw_rate).deviation().cloned();
-        runs.iter().zip(&predicted).map(of).collect()
-    };
-    let all: Vec<Vec<_>> = models.iter().map(|(_, model)| outcomes(model)).collect();
-    let judged: Vec<usize> = (0..runs.len()).filter(|i| all.iter().all(|of| of[*i].is_some())).collect();
-    let one = |((whose, _), of): (&(Whose, &Model), &Vec<Option<crate::evaluate::Deviation>>)| {
-        let kept = || judged.iter().filter_map(|i| of[*i].as_ref());
-        let channel = |value: &dyn Fn(&crate::evaluate::Deviation) -> Option<f64>| mean(kept().filter_map(value));
+/// Models on unseen runs, by their scores run by run; empty where there are none on which every model can be judged.
+pub fn on_unseen(models: &[(Whose, &[RunScore])]) -> Vec<OnUnseen> {
+    let count = models.first().map_or(0, |(_, scores)| scores.len());
+    let judged: Vec<usize> = (0..count).filter(|i| models.iter().all(|(_, of)| of[*i].cvdm.is_some())).collect();
+    let one = |(whose, of): &(Whose, &[RunScore])| {
+        let kept = || judged.iter().map(|i| &of[*i]);
+        let channel = |value: &dyn Fn(&[Option<f64>; STATES]) -> Option<f64>| {
+            mean(kept().filter_map(|score| value(score.mean_distance.as_ref()?)))
+        };
         Some(OnUnseen {
             model: *whose,
             runs: judged.len(),
-            cvdm: mean(kept().map(|d| d.cvdm))?,
-            position: channel(&|d| Some(d.md[0]?.hypot(d.md[1]?))),
-            heading: channel(&|d| d.md[2]),
-            speed: channel(&|d| d.md[3]),
+            cvdm: mean(kept().filter_map(|score| score.cvdm))?,
+            position: channel(&|md| Some(md[0]?.hypot(md[1]?))),
+            heading: channel(&|md| md[2]),
+            speed: channel(&|md| md[3]),
         })
     };
-    models.iter().zip(&all).filter_map(one).collect()
+    models.iter().filter_map(one).collect()
 }
 
 /// Whose model is written in place of `wanted`: the study's own where it simulates the unseen runs better.
@@ -75,17 +71,19 @@ pub fn written(wanted: Whose, scores: &[OnUnseen]) -> Whose {
 mod tests {
     use super::*;
     use crate::diagnose::example::{model, runs, with};
+    use crate::diagnose::proof::prove::scores;
     use crate::diagnose::settings::Settings;
 
     #[test]
     fn the_truth_has_the_least_error_and_is_written_whoever_gave_it() {
         let truth = with(&[("current.north", 0.4)]);
         let (unseen, judging, other) = (runs(&truth, 4), Settings::default().judging, model());
-        let scores = on_unseen(&[(Whose::Own, &truth), (Whose::Base, &other)], &unseen, &judging);
+        let [of_truth, of_other] = [&truth, &other].map(|model| scores(model, &unseen, &judging));
+        let scores = on_unseen(&[(Whose::Own, &of_truth), (Whose::Base, &of_other)]);
         assert_eq!((scores.len(), scores[0].runs), (2, 4));
         assert!(scores[0].cvdm < 0.5 * scores[1].cvdm && scores[0].position < scores[1].position, "{scores:?}");
         assert_eq!(written(Whose::Base, &scores), Whose::Own);
-        let swapped = on_unseen(&[(Whose::Own, &other), (Whose::Base, &truth)], &unseen, &judging);
+        let swapped = on_unseen(&[(Whose::Own, &of_other), (Whose::Base, &of_truth)]);
         assert_eq!(written(Whose::Base, &swapped), Whose::Base);
     }
 
@@ -96,8 +94,9 @@ mod tests {
         let Some(i) = wild.index("hull.Nr") else { unreachable!("the hull has a yaw damping") };
         wild.parameters[i].value *= -50.0;
         let judging = Settings::default().judging;
-        assert!(on_unseen(&[(Whose::Own, &truth), (Whose::Base, &wild)], &runs(&truth, 2), &judging).is_empty());
-        assert!(on_unseen(&[(Whose::Own, &truth)], &[], &judging).is_empty());
+        let [of_truth, of_wild] = [&truth, &wild].map(|model| scores(model, &runs(&truth, 2), &judging));
+        assert!(on_unseen(&[(Whose::Own, &of_truth), (Whose::Base, &of_wild)]).is_empty());
+        assert!(on_unseen(&[(Whose::Own, &scores(&truth, &[], &judging))]).is_empty());
         assert_eq!(written(Whose::Improved, &[]), Whose::Improved);
     }
 }

@@ -24,6 +24,13 @@ pub struct RunScore {
     pub mean_distance: Option<[Option<f64>; STATES]>,
 }
 
+impl RunScore {
+    fn new(run: &Run, outcome: &Outcome) -> Self {
+        let deviation = outcome.deviation();
+        Self { run: run.name.clone(), cvdm: deviation.map(|d| d.cvdm), mean_distance: deviation.map(|d| d.md) }
+    }
+}
+
 /// Before against after on held-out runs. The numbers of free simulation are those that `trimtab evaluate` prints.
 #[derive(Clone, Debug, Serialize)]
 pub struct HeldOut {
@@ -79,11 +86,17 @@ pub fn likelihood(model: &Model, integration: Integration, noise: &Noise, runs: 
     (total.0, total.1 / f64::max(total.2, 1.0))
 }
 
+/// How well a model does on each of some runs, simulated freely.
+pub fn scores(model: &Model, runs: &[Run], judging: &Judging) -> Vec<RunScore> {
+    let predicted = predict_all(model, runs, judging.integration);
+    let of = |(run, p)| RunScore::new(run, &outcome(run, p, &model.ship, judging.max_yaw_rate));
+    runs.iter().zip(&predicted).map(of).collect()
+}
+
 /// Mean cVDM \[%\] of a model's free simulations of runs; `None` where one diverges, and of no runs.
 pub fn mean_cvdm(model: &Model, runs: &[Run], judging: &Judging) -> Option<f64> {
-    let predicted = predict_all(model, runs, judging.integration);
-    let of = |(run, p)| Some(outcome(run, p, &model.ship, judging.max_yaw_rate).deviation()?.cvdm);
-    mean(runs.iter().zip(&predicted).map(of).collect::<Option<Vec<f64>>>()?)
+    let each = scores(model, runs, judging).into_iter().map(|score| score.cvdm);
+    mean(each.collect::<Option<Vec<f64>>>()?)
 }
 
 /// Compares two models on held-out runs as they were recorded. The likelihood is of the runs as the diagnosis takes them, parted
@@ -105,11 +118,8 @@ pub fn prove(
     let changes = all.iter().zip(runs).filter_map(|(c, run)| Some((&run.name, c.improvement()?)));
     let worst = changes.min_by(|a, b| a.1.total_cmp(&b.1));
     let scores = |of: fn(&Comparison) -> &Outcome| {
-        let score = |(c, run): (&&Comparison, &Run)| {
-            let deviation = of(c).deviation();
-            RunScore { run: run.name.clone(), cvdm: deviation.map(|d| d.cvdm), mean_distance: deviation.map(|d| d.md) }
-        };
-        all.iter().zip(runs).map(score).collect()
+        let score = |(c, run): (&&Comparison, &Run)| RunScore::new(run, of(c));
+        all.iter().zip(runs).map(score).collect::<Vec<_>>()
     };
     HeldOut {
         runs: summary.trajectories,

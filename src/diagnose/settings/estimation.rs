@@ -41,7 +41,7 @@ numbers! {
     SENSOR_SPREAD: f64 = 10.0, "wider than any error that a user would not see; not varied";
     /// Length of the stretches over which the sensors are held against each other, in ship lengths.
     STRETCH: f64 = 0.5, "chosen with the method, before any case, and not varied";
-    /// Stretches in a row, in a block that counts as one in the scatter of what the sensors say of each other.
+    /// Stretches in a row, in a block that counts as one in the scatter of the kinematic consistency of sensors.
     STRETCHES: usize = 10, "five ship lengths, more than a turn takes; chosen before any case, and not varied";
     /// Forces are held against those of the base's asymmetric parameters at every so many samples.
     FORCE_STRIDE: usize = 4, COST;

@@ -2,7 +2,6 @@
 //! No trial is simulated here.
 
 use super::error::ManeuverError;
-use super::recorded::Recorded;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::ranges::{Limited, OutOfRange, within};
@@ -38,6 +37,17 @@ pub struct ManeuverSettings {
     /// What the recordings of the study show of both.
     #[serde(skip)]
     pub recorded: Recorded,
+}
+
+/// What recordings show of the approach; absent where they do not.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Recorded {
+    /// Approach speed \[m/s\]: the middle one of the runs' speeds.
+    pub speed: Option<f64>,
+    /// Rudder rate \[rad/s\].
+    pub rudder_rate: Option<f64>,
+    /// Recordings that were read.
+    pub recordings: usize,
 }
 
 /// Where a quantity of the approach is from.

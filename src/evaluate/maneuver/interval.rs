@@ -165,7 +165,7 @@ fn judge<M: Measured>(trial: &mut Trial<M>, known: Known) {
     for criterion in &mut trial.criteria {
         let name = criterion.quantity();
         // The unit of a criterion is a multiple of that of the measure.
-        let unit = criterion.measured.zip(trial.measures.quantity(&name)).map(|(told, si)| told / si);
+        let unit = criterion.measured.zip(trial.measures.quantity(&name)).map(|(judged, si)| judged / si);
         match (unit.filter(|u| u.is_finite()), trial.intervals.get(name.as_str())) {
             (Some(unit), Some(ends)) => criterion.set_interval(ends.map(|end| end * unit)),
             (Some(_), None) if known == Known::Before => criterion.leave_open(),

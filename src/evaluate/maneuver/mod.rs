@@ -16,7 +16,7 @@ mod track;
 mod trial;
 mod trials;
 
-pub use approach::{Approach, ManeuverSettings, Source};
+pub use approach::{Approach, ManeuverSettings, Recorded, Source};
 pub use calm::{calm_water, calm_water_of_depth};
 pub use error::ManeuverError;
 pub use found::{Found, Kind, PassedOver, approach_speed, find};
@@ -24,7 +24,6 @@ pub use interval::{DRAWS, Drawn, Known, SEED, drawn, drawn_from, of_priors, set_
 pub use measured::{MeasuredTrial, Measures, Simulated, Taken, measured};
 pub use measures::{Measured, PullOut, Quantity, Spiral, Steady, Stopping, Turning, Zigzag};
 pub use nomoto::Nomoto;
-pub use recorded::{Recorded, recorded};
 pub use track::Track;
 pub use trial::{Ended, Intervals, Side, Trial};
 pub use trials::pullout::{course_stable, pull_out, pull_out_trial};

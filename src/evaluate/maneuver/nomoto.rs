@@ -2,6 +2,7 @@
 //! They describe one trial, at its rudder angles and its loss of speed; no model is made of them.
 
 use super::track::Track;
+use nalgebra::{SMatrix, SVector};
 use serde::Serialize;
 
 /// Nomoto's equation of first order, T r' + r = K (delta - delta_0) (Nomoto, Taguchi, Honda & Hirano 1957), fitted to a trial.
@@ -13,7 +14,7 @@ pub struct Nomoto {
     pub gain: f64,
     /// Time constant T \[s\].
     pub time: f64,
-    /// Rudder angle delta_0 that holds a straight course \[rad\]; 0 where a trial with one rudder step cannot tell it.
+    /// Rudder angle delta_0 that holds a straight course \[rad\]; 0 where one rudder step does not determine it.
     pub neutral: f64,
 }
 
@@ -27,7 +28,7 @@ pub(super) fn nomoto(track: &Track, from: usize, to: usize) -> Option<Nomoto> {
     found.neutral.is_finite().then_some(found)
 }
 
-/// K and T of a turn with one rudder step, in which the neutral angle cannot be told from the gain.
+/// K and T of a turn with one rudder step, which does not distinguish the neutral angle from the gain.
 pub(super) fn nomoto_of_step(track: &Track, from: usize, to: usize) -> Option<Nomoto> {
     let [gain, time] = fitted::<2>(track, from, to)?;
     Some(Nomoto { gain, time, neutral: 0.0 })
@@ -36,7 +37,7 @@ pub(super) fn nomoto_of_step(track: &Track, from: usize, to: usize) -> Option<No
 /// The least squares of the integrated equation in its first `N` unknowns.
 fn fitted<const N: usize>(track: &Track, from: usize, to: usize) -> Option<[f64; N]> {
     let start = track.states.get(from)?;
-    let (mut matrix, mut right) = ([[0.0; N]; N], [0.0; N]);
+    let (mut matrix, mut right) = (SMatrix::<f64, N, N>::zeros(), SVector::<f64, N>::zeros());
     let mut turned = 0.0;
     for k in from + 1..=to.min(track.len().checked_sub(1)?) {
         let dt = track.t[k] - track.t[k - 1];
@@ -47,38 +48,20 @@ fn fitted<const N: usize>(track: &Track, from: usize, to: usize) -> Option<[f64;
         if !(heading.is_finite() && all.iter().all(|x| x.is_finite())) {
             continue;
         }
-        for i in 0..N {
-            right[i] += all[i] * heading;
-            for j in 0..N {
-                matrix[i][j] += all[i] * all[j];
-            }
-        }
+        let row = SVector::<f64, N>::from_fn(|i, _| all[i]);
+        right += row * heading;
+        matrix += row * row.transpose();
     }
     solved(matrix, right)
 }
 
-/// The solution of a symmetric positive system by elimination; `None` where it is singular.
-fn solved<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
-    // What is left of a diagonal entry, relative to it, below which the unknowns cannot be told apart.
+/// The solution of a symmetric positive system; `None` where it is singular.
+fn solved<const N: usize>(a: SMatrix<f64, N, N>, b: SVector<f64, N>) -> Option<[f64; N]> {
+    // What a diagonal entry keeps beside the unknowns before it, relative to it, below which these cannot be distinguished.
     const LEAST: f64 = 1e-10;
-    let diagonal: [f64; N] = std::array::from_fn(|i| a[i][i]);
-    for i in 0..N {
-        if a[i][i].is_nan() || a[i][i] <= LEAST * diagonal[i] {
-            return None;
-        }
-        for j in i + 1..N {
-            let factor = a[j][i] / a[i][i];
-            for k in i..N {
-                a[j][k] -= factor * a[i][k];
-            }
-            b[j] -= factor * b[i];
-        }
-    }
-    for i in (0..N).rev() {
-        let known: f64 = (i + 1..N).map(|k| a[i][k] * b[k]).sum();
-        b[i] = (b[i] - known) / a[i][i];
-    }
-    Some(b)
+    let factor = a.cholesky()?;
+    let kept = |i: usize| factor.l_dirty()[(i, i)].powi(2);
+    (0..N).all(|i| kept(i) > LEAST * a[(i, i)]).then(|| factor.solve(&b).into())
 }
 
 #[cfg(test)]

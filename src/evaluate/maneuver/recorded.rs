@@ -1,21 +1,11 @@
 //! At what speed and rudder rate the recordings of a study were sailed, for trials that are to be sailed as they were.
 //! It reads these two numbers alone; whether a recording is sound is asked by the audit.
 
+use super::approach::{ManeuverSettings, Recorded};
 use crate::recording::{Channel, Recording};
-use crate::statistics::quantile;
+use crate::statistics::{median, quantile};
 use crate::study::{Listed, Study};
 use rayon::prelude::*;
-
-/// What recordings show of the approach; absent where they do not.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Recorded {
-    /// Approach speed \[m/s\]: the middle one of the runs' speeds.
-    pub speed: Option<f64>,
-    /// Rudder rate \[rad/s\].
-    pub rudder_rate: Option<f64>,
-    /// Recordings that were read.
-    pub recordings: usize,
-}
 
 /// The share of its rows at which a run is slower than its approach: trials lose speed, and noise adds some.
 const APPROACH: f64 = 0.9;
@@ -24,20 +14,25 @@ const MOVE: f64 = 10.0 * std::f64::consts::PI / 180.0;
 /// The share of the moves that are slower than the gear turns: it cannot turn faster, but a rudder may follow a slow order.
 const GEAR: f64 = 0.75;
 
+impl ManeuverSettings {
+    /// With what the recordings of a study show of the approach; they are read where the settings leave a part of it to them.
+    pub fn of_recordings(self, study: &Study) -> Self {
+        let is_set = (self.speed.is_some() || self.n_rpm.is_some()) && self.rudder_rate_deg_s.is_some();
+        if is_set { self } else { Self { recorded: recorded(study), ..self } }
+    }
+}
+
 /// Speed and rudder rate of the recordings of a study; those that cannot be read are left out.
-pub fn recorded(study: &Study) -> Recorded {
+fn recorded(study: &Study) -> Recorded {
     let read = |run: &Listed| Some(study.recording(run).ok()?.part(run.from, run.to));
     let seen: Vec<(Option<f64>, Vec<f64>)> =
         study.runs.par_iter().with_max_len(1).filter_map(read).map(|r| (fastest(&r), rates(&r))).collect();
-    let sorted = |mut values: Vec<f64>| {
-        values.sort_by(f64::total_cmp);
-        values
-    };
-    let speeds = sorted(seen.iter().filter_map(|(speed, _)| *speed).collect());
-    let rates = sorted(seen.iter().flat_map(|(_, rates)| rates.iter().copied()).collect());
+    let speeds = seen.iter().filter_map(|(speed, _)| *speed);
+    let mut rates: Vec<f64> = seen.iter().flat_map(|(_, rates)| rates.iter().copied()).collect();
+    rates.sort_by(f64::total_cmp);
     let positive = |x: &f64| *x > 0.0;
     Recorded {
-        speed: quantile(&speeds, 0.5).filter(positive),
+        speed: median(speeds).filter(positive),
         rudder_rate: quantile(&rates, GEAR).filter(positive),
         recordings: seen.len(),
     }
@@ -81,8 +76,7 @@ fn rates(recording: &Recording) -> Vec<f64> {
 fn full_rate(mut steps: Vec<f64>) -> Option<f64> {
     let largest = steps.iter().copied().fold(0.0, f64::max);
     steps.retain(|rate| *rate >= 0.5 * largest);
-    steps.sort_by(f64::total_cmp);
-    quantile(&steps, 0.5).filter(|rate| rate.is_finite())
+    median(steps)
 }
 
 #[cfg(test)]

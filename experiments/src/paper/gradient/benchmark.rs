@@ -1,10 +1,8 @@
 //! One fit by several sources of derivatives, all through Ipopt: how fast its cost falls from the paper's p~, and which share of random
 //! starts reaches the optimum in which time, with 11, 30 and 60 parameters free. Gradients alone are compared in `measure`.
 
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::fmt::Write;
-use trimtab::fit::{Cost, CostOptions, Derivatives, FitSettings, Hessian};
+use trimtab::fit::{Cost, CostOptions, Derivatives, FitSettings, Hessian, MultiStart};
 use trimtab::model::Model;
 use trimtab::numbers::numerals::{DASH, fixed, sig};
 use trimtab::recording::Run;
@@ -33,10 +31,8 @@ const SIZES: [usize; 3] = [11, 30, 60];
 /// Of the training runs every how many are fitted to.
 const EVERY: usize = 6;
 
-/// Random starts, how far each parameter is drawn from p~ as a share of its value, and their seed.
-const STARTS: usize = 20;
-const SPREAD: f64 = 0.5;
-const SEED: u64 = 20_261_127;
+/// Random starts around p~.
+const STARTS: MultiStart = MultiStart { count: 20, spread: 0.5, seed: 20_261_127 };
 
 /// Rounds in which the fits from p~ are repeated; the least time of each point counts.
 const ROUNDS: usize = 3;
@@ -81,23 +77,9 @@ impl Way {
     }
 }
 
-/// Models at random starts around a model.
-fn starts(model: &Model) -> Vec<Model> {
-    let mut random = ChaCha8Rng::seed_from_u64(SEED);
-    let mut one = |_| {
-        let mut from = model.clone();
-        for p in from.parameters.iter_mut().filter(|p| p.free) {
-            let size = if p.value == 0.0 { p.scale } else { p.value.abs() };
-            p.value = (p.value + SPREAD * size * random.random_range(-1.0..=1.0)).clamp(p.lower, p.upper);
-        }
-        from
-    };
-    (0..STARTS).map(&mut one).collect()
-}
-
 /// All ways to fit one model.
 fn ways(case: &Case, model: &Model, runs: &[Run]) -> Result<Vec<Way>, PaperError> {
-    let starts = starts(model);
+    let starts = STARTS.models(model);
     let mut ways = Vec::new();
     for (source, derivatives, color) in SOURCES {
         for (hessian, kind) in HESSIANS {
@@ -191,7 +173,7 @@ impl Report {
         let falls = Axis::new("cost over the best - 1").log().range(1e-9, 1e2);
         let mut from_guess = Panel::new(format!("{title}: from p~"), time(), falls);
         let share = Axis::new("share at the best cost + 0.1 % [%]").range(0.0, 100.0);
-        let mut from_starts = Panel::new(format!("{title}: from {STARTS} random starts"), time(), share);
+        let mut from_starts = Panel::new(format!("{title}: from {} random starts", STARTS.count), time(), share);
         for way in ways {
             self.add_way(free, way, best, simulation);
             let name = format!("{}, {}", way.source, way.hessian);
@@ -216,7 +198,7 @@ impl Report {
             way.hessian.to_owned(),
             c.iterations.to_string(),
             dash(to_best),
-            format!("{} of {STARTS}", times.len()),
+            format!("{} of {}", times.len(), STARTS.count),
             dash(median),
         ]);
         let rounded = |value: Option<f64>| value.map(|t| fixed(t, 0)).unwrap_or_default();
@@ -237,7 +219,7 @@ impl Report {
 
 /// The share of the starts, in per cent, that have reached the optimum by a time, as the corners of a staircase.
 fn steps(times: &[f64], unit: f64) -> Vec<(f64, f64)> {
-    let share = |count: usize| 100.0 * count as f64 / STARTS as f64;
+    let share = |count: usize| 100.0 * count as f64 / STARTS.count as f64;
     times.iter().enumerate().flat_map(|(i, t)| [(t / unit, share(i)), (t / unit, share(i + 1))]).collect()
 }
 
@@ -247,9 +229,10 @@ fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
         let runs: Vec<Run> = case.training().into_iter().step_by(EVERY).collect();
         let _ = writeln!(
             report.text,
-            "{}, {} runs; a time is processor time over that of one simulation of all runs; seed of the starts {SEED}",
+            "{}, {} runs; a time is processor time over that of one simulation of all runs; seed of the starts {}",
             case.label(),
-            runs.len()
+            runs.len(),
+            STARTS.seed
         );
         for size in SIZES {
             let mut model = initial_model(case.ship, case.setup.form)?;
