@@ -2,6 +2,7 @@
 //! It does not know what a column means: names and verdicts are made elsewhere.
 
 use super::algebra::{pick, pseudo_inverse};
+use super::moderated::{GroupScore, Moderation, Ratio, pooled, ratio};
 use super::settings::{IDENTIFIABLE_SHARE, SCATTER_GROUPS};
 pub use crate::statistics::chi_squared_p;
 use crate::statistics::{corrected, scattered_p, student_quantile};
@@ -33,9 +34,11 @@ pub struct RunScore {
     pub session: String,
     /// Score by column.
     pub score: DVector<f64>,
+    /// Information by column, the others known.
+    pub information: DVector<f64>,
 }
 
-/// Sums of scores and information over sessions and over all runs. The information of single runs is not kept.
+/// Sums of scores and information over sessions and over all runs. Of the information of single runs only the diagonal is kept.
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {
     /// By run, in order.
@@ -98,7 +101,7 @@ impl Evidence {
             sum.score += &score;
             sum.information += &information;
         }
-        self.runs.push(RunScore { session, score });
+        self.runs.push(RunScore { session, score, information: information.diagonal() });
     }
 
     /// The base block: its information with the prior precision added, factorised.
@@ -113,14 +116,46 @@ impl Evidence {
         Base { columns: columns.to_vec(), inverse: pseudo_inverse(&h), score: g }
     }
 
-    /// How much further the base's parameters scatter than its information says, as factors of at least 1 on their standard
-    /// errors: the roots of the diagonal of `A^-1 B A^-1` over that of `A^-1`, with A the information, `B = C/(C-1) sum (g_c -
-    /// mean g)(g_c - mean g)^T` and `g_c` the scores summed over the runs of group c of C (Liang & Zeger 1986, Biometrika 73,
-    /// eq. 2.7). A model whose form is not the ship's errs alike in all runs of a kind.
-    pub fn scatter(&self, base: &Base, groups: &[&str]) -> Scatter {
-        let of_base = |g: DVector<f64>| DVector::from_fn(base.columns.len(), |i, _| g[base.columns[i]]);
-        let sums: Vec<DVector<f64>> = self.sums_of(groups).into_iter().map(of_base).collect();
-        Scatter { factors: excess(&base.inverse, &sums), degrees: degrees_of(sums.len()) }
+    /// How much further the base's parameters scatter between groups of runs than its information says, as factors of at least 1 on
+    /// their standard errors: the roots of the moderated ratios ([`Moderation`]) of their efficient scores `A^-1 g_c`, with A the base's
+    /// information and `g_c` the scores summed over the runs of group c. What is typical is learnt from the base and from `further`
+    /// columns. A model whose form is not the ship's errs alike in all runs of a kind.
+    pub fn scatter(&self, base: &Base, groups: &[&str], further: &[usize]) -> Scatter {
+        let groups = self.groups(groups);
+        let own: Vec<Option<Ratio>> = (0..base.columns.len()).map(|i| groups.of_base(base, i)).collect();
+        let others = further.iter().filter_map(|c| groups.beside(self, base, *c, |_| 0));
+        let moderation = Moderation::of(&own.iter().flatten().copied().chain(others).collect::<Vec<_>>());
+        let moderated = own.into_iter().map(|r| moderation.moderated(r));
+        let (factors, degrees) = moderated.map(|r| (r.value.sqrt(), r.degrees.max(degrees_of(0)))).unzip();
+        Scatter { factors, degrees }
+    }
+
+    /// The moderated ratio of a group of columns beside a base, the largest of them, each around its own effect in each part of the
+    /// runs: `part` says to which a run belongs. What is typical is learnt from all `further` columns.
+    pub fn moderated(
+        &self,
+        base: &Base,
+        columns: &[usize],
+        groups: &[&str],
+        further: &[usize],
+        part: impl Fn(usize) -> usize,
+    ) -> Ratio {
+        let groups = self.groups(groups);
+        let all: Vec<Ratio> = further.iter().filter_map(|c| groups.beside(self, base, *c, |_| 0)).collect();
+        let moderation = Moderation::of(&all);
+        let one = |c: &usize| moderation.moderated(groups.beside(self, base, *c, &part));
+        columns
+            .iter()
+            .map(one)
+            .reduce(|a, b| if b.value > a.value { b } else { a })
+            .unwrap_or(moderation.moderated(None))
+    }
+
+    /// The runs by group.
+    fn groups(&self, groups: &[&str]) -> Groups<'_> {
+        let mut members: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        groups.iter().zip(0..self.runs.len()).for_each(|(group, run)| members.entry(group).or_default().push(run));
+        Groups { runs: &self.runs, members: members.into_values().collect() }
     }
 
     /// The scores summed over the runs of each group, `groups` naming that of each run.
@@ -206,6 +241,53 @@ impl Evidence {
     }
 }
 
+/// Runs that are no evidence apart, by group.
+struct Groups<'a> {
+    runs: &'a [RunScore],
+    members: Vec<Vec<usize>>,
+}
+
+impl Groups<'_> {
+    /// Efficient score and information of each group along one column, given each run's efficient score.
+    fn scores(&self, column: usize, score: impl Fn(&RunScore) -> f64) -> Vec<GroupScore> {
+        let one = |members: &Vec<usize>| GroupScore {
+            score: members.iter().map(|i| score(&self.runs[*i])).sum(),
+            weight: members.iter().map(|i| self.runs[*i].information[column]).sum(),
+        };
+        self.members.iter().map(one).collect()
+    }
+
+    /// The ratio of a parameter of the base.
+    fn of_base(&self, base: &Base, index: usize) -> Option<Ratio> {
+        let row = base.inverse.row(index);
+        let score = |run: &RunScore| base.columns.iter().zip(row.iter()).map(|(c, a)| a * run.score[*c]).sum();
+        ratio(&self.scores(base.columns[index], score), row[index])
+    }
+
+    /// The ratio of a column beside the base, around its own effect in each part of the runs; `None` where the base takes it over.
+    fn beside(&self, all: &Evidence, base: &Base, column: usize, part: impl Fn(usize) -> usize) -> Option<Ratio> {
+        let cross = pick(&all.total.information, &[column], &base.columns);
+        let taken = &cross * &base.inverse;
+        let own = all.total.information[(column, column)];
+        let left = own - (&taken * cross.transpose())[(0, 0)];
+        if left.is_nan() || left < IDENTIFIABLE_SHARE * own {
+            return None;
+        }
+        let efficient = |run: &RunScore| {
+            run.score[column] - base.columns.iter().zip(taken.iter()).map(|(c, t)| t * run.score[*c]).sum::<f64>()
+        };
+        let mut parts: BTreeMap<usize, Vec<GroupScore>> = BTreeMap::new();
+        for (group, members) in self.scores(column, efficient).into_iter().zip(&self.members) {
+            parts.entry(members.first().map_or(0, |run| part(*run))).or_default().push(group);
+        }
+        let in_part = |groups: Vec<GroupScore>| {
+            let share = groups.iter().map(|g| g.weight).sum::<f64>() / own;
+            ratio(&groups, share * left)
+        };
+        pooled(parts.into_values().filter_map(in_part))
+    }
+}
+
 /// Whether so many sessions of so many runs can be held against each other: a session of one run is a run, not a reference.
 pub fn are_references(sessions: usize, runs: usize) -> bool {
     2 * sessions <= runs
@@ -237,35 +319,40 @@ pub fn degrees_of(groups: usize) -> f64 {
 pub struct Scatter {
     /// Factors on the standard errors, in the order of the base's columns.
     pub factors: Vec<f64>,
-    /// Degrees of freedom of the scatter: one less than groups of runs, and no fewer than the least number of groups has.
-    pub degrees: f64,
+    /// Their degrees of freedom: those of the groups and of what is typical, and no fewer than the least number of groups has.
+    pub degrees: Vec<f64>,
 }
 
 impl Scatter {
-    /// Standard errors, multiplied by the factors, that a 95 % interval reaches to either side: Student's t, as an error that few
-    /// groups tell is itself uncertain (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
-    pub fn reach(&self) -> f64 {
-        student_quantile(0.975, self.degrees)
+    /// Standard errors, multiplied by the factor, that a parameter's 95 % interval reaches to either side: Student's t, as an error that
+    /// few groups tell is itself uncertain (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
+    pub fn reach(&self, place: usize) -> f64 {
+        student_quantile(0.975, self.degrees[place])
+    }
+
+    /// The fewest degrees of freedom of some parameters.
+    fn fewest(&self, places: &[usize]) -> f64 {
+        places.iter().map(|i| self.degrees[*i]).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether the 95 % region of some parameters leaves out a point at a squared distance in units of their covariance, multiplied by the
     /// factors: for one parameter the interval of [`Scatter::reach`].
-    pub fn excludes(&self, statistic: f64, parameters: usize) -> bool {
-        self.p(statistic, parameters) < 0.05
+    pub fn excludes(&self, statistic: f64, places: &[usize]) -> bool {
+        self.p(statistic, places.len(), places) < 0.05
     }
 
     /// Whether zero is left out of the region of all parameters of an effect that has its own size in each session, or of those of one
     /// session by itself, each at half of 5 %: `together` is the squared distance of all of them, `one_by_one` that of each session's.
     /// Sizes that are alike show together, and one that stands out shows alone, where the region of all is wide for their number.
-    pub fn excludes_in_some(&self, together: f64, one_by_one: &[f64], parameters: usize) -> bool {
-        let sessions = one_by_one.len();
-        let least = one_by_one.iter().map(|s| self.p(*s, parameters)).fold(1.0, f64::min);
-        2.0 * self.p(together, sessions * parameters).min(corrected(least, sessions.max(1) as f64)) < 0.05
+    pub fn excludes_in_some(&self, together: f64, one_by_one: &[f64], places: &[usize]) -> bool {
+        let sessions = one_by_one.len().max(1);
+        let least = one_by_one.iter().map(|s| self.p(*s, places.len() / sessions, places)).fold(1.0, f64::min);
+        2.0 * self.p(together, places.len(), places).min(corrected(least, sessions as f64)) < 0.05
     }
 
     /// Chance of a squared distance as large as this, by Fisher's F; 1 without parameters.
-    fn p(&self, statistic: f64, parameters: usize) -> f64 {
-        if parameters == 0 { 1.0 } else { scattered_p(statistic, parameters, self.degrees as usize) }
+    fn p(&self, statistic: f64, parameters: usize, places: &[usize]) -> f64 {
+        if parameters == 0 { 1.0 } else { scattered_p(statistic, parameters, self.fewest(places)) }
     }
 }
 
@@ -357,25 +444,27 @@ mod tests {
 
     #[test]
     fn of_one_parameter_the_region_is_its_interval_and_of_several_it_is_wider() {
-        let scatter = Scatter { factors: Vec::new(), degrees: 5.0 };
-        let edge = scatter.reach().powi(2);
-        assert!(!scatter.excludes(0.999 * edge, 1) && scatter.excludes(1.001 * edge, 1));
+        let scatter = Scatter { factors: Vec::new(), degrees: vec![5.0; 6] };
+        let edge = scatter.reach(0).powi(2);
+        assert!(!scatter.excludes(0.999 * edge, &[0]) && scatter.excludes(1.001 * edge, &[0]));
         // Six times the 95 % point of Fisher's F with 6 and 5 degrees, 4.950.
-        assert!(!scatter.excludes(6.0 * 4.94, 6) && scatter.excludes(6.0 * 4.96, 6));
-        assert!(!scatter.excludes(1e9, 0));
+        let all = [0, 1, 2, 3, 4, 5];
+        assert!(!scatter.excludes(6.0 * 4.94, &all) && scatter.excludes(6.0 * 4.96, &all));
+        assert!(!scatter.excludes(1e9, &[]));
     }
 
     #[test]
     fn an_effect_with_its_own_size_in_each_session_shows_in_all_together_or_in_one_that_stands_out() {
-        let scatter = Scatter { factors: Vec::new(), degrees: 5.0 };
+        let scatter = Scatter { factors: Vec::new(), degrees: vec![5.0; 12] };
+        let places: Vec<usize> = (0..12).collect();
         // Of six sessions with two parameters each: 12 times the 97.5 % point of F(12, 5), 6.525; and twice the point of F(2, 5) beyond
         // which lies 0.025/6, 18.65 by (1 + 2 F / 5)^(-5/2) = 0.025/6.
         let (together, alone) = (12.0 * 6.525, 5.0 * ((6.0 / 0.025_f64).powf(0.4) - 1.0));
-        let even = |all: f64| scatter.excludes_in_some(all, &[all / 6.0; 6], 2);
+        let even = |all: f64| scatter.excludes_in_some(all, &[all / 6.0; 6], &places);
         assert!(!even(0.99 * together) && even(1.01 * together));
-        let one = |s: f64| scatter.excludes_in_some(s, &[0.0, s, 0.0, 0.0, 0.0, 0.0], 2);
+        let one = |s: f64| scatter.excludes_in_some(s, &[0.0, s, 0.0, 0.0, 0.0, 0.0], &places);
         assert!(!one(0.99 * alone) && one(1.01 * alone) && alone < 0.6 * together);
-        assert!(!scatter.excludes_in_some(1e9, &[], 2));
+        assert!(!scatter.excludes_in_some(1e9, &[], &[]));
     }
 
     #[test]
@@ -417,21 +506,35 @@ mod tests {
         let groups = ["turn", "turn", "turn", "turn", "zigzag", "zigzag", "zigzag", "zigzag"];
         let factor = |pull: f64| {
             let e = of(pull);
-            e.scatter(&e.base(&[0], &[0.0], &[0.0]), &groups).factors[0]
+            e.scatter(&e.base(&[0], &[0.0], &[0.0]), &groups, &[]).factors[0]
         };
         assert_eq!(factor(0.0), 1.0);
-        // B = 2 (4^2 + 4^2), A = 8: the variance is 64/64 where the information says 1/8.
+        // B = 2 (4^2 + 4^2), A = 8: the variance is 64/64 where the information says 1/8. One direction has no other to be moderated by.
         assert!((factor(1.0) - 8.0_f64.sqrt()).abs() < 1e-12);
         let e = of(1.0);
-        assert_eq!(e.scatter(&e.base(&[0], &[0.0], &[0.0]), &["all"; 8]).factors, [1.0]);
+        assert_eq!(e.scatter(&e.base(&[0], &[0.0], &[0.0]), &["all"; 8], &[]).factors, [1.0]);
+    }
+
+    #[test]
+    fn what_acts_in_one_session_is_no_scatter_of_its_own_there_and_is_one_of_a_common_effect() {
+        // Information 1 a run; an effect of 3 in session b alone.
+        let signs = [0.5, -0.5, 0.5, -0.5, 0.5, -0.5, 0.5, -0.5];
+        let run = |(i, sign): (usize, &f64)| {
+            one_run(if i < 4 { "a" } else { "b" }, &[0.0, sign + if i < 4 { 0.0 } else { 3.0 }], &[1.0, 0.0, 0.0, 1.0])
+        };
+        let e = Evidence::new(signs.iter().enumerate().map(run).collect());
+        let base = e.base(&[0], &[0.0], &[0.0]);
+        let names = ["0", "1", "2", "3", "4", "5", "6", "7"];
+        let common = e.moderated(&base, &[1], &names, &[], |_| 0);
+        // 8/7 of 4 (3.0 - 1.5)^2 + 4 (1.5)^2 + 8 (0.5)^2, over the information of 8.
+        assert!((common.value - 8.0 / 7.0 * 20.0 / 8.0).abs() < 1e-12 && common.degrees == 7.0, "{common:?}");
+        let apart = e.moderated(&base, &[1], &names, &[], |run| usize::from(run >= 4));
+        assert_eq!((apart.value, apart.degrees), (1.0, 6.0));
     }
 
     #[test]
     fn intervals_are_wider_the_fewer_groups_of_runs_there_are() {
-        let reach = |groups: usize| {
-            let degrees = (groups.max(SCATTER_GROUPS) - 1) as f64;
-            Scatter { factors: Vec::new(), degrees }.reach()
-        };
+        let reach = |groups: usize| Scatter { factors: Vec::new(), degrees: vec![degrees_of(groups)] }.reach(0);
         assert!((reach(8) - 2.3646).abs() < 1e-4 && (reach(5) - 2.7764).abs() < 1e-4);
         assert_eq!((reach(2), reach(1)), (reach(5), reach(5)));
         assert!((reach(10_000) - 1.96).abs() < 1e-3);

@@ -55,12 +55,12 @@ pub fn chi_squared_p(statistic: f64, degrees: usize) -> f64 {
 
 /// Upper tail of a quadratic form in `directions` standard normal values whose variance was estimated from `degrees` independent ones:
 /// of `directions` times Fisher's F. Tends to [`chi_squared_p`] for many degrees; 1 without directions or degrees.
-pub fn scattered_p(statistic: f64, directions: usize, degrees: usize) -> f64 {
+pub fn scattered_p(statistic: f64, directions: usize, degrees: f64) -> f64 {
     if !statistic.is_finite() {
         return 1.0;
     }
     let f = statistic.max(0.0) / directions.max(1) as f64;
-    FisherSnedecor::new(directions as f64, degrees as f64).map_or(1.0, |d| d.sf(f).max(f64::MIN_POSITIVE))
+    FisherSnedecor::new(directions as f64, degrees).map_or(1.0, |d| d.sf(f).max(f64::MIN_POSITIVE))
 }
 
 /// Value that a standard normal variable stays below with a probability.

@@ -103,7 +103,7 @@ impl Law {
         let proof = (!held_out.is_empty()).then(|| {
             let (before, after) = (&fit.estimate.model, &estimate.model);
             let judging = &question.settings.judging;
-            FindingProof::new(before, after, &estimate.noise, fit.integration, held_out, judging)
+            FindingProof::new([before, after], &estimate.noise, fit.integration, held_out, judging)
         });
         let gains =
             (proof.as_ref().and_then(FindingProof::likelihood), proof.as_ref().and_then(FindingProof::prediction));
@@ -154,13 +154,13 @@ fn terms(found: &Estimate, base: usize, library: usize, tests: &BaseTests) -> Ve
     let filter = Filter::new(&found.model, tests.fit.integration, &columns);
     let evidence = Sums::of(&filter, runs, &found.noise, &restrictions(&found.free), false).evidence;
     let fitted = base_of(&evidence, &found.model, &found.free);
-    let scatter = evidence.scatter(&fitted, &recordings(runs));
+    let scatter = evidence.scatter(&fitted, &recordings(runs), &[]);
     let term = |i: usize| {
         let parameter = &found.model.parameters[columns[i].parameter];
         let monomial = Monomial::new(parameter, &found.model.ship)?;
         let error = fitted.inverse[(i, i)].max(0.0).sqrt() * scatter.factors[i] * columns[i].scale * monomial.factor;
         let value = parameter.value * monomial.factor;
-        let reach = scatter.reach() * error;
+        let reach = scatter.reach(i) * error;
         Some(LawTerm {
             name: parameter.name.clone(),
             axis: monomial.axis,
@@ -169,7 +169,7 @@ fn terms(found: &Estimate, base: usize, library: usize, tests: &BaseTests) -> Ve
             unit: monomial.unit,
             error,
             ci95: [value - reach, value + reach],
-            p: corrected(student_p(value / error, scatter.degrees), library as f64),
+            p: corrected(student_p(value / error, scatter.degrees[i]), library as f64),
             mirror: if parameter.info.parity == Parity::Odd { "odd" } else { "even" },
         })
     };

@@ -56,8 +56,8 @@ pub fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -> Optio
     let (precision, pull): (Vec<f64>, Vec<f64>) = found.free.iter().enumerate().map(terms).unzip();
     let free = s.evidence.base(&(0..found.free.len()).collect::<Vec<_>>(), &precision, &pull);
     let step = free.step();
-    let scatter = s.evidence.scatter(&free, kinds);
-    let (factors, reach) = (&scatter.factors, scatter.reach());
+    let scatter = s.evidence.scatter(&free, kinds, &s.mechanism_columns());
+    let factors = &scatter.factors;
     let n = factors.len();
     let mut all = Wald::of(found, DMatrix::from_fn(n, n, |i, j| free.inverse[(i, j)] * factors[i] * factors[j]));
     all.value += step;
@@ -67,7 +67,7 @@ pub fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -> Optio
         let p = &found.model.parameters[column.parameter];
         let (value, error) =
             (tested.value[k] * column.scale, tested.covariance[(k, k)].max(0.0).sqrt() * column.scale.abs());
-        Amplitude::within(p.name.clone(), value, p.info.unit, error, reach)
+        Amplitude::within(p.name.clone(), value, p.info.unit, error, scatter.reach(*i))
     };
     let mut parameters: Vec<Amplitude> = odd.iter().enumerate().map(amplitude).collect();
     let weight = |a: &Amplitude| (a.value / a.error.max(f64::MIN_POSITIVE)).abs();

@@ -43,7 +43,7 @@ impl Intervals {
     pub(in crate::diagnose) fn new(found: &Estimate, runs: &[Run], s: &Screen) -> Self {
         let n = found.free.len();
         let wald = Wald::of(found, s.widened.inverse.view((0, 0), (n, n)).into_owned());
-        Self { wald, scatter: s.evidence.scatter(&s.widened, &kinds(runs)) }
+        Self { wald, scatter: s.evidence.scatter(&s.widened, &kinds(runs), &s.mechanism_columns()) }
     }
 
     /// Whether the region that holds all of a candidate's parameters together with 95 % leaves zero out, by the same variance as their single
@@ -58,12 +58,12 @@ impl Intervals {
             part.covariance.column_mut(i).scale_mut(factor);
         }
         match extent {
-            Extent::All | Extent::In(_) => self.scatter.excludes(part.statistic(), places.len()),
+            Extent::All | Extent::In(_) => self.scatter.excludes(part.statistic(), &places),
             Extent::Each(sessions) => {
                 let parameters = c.columns.len();
                 let of = |i: usize| part.part(&(i * parameters..(i + 1) * parameters).collect::<Vec<_>>()).statistic();
                 let one_by_one: Vec<f64> = (0..sessions.len()).map(of).collect();
-                self.scatter.excludes_in_some(part.statistic(), &one_by_one, parameters)
+                self.scatter.excludes_in_some(part.statistic(), &one_by_one, &places)
             }
         }
     }
@@ -81,7 +81,7 @@ impl Intervals {
             };
             let error = covariance[(i, i)].max(0.0).sqrt() * self.scatter.factors[places[i]] * col.scale;
             let unit = found.model.parameters[col.parameter].info.unit;
-            Amplitude::within(name, value[i] * col.scale, unit, error, self.scatter.reach())
+            Amplitude::within(name, value[i] * col.scale, unit, error, self.scatter.reach(places[i]))
         };
         (0..value.len()).map(amplitude).collect()
     }

@@ -20,7 +20,7 @@ pub enum Grade {
     RefutedTogether,
     /// Significant, but it changes predictions by less than matters, or a clock by less than is resolved.
     Immaterial,
-    /// The interval of its size does not exclude zero.
+    /// The interval of its size does not exclude zero, and unseen runs do not prove it.
     Undetermined,
     /// Weather nearly all of whose effect the ship's own parameters and the zeros and scales of its sensors can take over, on the headings
     /// that were sailed.
@@ -57,6 +57,11 @@ pub struct GainTest {
 impl GainTest {
     pub(in crate::diagnose) fn is_above_zero(&self) -> bool {
         self.ci95.is_some_and(|[low, _]| low > 0.0)
+    }
+
+    /// Whether it is below zero, beyond chance where there is an interval.
+    fn is_worse(&self) -> bool {
+        self.ci95.map_or(self.gain < 0.0, |[_, high]| high < 0.0)
     }
 
     pub(in crate::diagnose) fn is_below_zero(&self) -> bool {
@@ -111,14 +116,14 @@ fn refute(measures: &[Option<GainTest>]) -> bool {
     measures.iter().flatten().any(GainTest::is_below_zero)
 }
 
-/// Whether unseen runs are better: by one measure beyond chance, and worse by none, of log-likelihood and free simulation, or, for an error
-/// of a sensor that they show themselves, by what their sensors say of each other.
+/// Whether unseen runs are better by one measure beyond chance, and worse by none, of log-likelihood, free simulation and, for an error of a
+/// sensor, kinematic consistency: by its interval, and by its sign where there is none.
 fn confirm(likelihood: Option<GainTest>, prediction: Option<GainTest>, agreement: Option<GainTest>) -> bool {
     let is_shown = agreement.is_some_and(|g| g.is_above_zero());
     let is_judged = is_shown || likelihood.is_some() && prediction.is_some();
     let measures = [likelihood, prediction, agreement];
     let mut known = measures.iter().flatten();
-    is_judged && known.clone().any(GainTest::is_above_zero) && known.all(|g| g.gain >= 0.0)
+    is_judged && known.clone().any(GainTest::is_above_zero) && known.all(|g| !g.is_worse())
 }
 
 /// How well a law for what the catalogue does not hold is supported.
@@ -148,19 +153,20 @@ impl LawGrade {
 
 /// The grade that the tests of a finding give it. What is determined and too small to matter is neither confirmed nor refuted.
 pub fn grade(tests: &FindingTests) -> Grade {
+    let proved = confirm(tests.likelihood, tests.prediction, tests.agreement);
     let small = tests.excludes_zero && tests.isolated >= FORM_TOLERANCE && tests.is_immaterial();
     if small {
         Grade::Immaterial
     } else if tests.is_refuted() {
         Grade::Refuted
-    } else if !tests.excludes_zero {
+    } else if !tests.excludes_zero && !proved {
         Grade::Undetermined
     } else if tests.isolated < FORM_TOLERANCE {
         // What is left is no more than the form of the ship's own forces is known.
         Grade::NotIsolated
     } else if tests.by_steps > 1.0 - FORM_TOLERANCE {
         Grade::EulerSteps
-    } else if confirm(tests.likelihood, tests.prediction, tests.agreement) {
+    } else if proved {
         Grade::Confirmed
     } else {
         Grade::Suspected
@@ -197,8 +203,8 @@ mod tests {
         assert_eq!(grade(&FindingTests { agreement: WORSE, ..sound() }), Grade::Refuted);
         assert_eq!(grade(&FindingTests { agreement: UNDECIDED, ..sound() }), Grade::Confirmed);
         let little_worse = Some(GainTest { gain: -4.0, ci95: Some([-9.0, 1.0]) });
-        assert_eq!(grade(&FindingTests { agreement: little_worse, ..sound() }), Grade::Suspected);
-        assert_eq!(grade(&FindingTests { excludes_zero: false, ..alone(BETTER) }), Grade::Undetermined);
+        assert_eq!(grade(&FindingTests { agreement: little_worse, ..sound() }), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { excludes_zero: false, ..alone(UNDECIDED) }), Grade::Undetermined);
     }
 
     #[test]
@@ -207,8 +213,20 @@ mod tests {
         assert_eq!(grade(&FindingTests { prediction: UNDECIDED, ..sound() }), Grade::Confirmed);
         assert_eq!(grade(&FindingTests { likelihood: UNDECIDED, ..sound() }), Grade::Confirmed);
         let little_worse = Some(GainTest { gain: -0.01, ci95: Some([-0.2, 0.1]) });
-        assert_eq!(grade(&FindingTests { prediction: little_worse, ..sound() }), Grade::Suspected);
-        assert_eq!(grade(&FindingTests { likelihood: little_worse, ..sound() }), Grade::Suspected);
+        assert_eq!(grade(&FindingTests { prediction: little_worse, ..sound() }), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { likelihood: little_worse, ..sound() }), Grade::Confirmed);
+        // Without an interval its sign counts.
+        let of_few = Some(GainTest { gain: -0.01, ci95: None });
+        assert_eq!(grade(&FindingTests { prediction: of_few, ..sound() }), Grade::Suspected);
+    }
+
+    #[test]
+    fn what_unseen_runs_prove_is_confirmed_however_wide_the_interval_of_its_size() {
+        let wide = FindingTests { excludes_zero: false, ..sound() };
+        assert_eq!(grade(&wide), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { prediction: WORSE, ..wide }), Grade::Refuted);
+        assert_eq!(grade(&FindingTests { likelihood: UNDECIDED, prediction: UNDECIDED, ..wide }), Grade::Undetermined);
+        assert_eq!(grade(&FindingTests { likelihood: None, prediction: None, ..wide }), Grade::Undetermined);
     }
 
     #[test]
@@ -267,7 +285,6 @@ mod tests {
 
     #[test]
     fn an_interval_through_zero_and_a_change_too_small_to_matter_are_not_named() {
-        assert_eq!(grade(&FindingTests { excludes_zero: false, ..sound() }), Grade::Undetermined);
         assert_eq!(grade(&FindingTests { isolated: 0.09, ..sound() }), Grade::NotIsolated);
         assert_eq!(grade(&FindingTests { change: 0.049, ..sound() }), Grade::Immaterial);
         assert_eq!(grade(&FindingTests { change: 0.05, ..sound() }), Grade::Confirmed);

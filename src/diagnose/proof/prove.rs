@@ -66,10 +66,10 @@ pub struct HeldOut {
 }
 
 impl HeldOut {
-    /// Whether free simulation of the held-out runs is worse after than before: then no part of what changed is written or confirmed, though
-    /// each by itself may predict better.
+    /// Whether free simulation of the held-out runs is worse after than before, beyond its interval, or by its sign where there is none: then
+    /// no part of what changed is written or confirmed, though each by itself may predict better.
     pub fn is_worse(&self) -> bool {
-        self.improvement.is_some_and(|i| i < 0.0)
+        self.improvement.is_some_and(|i| self.ci95.map_or(i < 0.0, |[_, high]| high < 0.0))
     }
 }
 

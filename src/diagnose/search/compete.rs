@@ -14,11 +14,12 @@ use crate::diagnose::settings::{
     RESOLVED_SAMPLES, RIVAL_GAP, RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES,
 };
 use crate::likelihood::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
-use crate::likelihood::evidence::chi_squared_p;
+use crate::likelihood::evidence::degrees_of;
+use crate::likelihood::moderated::Ratio;
 use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::physics::{Kind, Probe};
-use crate::statistics::{mean, median};
+use crate::statistics::{corrected, mean, median, scattered_p};
 use nalgebra::DVector;
 
 /// A candidate's amplitudes in an estimate beyond what the model already had, its companions held: an amplitude that only counts times a
@@ -233,8 +234,9 @@ impl Competition<'_> {
         let w = amplitudes(&Wald::at(estimate, integration, runs), estimate, c, &hypothesis.extent);
         let gain = 2.0 * (estimate.log_posterior - self.current.log_posterior);
         let statistic = w.statistic().min(gain.max(0.0));
-        chi_squared_p(statistic, w.value.len()) * (self.tried.max(1) as f64) < settings.alpha
-            && !only_cancels(c, estimate, runs)
+        let Ratio { value, degrees } = self.screen.moderated(hypothesis.candidate, &hypothesis.extent, runs);
+        let p = scattered_p(statistic / value, w.value.len(), degrees.max(degrees_of(0)));
+        corrected(p, self.tried.max(1) as f64) < settings.alpha && !only_cancels(c, estimate, runs)
     }
 
     /// Whether the mechanism's companions stayed where such coefficients are.

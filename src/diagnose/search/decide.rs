@@ -56,7 +56,7 @@ impl PushTest {
     /// Chance of a statistic of three components whose scatter is known from the recordings in which they act alone: the same force
     /// in many recordings is soon beyond chance, in two it must exceed a far higher statistic. One has no scatter and counts as two.
     fn by_chance(&self, statistic: f64) -> f64 {
-        scattered_p(statistic, COMPONENTS, self.recordings.max(FEWEST_RECORDINGS - 1))
+        scattered_p(statistic, COMPONENTS, self.recordings.max(FEWEST_RECORDINGS - 1) as f64)
     }
 
     /// Whether such a force is an event and not the ship's own forces, which in another form make windows in manoeuvres like

@@ -10,6 +10,7 @@ use crate::likelihood::algebra::{pick, pseudo_inverse};
 use crate::likelihood::estimate::{Estimate, Sums, base_of, restrictions};
 use crate::likelihood::evidence::{Base, Evidence, Test, are_references};
 use crate::likelihood::filter::{Column, Filter};
+use crate::likelihood::moderated::Ratio;
 use crate::model::Model;
 use crate::physics::{Kind, Mechanism};
 use crate::recording::Run;
@@ -70,6 +71,22 @@ impl Screen {
     /// Columns of a candidate.
     pub fn columns(&self, index: usize) -> &[usize] {
         &self.groups[index]
+    }
+
+    /// Columns of all mechanisms, each once.
+    pub fn mechanism_columns(&self) -> Vec<usize> {
+        self.groups.iter().flatten().copied().collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
+    /// The ratio of the scatter of a candidate's score between recordings to what its information says, moderated over all mechanisms
+    /// ([`Evidence::moderated`]), around its own effect in each part of the runs in which it is taken to act apart.
+    pub fn moderated(&self, index: usize, extent: &Extent, runs: &[Run]) -> Ratio {
+        let recordings: Vec<&str> = runs.iter().map(|r| r.recording.as_str()).collect();
+        let part = |run: usize| {
+            let place = extent.sessions().iter().position(|s| *s == runs[run].session);
+            place.map_or(0, |i| if matches!(extent, Extent::Each(_)) { i + 1 } else { 1 })
+        };
+        self.evidence.moderated(&self.base, self.columns(index), &recordings, &self.mechanism_columns(), part)
     }
 
     /// How the base moves, in units of its columns, when a group of columns takes these amplitudes.
