@@ -9,7 +9,7 @@ use trimtab::recording::Run;
 use trimtab::report::Table;
 use trimtab::report::plot::{Axis, BLUE, Color, Figure, Layer, Legend, ORANGE, Panel, SKY, VERMILLION};
 
-use super::measure::{Course, INTEGRATION, course, of_rounds};
+use super::measure::{Course, INTEGRATION, course_of_whole_runs, of_rounds};
 use crate::freed::free_more;
 use crate::interleaved::{Task, least};
 use crate::paper::artefact::Artefact;
@@ -92,7 +92,8 @@ fn ways(case: &Case, model: &Model, runs: &[Run]) -> Result<Vec<Way>, PaperError
                 polish_steps: 0,
                 ..case.setup.fit
             };
-            let rounds = (0..ROUNDS).map(|_| course(model, runs, &settings)).collect::<Result<Vec<_>, _>>()?;
+            let rounds =
+                (0..ROUNDS).map(|_| course_of_whole_runs(model, runs, &settings)).collect::<Result<Vec<_>, _>>()?;
             let name = format!("{} free: {source}, {hessian}", model.free().len());
             ways.push(Way {
                 source,
@@ -100,7 +101,7 @@ fn ways(case: &Case, model: &Model, runs: &[Run]) -> Result<Vec<Way>, PaperError
                 color,
                 is_dashed: kind == Hessian::LimitedMemory,
                 course: of_rounds(case, &name, rounds)?,
-                starts: starts.iter().map(|from| course(from, runs, &settings).ok()).collect(),
+                starts: starts.iter().map(|from| course_of_whole_runs(from, runs, &settings).ok()).collect(),
             });
         }
     }

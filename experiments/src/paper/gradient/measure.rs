@@ -218,6 +218,41 @@ pub(super) fn course(model: &Model, runs: &[Run], settings: &FitSettings) -> Res
     })
 }
 
+/// The course of one fit by the cost of all whole runs at the best feasible point so far, whatever its solver minimises on the way: a stage
+/// over shorter pieces or a few of the runs, and the check of an optimum, have costs that compare with no other. The clock stands still
+/// for these costs.
+///
+/// # Errors
+/// [`PaperError::Fit`].
+pub(super) fn course_of_whole_runs(model: &Model, runs: &[Run], settings: &FitSettings) -> Result<Course, PaperError> {
+    let begin = processor_time();
+    let mut points: Vec<(Vec<f64>, f64)> = Vec::new();
+    let mut watch = |p: &Progress| {
+        points.extend(p.best.map(|best| (best.to_vec(), processor_time() - begin)));
+        true
+    };
+    let fit = fit(model, runs, settings, &mut watch)?;
+    let seconds = processor_time() - begin;
+    let whole = Cost::new(model, runs, CostOptions { derivatives: Derivatives::Lanes, ..settings.cost_options() })?;
+    let mut end = fit.estimates.iter().map(|e| e.value).collect::<Vec<f64>>();
+    end.truncate(model.free().len());
+    points.push((end, seconds));
+    let mut least = f64::INFINITY;
+    let lowered = |(p, time): &(Vec<f64>, f64)| {
+        least = whole.value(p).map_or(least, |value| value.min(least));
+        (least, 0.0, *time)
+    };
+    let path = points.iter().map(lowered).filter(|(cost, _, _)| cost.is_finite()).collect();
+    Ok(Course {
+        iterations: fit.iterations,
+        converged: fit.converged,
+        cost: fit.cost,
+        evaluations: [fit.counts.objective, fit.counts.gradient],
+        path,
+        seconds,
+    })
+}
+
 /// Processor time of a gradient over that of a cost, both eight runs side by side, measured in turn.
 ///
 /// # Errors
