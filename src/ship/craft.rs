@@ -153,14 +153,17 @@ mod tests {
 
     #[test]
     fn what_an_actuator_gives_is_where_its_parameters_begin() {
-        let ship = craft("[[actuator]]\nname = \"port\"\nlaw = \"thruster\"\nangle = 0\ny = -0.3\ngain = 0.02\nlag = 0.4\n");
+        let ship =
+            craft("[[actuator]]\nname = \"port\"\nlaw = \"thruster\"\nangle = 0\ny = -0.3\ngain = 0.02\nlag = 0.4\n");
         let given = ship.unwrap().given_parameters();
         assert_eq!((given["port.gain"], given["port.lag"], given.contains_key("port.astern")), (0.02, 0.4, false));
     }
 
     #[test]
     fn a_fault_of_an_actuator_has_its_line() {
-        let said = craft("[[actuator]]\nname = \"a\"\nlaw = \"order\"\n[[actuator]]\nname = \"bow\"\nlaw = \"order\"\nx = 9\n");
+        let said = craft(
+            "[[actuator]]\nname = \"a\"\nlaw = \"order\"\n[[actuator]]\nname = \"bow\"\nlaw = \"order\"\nx = 9\n",
+        );
         let said = said.unwrap_err();
         assert!(said.contains("ship.toml:10: actuator `bow`: x = 9 must be between -1.2 and 1.2"), "{said}");
     }

@@ -188,7 +188,10 @@ impl Term for ActuatorTerm {
     fn reach(&self, parameter: usize) -> Reach {
         if parameter == self.lag {
             Reach::Anything
-        } else if self.law != Law::Thruster && self.info.parameters[parameter].name.starts_with("gain") && self.lag == self.lagged {
+        } else if self.law != Law::Thruster
+            && self.info.parameters[parameter].name.starts_with("gain")
+            && self.lag == self.lagged
+        {
             Reach::LinearForce
         } else {
             Reach::Force

@@ -31,7 +31,8 @@ fn square(s: &Ship) -> f64 {
     s.hull.lpp * s.hull.lpp
 }
 
-/// A coefficient of damping: it begins at its size, and cannot be negative.
+/// A coefficient of damping: it begins at its size, and cannot be negative. Sizes are such that a craft turns slowly and holds its course
+/// at first: a fit that begins with one that spins does not find its way back.
 macro_rules! damping {
     ($name:literal, $symbol:literal, $unit:literal, $about:literal, $size:expr) => {
         ParameterInfo::new($name, $symbol, $unit, $about)
@@ -69,13 +70,14 @@ static INFO: TermInfo = TermInfo {
         damping!("bow_lift", "c_B", "kg/m", "lateral damping at the bow by |u|", |s| 0.05 * across(s)),
         damping!("mid_lift", "c_M", "kg/m", "lateral damping at midship by |u|", |s| 0.1 * across(s)),
         damping!("stern_lift", "c_S", "kg/m", "lateral damping at the stern by |u|", |s| 0.1 * across(s)),
-        damping!("yaw_linear", "a_N", "kg m2/s", "yaw damping at rest", |s| 0.01 * linear(s) * square(s)),
-        damping!("yaw_square", "b_N", "kg m2", "yaw damping by |r|", |s: &Ship| 0.02 * s.hull.mass * square(s)),
-        damping!("yaw_lift", "c_N", "kg m", "yaw damping by |u|", |s| 0.02 * along(s) * square(s)),
+        damping!("yaw_linear", "a_N", "kg m2/s", "yaw damping at rest", |s| 0.05 * linear(s) * square(s)),
+        damping!("yaw_square", "b_N", "kg m2", "yaw damping by |r|", |s: &Ship| 0.1 * s.hull.mass * square(s)),
+        damping!("yaw_lift", "c_N", "kg m", "yaw damping by |u|", |s| 0.1 * along(s) * square(s)),
         ParameterInfo::new("turning", "g", "kg", "surge force of drift and turn beside (m + m_y) v r, without work")
             .scale(|s| 0.2 * s.hull.mass)
             .spread(|s| 0.5 * s.hull.mass),
         ParameterInfo::new("lift", "h", "kg", "moment of drift that takes from the Munk moment, without work")
+            .in_general(Start::Own(|s| -0.5 * s.hull.mass))
             .scale(|s| 0.2 * s.hull.mass)
             .spread(|s| 0.5 * s.hull.mass),
     ],

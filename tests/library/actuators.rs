@@ -91,7 +91,13 @@ fn a_mirrored_craft_under_mirrored_commands_has_the_mirrored_rates() {
     }
     for name in ["port.zero", "starboard.zero", "pump.zero"] {
         let i = model.index(name).unwrap();
-        model.parameters[i].value = if name == "starboard.zero" { -0.1 } else if name == "port.zero" { 0.1 } else { 0.0 };
+        model.parameters[i].value = if name == "starboard.zero" {
+            -0.1
+        } else if name == "port.zero" {
+            0.1
+        } else {
+            0.0
+        };
     }
     let [n1, a1, n2, a2, tunnel, pump, turned, x, y, n] = COMMANDED;
     let mirrored = [n2, -a2, n1, -a1, -tunnel, pump, -turned, x, -y, -n];
@@ -159,8 +165,7 @@ fn in_moving_water_the_track_is_that_of_still_water_and_the_drift() {
 #[test]
 fn derivatives_by_every_parameter_are_those_of_differences() {
     let model = moved(model(ACTUATORS, Form::General));
-    let columns: Vec<Column> =
-        (0..model.parameters.len()).map(|parameter| Column { parameter, scale: 1.0 }).collect();
+    let columns: Vec<Column> = (0..model.parameters.len()).map(|parameter| Column { parameter, scale: 1.0 }).collect();
     let series: Vec<Inputs<f64>> =
         (0..60).map(|k| commanded(COMMANDED.map(|c| c * (0.3 + f64::from(k) * 0.11).cos()))).collect();
     let initial = [0.0, 0.0, 0.4, 0.8, -0.1, 0.05];
@@ -244,7 +249,8 @@ fn what_a_model_says_of_an_actuator_is_written_and_read_again() {
 
 #[test]
 fn a_recording_has_the_channels_of_its_actuators_by_name_and_a_simulation_in_the_order_of_the_ship() {
-    let text = "t [s],x [m],y [m],psi [deg],left [rpm],a,tau.X [kN]\n0,0,0,0,60,350,1\n1,0,0,0,120,10,2\n2,0,0,0,120,20,2\n";
+    let text =
+        "t [s],x [m],y [m],psi [deg],left [rpm],a,tau.X [kN]\n0,0,0,0,60,350,1\n1,0,0,0,120,10,2\n2,0,0,0,120,20,2\n";
     let map = "[columns]\n\"port.rate\" = \"left\"\n\"port.angle\" = { column = \"a\", unit = \"deg\" }\n";
     let craft = ship(
         "[[actuator]]\nname = \"tau\"\nlaw = \"force\"\ncomponents = [\"X\"]\n[[actuator]]\nname = \"port\"\nlaw = \"thruster\"\n",
@@ -257,12 +263,8 @@ fn a_recording_has_the_channels_of_its_actuators_by_name_and_a_simulation_in_the
     assert!((of("port.angle")[1] - 370_f64.to_radians()).abs() < 1e-12, "an angle is unwrapped");
     let mut settings = trimtab::WindowSettings::whole(craft.hull.draught);
     settings.driven = map.driven.clone();
-    let labels = trimtab::Labels {
-        run: "run".into(),
-        session: "s".into(),
-        manoeuvre: "m".into(),
-        split: trimtab::Split::Train,
-    };
+    let labels =
+        trimtab::Labels { run: "run".into(), session: "s".into(), manoeuvre: "m".into(), split: trimtab::Split::Train };
     let run = recording.windows(&labels, &settings).unwrap().windows.remove(0);
     let mut expected = [0.0; COMMANDS];
     (expected[0], expected[1], expected[2]) = (2e3, 2.0, 370_f64.to_radians());

@@ -10,8 +10,8 @@ use super::formats::clock::written;
 use super::formats::read::read;
 use super::overlap::{range, shifts};
 use super::rows::{Rows, rows};
-use crate::recording::{Channel, Driven};
 use crate::recording::wrap::repair;
+use crate::recording::{Channel, Driven};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 

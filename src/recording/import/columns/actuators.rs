@@ -21,7 +21,23 @@ const KINDS: [(&[&str], Option<Quantity>); 5] = [
     (&["azi", "azimuth", "angle", "alpha", "direction", "steering"], Some(Quantity::Angle)),
     (&["u", "cmd", "command", "order", "throttle", "pwm", "pitch", "duty"], Some(Quantity::Number)),
     (&["force", "thrust", "tau", "fx", "fy", "x", "y"], Some(Quantity::Force)),
-    (&["thr", "thruster", "motor", "engine", "propeller", "prop", "screw", "pod", "feedback", "fb", "actual", "meas"], None),
+    (
+        &[
+            "thr",
+            "thruster",
+            "motor",
+            "engine",
+            "propeller",
+            "prop",
+            "screw",
+            "pod",
+            "feedback",
+            "fb",
+            "actual",
+            "meas",
+        ],
+        None,
+    ),
 ];
 
 /// The words of a name with one word for each place, numbers apart from letters (`n1` is `n 1`), as a set.
@@ -77,7 +93,13 @@ mod tests {
 
     #[test]
     fn names_of_columns_are_those_of_actuators_in_other_words() {
-        let columns = [("thr_left", None), ("Thruster right", None), ("n1", Some("rpm")), ("azi_1", Some("deg")), ("speed", None)];
+        let columns = [
+            ("thr_left", None),
+            ("Thruster right", None),
+            ("n1", Some("rpm")),
+            ("azi_1", Some("deg")),
+            ("speed", None),
+        ];
         let channels = ["port.order", "starboard.order", "pod1.rate", "pod1.angle", "pod2.rate"];
         let found = found(&columns, &channels);
         assert_eq!(found["thr_left"], "port.order");

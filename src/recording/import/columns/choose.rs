@@ -104,8 +104,13 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec
         .filter(|(name, _)| !forced.contains_key(*name))
         .map(|(name, columns)| (*name, columns.first().and_then(|c| c.unit.as_deref())))
         .collect();
-    let open: Vec<Channel> =
-        choices.driven.commands.iter().copied().filter(|c| !forced.values().any(|m| *m == Meaning::Channel(*c))).collect();
+    let open: Vec<Channel> = choices
+        .driven
+        .commands
+        .iter()
+        .copied()
+        .filter(|c| !forced.values().any(|m| *m == Meaning::Channel(*c)))
+        .collect();
     let named = by_names(&free, &open);
     let mut candidates: BTreeMap<Meaning, Vec<Candidate<'a>>> = BTreeMap::new();
     let mut unused = Vec::new();

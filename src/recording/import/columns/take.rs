@@ -119,9 +119,8 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         let verdict = match channel {
             Channel::Delta | Channel::DeltaOrder => rudder(*meaning, columns, given(*meaning)?.as_ref(), &known),
             Channel::N | Channel::NOrder => rotation(*meaning, columns, given(*meaning)?.as_ref(), &known),
-            Channel::Command(_) => {
-                other(*meaning, columns, given(*meaning)?.as_ref()).map(|verdict| by_its_name(verdict, columns, channel))
-            }
+            Channel::Command(_) => other(*meaning, columns, given(*meaning)?.as_ref())
+                .map(|verdict| by_its_name(verdict, columns, channel)),
             _ if signals.by.contains_key(meaning) || signals.is_told(*meaning) => continue,
             _ => other(*meaning, columns, given(*meaning)?.as_ref()).map(|verdict| referred(verdict, channel)),
         };
