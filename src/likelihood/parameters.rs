@@ -42,8 +42,13 @@ pub(crate) const NUISANCE: [&str; 31] = [
 
 /// The coefficients of a model that are never known exactly: in forms `mmg` and `general` those of their terms for those that these replace.
 pub(crate) fn uncertain_coefficients(model: &Model) -> Vec<usize> {
-    let listed =
-        NUISANCE.iter().filter_map(|name| model.index(name)).filter(|i| !model.replaced(model.parameters[*i].info));
+    let absent: Vec<&str> = model.terms().filter(|info| model.lacks(info)).map(|info| info.name).collect();
+    let of_craft = |name: &&&str| name.split_once('.').is_none_or(|(term, _)| !absent.contains(&term));
+    let listed = NUISANCE
+        .iter()
+        .filter(of_craft)
+        .filter_map(|name| model.index(name))
+        .filter(|i| !model.replaced(model.parameters[*i].info));
     let of_form = |i: &usize| {
         let name = &model.parameters[*i].name;
         let terms: &[&str] = match model.form {

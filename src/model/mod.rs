@@ -9,7 +9,7 @@ use crate::files::intact;
 use crate::files::suggestion;
 use crate::files::written::{Kind, line_at, read_text, read_toml, told};
 use crate::parameter::{ParameterInfo, Start};
-use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number, TermInfo};
+use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Group, Inertia, Number, TermInfo};
 use crate::ship::{COEFFICIENTS, Ship};
 use crate::state::Inputs;
 use crate::terms;
@@ -593,6 +593,16 @@ impl Model {
         matches!(self.form_start(parameter), Start::Replaced)
     }
 
+    /// Whether a term is of something that the craft does not have: the propeller of `n`, or the rudder of `delta`.
+    pub fn lacks(&self, term: &TermInfo) -> bool {
+        let named = self.ship.actuator(term.name).is_some();
+        match term.group {
+            Group::Propulsion => !self.ship.has_propeller() && !named,
+            Group::Rudder => !self.ship.has_rudder(),
+            Group::Hull | Group::Environment | Group::External | Group::Sensor => false,
+        }
+    }
+
     /// Whether a parameter is free in a model that says nothing of it: the paper's eleven where the form and the craft have them, and what
     /// no particulars say of a named actuator.
     fn free_at_first(&self, name: &str) -> bool {
@@ -600,12 +610,8 @@ impl Model {
         if let Some(actuator) = self.ship.actuator(term) {
             return ActuatorTerm::free_at_first(actuator, parameter);
         }
-        let has = match term {
-            "propeller" => self.ship.has_propeller(),
-            "rudder" => self.ship.has_rudder(),
-            _ => true,
-        };
-        ELEVEN.contains(&name) && matches!(self.form, Form::Paper | Form::Regular) && has
+        let absent = self.terms().any(|info| info.name == term && self.lacks(info));
+        ELEVEN.contains(&name) && matches!(self.form, Form::Paper | Form::Regular) && !absent
     }
 
     /// The terms that can be added to the model.
