@@ -5,8 +5,8 @@ use super::file::unit::Quantity;
 use crate::ship::actuator::Drive;
 use crate::state::recorded_inputs;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::collections::BTreeMap;
-use std::sync::{LazyLock, Mutex, PoisonError};
+use std::cmp::Ordering;
+use std::sync::{PoisonError, RwLock};
 
 /// What is to be known about a channel: one row of the table in the help and the README.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -245,9 +245,30 @@ recorded_inputs!(channel);
 /// The measured state, in the order of [`crate::state::STATE_NAMES`].
 pub const STATE_CHANNELS: [Channel; 6] = [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R];
 
-/// The name of a channel of an actuator, such as `port.rate`; made by [`Channel::from_name`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Command(&'static str);
+/// A channel of an actuator, such as `port.rate`, by its place in the list of those that were named; made by [`Channel::from_name`].
+///
+/// A number and no text, so that errors that name a channel stay small.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Command(u16);
+
+impl Command {
+    fn info(self) -> Option<&'static ChannelInfo> {
+        COMMANDS.read().unwrap_or_else(PoisonError::into_inner).get(usize::from(self.0)).copied()
+    }
+}
+
+impl Ord for Command {
+    /// By name, whatever was named first.
+    fn cmp(&self, other: &Self) -> Ordering {
+        if self == other { Ordering::Equal } else { self.info().map(|c| c.name).cmp(&other.info().map(|c| c.name)) }
+    }
+}
+
+impl PartialOrd for Command {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
 
 /// Orders may be shares, per cent, volts or pulse widths, forces those of any craft: only what no channel holds is refused.
 const ORDER: (f64, f64) = (-1e6, 1e6);
@@ -256,15 +277,16 @@ const FORCE: (f64, f64) = (-1e9, 1e9);
 const THRUSTER: (f64, f64) = (-100.0, 100.0);
 
 /// Catalogue rows of the channels of actuators that were named in this process; each is kept for good, as those of the table are.
-static COMMANDS: LazyLock<Mutex<BTreeMap<&'static str, &'static ChannelInfo>>> = LazyLock::new(Mutex::default);
+static COMMANDS: RwLock<Vec<&'static ChannelInfo>> = RwLock::new(Vec::new());
 
 /// The channel of an actuator with this name, if it is one.
 fn command(name: &str) -> Option<&'static ChannelInfo> {
     let (actuator, drive) = Drive::split(name)?;
-    let mut known = COMMANDS.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(row) = known.get(name) {
+    let mut known = COMMANDS.write().unwrap_or_else(PoisonError::into_inner);
+    if let Some(row) = known.iter().find(|row| row.name == name) {
         return Some(row);
     }
+    let place = u16::try_from(known.len()).ok()?;
     let (quantity, limits, what, doc) = match drive {
         Drive::Rate => (Quantity::Rotation, THRUSTER, "rate", "rate, positive ahead"),
         Drive::Angle => (Quantity::Angle, HEADING, "angle", "direction in which it pushes, clockwise from the bow"),
@@ -275,22 +297,22 @@ fn command(name: &str) -> Option<&'static ChannelInfo> {
     };
     let kept: &'static str = Box::leak(name.to_owned().into_boxed_str());
     let words: &'static str = Box::leak(format!("{what} of the actuator {actuator}").into_boxed_str());
-    let row = Box::leak(Box::new(info(Channel::Command(Command(kept)), kept, quantity, limits, words, doc)));
-    known.insert(kept, row);
+    let row = Box::leak(Box::new(info(Channel::Command(Command(place)), kept, quantity, limits, words, doc)));
+    known.push(row);
     Some(row)
 }
 
 impl Channel {
     /// The catalogue row of this channel.
     pub fn info(self) -> &'static ChannelInfo {
-        let named = || if let Self::Command(Command(name)) = self { command(name) } else { None };
+        let named = || if let Self::Command(command) = self { command.info() } else { None };
         // The first row is never taken: every other channel is in the table, and a command is made with its row.
         CHANNELS.iter().find(|c| c.channel == self).or_else(named).unwrap_or(&CHANNELS[0])
     }
 
     /// Its name in headers and column maps.
     pub fn name(self) -> &'static str {
-        if let Self::Command(Command(name)) = self { name } else { self.info().name }
+        self.info().name
     }
 
     /// The channel of that name.

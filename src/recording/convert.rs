@@ -72,10 +72,8 @@ impl Recording {
         for (_, angle) in self.data.iter_mut().filter(|(c, _)| c.turns()) {
             unwrap(angle);
         }
-        if let Some(psi) = self.data.get_mut(&Channel::Psi) {
-            if map.wrap_repair {
-                self.repaired = repair(&t, psi);
-            }
+        if let Some(psi) = self.data.get_mut(&Channel::Psi).filter(|_| map.wrap_repair) {
+            self.repaired = repair(&t, psi);
         }
         self.shift(&map.delays(session))?;
         let span = map.derive_span.unwrap_or(DERIVE_ROWS * self.step());
