@@ -66,7 +66,8 @@ fn drives(channel: Channel, column: &str, unit: Option<&str>) -> bool {
     found.retain(|word| wanted.contains(word) || !kind(word));
     let fits = unit.is_none_or(|unit| quantity.factor(unit).is_some());
     // A column that says nothing of its kind is the rate or the order, which every actuator has one of.
-    let alike = if said.is_empty() { quantity != Quantity::Angle } else { said.contains(&quantity) };
+    let usual = matches!(quantity, Quantity::Rotation | Quantity::Number);
+    let alike = if said.is_empty() { usual } else { said.contains(&quantity) };
     !wanted.is_empty() && wanted == found && fits && alike
 }
 
