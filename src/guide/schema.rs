@@ -8,6 +8,7 @@ use crate::evaluate::maneuver::ManeuverSettings;
 use crate::fit::FitSettings;
 use crate::model::ModelFile;
 use crate::recording::{CHANNELS, ColumnMap};
+use crate::ship::actuator::Drive;
 use crate::ship::{COEFFICIENTS, Ship};
 use crate::study::study_schema;
 use schemars::generate::SchemaSettings;
@@ -77,6 +78,11 @@ fn columns(generator: &mut SchemaGenerator) -> Value {
         (c.name.to_owned(), column)
     };
     schema["properties"]["columns"]["properties"] = CHANNELS.iter().map(entry).collect::<Map<_, _>>().into();
+    let suffixes = Drive::ALL.map(Drive::suffix).join("|");
+    let mut command = column;
+    command["description"] = "A channel of the actuator NAME of the ship file.".into();
+    schema["properties"]["columns"]["patternProperties"] =
+        json!({ (format!("^[A-Za-z][A-Za-z0-9_]*\\.({suffixes})$")): command });
     schema["properties"]["columns"]["additionalProperties"] = false.into();
     schema
 }

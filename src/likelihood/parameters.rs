@@ -2,7 +2,7 @@
 //! exactly. It estimates nothing.
 
 use super::pass::Column;
-use crate::model::{MMG, Model, Prior};
+use crate::model::{GENERAL, MMG, Model, Prior};
 use crate::physics::Form;
 
 /// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
@@ -40,14 +40,23 @@ pub(crate) const NUISANCE: [&str; 31] = [
     "sternway.share",
 ];
 
-/// The coefficients of a model that are never known exactly: in form `mmg` those of its terms for those that they replace.
+/// The coefficients of a model that are never known exactly: in forms `mmg` and `general` those of their terms for those that these replace.
 pub(crate) fn uncertain_coefficients(model: &Model) -> Vec<usize> {
-    let listed =
-        NUISANCE.iter().filter_map(|name| model.index(name)).filter(|i| !model.replaced(model.parameters[*i].info));
+    let absent: Vec<&str> = model.terms().filter(|info| model.lacks(info)).map(|info| info.name).collect();
+    let of_craft = |name: &&&str| name.split_once('.').is_none_or(|(term, _)| !absent.contains(&term));
+    let listed = NUISANCE
+        .iter()
+        .filter(of_craft)
+        .filter_map(|name| model.index(name))
+        .filter(|i| !model.replaced(model.parameters[*i].info));
     let of_form = |i: &usize| {
         let name = &model.parameters[*i].name;
-        model.form == Form::Mmg
-            && MMG.iter().any(|term| name.strip_prefix(term).is_some_and(|rest| rest.starts_with('.')))
+        let terms: &[&str] = match model.form {
+            Form::Mmg => &MMG,
+            Form::General => &GENERAL,
+            Form::Paper | Form::Regular => &[],
+        };
+        terms.iter().any(|term| name.strip_prefix(term).is_some_and(|rest| rest.starts_with('.')))
     };
     listed.chain((0..model.parameters.len()).filter(of_form)).collect()
 }

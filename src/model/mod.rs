@@ -9,10 +9,11 @@ use crate::files::intact;
 use crate::files::suggestion;
 use crate::files::written::{Kind, line_at, read_text, read_toml, told};
 use crate::parameter::{ParameterInfo, Start};
-use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Inertia, Number, TermInfo};
+use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Group, Inertia, Number, TermInfo};
 use crate::ship::{COEFFICIENTS, Ship};
 use crate::state::Inputs;
 use crate::terms;
+use crate::terms::actuator::ActuatorTerm;
 use crate::uncertainty::Uncertainty;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
@@ -25,6 +26,9 @@ pub const BASE: [&str; 5] = ["flow", "hull", "resistance", "propeller", "rudder"
 
 /// Terms that a model of form `mmg` has beyond those, in this order.
 pub const MMG: [&str; 3] = ["mmg_hull", "mmg_wake", "mmg_rudder"];
+
+/// Terms that a model of form `general` has beyond those.
+pub const GENERAL: [&str; 1] = ["general_hull"];
 
 /// Dotted names of the paper's eleven parameters, p0 to p10.
 pub const ELEVEN: [&str; 11] = [
@@ -129,6 +133,14 @@ pub enum ModelError {
     /// A covariance that does not belong to the model.
     #[error("{0}; fit the model again, or remove the table")]
     Covariance(String),
+    /// An actuator with the name of a term.
+    #[error(
+        "the actuator `{name}` of the ship file has the name of a term of trimtab, and their parameters would have the same names; give it another name"
+    )]
+    ActuatorName {
+        /// The name.
+        name: String,
+    },
     /// The sway-yaw mass matrix cannot be inverted.
     #[error(
         "the sway-yaw mass matrix is singular or negative (determinant {determinant:.3e}); check hull.mass, hull.inertia, hull.x_g and the added masses hull.Yvdot, hull.Yrdot, hull.Nvdot, hull.Nrdot (negative values)"
@@ -264,7 +276,8 @@ pub struct ModelFile {
     /// Name, for headings.
     pub name: String,
     /// Form of the hull: `paper` or `regular`, which differ at low speed and astern, or `mmg`, the standard MMG method with published
-    /// primes (`mmg_hull.Y_v`), which has the terms `mmg_hull`, `mmg_wake` and `mmg_rudder` and no parameter that is free unless said.
+    /// primes (`mmg_hull.Y_v`), which has the terms `mmg_hull`, `mmg_wake` and `mmg_rudder` and no parameter that is free unless said, or `general`, for a craft of which only mass,
+    /// length and breadth are known, which has the term `general_hull`; `hull = "free"` then frees it with the added masses.
     #[serde(default)]
     pub form: Form,
     /// Terms beyond the base terms (flow, hull, resistance, propeller, rudder).
@@ -448,6 +461,11 @@ impl Model {
         form: Form,
         extra: &[&str],
     ) -> Result<Self, ModelError> {
+        let actuators = terms::actuator::terms(&ship);
+        if let Some(taken) = ship.actuators.iter().find(|a| catalogue.find(&a.name).is_some()) {
+            return Err(ModelError::ActuatorName { name: taken.name.clone() });
+        }
+        let catalogue = actuators.iter().fold(catalogue, |all, term| all.with(*term));
         let mut model = Self {
             name: name.into(),
             ship,
@@ -457,13 +475,14 @@ impl Model {
             catalogue,
             terms: Vec::new(),
         };
-        for term in BASE.iter().chain(model.of_form()).chain(extra) {
+        let named = actuators.iter().map(|term| &term.info().name);
+        for term in BASE.iter().chain(model.of_form()).chain(named).chain(extra) {
             model.add_term(term)?;
         }
         for i in 0..model.parameters.len() {
             model.parameters[i].free = model.free_at_first(&model.parameters[i].name);
         }
-        let from_ship = model.ship.parameters.clone();
+        let from_ship = model.ship.given_parameters();
         for (name, value) in &from_ship {
             // A ship file may give parameters of terms that this model does not use.
             if let Some(i) = model.index(name) {
@@ -520,7 +539,7 @@ impl Model {
                 lower,
                 upper,
                 prior: None,
-                scale: (parameter.scale)(&self.ship),
+                scale: self.scale(parameter),
             });
         }
         Ok(())
@@ -528,26 +547,71 @@ impl Model {
 
     /// The terms that the model's form has beyond the base.
     fn of_form(&self) -> &'static [&'static str] {
-        if self.form == Form::Mmg { &MMG } else { &[] }
+        match self.form {
+            Form::Mmg => &MMG,
+            Form::General => &GENERAL,
+            Form::Paper | Form::Regular => &[],
+        }
+    }
+
+    /// What the model's form says of where a parameter begins.
+    fn form_start(&self, parameter: &ParameterInfo) -> Start {
+        match self.form {
+            Form::Mmg => parameter.mmg,
+            Form::General => parameter.general,
+            Form::Paper | Form::Regular => Start::Same,
+        }
     }
 
     /// Where a parameter begins in the model's form, before the ship file's own values.
     fn start(&self, parameter: &ParameterInfo) -> f64 {
-        match parameter.mmg {
-            Start::Own(value) if self.form == Form::Mmg => value(&self.ship),
-            Start::Replaced if self.form == Form::Mmg => 0.0,
-            Start::Same | Start::Own(_) | Start::Replaced => (parameter.default)(&self.ship),
+        match self.form_start(parameter) {
+            Start::Own(value) | Start::Known(value, _) => value(&self.ship),
+            Start::Replaced => 0.0,
+            Start::Same => (parameter.default)(&self.ship),
+        }
+    }
+
+    /// Size of a relevant change of a parameter in the model's form.
+    fn scale(&self, parameter: &ParameterInfo) -> f64 {
+        match self.form_start(parameter) {
+            Start::Known(_, spread) => 0.5 * spread(&self.ship),
+            Start::Own(_) | Start::Replaced | Start::Same => (parameter.scale)(&self.ship),
+        }
+    }
+
+    /// Prior standard deviation of a parameter in the model's form.
+    fn spread(&self, parameter: &ParameterInfo) -> f64 {
+        match self.form_start(parameter) {
+            Start::Known(_, spread) => spread(&self.ship),
+            Start::Own(_) | Start::Replaced | Start::Same => (parameter.spread)(&self.ship),
         }
     }
 
     /// Whether another term of the model's form takes the place of a parameter.
     pub(crate) fn replaced(&self, parameter: &ParameterInfo) -> bool {
-        self.form == Form::Mmg && matches!(parameter.mmg, Start::Replaced)
+        matches!(self.form_start(parameter), Start::Replaced)
     }
 
-    /// Whether a parameter is free in a model that says nothing of it: the paper's eleven, which form `mmg` replaces.
+    /// Whether a term is of something that the craft does not have: the propeller of `n`, or the rudder of `delta`.
+    pub fn lacks(&self, term: &TermInfo) -> bool {
+        let named = self.ship.actuator(term.name).is_some();
+        match term.group {
+            Group::Propulsion => !self.ship.has_propeller() && !named,
+            Group::Rudder => !self.ship.has_rudder(),
+            Group::Hull | Group::Environment | Group::External | Group::Sensor => false,
+        }
+    }
+
+    /// Whether a parameter is free in a model that says nothing of it: the paper's eleven where the form and the craft have them, and what
+    /// no particulars say of a named actuator.
     fn free_at_first(&self, name: &str) -> bool {
-        ELEVEN.contains(&name) && self.form != Form::Mmg
+        let Some((term, parameter)) = name.split_once('.') else { return false };
+        if let Some(actuator) = self.ship.actuator(term) {
+            return ActuatorTerm::free_at_first(actuator, parameter);
+        }
+        let absent = self.terms().any(|info| info.name == term && self.lacks(info));
+        ELEVEN.contains(&name) && matches!(self.form, Form::Paper | Form::Regular) && !absent
     }
 
     /// The terms that can be added to the model.
@@ -745,12 +809,20 @@ impl Model {
         Ok(())
     }
 
-    /// Indices of the hydrodynamic coefficients of the hull; in form `mmg` m_x, m_y, J_z and those of `mmg_hull`.
+    /// Indices of the hydrodynamic coefficients of the hull: in form `mmg` m_x, m_y, J_z and those of `mmg_hull`, in form `general` these
+    /// masses, the centre of gravity and those of `general_hull`.
     fn hull_coefficients(&self) -> Vec<usize> {
         let base = COEFFICIENTS.iter().filter_map(|(name, _)| self.index(&format!("hull.{name}")));
-        let of_mmg = |i: &usize| self.form == Form::Mmg && self.parameters[*i].name.starts_with("mmg_hull.");
+        let own = |i: &usize| {
+            let name = self.parameters[*i].name.as_str();
+            match self.form {
+                Form::Mmg => name.starts_with("mmg_hull."),
+                Form::General => name.starts_with("general_hull.") || name == "hull.x_g",
+                Form::Paper | Form::Regular => false,
+            }
+        };
         base.filter(|i| !self.replaced(self.parameters[*i].info))
-            .chain((0..self.parameters.len()).filter(of_mmg))
+            .chain((0..self.parameters.len()).filter(own))
             .collect()
     }
 
@@ -758,9 +830,9 @@ impl Model {
     /// knows nothing.
     pub fn default_prior(&self, parameter: usize) -> Prior {
         let p = &self.parameters[parameter];
-        let given = self.ship.parameters.get(&p.name).copied().filter(|_| !self.replaced(p.info));
+        let given = self.ship.given_parameters().get(&p.name).copied().filter(|_| !self.replaced(p.info));
         let mean = given.unwrap_or_else(|| self.start(p.info));
-        Prior { mean, sd: (p.info.spread)(&self.ship) }
+        Prior { mean, sd: self.spread(p.info) }
     }
 
     /// The bounds of a parameter that no model file has changed: those of its term, widened where the estimate of a hull
@@ -832,9 +904,10 @@ impl Model {
         self.terms.iter().map(|t| t.term.info().name).collect()
     }
 
-    /// Names of the terms beyond those that every model of this form has, in order.
+    /// Names of the terms beyond those that every model of this form and this craft has, in order.
     pub fn further_terms(&self) -> Vec<&'static str> {
-        let own = |name: &&str| !BASE.contains(name) && !self.of_form().contains(name);
+        let named = |name: &str| self.ship.actuator(name).is_some();
+        let own = |name: &&str| !BASE.contains(name) && !self.of_form().contains(name) && !named(name);
         self.term_names().into_iter().filter(own).collect()
     }
 
@@ -859,7 +932,9 @@ impl Model {
 
     /// Whether the surge resistance is 0 at every speed: then a ship without other drag never stops.
     pub fn without_resistance(&self) -> bool {
-        let of_curve = |p: &&Parameter| p.name.starts_with("resistance.") || p.name == "mmg_hull.R_0";
+        let of_curve = |p: &&Parameter| {
+            p.name.starts_with("resistance.") || p.name == "mmg_hull.R_0" || p.name.starts_with("general_hull.surge")
+        };
         let mut curve = self.parameters.iter().filter(of_curve);
         curve.all(|p| p.value == 0.0)
     }

@@ -17,6 +17,8 @@ pub enum Form {
     /// The standard method of the MMG group as Yasukawa & Yoshimura 2015 print it: hull, wake in a turn and rudder from the terms
     /// `mmg_hull`, `mmg_wake` and `mmg_rudder`, (m + m_x) u r in the sway equation, and the rudder's inflow by the drift angle.
     Mmg,
+    /// Any craft: masses and added masses of `hull` with exact Coriolis forces and Munk moment, and the term `general_hull` for all else.
+    General,
 }
 
 /// The instant at which physics is evaluated.

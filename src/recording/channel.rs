@@ -2,8 +2,11 @@
 //! How a channel is found in a file is not here (`map.rs`, `read.rs`), nor what a channel does to the ship (the terms).
 
 use super::file::unit::Quantity;
+use crate::ship::actuator::Drive;
 use crate::state::recorded_inputs;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::cmp::Ordering;
+use std::sync::{PoisonError, RwLock};
 
 /// What is to be known about a channel: one row of the table in the help and the README.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -46,8 +49,7 @@ const SHAFT: (f64, f64) = (-60.0, 60.0);
 macro_rules! channel {
     ($($name:ident $channel:ident: $quantity:ident, $limits:expr, $words:literal, $doc:literal;)*) => {
         /// A channel of a recording. Stored in SI units and radians, whatever the file's units were.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-        #[serde(rename_all = "snake_case")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[allow(missing_docs)] // each is documented, for users too, in `CHANNELS`
         pub enum Channel {
             T,
@@ -73,9 +75,11 @@ macro_rules! channel {
             NOrder,
             UWater,
             VWater,
+            /// A channel of a named actuator, `port.rate`.
+            Command(Command),
         }
 
-        /// Every channel, in the order of [`Channel`].
+        /// Every channel but those of named actuators, in the order of [`Channel`].
         pub const CHANNELS: &[ChannelInfo] = &[
             info(Channel::T, "t", Quantity::Time, ANY, "time", "time, increasing from row to row"),
             info(
@@ -241,10 +245,69 @@ recorded_inputs!(channel);
 /// The measured state, in the order of [`crate::state::STATE_NAMES`].
 pub const STATE_CHANNELS: [Channel; 6] = [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R];
 
+/// A channel of an actuator, such as `port.rate`, by its place in the list of those that were named; made by [`Channel::from_name`].
+///
+/// A number and no text, so that errors that name a channel stay small.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Command(u16);
+
+impl Command {
+    fn info(self) -> Option<&'static ChannelInfo> {
+        COMMANDS.read().unwrap_or_else(PoisonError::into_inner).get(usize::from(self.0)).copied()
+    }
+}
+
+impl Ord for Command {
+    /// By name, whatever was named first.
+    fn cmp(&self, other: &Self) -> Ordering {
+        if self == other { Ordering::Equal } else { self.info().map(|c| c.name).cmp(&other.info().map(|c| c.name)) }
+    }
+}
+
+impl PartialOrd for Command {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// Orders may be shares, per cent, volts or pulse widths, forces those of any craft: only what no channel holds is refused.
+const ORDER: (f64, f64) = (-1e6, 1e6);
+const FORCE: (f64, f64) = (-1e9, 1e9);
+/// Revolutions a second of a small craft's thruster: above 6000 rpm the unit is another.
+const THRUSTER: (f64, f64) = (-100.0, 100.0);
+
+/// Catalogue rows of the channels of actuators that were named in this process; each is kept for good, as those of the table are.
+static COMMANDS: RwLock<Vec<&'static ChannelInfo>> = RwLock::new(Vec::new());
+
+/// The channel of an actuator with this name, if it is one.
+fn command(name: &str) -> Option<&'static ChannelInfo> {
+    let (actuator, drive) = Drive::split(name)?;
+    let mut known = COMMANDS.write().unwrap_or_else(PoisonError::into_inner);
+    if let Some(row) = known.iter().find(|row| row.name == name) {
+        return Some(row);
+    }
+    let place = u16::try_from(known.len()).ok()?;
+    let (quantity, limits, what, doc) = match drive {
+        Drive::Rate => (Quantity::Rotation, THRUSTER, "rate", "rate, positive ahead"),
+        Drive::Angle => (Quantity::Angle, HEADING, "angle", "direction in which it pushes, clockwise from the bow"),
+        Drive::Order => (Quantity::Number, ORDER, "order", "order, in any unit of its own"),
+        Drive::X => (Quantity::Force, FORCE, "surge force", "force forward"),
+        Drive::Y => (Quantity::Force, FORCE, "sway force", "force to starboard"),
+        Drive::N => (Quantity::Moment, FORCE, "yaw moment", "moment to starboard"),
+    };
+    let kept: &'static str = Box::leak(name.to_owned().into_boxed_str());
+    let words: &'static str = Box::leak(format!("{what} of the actuator {actuator}").into_boxed_str());
+    let row = Box::leak(Box::new(info(Channel::Command(Command(place)), kept, quantity, limits, words, doc)));
+    known.push(row);
+    Some(row)
+}
+
 impl Channel {
     /// The catalogue row of this channel.
     pub fn info(self) -> &'static ChannelInfo {
-        &CHANNELS[self as usize]
+        let named = || if let Self::Command(command) = self { command.info() } else { None };
+        // The first row is never taken: every other channel is in the table, and a command is made with its row.
+        CHANNELS.iter().find(|c| c.channel == self).or_else(named).unwrap_or(&CHANNELS[0])
     }
 
     /// Its name in headers and column maps.
@@ -254,12 +317,31 @@ impl Channel {
 
     /// The channel of that name.
     pub fn from_name(name: &str) -> Option<Self> {
-        CHANNELS.iter().find(|c| c.name == name).map(|c| c.channel)
+        let listed = CHANNELS.iter().find(|c| c.name == name);
+        listed.or_else(|| command(name)).map(|c| c.channel)
+    }
+
+    /// Whether it is an angle that goes all the way round: the heading, and that of an azimuth. Such a one is unwrapped on reading.
+    pub(crate) fn turns(self) -> bool {
+        self == Self::Psi || matches!(self, Self::Command(_)) && self.info().quantity == Quantity::Angle
     }
 
     /// Channels whose dropouts interrupt a run: all but the orders and the logs, which no simulation needs.
     pub fn interrupts(self) -> bool {
         !matches!(self, Self::T | Self::DeltaOrder | Self::NOrder | Self::UWater | Self::VWater)
+    }
+}
+
+impl Serialize for Channel {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for Channel {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        Self::from_name(&name).ok_or_else(|| serde::de::Error::custom(format!("unknown channel `{name}`")))
     }
 }
 
@@ -276,9 +358,20 @@ mod tests {
     #[test]
     fn the_catalogue_is_in_the_order_of_the_enum() {
         for (i, c) in CHANNELS.iter().enumerate() {
-            assert_eq!(c.channel as usize, i, "{}", c.name);
+            assert!(i == 0 || CHANNELS[i - 1].channel < c.channel, "{}", c.name);
+            assert_eq!(c.channel.info().name, c.name);
             assert_eq!(Channel::from_name(c.name), Some(c.channel));
             assert!(c.limits.0 < c.limits.1);
         }
+    }
+    #[test]
+    fn a_channel_of_an_actuator_is_one_by_its_name() {
+        let rate = Channel::from_name("port.rate").unwrap();
+        assert_eq!((rate.name(), rate.info().quantity), ("port.rate", Quantity::Rotation));
+        assert_eq!(Channel::from_name("port.rate"), Some(rate));
+        assert!(rate > Channel::VWater && rate < Channel::from_name("stern.angle").unwrap());
+        assert_eq!(Channel::from_name("port.speed"), None);
+        assert_eq!(serde_json::to_string(&rate).unwrap(), "\"port.rate\"");
+        assert_eq!(serde_json::from_str::<Channel>("\"u_water\"").unwrap(), Channel::UWater);
     }
 }

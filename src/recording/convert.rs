@@ -1,7 +1,7 @@
 //! From raw channels to the project's frames: range and time checks, unwrapped heading, body velocities at midship, derived channels.
 //! Nothing is smoothed here and nothing invented: a channel that is derived is derived because the column map asks for it.
 
-use super::channel::{CHANNELS, Channel};
+use super::channel::Channel;
 use super::error::RecordingError;
 use super::file::blank::usual_fill;
 use super::file::lines::LineNumbers;
@@ -46,8 +46,8 @@ impl Recording {
                     found: values.len(),
                 });
             }
-            recording.units[channel as usize] = Some(channel.info().quantity.si().to_owned());
-            recording.data[channel as usize] = Some(values);
+            recording.units.insert(channel, channel.info().quantity.si().to_owned());
+            recording.data.insert(channel, values);
         }
         recording.finish(&ColumnMap::default(), "")?;
         Ok(recording)
@@ -69,11 +69,11 @@ impl Recording {
             self.bridge(longest);
         }
         let t = self.time().to_vec();
-        if let Some(psi) = &mut self.data[Channel::Psi as usize] {
-            unwrap(psi);
-            if map.wrap_repair {
-                self.repaired = repair(&t, psi);
-            }
+        for (_, angle) in self.data.iter_mut().filter(|(c, _)| c.turns()) {
+            unwrap(angle);
+        }
+        if let Some(psi) = self.data.get_mut(&Channel::Psi).filter(|_| map.wrap_repair) {
+            self.repaired = repair(&t, psi);
         }
         self.shift(&map.delays(session))?;
         let span = map.derive_span.unwrap_or(DERIVE_ROWS * self.step());
@@ -102,8 +102,8 @@ impl Recording {
 
     /// Refuses values no ship reaches: the unit is then most likely another.
     fn check_ranges(&self) -> Result<(), RecordingError> {
-        for info in CHANNELS {
-            let Some(values) = self.get(info.channel) else { continue };
+        for (channel, values) in self.channels() {
+            let info = channel.info();
             let outside = |v: &f64| v.is_finite() && !(info.limits.0..=info.limits.1).contains(v);
             let Some(row) = values.iter().position(outside) else { continue };
             let count = values.iter().filter(|v| outside(v)).count();
@@ -176,9 +176,8 @@ impl Recording {
     /// Fills dropouts no longer than `longest` seconds by straight lines, channel by channel.
     fn bridge(&mut self, longest: f64) {
         let t = self.time().to_vec();
-        for info in CHANNELS {
-            let wrapped = info.quantity == Quantity::Angle;
-            let Some(values) = &mut self.data[info.channel as usize] else { continue };
+        for (channel, values) in &mut self.data {
+            let wrapped = channel.info().quantity == Quantity::Angle;
             let mut filled = 0;
             let mut last: Option<usize> = None;
             for row in 0..values.len() {
@@ -198,7 +197,7 @@ impl Recording {
                 last = Some(row);
             }
             if filled > 0 {
-                self.bridged.push((info.channel, filled));
+                self.bridged.push((*channel, filled));
             }
         }
     }
@@ -215,7 +214,7 @@ impl Recording {
                 Channel::V if !self.has(channel) => Channel::VWater,
                 _ => channel,
             };
-            if let Some(values) = &mut self.data[slot as usize] {
+            if let Some(values) = self.data.get_mut(&slot) {
                 *values = t.iter().map(|at| interpolated(&t, values, at + delay)).collect();
                 (from, to) = (from.max(first - delay), to.min(last - delay));
             }
@@ -282,7 +281,7 @@ impl Recording {
     }
 
     fn put_derived(&mut self, channel: Channel, values: Vec<f64>) {
-        self.data[channel as usize] = Some(values);
+        self.data.insert(channel, values);
         self.derived.push(channel);
     }
 
@@ -299,8 +298,8 @@ impl Recording {
             let east = self.require(starboard, purpose, next)?.to_vec();
             let body = psi.iter().zip(north.iter().zip(&east)).map(|(psi, (n, e))| to_body(*psi, [*n, *e]));
             let (u, v) = body.map(|b| (b[0], b[1])).unzip();
-            self.data[forward as usize] = Some(u);
-            self.data[starboard as usize] = Some(v);
+            self.data.insert(forward, u);
+            self.data.insert(starboard, v);
         }
         Ok(())
     }
@@ -313,7 +312,7 @@ impl Recording {
             let next = "record it, or give positions of midship";
             let psi = self.require(Channel::Psi, "to move positions to midship", next)?.to_vec();
             for (axis, channel) in [Channel::X, Channel::Y].into_iter().enumerate() {
-                if let Some(values) = &mut self.data[channel as usize] {
+                if let Some(values) = self.data.get_mut(&channel) {
                     for (value, psi) in values.iter_mut().zip(&psi) {
                         *value -= to_earth(*psi, position)[axis];
                     }
@@ -324,7 +323,7 @@ impl Recording {
             let next = "record it, set `derive = [\"r\"]`, or give velocities of midship";
             let r = self.require(Channel::R, "to move velocities to midship", next)?.to_vec();
             for (channel, lever) in VELOCITIES.iter().flat_map(|[u, v]| [(*u, velocity[1]), (*v, -velocity[0])]) {
-                if let Some(values) = &mut self.data[channel as usize] {
+                if let Some(values) = self.data.get_mut(&channel) {
                     for (value, r) in values.iter_mut().zip(&r) {
                         *value += r * lever;
                     }

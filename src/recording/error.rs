@@ -73,7 +73,7 @@ pub enum RecordingError {
         header: String,
     },
     /// A column is not in the header.
-    #[error("{path}:{line}: no column `{column}` for channel `{channel}`{suggestion}; the columns are {found}. Rename it in the header, or name it in a column map: [columns] {channel} = \"...\"", path = path.display())]
+    #[error("{path}:{line}: no column `{column}` for channel `{channel}`{suggestion}; the columns are {found}. Rename it in the header, or name it in a column map: [columns] {key} = \"...\"", path = path.display(), key = key(*channel))]
     MissingColumn {
         /// The file.
         path: PathBuf,
@@ -262,4 +262,9 @@ pub enum RecordingError {
         /// Rows of the channel.
         found: usize,
     },
+}
+
+/// A channel as the key of a table of TOML: with a point in it, it stands in quotes.
+fn key(channel: Channel) -> String {
+    if channel.name().contains('.') { format!("{:?}", channel.name()) } else { channel.name().to_owned() }
 }

@@ -4,6 +4,7 @@
 pub mod audit;
 mod channel;
 mod convert;
+mod driven;
 mod error;
 mod file;
 pub mod import;
@@ -16,7 +17,8 @@ pub mod validity;
 mod window;
 mod wrap;
 
-pub use channel::{CHANNELS, Channel, ChannelInfo, STATE_CHANNELS};
+pub use channel::{CHANNELS, Channel, ChannelInfo, Command, STATE_CHANNELS};
+pub use driven::Driven;
 pub use error::RecordingError;
 pub use file::blank::Blank;
 pub(crate) use file::blank::usual_fill;

@@ -1,10 +1,11 @@
 //! A recording: channels in SI units by row, with the line of each row, its stretches, gaps and dropouts.
 //! How it is read from a file is in `read`, and what its channels go through before they are checked in `convert`.
 
-use super::channel::{CHANNELS, Channel};
+use super::channel::Channel;
 use super::error::RecordingError;
 use super::file::lines::LineNumbers;
 use super::wrap::repair;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -22,10 +23,10 @@ pub struct Recording {
     pub(super) header_line: usize,
     /// Line of each row.
     pub(super) lines: LineNumbers,
-    /// One entry a [`Channel`], in its order.
-    pub(super) data: Vec<Option<Vec<f64>>>,
+    /// The channels that there are.
+    pub(super) data: BTreeMap<Channel, Vec<f64>>,
     /// Unit each channel was written in.
-    pub(super) units: Vec<Option<String>>,
+    pub(super) units: BTreeMap<Channel, String>,
     /// Channels that were not recorded but derived from others.
     pub(super) derived: Vec<Channel>,
     /// Rows left out because they have no time: first and last line of each stretch.
@@ -49,8 +50,8 @@ impl Recording {
             path: path.to_owned(),
             header_line,
             lines: LineNumbers::default(),
-            data: vec![None; CHANNELS.len()],
-            units: vec![None; CHANNELS.len()],
+            data: BTreeMap::new(),
+            units: BTreeMap::new(),
             derived: Vec::new(),
             without_time: Vec::new(),
             unused: Vec::new(),
@@ -91,7 +92,7 @@ impl Recording {
 
     /// A channel's values, one a row, NaN where missing; `None` when it was not recorded.
     pub fn get(&self, channel: Channel) -> Option<&[f64]> {
-        self.data[channel as usize].as_deref()
+        self.data.get(&channel).map(Vec::as_slice)
     }
 
     /// True when the channel was recorded or derived.
@@ -101,7 +102,7 @@ impl Recording {
 
     /// The channels there are, in the order of the catalogue.
     pub fn channels(&self) -> impl Iterator<Item = (Channel, &[f64])> {
-        CHANNELS.iter().filter_map(|c| self.get(c.channel).map(|v| (c.channel, v)))
+        self.data.iter().map(|(channel, values)| (*channel, values.as_slice()))
     }
 
     /// Time of each row \[s\].
@@ -116,7 +117,7 @@ impl Recording {
 
     /// The unit the channel was written in.
     pub fn unit(&self, channel: Channel) -> &str {
-        self.units[channel as usize].as_deref().unwrap_or_else(|| channel.info().quantity.si())
+        self.units.get(&channel).map(String::as_str).unwrap_or_else(|| channel.info().quantity.si())
     }
 
     /// Channels derived from others rather than recorded.
@@ -150,7 +151,7 @@ impl Recording {
         if kept.iter().all(|kept| *kept) {
             return;
         }
-        for values in self.data.iter_mut().flatten() {
+        for values in self.data.values_mut() {
             let mut keep = kept.iter();
             values.retain(|_| keep.next().is_some_and(|k| *k));
         }
@@ -169,7 +170,7 @@ impl Recording {
     #[must_use]
     pub fn without(&self, channel: Channel, rows: &[usize]) -> Self {
         let mut left = self.clone();
-        if let Some(values) = &mut left.data[channel as usize] {
+        if let Some(values) = left.data.get_mut(&channel) {
             rows.iter().for_each(|row| values[*row] = f64::NAN);
         }
         left
@@ -180,7 +181,7 @@ impl Recording {
     pub fn with_repaired_heading(&self) -> Self {
         let mut right = self.clone();
         let t = self.time().to_vec();
-        if let Some(psi) = &mut right.data[Channel::Psi as usize] {
+        if let Some(psi) = right.data.get_mut(&Channel::Psi) {
             right.repaired = repair(&t, psi);
         }
         right

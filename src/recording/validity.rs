@@ -188,7 +188,10 @@ fn share(part: usize, whole: usize) -> f64 {
 /// The ranges of the model's terms, each widened by the terms that model what it leaves out. The form `regular` of hull and
 /// resistance is the term `sternway` in full.
 fn limits(model: &Model) -> Vec<Limit> {
-    let mut laws: Vec<(&'static str, &'static Validity)> = model.terms().map(|i| (i.name, &i.validity)).collect();
+    // A term that stands for nothing of this craft has no law to be left: what is not there, and what another term replaces.
+    let replaced = |term: &str| model.form == Form::General && ["hull", "resistance"].contains(&term);
+    let mut laws: Vec<(&'static str, &'static Validity)> =
+        model.terms().filter(|i| !model.lacks(i) && !replaced(i.name)).map(|i| (i.name, &i.validity)).collect();
     let own = laws.len();
     if model.form == Form::Regular
         && let Some(sternway) = model.catalogue().find("sternway")

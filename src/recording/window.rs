@@ -3,6 +3,7 @@
 
 use super::channel::{Channel, STATE_CHANNELS};
 use super::convert::to_earth;
+use super::driven::Driven;
 use super::error::RecordingError;
 use super::local::local_fit;
 use super::record::Recording;
@@ -78,6 +79,8 @@ pub struct WindowSettings {
     pub gaps: Gaps,
     /// The ship's draught \[m\], which turns depth into d/h.
     pub draught: f64,
+    /// What drives the craft.
+    pub driven: Driven,
 }
 
 impl WindowSettings {
@@ -94,6 +97,7 @@ impl WindowSettings {
             initial: Initial::First,
             gaps: Gaps::Refuse,
             draught,
+            driven: Driven::default(),
         }
     }
 }
@@ -137,7 +141,7 @@ impl Recording {
         if let (Gaps::Refuse, Some(error)) = (settings.gaps, self.interruption()) {
             return Err(error);
         }
-        let columns = self.columns(settings.draught)?;
+        let columns = self.columns(settings)?;
         let grid = self.grid(settings)?;
         let t = self.time();
         let (first, last) = (t.first().copied().unwrap_or(0.0), t.last().copied().unwrap_or(0.0));
@@ -306,7 +310,7 @@ impl Recording {
     }
 
     /// Inputs at every row, by column; a column that is 0 throughout is empty, and so is time, for it is that of a window's own grid.
-    fn columns(&self, draught: f64) -> Result<Inputs<Vec<f64>>, RecordingError> {
+    fn columns(&self, settings: &WindowSettings) -> Result<Inputs<Vec<f64>>, RecordingError> {
         let need = |c, next: &str| self.require(c, "to simulate the run", next);
         let from_position = "record it, or derive it from position and heading with `derive` in a column map";
         let positions = self.has(Channel::X) && self.has(Channel::Y) && self.has(Channel::Psi);
@@ -317,13 +321,17 @@ impl Recording {
         if !self.has(Channel::Psi) {
             need(Channel::R, "record it or the heading")?;
         }
-        need(Channel::N, "add the column")?;
-        need(Channel::Delta, "add the column")?;
+        for channel in settings.driven.needs() {
+            need(channel, "add the column")?;
+        }
         let mut inputs = Inputs::from_entries(|_: fn(&Inputs<f64>) -> &f64| Vec::new());
         for (name, values) in inputs.recorded() {
             if let Some(recorded) = Channel::from_name(name).and_then(|c| self.get(c)) {
                 *values = recorded.to_vec();
             }
+        }
+        for (values, channel) in inputs.commands.iter_mut().zip(&settings.driven.commands) {
+            *values = need(*channel, "add the column")?.to_vec();
         }
         let mut directed = false;
         let mut put = |vectors: &mut [Vec<f64>; 2], values: Vec<[f64; 2]>| {
@@ -349,7 +357,7 @@ impl Recording {
             put(&mut inputs.waves, polar(&squared, from, -1.0).collect());
         }
         if let Some(depth) = self.get(Channel::Depth) {
-            inputs.draught_to_depth = depth.iter().map(|h| draught / h).collect();
+            inputs.draught_to_depth = depth.iter().map(|h| settings.draught / h).collect();
         }
         for (channel, sign) in [(Channel::BankStarboard, 1.0), (Channel::BankPort, -1.0)] {
             if let Some(distance) = self.get(channel) {

@@ -1,6 +1,8 @@
 //! A ship's fixed particulars, read from a TOML file and checked once, and the empirical hull coefficients they imply.
 //! It holds no fitted parameter: parameters belong to the terms that use them, and take their defaults from here.
 
+pub mod actuator;
+mod craft;
 pub mod parameter;
 pub mod particulars;
 pub mod state;
@@ -9,6 +11,7 @@ pub mod units;
 use crate::files::written::{Kind, read_text, read_toml, told};
 use crate::numerals::sig;
 use crate::units::GRAVITY;
+use actuator::Actuator;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -83,10 +86,15 @@ pub struct Ship {
     pub source: String,
     /// Hull particulars.
     pub hull: HullParticulars,
-    /// Propeller particulars.
+    /// Propeller particulars. A file has propeller and rudder, or neither: then what drives the craft are its named actuators.
+    #[serde(default = "PropellerParticulars::none", skip_serializing_if = "PropellerParticulars::is_none")]
     pub propeller: PropellerParticulars,
     /// Rudder particulars.
+    #[serde(default = "RudderParticulars::none", skip_serializing_if = "RudderParticulars::is_none")]
     pub rudder: RudderParticulars,
+    /// Named actuators, beside propeller and rudder or instead of them.
+    #[serde(default, rename = "actuator", skip_serializing_if = "Vec::is_empty")]
+    pub actuators: Vec<Actuator>,
     /// Above-water particulars, needed for wind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub above_water: Option<AboveWater>,
@@ -113,11 +121,13 @@ pub struct HullParticulars {
     pub lpp: f64,
     /// Breadth B \[m\].
     pub breadth: f64,
-    /// Mean draught d \[m\].
+    /// Mean draught d \[m\]. A craft without propeller and rudder may leave it out; it then follows from the mass.
+    #[serde(default)]
     pub draught: f64,
     /// Mass m \[kg\].
     pub mass: f64,
-    /// Block coefficient C_b \[-\].
+    /// Block coefficient C_b \[-\]; a craft without propeller and rudder may leave it out.
+    #[serde(default)]
     pub block_coefficient: f64,
     /// Longitudinal centre of gravity x_G \[m\], forward of midship.
     #[serde(default)]
@@ -267,15 +277,18 @@ impl Ship {
 
     /// Reads and checks the text of a ship file; `path` is used in messages.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ShipError> {
-        let ship: Self = read_toml(text, Kind::Ship).map_err(|mistakes| match missing(text) {
-            missing if !missing.is_empty() && mistakes.iter().all(|m| m.message.contains(" is missing")) => {
-                ShipError::Missing { path: path.to_path_buf(), missing }
+        let absent = missing(text);
+        let mut ship: Self = read_toml(text, Kind::Ship).map_err(|mistakes| {
+            if !absent.is_empty() && mistakes.iter().all(|m| m.message.contains(" is missing")) {
+                return ShipError::Missing { path: path.to_path_buf(), missing: absent.clone() };
             }
-            _ => {
-                let (line, message) = told(mistakes, path);
-                ShipError::Parse { path: path.to_path_buf(), line, message }
-            }
+            let (line, message) = told(mistakes, path);
+            ShipError::Parse { path: path.to_path_buf(), line, message }
         })?;
+        if !absent.is_empty() {
+            return Err(ShipError::Missing { path: path.to_path_buf(), missing: absent });
+        }
+        ship.complete();
         let mut errors = ship.errors(&Source { text, path });
         match errors.len() {
             0 => Ok(ship),
@@ -287,6 +300,7 @@ impl Ship {
     /// What is wrong with the numbers and the names of coefficients; `source` places the messages.
     fn errors(&self, source: &Source<'_>) -> Vec<ShipError> {
         let mut errors = self.not_finite(source);
+        errors.extend(self.actuator_faults(source));
         for range in self.outside() {
             let [low, high] = range.limits;
             let within = if low == f64::MIN_POSITIVE {
@@ -303,7 +317,8 @@ impl Ship {
             errors.extend(self.coefficients_of_another_size(source));
         }
         let d = self.mass_determinant();
-        if errors.is_empty() && (d.is_nan() || d <= 0.0) {
+        // The regressions are those of ships with propeller and rudder; where they do not hold, the model says so.
+        if errors.is_empty() && self.has_propeller() && (d.is_nan() || d <= 0.0) {
             let expected = format!(
                 "kg makes the sway-yaw mass matrix singular (determinant {d:.3e}); check Yvdot, Yrdot, Nvdot, Nrdot, x_g and gyration"
             );
@@ -379,6 +394,9 @@ impl Ship {
     }
 
     fn propulsion_ranges(&self) -> Vec<Range> {
+        if self.propeller.is_none() && self.rudder.is_none() {
+            return Vec::new();
+        }
         let (h, p, r) = (&self.hull, &self.propeller, &self.rudder);
         vec![
             range(
@@ -646,6 +664,13 @@ impl Source<'_> {
         start.map_or_else(whole, inside)
     }
 
+    /// The line, counted from 1, on which a text in quotes first stands; 1 where it does not.
+    fn line_of_text(&self, text: &str) -> usize {
+        let quoted = [format!("\"{text}\""), format!("'{text}'")];
+        let has = |line: &str| quoted.iter().any(|q| line.contains(q)) || line.trim() == format!("[[{text}]]");
+        self.text.lines().position(has).map_or(1, |i| i + 1)
+    }
+
     /// The error of a value that no ship can have.
     fn value(&self, key: &str, found: f64, expected: &str) -> ShipError {
         ShipError::Value {
@@ -658,7 +683,15 @@ impl Source<'_> {
     }
 }
 
-/// What every ship file has: table, key and unit.
+/// What a file of a craft without propeller and rudder has: table, key and unit.
+const REQUIRED_OF_A_CRAFT: [[&str; 3]; 4] = [
+    ["", "name", "name"],
+    ["hull", "lpp", "hull.lpp [m]"],
+    ["hull", "breadth", "hull.breadth [m]"],
+    ["hull", "mass", "hull.mass [kg]"],
+];
+
+/// What every file of a ship with propeller and rudder has: table, key and unit.
 const REQUIRED: [[&str; 3]; 12] = [
     ["", "name", "name"],
     ["hull", "lpp", "hull.lpp [m]"],
@@ -681,7 +714,12 @@ fn missing(text: &str) -> Vec<&'static str> {
         "" => file.contains_key(key),
         _ => file.get(table).and_then(toml::Value::as_table).is_some_and(|t| t.contains_key(key)),
     };
-    REQUIRED.iter().filter(|[table, key, _]| !has(table, key)).map(|[_, _, named]| *named).collect()
+    let required = if ["propeller", "rudder"].iter().any(|table| file.contains_key(*table)) {
+        &REQUIRED[..]
+    } else {
+        &REQUIRED_OF_A_CRAFT[..]
+    };
+    required.iter().filter(|[table, key, _]| !has(table, key)).map(|[_, _, named]| *named).collect()
 }
 
 /// The command that completes a ship file.

@@ -12,13 +12,15 @@ pub enum Parity {
     Odd,
 }
 
-/// Where a parameter begins in a model of form `mmg`.
+/// Where a parameter begins in a model of another form than the paper's.
 #[derive(Clone, Copy)]
 pub enum Start {
     /// At its default.
     Same,
     /// At this value of the ship.
     Own(fn(&Ship) -> f64),
+    /// At the first value, known to the second: prior standard deviation, and twice the scale.
+    Known(fn(&Ship) -> f64, fn(&Ship) -> f64),
     /// At 0, whatever the ship file sets: another term of that form takes its place.
     Replaced,
 }
@@ -38,6 +40,8 @@ pub struct ParameterInfo {
     pub default: fn(&Ship) -> f64,
     /// Where it begins in form `mmg`.
     pub mmg: Start,
+    /// Where it begins in form `general`.
+    pub general: Start,
     /// Size of a relevant change \[same unit\]: the solver's scale, and the size at which a nonlinear effect is probed.
     pub scale: fn(&Ship) -> f64,
     /// Prior standard deviation \[same unit\]; infinite for no prior.
@@ -60,6 +64,7 @@ impl ParameterInfo {
             about,
             default: |_| 0.0,
             mmg: Start::Same,
+            general: Start::Same,
             scale: |_| 1.0,
             spread: |_| f64::INFINITY,
             lower: f64::NEG_INFINITY,
@@ -75,6 +80,11 @@ impl ParameterInfo {
     /// Sets where it begins in form `mmg`.
     pub const fn in_mmg(mut self, start: Start) -> Self {
         self.mmg = start;
+        self
+    }
+    /// Sets where it begins in form `general`.
+    pub const fn in_general(mut self, start: Start) -> Self {
+        self.general = start;
         self
     }
     /// Sets the scale.

@@ -54,6 +54,9 @@ impl<S: Scalar> State<S> {
     }
 }
 
+/// The most channels that the actuators of a craft may have together: four azimuths with rate and angle, and four more.
+pub const COMMANDS: usize = 12;
+
 /// The inputs that a simulation takes from one channel of a recording as it is: one row each, and `$then!` makes of them what it
 /// needs. A row gives field, variant of `Channel`, quantity, smallest and largest value accepted (SI), the name in messages and
 /// the meaning with its sign.
@@ -93,6 +96,9 @@ macro_rules! inputs {
             pub draught_to_depth: S,
             /// Bank proximity `1/y_s - 1/y_p` \[1/m\] from the distances to the starboard and the port bank; 0 in open water.
             pub bank: S,
+            /// Channels of the named actuators, in the order of [`crate::ship::actuator::channels`]; 0 where there is none. Their number is
+            /// [`COMMANDS`], written out for the compiler (1.95 stops at a struct update in a closure otherwise).
+            pub commands: [S; 12],
         }
 
         impl<S> Inputs<S> {
@@ -107,6 +113,20 @@ macro_rules! inputs {
                     waves: [f(|i| &i.waves[0]), f(|i| &i.waves[1])],
                     draught_to_depth: f(|i| &i.draught_to_depth),
                     bank: f(|i| &i.bank),
+                    commands: [
+                        f(|i| &i.commands[0]),
+                        f(|i| &i.commands[1]),
+                        f(|i| &i.commands[2]),
+                        f(|i| &i.commands[3]),
+                        f(|i| &i.commands[4]),
+                        f(|i| &i.commands[5]),
+                        f(|i| &i.commands[6]),
+                        f(|i| &i.commands[7]),
+                        f(|i| &i.commands[8]),
+                        f(|i| &i.commands[9]),
+                        f(|i| &i.commands[10]),
+                        f(|i| &i.commands[11]),
+                    ],
                 }
             }
 

@@ -8,7 +8,8 @@ use super::settings::window_settings;
 use super::split::{SplitBy, SplitRule};
 use super::table::read_table;
 use crate::files::written::{Kind, Mistake, line_at, near_file, read_text, read_toml, section, told};
-use crate::recording::{Channel, ColumnMap, Recording, Split, WindowSettings, Windows, key_line};
+use crate::recording::{Channel, ColumnMap, Driven, Recording, Split, WindowSettings, Windows, key_line};
+use crate::ship::Ship;
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use std::mem::take;
@@ -80,7 +81,9 @@ impl Study {
     /// None that a file can cause.
     pub fn of_ship(ship: &Path, model: &Path) -> Result<Self, StudyError> {
         let bare = Self::without_runs("name = \"\"\nship = \"\"\nmodel = \"\"\n", ship)?.0;
-        Ok(Self { ship: ship.to_owned(), model: model.to_owned(), ..bare })
+        let driven = Ship::read(ship).map_or_else(|_| Driven::default(), |ship| Driven::of(&ship));
+        let windows = WindowSettings { driven, ..bare.windows };
+        Ok(Self { ship: ship.to_owned(), model: model.to_owned(), windows, ..bare })
     }
 
     /// Checks the text of a study file that stands, or would stand, at `path`.
@@ -133,10 +136,14 @@ impl Study {
             (Ok(windows), None) => windows,
             (windows, rule) => return Err(fail(windows.err().into_iter().flatten().chain(rule).collect())),
         };
+        // What is wrong with the ship file is said by those who read it for themselves.
+        let ship = folder.join(&file.ship);
+        let driven = Ship::read(&ship).map_or_else(|_| Driven::default(), |ship| Driven::of(&ship));
+        let windows = WindowSettings { driven, ..windows };
         let study = Self {
             path: path.to_owned(),
             name: take(&mut file.name),
-            ship: folder.join(&file.ship),
+            ship,
             model: folder.join(&file.model),
             runs: Vec::new(),
             split: None,
@@ -164,7 +171,9 @@ impl Study {
     /// # Errors
     /// [`StudyError::Recording`] when the map cannot be read.
     pub fn column_map(&self, run: &Listed) -> Result<ColumnMap, StudyError> {
-        Ok(run.column_map.as_deref().map_or_else(|| Ok(ColumnMap::default()), ColumnMap::read)?)
+        let mut map = run.column_map.as_deref().map_or_else(|| Ok(ColumnMap::default()), ColumnMap::read)?;
+        map.driven = self.windows.driven.clone();
+        Ok(map)
     }
 
     /// Reads the recording of a run, under the run's name.

@@ -3,7 +3,7 @@
 
 use super::file::{InitialKind, StudyFile};
 use crate::files::written::Mistake;
-use crate::recording::{Initial, WindowSettings, key_line};
+use crate::recording::{Driven, Initial, WindowSettings, key_line};
 
 /// The window settings of a study file, for every run; `from`, `to` and `draught` are set run by run.
 ///
@@ -75,5 +75,6 @@ pub(super) fn window_settings(file: &StudyFile, text: &str) -> Result<WindowSett
         initial,
         gaps: file.gaps,
         draught: f64::NAN,
+        driven: Driven::default(),
     })
 }

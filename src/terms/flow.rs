@@ -4,10 +4,17 @@
 use crate::parameter::ParameterInfo;
 use crate::physics::Validity;
 use crate::physics::{Group, Physics, Reach, Term, TermInfo};
+use crate::ship::Ship;
 use trimtab_ad::Scalar;
 
 /// The pseudo-term that holds the parameters of [`Flow`](crate::physics::Flow).
 pub struct FlowTerm;
+
+/// A tenth of K_T at rest; of a craft without propeller, whose K_T is 0, that of a usual one.
+fn thrust_scale(ship: &Ship) -> f64 {
+    let at_rest = ship.propeller.thrust_coefficients[0];
+    if at_rest == 0.0 { 0.035 } else { 0.1 * at_rest }
+}
 
 static INFO: TermInfo = TermInfo {
     name: "flow",
@@ -37,17 +44,17 @@ static INFO: TermInfo = TermInfo {
             .bounds(0.0, 0.8),
         ParameterInfo::new("kt0", "k0", "-", "thrust coefficient at J = 0")
             .default(|s| s.propeller.thrust_coefficients[0])
-            .scale(|s| 0.1 * s.propeller.thrust_coefficients[0])
+            .scale(thrust_scale)
             .spread(|s| 0.15 * s.propeller.thrust_coefficients[0])
             .bounds(0.0, 2.0),
         ParameterInfo::new("kt1", "k1", "-", "slope of the thrust coefficient")
             .default(|s| s.propeller.thrust_coefficients[1])
-            .scale(|s| 0.1 * s.propeller.thrust_coefficients[0])
+            .scale(thrust_scale)
             .spread(|s| 0.3 * s.propeller.thrust_coefficients[0])
             .bounds(-2.0, 0.0),
         ParameterInfo::new("kt2", "k2", "-", "curvature of the thrust coefficient")
             .default(|s| s.propeller.thrust_coefficients[2])
-            .scale(|s| 0.1 * s.propeller.thrust_coefficients[0])
+            .scale(thrust_scale)
             .spread(|s| 0.3 * s.propeller.thrust_coefficients[0])
             .bounds(-2.0, 1.0),
         ParameterInfo::new("astern", "b_t", "-", "thrust astern over thrust ahead, at rest")

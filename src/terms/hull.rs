@@ -17,6 +17,7 @@ macro_rules! derivative {
         ParameterInfo::new($name, $name, $unit, $about)
             .default(|s| s.coefficient($name))
             .in_mmg(Start::Replaced)
+            .in_general(Start::Replaced)
             .scale(|s| 0.1 * reference(s, $name))
             .spread(|s| 0.3 * reference(s, $name))
     };
@@ -24,10 +25,18 @@ macro_rules! derivative {
     ($name:literal, $unit:literal, $about:literal, negative) => {
         derivative!($name, $unit, $about).bounds(f64::NEG_INFINITY, 0.0)
     };
-    // The added masses m_x, m_y and J_z, which form `mmg` keeps; all else of it is the term `mmg_hull`.
-    ($name:literal, $unit:literal, $about:literal, mass) => {
-        derivative!($name, $unit, $about, negative).in_mmg(Start::Same)
+    // The added masses m_x, m_y and J_z, which forms `mmg` and `general` keep; all else of these is `mmg_hull` or `general_hull`. In form
+    // `general` they begin at a share of the mass, for no regression is of such craft, and are known to half the mass.
+    ($name:literal, $unit:literal, $about:literal, mass, $share:literal, $of:expr) => {
+        derivative!($name, $unit, $about, negative)
+            .in_mmg(Start::Same)
+            .in_general(Start::Known(|s| $share * ($of)(s), |s| 0.5 * ($of)(s)))
     };
+}
+
+/// The mass of the ship \[kg\].
+fn mass(ship: &Ship) -> f64 {
+    ship.hull.mass
 }
 
 /// The size of a coefficient for scaling: its estimate, kept away from zero by a usual size of its kind.
@@ -51,7 +60,8 @@ static INFO: TermInfo = TermInfo {
     equation: "(m-Xudot) u' + (Yvdot-Xvr-m) v r + (Yrdot-m xG) r^2 = X; \
                (m-Yvdot) v' + (m xG-Yrdot) r' - Yv U v + (m u-Yr U) r - Yvv v|v| - Yvr v|r| - Yrr r|r| = Y; \
                (m xG-Nvdot) v' + (Iz-Nrdot) r' - Nv U v + (m xG u-Nr U) r - Nrr r|r| - Nrrv r^2 v/U - Nvvr v^2 r/U = N; \
-               form `mmg`: (m-Xudot) u r in Y, and what is not a mass is `mmg_hull`",
+               form `mmg`: (m-Xudot) u r in Y, and what is not a mass is `mmg_hull`; form `general`: as `mmg`, with \
+               (Xudot-Yvdot) u v in N, and what is not a mass is `general_hull`",
     source: "Papandreou et al. 2025 (arXiv 2502.18696) eq. (1) after Spyrou 1996; coefficients by Clarke et al. 1982 and Inoue et al. 1981",
     needs: &[],
     validity: Validity {
@@ -78,11 +88,11 @@ static INFO: TermInfo = TermInfo {
             .default(|s| s.hull.x_g)
             .scale(|s| 0.01 * s.hull.lpp)
             .spread(|s| 0.01 * s.hull.lpp),
-        derivative!("Xudot", "kg", "surge added mass, negative", mass),
-        derivative!("Yvdot", "kg", "sway added mass, negative", mass),
+        derivative!("Xudot", "kg", "surge added mass, negative", mass, -0.1, mass),
+        derivative!("Yvdot", "kg", "sway added mass, negative", mass, -0.7, mass),
         derivative!("Yrdot", "kg m", "sway-yaw added mass"),
         derivative!("Nvdot", "kg m", "yaw-sway added mass"),
-        derivative!("Nrdot", "kg m2", "yaw added inertia, negative", mass),
+        derivative!("Nrdot", "kg m2", "yaw added inertia, negative", mass, -0.5, Ship::yaw_inertia),
         derivative!("Xvr", "kg", "surge force of drift and turn"),
         derivative!("Yv", "kg/m", "linear sway damping", negative),
         derivative!("Yr", "kg", "sway force of turn"),
@@ -110,11 +120,11 @@ impl Term for Hull {
 /// Index of the first damping coefficient: before it are masses, inertia and added masses.
 pub(crate) const DAMPING: usize = 8;
 
-/// Mass \[kg\] and its moment about midship \[kg m\], and the added masses Yvdot \[kg\], Yrdot \[kg m\] and, in form `mmg`, Xudot \[kg\],
-/// as they turn with the ship. The other forms have Xudot in their Yr.
+/// Mass \[kg\] and its moment about midship \[kg m\], and the added masses Yvdot \[kg\], Yrdot \[kg m\] and, in forms `mmg` and `general`, Xudot \[kg\],
+/// as they turn with the ship. The forms `paper` and `regular` have Xudot in their Yr.
 #[inline(always)]
 fn turning<C: Scalar<Coefficient = C>>(p: &[C], a: &Adjust<C>, form: Form) -> [C; 5] {
-    let surge = if form == Form::Mmg { p[3] } else { C::zero() };
+    let surge = if matches!(form, Form::Mmg | Form::General) { p[3] } else { C::zero() };
     [p[0] * a.mass, p[0] * a.mass * (p[2] + a.x_g), p[4] * a.added_mass, p[5] * a.added_mass, surge]
 }
 
@@ -123,6 +133,8 @@ fn turning<C: Scalar<Coefficient = C>>(p: &[C], a: &Adjust<C>, form: Form) -> [C
 pub struct MassSlope<C> {
     matrix: Inertia<C>,
     turning: [C; 5],
+    /// Whether the Munk moment is a force of its own.
+    munk: bool,
 }
 
 impl<C: Scalar<Coefficient = C>> MassSlope<C> {
@@ -132,7 +144,8 @@ impl<C: Scalar<Coefficient = C>> MassSlope<C> {
         let p: [Dual<C, DAMPING>; DAMPING] = std::array::from_fn(|j| Dual::variable(p[j], j));
         let adjust = adjust.map(Dual::constant);
         let (matrix, turning) = (Inertia::new(&p, &adjust), turning(&p, &adjust, form));
-        std::array::from_fn(|j| Self { matrix: matrix.map(|m| m.eps[j]), turning: turning.map(|m| m.eps[j]) })
+        let munk = form == Form::General;
+        std::array::from_fn(|j| Self { matrix: matrix.map(|m| m.eps[j]), turning: turning.map(|m| m.eps[j]), munk })
     }
 
     /// The change of force per unit mass, less what the changed mass matrix takes for itself at the accelerations (u', v', r')
@@ -142,7 +155,11 @@ impl<C: Scalar<Coefficient = C>> MassSlope<C> {
         let [m, moment, yvdot, yrdot, xudot] = self.turning;
         let ur = flow.u * flow.r;
         let x = flow.v * flow.r * (m - yvdot) + flow.r * flow.r * (moment - yrdot);
-        Force { x, y: -(ur * (m - xudot)), n: -(ur * moment) } - self.matrix.force(rates)
+        let mut force = Force { x, y: -(ur * (m - xudot)), n: -(ur * moment) };
+        if self.munk {
+            force.n -= flow.u * flow.v * (xudot - yvdot);
+        }
+        force - self.matrix.force(rates)
     }
 }
 
@@ -157,7 +174,7 @@ fn damping<S: Scalar>(at: &Instant<S>, flow: &Flow<S>) -> [S; 11] {
     let (u, v, r) = (flow.u, flow.v, flow.r);
     let share = match at.form {
         Form::Paper => a.sternway,
-        Form::Regular | Form::Mmg => S::Coefficient::one(),
+        Form::Regular | Form::Mmg | Form::General => S::Coefficient::one(),
     };
     let (even, odd) = (flow.speed + (flow.abs_u - flow.speed) * share, flow.speed + (u - flow.speed) * share);
     let (vr, rr) = (v * r, r * flow.abs_r);
@@ -185,11 +202,15 @@ impl<S: Scalar> Physics<S> for Hull {
         let [vr, y_v, y_r, n_v, n_r, y_vv, y_vr, y_rr, n_rr, n_rrv, n_vvr] = damping(at, flow);
         let p = &p[DAMPING..];
         let ur = flow.u * flow.r;
-        Force {
+        let mut force = Force {
             x: vr * (m + p[0] - yvdot) + flow.r * flow.r * (moment - yrdot),
             y: y_v * p[1] + y_r * p[2] + y_vv * p[5] + y_vr * p[6] + y_rr * p[7] - ur * (m - xudot),
             n: n_v * p[3] + n_r * p[4] + n_rr * p[8] + n_rrv * p[9] + n_vvr * p[10] - ur * moment,
+        };
+        if at.form == Form::General {
+            force.n -= flow.u * flow.v * (xudot - yvdot);
         }
+        force
     }
 
     #[inline(always)]

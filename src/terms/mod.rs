@@ -9,6 +9,7 @@
 use crate::physics::{AnyTerm, Catalogue};
 use std::sync::LazyLock;
 
+pub mod actuator;
 pub mod antenna;
 pub mod asymmetric;
 pub mod bank;
@@ -18,6 +19,7 @@ pub mod earth_force;
 pub mod engine_lag;
 pub mod flow;
 pub mod fouling;
+pub mod general_hull;
 pub mod heading_bias;
 pub mod hull;
 pub mod hull_nonlinear;
@@ -68,6 +70,7 @@ pub static CATALOGUE: &[&dyn AnyTerm] = &[
     &mmg_hull::MmgHull,
     &mmg_wake::MmgWake,
     &mmg_rudder::MmgRudder,
+    &general_hull::GeneralHull,
     &current::Current,
     &tide::Tide,
     &wind::Wind,

@@ -27,11 +27,18 @@ static INFO: TermInfo = TermInfo {
     },
     mechanisms: &[],
     parameters: &[
-        ParameterInfo::new("linear", "p1", "N s/m", "linear resistance").in_mmg(Start::Replaced).scale(rate::<1>),
+        ParameterInfo::new("linear", "p1", "N s/m", "linear resistance")
+            .in_mmg(Start::Replaced)
+            .in_general(Start::Replaced)
+            .scale(rate::<1>),
         ParameterInfo::new("quadratic", "p2", "N s2/m2", "quadratic resistance")
             .in_mmg(Start::Replaced)
+            .in_general(Start::Replaced)
             .scale(rate::<2>),
-        ParameterInfo::new("cubic", "p3", "N s3/m3", "cubic resistance").in_mmg(Start::Replaced).scale(rate::<3>),
+        ParameterInfo::new("cubic", "p3", "N s3/m3", "cubic resistance")
+            .in_mmg(Start::Replaced)
+            .in_general(Start::Replaced)
+            .scale(rate::<3>),
     ],
 };
 
@@ -65,7 +72,7 @@ impl<S: Scalar> Physics<S> for Resistance {
         let u = flow.u;
         let share = match at.form {
             Form::Paper => flow.adjust.sternway,
-            Form::Regular | Form::Mmg => S::Coefficient::one(),
+            Form::Regular | Form::Mmg | Form::General => S::Coefficient::one(),
         };
         let square = u * (u + (u.abs() - u) * share);
         let r = u * p[0] + square * p[1] + u * u * u * p[2];

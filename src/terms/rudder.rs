@@ -118,7 +118,7 @@ impl<S: Scalar> Blade<S> {
         let speed = (u * u + v * v + 1e-12).sqrt() * pressure;
         // In form `mmg` the blade is the term `mmg_rudder`, and no plate is added to it.
         let normal = match at.form {
-            Form::Paper | Form::Regular => sin * plate * PLATE_NORMAL,
+            Form::Paper | Form::Regular | Form::General => sin * plate * PLATE_NORMAL,
             Form::Mmg => S::zero(),
         };
         Self {

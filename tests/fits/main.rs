@@ -7,6 +7,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod craft;
 mod fits_end;
 mod promises;
 mod recovery;

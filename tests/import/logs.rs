@@ -755,6 +755,7 @@ fn mistakes_are_mended_from_the_message() {
     let choices = Choices {
         units: [("n".to_owned(), "rps".to_owned())].into(),
         columns: [("n".to_owned(), "propeller".to_owned())].into(),
+        ..Choices::default()
     };
     let settings = ImportSettings { choices, session_gap: None };
     let imported = import(&[study.path("odd.csv")], &settings).unwrap();

@@ -55,7 +55,8 @@ fn point(u: f64, v: f64, r: f64, n: f64, delta: f64, psi: f64) -> [f64; POINT] {
 fn inputs_of<S: Scalar>(x: &[S]) -> Inputs<S> {
     let [t, n, delta, w0, w1, c0, c1, h0, h1, draught_to_depth, bank, thruster] =
         std::array::from_fn(|i| x[STATES + i]);
-    Inputs { t, n, delta, wind: [w0, w1], current: [c0, c1], waves: [h0, h1], draught_to_depth, bank, thruster }
+    let (wind, current, waves, neutral) = ([w0, w1], [c0, c1], [h0, h1], Inputs::actuators(0.0, 0.0, 0.0));
+    Inputs { t, n, delta, wind, current, waves, draught_to_depth, bank, thruster, ..neutral }
 }
 
 /// All quantities a term can change: rates, sensor report and actuators, at a point `x` followed by the parameters. Actuators

@@ -7,6 +7,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod actuators;
 mod bad_input;
 mod baseline;
 mod catalogue;

@@ -16,7 +16,7 @@ use trimtab::recording::import::{
     Choices, ImportSettings, Imported, Origins, Taken, Unused, import, recording_csv, study_files,
 };
 use trimtab::recording::split::{Sessions, SplitPart, SplitRun, runs_csv, shortest_run, split};
-use trimtab::recording::{ColumnMap, Recording};
+use trimtab::recording::{ColumnMap, Driven, Recording};
 use trimtab::report::Table;
 use trimtab::ship::Ship;
 
@@ -58,6 +58,7 @@ Examples:
   trimtab import log.csv --out study
   trimtab import day1.nmea day2.nmea --ship ship.toml --antenna=-12,0.5 --out study
   trimtab import log.csv --column delta=helm_fb --unit n=rpm --out study
+  trimtab import cat.csv --ship cat.toml --actuator port=thr_left --actuator starboard=thr_right --out study
 
 ship.toml and model.toml are written if they are not there yet; a ship file that is not complete is \
     refused by the next command with a list of what is missing.
@@ -87,6 +88,9 @@ pub struct Args {
     /// Takes a column for a quantity: a channel (`psi`, `n`, ...), lat, lon, cog, sog, v_north, v_east, or t for the time.
     #[arg(long, value_name = "QUANTITY=NAME")]
     column: Vec<String>,
+    /// Takes a column for a channel of a named actuator of the ship file: `port=thr_left`, or `port.angle=azi_1`.
+    #[arg(long, value_name = "ACTUATOR=NAME")]
+    actuator: Vec<String>,
     /// Unit of a quantity, instead of what the file or the data say.
     #[arg(long, value_name = "QUANTITY=UNIT")]
     unit: Vec<String>,
@@ -164,19 +168,22 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
 /// # Errors
 /// What cannot be read, decided or written.
 pub fn made(args: &Args) -> Result<Made, CliError> {
-    let settings = settings(args)?;
     let name = study_name(args);
     let mut output =
         Output::new("import", &OutputArgs { out: Some(args.out.clone()), json: args.json, tables: Vec::new() })?;
     let read: Vec<PathBuf> = args.files.iter().chain(&args.ship).chain(&args.model).cloned().collect();
     output.reads_files(&read);
     let (ship, model) = (own_file(args.ship.as_deref())?, own_file(args.model.as_deref())?);
+    let mut craft = None;
     if let (Some(text), Some(path)) = (&ship, &args.ship) {
         let ship = Ship::parse(text, path)?;
+        craft = Some(ship.clone());
         if let (Some(text), Some(path)) = (&model, &args.model) {
             Model::parse(text, path, ship).map_err(|error| CliError::Model { path: None, error })?;
         }
     }
+    let settings = settings(args, craft.as_ref())?;
+    let driven = settings.choices.driven.clone();
     let bar = progress(format!("importing {} files", args.files.len()));
     let imported = import(&args.files, &settings);
     bar.finish_and_clear();
@@ -191,10 +198,12 @@ pub fn made(args: &Args) -> Result<Made, CliError> {
         model: model.as_deref(),
         antenna: antenna.unwrap_or_default(),
         antenna_given: antenna.is_some(),
+        ship_like: driven.propeller || driven.rudder,
     };
     let files = study_files(&imported, &origins);
     let map = files.iter().find(|(file, _)| *file == "columns.toml").map_or("", |(_, text)| text.as_str());
-    let map = ColumnMap::parse(map, &args.out.join("columns.toml")).map_err(trimtab::study::StudyError::from)?;
+    let mut map = ColumnMap::parse(map, &args.out.join("columns.toml")).map_err(trimtab::study::StudyError::from)?;
+    map.driven = driven;
     let mut recordings = Vec::new();
     for one in &imported.recordings {
         let (file, text) = (format!("recordings/{}.csv", one.name), recording_csv(one));
@@ -236,7 +245,7 @@ fn study_name(args: &Args) -> String {
 }
 
 /// What the flags say of columns, units and gaps.
-fn settings(args: &Args) -> Result<ImportSettings, CliError> {
+fn settings(args: &Args, craft: Option<&Ship>) -> Result<ImportSettings, CliError> {
     let pairs = |flag: &str, all: &[String]| {
         let pair = |text: &String| {
             let wrong = || CliError::Argument(format!("{flag} {text}: give QUANTITY=..., as in `{flag} psi=...`"));
@@ -253,8 +262,28 @@ fn settings(args: &Args) -> Result<ImportSettings, CliError> {
     if let Some(bridge) = args.bridge.filter(|b| !(b.is_finite() && *b > 0.0)) {
         return Err(CliError::Argument(format!("--bridge {bridge}: give a positive number of seconds, such as 6")));
     }
-    let choices = Choices { columns: pairs("--column", &args.column)?, units: pairs("--unit", &args.unit)? };
+    let mut columns = pairs("--column", &args.column)?;
+    for (name, column) in pairs("--actuator", &args.actuator)? {
+        columns.insert(actuator_channel(&name, craft)?, column);
+    }
+    let driven = craft.map_or_else(Driven::default, Driven::of);
+    let choices = Choices { columns, units: pairs("--unit", &args.unit)?, driven };
     Ok(ImportSettings { choices, session_gap: args.session_gap })
+}
+
+/// The channel of an actuator that is given by its own name or by that of the actuator, which then is its first.
+fn actuator_channel(name: &str, craft: Option<&Ship>) -> Result<String, CliError> {
+    let fail = |why: String| Err(CliError::Argument(format!("--actuator {name}=...: {why}")));
+    let Some(ship) = craft else {
+        return fail("the actuators are those of the ship file; give it with --ship".to_owned());
+    };
+    let channels = ship.commands();
+    let found = channels.iter().find(|c| *c == name || c.split_once('.').is_some_and(|(actuator, _)| actuator == name));
+    match found {
+        Some(channel) => Ok(channel.clone()),
+        None if channels.is_empty() => fail("the ship file has no [[actuator]]; add it there".to_owned()),
+        None => fail(format!("the ship file has no such channel; there are {}", channels.join(", "))),
+    }
 }
 
 fn antenna(args: &Args) -> Result<Option<[f64; 2]>, CliError> {

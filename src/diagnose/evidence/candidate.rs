@@ -177,11 +177,11 @@ pub fn append(columns: &mut Vec<Column>, candidates: &[Candidate]) -> Vec<Vec<us
     candidates.iter().map(&mut place).collect()
 }
 
-/// Every mechanism of the catalogue whose term is in the model, except the ones withheld.
+/// Every mechanism of the catalogue whose term is in the model, except those of a propeller or a rudder that the craft has not and the
+/// ones withheld.
 pub fn candidates(model: &Model, withhold: &[String]) -> Vec<Candidate> {
     let mut out = Vec::new();
-    for term in model.catalogue().iter() {
-        let info = term.info();
+    for info in model.catalogue().iter().map(|term| term.info()).filter(|info| !model.lacks(info)) {
         for mechanism in info.mechanisms {
             if withhold.iter().any(|w| w == mechanism.name) {
                 continue;

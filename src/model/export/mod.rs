@@ -87,10 +87,19 @@ const NORMALISATION: &str = "prime = value / (1/2 rho L^a d) for forces over vel
 
 const MMG_NOTE: &str = "MMG form of Yasukawa & Yoshimura 2015 at midship: (m + m_x) u' - (m + m_y) v r - x_G m r^2 = X; (m + m_y) v' + (m + m_x) u r + x_G m r' = Y; (I_z + J_z) r' + x_G m (v' + u r) = N, with I_z about midship. Its Y_r is that of the HD form plus m_x, where u = U; it has no Y_rdot and N_vdot, which are left out; its quadratic coefficients are those of v|v|, v|r|, r|r| and not the cubic ones of that paper.";
 
+/// The equations of motion of form `general`.
+const GENERAL_EQUATIONS: [&str; 4] = [
+    "(m - Xudot) u' = X; (m - Yvdot) v' + m x_g r' = Y; m x_g v' + (inertia - Nrdot) r' = N; the forces of the actuators are added to the right",
+    "X = (m - Yvdot) v r + m x_g r^2 - (surge_linear + surge_square |u| + surge_drift |v| + surge_turn L |r|) u + turning v r",
+    "Y = -(m - Xudot) u r - sum over bow, mid, stern of (linear + square |w| + lift |u|) w + (lift - turning) u r, w = v + x r, x = L/2, 0, -L/2",
+    "N = -m x_g u r - (Xudot - Yvdot) u v - sum of x (linear + square |w| + lift |u|) w - (yaw_linear + yaw_square |r| + yaw_lift |u|) r - lift u v",
+];
+
 /// The equations of motion with U in the linear terms.
 fn equations(form: Form) -> [&'static str; 4] {
     let [y, n] = match form {
         Form::Mmg => return mmg::EQUATIONS,
+        Form::General => return GENERAL_EQUATIONS,
         Form::Paper => [
             "Y = Yv U v + Yr U r + Yvv v|v| + Yvr v|r| + Yrr r|r| - m u r",
             "N = Nv U v + Nr U r + Nrr r|r| + Nrrv r^2 v/U + Nvvr v^2 r/U - m x_g u r",
@@ -137,7 +146,7 @@ pub fn export(model: &Model) -> Export {
         primes.truncate(MASSES);
         primes.extend(mmg::primes(model).map(|(name, value, definition)| Prime { name, value, definition }));
     }
-    let with = ["resistance.", "propeller.", "rudder.", "flow.", "mmg_wake.", "mmg_rudder."];
+    let with = ["resistance.", "propeller.", "rudder.", "flow.", "mmg_wake.", "mmg_rudder.", "general_hull."];
     let base = |p: &&Parameter| with.iter().any(|t| p.name.starts_with(t));
     let unnamed = |p: &&Parameter| !exported(p) && p.value != 0.0;
     let others = model.parameters.iter().filter(base).filter(exported).map(|p| Coefficient {

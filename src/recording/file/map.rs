@@ -19,12 +19,13 @@
 use super::blank::Blank;
 use crate::files::suggestion;
 use crate::files::written::{Kind, Mistake, line_at, read_text, read_toml, told};
-use crate::recording::channel::{CHANNELS, Channel};
+use crate::recording::channel::{CHANNELS, Channel, ChannelInfo};
+use crate::recording::driven::Driven;
 use crate::recording::error::RecordingError;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// How the columns of a file become channels. The default is the canonical layout: one header line, commas, columns
@@ -84,6 +85,9 @@ pub struct ColumnMap {
     /// Column of each channel. A channel that is not in this table is found under its own name.
     #[serde(default)]
     pub columns: Option<BTreeMap<String, Column>>,
+    /// What drives the craft, which every recording must have: propeller and rudder unless a ship file says otherwise.
+    #[serde(skip)]
+    pub driven: Driven,
     /// The file it was read from.
     #[serde(skip)]
     pub path: Option<PathBuf>,
@@ -396,6 +400,17 @@ impl ColumnMap {
             Some((Channel::from_name(name)?, delay)).filter(|(_, delay)| *delay != 0.0)
         };
         self.columns.iter().flatten().filter_map(delay).collect()
+    }
+
+    /// The channels of actuators that a file may have: those the craft needs, those the map lists, and those that `header` names.
+    pub(crate) fn commands<'a>(
+        &'a self,
+        header: impl Iterator<Item = &'a str>,
+    ) -> impl Iterator<Item = &'static ChannelInfo> {
+        let listed = self.columns.iter().flat_map(BTreeMap::keys).map(String::as_str);
+        let named = listed.chain(header).filter(|name| name.contains('.')).filter_map(Channel::from_name);
+        let all: BTreeSet<Channel> = named.chain(self.driven.needs()).collect();
+        all.into_iter().filter(|c| matches!(c, Channel::Command(_))).map(Channel::info)
     }
 
     /// Line of a channel's entry in the map file, 1 when it was not read from one.

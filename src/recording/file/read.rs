@@ -13,9 +13,6 @@ use std::borrow::Cow;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-/// Channels without which nothing can be simulated.
-const REQUIRED: [Channel; 3] = [Channel::T, Channel::N, Channel::Delta];
-
 /// A column of the header.
 struct HeaderColumn {
     /// The whole text.
@@ -157,8 +154,8 @@ fn recording<R: BufRead>(
             (Channel::V, SpeedReference::ThroughWater) => Channel::VWater,
             (channel, _) => channel,
         };
-        recording.data[slot as usize] = Some(column);
-        recording.units[slot as usize] = Some(source.unit);
+        recording.data.insert(slot, column);
+        recording.units.insert(slot, source.unit);
     }
     recording.finish(map, session)?;
     Ok(recording)
@@ -305,7 +302,7 @@ fn sources(
     map: &ColumnMap,
 ) -> Result<Vec<Source>, RecordingError> {
     let mut sources = Vec::new();
-    for info in CHANNELS {
+    for info in CHANNELS.iter().chain(map.commands(header.unwrap_or_default().iter().map(|h| h.name.as_str()))) {
         if map.leave_out.iter().any(|name| name == info.name) {
             continue;
         }
@@ -337,7 +334,7 @@ fn sources(
         let blank = Default::default();
         sources.insert(0, Source { channel, field: None, constant: 0.0, label, unit, scale: 1.0, offset: 0.0, blank });
     }
-    for channel in REQUIRED {
+    for channel in [Channel::T].into_iter().chain(map.driven.needs()) {
         if sources.iter().any(|s| s.channel == channel) {
             continue;
         }

@@ -21,6 +21,10 @@ pub enum Quantity {
     Rotation,
     /// A pure number.
     Number,
+    /// Force, in newtons.
+    Force,
+    /// Moment of a force, in newton metres.
+    Moment,
 }
 
 /// A unit: the spellings accepted in a header and the factor to SI.
@@ -84,6 +88,12 @@ pub const UNITS: &[Unit] = &[
     unit(Quantity::Rotation, &["rad/s"], 1.0 / TURN),
     unit(Quantity::Number, &["-", "1", ""], 1.0),
     unit(Quantity::Number, &["%", "percent"], 0.01),
+    unit(Quantity::Force, &["N", "newton", "newtons"], 1.0),
+    unit(Quantity::Force, &["kN"], 1e3),
+    unit(Quantity::Force, &["MN"], 1e6),
+    unit(Quantity::Force, &["kgf"], 9.806_65),
+    unit(Quantity::Moment, &["N m", "Nm", "N*m"], 1.0),
+    unit(Quantity::Moment, &["kN m", "kNm", "kN*m"], 1e3),
 ];
 
 impl Quantity {

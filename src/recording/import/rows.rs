@@ -124,6 +124,11 @@ pub fn rows(signals: &Signals) -> (Rows, Vec<String>) {
     for info in CHANNELS.iter().filter(|c| c.channel != Channel::T) {
         channels.extend(at(Meaning::Channel(info.channel)).map(|v| (info.channel, v)));
     }
+    let commands = signals.by.keys().filter_map(|m| match m {
+        Meaning::Channel(channel @ Channel::Command(_)) => Some(*channel),
+        _ => None,
+    });
+    channels.extend(commands.filter_map(|channel| Some((channel, at(Meaning::Channel(channel))?))));
     let has = |channel| channels.iter().any(|(c, _)| *c == channel);
     let has_wind = has(Channel::WindDirection);
     let psi = channels.iter().find(|(c, _)| *c == Channel::Psi).map(|(_, v)| v.clone());

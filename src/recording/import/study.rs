@@ -19,6 +19,8 @@ pub struct Origins<'a> {
     pub antenna: [f64; 2],
     /// Whether the antenna's place was given.
     pub antenna_given: bool,
+    /// Whether the craft has one propeller and one rudder, of which the base terms are.
+    pub ship_like: bool,
 }
 
 /// A recording as CSV in SI units: times to a microsecond, positions to a tenth of a millimetre, the rest to eight digits.
@@ -56,7 +58,7 @@ pub fn study_files(imported: &Imported, origins: &Origins<'_>) -> Vec<(&'static 
     vec![
         ("columns.toml", columns(imported, origins)),
         ("ship.toml", origins.ship.map_or_else(|| ship_form(origins.name), str::to_owned)),
-        ("model.toml", origins.model.map_or_else(|| model(origins.name), str::to_owned)),
+        ("model.toml", origins.model.map_or_else(|| model(origins), str::to_owned)),
         ("study.toml", study(imported, origins)),
     ]
 }
@@ -142,7 +144,17 @@ fn ship_form(name: &str) -> String {
     )
 }
 
-fn model(name: &str) -> String {
+fn model(origins: &Origins<'_>) -> String {
+    let name = origins.name;
+    if !origins.ship_like {
+        return format!(
+            "# The model to be fitted: a hull of which only mass, length and breadth are known, and the actuators of the ship file.\n\
+             # `trimtab terms` lists the terms that can be added.\n\
+             name = {name:?}\n\
+             form = \"general\"\n\
+             hull = \"free\"                # damping, added masses and centre of gravity, with wide priors\n"
+        );
+    }
     format!(
         "# The model to be fitted: the base terms (hull, resistance, propeller, rudder), their parameters at the values of the\n\
          # ship file or of the terms. `trimtab terms` lists the terms that can be added.\n\

@@ -10,8 +10,8 @@ use super::formats::clock::written;
 use super::formats::read::read;
 use super::overlap::{range, shifts};
 use super::rows::{Rows, rows};
-use crate::recording::Channel;
 use crate::recording::wrap::repair;
+use crate::recording::{Channel, Driven};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
@@ -88,7 +88,7 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     let (chosen, unused) = choose(&logs, &settings.choices)?;
     let mut signals = take(&chosen, &settings.choices)?;
     signals.unused.extend(unused);
-    missing(&chosen, &signals, &logs)?;
+    missing(&chosen, &signals, &logs, &settings.choices.driven)?;
     mend_heading(&mut signals);
     let (table, filled) = rows(&signals);
     let longest = settings.session_gap.unwrap_or(SESSION_GAP);
@@ -169,16 +169,19 @@ fn blank_fills(log: &mut Log, choices: &Choices) {
 }
 
 /// Refuses files that lack what every study needs, with one message for everything.
-fn missing(chosen: &Chosen<'_>, signals: &Signals, logs: &[Log]) -> Result<(), ImportError> {
+fn missing(chosen: &Chosen<'_>, signals: &Signals, logs: &[Log], driven: &Driven) -> Result<(), ImportError> {
     let has = |channel| signals.by.contains_key(&Meaning::Channel(channel));
     let taken = |meaning: &Meaning| chosen.contains_key(meaning);
     let mut asked = Vec::new();
     let mut ask = |words: &str, flags: &str| asked.push(format!("no column is {words}: name it with `{flags}`"));
-    if !has(Channel::Delta) {
+    if driven.rudder && !has(Channel::Delta) {
         ask("the rudder angle", "--column delta=NAME");
     }
-    if !has(Channel::N) {
+    if driven.propeller && !has(Channel::N) {
         ask("the propeller rate", "--column n=NAME");
+    }
+    for channel in driven.commands.iter().filter(|c| !has(**c)) {
+        ask(&format!("the {}", channel.info().words), &format!("--actuator {channel}=NAME"));
     }
     if !has(Channel::Psi) {
         ask("the heading", "--column psi=NAME");

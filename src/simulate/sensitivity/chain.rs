@@ -323,6 +323,9 @@ mod tests {
                     draught_to_depth: number(&|_| 0.4 + 1e-3 * t),
                     bank: number(&|_| 4e-3),
                     thruster: number(&|_| 0.6),
+                    commands: std::array::from_fn(|slot| {
+                        number(&|lane| 0.3 + 0.2 * (0.06 * t + lane + slot as f64).sin())
+                    }),
                 }
             })
             .collect()

@@ -1,6 +1,7 @@
 //! Which column is taken for what: as the user says, as the format says, as its name and the data say.
 //! Of several columns for one quantity one is taken and the others are told; units and signs are not decided here.
 
+use super::actuators::by_names;
 use super::agree::{Sight, heading};
 use super::log::{Column, Log, Meaning};
 use super::motion::Track;
@@ -9,7 +10,7 @@ use super::place::places;
 use super::signal::Signal;
 use crate::files::suggestion;
 use crate::recording::import::error::ImportError;
-use crate::recording::{CHANNELS, Channel, Quantity};
+use crate::recording::{CHANNELS, Channel, Driven, Quantity};
 use std::collections::{BTreeMap, HashMap};
 
 /// What a column of revolutions is.
@@ -22,6 +23,8 @@ pub struct Choices {
     pub columns: BTreeMap<String, String>,
     /// Unit by quantity.
     pub units: BTreeMap<String, String>,
+    /// What drives the craft, of which every recording must have the channels.
+    pub driven: Driven,
 }
 
 impl Choices {
@@ -43,9 +46,10 @@ impl Choices {
         };
         let all = self.columns.keys().map(|k| ("--column", k)).chain(self.units.keys().map(|k| ("--unit", k)));
         for (flag, name) in all {
-            if !known().any(|k| k == name) {
-                let near = suggestion(name, known());
-                let list = known().collect::<Vec<_>>().join(", ");
+            let commands = self.driven.commands.iter().map(|c| c.name());
+            if !known().chain(commands.clone()).any(|k| k == name) {
+                let near = suggestion(name, known().chain(commands.clone()));
+                let list = known().chain(commands).collect::<Vec<_>>().join(", ");
                 return Err(ImportError::Choice(format!(
                     "{flag} {name}=...: there is no `{name}`{near}; there are {list}"
                 )));
@@ -95,10 +99,24 @@ struct Candidate<'a> {
 pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec<Unused>), ImportError> {
     let names = named(logs);
     let forced = forced(&names, choices)?;
+    let free: Vec<(&str, Option<&str>)> = names
+        .iter()
+        .filter(|(name, _)| !forced.contains_key(*name))
+        .map(|(name, columns)| (*name, columns.first().and_then(|c| c.unit.as_deref())))
+        .collect();
+    let open: Vec<Channel> = choices
+        .driven
+        .commands
+        .iter()
+        .copied()
+        .filter(|c| !forced.values().any(|m| *m == Meaning::Channel(*c)))
+        .collect();
+    let named = by_names(&free, &open);
     let mut candidates: BTreeMap<Meaning, Vec<Candidate<'a>>> = BTreeMap::new();
     let mut unused = Vec::new();
     for (name, columns) in names {
-        match read(name, &columns, &forced) {
+        let of_actuator = named.get(name).map(|channel| (Meaning::Channel(*channel), 1.0));
+        match of_actuator.or_else(|| read(name, &columns, &forced)) {
             Some((meaning, explained)) => {
                 let forced = forced.contains_key(name);
                 candidates.entry(meaning).or_default().push(Candidate { name, columns, explained, forced });

@@ -24,7 +24,7 @@ fn plain(c: char) -> char {
 }
 
 /// Words of a name, in lower case and without accents: `Rudder_Angle` is `rudder angle`.
-fn words(name: &str) -> Vec<String> {
+pub(super) fn words(name: &str) -> Vec<String> {
     let mut spaced = String::new();
     let mut last_lower = false;
     for c in name.chars() {

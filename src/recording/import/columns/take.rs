@@ -8,6 +8,7 @@ use super::log::{Column, Meaning};
 use super::motion::Track;
 use super::place::places;
 use super::signal::{Signal, Tidied, median};
+use crate::numerals::sig;
 use crate::recording::Channel;
 use crate::recording::import::error::ImportError;
 use std::collections::BTreeMap;
@@ -118,6 +119,8 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         let verdict = match channel {
             Channel::Delta | Channel::DeltaOrder => rudder(*meaning, columns, given(*meaning)?.as_ref(), &known),
             Channel::N | Channel::NOrder => rotation(*meaning, columns, given(*meaning)?.as_ref(), &known),
+            Channel::Command(_) => other(*meaning, columns, given(*meaning)?.as_ref())
+                .map(|verdict| by_its_name(verdict, columns, channel)),
             _ if signals.by.contains_key(meaning) || signals.is_told(*meaning) => continue,
             _ => other(*meaning, columns, given(*meaning)?.as_ref()).map(|verdict| referred(verdict, channel)),
         };
@@ -164,6 +167,15 @@ fn referred(mut verdict: Verdict, channel: Channel) -> Verdict {
     verdict
 }
 
+/// The verdict on a channel of an actuator, with the range of its values: no sign is decided, for a fit finds that of its gain.
+fn by_its_name(mut verdict: Verdict, columns: &[&Column], channel: Channel) -> Verdict {
+    let values = || columns.iter().flat_map(|c| &c.v).copied();
+    let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    let told = format!("{}, values from {} to {}", channel.info().words, sig(low, 3), sig(high, 3));
+    verdict.evidence = if verdict.evidence.is_empty() { told } else { format!("{told}; {}", verdict.evidence) };
+    verdict
+}
+
 /// The unit that the user or the files give.
 fn given(meaning: Meaning, columns: &[&Column], choices: &Choices) -> Result<Option<Given>, ImportError> {
     let quantity = meaning.quantity();
@@ -191,7 +203,9 @@ fn names_north(columns: &[&Column]) -> bool {
 fn needed(meaning: Meaning) -> bool {
     use Channel::{Delta, N, Psi, R, U, V, X, Y};
     match meaning {
-        Meaning::Channel(channel) => [X, Y, Psi, U, V, R, N, Delta].contains(&channel),
+        Meaning::Channel(channel) => {
+            [X, Y, Psi, U, V, R, N, Delta].contains(&channel) || matches!(channel, Channel::Command(_))
+        }
         Meaning::WindAngle | Meaning::Variation => false,
         _ => true,
     }

@@ -1,0 +1,170 @@
+//! A craft that is not a ship with one propeller and one rudder: what stands in for these, and the particulars that it may leave out.
+//! What its actuators do is theirs.
+
+use super::actuator::{self, Actuator};
+use super::{PropellerParticulars, RudderParticulars, Ship, ShipError, Source};
+use std::collections::BTreeMap;
+
+/// Block coefficient of a craft that gives neither it nor its draught \[-\]: the middle of 0.5 (yachts, catamaran hulls) and 0.7.
+const USUAL_BLOCK: f64 = 0.6;
+
+impl PropellerParticulars {
+    /// No propeller: it gives no thrust at any rate. The diameter is a unit of length, and nothing follows from it.
+    pub(super) fn none() -> Self {
+        Self {
+            diameter: 1.0,
+            x: None,
+            wake: 0.0,
+            thrust_deduction: 0.0,
+            thrust_coefficients: [0.0; 3],
+            astern: super::default_astern(),
+            left_handed: false,
+        }
+    }
+
+    /// Whether there is none.
+    pub(super) fn is_none(&self) -> bool {
+        self.thrust_coefficients == [0.0; 3]
+    }
+}
+
+impl RudderParticulars {
+    /// No rudder: it has no area.
+    pub(super) fn none() -> Self {
+        Self {
+            area: 0.0,
+            span: 1.0,
+            x: None,
+            straightening: super::default_straightening(),
+            lever: super::default_lever(),
+            wake_ratio: super::default_wake_ratio(),
+            race: super::default_race(),
+            rate_deg_s: None,
+        }
+    }
+
+    /// Whether there is none.
+    pub(super) fn is_none(&self) -> bool {
+        self.area == 0.0
+    }
+}
+
+impl Ship {
+    /// Whether the craft has the propeller that the channel `n` drives.
+    pub fn has_propeller(&self) -> bool {
+        !self.propeller.is_none()
+    }
+
+    /// Whether the craft has the rudder that the channel `delta` turns.
+    pub fn has_rudder(&self) -> bool {
+        !self.rudder.is_none()
+    }
+
+    /// Names of the channels of its named actuators, in the order in which a simulation has them.
+    pub fn commands(&self) -> Vec<String> {
+        actuator::channels(&self.actuators)
+    }
+
+    /// The named actuator of this name.
+    pub fn actuator(&self, name: &str) -> Option<&Actuator> {
+        self.actuators.iter().find(|a| a.name == name)
+    }
+
+    /// Values of parameters that the ship file gives, by dotted name: those of `[parameters]`, and those in `[[actuator]]`.
+    pub fn given_parameters(&self) -> BTreeMap<String, f64> {
+        let mut given = self.parameters.clone();
+        for a in &self.actuators {
+            let lag = a.lag.and_then(|lag| match lag {
+                actuator::Lag::Seconds(lag) => Some(lag),
+                actuator::Lag::Word(_) => None,
+            });
+            let gains: Vec<String> = match a.law {
+                actuator::Law::Force => a.components().iter().map(|c| format!("gain_{c:?}").to_lowercase()).collect(),
+                actuator::Law::Order | actuator::Law::Thruster => vec!["gain".to_owned()],
+            };
+            let values = gains.into_iter().map(|name| (name, a.gain));
+            for (name, value) in values.chain([("lag".to_owned(), lag), ("astern".to_owned(), a.astern)]) {
+                if let Some(value) = value {
+                    given.entry(format!("{}.{name}", a.name)).or_insert(value);
+                }
+            }
+        }
+        given
+    }
+
+    /// Draught and block coefficient where the file leaves them out: the one that is missing from m = rho L B d C_b.
+    pub(super) fn complete(&mut self) {
+        let h = &mut self.hull;
+        let box_of_unit_height = h.water_density * h.lpp * h.breadth;
+        if h.draught == 0.0 {
+            if h.block_coefficient == 0.0 {
+                h.block_coefficient = USUAL_BLOCK;
+            }
+            h.draught = h.mass / (box_of_unit_height * h.block_coefficient);
+        } else if h.block_coefficient == 0.0 {
+            h.block_coefficient = (h.mass / (box_of_unit_height * h.draught)).clamp(0.1, 1.0);
+        }
+    }
+
+    /// What is wrong with the named actuators.
+    pub(super) fn actuator_faults(&self, source: &Source<'_>) -> Vec<ShipError> {
+        let parse = |key: &str, message: String| ShipError::Parse {
+            path: source.path.to_path_buf(),
+            line: source.line_of_text(key),
+            message,
+        };
+        let of = |a: &Actuator| {
+            let faults = a.faults(self.hull.lpp).into_iter();
+            let told = |(key, found, expected): (&str, f64, String)| {
+                let found = if found.is_nan() { String::new() } else { format!(" = {found}") };
+                parse(&a.name, format!("actuator `{}`: {key}{found} {expected}", a.name))
+            };
+            faults.map(told).collect::<Vec<_>>()
+        };
+        let list = actuator::list_fault(&self.actuators).map(|(key, message)| parse(&key, message));
+        list.into_iter().chain(self.actuators.iter().flat_map(of)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    const CRAFT: &str = "name = \"cat\"\n[hull]\nlpp = 1.2\nbreadth = 0.9\nmass = 15.0\n";
+
+    fn craft(more: &str) -> Result<Ship, String> {
+        Ship::parse(&format!("{CRAFT}{more}"), Path::new("ship.toml")).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn a_craft_needs_mass_length_and_breadth_alone() {
+        let ship = craft("").unwrap();
+        assert!(!ship.has_propeller() && !ship.has_rudder() && ship.actuators.is_empty());
+        let h = &ship.hull;
+        let displaced = h.water_density * h.lpp * h.breadth * h.draught * h.block_coefficient;
+        assert!((displaced - h.mass).abs() < 1e-12);
+        let written: toml::Table = toml::from_str(&toml::to_string(&ship).unwrap()).unwrap();
+        assert!(!written.contains_key("propeller") && !written.contains_key("rudder"));
+        assert!(craft("x_g = 0.0\n[rudder]\narea = 0.1\n").unwrap_err().contains("propeller.diameter [m]"));
+        let bare = Ship::parse("name = \"a\"\n[hull]\nlpp = 2.0\n", Path::new("s.toml")).unwrap_err().to_string();
+        assert!(bare.contains("hull.breadth [m]") && bare.contains("hull.mass [kg]") && !bare.contains("rudder"));
+    }
+
+    #[test]
+    fn what_an_actuator_gives_is_where_its_parameters_begin() {
+        let ship =
+            craft("[[actuator]]\nname = \"port\"\nlaw = \"thruster\"\nangle = 0\ny = -0.3\ngain = 0.02\nlag = 0.4\n");
+        let given = ship.unwrap().given_parameters();
+        assert_eq!((given["port.gain"], given["port.lag"], given.contains_key("port.astern")), (0.02, 0.4, false));
+    }
+
+    #[test]
+    fn a_fault_of_an_actuator_has_its_line() {
+        let said = craft(
+            "[[actuator]]\nname = \"a\"\nlaw = \"order\"\n[[actuator]]\nname = \"bow\"\nlaw = \"order\"\nx = 9\n",
+        );
+        let said = said.unwrap_err();
+        assert!(said.contains("ship.toml:10: actuator `bow`: x = 9 must be between -1.2 and 1.2"), "{said}");
+    }
+}
