@@ -379,7 +379,7 @@ pub(super) fn check_ranks(cost: &Cost) -> Result<(), FitError> {
 mod tests {
     use super::*;
     use crate::diagnose::example::{RK4, at, model, noise, runs};
-    use crate::fit::{Fit, fit, with_uncertain_coefficients};
+    use crate::fit::{Fit, fit};
     use crate::model::Model;
     use nalgebra::DVector;
 
@@ -445,7 +445,7 @@ mod tests {
         let (start, runs) = (off(1.1), runs(&model(), 9));
         let found: Fit = fit(&start, &runs[..], &settings(), &mut |_| true)?;
         let Some(said) = &found.likelihood else { return Err(FitError::NoRuns) };
-        let model = with_uncertain_coefficients(&start);
+        let model = super::super::with_uncertain_coefficients(&start);
         let p: Vec<f64> = found.estimates.iter().map(|e| e.value).collect();
         let there = Innovations::new(&model, &runs, RK4, said.noise, &p)?;
         let Some(Quadratic { mut gradient, gauss_newton: mut matrix, .. }) = there.quadratic(&p) else {
