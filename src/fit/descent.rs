@@ -252,7 +252,7 @@ impl Task<'_> {
     /// What holds a solution back: without the limit, whose multiplier is y and whose normal is a, the point would move by `y a' H^-1 a`
     /// across it (H the curvature of the objective), and that is more than its distance from it. An interior-point solution keeps
     /// a distance of the barrier parameter over y from an active limit, so that neither y nor the distance tells it alone.
-    pub(super) fn active_set(&self, stage: &Stage, p: &[f64], multipliers: &Multipliers) -> ActiveSet {
+    fn active_set(&self, stage: &Stage, p: &[f64], multipliers: &Multipliers) -> ActiveSet {
         let n = p.len();
         let yielding = stage.local(p).map(|local| {
             let ridge = UNDETERMINED * local.gauss_newton.diagonal().max();

@@ -403,7 +403,7 @@ impl Task<'_> {
     }
 
     /// Rows and bounds that a point touches, where no multipliers say which of them hold it back.
-    pub(super) fn touched(&self, p: &[f64]) -> ActiveSet {
+    fn touched(&self, p: &[f64]) -> ActiveSet {
         let touches = |i: &usize| {
             let row = &self.rows[*i];
             let value = row.value(p);
