@@ -103,7 +103,7 @@ impl Law {
         let proof = (!held_out.is_empty()).then(|| {
             let (before, after) = (&fit.estimate.model, &estimate.model);
             let judging = &question.settings.judging;
-            FindingProof::new([before, after], &estimate.noise, fit.integration, held_out, judging)
+            FindingProof::new(before, after, &estimate.noise, fit.integration, held_out, judging)
         });
         let gains =
             (proof.as_ref().and_then(FindingProof::likelihood), proof.as_ref().and_then(FindingProof::prediction));

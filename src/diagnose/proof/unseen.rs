@@ -8,13 +8,11 @@ use crate::diagnose::settings::INDISTINGUISHABLE;
 use crate::evaluate::{self, Judging, Summary, summarise};
 use crate::likelihood::filter::{Filter, Wanted};
 use crate::likelihood::noise::Noise;
-use crate::likelihood::pass::Pass;
 use crate::model::Model;
 use crate::recording::Run;
 use crate::recording::audit::settled;
 use crate::simulate::Integration;
-use crate::state::STATES;
-use crate::statistics::{interval_of_sum, normal_quantile};
+use crate::statistics::interval_of_sum;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,12 +27,11 @@ pub struct FindingProof {
     pub runs: usize,
     /// Gain in log-likelihood over all of them.
     pub log_likelihood_gain: Option<f64>,
-    /// Its 95 % interval, by Student's t over recordings, each counted by how far it tells the two models apart, and no narrower than the
-    /// model says; absent with fewer than three, and where one tells most.
+    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, and where one holds most of the samples.
     pub log_likelihood_ci95: Option<[f64; 2]>,
     /// For an error of a sensor, how much likelier it makes what the sensors of the runs say of each other; absent where they do not tell.
     pub agreement_gain: Option<f64>,
-    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, and where one holds most of the samples.
+    /// Its 95 % interval, as that of the likelihood.
     pub agreement_ci95: Option<[f64; 2]>,
     /// Mean cVDM without the finding \[%\].
     pub before: Option<f64>,
@@ -55,9 +52,10 @@ pub struct FindingProof {
 
 impl FindingProof {
     /// Compares `after` with `before` on held-out runs, both under the same noise. It is the noise beside the finding: the noise of a model
-    /// without a sensor's error has taken the error in, and under it nothing is shown.
+    /// without a sensor's error has taken the error in, and under it nothing is told.
     pub fn new(
-        [before, after]: [&Model; 2],
+        before: &Model,
+        after: &Model,
         noise: &Noise,
         integration: Integration,
         runs: &[Run],
@@ -67,17 +65,17 @@ impl FindingProof {
         let all: Vec<_> = evaluation.trajectories.iter().collect();
         let summary = summarise("held out".into(), &all, &judging.settings);
         let (sound, _) = settled(runs, before.ship.hull.lpp);
-        let gain = LikelihoodGain::new([before, after], noise, integration, &sound);
+        let gains = by_recording(&sound, [before, after].map(|m| likelihoods(m, integration, noise, &sound)));
         let of = |channel: usize| {
             let both = [summary.md_baseline[channel], summary.md_fitted[channel]].map(|e| e.map(|e| e.value));
             Some([both[0]?, both[1]?])
         };
         let position = of(0).zip(of(1)).map(|(x, y)| [x[0].hypot(y[0]), x[1].hypot(y[1])]);
         Self {
-            recordings: gain.clusters.len(),
+            recordings: gains.len(),
             runs: runs.len(),
-            log_likelihood_gain: Some(gain.total()),
-            log_likelihood_ci95: gain.interval(),
+            log_likelihood_gain: Some(gains.iter().map(|g| g.0).sum()),
+            log_likelihood_ci95: interval_of_sum(&gains),
             agreement_gain: None,
             agreement_ci95: None,
             before: summary.cvdm_baseline.map(|e| e.value),
@@ -92,7 +90,8 @@ impl FindingProof {
 
     /// Unseen runs whose sensors show the error of a sensor themselves.
     pub fn shown(agreement: GainTest, runs: &[Run]) -> Self {
-        Self { recordings: recordings(runs), runs: runs.len(), ..Self::default() }.beside(Some(agreement))
+        let recordings = runs.iter().map(|r| r.recording.as_str()).collect::<BTreeSet<_>>().len();
+        Self { recordings, runs: runs.len(), ..Self::default() }.beside(Some(agreement))
     }
 
     /// With what the sensors of the runs say of each other.
@@ -129,55 +128,23 @@ pub fn agreement(before: &Model, after: &Model, runs: &[Run], candidates: &[Cand
     (gain.abs() > INDISTINGUISHABLE).then_some(GainTest { gain, ci95 })
 }
 
-/// Recordings that runs are parts of.
-fn recordings(runs: &[Run]) -> usize {
-    runs.iter().map(|r| r.recording.as_str()).collect::<BTreeSet<_>>().len()
+/// Log-likelihood of each run.
+fn likelihoods(model: &Model, integration: Integration, noise: &Noise, runs: &[Run]) -> Vec<f64> {
+    let mut out = Vec::with_capacity(runs.len());
+    let filter = Filter::new(model, integration, &[]);
+    let wanted = Wanted { sums_only: true, ..Wanted::default() };
+    filter.each(runs, noise, wanted, |_, pass| pass.log_likelihood, |l| out.push(l));
+    out
 }
 
-/// The gain in log-likelihood of each recording by one model over another under the same noise, with its variance.
-#[derive(Clone, Debug)]
-struct LikelihoodGain {
-    clusters: Vec<(f64, f64)>,
-}
-
-impl LikelihoodGain {
-    /// With standardised innovations e of either model, the gain is `g = sum (e_before^2 - e_after^2)/2`. Where one of the models is right
-    /// its innovations are white with variance 1, and the gain has the variance `D = sum (e_before - e_after)^2` and the mean D/2, or -D/2.
-    fn new(models: [&Model; 2], noise: &Noise, integration: Integration, runs: &[Run]) -> Self {
-        let of = |model: &Model| {
-            let mut out: Vec<(f64, Vec<[f64; STATES]>)> = Vec::with_capacity(runs.len());
-            let filter = Filter::new(model, integration, &[]);
-            let kept = |_: &Run, pass: Pass| (pass.log_likelihood, pass.innovations);
-            filter.each(runs, noise, Wanted::default(), kept, |run| out.push(run));
-            out
-        };
-        let [before, after] = models.map(of);
-        let mut sums: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
-        for (run, ((b, before), (a, after))) in runs.iter().zip(before.iter().zip(&after)) {
-            let sum = sums.entry(run.recording.as_str()).or_default();
-            *sum = (sum.0 + a - b, sum.1 + distance(before, after));
-        }
-        Self { clusters: sums.into_values().collect() }
+/// Gains and samples summed over the runs of each recording.
+fn by_recording(runs: &[Run], [before, after]: [Vec<f64>; 2]) -> Vec<(f64, f64)> {
+    let mut sums: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
+    for (run, (b, a)) in runs.iter().zip(before.iter().zip(&after)) {
+        let sum = sums.entry(run.recording.as_str()).or_default();
+        *sum = (sum.0 + a - b, sum.1 + run.measured.len() as f64);
     }
-
-    /// Over all recordings.
-    fn total(&self) -> f64 {
-        self.clusters.iter().map(|c| c.0).sum()
-    }
-
-    /// Its 95 % interval: that of `sum g` over recordings whose g is in proportion to their D, which the right cause has alike in all of
-    /// them, and no narrower than the root of `sum D` makes it.
-    fn interval(&self) -> Option<[f64; 2]> {
-        let own = normal_quantile(0.975) * self.clusters.iter().map(|c| c.1).sum::<f64>().sqrt();
-        let total = self.total();
-        interval_of_sum(&self.clusters).map(|[low, high]| [low.min(total - own), high.max(total + own)])
-    }
-}
-
-/// Squared distance of the innovations of two models where both have one.
-fn distance(before: &[[f64; STATES]], after: &[[f64; STATES]]) -> f64 {
-    let both = before.iter().flatten().zip(after.iter().flatten());
-    both.map(|(b, a)| (b - a).powi(2)).filter(|d| d.is_finite()).sum()
+    sums.into_values().collect()
 }
 
 /// The interval of the improvement, as an evaluation prints it: by Student's t over recordings, of which few are resampled to too narrow
@@ -199,7 +166,7 @@ mod tests {
         let truth = with(&[("current.north", 0.4)]);
         let held_out = runs(&truth, 6);
         let judging = Settings::default().judging;
-        let against = |after: &Model| FindingProof::new([&model(), after], &noise(), RK4, &held_out, &judging);
+        let against = |after: &Model| FindingProof::new(&model(), after, &noise(), RK4, &held_out, &judging);
         let right = against(&truth);
         assert!(right.recordings == 6 && right.likelihood().is_some_and(|g| g.is_above_zero()), "{right:?}");
         assert!(right.prediction().is_some_and(|p| p.gain > 0.5));
@@ -217,9 +184,8 @@ mod tests {
         let mut wide = noise();
         (wide.sensors[2].coloured, wide.sensors[2].time) = (0.3, 1e3);
         let judging = Settings::default().judging;
-        let gain = |noise: &Noise| {
-            FindingProof::new([&model(), &off], noise, RK4, &runs, &judging).log_likelihood_gain.unwrap()
-        };
+        let gain =
+            |noise: &Noise| FindingProof::new(&model(), &off, noise, RK4, &runs, &judging).log_likelihood_gain.unwrap();
         assert!(gain(&noise()) > 10.0 * gain(&wide).abs(), "{} {}", gain(&noise()), gain(&wide));
     }
 
@@ -235,7 +201,7 @@ mod tests {
             }
             // A model that gains a little in each, and the truth.
             for after in [with(&[("current.north", 0.1)]), truth.clone()] {
-                let proof = FindingProof::new([&model(), &after], &noise(), RK4, &held_out, &judging);
+                let proof = FindingProof::new(&model(), &after, &noise(), RK4, &held_out, &judging);
                 let cvdm = |m: &Model, run: &Run| mean_cvdm(m, std::slice::from_ref(run), &judging).unwrap();
                 let clusters: Vec<(f64, f64)> = held_out.iter().map(|r| (cvdm(&after, r), cvdm(&model(), r))).collect();
                 let [low, high] = interval_of_ratio(&clusters).unwrap().map(|q| 1.0 - q);
@@ -251,35 +217,8 @@ mod tests {
         let truth = with(&[("current.north", 0.4)]);
         let held_out = runs(&truth, 2);
         let judging = Settings::default().judging;
-        let proof = FindingProof::new([&model(), &truth], &noise(), RK4, &held_out, &judging);
+        let proof = FindingProof::new(&model(), &truth, &noise(), RK4, &held_out, &judging);
         assert!(proof.log_likelihood_gain > Some(0.0) && proof.log_likelihood_ci95.is_none());
         assert!(proof.improvement.is_some() && proof.improvement_ci95.is_none());
-    }
-
-    #[test]
-    fn the_gain_of_the_truth_is_half_its_variance() {
-        let truth = with(&[("current.north", 0.05)]);
-        let of = |models| LikelihoodGain::new(models, &noise(), RK4, &runs(&truth, 12));
-        let base = model();
-        let gain = of([&base, &truth]);
-        let variance: f64 = gain.clusters.iter().map(|c| c.1).sum();
-        // Within three standard deviations.
-        assert!((gain.total() - 0.5 * variance).abs() < 3.0 * variance.sqrt(), "{gain:?}");
-        assert!((of([&truth, &base]).total() + gain.total()).abs() < 1e-9);
-    }
-
-    #[test]
-    fn recordings_that_tell_more_count_more_and_what_helps_some_and_harms_others_proves_nothing() {
-        let gain = |clusters: &[(f64, f64)]| LikelihoodGain { clusters: clusters.to_vec() };
-        let low = |g: &LikelihoodGain| g.interval().unwrap()[0];
-        // A cause that is right gains half of D in each, however unequal they are.
-        let right = gain(&[(500.0, 1000.0), (52.0, 100.0), (480.0, 1000.0), (5.0, 10.0), (260.0, 500.0)]);
-        assert!(low(&right) > 0.8 * right.total());
-        let other = gain(&[(500.0, 1000.0), (-70.0, 200.0), (-150.0, 1000.0), (90.0, 300.0), (-100.0, 500.0)]);
-        assert!(low(&other) < 0.0 && other.total() > 0.0);
-        // Gains that happen to be alike are no surer than their variance.
-        let alike = gain(&[(2.0, 4.0); 6]);
-        let half = 1.959_964 * 24.0_f64.sqrt();
-        assert!((low(&alike) - (12.0 - half)).abs() < 1e-5);
     }
 }

@@ -113,8 +113,7 @@ fn proof(question: &Question, kept: &Kept, of: &Selected, without: &Estimate, he
     }
     let judging = &question.settings.judging;
     let integration = tests.fit.integration;
-    let models = [&without.model, &found.model];
-    FindingProof::new(models, &found.noise, integration, held_out, judging).beside(agreement)
+    FindingProof::new(&without.model, &found.model, &found.noise, integration, held_out, judging).beside(agreement)
 }
 
 /// The least share of its information that is left to the weather of a set: what cannot be told from a member that the ship takes over is
@@ -166,8 +165,7 @@ pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight]
     let (tests, judging) = (&kept.selection.tests, &question.settings.judging);
     let written = |e: &Estimate| tests.problem(question.settings).inside_bounds(e);
     let [base, found] = [&tests.fit.estimate, &kept.selection.estimate].map(written);
-    let models = [&base.model, &found.model];
-    let proof = FindingProof::new(models, &found.noise, tests.fit.integration, held_out, judging);
+    let proof = FindingProof::new(&base.model, &found.model, &found.noise, tests.fit.integration, held_out, judging);
     let simulated = proof.prediction().is_some_and(|g| g.is_below_zero());
     if !simulated && !proof.likelihood().is_some_and(|g| g.is_below_zero()) {
         return None;
