@@ -2,8 +2,8 @@
 //! It does not know what a column means: names and verdicts are made elsewhere.
 
 use super::algebra::{pick, pseudo_inverse};
-use super::moderated::{GroupScore, Moderation, Ratio, pooled, ratio};
 use super::settings::{IDENTIFIABLE_SHARE, SCATTER_GROUPS};
+use crate::numbers::moderated::{GroupScore, Moderation, Ratio, pooled, ratio};
 pub use crate::statistics::chi_squared_p;
 use crate::statistics::{corrected, scattered_p, student_quantile};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};

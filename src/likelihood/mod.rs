@@ -9,7 +9,6 @@
 //! | `directions`, `step_map`, `covariance`, `side_by_side` | the filter's parts: sensitivities, steps, covariances, four runs at a time |
 //! | [`filter`] | the extended Kalman filter with exact sensitivities |
 //! | [`evidence`] | sums of scores and information, and score tests on them |
-//! | [`moderated`] | scatter between groups of runs, moderated over all directions |
 //! | [`parameters`] | what is free in an estimate |
 //! | [`noise_fit`] | the noise by maximum likelihood |
 //! | `optimise` | the damped Newton steps of the searches for a structure |
@@ -21,7 +20,6 @@ mod directions;
 pub mod estimate;
 pub mod evidence;
 pub mod filter;
-pub mod moderated;
 pub mod noise;
 pub mod noise_fit;
 pub(crate) mod optimise;

@@ -105,10 +105,6 @@ numbers! {
     GATE: f64 = 6.0, CUSTOM;
     /// Fewest groups of runs for the scatter of a parameter; where there are fewer, their number is taken as this.
     SCATTER_GROUPS: usize = 5, SEEDS;
-    /// Quantile to which smaller scatter of single directions is drawn in before that of all is fitted.
-    WINSORISED_LOW: f64 = 0.05, "default of the robust fit of Phipson et al. 2016, Ann. Appl. Stat. 10, p. 946";
-    /// Quantile to which larger scatter is drawn in.
-    WINSORISED_HIGH: f64 = 0.9, "default of the robust fit of Phipson et al. 2016, Ann. Appl. Stat. 10, p. 946";
     /// Share of measurements beyond the outlier gate above which the noise is taken as too small and everything counts first.
     OUTLIER_SHARE: f64 = 0.03, "recordings of Esso Osaka, where a quarter lay beyond the gate of the first guess";
     /// Share of the runs, those of the highest likelihood, that tell the noise without what disturbs some runs only.

@@ -15,9 +15,9 @@ use crate::diagnose::settings::{
 };
 use crate::likelihood::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
 use crate::likelihood::evidence::degrees_of;
-use crate::likelihood::moderated::Ratio;
 use crate::likelihood::noise::Noise;
 use crate::model::Model;
+use crate::numbers::moderated::Ratio;
 use crate::physics::{Kind, Probe};
 use crate::statistics::{corrected, mean, median, scattered_p};
 use nalgebra::DVector;

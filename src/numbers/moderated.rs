@@ -1,8 +1,7 @@
 //! How far scores scatter between groups of runs, against what their information says, and that ratio moderated over many directions.
 //! Few groups tell the scatter of one direction badly and of all directions well. It knows no column's meaning, and concludes nothing.
 
-use super::settings::{WINSORISED_HIGH, WINSORISED_LOW};
-use crate::statistics::{counted, mean, quantile};
+use super::statistics::{counted, mean, quantile};
 use statrs::function::gamma::digamma;
 
 /// Variance of an estimate along one direction over that by its information, as so many degrees of freedom tell it.
@@ -54,6 +53,9 @@ pub struct Moderation {
 
 /// Degrees of freedom beyond which a variance is as good as known: Student's t is then normal to four digits.
 const KNOWN: f64 = 1e4;
+/// Quantiles to which the scatter of single directions is drawn in before that of all is fitted: the defaults of the robust fit of Phipson et al.
+/// 2016, Ann. Appl. Stat. 10, p. 946.
+const WINSORISED: [f64; 2] = [0.05, 0.9];
 /// Fewest directions that say something of another.
 const FEWEST_DIRECTIONS: usize = 3;
 
@@ -74,7 +76,7 @@ impl Moderation {
         };
         let mut sorted: Vec<f64> = ratios.iter().map(logarithm).collect();
         sorted.sort_by(f64::total_cmp);
-        let [low, high] = [WINSORISED_LOW, WINSORISED_HIGH].map(|share| quantile(&sorted, share));
+        let [low, high] = WINSORISED.map(|share| quantile(&sorted, share));
         let (Some(low), Some(high)) = (low, high) else { return Self::NONE };
         let drawn = || sorted.iter().map(|z| z.clamp(low, high));
         let Some(centre) = mean(drawn()) else { return Self::NONE };
