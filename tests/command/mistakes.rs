@@ -537,7 +537,7 @@ fn ships() -> Vec<Mistake> {
             },
             asked: SIMULATE,
             says: &[
-                "ship.toml: 8 values are missing: hull.mass [kg]",
+                "ship.toml: a value is missing: hull.mass [kg]",
                 "trimtab new --from ship.toml --type TYPE --out",
             ],
             mend: |s| drop(s.does(&["new", "--from", "ship.toml", "--type", "coaster", "--out", "ship_complete.toml"])),
