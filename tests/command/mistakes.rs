@@ -536,10 +536,7 @@ fn ships() -> Vec<Mistake> {
                 s.write("ship.toml", "name = \"own\"\n[hull]\nlpp = 85.0\nbreadth = 13.5\ndraught = 4.2\n");
             },
             asked: SIMULATE,
-            says: &[
-                "ship.toml: a value is missing: hull.mass [kg]",
-                "trimtab new --from ship.toml --type TYPE --out",
-            ],
+            says: &["ship.toml: a value is missing: hull.mass [kg]", "trimtab new --from ship.toml --type TYPE --out"],
             mend: |s| drop(s.does(&["new", "--from", "ship.toml", "--type", "coaster", "--out", "ship_complete.toml"])),
             then: &["new", "--from", "ship_complete.toml", "--type", "coaster"],
         },
