@@ -125,8 +125,8 @@ impl Evidence {
         let own: Vec<Option<Ratio>> = (0..base.columns.len()).map(|i| groups.of_base(base, i)).collect();
         let others = further.iter().filter_map(|c| groups.beside(self, base, *c, |_| 0));
         let moderation = Moderation::of(&own.iter().flatten().copied().chain(others).collect::<Vec<_>>());
-        let moderated = own.into_iter().map(|r| moderation.moderated(r));
-        let (factors, degrees) = moderated.map(|r| (r.value.sqrt(), r.degrees.max(degrees_of(0)))).unzip();
+        let moderated = own.into_iter().map(|r| floored(moderation.moderated(r)));
+        let (factors, degrees) = moderated.map(|r| (r.value.sqrt(), r.degrees)).unzip();
         Scatter { factors, degrees }
     }
 
@@ -148,7 +148,7 @@ impl Evidence {
             .iter()
             .map(one)
             .reduce(|a, b| if b.value > a.value { b } else { a })
-            .unwrap_or(moderation.moderated(None))
+            .map_or_else(|| floored(moderation.moderated(None)), floored)
     }
 
     /// The runs by group.
@@ -160,11 +160,9 @@ impl Evidence {
 
     /// The scores summed over the runs of each group, `groups` naming that of each run.
     pub fn sums_of(&self, groups: &[&str]) -> Vec<DVector<f64>> {
-        let mut sums: BTreeMap<&str, DVector<f64>> = BTreeMap::new();
-        for (group, run) in groups.iter().zip(&self.runs) {
-            *sums.entry(group).or_insert_with(|| DVector::zeros(run.score.len())) += &run.score;
-        }
-        sums.into_values().collect()
+        let zero = || DVector::zeros(self.total.score.len());
+        let sum = |members: &Vec<usize>| members.iter().fold(zero(), |sum, run| sum + &self.runs[*run].score);
+        self.groups(groups).members.iter().map(sum).collect()
     }
 
     /// Tests a group of columns, common to all runs, the base profiled out.
@@ -239,6 +237,11 @@ impl Evidence {
         }
         base.test(&g, &h, &c)
     }
+}
+
+/// A ratio with no fewer degrees of freedom than the least number of groups has.
+fn floored(ratio: Ratio) -> Ratio {
+    Ratio { degrees: ratio.degrees.max(degrees_of(0)), ..ratio }
 }
 
 /// Runs that are no evidence apart, by group.

@@ -2,8 +2,7 @@
 //! exactly. It estimates nothing.
 
 use super::pass::Column;
-use crate::model::{GENERAL, MMG, Model, Prior};
-use crate::physics::Form;
+use crate::model::{Model, Prior};
 
 /// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
 pub(crate) const NUISANCE: [&str; 31] = [
@@ -42,8 +41,7 @@ pub(crate) const NUISANCE: [&str; 31] = [
 
 /// The coefficients of a model that are never known exactly: in forms `mmg` and `general` those of their terms for those that these replace.
 pub(crate) fn uncertain_coefficients(model: &Model) -> Vec<usize> {
-    let absent: Vec<&str> = model.terms().filter(|info| model.lacks(info)).map(|info| info.name).collect();
-    let of_craft = |name: &&&str| name.split_once('.').is_none_or(|(term, _)| !absent.contains(&term));
+    let of_craft = |name: &&&str| !model.lacks_owner(name);
     let listed = NUISANCE
         .iter()
         .filter(of_craft)
@@ -51,12 +49,7 @@ pub(crate) fn uncertain_coefficients(model: &Model) -> Vec<usize> {
         .filter(|i| !model.replaced(model.parameters[*i].info));
     let of_form = |i: &usize| {
         let name = &model.parameters[*i].name;
-        let terms: &[&str] = match model.form {
-            Form::Mmg => &MMG,
-            Form::General => &GENERAL,
-            Form::Paper | Form::Regular => &[],
-        };
-        terms.iter().any(|term| name.strip_prefix(term).is_some_and(|rest| rest.starts_with('.')))
+        model.of_form().iter().any(|term| name.strip_prefix(term).is_some_and(|rest| rest.starts_with('.')))
     };
     listed.chain((0..model.parameters.len()).filter(of_form)).collect()
 }

@@ -546,7 +546,7 @@ impl Model {
     }
 
     /// The terms that the model's form has beyond the base.
-    fn of_form(&self) -> &'static [&'static str] {
+    pub(crate) fn of_form(&self) -> &'static [&'static str] {
         match self.form {
             Form::Mmg => &MMG,
             Form::General => &GENERAL,
@@ -603,6 +603,12 @@ impl Model {
         }
     }
 
+    /// Whether the term of a parameter, by its dotted name, is of something that the craft does not have.
+    pub(crate) fn lacks_owner(&self, name: &str) -> bool {
+        let owner = name.split_once('.').map(|(term, _)| term);
+        self.terms().any(|info| Some(info.name) == owner && self.lacks(info))
+    }
+
     /// Whether a parameter is free in a model that says nothing of it: the paper's eleven where the form and the craft have them, and what
     /// no particulars say of a named actuator.
     fn free_at_first(&self, name: &str) -> bool {
@@ -610,8 +616,7 @@ impl Model {
         if let Some(actuator) = self.ship.actuator(term) {
             return ActuatorTerm::free_at_first(actuator, parameter);
         }
-        let absent = self.terms().any(|info| info.name == term && self.lacks(info));
-        ELEVEN.contains(&name) && matches!(self.form, Form::Paper | Form::Regular) && !absent
+        ELEVEN.contains(&name) && matches!(self.form, Form::Paper | Form::Regular) && !self.lacks_owner(name)
     }
 
     /// The terms that can be added to the model.

@@ -191,7 +191,7 @@ pub fn channels(actuators: &[Actuator]) -> Vec<String> {
     actuators.iter().flat_map(of).collect()
 }
 
-/// What is wrong with the names of a list of actuators, or with their number: the key it is told of, and why.
+/// What is wrong with the names of a list of actuators, or with their number: the key that it concerns, and why.
 pub fn list_fault(actuators: &[Actuator]) -> Option<(String, String)> {
     let mut seen: Vec<&str> = Vec::new();
     for Actuator { name, .. } in actuators {

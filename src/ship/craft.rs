@@ -115,11 +115,11 @@ impl Ship {
         };
         let of = |a: &Actuator| {
             let faults = a.faults(self.hull.lpp).into_iter();
-            let told = |(key, found, expected): (&str, f64, String)| {
+            let fault = |(key, found, expected): (&str, f64, String)| {
                 let found = if found.is_nan() { String::new() } else { format!(" = {found}") };
                 parse(&a.name, format!("actuator `{}`: {key}{found} {expected}", a.name))
             };
-            faults.map(told).collect::<Vec<_>>()
+            faults.map(fault).collect::<Vec<_>>()
         };
         let list = actuator::list_fault(&self.actuators).map(|(key, message)| parse(&key, message));
         list.into_iter().chain(self.actuators.iter().flat_map(of)).collect()

@@ -124,17 +124,16 @@ fn words(law: Law) -> (&'static str, &'static str, &'static str) {
 impl ActuatorTerm {
     fn new(actuator: &Actuator, slot: usize) -> Self {
         let (title, equation, source) = words(actuator.law);
-        let turned = actuator.angle.is_none() && actuator.law != Law::Force;
+        let drives = actuator.drives();
         let components = actuator.components();
         let mut parameters: Vec<ParameterInfo> = match actuator.law {
             Law::Force => components.iter().map(|c| GAINS[*c as usize]).collect(),
             Law::Order => vec![ORDER],
             Law::Thruster => vec![THRUST, LOSS, ASTERN],
         };
-        parameters.extend(turned.then_some(ZERO));
+        parameters.extend(drives.contains(&Drive::Angle).then_some(ZERO));
         let lag = parameters.len();
         parameters.push(if matches!(actuator.lag, Some(Lag::Word(_))) { FREE_LAG } else { LAG });
-        let drives = actuator.drives();
         let leaked = |text: String| -> &'static str { Box::leak(text.into_boxed_str()) };
         let needs: Vec<&'static str> =
             drives.iter().map(|d| leaked(format!("{}.{}", actuator.name, d.suffix()))).collect();

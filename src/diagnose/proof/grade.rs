@@ -60,7 +60,7 @@ impl GainTest {
     }
 
     /// Whether it is below zero, beyond chance where there is an interval.
-    fn is_worse(&self) -> bool {
+    pub(in crate::diagnose) fn is_worse(&self) -> bool {
         self.ci95.map_or(self.gain < 0.0, |[_, high]| high < 0.0)
     }
 

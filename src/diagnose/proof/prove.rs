@@ -1,6 +1,7 @@
 //! The proof of a diagnosis: models against each other on runs that no earlier step has touched, in free simulation as
 //! [`crate::evaluate::prove`] judges it, and in likelihood. It fits nothing.
 
+use super::grade::GainTest;
 use super::unseen::interval_of_improvement;
 use crate::evaluate::{Comparison, Judging, Outcome, outcome, predict_all, summarise};
 use crate::likelihood::filter::{Filter, GATE, Pass, Wanted};
@@ -69,7 +70,7 @@ impl HeldOut {
     /// Whether free simulation of the held-out runs is worse after than before, beyond its interval, or by its sign where there is none: then
     /// no part of what changed is written or confirmed, though each by itself may predict better.
     pub fn is_worse(&self) -> bool {
-        self.improvement.is_some_and(|i| self.ci95.map_or(i < 0.0, |[_, high]| high < 0.0))
+        self.improvement.is_some_and(|gain| GainTest { gain, ci95: self.ci95 }.is_worse())
     }
 }
 

@@ -14,7 +14,6 @@ use crate::diagnose::settings::{
     RESOLVED_SAMPLES, RIVAL_GAP, RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES,
 };
 use crate::likelihood::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
-use crate::likelihood::evidence::degrees_of;
 use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::numbers::moderated::Ratio;
@@ -235,7 +234,7 @@ impl Competition<'_> {
         let gain = 2.0 * (estimate.log_posterior - self.current.log_posterior);
         let statistic = w.statistic().min(gain.max(0.0));
         let Ratio { value, degrees } = self.screen.moderated(hypothesis.candidate, &hypothesis.extent, runs);
-        let p = scattered_p(statistic / value, w.value.len(), degrees.max(degrees_of(0)));
+        let p = scattered_p(statistic / value, w.value.len(), degrees);
         corrected(p, self.tried.max(1) as f64) < settings.alpha && !only_cancels(c, estimate, runs)
     }
 

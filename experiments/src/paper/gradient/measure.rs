@@ -1,7 +1,7 @@
 //! Measures exact gradients and finite differences: errors over the step, the course of a fit, and times.
 //! Work is counted, so that it repeats bit by bit; times are measured and are ratios within one run. Nothing is drawn here.
 
-use trimtab::fit::{Cost, CostOptions, Derivatives, FitSettings, Hessian, Progress, fit};
+use trimtab::fit::{Cost, CostOptions, Derivatives, Fit, FitSettings, Hessian, Progress, fit};
 use trimtab::model::Model;
 use trimtab::recording::Run;
 use trimtab::report::plot::{BLUE, Color, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
@@ -93,6 +93,18 @@ pub struct Course {
 }
 
 impl Course {
+    /// The course of a fit that is done.
+    fn of(fit: &Fit, path: Vec<(f64, f64, f64)>, seconds: f64) -> Self {
+        Self {
+            iterations: fit.iterations,
+            converged: fit.converged,
+            cost: fit.cost,
+            evaluations: [fit.counts.objective, fit.counts.gradient],
+            path,
+            seconds,
+        }
+    }
+
     /// The lowest cost on the way that keeps the constraints.
     pub fn feasible(&self) -> Option<f64> {
         let kept = self.path.iter().filter(|(_, violation, _)| *violation <= FEASIBLE);
@@ -200,22 +212,9 @@ fn checked(case: &Case, what: &str, Repeats { least, scatter }: Repeats) -> Resu
 /// # Errors
 /// [`PaperError::Fit`].
 pub(super) fn course(model: &Model, runs: &[Run], settings: &FitSettings) -> Result<Course, PaperError> {
-    let begin = processor_time();
     let mut path = Vec::new();
-    let mut watch = |p: &Progress| {
-        path.push((p.cost, p.violation, processor_time() - begin));
-        true
-    };
-    let fit = fit(model, runs, settings, &mut watch)?;
-    let seconds = processor_time() - begin;
-    Ok(Course {
-        iterations: fit.iterations,
-        converged: fit.converged,
-        cost: fit.cost,
-        evaluations: [fit.counts.objective, fit.counts.gradient],
-        path,
-        seconds,
-    })
+    let (fit, seconds) = watched(model, runs, settings, |p, time| path.push((p.cost, p.violation, time)))?;
+    Ok(Course::of(&fit, path, seconds))
 }
 
 /// The course of one fit by the cost of all whole runs at the best feasible point so far, whatever its solver minimises on the way: a stage
@@ -225,14 +224,9 @@ pub(super) fn course(model: &Model, runs: &[Run], settings: &FitSettings) -> Res
 /// # Errors
 /// [`PaperError::Fit`].
 pub(super) fn course_of_whole_runs(model: &Model, runs: &[Run], settings: &FitSettings) -> Result<Course, PaperError> {
-    let begin = processor_time();
     let mut points: Vec<(Vec<f64>, f64)> = Vec::new();
-    let mut watch = |p: &Progress| {
-        points.extend(p.best.map(|best| (best.to_vec(), processor_time() - begin)));
-        true
-    };
-    let fit = fit(model, runs, settings, &mut watch)?;
-    let seconds = processor_time() - begin;
+    let (fit, seconds) =
+        watched(model, runs, settings, |p, time| points.extend(p.best.map(|best| (best.to_vec(), time))))?;
     let whole = Cost::new(model, runs, CostOptions { derivatives: Derivatives::Lanes, ..settings.cost_options() })?;
     let mut end = fit.estimates.iter().map(|e| e.value).collect::<Vec<f64>>();
     end.truncate(model.free().len());
@@ -243,14 +237,26 @@ pub(super) fn course_of_whole_runs(model: &Model, runs: &[Run], settings: &FitSe
         (least, 0.0, *time)
     };
     let path = points.iter().map(lowered).filter(|(cost, _, _)| cost.is_finite()).collect();
-    Ok(Course {
-        iterations: fit.iterations,
-        converged: fit.converged,
-        cost: fit.cost,
-        evaluations: [fit.counts.objective, fit.counts.gradient],
-        path,
-        seconds,
-    })
+    Ok(Course::of(&fit, path, seconds))
+}
+
+/// A fit whose progress is seen with the processor time so far \[s\], and the time of all of it.
+///
+/// # Errors
+/// [`PaperError::Fit`].
+fn watched(
+    model: &Model,
+    runs: &[Run],
+    settings: &FitSettings,
+    mut see: impl FnMut(&Progress, f64),
+) -> Result<(Fit, f64), PaperError> {
+    let begin = processor_time();
+    let mut watch = |p: &Progress| {
+        see(p, processor_time() - begin);
+        true
+    };
+    let fit = fit(model, runs, settings, &mut watch)?;
+    Ok((fit, processor_time() - begin))
 }
 
 /// Processor time of a gradient over that of a cost, both eight runs side by side, measured in turn.

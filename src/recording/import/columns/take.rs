@@ -171,8 +171,8 @@ fn referred(mut verdict: Verdict, channel: Channel) -> Verdict {
 fn by_its_name(mut verdict: Verdict, columns: &[&Column], channel: Channel) -> Verdict {
     let values = || columns.iter().flat_map(|c| &c.v).copied();
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-    let told = format!("{}, values from {} to {}", channel.info().words, sig(low, 3), sig(high, 3));
-    verdict.evidence = if verdict.evidence.is_empty() { told } else { format!("{told}; {}", verdict.evidence) };
+    let range = format!("{}, values from {} to {}", channel.info().words, sig(low, 3), sig(high, 3));
+    verdict.evidence = if verdict.evidence.is_empty() { range } else { format!("{range}; {}", verdict.evidence) };
     verdict
 }
 
