@@ -13,7 +13,7 @@ use super::evidence::generic::corrected;
 use super::evidence::set_aside::Divided;
 use super::law::Law;
 use super::law::sides::sides;
-use super::proof::describe::kinds;
+use super::proof::describe::{kinds, sized};
 use super::proof::improved::{trimmed, uncertainty};
 use super::proof::prove::{HeldOut, prove, scores};
 use super::proof::stability::Stability;
@@ -55,6 +55,7 @@ pub fn diagnose<'r>(
     let answer: Answer = answer.with_law(&question, &held_out);
     let rates: Option<ErrorRates> = ErrorRates::new(&question, &answer, &given, &held_out, settings.calibrate)?;
     let written: Written = Written::new(&question, &answer);
+    let answer: Answer = written.sizes_of(answer);
     let proof: Option<HeldOut> = proof(&question, &answer, &written, &held_out);
     let answer: Answer = answer.capped(proof.as_ref());
     let sailed: Vec<Sailed> = pictured(&question, &answer, &written, &held_out);
@@ -77,6 +78,14 @@ impl Written {
         let base = problem.written(&tests.fit.estimate);
         let found = if answer.improves() { problem.written(answer.improved()) } else { base.clone() };
         Self { base, found }
+    }
+
+    /// The answer with the sizes of what was found as the written model has them.
+    fn sizes_of(&self, mut answer: Answer) -> Answer {
+        if !answer.findings.is_empty() {
+            sized(&mut answer.findings, &answer.kept.selection, &self.found);
+        }
+        answer
     }
 }
 
@@ -236,6 +245,9 @@ mod tests {
         let d = diagnose(&model(), &truth[..12], &truth[12..], &settings, &note)?;
         assert_eq!((d.verdict, d.findings[0].mechanism.as_str()), (Verdict::Named, "current"), "{}", d.headline);
         assert_eq!(d.held_out.as_ref().map(|h| h.runs), Some(3));
+        for size in &d.findings[0].parameters {
+            assert_eq!(d.model.index(&size.name).map(|i| d.model.parameters[i].value), Some(size.value), "{size:?}");
+        }
         assert!(d.findings[0].held_out.is_some() && d.location_after.is_some() && d.law.is_none());
         let steps = steps.into_inner().unwrap();
         assert_eq!(d.findings[0].grade, Grade::Confirmed, "{:?} {:?}", d.findings[0].held_out, d.stability);

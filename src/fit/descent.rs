@@ -41,7 +41,7 @@ const NEAR_BARRIER_SHARE: f64 = 1e-6;
 const NEAR_PUSH: f64 = 1e-8;
 
 /// Iterations in a row after which an objective that changes no more ends a solve.
-const SETTLED_ITERATIONS: i32 = 3;
+const SETTLED_ITERATIONS: i32 = 2;
 
 /// What the solver took.
 #[derive(Default)]

@@ -115,6 +115,26 @@ pub(in crate::diagnose) fn mechanism_finding(
     }
 }
 
+/// Gives the findings of a selection the sizes that an estimate of the same parameters has, which the file holds, with the uncertainty as it is.
+pub(in crate::diagnose) fn sized(
+    findings: &mut [Finding],
+    Selection { mechanisms, tests, .. }: &Selection,
+    written: &Estimate,
+) {
+    for finding in findings {
+        let candidate = |m: &&Selected| tests.candidates[m.candidate].mechanism.name == finding.mechanism;
+        let Some(own) = mechanisms.iter().find(candidate) else { continue };
+        let c = &tests.candidates[own.candidate];
+        let of = |(i, held): (usize, &f64)| {
+            let f = &written.free[i];
+            f.value(&written.model) - held * f.column.scale
+        };
+        let held = c.held(&own.extent);
+        let values = c.positions(&written.free, &own.extent).into_iter().zip(held.iter()).map(of);
+        finding.parameters.iter_mut().zip(values).for_each(|(parameter, value)| parameter.moved_to(value));
+    }
+}
+
 /// What the model already had of a mechanism that is found again, in words; blank if nothing.
 fn beyond(c: &Candidate, extent: &Extent, model: &Model) -> String {
     let held = c.held(extent);

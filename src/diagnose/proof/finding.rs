@@ -34,6 +34,13 @@ impl Amplitude {
     pub fn within(name: String, value: f64, unit: &str, error: f64, reach: f64) -> Self {
         Self { name, value, unit: unit.into(), error, ci95: [value - reach * error, value + reach * error] }
     }
+
+    /// The same uncertainty around another value.
+    pub fn moved_to(&mut self, value: f64) {
+        let by = value - self.value;
+        self.value = value;
+        self.ci95.iter_mut().for_each(|limit| *limit += by);
+    }
 }
 
 /// Shares of the unexplained force by equation.
