@@ -12,7 +12,6 @@ use serde::{Deserialize, Serialize};
 use trimtab::fit::{FitSettings, Goal, Hessian, fit};
 use trimtab::model::Model;
 use trimtab::recording::{Run, Split};
-use trimtab::ship::Ship;
 use trimtab::study::Study;
 
 use crate::conceal::error::ConcealError;
@@ -83,7 +82,7 @@ impl Source {
     pub fn read(path: &Path) -> Result<Self, ConcealError> {
         let fail = |error: &dyn std::fmt::Display| ConcealError::content(path, &error.to_string());
         let study = Study::read(path).map_err(|e| fail(&e))?;
-        let ship = Ship::read(&study.ship).map_err(|e| fail(&e))?;
+        let ship = study.read_ship().map_err(|e| fail(&e))?;
         let model = Model::read(&study.model, ship).map_err(|e| fail(&e))?;
         let settings = study.section::<FitSettings>("fit").map_err(|_| fail(&"its section [fit] cannot be read"))?;
         Ok(Self { study, model, settings })

@@ -99,9 +99,15 @@ fn run(model: &Model, i: usize, rng: &mut ChaCha8Rng) -> Run {
 
 /// Runs of [`runs`] whose sensors err.
 pub fn erring(errors: &[(&str, f64)], count: usize) -> Vec<Run> {
-    let with = with(errors);
+    erring_as(&model(), errors, count)
+}
+
+/// As [`erring`], with the sensors of a model.
+pub fn erring_as(model: &Model, errors: &[(&str, f64)], count: usize) -> Vec<Run> {
+    let mut with = model.clone();
+    with.set(errors).unwrap();
     let dynamics = Dynamics::new(&with, with.values_in(""));
-    let mut runs = runs(&model(), count);
+    let mut runs = runs(model, count);
     for run in &mut runs {
         for (m, input) in run.measured.iter_mut().zip(&run.inputs) {
             *m = dynamics.report(&m.map(Option::unwrap), input).map(Some);

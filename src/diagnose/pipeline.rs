@@ -14,6 +14,7 @@ use super::evidence::set_aside::Divided;
 use super::law::Law;
 use super::law::sides::sides;
 use super::proof::describe::{kinds, sized};
+use super::proof::grade::Grade;
 use super::proof::improved::{trimmed, uncertainty};
 use super::proof::prove::{HeldOut, prove, scores};
 use super::proof::stability::Stability;
@@ -54,8 +55,7 @@ pub fn diagnose<'r>(
     let (answer, stability): (Answer, Option<Stability>) = answer.repeated(&question, &given, &held_out)?;
     let answer: Answer = answer.with_law(&question, &held_out);
     let rates: Option<ErrorRates> = ErrorRates::new(&question, &answer, &given, &held_out, settings.calibrate)?;
-    let written: Written = Written::new(&question, &answer);
-    let answer: Answer = written.sizes_of(answer);
+    let (answer, written): (Answer, Written) = written_and_sized(&question, answer, &held_out);
     let proof: Option<HeldOut> = proof(&question, &answer, &written, &held_out);
     let answer: Answer = answer.capped(proof.as_ref());
     let sailed: Vec<Sailed> = pictured(&question, &answer, &written, &held_out);
@@ -79,13 +79,21 @@ impl Written {
         let found = if answer.improves() { problem.written(answer.improved()) } else { base.clone() };
         Self { base, found }
     }
+}
 
-    /// The answer with the sizes of what was found as the written model has them.
-    fn sizes_of(&self, mut answer: Answer) -> Answer {
-        if !answer.findings.is_empty() {
-            sized(&mut answer.findings, &answer.kept.selection, &self.found);
+/// The models that are written, and the answer with the sizes that these have. What they do not tell from nothing is not named.
+fn written_and_sized(question: &Question, mut answer: Answer, held_out: &[Run]) -> (Answer, Written) {
+    loop {
+        let written = Written::new(question, &answer);
+        let lost = if answer.findings.is_empty() {
+            Vec::new()
+        } else {
+            sized(&mut answer.findings, &answer.kept.selection, &written.found)
+        };
+        if lost.is_empty() {
+            return (answer, written);
         }
-        answer
+        answer = answer.regraded(question, &lost, Grade::Undetermined, held_out);
     }
 }
 
@@ -178,7 +186,6 @@ fn report(
     let said = Said {
         findings: &answer.findings,
         withdrawn: &answer.withdrawn,
-        rejected: answer.kept.selection.rejected.first().map(|r| tests.candidates[r.candidate].mechanism.title),
         following: &answer.base.following,
         holds: answer.base.holds,
         form_holds: tests.search.chance.form_holds,
@@ -232,7 +239,6 @@ fn report(
 mod tests {
     use super::*;
     use crate::diagnose::example::{model, runs, with};
-    use crate::diagnose::proof::grade::Grade;
     use crate::diagnose::search::decide::Verdict;
     use std::sync::Mutex;
 

@@ -196,7 +196,8 @@ impl<'m, C: Number<Coefficient = C>> Dynamics<'m, C> {
         self.model.placed().iter().map(force).collect()
     }
 
-    /// What the sensors report of a state whose rates are known: the state, changed by the sensor terms.
+    /// What the sensors report of a state whose rates are known: the state, changed by the sensor terms. Where u and v were made from a velocity
+    /// over ground and the reported heading, they are turned by the error e of that heading: `u cos e + v sin e`, `v cos e - u sin e`.
     pub fn measure<S: Number<Coefficient = C>>(
         &self,
         state: &State<S>,
@@ -208,6 +209,10 @@ impl<'m, C: Number<Coefficient = C>> Dynamics<'m, C> {
         let mut y = state.to_array();
         for t in self.extras() {
             S::physics(t.term).measure(t.part(&self.theta), &at, flow, rates, &mut y);
+        }
+        if self.model.ship.velocity_by_heading {
+            let (sin, cos) = (y[2] - state.psi).sin_cos();
+            (y[3], y[4]) = (y[3] * cos + y[4] * sin, y[4] * cos - y[3] * sin);
         }
         y
     }

@@ -58,12 +58,20 @@ modifiers! {
     race = 1.0,
     /// Factor on resistance \[-\].
     resistance = 1.0,
-    /// Factor on sway-force derivatives \[-\].
+    /// Factor on the sway force of drift, Y_v \[-\].
     sway = 1.0,
-    /// Factor on the static yaw derivatives N_v and N_vvr \[-\].
+    /// Factor on that of large drift, Y_vv or Y_vvv \[-\].
+    sway_drag = 1.0,
+    /// Factor on that of drift in a turn and of a fast turn, Y_vr and Y_rr, or Y_vvr, Y_vrr and Y_rrr \[-\].
+    sway_mixed = 1.0,
+    /// Factor on the yaw moment of drift, N_v and N_vvv \[-\].
     yaw_static = 1.0,
-    /// Factor on the rotary derivatives Y_r, N_r, N_rr, N_rrv \[-\].
+    /// Factor on that of drift in a turn, N_vvr and N_rrv or N_vrr \[-\].
+    yaw_mixed = 1.0,
+    /// Factor on the rotary derivatives Y_r and N_r \[-\].
     rotary = 1.0,
+    /// Factor on the yaw moment of a fast turn, N_rr or N_rrr \[-\].
+    rotary_drag = 1.0,
     /// Factor on sway and yaw added mass \[-\].
     added_mass = 1.0,
     /// Factor on the ship's mass and yaw inertia \[-\].

@@ -108,6 +108,10 @@ pub struct Ship {
     /// normalisation), by the same names.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub coefficients_prime: BTreeMap<String, f64>,
+    /// Whether the recordings' u and v were made from a velocity over ground and the recorded heading, so that an error of the heading turns
+    /// them. It is no part of a ship file: the column maps of a study say so.
+    #[serde(skip)]
+    pub velocity_by_heading: bool,
     /// Default values of named parameters of any term, e.g. `"resistance.linear" = 10500.0`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub parameters: BTreeMap<String, f64>,

@@ -9,9 +9,10 @@ use super::split::{SplitBy, SplitRule};
 use super::table::read_table;
 use crate::files::written::{Kind, Mistake, line_at, near_file, read_text, read_toml, section, told};
 use crate::recording::{Channel, ColumnMap, Driven, Recording, Split, WindowSettings, Windows, key_line};
-use crate::ship::Ship;
+use crate::ship::{Ship, ShipError};
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
+use std::collections::BTreeSet;
 use std::mem::take;
 use std::path::{Path, PathBuf};
 
@@ -164,6 +165,18 @@ impl Study {
         let mut files = vec![self.path.clone(), self.runs_path.clone(), self.ship.clone()];
         files.dedup();
         files
+    }
+
+    /// Reads the ship of the study; what the column maps of its recordings say of the velocities comes along.
+    ///
+    /// # Errors
+    /// [`ShipError`]; a column map that cannot be read is told where its recording is read.
+    pub fn read_ship(&self) -> Result<Ship, ShipError> {
+        let mut ship = Ship::read(&self.ship)?;
+        let maps: BTreeSet<&PathBuf> = self.runs.iter().filter_map(|run| run.column_map.as_ref()).collect();
+        let turns = |path: &&PathBuf| ColumnMap::read(path).is_ok_and(|map| map.turns_with_heading());
+        ship.velocity_by_heading = maps.iter().any(turns);
+        Ok(ship)
     }
 
     /// The column map of a run.

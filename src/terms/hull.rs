@@ -185,12 +185,12 @@ fn damping<S: Scalar>(at: &Instant<S>, flow: &Flow<S>) -> [S; 11] {
         r * odd * a.rotary,
         v * odd * a.yaw_static,
         r * even * a.rotary,
-        v * flow.abs_v * a.sway,
-        v * flow.abs_r * a.sway,
-        rr * a.rotary,
-        rr * a.rotary,
-        slow * r * a.rotary,
-        slow * v * a.yaw_static,
+        v * flow.abs_v * a.sway_drag,
+        v * flow.abs_r * a.sway_mixed,
+        rr * a.sway_mixed,
+        rr * a.rotary_drag,
+        slow * r * a.yaw_mixed,
+        slow * v * a.yaw_mixed,
     ]
 }
 

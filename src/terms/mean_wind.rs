@@ -18,6 +18,14 @@ pub struct MeanWind;
 /// Typical load coefficients c_x, c_y, c_n \[-\].
 pub const TYPICAL: [f64; 3] = [0.7, 0.8, 0.1];
 
+/// Relative spread of areas above the water that are estimated from the main dimensions, as `trimtab new` states it.
+const AREA: f64 = 0.3;
+
+/// Standard deviation of a coefficient that multiplies such an area, of this spread by itself.
+fn with_area(coefficient: f64, spread: f64) -> f64 {
+    spread.hypot(AREA * coefficient)
+}
+
 static INFO: TermInfo = TermInfo {
     name: "mean_wind",
     title: "unmeasured mean wind",
@@ -52,17 +60,17 @@ static INFO: TermInfo = TermInfo {
         ParameterInfo::new("drag", "c_x", "-", "longitudinal load coefficient, typically 0.5 to 0.9")
             .default(|_| TYPICAL[0])
             .scale(|_| 0.2)
-            .spread(|_| 0.2)
+            .spread(|_| with_area(TYPICAL[0], 0.2))
             .bounds(0.0, 2.0),
         ParameterInfo::new("side", "c_y", "-", "lateral load coefficient, typically 0.7 to 0.95")
             .default(|_| TYPICAL[1])
             .scale(|_| 0.2)
-            .spread(|_| 0.2)
+            .spread(|_| with_area(TYPICAL[1], 0.2))
             .bounds(0.0, 2.0),
         ParameterInfo::new("yaw", "c_n", "-", "yaw load coefficient, typically 0.05 to 0.2")
             .default(|_| TYPICAL[2])
             .scale(|_| 0.1)
-            .spread(|_| 0.1)
+            .spread(|_| with_area(TYPICAL[2], 0.1))
             .bounds(-0.5, 0.5),
     ],
 };

@@ -130,18 +130,18 @@ fn factors<S: Scalar>(at: &Instant<S>, flow: &Flow<S>) -> [S; 17] {
     let sway = [
         drift * a.sway,
         turn * ahead * a.rotary,
-        vvv * a.sway,
-        vvr * ahead * a.sway,
-        vrr * a.sway,
-        rrr * ahead * a.rotary,
+        vvv * a.sway_drag,
+        vvr * ahead * a.sway_mixed,
+        vrr * a.sway_mixed,
+        rrr * ahead * a.sway_mixed,
     ];
     let yaw = [
         drift * ahead * a.yaw_static,
         turn * a.rotary,
         vvv * ahead * a.yaw_static,
-        vvr * a.yaw_static,
-        vrr * ahead * a.rotary,
-        rrr * a.rotary,
+        vvr * a.yaw_mixed,
+        vrr * ahead * a.yaw_mixed,
+        rrr * a.rotary_drag,
     ];
     let mut all = [S::zero(); 17];
     for (out, factor) in all.iter_mut().zip(surge.into_iter().chain(sway)) {

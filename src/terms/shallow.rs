@@ -1,5 +1,5 @@
 //! Shallow water: damping, added mass and resistance grow with draught over water under the keel.
-//! One depth number scales fixed sensitivities; squat and the strong growth of cross-flow drag below h/d = 1.5 are not modelled.
+//! One depth number scales fixed sensitivities; squat and what grows faster below h/d = 1.5 are not modelled.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Adjust;
@@ -15,10 +15,14 @@ use trimtab_ad::Scalar;
 pub struct Shallow;
 
 // Least-squares slopes over z of the published factors, mean of ships A and B, KVLCC2, KCS and Esso Osaka:
-// Y_v 0.39 and Y_vv 1.4; N_v 0.49 and N_vvr 1.0; Y_r 0.15, N_r 0.10 and N_rr 0.49; m_y 0.59 and J_z 0.49.
-const SWAY: f64 = 0.5;
+// Y_v 0.39 and Y_vv 1.4, Y_vr and Y_rr 0.53; N_v 0.49, N_vvr and N_rrv 1.0; Y_r 0.15, N_r 0.10 and N_rr 0.49; m_y 0.59 and J_z 0.49.
+const SWAY: f64 = 0.4;
+const SWAY_DRAG: f64 = 1.4;
+const SWAY_MIXED: f64 = 0.5;
 const YAW_STATIC: f64 = 0.5;
-const ROTARY: f64 = 0.15;
+const YAW_MIXED: f64 = 1.0;
+const ROTARY: f64 = 0.12;
+const ROTARY_DRAG: f64 = 0.5;
 const ADDED_MASS: f64 = 0.55;
 const RESISTANCE: f64 = 0.15;
 /// Largest d/h that is used \[-\]: the ship is nearly aground.
@@ -28,7 +32,7 @@ static INFO: TermInfo = TermInfo {
     name: "shallow",
     title: "shallow water",
     group: Group::Environment,
-    equation: "z = ratio + strength (d/h)/(1 - d/h); factors 1 + a z: sway a = 0.5, yaw of drift 0.5, rotary 0.15, added mass 0.55, resistance 0.15",
+    equation: "z = ratio + strength (d/h)/(1 - d/h); factors 1 + a z: Y_v a = 0.4, Y_vv 1.4, Y_vr and Y_rr 0.5, N_v 0.5, N_vvr and N_rrv 1, Y_r and N_r 0.12, N_rr 0.5, added mass 0.55, resistance 0.15",
     source: "Hirano/Kijima effective aspect ratio and Li & Wu added mass, fitted over h/d = 1.5 to 3 for five ships; resistance after Schlichting",
     needs: &[],
     validity: Validity {
@@ -73,8 +77,12 @@ impl<S: Scalar> Physics<S> for Shallow {
         let z = p[0] + p[1] * q / (S::one() - q);
         let factor = |sensitivity: f64| z * sensitivity + 1.0;
         adjust.sway *= factor(SWAY);
+        adjust.sway_drag *= factor(SWAY_DRAG);
+        adjust.sway_mixed *= factor(SWAY_MIXED);
         adjust.yaw_static *= factor(YAW_STATIC);
+        adjust.yaw_mixed *= factor(YAW_MIXED);
         adjust.rotary *= factor(ROTARY);
+        adjust.rotary_drag *= factor(ROTARY_DRAG);
         adjust.added_mass *= factor(ADDED_MASS);
         adjust.resistance *= factor(RESISTANCE);
     }

@@ -29,7 +29,7 @@ impl Hull {
     pub fn open(name: &str) -> Result<Self, RealError> {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies").join(name).join("study.toml");
         let study = Study::read(&path)?;
-        let ship = Ship::read(&study.ship)?;
+        let ship = study.read_ship()?;
         let fit = settings(&study, "fit", &study.fit)?;
         Ok(Self { study, ship, fit })
     }

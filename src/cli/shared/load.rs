@@ -95,7 +95,7 @@ impl Loaded {
         let folders: BTreeSet<&Path> = files.chain([&path, &study.ship]).filter_map(|file| file.parent()).collect();
         folders.into_iter().try_for_each(settle)?;
         let mut errors = Vec::new();
-        let model = match Ship::read(&study.ship) {
+        let model = match study.read_ship() {
             Ok(ship) => read_model(&path, ship).map_err(|e| errors.push(in_ship_file(e, &study.ship))).ok(),
             Err(error) => {
                 errors.push(error.into());

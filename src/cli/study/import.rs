@@ -352,7 +352,7 @@ fn report<'a>(args: &'a Args, imported: &'a Imported, runs: &'a [SplitRun], skip
         unused: &imported.unused,
         notes: &imported.notes,
         origin: imported.origin,
-        velocity: imported.velocity,
+        velocity: imported.velocity.words,
         recordings: imported.recordings.iter().map(recording).collect(),
         runs,
         skipped,
@@ -368,7 +368,7 @@ fn text(args: &Args, imported: &Imported, runs: &[SplitRun], skipped: usize, kep
     for t in &imported.taken {
         taken.row([t.quantity.clone(), t.column.clone(), t.unit.clone(), sig(t.step, 3), t.evidence.clone()]);
     }
-    text += &format!("\nTaken for\n{taken}\n{}.\n", imported.velocity);
+    text += &format!("\nTaken for\n{taken}\n{}.\n", imported.velocity.words);
     let mut parts = Table::new(["recording", "start (UTC)", "rows", "step [s]", "minutes", "channels"]);
     for r in &imported.recordings {
         let channels: Vec<&str> = r.rows.channels.iter().map(|(c, _)| c.name()).collect();

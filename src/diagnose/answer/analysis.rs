@@ -59,12 +59,12 @@ impl Answer {
     }
 
     /// Takes out what is not named, one mechanism after the other, and decides on what is left; `tried` holds what was withdrawn before,
-    /// `unstable` the names that most repetitions do not find.
+    /// `graded` the names whose grade is known.
     fn settled(
         question: &Question,
         mut residual: Residual,
         mut tried: Vec<Finding>,
-        unstable: &[String],
+        graded: &[(String, Grade)],
         held_out: &[Run],
     ) -> Self {
         let (mut kept, mut decision, mut weights, push) = loop {
@@ -74,8 +74,8 @@ impl Answer {
             let mut weights = weigh(question, &kept, held_out);
             for (mechanism, weight) in kept.selection.mechanisms.iter().zip(&mut weights) {
                 let name = kept.selection.tests.candidates[mechanism.candidate].mechanism.name;
-                if unstable.iter().any(|u| u == name) {
-                    weight.grade = Grade::Unstable;
+                if let Some((_, grade)) = graded.iter().find(|(known, _)| known == name) {
+                    weight.grade = *grade;
                 }
             }
             let goes = weakest(&weights).or_else(|| weakest_together(question, &kept, &mut weights, held_out));
@@ -95,8 +95,7 @@ impl Answer {
         tried.extend(carried(&kept, &weights));
         let base = Base::new(question, &kept);
         let grades: Vec<Grade> = tried.iter().map(|f| f.grade).collect();
-        let rejected = !kept.selection.rejected.is_empty();
-        let verdict = conclude(decision.verdict, &grades, rejected, base.holds);
+        let verdict = conclude(decision.verdict, &grades, base.holds);
         let mut findings = findings(&kept, &weights);
         if !base.holds {
             tried.append(&mut findings);
@@ -179,12 +178,7 @@ impl Answer {
     /// The answer once repetitions differ: what most of them do not find is withdrawn, the rest decided anew, and what one of them does
     /// not find is suspected at most.
     fn doubted(self, question: &Question, doubts: &Doubts, held_out: &[Run]) -> Self {
-        let mut answer = self;
-        if !doubts.unstable.is_empty() {
-            let Self { kept: Kept { selection, left, .. }, mut withdrawn, .. } = answer;
-            withdrawn.retain(|f| !selection.carries(&f.mechanism));
-            answer = Self::settled(question, Residual { selection, left }, withdrawn, &doubts.unstable, held_out);
-        }
+        let mut answer = self.regraded(question, &doubts.unstable, Grade::Unstable, held_out);
         for finding in answer.findings.iter_mut().filter(|f| doubts.doubtful.contains(&f.mechanism)) {
             if finding.grade == Grade::Confirmed {
                 finding.grade = Grade::Suspected;
@@ -192,6 +186,17 @@ impl Answer {
         }
         answer.verdict = lead(answer.verdict, &mut answer.findings);
         answer
+    }
+
+    /// The answer once some of the mechanisms have a grade that does not name them.
+    pub fn regraded(self, question: &Question, names: &[String], grade: Grade, held_out: &[Run]) -> Self {
+        if names.is_empty() {
+            return self;
+        }
+        let Self { kept: Kept { selection, left, .. }, mut withdrawn, .. } = self;
+        withdrawn.retain(|f| !selection.carries(&f.mechanism));
+        let graded: Vec<(String, Grade)> = names.iter().map(|name| (name.clone(), grade)).collect();
+        Self::settled(question, Residual { selection, left }, withdrawn, &graded, held_out)
     }
 
     /// What the improved model still lacks when it is diagnosed on the same recordings, but for pushes.
@@ -231,7 +236,7 @@ fn brief(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{erring, finding, made_by_euler, model, runs, with};
+    use crate::diagnose::example::{erring, erring_as, finding, made_by_euler, model, runs, with};
 
     fn without_repetitions() -> Settings {
         Settings { nuisance: false, repeat: false, ..Settings::default() }
@@ -273,6 +278,21 @@ mod tests {
         let found = answer.findings.iter().find(|f| f.mechanism == "time_skew").unwrap();
         let delay = found.parameters.iter().find(|a| a.name == "time_skew.position").map(|a| a.value);
         assert!(!found.by_session && delay.is_some_and(|d| (d + 2.5).abs() < 0.3), "{:?}", found.parameters);
+    }
+
+    #[test]
+    fn an_error_of_the_compass_is_found_where_the_velocities_were_made_with_its_heading() {
+        let (mut model, settings) = (model(), without_repetitions());
+        model.ship.velocity_by_heading = true;
+        let all = erring_as(&model, &[("heading_bias.bias", 0.026)], 16);
+        let turned = &erring(&[("heading_bias.bias", 0.026)], 16)[0].measured[30];
+        assert!(all[0].measured[30][2] == turned[2] && all[0].measured[30][4] != turned[4]);
+        let (train, unseen) = all.split_at(12);
+        let question = Question::new(&model, &settings, &|_| ()).unwrap();
+        let answer = Answer::new(&question, train, unseen);
+        let found = answer.findings.iter().find(|f| f.mechanism == "heading_bias").unwrap();
+        let [low, high] = found.parameters[0].ci95;
+        assert!(found.grade == Grade::Confirmed && low < 0.026 && 0.026 < high && high - low < 0.01, "{found:?}");
     }
 
     #[test]

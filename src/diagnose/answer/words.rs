@@ -109,8 +109,6 @@ pub struct Said<'a> {
     pub findings: &'a [Finding],
     /// What was tried and withdrawn.
     pub withdrawn: &'a [Finding],
-    /// The first mechanism that was rejected for its own coefficients.
-    pub rejected: Option<&'a str>,
     /// How the model follows the recordings.
     pub following: &'a Following,
     /// Whether it follows them well enough.
@@ -140,11 +138,7 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
                 tried.title,
                 refuted(tried)
             ),
-            (None, None) => format!(
-                "Something is missing, and no law of the catalogue is it: {} gains most, but only with coefficients of its own that no \
-                 such force has.",
-                said.rejected.map_or("a mechanism", |title| title)
-            ),
+            (None, None) => "Something is missing, and no law of the catalogue is it.".into(),
         },
         Verdict::Numerics => {
             "The integration step, not the ship: explicit Euler steps of one sample period reproduce the recordings to rounding."
@@ -178,7 +172,7 @@ fn nothing(said: &Said) -> String {
         return format!("Nothing is missing that can be named. {}", not_isolated(f));
     }
     if let Some(f) = withdrawn(Grade::Immaterial) {
-        let why = if f.is_unresolved_clock() {
+        let why = if f.is_unresolved() {
             "is measurable, and is less than half a sample period".to_owned()
         } else {
             let change = 100.0 * f.change.unwrap_or(0.0);
@@ -358,7 +352,6 @@ mod tests {
                     findings,
                     withdrawn,
                     following: &following,
-                    rejected: Some("wave drift"),
                     holds: verdict != Verdict::Insufficient,
                     form_holds: true,
                     missing,
@@ -394,7 +387,7 @@ mod tests {
         let with = |grade| Finding { grade, change: Some(0.02), ..current() };
         let refuted = said(Verdict::NotInCatalogue, &[], &[with(Grade::Refuted)], None);
         assert!(refuted.contains("steady current") && refuted.contains("refute"), "{refuted}");
-        assert!(said(Verdict::NotInCatalogue, &[], &[], None).contains("wave drift gains most"));
+        assert!(said(Verdict::NotInCatalogue, &[], &[], None).contains("no law of the catalogue is it"));
         let small = said(Verdict::NothingMissing, &[], &[with(Grade::Immaterial)], None);
         assert!(small.contains("steady current") && small.contains("2.0 % of their error"), "{small}");
         let times = vec![Amplitude::new("time_skew.position".into(), 0.2, "s", 0.01)];

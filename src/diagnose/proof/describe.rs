@@ -14,7 +14,7 @@ use crate::diagnose::search::decide::PushTest;
 use crate::diagnose::search::screen::Screen;
 use crate::diagnose::search::select::Selection;
 use crate::diagnose::search::selected::Selected;
-use crate::diagnose::settings::SCATTER_GROUPS;
+use crate::diagnose::settings::{SCATTER_GROUPS, UNUSUAL};
 use crate::likelihood::estimate::Estimate;
 use crate::likelihood::evidence::Scatter;
 use crate::likelihood::filter::Column;
@@ -100,7 +100,7 @@ pub(in crate::diagnose) fn mechanism_finding(
         grade: Grade::Suspected,
         kind: c.mechanism.kind,
         confidence_set: a.set.iter().map(|i| tests.candidates[*i].mechanism.name.to_string()).collect(),
-        why: [a.why.as_str(), &beyond(c, &a.extent, &estimate.model)].concat(),
+        why: [a.why.as_str(), &beyond(c, &a.extent, &estimate.model), &unusual(c, estimate)].concat(),
         sessions: a.extent.sessions().to_vec(),
         by_session: matches!(a.extent, Extent::Each(_)),
         statistic: a.statistic,
@@ -115,12 +115,15 @@ pub(in crate::diagnose) fn mechanism_finding(
     }
 }
 
-/// Gives the findings of a selection the sizes that an estimate of the same parameters has, which the file holds, with the uncertainty as it is.
+/// Gives the findings of a selection the sizes that an estimate of the same parameters has, which the file holds, with the uncertainty as it is;
+/// comes back with those that are then no longer told from nothing.
 pub(in crate::diagnose) fn sized(
     findings: &mut [Finding],
     Selection { mechanisms, tests, .. }: &Selection,
     written: &Estimate,
-) {
+) -> Vec<String> {
+    let is_told = |finding: &Finding| finding.parameters.iter().any(|p| p.ci95[0] > 0.0 || p.ci95[1] < 0.0);
+    let mut lost = Vec::new();
     for finding in findings {
         let candidate = |m: &&Selected| tests.candidates[m.candidate].mechanism.name == finding.mechanism;
         let Some(own) = mechanisms.iter().find(candidate) else { continue };
@@ -131,8 +134,13 @@ pub(in crate::diagnose) fn sized(
         };
         let held = c.held(&own.extent);
         let values = c.positions(&written.free, &own.extent).into_iter().zip(held.iter()).map(of);
+        let before = is_told(finding);
         finding.parameters.iter_mut().zip(values).for_each(|(parameter, value)| parameter.moved_to(value));
+        if before && !is_told(finding) {
+            lost.push(finding.mechanism.clone());
+        }
     }
+    lost
 }
 
 /// What the model already had of a mechanism that is found again, in words; blank if nothing.
@@ -148,6 +156,22 @@ fn beyond(c: &Candidate, extent: &Extent, model: &Model) -> String {
     };
     let list: Vec<String> = own.map(one).collect();
     format!(" The model already had {}; what is found comes on top of it.", list.join(", "))
+}
+
+/// Coefficients of a mechanism that are far from what is known of such coefficients, in words; blank if none.
+fn unusual(c: &Candidate, found: &Estimate) -> String {
+    let companions = c.companions(&found.model);
+    let own = found.free.iter().filter(|f| companions.contains(&f.column.parameter));
+    let far = own.filter_map(|f| Some((f, f.prior?))).filter_map(|(f, prior)| {
+        let value = f.value(&found.model);
+        let away = (value - prior.mean) / prior.sd;
+        let name = &found.model.parameters[f.column.parameter].name;
+        (away.abs() > UNUSUAL).then(|| {
+            format!("{name} = {} where {} +- {} is usual", sig(value, 3), sig(prior.mean, 3), sig(prior.sd, 2))
+        })
+    });
+    let list: Vec<String> = far.collect();
+    if list.is_empty() { String::new() } else { format!(" Unusual for it: {}.", list.join(", ")) }
 }
 
 /// Mean square force that a mechanism brings, by equation: with it less without it, at the filtered states, in units in which

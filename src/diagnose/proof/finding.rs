@@ -6,6 +6,7 @@ use super::unseen::FindingProof;
 use crate::diagnose::evidence::locate::EquationShare;
 pub use crate::diagnose::evidence::push::PUSH;
 use crate::diagnose::evidence::push::Window;
+use crate::diagnose::settings::MATERIAL_SHARE;
 use crate::physics::Kind;
 use serde::Serialize;
 
@@ -108,9 +109,11 @@ pub fn are_times(amplitudes: &[Amplitude]) -> bool {
 }
 
 impl Finding {
-    /// Whether it was withdrawn as immaterial for a clock's sake, that it is off by less than is resolved.
-    pub fn is_unresolved_clock(&self) -> bool {
-        self.grade == Grade::Immaterial && self.kind == Kind::Sensor && are_times(&self.parameters)
+    /// Whether it was withdrawn as immaterial because it is a time less than is resolved: a clock, or a lag that else would change predictions
+    /// enough to matter.
+    pub fn is_unresolved(&self) -> bool {
+        let matters = self.change.is_some_and(|change| change >= MATERIAL_SHARE);
+        self.grade == Grade::Immaterial && are_times(&self.parameters) && (self.kind == Kind::Sensor || matters)
     }
 }
 

@@ -79,8 +79,10 @@ pub struct FindingTests {
     pub isolated: f64,
     /// By how much it changes predictions of the training runs, as a share of the error there is, in the channel where that is most.
     pub change: f64,
-    /// The least time in its interval by which it shifts a sensor's clock, in sample periods, where it does so.
-    pub shift: Option<f64>,
+    /// Whether a size of it ended at the limit of what such a size can be.
+    pub at_limit: bool,
+    /// The least time in its interval by which it shifts a sensor's clock or an actuator's answer, where it does so.
+    pub shift: Option<Shift>,
     /// For a clock and for an actuator, the share of its gain in log-posterior that explicit Euler steps of one sample period take over; 0
     /// for all else.
     pub by_steps: f64,
@@ -104,11 +106,26 @@ impl FindingTests {
         refute(&[self.likelihood, self.prediction, self.agreement])
     }
 
-    /// Whether it is too small to matter: a clock by the sensor's own resolution, all else by how little it changes predictions. A position
-    /// that is late by many samples is off by less than a free simulation is after a minute, and late all the same.
+    /// Whether it is too small to matter: a clock by the sensor's own resolution, a lag by that or by how little it changes predictions, all
+    /// else by the latter. A position that is late by many samples is off by less than a free simulation is after a minute, and late all the
+    /// same.
     fn is_immaterial(&self) -> bool {
-        self.shift.map_or(self.change < MATERIAL_SHARE, |s| s < RESOLVED_SAMPLES)
+        let unchanged = self.change < MATERIAL_SHARE;
+        match self.shift {
+            None => unchanged,
+            Some(Shift::OfClock(s)) => s < RESOLVED_SAMPLES,
+            Some(Shift::OfLag(s)) => s < RESOLVED_SAMPLES || unchanged,
+        }
     }
+}
+
+/// The least time by which something is late, in sample periods of the recordings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shift {
+    /// A sensor's clock.
+    OfClock(f64),
+    /// An actuator's answer.
+    OfLag(f64),
 }
 
 /// Whether unseen runs are worse beyond chance by one measure.
@@ -166,9 +183,10 @@ pub fn grade(tests: &FindingTests) -> Grade {
         Grade::NotIsolated
     } else if tests.by_steps > 1.0 - FORM_TOLERANCE {
         Grade::EulerSteps
-    } else if proved {
+    } else if proved && !tests.at_limit {
         Grade::Confirmed
     } else {
+        // At the limit of what it can be it stands for a part of something else.
         Grade::Suspected
     }
 }
@@ -186,6 +204,7 @@ mod tests {
             excludes_zero: true,
             isolated: 1.0,
             change: 0.5,
+            at_limit: false,
             shift: None,
             by_steps: 0.0,
             likelihood: BETTER,
@@ -233,8 +252,8 @@ mod tests {
     fn a_clock_matters_by_its_resolution_and_all_else_by_what_it_changes() {
         let small = FindingTests { change: 0.01, ..sound() };
         assert_eq!(grade(&small), Grade::Immaterial);
-        assert_eq!(grade(&FindingTests { shift: Some(6.0), ..small }), Grade::Confirmed);
-        assert_eq!(grade(&FindingTests { shift: Some(0.3), ..sound() }), Grade::Immaterial);
+        assert_eq!(grade(&FindingTests { shift: Some(Shift::OfClock(6.0)), ..small }), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { shift: Some(Shift::OfClock(0.3)), ..sound() }), Grade::Immaterial);
     }
 
     #[test]
@@ -289,13 +308,25 @@ mod tests {
         assert_eq!(grade(&FindingTests { change: 0.049, ..sound() }), Grade::Immaterial);
         assert_eq!(grade(&FindingTests { change: 0.05, ..sound() }), Grade::Confirmed);
         // A clock that is off by less than half a sample.
-        assert_eq!(grade(&FindingTests { shift: Some(0.49), ..sound() }), Grade::Immaterial);
-        assert_eq!(grade(&FindingTests { shift: Some(0.5), ..sound() }), Grade::Confirmed);
+        assert_eq!(grade(&FindingTests { shift: Some(Shift::OfClock(0.49)), ..sound() }), Grade::Immaterial);
+        assert_eq!(grade(&FindingTests { shift: Some(Shift::OfClock(0.5)), ..sound() }), Grade::Confirmed);
+        // What unseen runs prove at the limit of what it can be is another law's.
+        assert_eq!(grade(&FindingTests { at_limit: true, ..sound() }), Grade::Suspected);
+        // A lag by that, and by how little it changes.
+        for (change, late, wanted) in
+            [(0.5, 0.49, Grade::Immaterial), (0.04, 0.6, Grade::Immaterial), (0.5, 0.6, Grade::Confirmed)]
+        {
+            let lag = FindingTests { change, shift: Some(Shift::OfLag(late)), ..sound() };
+            assert_eq!(grade(&lag), wanted);
+        }
         // One that steps of a coarse simulation explain as well.
-        let clock = FindingTests { shift: Some(1.0), ..sound() };
+        let clock = FindingTests { shift: Some(Shift::OfClock(1.0)), ..sound() };
         assert_eq!(grade(&FindingTests { by_steps: 0.89, ..clock }), Grade::Confirmed);
         assert_eq!(grade(&FindingTests { by_steps: 0.91, ..clock }), Grade::EulerSteps);
-        assert_eq!(grade(&FindingTests { by_steps: 0.91, shift: Some(0.49), ..clock }), Grade::Immaterial);
+        assert_eq!(
+            grade(&FindingTests { by_steps: 0.91, shift: Some(Shift::OfClock(0.49)), ..clock }),
+            Grade::Immaterial
+        );
         assert!([Grade::Immaterial, Grade::EulerSteps].iter().all(|g| g.may_be_carried() && !g.is_named()));
         assert!([Grade::Refuted, Grade::Suspected, Grade::Undetermined].iter().all(|g| !g.may_be_carried()));
         // What is too small to matter is not refuted either, but it is not kept against the unseen runs.

@@ -3,10 +3,11 @@
 
 use super::describe::{Intervals, mechanism_finding, push_finding, sensor_findings};
 use super::finding::{Amplitude, Finding, are_times};
-use super::grade::{FindingTests, Grade, grade};
+use super::grade::{FindingTests, Grade, Shift, grade};
 use super::influence::{Following, change};
 use super::prove::mean_cvdm;
 use super::unseen::{FindingProof, agreement};
+use crate::diagnose::evidence::candidate::{Candidate, Extent};
 use crate::diagnose::search::base::Question;
 use crate::diagnose::search::event::BaseTests;
 use crate::diagnose::search::problem::Problem;
@@ -85,7 +86,8 @@ fn weight(
         excludes_zero: intervals.excludes_zero(found, candidate, &of.extent),
         isolated: isolated(tests, of),
         change: change(&fit.runs, &predict_all(&without.model, &fit.runs, fit.integration), with),
-        shift: (candidate.mechanism.kind == Kind::Sensor).then(|| shift(&amplitudes, &fit.runs)).flatten(),
+        at_limit: is_at_limit(&amplitudes, found, candidate, &of.extent),
+        shift: shift(candidate.mechanism.kind, &amplitudes, &fit.runs),
         by_steps: 0.0,
         likelihood: proof.as_ref().and_then(FindingProof::likelihood),
         prediction: proof.as_ref().and_then(FindingProof::prediction),
@@ -140,12 +142,26 @@ fn by_steps(question: &Question, kept: &Kept, without: &Estimate) -> f64 {
     if gain > 0.0 { ((settled(&coarse, without) - base) / gain).max(0.0) } else { 0.0 }
 }
 
-/// The least time by which a clock is off, in sample periods of the recordings: the end of its interval that is nearer to zero, of the
-/// largest of its parameters; `None` for what is no time.
-fn shift(amplitudes: &[Amplitude], runs: &[Run]) -> Option<f64> {
+/// Whether a size of a mechanism is at the limit of what such a size can be, other than nothing: within its standard error of it.
+fn is_at_limit(amplitudes: &[Amplitude], found: &Estimate, candidate: &Candidate, extent: &Extent) -> bool {
+    let places = candidate.positions(&found.free, extent);
+    amplitudes.iter().zip(places).any(|(a, i)| {
+        let p = &found.model.parameters[found.free[i].column.parameter];
+        p.upper > 0.0 && p.upper - a.value < a.error || p.lower < 0.0 && a.value - p.lower < a.error
+    })
+}
+
+/// The least time by which a clock is off or an actuator late, in sample periods of the recordings: the end of its interval that is nearer to
+/// zero, of the largest of its parameters; `None` for what is no time.
+fn shift(kind: Kind, amplitudes: &[Amplitude], runs: &[Run]) -> Option<Shift> {
     let period = median(runs.iter().map(|r| r.recorded_dt))?;
     let least = |a: &Amplitude| f64::max(a.ci95[0], -a.ci95[1]).max(0.0);
-    are_times(amplitudes).then(|| amplitudes.iter().map(least).fold(0.0, f64::max) / period)
+    let periods = are_times(amplitudes).then(|| amplitudes.iter().map(least).fold(0.0, f64::max) / period)?;
+    match kind {
+        Kind::Sensor => Some(Shift::OfClock(periods)),
+        Kind::Actuator => Some(Shift::OfLag(periods)),
+        Kind::Environment | Kind::Ship => None,
+    }
 }
 
 /// The mechanism that is withdrawn first: of those that their grade neither names nor keeps in the model, the one that gains least on
@@ -282,6 +298,7 @@ mod tests {
             excludes_zero: true,
             isolated: 1.0,
             change: 1.0,
+            at_limit: false,
             shift: None,
             by_steps: 0.0,
             likelihood,
@@ -331,9 +348,14 @@ mod tests {
         let runs = runs(&model(), 3);
         let of = |unit: &str, value: f64| Amplitude::within("a.b".into(), value, unit, 0.1, 2.0);
         // The sample period is 3 s, and the interval of -0.8 s reaches to -0.6 s.
-        assert!((shift(&[of("s", -0.8), of("s", 0.3)], &runs).unwrap() - 0.2).abs() < 1e-12);
-        assert_eq!(shift(&[of("s", 0.1)], &runs), Some(0.0));
-        assert_eq!(shift(&[of("s", 0.6), of("m", 0.3)], &runs), None);
-        assert_eq!(shift(&[], &runs), None);
+        let Some(Shift::OfClock(late)) = shift(Kind::Sensor, &[of("s", -0.8), of("s", 0.3)], &runs) else {
+            panic!("a clock")
+        };
+        assert!((late - 0.2).abs() < 1e-12);
+        assert_eq!(shift(Kind::Sensor, &[of("s", 0.1)], &runs), Some(Shift::OfClock(0.0)));
+        assert_eq!(shift(Kind::Actuator, &[of("s", 0.1)], &runs), Some(Shift::OfLag(0.0)));
+        assert_eq!(shift(Kind::Ship, &[of("s", 0.8)], &runs), None);
+        assert_eq!(shift(Kind::Sensor, &[of("s", 0.6), of("m", 0.3)], &runs), None);
+        assert_eq!(shift(Kind::Sensor, &[], &runs), None);
     }
 }

@@ -10,8 +10,8 @@ use crate::diagnose::evidence::forces::only_cancels;
 use crate::diagnose::evidence::kinematic::{agreements, gain};
 use crate::diagnose::evidence::wald::Wald;
 use crate::diagnose::settings::{
-    Effort, FORM_TOLERANCE, IMPLAUSIBLE, INDISTINGUISHABLE, LIKENESS, PARAMETER_PRICE, REFIT, REMAINDER,
-    RESOLVED_SAMPLES, RIVAL_GAP, RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES,
+    Effort, FORM_TOLERANCE, INDISTINGUISHABLE, LIKENESS, PARAMETER_PRICE, REFIT, REMAINDER, RESOLVED_SAMPLES,
+    RIVAL_GAP, RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES,
 };
 use crate::likelihood::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
 use crate::likelihood::noise::Noise;
@@ -166,14 +166,6 @@ struct Refit {
     value: f64,
 }
 
-/// Why no mechanism is selected.
-enum Rejection {
-    /// The refit does not confirm what the score test of the leader promised, or the leader only cancels another parameter.
-    Unconfirmed,
-    /// The gain is confirmed, but the leader's own coefficients are not where such coefficients are: another mechanism's force.
-    Implausible,
-}
-
 /// The comparison of refitted hypotheses on one ranking.
 struct Competition<'a> {
     screen: &'a Screen,
@@ -238,14 +230,6 @@ impl Competition<'_> {
         corrected(p, self.tried.max(1) as f64) < settings.alpha && !only_cancels(c, estimate, runs)
     }
 
-    /// Whether the mechanism's companions stayed where such coefficients are.
-    fn is_plausible(&self, Refit { hypothesis, estimate, .. }: &Refit) -> bool {
-        let companions = self.problem.candidates[hypothesis.candidate].companions(&estimate.model);
-        let stayed =
-            |f: &FreeParameter| f.prior.is_none_or(|p| (f.value(&estimate.model) - p.mean).abs() <= IMPLAUSIBLE * p.sd);
-        estimate.free.iter().all(|f| !companions.contains(&f.column.parameter) || stayed(f))
-    }
-
     /// A hypothesis refitted from where a model stands, to convergence.
     fn settled(&self, hypothesis: Hypothesis, model: &Model, free: &[FreeParameter], noise: &Noise) -> Refit {
         let estimate = self.problem.estimate(model, free, noise, SETTLE);
@@ -297,25 +281,26 @@ impl Competition<'_> {
         (is_shown && self.is_confirmed(&found)).then(|| self.selected(self.pooled(found), true, p, set, why))
     }
 
-    /// Refits the leader of a ranking and its rivals, and returns the best with its confidence set.
-    fn best(&self, leaders: &[&Row]) -> Result<(Selected, Estimate), Rejection> {
+    /// Refits the leader of a ranking and its rivals, and returns the best with its confidence set; `None` where there is no leader or no refit
+    /// confirms what its test promised.
+    fn best(&self, leaders: &[&Row]) -> Option<(Selected, Estimate)> {
         let candidates = self.problem.candidates;
-        let mut first = Hypothesis::of(leaders.first().ok_or(Rejection::Unconfirmed)?);
+        let mut first = Hypothesis::of(leaders.first()?);
         let mut rivals = rivals(self.screen, leaders, candidates);
         let alike = self.told_by_sensors(&mut first, &mut rivals);
         let (leader, p) = (first.candidate, first.p);
         let first = self.refit(first, &self.current.noise, SETTLE, f64::NEG_INFINITY);
-        let (confirmed, noise) = (self.is_confirmed(&first), first.estimate.noise);
+        let noise = first.estimate.noise;
         let mut refitted = Vec::new();
         let mut least = f64::NEG_INFINITY;
-        if confirmed && self.is_plausible(&first) {
+        if self.is_confirmed(&first) {
             // A rival that stays further behind a leader than any set is wide changes nothing.
             least = first.value - form_tolerance(first.value - self.current.log_posterior);
             refitted.push(first);
         }
         for rival in rivals {
             let rival = self.refit(rival, &noise, REFIT, least);
-            if rival.value < least || (self.is_plausible(&rival) && self.is_confirmed(&rival)) {
+            if rival.value < least || self.is_confirmed(&rival) {
                 refitted.push(rival);
             }
         }
@@ -327,11 +312,7 @@ impl Competition<'_> {
             };
             Entry { place, value: r.value, tolerance, stand_in: m.stand_in }
         };
-        let ranking = Ranking::new(refitted.iter().enumerate().map(entry).collect()).ok_or(if confirmed {
-            Rejection::Implausible
-        } else {
-            Rejection::Unconfirmed
-        })?;
+        let ranking = Ranking::new(refitted.iter().enumerate().map(entry).collect())?;
         let candidate = |e: &Entry| refitted[e.place].hypothesis.candidate;
         let mut set: Vec<usize> = ranking.set().iter().map(candidate).collect();
         let mut why = self.why(&ranking, &candidate, least);
@@ -347,7 +328,7 @@ impl Competition<'_> {
         }
         let winner = refitted.swap_remove(ranking.entries[0].place);
         let is_settled = winner.hypothesis.candidate == leader;
-        Ok(self.selected(self.pooled(winner), is_settled, p, set, why))
+        Some(self.selected(self.pooled(winner), is_settled, p, set, why))
     }
 
     /// A clock with one value in all sessions, where those of the sessions differ by less than is resolved: that they differ would be
@@ -455,29 +436,17 @@ pub fn compare(
     current: &Estimate,
     problem: Problem,
 ) -> Option<(Selected, Estimate)> {
-    Competition { screen, current, problem, tried: leaders.len() }.best(leaders).ok()
+    Competition { screen, current, problem, tried: leaders.len() }.best(leaders)
 }
 
-/// A mechanism whose gain the refit confirms, and whose own coefficients are not where such coefficients are: something acts, and not
-/// by this law.
-#[derive(Clone, Debug)]
-pub struct Rejected {
-    /// Index into the candidates.
-    pub candidate: usize,
-    /// Corrected p-value of its score test.
-    pub p: f64,
-}
-
-/// The first error of a sensor that a refit confirms: what the sensors show of each other comes before all that can be said of the ship.
-/// Else as [`compare`]; where the leader's own coefficients are implausible, it goes to `rejected` and the next mechanism that is unlike
-/// it leads.
+/// The first error of a sensor that a refit confirms: what the sensors show of each other comes before all that can be said of the ship. Else
+/// as [`compare`].
 pub fn compete(
     screen: &Screen,
-    mut leaders: Vec<&Row>,
+    leaders: &[&Row],
     sensors: Vec<Leading>,
     current: &Estimate,
     problem: Problem,
-    rejected: &mut Vec<Rejected>,
     progress: &dyn Fn(&str),
 ) -> Option<(Selected, Estimate)> {
     let refitting = |i: usize| progress(&format!("refitting with {}", problem.candidates[i].mechanism.title));
@@ -490,17 +459,8 @@ pub fn compete(
             return shown;
         }
     }
-    loop {
-        let (leader, p) = leaders.first().map(|r| (r.candidate, r.p))?;
-        refitting(leader);
-        match (Competition { screen, current, problem, tried: leaders.len() }).best(&leaders) {
-            Ok(outcome) => return Some(outcome),
-            Err(Rejection::Unconfirmed) => return None,
-            Err(Rejection::Implausible) => {}
-        }
-        rejected.push(Rejected { candidate: leader, p });
-        leaders.retain(|r| r.candidate != leader && screen.likeness(leader, r.candidate) < LIKENESS);
-    }
+    refitting(leaders.first()?.candidate);
+    compare(screen, leaders, current, problem)
 }
 
 #[cfg(test)]

@@ -144,9 +144,8 @@ impl Opening {
             let present = tests.present();
             let beside = Beside { present: &present, selected: &[], nothing_else: true };
             let leaders = eligible(&tests.screen, &tests.candidates, beside, settings);
-            // What is rejected here is tried again by the selection.
             let (estimate, sensors) = (&tests.fit.estimate, leading(&tests.fit.estimate, problem, beside));
-            compete(&tests.screen, leaders, sensors, estimate, problem, &mut Vec::new(), question.progress)
+            compete(&tests.screen, &leaders, sensors, estimate, problem, question.progress)
         };
         let left =
             |(_, found): &(Selected, Estimate)| tests.search.push(found, problem.runs).map_or(0.0, |p| p.statistic);

@@ -2,7 +2,7 @@
 //! of those in whose place another explains more. Tests and refits are in other files; the verdict is not made here.
 
 use super::base::Question;
-use super::compete::{Rejected, amplitudes, compare, compete, form_tolerance};
+use super::compete::{amplitudes, compare, compete, form_tolerance};
 use super::decide::is_euler;
 use super::eligible::{Beside, Further, eligible, may_be_further, may_be_named};
 use super::event::{BaseTests, Opening};
@@ -27,8 +27,6 @@ pub struct Selection {
     pub push: Option<Push>,
     /// The mechanisms, in the order in which they were found.
     pub mechanisms: Vec<Selected>,
-    /// Mechanisms that led and whose own coefficients were implausible.
-    pub rejected: Vec<Rejected>,
     /// The estimate with them; that of the base model without any.
     pub estimate: Estimate,
     /// The score tests at that estimate, where they were made and none led to a further mechanism.
@@ -39,7 +37,7 @@ impl Selection {
     /// Selects mechanisms one after the other while a further one may be named. Recordings with a wrong unit or sign give none.
     pub fn new(question: &Question, Opening { tests, push, mut first }: Opening) -> Self {
         let estimate = tests.fit.estimate.clone();
-        let mut out = Self { tests, push, mechanisms: Vec::new(), rejected: Vec::new(), estimate, latest: None };
+        let mut out = Self { tests, push, mechanisms: Vec::new(), estimate, latest: None };
         if out.tests.is_blocked() {
             return out;
         }
@@ -72,7 +70,7 @@ impl Selection {
         let beside = Beside { present: &present, selected: &self.mechanisms, nothing_else };
         let leaders = eligible(screen, problem.candidates, beside, question.settings);
         let sensors = leading(&self.estimate, problem, beside);
-        let next = compete(screen, leaders, sensors, &self.estimate, problem, &mut self.rejected, question.progress);
+        let next = compete(screen, &leaders, sensors, &self.estimate, problem, question.progress);
         if next.is_none() {
             self.latest = latest;
         }

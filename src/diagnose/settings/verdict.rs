@@ -27,8 +27,6 @@ numbers! {
     INDISTINGUISHABLE: f64 = 3.0, "a likelihood ratio of 20";
     /// That difference as a share of the gain of a force or of the ship's own physics, whose law is known only so well.
     FORM_TOLERANCE: f64 = 0.1, SEEDS;
-    /// Prior standard deviations that a mechanism's own coefficients may be off before its force is another mechanism's.
-    IMPLAUSIBLE: f64 = 2.0, CUSTOM;
     /// Share of the runs that a push is expected to act in beforehand.
     PUSH_PRIOR: f64 = 0.2, SEEDS;
     /// Share of the error of predictions that a finding must change, in one channel at least, to matter.

@@ -49,6 +49,10 @@ pub struct ColumnMap {
     /// Axes in which the columns `u` and `v` (and `u_water`, `v_water`) are given.
     #[serde(default)]
     pub velocity_frame: VelocityFrame,
+    /// Whether the columns `u` and `v` were made from a velocity over ground (SOG and COG, or north and east) and the recorded heading, so
+    /// that an error of the heading turns them.
+    #[serde(default)]
+    pub velocity_by_heading: bool,
     /// What the columns `u` and `v` are relative to.
     #[serde(default)]
     pub speed: SpeedReference,
@@ -336,6 +340,12 @@ impl<'de> Deserialize<'de> for Column {
 }
 
 impl ColumnMap {
+    /// Whether an error of the recorded heading turns u and v: they were made with it before they were recorded, or are here.
+    pub fn turns_with_heading(&self) -> bool {
+        let derived = self.derive.iter().any(|d| matches!(d, Derived::U | Derived::V));
+        self.velocity_by_heading || self.velocity_frame == VelocityFrame::Earth || derived
+    }
+
     /// Reads and checks a column map.
     ///
     /// # Errors
@@ -468,6 +478,13 @@ mod tests {
 
     fn parse(text: &str) -> Result<ColumnMap, String> {
         ColumnMap::parse(text, Path::new("columns.toml")).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn an_error_of_the_heading_turns_velocities_that_were_made_with_it() {
+        let of = |text: &str| ColumnMap::parse(text, Path::new("columns.toml")).unwrap().turns_with_heading();
+        assert!(!of("") && !of("velocity_frame = \"body\"\nderive = [\"r\"]"));
+        assert!(of("velocity_frame = \"earth\"") && of("derive = [\"u\", \"v\"]") && of("velocity_by_heading = true"));
     }
 
     #[test]

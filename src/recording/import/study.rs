@@ -75,7 +75,10 @@ fn columns(imported: &Imported, origins: &Origins<'_>) -> String {
         let sentence = format!("{} is column `{}` in {}: {}", taken.quantity, taken.column, taken.unit, taken.evidence);
         let _ = writeln!(text, "#   {}", line(&sentence));
     }
-    let _ = writeln!(text, "# {}.", imported.velocity);
+    let _ = writeln!(text, "# {}.", imported.velocity.words);
+    if imported.velocity.by_heading {
+        text.push_str("# An error of the heading is in them.\nvelocity_by_heading = true\n");
+    }
     if let Some([latitude, longitude]) = imported.origin {
         let _ = writeln!(text, "# x = 0, y = 0 is at latitude {latitude}, longitude {longitude} (deg, WGS84).");
     }

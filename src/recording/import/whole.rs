@@ -59,7 +59,7 @@ pub struct Imported {
     /// Point of the tangent plane, latitude and longitude \[deg\].
     pub origin: Option<[f64; 2]>,
     /// Where u and v are from.
-    pub velocity: &'static str,
+    pub velocity: Velocity,
     /// Channels that the column map derives.
     pub derive: Vec<&'static str>,
     /// Channels that are written and not used, for want of values.
@@ -234,21 +234,31 @@ fn name_apart(recordings: &mut [ImportedRecording]) {
     }
 }
 
+/// Where u and v are from.
+#[derive(Clone, Copy, Debug)]
+pub struct Velocity {
+    /// In words.
+    pub words: &'static str,
+    /// Whether they were made with the recorded heading, so that its error is in them.
+    pub by_heading: bool,
+}
+
 /// Which channels are to be derived, and where the velocity is from.
-fn derived(signals: &Signals, recordings: &[ImportedRecording]) -> (Vec<&'static str>, &'static str) {
+fn derived(signals: &Signals, recordings: &[ImportedRecording]) -> (Vec<&'static str>, Velocity) {
     let has = |channel| recordings.iter().all(|r| r.rows.channels.iter().any(|(c, _)| *c == channel));
+    let turned = |words| Velocity { words, by_heading: true };
     let mut derive = Vec::new();
     let velocity = if has(Channel::U) && has(Channel::V) {
         let own = signals.by.contains_key(&Meaning::Channel(Channel::U));
         let parts = signals.by.contains_key(&Meaning::VelocityNorth);
         match (own, parts) {
-            (true, _) => "u and v are the recorded ones",
-            (_, true) => "u and v are the velocities to the north and east, turned by the heading",
-            _ => "u = SOG cos(COG - heading), v = SOG sin(COG - heading): over ground, at the antenna",
+            (true, _) => Velocity { words: "u and v are the recorded ones", by_heading: false },
+            (_, true) => turned("u and v are the velocities to the north and east, turned by the heading"),
+            _ => turned("u = SOG cos(COG - heading), v = SOG sin(COG - heading): over ground, at the antenna"),
         }
     } else {
         derive.extend(["u", "v"]);
-        "u and v are derived from position and heading: over ground, at the antenna"
+        turned("u and v are derived from position and heading: over ground, at the antenna")
     };
     if !has(Channel::R) {
         derive.push("r");

@@ -125,7 +125,7 @@ fn withdrawn_because(f: &Finding) -> &'static str {
         Grade::RefutedTogether => {
             "all findings together predict unseen runs significantly worse, and it improves them least"
         }
-        Grade::Immaterial if f.is_unresolved_clock() => "it is measurable, and less than half a sample period",
+        Grade::Immaterial if f.is_unresolved() => "it is measurable, and less than half a sample period",
         Grade::Immaterial => "it is measurable, and too small to matter",
         Grade::NotIsolated => {
             "on the headings that were sailed the ship's own parameters and its sensors (a side force, trim, resistance, the zero \
