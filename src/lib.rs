@@ -55,9 +55,11 @@
 //! |---|---|---|
 //! | `ipopt` | `fit`, and the refit of a diagnosis' result | no C++ dependency; a diagnosis keeps its own estimate by Fisher scoring |
 //! | `plot` | `plot`, figures and the HTML page of a diagnosis | tables, summaries in words and JSON remain |
-//! | `cli` | the command `trimtab`; needs the two others | the library alone |
+//! | `parquet` | logs in Parquet files; off by default | CSV and NMEA 0183, and a message with the line that adds it |
+//! | `cli` | the command `trimtab`; needs `ipopt` and `plot` | the library alone |
 //!
-//! All are on by default; `default-features = false` leaves simulation, trials, sensitivities, audit, evaluation and diagnosis.
+//! All but `parquet` are on by default; `default-features = false` leaves simulation, trials, sensitivities, audit, evaluation and
+//! diagnosis.
 //!
 //! # What to set in your own project
 //!

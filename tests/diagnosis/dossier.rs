@@ -41,6 +41,9 @@ fn fresh(name: &str) -> PathBuf {
 static CASE: LazyLock<PathBuf> = LazyLock::new(|| {
     let folder = fresh("dossier");
     write_study(&folder, 16, [0.2, 0.1]);
+    // Trials in steps of a tenth of a ship length: their numbers must agree, and need not be exact.
+    let study = read(&folder.join("study.toml")) + "\n[maneuver]\nstep = 1.0\n";
+    std::fs::write(folder.join("study.toml"), study).unwrap();
     done(&folder, &["fit", "study.toml", "--out", "fit"]);
     let model = ["--model", "fit/fitted.toml"];
     done(&folder, &[&["diagnose", "study.toml", "--out", "diagnosis", "--once"][..], &model].concat());

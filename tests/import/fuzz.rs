@@ -299,8 +299,12 @@ proptest! {
     }
 }
 
-/// Logs that loggers and other programs wrote: NMEA 0183, Parquet of two programs, and the example as text.
-const LOGS: [&str; 4] = ["logger.nmea", "pyarrow.parquet", "polars.parquet", "log.csv"];
+/// Logs that loggers and other programs wrote: NMEA 0183, the example as text, and Parquet of two programs.
+#[cfg(feature = "parquet")]
+const LOGS: [&str; 4] = ["logger.nmea", "log.csv", "pyarrow.parquet", "polars.parquet"];
+/// Logs that loggers and other programs wrote: NMEA 0183, and the example as text.
+#[cfg(not(feature = "parquet"))]
+const LOGS: [&str; 2] = ["logger.nmea", "log.csv"];
 
 fn log(which: usize) -> Vec<u8> {
     let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(LOGS[which]);

@@ -480,6 +480,7 @@ fn sentences_of_nmea_come_back_as_sailed() {
     assert!(channel(&imported, 0, Channel::Psi)[0].is_nan());
 }
 
+#[cfg(feature = "parquet")]
 fn parquet(path: &Path) {
     use parquet::data_type::{DoubleType, Int64Type};
     use parquet::file::writer::SerializedFileWriter;
@@ -519,6 +520,7 @@ fn parquet(path: &Path) {
     file.close().unwrap();
 }
 
+#[cfg(feature = "parquet")]
 #[test]
 fn a_parquet_file_comes_back_as_sailed() {
     let folder = tempfile::tempdir().unwrap();
@@ -529,10 +531,35 @@ fn a_parquet_file_comes_back_as_sailed() {
     assert!(channel(&imported, 0, Channel::X)[3].is_nan() && channel(&imported, 0, Channel::U)[3].is_finite());
 }
 
+#[cfg(feature = "parquet")]
+#[test]
+fn a_damaged_parquet_file_is_refused() {
+    let study = Study::new();
+    study.write("log.parquet", "PAR1abc");
+    contains_all(
+        &study.refuses(&["import", "log.parquet", "--out", "own"]),
+        &["log.parquet: cannot be read as Parquet"],
+    );
+}
+
+#[cfg(not(feature = "parquet"))]
+#[test]
+fn a_parquet_file_is_refused_with_the_line_that_adds_its_reader() {
+    let study = Study::new();
+    std::fs::copy(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/polars.parquet"),
+        study.path("log.parquet"),
+    )
+    .unwrap();
+    let said = study.refuses(&["import", "log.parquet", "--out", "own"]);
+    contains_all(&said, &["log.parquet: is a Parquet file", "cargo build --release --features parquet", "log.csv"]);
+}
+
 /// Written by `tests/fixtures/make_logs.py` with pynmea2, pyarrow and polars: a turn to starboard at 1 deg/s and 10 kn.
 #[test]
 fn logs_of_other_programs_are_read() {
-    for name in ["logger.nmea", "pyarrow.parquet", "polars.parquet"] {
+    let names = ["logger.nmea", "pyarrow.parquet", "polars.parquet"];
+    for name in names.into_iter().filter(|name| cfg!(feature = "parquet") || !name.ends_with("parquet")) {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(name);
         let imported = import(&[path], &ImportSettings::default()).unwrap();
         assert_eq!(imported.recordings.len(), 1, "{name}");
@@ -716,7 +743,7 @@ fn a_study_and_a_recording_are_split_anew() {
 #[test]
 fn mistakes_are_mended_from_the_message() {
     let log = csv(0.0, |t| t < 900.0, |_| true);
-    let cases: [(&str, &[&str], &[&str]); 9] = [
+    let cases: [(&str, &[&str], &[&str]); 8] = [
         (
             &log.replace("Rudder angle", "fb1").replace("Shaft RPM", "fb2"),
             &[],
@@ -733,7 +760,6 @@ fn mistakes_are_mended_from_the_message() {
         (&log, &["--antenna", "3"], &["metres forward and to starboard"]),
         ("a,b\n1,2\n3,4\n", &[], &["no column is a time", "--column t=NAME"]),
         ("", &[], &["is empty"]),
-        ("PAR1abc", &[], &["cannot be read as Parquet"]),
     ];
     for (text, flags, expected) in cases {
         let study = Study::new();

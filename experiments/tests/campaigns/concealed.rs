@@ -1,4 +1,4 @@
-//! The concealed cases of every push: 40 of the campaign's, diagnosed by the program in a process of its own, and judged.
+//! The concealed cases of every push: 20 of the campaign's, diagnosed by the program in a process of its own, and judged.
 //! The whole campaign measures the diagnosis; this test only stops a change that breaks it.
 
 use std::sync::Mutex;
@@ -9,18 +9,12 @@ use trimtab_experiments::conceal::campaign::plan::{PUSH_SEED, ci_slice, plan};
 use trimtab_experiments::conceal::judge::score::Score;
 use trimtab_experiments::conceal::runner::Runner;
 
-/// False alarms among the 10 nulls that no explicit Euler steps made.
-const MOST_FALSE_ALARMS: usize = 1;
-/// Effects seen among the 14 single ones, two of them on other hulls, at a signal-to-noise ratio of 12.
-const FEWEST_SEEN: usize = 11;
+/// Effects seen among the 6 single ones, at a signal-to-noise ratio of 12.
+const FEWEST_SEEN: usize = 5;
 /// Of these, with the right name first.
-const FEWEST_RIGHT: usize = 11;
+const FEWEST_RIGHT: usize = 5;
 /// Of these, with a right name in the confidence set.
-const FEWEST_IN_SET: usize = 11;
-/// Cases of any kind with one name given in confidence that is neither right nor near.
-const MOST_WRONG: usize = 1;
-/// Pairs and triples, of 3, with at least one right name and none wrong.
-const FEWEST_COMPOUND: usize = 2;
+const FEWEST_IN_SET: usize = 5;
 
 /// The number of cases with the answer yes, and the keys of those with the answer no.
 fn count(scores: &[Score], of: impl Fn(&Score) -> Option<bool>) -> (usize, Vec<String>) {
@@ -29,7 +23,7 @@ fn count(scores: &[Score], of: impl Fn(&Score) -> Option<bool>) -> (usize, Vec<S
 }
 
 #[test]
-fn forty_concealed_cases_are_judged_well_enough() {
+fn twenty_concealed_cases_are_judged_well_enough() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let runner = Runner {
@@ -50,7 +44,7 @@ fn forty_concealed_cases_are_judged_well_enough() {
         })
         .unwrap();
     let scores = scores.into_inner().unwrap();
-    assert_eq!(scores.len(), 40);
+    assert_eq!(scores.len(), 20);
     let failed: Vec<String> = scores.iter().filter(|s| !s.error.is_empty()).map(|s| s.error.clone()).collect();
     assert!(failed.is_empty(), "without a score: {failed:?}");
 
@@ -58,8 +52,8 @@ fn forty_concealed_cases_are_judged_well_enough() {
     // Noisy recordings of explicit Euler steps look like late positions, and are called so: no recording tells one from the other.
     let measured: Vec<Score> = scores.iter().filter(|s| s.background != "euler").cloned().collect();
     let (quiet, alarms) = count(&measured, |s| s.false_alarm.map(|a| !a));
-    assert_eq!(quiet + alarms.len(), 10);
-    assert!(alarms.len() <= MOST_FALSE_ALARMS, "false alarms: {alarms:?}");
+    assert_eq!(quiet + alarms.len(), 7);
+    assert!(alarms.is_empty(), "false alarms: {alarms:?}");
     let (seen, missed) = count(&single, |s| s.detected);
     assert!(seen >= FEWEST_SEEN, "missed: {missed:?}");
     let (right, wrong) = count(&single, |s| s.first_right);
@@ -69,7 +63,8 @@ fn forty_concealed_cases_are_judged_well_enough() {
     let (_, named) = count(&scores, |s| s.absorbed_named.map(|n| !n));
     assert!(named.is_empty(), "absorbed effects named: {named:?}");
     let (_, wrong) = count(&scores, |s| s.wrong_confident.map(|w| !w));
-    assert!(wrong.len() <= MOST_WRONG, "wrong and confident: {wrong:?}");
+    assert!(wrong.is_empty(), "wrong and confident: {wrong:?}");
+    // Pairs with at least one right name and none wrong.
     let (pairs, spoilt) = count(&scores, |s| s.some_right_none_wrong);
-    assert!(pairs >= FEWEST_COMPOUND, "pairs and triples: {spoilt:?}");
+    assert!(pairs == 2 && spoilt.is_empty(), "pairs: {spoilt:?}");
 }

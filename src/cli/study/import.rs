@@ -34,7 +34,8 @@ Reads, by content and not by name:
               that starts again begins another recording
   NMEA 0183   RMC GGA GLL VTG HDT THS HDG HDM ROT RSA RPM VHW VBW MWV MWD VWR DPT ZDA; checksums are
               verified, a time before each sentence is used, and two talkers are two columns
-  Parquet     flat columns of numbers, timestamps or text
+  Parquet     flat columns of numbers, timestamps or text, if the program was built with
+              `cargo build --release --features parquet`
 
 The answer lists what each column is taken for, with the evidence. Of several columns for one quantity the one is \
     taken whose name says it most fully, and which agrees with the data. Units and signs are decided from the data \

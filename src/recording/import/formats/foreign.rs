@@ -4,12 +4,8 @@
 /// What a file begins with, what it is then, and what to do.
 const BEGINNINGS: [(&[u8], &str, &str); 19] = [
     (b"MATLAB 7.3", "a MATLAB 7.3 file", "write its table with `writetable(T, \"log.csv\")`"),
-    (
-        b"ARROW1",
-        "a Feather or Arrow file",
-        "write it as Parquet: `pandas.read_feather(FILE).to_parquet(\"log.parquet\")`",
-    ),
-    (b"FEA1", "a Feather file", "write it as Parquet: `pandas.read_feather(FILE).to_parquet(\"log.parquet\")`"),
+    (b"ARROW1", "a Feather or Arrow file", "write it as CSV: `pandas.read_feather(FILE).to_csv(\"log.csv\")`"),
+    (b"FEA1", "a Feather file", "write it as CSV: `pandas.read_feather(FILE).to_csv(\"log.csv\")`"),
     (b"ULog\x01\x12\x35", "a ULog of PX4", "write its topics as CSV with `ulog2csv FILE`"),
     (
         b"\xa3\x95\x80\x80",

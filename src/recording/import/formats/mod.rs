@@ -6,6 +6,7 @@ mod foreign;
 mod layout;
 mod marks;
 mod nmea;
+#[cfg(feature = "parquet")]
 mod parquet;
 pub(super) mod passes;
 pub(super) mod read;

@@ -23,11 +23,6 @@ const MOST_ROWS: i64 = 200_000_000;
 /// Values read at a time.
 const BATCH: usize = 65_536;
 
-/// Whether bytes are those of a Parquet file.
-pub fn is_parquet(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"PAR1")
-}
-
 /// A column of a table.
 struct Cells {
     name: String,

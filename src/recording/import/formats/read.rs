@@ -3,7 +3,8 @@
 
 use super::foreign::foreign;
 use super::nmea::{is_nmea, read_nmea};
-use super::parquet::{is_parquet, read_parquet};
+#[cfg(feature = "parquet")]
+use super::parquet::read_parquet;
 use super::text::read_text;
 use crate::files::written::bytes_of;
 use crate::recording::import::columns::choose::Choices;
@@ -38,4 +39,18 @@ pub fn read_bytes(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Lo
     } else {
         read_text(path, bytes, choices)
     }
+}
+
+/// Whether bytes are those of a Parquet file.
+fn is_parquet(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"PAR1")
+}
+
+/// A build without the decoders says how to add them.
+#[cfg(not(feature = "parquet"))]
+fn read_parquet(path: &Path, _bytes: &[u8], _choices: &Choices) -> Result<Vec<Log>, ImportError> {
+    let message = "is a Parquet file, which this build does not read; build it with `cargo build --release --features parquet` \
+                   (in a crate of your own: `cargo add trimtab --features parquet`), or write the log as CSV: \
+                   `pandas.read_parquet(FILE).to_csv(\"log.csv\")`";
+    Err(ImportError::File { path: path.to_owned(), message: message.to_owned() })
 }
