@@ -69,7 +69,9 @@ impl Study {
         let output = self.run(arguments);
         let (out, err) = (text(&output.stdout), text(&output.stderr));
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {err}");
-        assert_eq!(err, "", "{arguments:?}");
+        // A busy machine makes any work long, and long work says that it goes on.
+        let said: Vec<&str> = err.lines().filter(|line| !line.ends_with("s so far)")).collect();
+        assert!(said.is_empty(), "{arguments:?}: {err}");
         out
     }
 
