@@ -213,6 +213,7 @@ fn a_log_with_semicolons_and_decimal_commas_comes_back_as_sailed() {
     contains_all(&evidence("psi"), &["deg: ", "clockwise from north"]);
     contains_all(&evidence("r"), &["deg/min: ", "heading turns as ROT says", "clockwise positive"]);
     contains_all(&evidence("sog"), &["kn: ", "0.514"]);
+    assert!(imported.velocity.by_heading, "{}", imported.velocity.words);
     contains_all(&evidence("delta"), &["deg: ", "positive to port, turned"]);
     assert_eq!(imported.recordings[0].start.as_deref(), Some("2024-05-01 12:00:00"));
 }
@@ -249,6 +250,7 @@ fn units_and_senses_are_told_by_the_data() {
         let text = text(angle, anticlockwise, speed, rate, rudder);
         let imported = imported("log.csv", text.as_bytes(), &ImportSettings::default()).unwrap();
         assert_as_sailed(&imported, [1e-3, 1e-6, 1e-6, 1e-6, 1e-6, 1e-6]);
+        assert!(!imported.velocity.by_heading, "{}", imported.velocity.words);
     }
 }
 
@@ -684,6 +686,9 @@ fn from_a_noisy_log_to_a_fit_without_editing() {
 
     let written = std::fs::read_to_string(study.path("own/study.toml")).unwrap();
     contains_all(&written, &["integration = { method = \"rk4\" }"]);
+    // The compass is in velocities that were made of SOG, COG and heading.
+    let columns = std::fs::read_to_string(study.path("own/columns.toml")).unwrap();
+    contains_all(&columns, &["u = SOG cos(COG - heading)", "\nvelocity_by_heading = true\n"]);
     study.does(&["check", "own/study.toml"]);
     let fit = study.json(&["fit", "own/study.toml"]);
     assert_eq!(at(&fit, "result.converged"), true);

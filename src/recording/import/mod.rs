@@ -17,4 +17,4 @@ pub use error::ImportError;
 pub use formats::read::read_bytes;
 pub use rows::Rows;
 pub use study::{Origins, recording_csv, study_files};
-pub use whole::{ImportSettings, Imported, ImportedRecording, SESSION_GAP, import};
+pub use whole::{ImportSettings, Imported, ImportedRecording, SESSION_GAP, Velocity, import};
