@@ -247,7 +247,8 @@ impl<'t> Task<'t> {
         self.with_gains(posterior, priors, descent, rounds, shared)
     }
 
-    /// Rounds of gains and parameters with the noise as it is, until the objective falls no more, or no less than in the round before.
+    /// Rounds of gains and parameters with the noise as it is, until the objective falls no more. A measurement that is no outlier to the new gains
+    /// comes back, so that a round may fall by more than the one before.
     fn with_gains(
         &self,
         posterior: &Posterior,
@@ -256,7 +257,6 @@ impl<'t> Task<'t> {
         rounds: &mut Rounds,
         shared: &mut Shared,
     ) -> Result<Descent, FitError> {
-        let mut last = f64::INFINITY;
         for _ in 0..ROUNDS {
             if shared.watch.is_over() {
                 break;
@@ -271,11 +271,11 @@ impl<'t> Task<'t> {
             let fall = stage.total(p).zip(stage.total(&next.p)).map_or(f64::NAN, |(before, after)| before - after);
             let value = posterior.log_density(&next.p, noise);
             rounds.multipliers = next.optimum.as_ref().map(|(_, multipliers)| multipliers.clone());
-            if !(fall < last && value.is_finite()) {
+            if !(fall >= 0.0 && value.is_finite()) {
                 break;
             }
             rounds.reached = Reached { p: next.p.clone(), noise: *noise, value };
-            (descent, last) = (next, fall);
+            descent = next;
             if fall < LEFT {
                 break;
             }
