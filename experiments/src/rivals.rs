@@ -12,7 +12,6 @@ use trimtab::files::written::Mistake;
 use trimtab::fit::FitSettings;
 use trimtab::model::Model;
 use trimtab::recording::{Run, Split};
-use trimtab::ship::Ship;
 use trimtab::study::Study;
 
 use crate::conceal::error::ConcealError;
@@ -44,7 +43,7 @@ impl Content {
     pub fn read(study: &Path) -> Result<Self, ConcealError> {
         let fail = |e: &dyn std::fmt::Display| ConcealError::content(study, e);
         let content = Study::read(study).map_err(|e| fail(&e))?;
-        let ship = Ship::read(&content.ship).map_err(|e| fail(&e))?;
+        let ship = content.read_ship().map_err(|e| fail(&e))?;
         let model = Model::read(&content.model, ship).map_err(|e| fail(&e))?;
         let windows = content.windows(model.ship.hull.draught).map_err(|e| fail(&e))?.windows;
         let (train, held_out) = windows.into_iter().partition(|w| w.split == Split::Train);

@@ -81,19 +81,15 @@ impl Written {
     }
 }
 
-/// The models that are written, and the answer with the sizes that these have. What they do not tell from nothing is not named.
+/// The models that are written, and the answer with the sizes that these have. A finding whose intervals include zero there is not named.
 fn written_and_sized(question: &Question, mut answer: Answer, held_out: &[Run]) -> (Answer, Written) {
     loop {
         let written = Written::new(question, &answer);
-        let lost = if answer.findings.is_empty() {
-            Vec::new()
-        } else {
-            sized(&mut answer.findings, &answer.kept.selection, &written.found)
-        };
+        let lost = sized(&mut answer.findings, &answer.kept.selection, &written.found);
         if lost.is_empty() {
             return (answer, written);
         }
-        answer = answer.regraded(question, &lost, Grade::Undetermined, held_out);
+        answer = answer.regraded(question, &lost, Grade::Undetermined, held_out).with_law(question, held_out);
     }
 }
 

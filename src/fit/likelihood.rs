@@ -261,20 +261,13 @@ impl<'t> Task<'t> {
             if shared.watch.is_over() {
                 break;
             }
-            rounds.count += 1;
-            let Reached { p, noise, .. } = &rounds.reached;
-            let innovations = posterior.innovations(posterior.runs, *noise, p);
-            let evaluations = Evaluations::of(&innovations);
-            let stage = self.likelihood_stage(&evaluations, &innovations, priors);
-            let from = From { p, near: rounds.multipliers.is_some(), multipliers: rounds.multipliers.take() };
-            let next = self.descend(&stage, from, &mut Curvature::unknown(p.len()), shared)?;
-            let fall = stage.total(p).zip(stage.total(&next.p)).map_or(f64::NAN, |(before, after)| before - after);
-            let value = posterior.log_density(&next.p, noise);
-            rounds.multipliers = next.optimum.as_ref().map(|(_, multipliers)| multipliers.clone());
+            let (next, fall) = self.round(posterior, priors, None, rounds, shared)?;
+            let noise = rounds.reached.noise;
+            let value = posterior.log_density(&next.p, &noise);
             if !(fall >= 0.0 && value.is_finite()) {
                 break;
             }
-            rounds.reached = Reached { p: next.p.clone(), noise: *noise, value };
+            rounds.reached = Reached { p: next.p.clone(), noise, value };
             descent = next;
             if fall < LEFT {
                 break;
@@ -296,26 +289,43 @@ impl<'t> Task<'t> {
         let mut round = 0;
         loop {
             round += 1;
-            rounds.count += 1;
-            let Reached { p, noise, value: before } = &rounds.reached;
-            let innovations = posterior.innovations(posterior.runs, *noise, p);
-            let evaluations = Evaluations::of(&innovations);
-            let mut stage = self.likelihood_stage(&evaluations, &innovations, priors);
             let most = short.iter().find(|(until, _)| round <= *until).map(|(_, most)| *most);
-            stage.max_iterations = stage.max_iterations.min(most.unwrap_or(usize::MAX));
-            let from = From { p, near: rounds.multipliers.is_some(), multipliers: rounds.multipliers.take() };
-            let mut descent = self.descend(&stage, from, &mut Curvature::unknown(p.len()), shared)?;
+            let (mut descent, _) = self.round(posterior, priors, most, rounds, shared)?;
+            let Reached { noise, value: before, .. } = &rounds.reached;
             let next = posterior.reached(&descent.p, noise);
             let settled = most.is_none() && next.value - before < SETTLED;
             if next.value.is_finite() && (next.value >= *before || most.is_some() || round == 1) {
                 rounds.reached = next;
             }
-            rounds.multipliers = descent.optimum.as_ref().map(|(_, multipliers)| multipliers.clone());
             if settled || round >= ROUNDS || shared.watch.is_over() {
                 descent.p.clone_from(&rounds.reached.p);
                 return Ok(descent);
             }
         }
+    }
+
+    /// A round: gains made where the last one ended, and a solve with these, of `most` iterations at most. It gives where the solve ended and by
+    /// how much the objective fell, NaN where it has no value.
+    fn round(
+        &self,
+        posterior: &Posterior,
+        priors: &Priors,
+        most: Option<usize>,
+        rounds: &mut Rounds,
+        shared: &mut Shared,
+    ) -> Result<(Descent, f64), FitError> {
+        rounds.count += 1;
+        let Reached { p, noise, .. } = &rounds.reached;
+        let innovations = posterior.innovations(posterior.runs, *noise, p);
+        let evaluations = Evaluations::of(&innovations);
+        let mut stage = self.likelihood_stage(&evaluations, &innovations, priors);
+        stage.max_iterations = stage.max_iterations.min(most.unwrap_or(usize::MAX));
+        let from = From { p, near: rounds.multipliers.is_some(), multipliers: rounds.multipliers.take() };
+        let before = stage.total(p);
+        let descent = self.descend(&stage, from, &mut Curvature::unknown(p.len()), shared)?;
+        let fall = before.zip(stage.total(&descent.p)).map_or(f64::NAN, |(before, after)| before - after);
+        rounds.multipliers = descent.optimum.as_ref().map(|(_, multipliers)| multipliers.clone());
+        Ok((descent, fall))
     }
 
     /// A solve of the likelihood with gains held fixed.

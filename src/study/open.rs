@@ -170,13 +170,17 @@ impl Study {
     /// Reads the ship of the study; what the column maps of its recordings say of the velocities comes along.
     ///
     /// # Errors
-    /// [`ShipError`]; a column map that cannot be read is told where its recording is read.
+    /// [`ShipError`]; a column map that cannot be read is reported when its recording is read.
     pub fn read_ship(&self) -> Result<Ship, ShipError> {
         let mut ship = Ship::read(&self.ship)?;
-        let maps: BTreeSet<&PathBuf> = self.runs.iter().filter_map(|run| run.column_map.as_ref()).collect();
-        let turns = |path: &&PathBuf| ColumnMap::read(path).is_ok_and(|map| map.turns_with_heading());
-        ship.velocity_by_heading = maps.iter().any(turns);
+        let turns = |path: &Path| ColumnMap::read(path).is_ok_and(|map| map.turns_with_heading());
+        ship.velocity_by_heading = self.column_maps().into_iter().any(turns);
         Ok(ship)
+    }
+
+    /// The files of the column maps that runs name, each once.
+    pub fn column_maps(&self) -> BTreeSet<&Path> {
+        self.runs.iter().filter_map(|run| run.column_map.as_deref()).collect()
     }
 
     /// The column map of a run.

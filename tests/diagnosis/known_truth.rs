@@ -465,7 +465,7 @@ fn a_force_in_one_part_of_the_water_is_not_named_weather() {
 }
 
 #[test]
-fn after_a_rejected_leader_a_mechanism_that_explains_another_part_is_tested() {
+fn an_error_of_the_log_is_named_before_a_thruster_that_leads_the_ranking() {
     let base = model();
     let mut truth = base.clone();
     for term in ["thruster", "log_scale"] {

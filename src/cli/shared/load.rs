@@ -112,8 +112,7 @@ impl Loaded {
             settings::<PlanSettings>(&study, "plan").err(),
         ];
         errors.extend(tables.into_iter().flatten());
-        let maps: BTreeSet<&PathBuf> = study.runs.iter().filter_map(|run| run.column_map.as_ref()).collect();
-        let unread = maps.into_iter().filter_map(|map| ColumnMap::read(map).err());
+        let unread = study.column_maps().into_iter().filter_map(|map| ColumnMap::read(map).err());
         errors.extend(unread.map(|error| CliError::Study(error.into())));
         match model.filter(|_| errors.is_empty()) {
             Some(model) => Ok(Self { study, model, model_path: path }),

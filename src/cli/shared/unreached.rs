@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 use trimtab::model::Model;
-use trimtab::recording::{Channel, Delay};
+use trimtab::recording::{Channel, ColumnMap, Delay};
 use trimtab::study::Study;
 
 /// Channels that give a term what it needs, any one of each.
@@ -46,10 +46,8 @@ pub fn unreached(study: &Study, model: &Model, model_path: &Path) -> Vec<String>
 /// Map, column and session of every delay that is given by session.
 fn delays(study: &Study) -> BTreeSet<(String, String, String)> {
     let mut found = BTreeSet::new();
-    let mut seen = BTreeSet::new();
-    for run in &study.runs {
-        let Some(path) = run.column_map.as_ref().filter(|path| seen.insert(*path)) else { continue };
-        let Ok(map) = study.column_map(run) else { continue };
+    for path in study.column_maps() {
+        let Ok(map) = ColumnMap::read(path) else { continue };
         for (name, column) in map.columns.iter().flatten() {
             if let Some(Delay::Sessions(sessions)) = &column.delay {
                 found.extend(sessions.keys().map(|s| (path.display().to_string(), name.clone(), s.clone())));

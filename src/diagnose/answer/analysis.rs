@@ -38,6 +38,8 @@ pub struct Answer {
     /// A law for what the catalogue does not hold.
     pub law: Option<Law>,
     decision: Decision,
+    /// Mechanisms that one of the repetitions does not find.
+    doubtful: Vec<String>,
 }
 
 impl Answer {
@@ -103,7 +105,7 @@ impl Answer {
         let verdict = lead(verdict, &mut findings);
         let tried = unnamed(tried, &findings);
         let kept = with_ship_held(question, kept, &weights, held_out);
-        Self { verdict, findings, withdrawn: tried, kept, base, law: None, decision }
+        Self { verdict, findings, withdrawn: tried, kept, base, law: None, decision, doubtful: Vec::new() }
     }
 
     /// This answer with a law for what is missing, where the catalogue does not hold it and it is no force in one part of the water.
@@ -178,25 +180,29 @@ impl Answer {
     /// The answer once repetitions differ: what most of them do not find is withdrawn, the rest decided anew, and what one of them does
     /// not find is suspected at most.
     fn doubted(self, question: &Question, doubts: &Doubts, held_out: &[Run]) -> Self {
-        let mut answer = self.regraded(question, &doubts.unstable, Grade::Unstable, held_out);
-        for finding in answer.findings.iter_mut().filter(|f| doubts.doubtful.contains(&f.mechanism)) {
+        self.regraded(question, &doubts.unstable, Grade::Unstable, held_out).doubting(doubts.doubtful.clone())
+    }
+
+    /// The answer in which these mechanisms are suspected at most.
+    fn doubting(mut self, doubtful: Vec<String>) -> Self {
+        for finding in self.findings.iter_mut().filter(|f| doubtful.contains(&f.mechanism)) {
             if finding.grade == Grade::Confirmed {
                 finding.grade = Grade::Suspected;
             }
         }
-        answer.verdict = lead(answer.verdict, &mut answer.findings);
-        answer
+        self.verdict = lead(self.verdict, &mut self.findings);
+        Self { doubtful, ..self }
     }
 
-    /// The answer once some of the mechanisms have a grade that does not name them.
+    /// The answer once some of the mechanisms have a grade that does not name them; what was doubtful stays so.
     pub fn regraded(self, question: &Question, names: &[String], grade: Grade, held_out: &[Run]) -> Self {
         if names.is_empty() {
             return self;
         }
-        let Self { kept: Kept { selection, left, .. }, mut withdrawn, .. } = self;
+        let Self { kept: Kept { selection, left, .. }, mut withdrawn, doubtful, .. } = self;
         withdrawn.retain(|f| !selection.carries(&f.mechanism));
         let graded: Vec<(String, Grade)> = names.iter().map(|name| (name.clone(), grade)).collect();
-        Self::settled(question, Residual { selection, left }, withdrawn, &graded, held_out)
+        Self::settled(question, Residual { selection, left }, withdrawn, &graded, held_out).doubting(doubtful)
     }
 
     /// What the improved model still lacks when it is diagnosed on the same recordings, but for pushes.
@@ -363,6 +369,11 @@ mod tests {
         assert_eq!(grade(&answer, "current"), Some(Grade::Confirmed), "{:?}", answer.findings);
         assert!(grade(&answer, "rudder_lag").is_some());
         let [current, lag] = ["current", "rudder_lag"].map(str::to_owned);
+        // What is doubtful stays so when another is withdrawn later.
+        let doubts = Doubts { unstable: Vec::new(), doubtful: vec![current.clone()] };
+        let again = Answer::new(&question, train, unseen).doubted(&question, &doubts, unseen);
+        let again = again.regraded(&question, std::slice::from_ref(&lag), Grade::Undetermined, unseen);
+        assert_eq!((grade(&again, "current"), grade(&again, &lag)), (Some(Grade::Suspected), None));
         let doubts = Doubts { unstable: vec![lag.clone()], doubtful: vec![current, lag.clone()] };
         let doubted = answer.doubted(&question, &doubts, unseen);
         assert!(doubted.withdrawn.iter().any(|f| f.mechanism == lag && f.grade == Grade::Unstable));

@@ -115,14 +115,14 @@ pub(in crate::diagnose) fn mechanism_finding(
     }
 }
 
-/// Gives the findings of a selection the sizes that an estimate of the same parameters has, which the file holds, with the uncertainty as it is;
-/// comes back with those that are then no longer told from nothing.
+/// Gives the findings of a selection the sizes that an estimate of the same parameters has, which the file holds, with the uncertainty as it is.
+/// Returns those whose intervals excluded zero before and all include it then.
 pub(in crate::diagnose) fn sized(
     findings: &mut [Finding],
     Selection { mechanisms, tests, .. }: &Selection,
     written: &Estimate,
 ) -> Vec<String> {
-    let is_told = |finding: &Finding| finding.parameters.iter().any(|p| p.ci95[0] > 0.0 || p.ci95[1] < 0.0);
+    let excludes_zero = |finding: &Finding| finding.parameters.iter().any(|p| p.ci95[0] > 0.0 || p.ci95[1] < 0.0);
     let mut lost = Vec::new();
     for finding in findings {
         let candidate = |m: &&Selected| tests.candidates[m.candidate].mechanism.name == finding.mechanism;
@@ -134,9 +134,9 @@ pub(in crate::diagnose) fn sized(
         };
         let held = c.held(&own.extent);
         let values = c.positions(&written.free, &own.extent).into_iter().zip(held.iter()).map(of);
-        let before = is_told(finding);
+        let before = excludes_zero(finding);
         finding.parameters.iter_mut().zip(values).for_each(|(parameter, value)| parameter.moved_to(value));
-        if before && !is_told(finding) {
+        if before && !excludes_zero(finding) {
             lost.push(finding.mechanism.clone());
         }
     }

@@ -439,8 +439,8 @@ pub fn compare(
     Competition { screen, current, problem, tried: leaders.len() }.best(leaders)
 }
 
-/// The first error of a sensor that a refit confirms: what the sensors show of each other comes before all that can be said of the ship. Else
-/// as [`compare`].
+/// The first error of a sensor that a refit confirms: the kinematic consistency of the sensors comes before every mechanism of the ship. Else as
+/// [`compare`].
 pub fn compete(
     screen: &Screen,
     leaders: &[&Row],

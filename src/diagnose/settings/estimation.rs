@@ -37,7 +37,7 @@ numbers! {
     DIVIDED_SESSIONS: usize = 6, COST;
     /// Shortest span of the recordings that can show a tide: a quarter of its period of 12.42 h \[s\].
     QUARTER_TIDE: f64 = 11_178.0, "a quarter of the principal lunar tide";
-    /// Standard deviations of its prior from which on a mechanism's own coefficient is told to be unusual.
+    /// Standard deviations of its prior from which on a mechanism's own coefficient is reported as unusual.
     UNUSUAL: f64 = 2.0, "one normal value in twenty is further off; no verdict turns on it";
     /// Prior standard deviation of a sensor's error, in units of the parameter's scale.
     SENSOR_SPREAD: f64 = 10.0, "wider than any error that a user would not see; not varied";
