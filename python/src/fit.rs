@@ -6,7 +6,7 @@ use crate::errors::fault;
 use crate::model::Model;
 use crate::work::{Line, long};
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::exceptions::{PyKeyError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::Value;
@@ -131,7 +131,8 @@ pub fn run(
         trimtab::fit(model, runs, settings, &mut each)
     };
     let ended = long(py, told, work)?;
-    let inner = ended.value.ok_or_else(|| fault("the fit gave nothing"))?.map_err(raised)?;
+    // Only a fit that still waited for another one gives nothing.
+    let inner = ended.value.ok_or_else(|| PyKeyboardInterrupt::new_err(()))?.map_err(raised)?;
     Ok(Fit { inner, interrupted: ended.interrupted })
 }
 

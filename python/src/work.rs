@@ -10,7 +10,7 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread::Scope;
 use std::time::Duration;
 
@@ -23,6 +23,9 @@ struct Threads {
     count: usize,
     pool: Option<Arc<ThreadPool>>,
 }
+
+/// Held by a long work: another one on the same threads could be begun by a thread that waits for a part of the first, inside its solver.
+static TURN: Mutex<()> = Mutex::new(());
 
 static THREADS: Mutex<Threads> = Mutex::new(Threads { process: 0, count: 0, pool: None });
 
@@ -113,6 +116,18 @@ pub struct Ended<T> {
     pub interrupted: bool,
 }
 
+/// Waits for the turn of a long work; given up where it is no longer wanted.
+fn turn(stopped: &AtomicBool) -> Result<MutexGuard<'static, ()>, Box<dyn Any + Send>> {
+    loop {
+        match TURN.try_lock() {
+            Ok(turn) => return Ok(turn),
+            Err(TryLockError::Poisoned(turn)) => return Ok(turn.into_inner()),
+            Err(TryLockError::WouldBlock) if stopped.load(Ordering::Relaxed) => return Err(Box::new(GivenUp)),
+            Err(TryLockError::WouldBlock) => std::thread::sleep(LISTEN),
+        }
+    }
+}
+
 /// Does a long work on the threads while this thread hands its events to `told` and looks for signals.
 ///
 /// Ctrl-C, or `told` giving false, asks the work to end. Another exception of `told` or of a signal's handler is raised when it has.
@@ -128,7 +143,10 @@ pub fn long<T: Send, E: Send>(
     let line = Line { events, stopped: &stopped };
     let (mut raised, mut interrupted): (Option<PyErr>, bool) = (None, false);
     let value = std::thread::scope(|scope: &Scope| {
-        let worker = scope.spawn(move || catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&line)))));
+        let worker = scope.spawn(move || {
+            let _turn = turn(line.stopped)?;
+            catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&line))))
+        });
         loop {
             let event = py.detach(|| heard.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LISTEN));
             let mut outcome = match event {

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -91,6 +92,12 @@ def test_ctrl_c_without_a_callback_stops_it_too(study: trimtab.Study) -> None:
     stopped.set()
     thread.join()
     assert fit.interrupted
+
+
+def test_fits_of_several_threads_take_turns_and_are_the_same(study: trimtab.Study) -> None:
+    with ThreadPoolExecutor(4) as threads:
+        fits = list(threads.map(lambda _: study.fit(), range(6)))
+    assert {fit.cost for fit in fits} == {fits[0].cost} and all(fit.converged for fit in fits)
 
 
 def test_an_exception_of_the_callback_comes_out_of_the_fit(study: trimtab.Study) -> None:

@@ -16,9 +16,9 @@
 //! - A panic that unwinds into C++ aborts the process: every callback that runs the caller's code catches it, and the solve
 //!   ends with [`Status::Panicked`].
 //! - MUMPS, the linear solver, is not thread-safe: one lock for the whole process is held around each solve. Solves from
-//!   several threads are therefore correct but take turns. Do not start them as tasks of the same rayon pool that evaluates
-//!   the objective: a worker waiting inside an evaluation may pick up a second solve, and wait for itself. Where that happens
-//!   on one thread it is reported as [`IpoptError::Nested`].
+//!   several threads are therefore correct but take turns; a worker of a rayon pool that waits for its turn works on. Do not
+//!   start them as tasks of the same rayon pool that evaluates the objective: a worker waiting inside an evaluation may pick
+//!   up a second solve, which is refused as [`IpoptError::Nested`].
 //! - Ipopt reads a file `ipopt.opt` in the working directory if there is one: this is switched off, so that a result depends
 //!   on [`Options`] alone.
 //! - Some failures leave zeros instead of the objective and the constraint values in Ipopt's answer: after a failure these are

@@ -8,10 +8,14 @@ use super::problem::{Context, Problem, all_finite};
 use super::status::{Counts, IpoptError, Status};
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::Duration;
 
 /// The lock around every use of Ipopt in the process; it guards MUMPS, not data, so a poisoned lock is as good as any.
 static SOLVER: Mutex<()> = Mutex::new(());
+
+/// How long a worker without work waits before it asks for the lock again: little beside a solve.
+const PAUSE: Duration = Duration::from_micros(100);
 
 thread_local! {
     /// Whether this thread is inside [`solve`]: a second solve started from a callback would wait for the lock for ever.
@@ -47,24 +51,44 @@ pub struct Solution {
 /// structure, if Ipopt refuses an option, if called from a callback of another solve, or if the solve ended before there was
 /// a point to report.
 pub fn solve(nlp: &mut dyn Nlp, options: &Options) -> Result<Solution, IpoptError> {
-    let _mark = SolvingMark::set()?;
+    if SOLVING.get() {
+        return Err(IpoptError::Nested);
+    }
     let problem = Problem::of(nlp, options)?;
     let mut context =
         Context { nlp, problem, placeholder: true, counts: Counts::default(), iterations: 0, panic: None };
 
     let outcome = {
-        let _lock = SOLVER.lock().unwrap_or_else(PoisonError::into_inner);
+        let _lock = turn();
+        let _mark = SolvingMark::set();
         run(&mut context, options)?
     };
     settle(context, outcome)
+}
+
+/// Waits for the lock. A worker of a rayon pool works on meanwhile: the solve that has the lock may wait for just this worker.
+fn turn() -> MutexGuard<'static, ()> {
+    loop {
+        match SOLVER.try_lock() {
+            Ok(lock) => return lock,
+            Err(TryLockError::Poisoned(lock)) => return lock.into_inner(),
+            Err(TryLockError::WouldBlock) => {}
+        }
+        match rayon::yield_now() {
+            Some(rayon::Yield::Executed) => {}
+            Some(rayon::Yield::Idle) => std::thread::sleep(PAUSE),
+            None => return SOLVER.lock().unwrap_or_else(PoisonError::into_inner),
+        }
+    }
 }
 
 /// Marks this thread as solving for as long as it lives.
 struct SolvingMark;
 
 impl SolvingMark {
-    fn set() -> Result<Self, IpoptError> {
-        if SOLVING.replace(true) { Err(IpoptError::Nested) } else { Ok(Self) }
+    fn set() -> Self {
+        SOLVING.set(true);
+        Self
     }
 }
 

@@ -246,7 +246,9 @@ pub enum IpoptError {
         code: u32,
     },
     /// A solve was started from inside a callback of another.
-    #[error("a solve was started from inside another one on the same thread; run them one after the other")]
+    #[error(
+        "a solve was started from inside another one (or as a task of the same rayon pool); run them one after the other"
+    )]
     Nested,
     /// The solve ended at no point at which objective and constraints could be evaluated.
     #[error("no usable point was reached: {status}")]

@@ -1,6 +1,8 @@
 //! The solver on problems whose answers are known, and on callers that misbehave.
 //! What concerns the checks of a problem alone is tested beside them.
 
+use rayon::prelude::*;
+
 use super::{Counts, HessianMode, IpoptError, IterationReport, Nlp, OptionValue, Options, Solution, Status, solve};
 
 const INF: f64 = f64::INFINITY;
@@ -14,6 +16,7 @@ struct Hs071 {
     panic_from_call: usize,
     hessian: bool,
     nest: bool,
+    parallel: bool,
     nested: Option<IpoptError>,
     reports: Vec<IterationReport>,
 }
@@ -27,6 +30,7 @@ impl Hs071 {
             panic_from_call: 1,
             hessian: true,
             nest: false,
+            parallel: false,
             nested: None,
             reports: Vec::new(),
         }
@@ -63,6 +67,10 @@ impl Nlp for Hs071 {
         self.maybe_panic("objective");
         if self.nest {
             self.nested = solve(&mut distance(), &Options::default()).err();
+        }
+        if self.parallel {
+            let pause = || std::thread::sleep(std::time::Duration::from_micros(50));
+            (0..4 * rayon::current_num_threads()).into_par_iter().for_each(|_| pause());
         }
         Some(x[0] * x[3] * (x[0] + x[1] + x[2]) + x[2])
     }
@@ -474,6 +482,23 @@ fn solves_on_several_threads_all_succeed() {
             .collect();
         for solve in solves {
             solve.join().unwrap();
+        }
+    });
+}
+
+#[test]
+fn a_worker_that_waits_for_its_turn_evaluates_for_the_solve_that_has_it() {
+    let some = || {
+        for _ in 0..5 {
+            let status = solve(&mut Hs071 { parallel: true, ..Hs071::new() }, &Options::default()).map(|s| s.status);
+            assert_eq!(status, Ok(Status::Solved));
+        }
+    };
+    std::thread::scope(|scope| {
+        let outside: Vec<_> = (0..2).map(|_| scope.spawn(some)).collect();
+        rayon::broadcast(|_| some());
+        for thread in outside {
+            thread.join().unwrap();
         }
     });
 }

@@ -5,7 +5,6 @@ use crate::fit::{Fit, fit};
 use crate::model::Model;
 use crate::recording::Run;
 use crate::statistics::student_quantile;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// How profiles are taken.
@@ -140,7 +139,7 @@ pub fn profile(found: &Fit, runs: &[Run], parameter: &str, settings: &SweepSetti
         };
         side(settings, estimate, error, bounds, sign).into_iter().map(step).collect::<Vec<_>>()
     };
-    let (below, above) = rayon::join(|| outwards(-1.0), || outwards(1.0));
+    let [below, above] = [-1.0, 1.0].map(outwards);
     let centre = Point { value: estimate, fall: Some(0.0) };
     let points: Vec<Point> = below.iter().rev().chain([&centre]).chain(&above).copied().collect();
     let limit = student_quantile(0.975, found.freedom.max(1) as f64).powi(2);
@@ -186,7 +185,7 @@ pub fn pair(found: &Fit, runs: &[Run], parameters: [&str; 2], settings: &SweepSe
         let at = |second: &f64| fall(found, &found.model, runs, &[(a.0, *first), (b.0, *second)]).map(|(fall, _)| fall);
         values[1].iter().map(at).collect()
     };
-    let fall = values[0].par_iter().map(row).collect();
+    let fall = values[0].iter().map(row).collect();
     Some(Pair { parameters: parameters.map(str::to_owned), values, fall })
 }
 
