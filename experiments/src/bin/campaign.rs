@@ -75,7 +75,7 @@ struct Arguments {
 enum Slice {
     /// Every case.
     All,
-    /// The 20 cases of every push.
+    /// The 13 cases of every push.
     Ci,
 }
 

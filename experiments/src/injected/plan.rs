@@ -412,19 +412,19 @@ fn rng_order(kind: Kind, set: &str) -> f64 {
     (turn * kinds + at) as f64 / (SETS.len() * kinds) as f64
 }
 
-/// The cases of every push: 20 short ones, with partners where there is room.
+/// The cases of every push: 16 short ones, with partners where there is room.
 pub fn ci_slice(plan: &[Planned], campaign: u64) -> Vec<Planned> {
     let short: Vec<Planned> = plan.iter().filter(|c| is_short(&c.configuration)).cloned().collect();
     let mut chosen = sample(&short, 14, campaign);
     let mut keys: BTreeSet<String> = chosen.iter().map(|c| c.key.clone()).collect();
     let partners: Vec<String> = chosen.iter().filter_map(|c| c.partner.clone()).collect();
     for key in partners {
-        if chosen.len() < 20 && keys.insert(key.clone()) {
+        if chosen.len() < 16 && keys.insert(key.clone()) {
             chosen.extend(plan.iter().find(|c| c.key == key).cloned());
         }
     }
     for case in short {
-        if chosen.len() < 20 && keys.insert(case.key.clone()) {
+        if chosen.len() < 16 && keys.insert(case.key.clone()) {
             chosen.push(case);
         }
     }
@@ -489,6 +489,6 @@ mod tests {
         assert!(sample(&all, 20, 32) != small);
         let slice = ci_slice(&all, 31);
         let keys: BTreeSet<&str> = slice.iter().map(|c| c.key.as_str()).collect();
-        assert_eq!((slice.len(), keys.len(), kinds(&slice)), (20, 20, KINDS.len()));
+        assert_eq!((slice.len(), keys.len(), kinds(&slice)), (16, 16, KINDS.len()));
     }
 }

@@ -1,4 +1,4 @@
-//! The concealed cases of every push: 20 of the campaign's, diagnosed by the program in a process of its own, and judged.
+//! The concealed cases of every push: 13 of the campaign's, diagnosed by the program in a process of its own, and judged.
 //! The whole campaign measures the diagnosis; this test only stops a change that breaks it.
 
 use std::sync::Mutex;
@@ -9,12 +9,12 @@ use trimtab_experiments::conceal::campaign::plan::{PUSH_SEED, ci_slice, plan};
 use trimtab_experiments::conceal::judge::score::Score;
 use trimtab_experiments::conceal::runner::Runner;
 
-/// Effects seen among the 6 single ones, at a signal-to-noise ratio of 12.
-const FEWEST_SEEN: usize = 5;
+/// Effects seen among the 4 single ones, at a signal-to-noise ratio of 12.
+const FEWEST_SEEN: usize = 3;
 /// Of these, with the right name first.
-const FEWEST_RIGHT: usize = 5;
+const FEWEST_RIGHT: usize = 3;
 /// Of these, with a right name in the confidence set.
-const FEWEST_IN_SET: usize = 5;
+const FEWEST_IN_SET: usize = 3;
 
 /// The number of cases with the answer yes, and the keys of those with the answer no.
 fn count(scores: &[Score], of: impl Fn(&Score) -> Option<bool>) -> (usize, Vec<String>) {
@@ -23,7 +23,7 @@ fn count(scores: &[Score], of: impl Fn(&Score) -> Option<bool>) -> (usize, Vec<S
 }
 
 #[test]
-fn twenty_concealed_cases_are_judged_well_enough() {
+fn a_slice_of_concealed_cases_is_judged_well_enough() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let runner = Runner {
@@ -44,7 +44,7 @@ fn twenty_concealed_cases_are_judged_well_enough() {
         })
         .unwrap();
     let scores = scores.into_inner().unwrap();
-    assert_eq!(scores.len(), 20);
+    assert_eq!(scores.len(), 13);
     let failed: Vec<String> = scores.iter().filter(|s| !s.error.is_empty()).map(|s| s.error.clone()).collect();
     assert!(failed.is_empty(), "without a score: {failed:?}");
 
@@ -52,7 +52,7 @@ fn twenty_concealed_cases_are_judged_well_enough() {
     // Noisy recordings of explicit Euler steps look like late positions, and are called so: no recording tells one from the other.
     let measured: Vec<Score> = scores.iter().filter(|s| s.background != "euler").cloned().collect();
     let (quiet, alarms) = count(&measured, |s| s.false_alarm.map(|a| !a));
-    assert_eq!(quiet + alarms.len(), 7);
+    assert_eq!(quiet + alarms.len(), 4);
     assert!(alarms.is_empty(), "false alarms: {alarms:?}");
     let (seen, missed) = count(&single, |s| s.detected);
     assert!(seen >= FEWEST_SEEN, "missed: {missed:?}");
@@ -66,5 +66,5 @@ fn twenty_concealed_cases_are_judged_well_enough() {
     assert!(wrong.is_empty(), "wrong and confident: {wrong:?}");
     // Pairs with at least one right name and none wrong.
     let (pairs, spoilt) = count(&scores, |s| s.some_right_none_wrong);
-    assert!(pairs == 2 && spoilt.is_empty(), "pairs: {spoilt:?}");
+    assert!(pairs == 1 && spoilt.is_empty(), "pairs: {spoilt:?}");
 }

@@ -201,15 +201,15 @@ pub fn plan(campaign: u64) -> Vec<Planned> {
     p.cases
 }
 
-/// A slice of the plan small enough for every push: 20 cases, from all arms in proportion but never none.
+/// A slice of the plan small enough for every push: 13 cases, from all arms in proportion but never none.
 pub fn ci_slice(plan: &[Planned]) -> Vec<Planned> {
     let quotas = [
-        ("null", 6),
-        ("single", 6),
+        ("null", 3),
+        ("single", 3),
         ("pooled", 1),
         ("withheld", 1),
         ("absorbed", 1),
-        ("compound", 2),
+        ("compound", 1),
         ("contrast", 1),
         ("design", 1),
         (OTHER_HULLS, 1),
@@ -246,11 +246,11 @@ mod tests {
     }
 
     #[test]
-    fn the_slice_for_every_push_has_20_cases_of_all_arms() {
+    fn the_slice_for_every_push_has_13_cases_of_all_arms() {
         let slice = ci_slice(&plan(SEED));
         let arms: BTreeSet<&str> = slice.iter().map(|c| c.arm).collect();
         let keys: BTreeSet<&str> = slice.iter().map(|c| c.key.as_str()).collect();
-        assert_eq!((slice.len(), keys.len(), arms.len()), (20, 20, 9));
+        assert_eq!((slice.len(), keys.len(), arms.len()), (13, 13, 9));
     }
 
     #[test]
