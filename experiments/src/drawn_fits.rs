@@ -30,6 +30,8 @@ const STARTS: [f64; 4] = [0.0, 0.05, 0.2, 0.5];
 
 /// A study from which fits are drawn.
 pub struct Source {
+    /// The folder of its file.
+    name: String,
     study: Study,
     model: Model,
     settings: FitSettings,
@@ -40,7 +42,7 @@ pub struct Source {
 pub struct Row {
     /// Number of the draw.
     pub case: usize,
-    /// The study.
+    /// The folder of the study.
     pub study: String,
     /// Windows that were fitted to.
     pub windows: usize,
@@ -85,7 +87,8 @@ impl Source {
         let ship = study.read_ship().map_err(|e| fail(&e))?;
         let model = Model::read(&study.model, ship).map_err(|e| fail(&e))?;
         let settings = study.section::<FitSettings>("fit").map_err(|_| fail(&"its section [fit] cannot be read"))?;
-        Ok(Self { study, model, settings })
+        let folder = path.parent().and_then(Path::file_name).unwrap_or_default();
+        Ok(Self { name: folder.to_string_lossy().into_owned(), study, model, settings })
     }
 
     /// The windows of some of its runs, drawn at random; none of a run that is for the test.
@@ -134,7 +137,7 @@ pub fn drawn(sources: &[Source], seed: u64, case: usize) -> Result<Row, ConcealE
     };
     let row = Row {
         case,
-        study: source.study.name.clone(),
+        study: source.name.clone(),
         windows: runs.len(),
         window,
         free: free.join(" "),

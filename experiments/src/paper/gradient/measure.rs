@@ -188,8 +188,7 @@ pub fn courses(case: &Case, model: &Model, runs: &[Run]) -> Result<Vec<Course>, 
 /// # Errors
 /// [`PaperError::Scatter`] where the times do not repeat.
 pub(super) fn of_rounds(case: &Case, way: &str, courses: Vec<Course>) -> Result<Course, PaperError> {
-    let times: Vec<f64> = courses.iter().map(|c| c.seconds).collect();
-    let seconds = checked(case, way, Repeats::of(&times))?;
+    let seconds = checked(case, way, repeats_of(&courses))?;
     let mut courses = courses.into_iter();
     let Some(mut out) = courses.next() else { return Err(PaperError::Empty { ship: case.ship.name(), what: "fit" }) };
     for other in courses {
@@ -197,6 +196,15 @@ pub(super) fn of_rounds(case: &Case, way: &str, courses: Vec<Course>) -> Result<
     }
     out.seconds = seconds;
     Ok(out)
+}
+
+fn repeats_of(courses: &[Course]) -> Repeats {
+    Repeats::of(&courses.iter().map(|c| c.seconds).collect::<Vec<_>>())
+}
+
+/// Whether the times of a fit that was repeated agree.
+pub(super) fn repeat(courses: &[Course]) -> bool {
+    repeats_of(courses).scatter <= SCATTER
 }
 
 /// The least time of repeats, where they agree.
