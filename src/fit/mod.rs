@@ -87,6 +87,7 @@ pub use multistart::{MultiStart, StartOutcome, StartRow, multi_start, multi_star
 pub use problem::Progress;
 pub use settings::{FitSettings, Goal, Hessian};
 #[cfg(feature = "ipopt")]
+pub(crate) use summary::labels;
 pub use summary::{Active, Combination, Estimate, Fit, fit, fit_over};
 #[cfg(feature = "ipopt")]
 pub use task::bounds;

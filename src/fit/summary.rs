@@ -323,20 +323,29 @@ fn estimates(task: &Task, end: &End, covariances: &Covariances) -> Vec<Estimate>
     task.cost.free().iter().enumerate().map(estimate).collect()
 }
 
+/// A short name of each of some parameters, given by symbol and dotted name: the symbol, and the name where several have the same symbol, as
+/// those of several actuators.
+pub(crate) fn labels<'a>(parameters: impl Iterator<Item = (&'a str, &'a str)> + Clone) -> Vec<&'a str> {
+    let alone = |symbol: &str| parameters.clone().filter(|p| p.0 == symbol).count() == 1;
+    parameters.clone().map(|(symbol, name)| if alone(symbol) { symbol } else { name }).collect()
+}
+
 /// What holds the solution back, in words.
 fn active(task: &Task, end: &End) -> Vec<Active> {
+    let names =
+        labels(task.cost.free().iter().map(|i| &task.model.parameters[*i]).map(|p| (p.info.symbol, p.name.as_str())));
     let row = |i: &usize| Active { sentence: task.rows[*i].sentence(&end.p), rule: task.rows[*i].rule };
     let bound = |(j, side): &(usize, &str)| {
         let (sign, limit) = if *side == "lower" { (">=", task.bounds[*j].0) } else { ("<=", task.bounds[*j].1) };
-        let symbol = task.model.parameters[task.cost.free()[*j]].info.symbol;
-        Active { sentence: format!("{symbol} {sign} {limit}"), rule: "bounds" }
+        Active { sentence: format!("{} {sign} {limit}", names[*j]), rule: "bounds" }
     };
     end.active.rows.iter().map(row).chain(end.active.bounds.iter().map(bound)).collect()
 }
 
 /// Combinations that the data alone determine to no better than one scale unit, the worst first.
 fn undetermined(task: &Task, covariances: &Covariances) -> Vec<Combination> {
-    let names: Vec<&str> = task.cost.free().iter().map(|i| task.model.parameters[*i].info.symbol).collect();
+    let names =
+        labels(task.cost.free().iter().map(|i| &task.model.parameters[*i]).map(|p| (p.info.symbol, p.name.as_str())));
     let by_data = inverse(&covariances.data, &covariances.directions);
     let inflation = match covariances.kind {
         CovarianceKind::Sandwich => covariances.design_effect.unwrap_or(1.0).max(1.0),
@@ -352,4 +361,15 @@ fn undetermined(task: &Task, covariances: &Covariances) -> Vec<Combination> {
         }
     }
     undetermined
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_that_share_a_symbol_are_called_by_their_names() {
+        let some = [("tau", "port.lag"), ("g", "hull.g"), ("tau", "starboard.lag")];
+        assert_eq!(labels(some.into_iter()), ["port.lag", "g", "starboard.lag"]);
+    }
 }

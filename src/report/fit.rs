@@ -3,7 +3,7 @@
 
 use super::active::lines;
 use super::table::Table;
-use crate::fit::{CovarianceKind, Derivatives, Estimate, Fit, Hessian, StartOutcome};
+use crate::fit::{CovarianceKind, Derivatives, Estimate, Fit, Hessian, StartOutcome, labels};
 use crate::numerals::{interval, sig};
 
 /// Significant digits of every number.
@@ -195,11 +195,12 @@ impl Fit {
     }
 
     fn strong_correlations(&self) -> Vec<String> {
+        let names = labels(self.estimates.iter().map(|e| (e.symbol, e.name.as_str())));
         let mut strong = Vec::new();
         for i in 0..self.estimates.len() {
             for j in 0..i {
                 if let Some(r) = self.correlations[i][j].filter(|r| r.abs() > 0.9) {
-                    strong.push(format!("{}-{} {r:.2}", self.estimates[j].symbol, self.estimates[i].symbol));
+                    strong.push(format!("{}-{} {r:.2}", names[j], names[i]));
                 }
             }
         }
