@@ -37,15 +37,16 @@ Example:
 
 Measures: MD = mean |simulated - measured|; cVDM = 100 x mean of |dx|/L + |dy|/L + |dpsi|/pi + |du|/U + |dv|/U + |dr|/r_max \
     with path length L and mean speed U of each run; mARI = median over trajectories of the mean relative improvement over the \
-    six dimensions; consistency = 1 - Var(cVDM)/Var(cVDM of the baseline). A simulation that diverges is counted as worse than \
+    six dimensions; consistency = 1 - Var(cVDM)/Var(cVDM of the baseline). Steady motion (u, v and r as they are at the start) \
+    needs no model. A simulation that diverges is counted as worse than \
     any that does not, and left out of the means.
 
 With --out: evaluate.json, trajectories.csv, summary.csv, improvement.png, cvdm.png, tracks.png, each with its CSV.
 JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
     result.baseline, result.fitted (names), result.summaries[] with group (test, train, then `manoeuvre: ...` and \
     `session: ...` of test), runs, trajectories, md_baseline, md_fitted, md_improvement (x, y, psi, u, v, r), cvdm_baseline, \
-    cvdm_fitted [%], cvdm_improvement, mari, consistency [-] (each value and ci95), better, worse, runs_better, runs_worse, \
-    diverged_baseline, diverged_fitted, worst, most_worsened; result.trajectories[] with run, split, baseline and fitted (md, \
+    cvdm_fitted, cvdm_steady [%], cvdm_improvement, mari, consistency [-] (each value and ci95), better, worse, runs_better, runs_worse, \
+    diverged_baseline, diverged_fitted, worst, most_worsened; result.trajectories[] with run, split, steady, baseline and fitted (md, \
     cvdm, or diverged_after [s]); result.validity (share_outside of the samples; outside[] with term, quantity, range, share, \
     met); result.outlying, where one run is predicted far worse than all others: run, cvdm and others (least and largest of the \
     other runs) [%], p (Grubbs's test). A number that does not exist is absent.";
@@ -278,6 +279,7 @@ fn groups(summaries: &[Summary], compared: bool) -> Table {
         Table::new([
             "group",
             "runs",
+            "cVDM steady [%]",
             "cVDM baseline [%]",
             "cVDM fitted [%]",
             "improvement [%]",
@@ -286,10 +288,10 @@ fn groups(summaries: &[Summary], compared: bool) -> Table {
             "worse",
         ])
     } else {
-        Table::new(["group", "runs", "cVDM [%]"])
+        Table::new(["group", "runs", "cVDM steady [%]", "cVDM [%]"])
     };
     for s in summaries {
-        let mut row = vec![s.group.clone(), s.runs.to_string()];
+        let mut row = vec![s.group.clone(), s.runs.to_string(), number(s.cvdm_steady, 1.0)];
         if compared {
             row.push(number(s.cvdm_baseline, 1.0));
         }
@@ -333,7 +335,7 @@ fn trajectories(comparisons: &[Comparison]) -> Result<Vec<u8>, CliError> {
     header.push("diverged_after [s]".into());
     let rows =
         comparisons.iter().flat_map(|c| {
-            [("baseline", &c.baseline), ("fitted", &c.fitted)].map(|(which, outcome)| {
+            [("steady", &c.steady), ("baseline", &c.baseline), ("fitted", &c.fitted)].map(|(which, outcome)| {
                 let split = if c.split == Split::Test { "test" } else { "train" };
                 let mut row = vec![c.run.clone(), c.session.clone(), c.manoeuvre.clone(), split.into()];
                 row.extend([c.start_time.to_string(), c.duration.to_string(), which.into()]);
@@ -367,11 +369,12 @@ fn summary(summaries: &[Summary]) -> Result<Vec<u8>, CliError> {
         let named = [
             ("cvdm_baseline", s.cvdm_baseline),
             ("cvdm_fitted", s.cvdm_fitted),
+            ("cvdm_steady", s.cvdm_steady),
             ("cvdm_improvement", s.cvdm_improvement),
             ("mari", s.mari),
             ("consistency", s.consistency),
         ];
-        let percent = |n: &str| (1.0, if n == "cvdm_baseline" || n == "cvdm_fitted" { "%" } else { "-" });
+        let percent = |n: &str| (1.0, if n.starts_with("cvdm") && n != "cvdm_improvement" { "%" } else { "-" });
         let named = named.into_iter().map(|(n, e)| (n.to_owned(), percent(n), e));
         let kinds = [("baseline", &s.md_baseline), ("fitted", &s.md_fitted), ("improvement", &s.md_improvement)];
         let md = kinds.into_iter().flat_map(|(kind, md)| {

@@ -2,6 +2,7 @@
 //! Which numbers sum up many runs is in `summary`.
 
 use super::cvdm::{Outcome, outcome};
+use super::steady::steady_motion;
 use crate::model::Model;
 use crate::recording::{Run, Split};
 use crate::simulate::{Integration, Scenario, Trajectory, reported};
@@ -27,6 +28,8 @@ pub struct Comparison {
     pub duration: f64,
     /// Under the baseline.
     pub baseline: Outcome,
+    /// Of steady motion.
+    pub steady: Outcome,
     /// Under the fitted model.
     pub fitted: Outcome,
 }
@@ -95,6 +98,7 @@ pub fn compare(
         start_time: window.start_time(),
         duration: window.duration(),
         baseline: outcome(window, baseline, ship, max_yaw_rate),
+        steady: outcome(window, &steady_motion(window), ship, max_yaw_rate),
         fitted: outcome(window, fitted, ship, max_yaw_rate),
     }
 }

@@ -16,6 +16,8 @@
 //! - cVDM improvement: `(mean cVDM~ - mean cVDM*)/mean cVDM~` over the trajectories.
 //! - Consistency: `1 - Var(cVDM*)/Var(cVDM~)` over the trajectories.
 //!
+//! - Steady motion, u, v and r kept as they are at the start of a window, is the prediction that needs no model: what a model is to beat.
+//!
 //! Intervals are 95 % intervals over whole runs: windows of one run share what is unknown. Of an improvement, on which verdicts turn,
 //! it is that of a ratio by Student's t ([`crate::statistics::interval_of_ratio`]): few runs are resampled to too narrow an interval.
 //! All others are percentile intervals of a bootstrap.
@@ -31,6 +33,7 @@ mod prove;
 mod ranking;
 mod settings;
 mod start;
+mod steady;
 mod summary;
 #[cfg(feature = "ipopt")]
 pub mod sweep;
@@ -42,6 +45,7 @@ pub use prove::{Evaluation, Judging, Part, Proof, prove};
 pub use ranking::{Ranked, Ranking, rank};
 pub use settings::EvaluationSettings;
 pub use start::start_error;
+pub use steady::steady_motion;
 pub use summary::{Estimate, Named, Summary, summarise};
 
 #[cfg(test)]

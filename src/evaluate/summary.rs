@@ -66,6 +66,9 @@ pub struct Summary {
     /// Mean cVDM of the fitted model \[%\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cvdm_fitted: Option<Estimate>,
+    /// Mean cVDM of steady motion \[%\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cvdm_steady: Option<Estimate>,
     /// cVDM improvement \[-\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cvdm_improvement: Option<Estimate>,
@@ -166,6 +169,7 @@ fn summarise_over(ranks: &Ranks, group: String, members: &[&Comparison], setting
         md_improvement: std::array::from_fn(|i| resampled.improvement(i)),
         cvdm_baseline: resampled.estimate(|d| mean(d.column(BEFORE + STATES))),
         cvdm_fitted: resampled.estimate(|d| mean(d.column(AFTER + STATES))),
+        cvdm_steady: resampled.estimate(|d| mean(d.column(STEADY))),
         cvdm_improvement: resampled.improvement(STATES),
         mari: resampled.estimate(|d| median(d.column(RELATIVE))),
         consistency: resampled.estimate(|d| {
@@ -187,10 +191,11 @@ fn gain(before: f64, after: f64) -> Option<f64> {
 }
 
 /// Columns of the numbers that are resampled: MD of every dimension and then cVDM of the baseline, the same of the fitted model,
-/// and the average relative improvement.
+/// the average relative improvement, and cVDM of steady motion.
 const BEFORE: usize = 0;
 const AFTER: usize = BEFORE + STATES + 1;
 const RELATIVE: usize = AFTER + STATES + 1;
+const STEADY: usize = RELATIVE + 1;
 
 /// The numbers of trajectories by run, with draws of whole runs.
 struct Resampled<'a> {
@@ -227,6 +232,7 @@ impl<'a> Resampled<'a> {
                 if i == STATES { Some(deviation.cvdm) } else { deviation.md[i] }
             };
             match column {
+                STEADY => of(&t.steady, STATES),
                 RELATIVE => t.average_relative_improvement(),
                 AFTER.. => of(&t.fitted, column - AFTER),
                 _ => of(&t.baseline, column - BEFORE),
@@ -238,7 +244,7 @@ impl<'a> Resampled<'a> {
             end += run.len();
             end - run.len()..end
         };
-        Self { columns: (0..=RELATIVE).map(column).collect(), clusters: runs.iter().map(place).collect(), bootstrap }
+        Self { columns: (0..=STEADY).map(column).collect(), clusters: runs.iter().map(place).collect(), bootstrap }
     }
 
     fn estimate(&self, statistic: impl Fn(&Drawn) -> Option<f64> + Sync) -> Option<Estimate> {

@@ -1,7 +1,7 @@
 //! How far a finding changes what is predicted, and whether a model follows the recordings better than steady motion would.
 //! It compares free simulations with each other and with what was measured; what follows from it is decided elsewhere.
 
-use crate::evaluate::outcome;
+use crate::evaluate::{outcome, steady_motion};
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Trajectory;
@@ -61,7 +61,7 @@ impl Following {
         let (mut pairs, mut gains) = (Vec::new(), Vec::new());
         for (run, p) in runs.iter().zip(predicted) {
             let judged = |t: &Trajectory| outcome(run, t, &model.ship, max_yaw_rate).deviation().map(|d| d.cvdm);
-            let Some(steady) = judged(&steady(run)) else { continue };
+            let Some(steady) = judged(&steady_motion(run)) else { continue };
             let own = judged(p);
             gains.push(own.map_or(f64::NEG_INFINITY, |own| steady - own));
             pairs.extend(own.map(|own| (own, steady)));
@@ -81,20 +81,6 @@ impl Following {
     pub fn holds(&self) -> bool {
         self.rank_share >= 0.5
     }
-}
-
-/// Steady motion from a run's first state: `x' = u cos psi - v sin psi`, `y' = u sin psi + v cos psi`, `psi' = r` with u, v and r kept.
-fn steady(run: &Run) -> Trajectory {
-    let mut state = run.initial;
-    let mut states = vec![state; run.measured.len()];
-    for next in states.iter_mut().skip(1) {
-        let [x, y, psi, u, v, r] = state;
-        // The heading in the middle of the step: exact to second order on a circle.
-        let (sin, cos) = (psi + 0.5 * r * run.dt).sin_cos();
-        state = [x + run.dt * (u * cos - v * sin), y + run.dt * (u * sin + v * cos), psi + run.dt * r, u, v, r];
-        *next = state;
-    }
-    Trajectory { dt: run.dt, states, diverged_at: None }
 }
 
 #[cfg(test)]
@@ -119,15 +105,6 @@ mod tests {
     }
 
     #[test]
-    fn steady_motion_is_a_circle_that_closes() {
-        let mut run = runs(&model(), 1).remove(0);
-        let steps = run.measured.len() - 1;
-        run.initial = [10.0, -5.0, 0.3, 4.0, 1.0, std::f64::consts::TAU / (steps as f64 * run.dt)];
-        let end = steady(&run).states[steps];
-        assert!((end[0] - 10.0).abs() < 1e-9 && (end[1] + 5.0).abs() < 1e-9, "{end:?}");
-    }
-
-    #[test]
     fn the_model_that_sailed_is_better_than_steady_motion_in_manoeuvres_and_a_wrong_one_is_not() {
         let runs = runs(&model(), 6);
         let following = |m: &Model| Following::new(m, &runs, &predict_all(m, &runs, RK4), 0.0314);
@@ -143,12 +120,12 @@ mod tests {
         let turns = runs(&model(), 8);
         let exact = predict_all(&model(), &turns, RK4);
         let course = |run: &Run| {
-            let measured = steady(run).states.into_iter().map(|s| s.map(Some)).collect();
+            let measured = steady_motion(run).states.into_iter().map(|s| s.map(Some)).collect();
             Run { measured, ..run.clone() }
         };
         // On a course the model is one step of the recording behind.
         let behind = |run: &Run| {
-            let mut behind = steady(run);
+            let mut behind = steady_motion(run);
             behind.states.rotate_right(1);
             behind.states[0] = run.initial;
             behind

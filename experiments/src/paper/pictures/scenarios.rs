@@ -224,6 +224,7 @@ mod tests {
             start_time: 0.0,
             duration: 1.0,
             baseline: outcome(10.0),
+            steady: outcome(20.0),
             fitted: outcome(10.0 * (1.0 - improvement)),
         }
     }
