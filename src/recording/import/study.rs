@@ -1,10 +1,14 @@
 //! The files of a study made from what was imported: recordings, column map, ship, model and the study itself.
 //! The table of runs is made by `split`; nothing is written here.
 
+use super::rows::Rows;
 use super::whole::{Imported, ImportedRecording};
+use crate::numerals::sig;
 use crate::recording::{Channel, Quantity};
+use crate::statistics::quantile;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
+use trimtab_ad::smooth::wrap_angle;
 
 /// Where the parts of a study come from that no log tells.
 #[derive(Clone, Debug)]
@@ -172,8 +176,31 @@ fn initial_span(imported: &Imported) -> f64 {
     (10.0 * step * 1e3).round() / 1e3
 }
 
+/// Rows over which the heading is differenced where no yaw rate was recorded.
+const TURN_ROWS: usize = 10;
+
+/// Yaw rate that all but a few samples keep below \[rad/s\], of the recorded rate or else of the heading: r_max of the craft, so that cVDM is
+/// the same number for geometrically similar craft at equal Froude number.
+fn fastest_turn(recordings: &[ImportedRecording]) -> Option<f64> {
+    let of = |rows: &Rows| {
+        let channel = |wanted| rows.channels.iter().find(|(c, _)| *c == wanted).map(|(_, values)| values);
+        let turned = |psi: &Vec<f64>| {
+            let pairs = (TURN_ROWS..psi.len()).map(|i| (i - TURN_ROWS, i));
+            pairs.map(|(a, b)| wrap_angle(psi[b] - psi[a]) / (rows.t[b] - rows.t[a])).collect()
+        };
+        channel(Channel::R).cloned().or_else(|| channel(Channel::Psi).map(turned)).unwrap_or_default()
+    };
+    let rates = recordings.iter().flat_map(|r| of(&r.rows)).map(f64::abs).filter(|r| r.is_finite());
+    let mut rates: Vec<f64> = rates.collect();
+    rates.sort_by(f64::total_cmp);
+    quantile(&rates, 0.995).filter(|r| (1e-6..=10.0).contains(r))
+}
+
 fn study(imported: &Imported, origins: &Origins<'_>) -> String {
     let span = initial_span(imported);
+    let r_max = fastest_turn(&imported.recordings).map_or_else(String::new, |r| {
+        format!("max_yaw_rate = {}           # [rad/s] about the fastest turn recorded: r_max of cVDM\n", sig(r, 2))
+    });
     format!(
         "# Made by `trimtab import`. Paths are relative to this file.\n\
          name = {:?}\n\
@@ -188,7 +215,40 @@ fn study(imported: &Imported, origins: &Origins<'_>) -> String {
          [fit]\n\
          objective = \"likelihood\"        # of recordings with sensor noise; \"trajectory\": least squares, as in the paper\n\
          # A real ship takes no Euler steps: with these the step is no part of the answer.\n\
-         integration = {{ method = \"rk4\" }}\n",
+         integration = {{ method = \"rk4\" }}\n\
+         {r_max}",
         origins.name
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn recording(channel: Channel, values: Vec<f64>, step: f64) -> ImportedRecording {
+        let rows =
+            Rows { t: (0..values.len()).map(|i| i as f64 * step).collect(), channels: vec![(channel, values)], step };
+        ImportedRecording { name: "a".into(), start: None, clock_start: 0.0, rows }
+    }
+
+    #[test]
+    fn the_fastest_turn_is_that_of_the_craft_and_scales_with_time() {
+        let rate = |i: usize| 0.02 * (0.05 * i as f64).sin();
+        let of = |step: f64| {
+            // The same turns a scale faster: rates go with 1 / t, headings are the same.
+            let rates = (0..2000).map(|i| if i == 7 { 3.0 } else { rate(i) / step }).collect();
+            let headings = (0..2000).scan(3.0, |psi, i| {
+                *psi = wrap_angle(*psi + rate(i));
+                Some(*psi)
+            });
+            [
+                fastest_turn(&[recording(Channel::R, rates, step)]).unwrap_or(0.0),
+                fastest_turn(&[recording(Channel::Psi, headings.collect(), step)]).unwrap_or(0.0),
+            ]
+        };
+        let (slow, fast) = (of(2.0), of(0.5));
+        assert!((slow[0] - 0.01).abs() < 1e-4 && (slow[1] - 0.01).abs() < 2e-4, "{slow:?}");
+        assert!((fast[0] - 4.0 * slow[0]).abs() < 1e-9 && (fast[1] - 4.0 * slow[1]).abs() < 1e-9, "{fast:?}");
+        assert_eq!(fastest_turn(&[recording(Channel::U, vec![1.0; 9], 1.0)]), None);
+    }
 }
