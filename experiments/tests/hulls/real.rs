@@ -8,6 +8,7 @@ use trimtab::recording::Split;
 use trimtab_experiments::real::agreement::Agreement;
 use trimtab_experiments::real::error::{RealError, is_absent};
 use trimtab_experiments::real::hull::Hull;
+use trimtab_experiments::real::hulls::craft;
 use trimtab_experiments::real::hulls::esso_osaka::{self, BASELINES};
 use trimtab_experiments::real::hulls::kvlcc2;
 use trimtab_experiments::real::hulls::kvlcc2_diagnosed::{self, ONE_SIDED, PUT_BACK};
@@ -44,6 +45,15 @@ fn val_kvlcc2_marin_zigzags_predict_its_turning_circles() {
     let (starboard, port) = (diameter("starboard"), diameter("port"));
     assert!(starboard.measured > port.measured);
     assert!(starboard.predicted[freed].unwrap() > port.predicted[freed].unwrap());
+}
+
+#[test]
+fn val_craft_with_actuators_of_their_own_are_predicted_on_recordings_that_the_fit_has_not_seen() {
+    for (study, most) in craft::STUDIES.into_iter().zip([0.5, 0.4]) {
+        let Some(judged) = present(craft::run(study)) else { return };
+        let [steady, fitted] = judged.cvdm(Split::Test).unwrap();
+        assert!(judged.fit.converged && fitted < most * steady, "{}: {fitted:.1} %, {steady:.1} %", study.1);
+    }
 }
 
 #[test]

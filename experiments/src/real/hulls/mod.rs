@@ -1,6 +1,7 @@
 //! The real hulls, one file an experiment.
 //! What the experiments share is beside this folder.
 
+pub mod craft;
 pub mod esso_osaka;
 pub mod esso_osaka_diagnosed;
 pub mod kvlcc2;
