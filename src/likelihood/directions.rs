@@ -145,7 +145,9 @@ impl<'a> Directions<'a> {
                     dual[parameter] = value.few_with(slopes);
                 }
                 Probe::Odd => probes.push(Probed { column: *c, high: side(scale), low: side(-scale), weight: 0.5 }),
-                Probe::Forward => probes.push(Probed { column: *c, high: side(scale), low: side(0.0), weight: 1.0 }),
+                Probe::Forward | Probe::Whole => {
+                    probes.push(Probed { column: *c, high: side(scale), low: side(0.0), weight: 1.0 });
+                }
             }
         }
         let dynamics = Dynamics::new(&group.view, dual);
