@@ -32,7 +32,8 @@ impl Asked {
         let mut settings = loaded.diagnose_settings().map_err(Raised::raised)?;
         settings.seed = self.seed.unwrap_or(settings.seed);
         settings.repeat &= !self.once;
-        if let Some(message) = self.withhold.iter().find_map(|name| no_mechanism(name)) {
+        let catalogue = loaded.model.catalogue();
+        if let Some(message) = self.withhold.iter().find_map(|name| no_mechanism(name, catalogue)) {
             return Err(PyValueError::new_err(format!("withhold: {message}")));
         }
         settings.withhold.extend(self.withhold);

@@ -14,6 +14,7 @@ use serde_json::Value;
 use trimtab::diagnose::answer::models::Whose;
 use trimtab::diagnose::{Diagnosis, Settings, Verdict, diagnose};
 use trimtab::evaluate::Judging;
+use trimtab::physics::Catalogue;
 use trimtab::recording::audit::Issue;
 use trimtab::recording::{Run, Runs, Split};
 use trimtab::report::diagnosis::{NEXT_WORDS, document, keys_listing, next_commands, page, pictures, summary};
@@ -95,7 +96,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let mut output = Output::new("diagnose", &args.output)?.drawn_as(&args.figures);
     let loaded = Loaded::new(&args.study)?;
     output.reads(&loaded, true);
-    let settings = prepared(&loaded, settings(args, loaded.diagnose_settings()?)?)?;
+    let settings = prepared(&loaded, settings(args, loaded.diagnose_settings()?, loaded.model.catalogue())?)?;
     let audited = examined(&loaded, &args.accept)?;
     output.recordings(audited.clone());
     output.settings("fit", &loaded.fit_settings()?)?;
@@ -216,11 +217,11 @@ fn write_files(
 }
 
 /// The study's settings, changed by the arguments, with every name that these withhold checked.
-fn settings(args: &Args, mut settings: Settings) -> Result<Settings, CliError> {
+fn settings(args: &Args, mut settings: Settings, catalogue: &Catalogue) -> Result<Settings, CliError> {
     settings.seed = args.seed.unwrap_or(settings.seed);
     settings.repeat &= !args.once;
     settings.calibrate = args.calibrate.unwrap_or(settings.calibrate);
-    match args.withhold.iter().find_map(|name| no_mechanism(name)) {
+    match args.withhold.iter().find_map(|name| no_mechanism(name, catalogue)) {
         Some(message) => Err(CliError::Argument(format!("--withhold: {message}"))),
         None => {
             settings.withhold.extend(args.withhold.iter().cloned());

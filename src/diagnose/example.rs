@@ -44,6 +44,35 @@ pub fn with(values: &[(&str, f64)]) -> Model {
     model
 }
 
+/// A craft with two azimuths abreast and a force as logged, with every term at its neutral value.
+pub fn craft() -> Model {
+    let azimuth =
+        |name: &str, y: f64| format!("[[actuator]]\nname = {name:?}\nx = 0.5\ny = {y:?}\nlaw = \"thruster\"\n");
+    let (left, right) = (azimuth("left", -0.3), azimuth("right", 0.3));
+    let tau = "[[actuator]]\nname = \"tau\"\nx = -0.4\ny = 0.1\nlaw = \"force\"\n";
+    let text = format!("name = \"cat\"\n[hull]\nlpp = 1.2\nbreadth = 0.9\nmass = 17.0\n{left}{right}{tau}");
+    let ship = Ship::parse(&text, Path::new("ship.toml")).unwrap();
+    Model::new(ship, "cat", Form::General, &[]).unwrap().complete().unwrap()
+}
+
+/// A run that a craft of [`craft`] sails, measured exactly.
+pub fn craft_run(model: &Model) -> Run {
+    let dt = 0.1;
+    let input = |k: usize| {
+        let t = dt * k as f64;
+        let mut input = Inputs::actuators(t, 0.0, 0.0);
+        let [left, right] = [10.0 + 6.0 * (0.7 * t).sin(), 9.0 + 8.0 * (0.4 * t).cos()];
+        let commands = [left, 0.3 * t.sin(), right, 0.1 + 0.2 * t.cos(), 1.0, 0.5 * t.sin(), 0.2 * t.cos()];
+        input.commands[..commands.len()].copy_from_slice(&commands);
+        input
+    };
+    let inputs: Vec<Inputs<f64>> = (0..SAMPLES).map(input).collect();
+    let initial = [1.0, 2.0, 0.3, 0.5, 0.05, 0.1];
+    let scenario = Scenario { dt, inputs: inputs.clone(), initial };
+    let states = simulate(model, &model.values_in("a"), RK4, &scenario).states;
+    Run { dt, recorded_dt: dt, inputs, initial, measured: measured(&states), ..runs(&self::model(), 1).remove(0) }
+}
+
 /// Sensors of a good survey ship, and little unknown force.
 pub fn noise() -> Noise {
     let sensor = |white: f64| SensorNoise { white, coloured: 0.3 * white, time: 8.0 };

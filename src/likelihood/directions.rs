@@ -70,8 +70,9 @@ struct Probed<'s, P> {
 impl<'a> Directions<'a> {
     /// Prepares the columns; terms at neutral values that no column needs are left out.
     pub(super) fn new(model: &'a Model, integration: Integration, columns: &[Column]) -> Self {
-        let active: Vec<&str> =
-            model.term_names().into_iter().filter(|t| BASE.contains(t) || !neutral(model, t)).collect();
+        // A named actuator pushes at its defaults too.
+        let acts = |t: &&str| BASE.contains(t) || model.ship.actuator(t).is_some() || !neutral(model, t);
+        let active: Vec<&str> = model.term_names().into_iter().filter(acts).collect();
         let base = model.restricted(|t| active.contains(&t));
         let placed = model.placed();
         let owner = |c: usize| placed.iter().find(|t| (t.offset..t.offset + t.len).contains(&columns[c].parameter));
@@ -144,7 +145,9 @@ impl<'a> Directions<'a> {
                     dual[parameter] = value.few_with(slopes);
                 }
                 Probe::Odd => probes.push(Probed { column: *c, high: side(scale), low: side(-scale), weight: 0.5 }),
-                Probe::Forward => probes.push(Probed { column: *c, high: side(scale), low: side(0.0), weight: 1.0 }),
+                Probe::Forward | Probe::Whole => {
+                    probes.push(Probed { column: *c, high: side(scale), low: side(0.0), weight: 1.0 });
+                }
             }
         }
         let dynamics = Dynamics::new(&group.view, dual);

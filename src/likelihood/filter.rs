@@ -71,7 +71,8 @@ impl<'a> Filter<'a> {
 mod tests {
     use super::*;
     use crate::diagnose::evidence::candidate::{append, candidates};
-    use crate::diagnose::example::{RK4, column, model, noise, runs, with};
+    use crate::diagnose::example::{RK4, column, craft, craft_run, model, noise, runs, with};
+    use crate::likelihood::noise::SensorNoise;
     use crate::simulate::Method;
     use crate::state::STATES;
 
@@ -113,6 +114,24 @@ mod tests {
         let gains = |pass: &Pass| pass.gains.clone().unwrap_or_default().gain.concat().concat();
         assert_eq!(gains(all).len(), gains(one).len());
         assert!(gains(all).iter().zip(gains(one)).all(|(a, b)| (a - b).abs() < 1e-8 * b.abs().max(1.0)), "{name}");
+    }
+
+    #[test]
+    fn a_named_actuator_pushes_at_its_defaults_as_it_does_next_to_them() {
+        let model = craft();
+        let run = craft_run(&model);
+        let small = |s: SensorNoise| SensorNoise { white: 0.01 * s.white, coloured: 0.01 * s.coloured, ..s };
+        let noise = Noise { sensors: noise().sensors.map(small), force: [0.1, 0.1, 0.02], ..noise() };
+        let likelihood = |gain: f64| {
+            let mut model = model.clone();
+            for name in ["left.gain", "right.gain", "tau.gain_x", "tau.gain_y", "tau.gain_n"] {
+                let i = model.find(name).unwrap();
+                model.parameters[i].value *= gain;
+            }
+            Filter::new(&model, RK4, &[]).pass(&run, &noise, Wanted::default()).log_likelihood
+        };
+        let (at, near, far) = (likelihood(1.0), likelihood(1.0 + 1e-9), likelihood(0.0));
+        assert!((at - near).abs() < 1e-3 && at - far > 1.0, "{at} {near} {far}");
     }
 
     #[test]

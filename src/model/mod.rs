@@ -899,6 +899,21 @@ impl Model {
         view
     }
 
+    /// This model with the named actuators of its ship on the other side, each at its mirror place in its mirrored direction. Parameters stay.
+    #[must_use]
+    pub(crate) fn with_sides_exchanged(&self) -> Self {
+        let mut out = self.clone();
+        for a in &mut out.ship.actuators {
+            (a.y, a.angle) = (-a.y, a.angle.map(|angle| -angle));
+        }
+        for term in terms::actuator::terms(&out.ship) {
+            out.catalogue = out.catalogue.with(term);
+            let own = out.terms.iter_mut().filter(|t| t.term.info().name == term.info().name);
+            own.for_each(|placed| placed.term = term);
+        }
+        out
+    }
+
     /// What is known of the model's terms, in order.
     pub fn terms(&self) -> impl Iterator<Item = &'static TermInfo> + '_ {
         self.terms.iter().map(|t| t.term.info())

@@ -12,6 +12,9 @@ pub enum Probe {
     Odd,
     /// `f(scale) - f(0)`: for effects that exist on one side only.
     Forward,
+    /// `f(scale) - f(0)`, for what is so or is not: it is wholly so at its scale, where a refit begins as well, since a model fitted without it
+    /// is bent so far that its slope may promise nothing.
+    Whole,
 }
 
 /// What kind of thing a mechanism is, for the verdict.

@@ -143,6 +143,13 @@ impl Actuator {
         components
     }
 
+    /// Whether another stands in its mirror place: abreast of it on the other side, driven alike, its direction the same or mirrored.
+    fn mirrors(&self, other: &Self) -> bool {
+        let abreast = self.y != 0.0 && self.y == -other.y && self.x == other.x;
+        let turned = self.angle == other.angle || self.angle == other.angle.map(|angle| -angle);
+        abreast && turned && self.law == other.law && self.drives() == other.drives()
+    }
+
     /// What is wrong with it by itself: key, value found (NaN for none), and what it should be.
     pub fn faults(&self, lpp: f64) -> Vec<(&'static str, f64, String)> {
         let mut faults = Vec::new();
@@ -189,6 +196,21 @@ impl Component {
 pub fn channels(actuators: &[Actuator]) -> Vec<String> {
     let of = |a: &Actuator| a.drives().into_iter().map(|d| format!("{}.{}", a.name, d.suffix())).collect::<Vec<_>>();
     actuators.iter().flat_map(of).collect()
+}
+
+/// The actuators of a list that stand in each other's mirror place, by their indices: each in one pair at most.
+pub fn pairs(actuators: &[Actuator]) -> Vec<[usize; 2]> {
+    let mut pairs: Vec<[usize; 2]> = Vec::new();
+    for (i, own) in actuators.iter().enumerate() {
+        let is_alone = |k: &usize| !pairs.iter().flatten().any(|paired| paired == k);
+        let other = (i + 1..actuators.len()).filter(is_alone).find(|j| own.mirrors(&actuators[*j]));
+        if is_alone(&i)
+            && let Some(j) = other
+        {
+            pairs.push([i, j]);
+        }
+    }
+    pairs
 }
 
 /// What is wrong with the names of a list of actuators, or with their number: the key that it concerns, and why.
@@ -249,6 +271,29 @@ mod tests {
         ] {
             assert_eq!(actuator(text).faults(2.0)[0].0, key, "{text}");
         }
+    }
+
+    #[test]
+    fn actuators_abreast_that_are_driven_alike_are_pairs_and_others_are_not() {
+        let of = |name: &str, x: f64, y: f64, more: &str| {
+            actuator(&format!("name = {name:?}\nx = {x:?}\ny = {y:?}\nlaw = \"order\"\n{more}"))
+        };
+        let azimuths = |y: f64| of("a", -1.0, y, "");
+        let all = [
+            of("px", -0.4, -0.1, "angle = 0"),
+            of("py", -0.4, -0.1, "angle = 90"),
+            of("bow", 0.4, 0.0, "angle = 90"),
+            of("sy", -0.4, 0.1, "angle = -90"),
+            of("sx", -0.4, 0.1, "angle = 0"),
+            azimuths(0.5),
+            azimuths(-0.5),
+            azimuths(-0.5),
+        ];
+        assert_eq!(pairs(&all), [[0, 4], [1, 3], [5, 6]]);
+        let apart = [of("a", 0.0, -0.1, "angle = 0"), of("b", 0.1, 0.1, "angle = 0"), of("c", 0.0, 0.1, "angle = 30")];
+        assert!(pairs(&apart).is_empty());
+        let tau = Actuator { law: Law::Force, angle: None, ..apart[1].clone() };
+        assert!(pairs(&[apart[0].clone(), Actuator { x: 0.0, ..tau }]).is_empty());
     }
 
     #[test]

@@ -7,6 +7,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod actuators;
 mod command;
 mod dossier;
 mod known_truth;

@@ -84,7 +84,7 @@ fn a_mirrored_craft_under_mirrored_commands_has_the_mirrored_rates() {
         p.value = 0.0;
     }
     // The pair is alike but for its side, and an angle's zero is of one side.
-    for name in ["gain", "loss", "astern", "lag"] {
+    for name in ["gain", "loss", "astern", "lag", "lost"] {
         let port = model.parameters[model.index(&format!("port.{name}")).unwrap()].value;
         let starboard = model.index(&format!("starboard.{name}")).unwrap();
         model.parameters[starboard].value = port;

@@ -68,7 +68,7 @@ pub fn commanded(
             let heading = std::f64::consts::TAU * (i as f64 * 0.618_034).fract();
             let session = format!("s{}", (i / 4) % 4);
             let theta = model.values_in(&session);
-            let states = reported(model, &theta, noise, &inputs, [0.0, 0.0, heading, 1.8 * n0, 0.0, 0.0], &mut rng);
+            let states = reported(model, &theta, noise, &inputs, DT, [0.0, 0.0, heading, 1.8 * n0, 0.0, 0.0], &mut rng);
             Run {
                 name: format!("run {i}"),
                 recording: format!("run {i}"),
@@ -110,12 +110,75 @@ fn orders(i: usize, n0: f64, thruster: &dyn Fn(usize, f64) -> f64) -> Vec<Inputs
     (0..121).map(at).collect()
 }
 
-/// The states that noisy sensors report of a ship under these orders and an Ornstein-Uhlenbeck force.
+/// A catamaran of 1.2 m with a thruster in each hull, called left and right, and nothing else.
+pub fn catamaran() -> Model {
+    let thruster = |name: &str, y: f64| {
+        format!("[[actuator]]\nname = {name:?}\nx = -0.4\ny = {y:?}\nangle = 0\nlaw = \"thruster\"\n")
+    };
+    let (left, right) = (thruster("left", -0.3), thruster("right", 0.3));
+    let text = format!("name = \"cat\"\n[hull]\nlpp = 1.2\nbreadth = 0.9\nmass = 17.0\n{left}{right}");
+    let ship = Ship::parse(&text, Path::new("ship.toml")).unwrap();
+    Model::new(ship, "cat", Form::General, &[]).unwrap()
+}
+
+/// Runs of 150 steps of 0.2 s of a catamaran: turns to both sides, weaving, stops and random steps of its thrusters.
+pub fn catamaran_runs(model: &Model, count: usize, seed: u64) -> Vec<Run> {
+    const STEP: f64 = 0.2;
+    let sensor = |s: f64| SensorNoise { white: 0.8 * s, coloured: 0.6 * s, time: 1.0 };
+    let noise = Noise {
+        sensors: [sensor(0.02), sensor(0.002), sensor(0.01), sensor(0.003)],
+        force: [0.05, 0.05, 0.01],
+        force_time: 2.0,
+    };
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    (0..count)
+        .map(|i| {
+            let side = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+            let (speed, mut steps) = (12.0 + 6.0 * normal(&mut rng).tanh(), [0.0; 2]);
+            let mut at = |k: i32| {
+                let t = f64::from(k) * STEP;
+                if k % 20 == 0 {
+                    steps = [10.0 * normal(&mut rng), 10.0 * normal(&mut rng)];
+                }
+                let [ahead, turning] = match i % 4 {
+                    0 => [speed, 6.0 * side],
+                    1 => [speed, 8.0 * (t / 2.5 + i as f64).sin()],
+                    2 => [if t > 15.0 { -speed } else { speed }, 4.0 * side],
+                    _ => steps,
+                };
+                let mut inputs = Inputs::actuators(t, 0.0, 0.0);
+                (inputs.commands[0], inputs.commands[1]) = (ahead + turning, ahead - turning);
+                inputs
+            };
+            let inputs: Vec<Inputs<f64>> = (0..151).map(&mut at).collect();
+            let heading = std::f64::consts::TAU * (i as f64 * 0.618_034).fract();
+            let session = format!("s{}", (i / 4) % 4);
+            let theta = model.values_in(&session);
+            let states = reported(model, &theta, &noise, &inputs, STEP, [0.0, 0.0, heading, 0.8, 0.0, 0.0], &mut rng);
+            Run {
+                name: format!("run {i}"),
+                recording: format!("run {i}"),
+                session,
+                manoeuvre: String::new(),
+                split: Split::Train,
+                dt: STEP,
+                recorded_dt: STEP,
+                inputs,
+                initial: states[0],
+                measured: measured(&states),
+                disturbed: Vec::new(),
+            }
+        })
+        .collect()
+}
+
+/// The states that noisy sensors report of a ship under these orders, one each `dt` \[s\], and an Ornstein-Uhlenbeck force.
 fn reported(
     model: &Model,
     theta: &[f64],
     noise: &Noise,
     orders: &[Inputs<f64>],
+    dt: f64,
     initial: [f64; 6],
     rng: &mut ChaCha8Rng,
 ) -> Vec<[f64; 6]> {
@@ -129,8 +192,8 @@ fn reported(
     let fine = Integration { method: Method::Rk4, substeps: 8 };
     let one = Integration { substeps: 1, ..fine };
     let dynamics = Dynamics::new(model, theta.to_vec());
-    let series = driven(&dynamics, fine, DT, orders);
-    let h = DT / fine.substeps as f64;
+    let series = driven(&dynamics, fine, dt, orders);
+    let h = dt / fine.substeps as f64;
     let mut states = Vec::new();
     for k in 0..orders.len() {
         let now = State::from_array(state);
@@ -140,7 +203,7 @@ fn reported(
         for c in 0..6 {
             let s = noise.sensors[GROUP_OF[c]];
             y[c] += colour[c] + s.white * normal(rng);
-            let rho = (-DT / s.time).exp();
+            let rho = (-dt / s.time).exp();
             colour[c] = rho * colour[c] + s.coloured * (1.0 - rho * rho).sqrt() * normal(rng);
         }
         states.push(y);

@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn the_oracle_is_told_a_name_of_the_catalogue_for_every_force() {
-        let names: Vec<&str> = mechanism_names().collect();
+        let names: Vec<&str> = mechanism_names(trimtab::terms::standard()).collect();
         for entry in catalogue().filter(|e| e.class == Class::Force) {
             assert!(names.contains(&entry.accepted[0]), "{}", entry.name);
         }

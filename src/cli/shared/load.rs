@@ -19,10 +19,12 @@ use trimtab::model::{Model, ModelError};
 use trimtab::numbers::numerals::sig;
 use trimtab::numbers::ranges::Limited;
 use trimtab::numbers::uncertainty::Uncertainty;
+use trimtab::physics::Catalogue;
 use trimtab::recording::{ColumnMap, Run, Runs, Split, Windows};
 use trimtab::report::diagnosis::mechanism_names;
 use trimtab::ship::{Ship, parameter_line};
 use trimtab::study::{Listed, Study, StudyError};
+use trimtab::terms;
 
 /// A largest yaw rate that is so many times the one recorded, or its inverse, was hardly meant: degrees for radians are 57 times.
 const FAR_YAW_RATE: f64 = 20.0;
@@ -107,7 +109,7 @@ impl Loaded {
         let tables = [
             settings::<FitSettings>(&study, "fit").err(),
             settings::<EvaluationSettings>(&study, "evaluate").err(),
-            diagnose_settings(&study).err(),
+            diagnose_settings(&study, model.as_ref().map_or(terms::standard(), Model::catalogue)).err(),
             settings::<ManeuverSettings>(&study, "maneuver").err(),
             settings::<PlanSettings>(&study, "plan").err(),
         ];
@@ -269,7 +271,7 @@ impl Loaded {
 
     /// Table `[diagnose]`.
     pub fn diagnose_settings(&self) -> Result<Settings, CliError> {
-        diagnose_settings(&self.study)
+        diagnose_settings(&self.study, self.model.catalogue())
     }
 
     /// Table `[maneuver]`.
@@ -294,7 +296,7 @@ fn settings<T: DeserializeOwned + Limited>(study: &Study, table: &'static str) -
 }
 
 /// Table `[diagnose]`, with every name that it withholds checked.
-fn diagnose_settings(study: &Study) -> Result<Settings, CliError> {
+fn diagnose_settings(study: &Study, catalogue: &Catalogue) -> Result<Settings, CliError> {
     let read: Settings = settings(study, "diagnose")?;
     let fail = |message| CliError::Table {
         path: study.path.clone(),
@@ -302,15 +304,15 @@ fn diagnose_settings(study: &Study) -> Result<Settings, CliError> {
         table: "diagnose",
         message,
     };
-    match read.withhold.iter().find_map(|name| no_mechanism(name)) {
+    match read.withhold.iter().find_map(|name| no_mechanism(name, catalogue)) {
         Some(message) => Err(fail(message)),
         None => Ok(read),
     }
 }
 
-/// What is wrong with the name of a mechanism that is not to be considered, if anything.
-pub fn no_mechanism(name: &str) -> Option<String> {
-    let known: Vec<&str> = mechanism_names().collect();
+/// What is wrong with the name of a mechanism that is not to be considered in a model of these terms, if anything.
+pub fn no_mechanism(name: &str, catalogue: &Catalogue) -> Option<String> {
+    let known: Vec<&str> = mechanism_names(catalogue).collect();
     let message = || {
         let meant = suggestion(name, known.iter().copied());
         format!("there is no mechanism `{name}` to withhold{meant}; they are {}", known.join(", "))

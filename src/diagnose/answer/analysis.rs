@@ -212,7 +212,7 @@ impl Answer {
         }
         let found = self.kept.selection.tests.problem(question.settings).inside_bounds(self.improved());
         let improved = trimmed(&found.model, question.model, &found.free);
-        let as_they_are = Change { name: "", model: Model::clone, run: |r| vec![r.clone()] };
+        let as_they_are = Change { name: "", model: Model::clone, run: |r, _| vec![r.clone()] };
         let again = brief(question.settings, &as_they_are, &improved, runs, held_out)?;
         Ok(again.names().into_iter().filter(|n| n != PUSH).collect())
     }
@@ -232,9 +232,10 @@ fn brief(
     runs: &[Run],
     held_out: &[Run],
 ) -> Result<Brief, DiagnoseError> {
+    let changed = |all: &[Run]| all.iter().flat_map(|run| (change.run)(run, &model.ship)).collect::<Vec<Run>>();
+    let [runs, held_out] = [runs, held_out].map(changed);
     let model = (change.model)(model);
     let question = Question::new(&model, settings, &|_| ())?;
-    let [runs, held_out] = [runs, held_out].map(|all| all.iter().flat_map(change.run).collect::<Vec<Run>>());
     let answer = Answer::new(&question, runs, &held_out);
     Ok(Brief::new(answer.verdict, &answer.findings))
 }

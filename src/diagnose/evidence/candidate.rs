@@ -89,14 +89,16 @@ impl Held {
 
 impl Candidate {
     /// Whether the amplitudes of a test, added to the present values, are possible: kept inside the parameters' bounds they
-    /// hold most of what they promise. A law that bends may well promise more than there can be.
+    /// hold most of what they promise. A law that bends may well promise more than there can be, and what is either so or not is no more than
+    /// so: a model that was fitted without it promises any multiple of that.
     pub fn admissible(&self, model: &Model, test: &Test) -> bool {
         let beyond = |(i, a): (usize, &f64)| {
             let c = &self.columns[i % self.columns.len()];
             let p = &model.parameters[c.parameter];
             let value = p.value + a * c.scale;
             let error = test.covariance[(i, i)].max(0.0).sqrt() * c.scale.abs();
-            let away = value - value.clamp(p.lower, p.upper);
+            let upper = if self.mechanism.probe == Probe::Whole { f64::INFINITY } else { p.upper };
+            let away = value - value.clamp(p.lower, upper);
             if away == 0.0 { 0.0 } else { (away / error).powi(2) }
         };
         test.amplitude.iter().enumerate().map(beyond).sum::<f64>() <= BEYOND_BOUNDS * test.statistic.max(1.0)

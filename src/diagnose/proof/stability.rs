@@ -8,6 +8,8 @@ use crate::model::Model;
 use crate::parameter::Parity;
 use crate::recording::Run;
 use crate::recording::audit::piece;
+use crate::ship::Ship;
+use crate::ship::actuator::{Actuator, Drive};
 use crate::state::Inputs;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
@@ -100,18 +102,18 @@ pub struct Change {
     pub name: &'static str,
     /// The model.
     pub model: fn(&Model) -> Model,
-    /// A run, as one or more.
-    pub run: fn(&Run) -> Vec<Run>,
+    /// A run of a ship, as one or more.
+    pub run: fn(&Run, &Ship) -> Vec<Run>,
 }
 
 /// The changes under which an answer must stay the same.
 pub const CHANGES: [Change; 6] = [
-    Change { name: "turned by 90 deg", model: turned_model, run: |r| vec![turned(r)] },
-    Change { name: "mirrored", model: mirrored_model, run: |r| vec![mirrored(r)] },
-    Change { name: "every recording cut in two", model: Model::clone, run: halved },
-    Change { name: "without the first fifth of each run", model: Model::clone, run: shortened },
-    Change { name: "every second sample", model: Model::clone, run: |r| vec![thinned(r)] },
-    Change { name: "free parameters started at half their values", model: started_low, run: |r| vec![r.clone()] },
+    Change { name: "turned by 90 deg", model: turned_model, run: |r, _| vec![turned(r)] },
+    Change { name: "mirrored", model: mirrored_model, run: |r, ship| vec![mirrored(r, ship)] },
+    Change { name: "every recording cut in two", model: Model::clone, run: |r, _| halved(r) },
+    Change { name: "without the first fifth of each run", model: Model::clone, run: |r, _| shortened(r) },
+    Change { name: "every second sample", model: Model::clone, run: |r, _| vec![thinned(r)] },
+    Change { name: "free parameters started at half their values", model: started_low, run: |r, _| vec![r.clone()] },
 ];
 
 /// All positions, headings and earth-fixed vectors turned by 90 deg to starboard.
@@ -156,15 +158,21 @@ fn turned_model(model: &Model) -> Model {
     out
 }
 
-/// The run in a mirror that stands along north: y, heading, sway, yaw rate, rudder and what comes from the side change sign.
-fn mirrored(run: &Run) -> Run {
+/// The run in a mirror that stands along north: y, heading, sway, yaw rate, rudder and what comes from the side change sign, and of the named
+/// actuators, which change sides with the ship, angles, side forces and moments.
+fn mirrored(run: &Run, ship: &Ship) -> Run {
     let signs = [1.0, -1.0, -1.0, 1.0, -1.0, -1.0];
+    let sideways = |drive: &Drive| matches!(drive, Drive::Angle | Drive::Y | Drive::N);
+    let drives: Vec<Drive> = ship.actuators.iter().flat_map(Actuator::drives).collect();
     let input = |i: &Inputs<f64>| {
         let mut out = *i;
         for v in [&mut out.wind, &mut out.current, &mut out.waves] {
             v[1] = -v[1];
         }
         (out.delta, out.thruster, out.bank) = (-i.delta, -i.thruster, -i.bank);
+        for (command, _) in out.commands.iter_mut().zip(&drives).filter(|(_, drive)| sideways(drive)) {
+            *command = -*command;
+        }
         out
     };
     Run {
@@ -175,9 +183,10 @@ fn mirrored(run: &Run) -> Run {
     }
 }
 
-/// The model of the mirrored ship: parameters that make port and starboard differ change sign, bounds and priors with them.
+/// The model of the mirrored ship: parameters that make port and starboard differ change sign, bounds and priors with them, and named actuators
+/// stand on the other side.
 fn mirrored_model(model: &Model) -> Model {
-    let mut out = model.clone();
+    let mut out = model.with_sides_exchanged();
     for p in out.parameters.iter_mut().filter(|p| p.info.parity == Parity::Odd) {
         p.value = -p.value;
         (p.lower, p.upper) = (-p.upper, -p.lower);
@@ -232,7 +241,7 @@ fn started_low(model: &Model) -> Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{RK4, model, runs, with};
+    use crate::diagnose::example::{RK4, craft, craft_run, model, runs, with};
     use crate::evaluate::predict;
 
     /// The largest error of a model's prediction of a run, in each channel.
@@ -252,16 +261,28 @@ mod tests {
         let run = &runs(&calm, 1)[0];
         let close = |a: [f64; 6], b: [f64; 6]| a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-6 * (1.0 + a.abs()));
         let own = errors(&calm, run);
-        let (t, m) = (errors(&calm, &turned(run)), errors(&mirrored_model(&calm), &mirrored(run)));
+        let (t, m) = (errors(&calm, &turned(run)), errors(&mirrored_model(&calm), &mirrored(run, &calm.ship)));
         assert!(close([t[1], t[0], t[2], t[3], t[4], t[5]], own) && close(m, own), "{own:?} {t:?} {m:?}");
         let drift = with(&[("current.north", 0.3), ("current.east", -0.1)]);
         let carried = &runs(&drift, 1)[0];
         let (own, t) = (errors(&drift, carried), errors(&turned_model(&drift), &turned(carried)));
         assert!(close([t[1], t[0], t[2], t[3], t[4], t[5]], own), "{own:?} {t:?}");
         // The ship itself does not sail its mirror image, nor does a current turn along.
-        assert!(!close(errors(&calm, &mirrored(run)), own));
+        assert!(!close(errors(&calm, &mirrored(run, &calm.ship)), own));
         let drifting = &runs(&truth, 1)[0];
         assert!(!close(errors(&truth, &turned(drifting)), errors(&truth, drifting)));
+    }
+
+    #[test]
+    fn a_mirrored_craft_sails_the_mirrored_run_with_its_actuators_on_the_other_side() {
+        let mut craft = craft();
+        craft.set(&[("left.gain", 0.02), ("right.lost", 0.3), ("left.swap", 0.4), ("right.zero", 0.1)]).unwrap();
+        craft.sessions.insert("a".into(), vec![(craft.find("left.zero").unwrap(), 0.05)]);
+        let run = craft_run(&craft);
+        let worst = |model: &Model, run: &Run| errors(model, run).into_iter().fold(0.0, f64::max);
+        let image = mirrored(&run, &craft.ship);
+        assert!(worst(&craft, &run) < 1e-12 && worst(&mirrored_model(&craft), &image) < 1e-9);
+        assert!(worst(&craft, &image) > 0.1);
     }
 
     #[test]

@@ -11,9 +11,10 @@ use crate::diagnose::evidence::kinematic::{agreements, gain};
 use crate::diagnose::evidence::wald::Wald;
 use crate::diagnose::settings::{
     Effort, FORM_TOLERANCE, INDISTINGUISHABLE, LIKENESS, PARAMETER_PRICE, REFIT, REMAINDER, RESOLVED_SAMPLES,
-    RIVAL_GAP, RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES,
+    RIVAL_GAP, RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES, TOGETHER_EFFORT, WHOLE_SHARE,
 };
 use crate::likelihood::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
+use crate::likelihood::evidence::chi_squared_p;
 use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::numbers::moderated::Ratio;
@@ -166,6 +167,35 @@ struct Refit {
     value: f64,
 }
 
+/// The refits of one ranking.
+struct Contest {
+    refitted: Vec<Refit>,
+    /// Candidates whose noise was estimated along.
+    settled: Vec<usize>,
+    /// Errors of sensors that the sensors do not tell from the leader.
+    alike: Vec<usize>,
+    /// The leader's p-value.
+    p: f64,
+    /// The value below which a rival was given up.
+    least: f64,
+}
+
+impl Contest {
+    /// Enters a refit with its noise, in the place of a worse one of the same candidate.
+    fn enter(&mut self, found: Refit) {
+        let candidate = found.hypothesis.candidate;
+        let known = self.refitted.iter().position(|r| r.hypothesis.candidate == candidate);
+        if known.is_some_and(|i| self.refitted[i].value >= found.value) {
+            return;
+        }
+        if let Some(i) = known {
+            self.refitted.remove(i);
+        }
+        self.refitted.push(found);
+        self.settled.push(candidate);
+    }
+}
+
 /// The comparison of refitted hypotheses on one ranking.
 struct Competition<'a> {
     screen: &'a Screen,
@@ -227,7 +257,32 @@ impl Competition<'_> {
         let statistic = w.statistic().min(gain.max(0.0));
         let Ratio { value, degrees } = self.screen.moderated(hypothesis.candidate, &hypothesis.extent, runs);
         let p = scattered_p(statistic / value, w.value.len(), degrees);
-        corrected(p, self.tried.max(1) as f64) < settings.alpha && !only_cancels(c, estimate, runs)
+        let is_so = c.mechanism.probe != Probe::Whole || w.value.iter().all(|share| *share > WHOLE_SHARE);
+        is_so && corrected(p, self.tried.max(1) as f64) < settings.alpha && !only_cancels(c, estimate, runs)
+    }
+
+    /// What is either so or not, refitted from where it is wholly so in the model as it was given, where a refit confirms it. The rest is
+    /// estimated first while it is held so: gains that are far off would else be taken for a share of it.
+    fn whole(&self, given: &Model) -> Vec<Refit> {
+        let Problem { candidates, .. } = self.problem;
+        let visible = self.screen.rows.iter().filter(|r| r.visible).count();
+        let refit = |candidate: usize| {
+            let (c, extent) = (&candidates[candidate], Extent::All);
+            let amplitude = DVector::from_element(c.columns.len(), 1.0);
+            let (mut model, mut free) = (self.current.model.clone(), self.current.free.clone());
+            free.iter().for_each(|f| f.set(&mut model, f.value(given)));
+            c.add(&mut model, &extent, &amplitude);
+            let held = self.problem.estimate(&model, &free, &self.current.noise, TOGETHER_EFFORT);
+            free.extend(c.parameters(&extent));
+            let hypothesis = Hypothesis { candidate, extent, amplitude, statistic: 0.0, p: 1.0 };
+            let mut found = self.settled(hypothesis, &held.model, &free, &held.noise);
+            let gain = 2.0 * (found.estimate.log_posterior - self.current.log_posterior).max(0.0);
+            found.hypothesis.statistic = gain;
+            found.hypothesis.p = corrected(chi_squared_p(gain, c.columns.len()), visible.max(1) as f64);
+            found
+        };
+        let is_either = |i: &usize| candidates[*i].mechanism.probe == Probe::Whole;
+        (0..candidates.len()).filter(is_either).map(refit).filter(|found| self.is_confirmed(found)).collect()
     }
 
     /// A hypothesis refitted from where a model stands, to convergence.
@@ -281,29 +336,38 @@ impl Competition<'_> {
         (is_shown && self.is_confirmed(&found)).then(|| self.selected(self.pooled(found), true, p, set, why))
     }
 
-    /// Refits the leader of a ranking and its rivals, and returns the best with its confidence set; `None` where there is no leader or no refit
-    /// confirms what its test promised.
-    fn best(&self, leaders: &[&Row]) -> Option<(Selected, Estimate)> {
-        let candidates = self.problem.candidates;
-        let mut first = Hypothesis::of(leaders.first()?);
-        let mut rivals = rivals(self.screen, leaders, candidates);
-        let alike = self.told_by_sensors(&mut first, &mut rivals);
-        let (leader, p) = (first.candidate, first.p);
+    /// Refits the leader of a ranking and its rivals.
+    fn contest(&self, leaders: &[&Row]) -> Contest {
+        let mut out =
+            Contest { refitted: Vec::new(), settled: Vec::new(), alike: Vec::new(), p: 1.0, least: f64::NEG_INFINITY };
+        let Some(leader) = leaders.first() else { return out };
+        let mut first = Hypothesis::of(leader);
+        let mut rivals = rivals(self.screen, leaders, self.problem.candidates);
+        out.alike = self.told_by_sensors(&mut first, &mut rivals);
+        (out.settled, out.p) = (vec![first.candidate], first.p);
         let first = self.refit(first, &self.current.noise, SETTLE, f64::NEG_INFINITY);
         let noise = first.estimate.noise;
-        let mut refitted = Vec::new();
-        let mut least = f64::NEG_INFINITY;
         if self.is_confirmed(&first) {
             // A rival that stays further behind a leader than any set is wide changes nothing.
-            least = first.value - form_tolerance(first.value - self.current.log_posterior);
-            refitted.push(first);
+            out.least = first.value - form_tolerance(first.value - self.current.log_posterior);
+            out.refitted.push(first);
         }
         for rival in rivals {
-            let rival = self.refit(rival, &noise, REFIT, least);
-            if rival.value < least || self.is_confirmed(&rival) {
-                refitted.push(rival);
+            let rival = self.refit(rival, &noise, REFIT, out.least);
+            if rival.value < out.least || self.is_confirmed(&rival) {
+                out.refitted.push(rival);
             }
         }
+        out
+    }
+
+    /// Refits the leader of a ranking and its rivals, beside them what is either so or not in the model as it was given, and returns the best
+    /// with its confidence set; `None` where no refit confirms what its test promised.
+    fn best(&self, leaders: &[&Row], given: Option<&Model>) -> Option<(Selected, Estimate)> {
+        let candidates = self.problem.candidates;
+        let mut contest = self.contest(leaders);
+        given.into_iter().flat_map(|model| self.whole(model)).for_each(|found| contest.enter(found));
+        let Contest { mut refitted, settled, alike, p, least } = contest;
         let entry = |(place, r): (usize, &Refit)| {
             let m = candidates[r.hypothesis.candidate].mechanism;
             let tolerance = match m.kind {
@@ -327,7 +391,7 @@ impl Competition<'_> {
             }
         }
         let winner = refitted.swap_remove(ranking.entries[0].place);
-        let is_settled = winner.hypothesis.candidate == leader;
+        let is_settled = settled.contains(&winner.hypothesis.candidate);
         Some(self.selected(self.pooled(winner), is_settled, p, set, why))
     }
 
@@ -429,22 +493,23 @@ impl Ranking {
 }
 
 /// Refits the leader among mechanisms that may be named (the most significant first) and its rivals, and returns the best with
-/// its confidence set; `None` where there is no leader or the refit does not confirm it.
+/// its confidence set; `None` where there is no leader or no refit confirms it.
 pub fn compare(
     screen: &Screen,
     leaders: &[&Row],
     current: &Estimate,
     problem: Problem,
 ) -> Option<(Selected, Estimate)> {
-    Competition { screen, current, problem, tried: leaders.len() }.best(leaders)
+    Competition { screen, current, problem, tried: leaders.len() }.best(leaders, None)
 }
 
 /// The first error of a sensor that a refit confirms: the kinematic consistency of the sensors comes before every mechanism of the ship. Else as
-/// [`compare`].
+/// [`compare`], and beside the leaders what is either so or not, whatever its test promises, in the model as it was `given`.
 pub fn compete(
     screen: &Screen,
     leaders: &[&Row],
     sensors: Vec<Leading>,
+    given: Option<&Model>,
     current: &Estimate,
     problem: Problem,
     progress: &dyn Fn(&str),
@@ -459,8 +524,10 @@ pub fn compete(
             return shown;
         }
     }
-    refitting(leaders.first()?.candidate);
-    compare(screen, leaders, current, problem)
+    if let Some(first) = leaders.first() {
+        refitting(first.candidate);
+    }
+    Competition { screen, current, problem, tried: leaders.len() }.best(leaders, given)
 }
 
 #[cfg(test)]

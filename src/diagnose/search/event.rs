@@ -145,7 +145,8 @@ impl Opening {
             let beside = Beside { present: &present, selected: &[], nothing_else: true };
             let leaders = eligible(&tests.screen, &tests.candidates, beside, settings);
             let (estimate, sensors) = (&tests.fit.estimate, leading(&tests.fit.estimate, problem, beside));
-            compete(&tests.screen, &leaders, sensors, estimate, problem, question.progress)
+            let given = Some(&question.full);
+            compete(&tests.screen, &leaders, sensors, given, estimate, problem, question.progress)
         };
         let left =
             |(_, found): &(Selected, Estimate)| tests.search.push(found, problem.runs).map_or(0.0, |p| p.statistic);

@@ -70,7 +70,9 @@ impl Selection {
         let beside = Beside { present: &present, selected: &self.mechanisms, nothing_else };
         let leaders = eligible(screen, problem.candidates, beside, question.settings);
         let sensors = leading(&self.estimate, problem, beside);
-        let next = compete(screen, &leaders, sensors, &self.estimate, problem, question.progress);
+        // A base that was bent by what it lacks tells little of what is either so or not; beside what was found the tests tell it.
+        let given = self.mechanisms.is_empty().then_some(&question.full);
+        let next = compete(screen, &leaders, sensors, given, &self.estimate, problem, question.progress);
         if next.is_none() {
             self.latest = latest;
         }

@@ -19,6 +19,8 @@ numbers! {
     REMAINDER: f64 = 0.4, SEEDS;
     /// Share of its statistic that an amplitude may lose where it is kept inside the bounds of its parameters.
     BEYOND_BOUNDS: f64 = 0.25, SEEDS;
+    /// Share from which on what is either so or not, as two actuators that are swapped, is so.
+    WHOLE_SHARE: f64 = 0.5, "nearer to so than to not so; not tuned";
     /// Likeness of two mechanisms from which on they are refitted and compared.
     LIKENESS: f64 = 0.3, SEEDS;
     /// Log-likelihood that a further parameter must bring.

@@ -3,11 +3,11 @@
 
 use crate::diagnose::proof::finding::{GENERIC, PUSH, PUSH_TITLE};
 use crate::model::Model;
-use crate::terms::CATALOGUE;
+use crate::physics::Catalogue;
 
-/// The names of all mechanisms that can be named or withheld.
-pub fn mechanism_names() -> impl Iterator<Item = &'static str> {
-    CATALOGUE.iter().flat_map(|t| t.info().mechanisms).map(|m| m.name).chain([PUSH])
+/// The names of all mechanisms that can be named or withheld in a model of these terms.
+pub fn mechanism_names(catalogue: &Catalogue) -> impl Iterator<Item = &'static str> {
+    catalogue.iter().flat_map(|t| t.info().mechanisms).map(|m| m.name).chain([PUSH])
 }
 
 /// The plain words for a mechanism; its name when the catalogue of the model does not hold it.

@@ -47,7 +47,7 @@ fn changed(
             return None;
         }
         let simulated = Run { measured: measured(&own.states), ..run.clone() };
-        let (images, expected) = ((change.run)(run), (change.run)(&simulated));
+        let (images, expected) = ((change.run)(run, &model.ship), (change.run)(&simulated, &model.ship));
         let ([image], [expected]) = (images.as_slice(), expected.as_slice()) else {
             return None;
         };
