@@ -17,12 +17,12 @@ fn case(faults: &[(&str, f64)], session: Option<&str>, spoil: fn([f64; 2]) -> [f
             Some(session) => truth.sessions.entry(session.into()).or_default().push((i, *value)),
         }
     }
-    let mut data = catamaran_runs(&truth, 32, 5);
+    let mut data = catamaran_runs(&truth, 20, 5);
     for inputs in data.iter_mut().flat_map(|run| &mut run.inputs) {
         [inputs.commands[0], inputs.commands[1]] = spoil([inputs.commands[0], inputs.commands[1]]);
     }
     let settings = Settings { repeat: false, ..Settings::default() };
-    diagnose(&base, &data[..24], &data[24..], &settings, &|_| ()).unwrap()
+    diagnose(&base, &data[..16], &data[16..], &settings, &|_| ()).unwrap()
 }
 
 /// The craft as it is: its thrusters differ a little from each other and from what was assumed.
