@@ -88,6 +88,7 @@ pub use problem::Progress;
 pub use settings::{FitSettings, Goal, Hessian};
 #[cfg(feature = "ipopt")]
 pub(crate) use summary::labels;
+#[cfg(feature = "ipopt")]
 pub use summary::{Active, Combination, Estimate, Fit, fit, fit_over};
 #[cfg(feature = "ipopt")]
 pub use task::bounds;
