@@ -69,19 +69,7 @@ pub fn commanded(
             let session = format!("s{}", (i / 4) % 4);
             let theta = model.values_in(&session);
             let states = reported(model, &theta, noise, &inputs, DT, [0.0, 0.0, heading, 1.8 * n0, 0.0, 0.0], &mut rng);
-            Run {
-                name: format!("run {i}"),
-                recording: format!("run {i}"),
-                session,
-                manoeuvre: String::new(),
-                split: Split::Train,
-                dt: DT,
-                recorded_dt: DT,
-                inputs,
-                initial: states[0],
-                measured: measured(&states),
-                disturbed: Vec::new(),
-            }
+            recorded(i, session, DT, inputs, &states)
         })
         .collect()
 }
@@ -155,21 +143,26 @@ pub fn catamaran_runs(model: &Model, count: usize, seed: u64) -> Vec<Run> {
             let session = format!("s{}", (i / 4) % 4);
             let theta = model.values_in(&session);
             let states = reported(model, &theta, &noise, &inputs, STEP, [0.0, 0.0, heading, 0.8, 0.0, 0.0], &mut rng);
-            Run {
-                name: format!("run {i}"),
-                recording: format!("run {i}"),
-                session,
-                manoeuvre: String::new(),
-                split: Split::Train,
-                dt: STEP,
-                recorded_dt: STEP,
-                inputs,
-                initial: states[0],
-                measured: measured(&states),
-                disturbed: Vec::new(),
-            }
+            recorded(i, session, STEP, inputs, &states)
         })
         .collect()
+}
+
+/// Run number `i`, a recording of its own, of states reported each `dt` \[s\] under these orders.
+fn recorded(i: usize, session: String, dt: f64, inputs: Vec<Inputs<f64>>, states: &[[f64; 6]]) -> Run {
+    Run {
+        name: format!("run {i}"),
+        recording: format!("run {i}"),
+        session,
+        manoeuvre: String::new(),
+        split: Split::Train,
+        dt,
+        recorded_dt: dt,
+        inputs,
+        initial: states[0],
+        measured: measured(states),
+        disturbed: Vec::new(),
+    }
 }
 
 /// The states that noisy sensors report of a ship under these orders, one each `dt` \[s\], and an Ornstein-Uhlenbeck force.

@@ -3,10 +3,12 @@
 
 use std::path::Path;
 
+use trimtab::evaluate::outcome;
 use trimtab::fit::{Fit, FitSettings, fit};
 use trimtab::model::Model;
 use trimtab::recording::{Run, Split};
 use trimtab::ship::Ship;
+use trimtab::simulate::Trajectory;
 use trimtab::study::Study;
 
 use super::error::RealError;
@@ -49,6 +51,12 @@ impl Hull {
     pub fn windows(&self, split: Split) -> Result<Vec<Run>, RealError> {
         let windows = self.study.windows(self.ship.hull.draught)?.windows;
         Ok(windows.into_iter().filter(|w| w.split == split).collect())
+    }
+
+    /// cVDM of a prediction of a window \[%\]; infinite where it diverges.
+    pub fn cvdm(&self, window: &Run, predicted: &Trajectory) -> f64 {
+        let outcome = outcome(window, predicted, &self.ship, self.fit.max_yaw_rate);
+        outcome.deviation().map_or(f64::INFINITY, |d| d.cvdm)
     }
 
     /// Fits a model to windows, with the settings of the study. A fit that did not converge has this in its name.

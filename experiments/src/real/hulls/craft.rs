@@ -3,7 +3,7 @@
 
 use crate::real::error::RealError;
 use crate::real::hull::Hull;
-use trimtab::evaluate::{outcome, predict_all, steady_motion};
+use trimtab::evaluate::{predict_all, steady_motion};
 use trimtab::fit::Fit;
 use trimtab::numbers::numerals::fixed;
 use trimtab::numbers::statistics::mean;
@@ -45,13 +45,10 @@ pub fn run((study, name): (&str, &'static str)) -> Result<Judged, RealError> {
     let (test, train) = (of(Split::Test)?, of(Split::Train)?);
     let fit = hull.fitted(&hull.model("model.toml")?, &train)?;
     let runs = [test, train].concat();
-    let cvdm = |run: &Run, t: &Trajectory| {
-        outcome(run, t, &hull.ship, hull.fit.max_yaw_rate).deviation().map_or(f64::INFINITY, |d| d.cvdm)
-    };
     let predicted = predict_all(&fit.model, &runs, hull.fit.integration);
     let windows = runs.into_iter().zip(predicted).map(|(run, predicted)| Window {
-        steady: cvdm(&run, &steady_motion(&run)),
-        fitted: cvdm(&run, &predicted),
+        steady: hull.cvdm(&run, &steady_motion(&run)),
+        fitted: hull.cvdm(&run, &predicted),
         predicted,
         run,
     });

@@ -5,7 +5,7 @@ use super::kvlcc2;
 use crate::real::error::RealError;
 use crate::real::hull::{Hull, settings};
 use trimtab::evaluate::maneuver::ManeuverSettings;
-use trimtab::evaluate::{outcome, predict_all};
+use trimtab::evaluate::predict_all;
 use trimtab::fit::{Fit, FitError, MultiStart, Rule, fit, multi_start};
 use trimtab::model::Model;
 use trimtab::numbers::numerals::{fixed, sig};
@@ -109,8 +109,7 @@ fn angles(name: &str) -> Option<[f64; 2]> {
 /// cVDM of a model on each window \[%\]; infinite where its simulation diverges.
 fn cvdm(hull: &Hull, model: &Model, windows: &[Run]) -> Vec<f64> {
     let predicted = predict_all(model, windows, hull.fit.integration);
-    let of = |(w, p)| outcome(w, p, &hull.ship, hull.fit.max_yaw_rate).deviation().map_or(f64::INFINITY, |d| d.cvdm);
-    windows.iter().zip(&predicted).map(of).collect()
+    windows.iter().zip(&predicted).map(|(w, p)| hull.cvdm(w, p)).collect()
 }
 
 /// Repeats the freed fit under each limit of the resistance, from the empirical values and from random starts around them.
