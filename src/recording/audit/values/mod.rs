@@ -1,4 +1,4 @@
-//! Doubts about single values: missing, held, frozen, jumping, out of reach of a receiver or of gear.
+//! Doubts about single values: missing, repeated, frozen, jumping, out of reach of a receiver or of gear.
 //! Whether channels agree with each other is asked elsewhere.
 
 pub(super) mod fill;
