@@ -270,7 +270,7 @@ impl PartialOrd for Command {
     }
 }
 
-/// Orders may be shares, per cent, volts or pulse widths, forces those of any craft: only what no channel holds is refused.
+/// Orders may be shares, per cent, volts or pulse widths, forces those of any craft: only values outside the range of every channel are refused.
 const ORDER: (f64, f64) = (-1e6, 1e6);
 const FORCE: (f64, f64) = (-1e9, 1e9);
 /// Revolutions a second of a small craft's thruster: above 6000 rpm the unit is another.
