@@ -126,7 +126,7 @@ pub struct Windows {
 
 /// Steps a window must have to say anything of a motion.
 const MIN_STEPS: usize = 2;
-/// A grid may divide the recording's own step into so many parts: a finer one repeats what is known and asks for memory.
+/// A grid may divide the recording's own step into so many parts: a finer one adds no information and needs more memory.
 const FINEST: f64 = 1000.0;
 /// Relative difference below which two steps are the same.
 const SAME_STEP: f64 = 1e-6;

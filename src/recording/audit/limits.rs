@@ -82,7 +82,7 @@ pub const FROZEN_LEVEL: f64 = 0.05;
 pub const HELD_ROWS: usize = 3;
 /// By chance a value is repeated for so long in one of so many studies, by how often values repeat elsewhere and by the resolution.
 pub const HELD_CHANCE: f64 = 300.0;
-/// Changes below this many of the smallest one are asked whether they are its multiples,
+/// The smallest change is the step of a sensor if all changes below this many times its size are its multiples,
 pub const HELD_CHANGES: f64 = 20.0;
 /// to this share of it: a sensor's step is written with few decimals.
 pub const HELD_SAME: f64 = 0.05;

@@ -1,7 +1,7 @@
 //! Audit of recordings before anything is concluded from them: gaps, units, signs, clocks, frozen channels, jumps.
 //! It reports doubts about recordings that can be read, one question a file; it fits nothing and knows no model.
 //!
-//! [`audit_study`] is what `trimtab check` shows; [`audit_runs`] and [`settled`] are asked before a fit and before a diagnosis.
+//! [`audit_study`] is what `trimtab check` shows; [`audit_runs`] and [`settled`] are called before a fit and before a diagnosis.
 
 mod agreement;
 #[cfg(test)]

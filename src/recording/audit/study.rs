@@ -1,5 +1,5 @@
 //! The audit of a study: every recording, what comes of cutting it, and what a diagnosis would leave out.
-//! It asks nothing of its own of a recording; the questions are in the files beside it.
+//! It makes no check of its own; the checks of a recording are in the other files of this folder.
 
 use super::agreement::across::{Evidence, across};
 use super::agreement::lone::Lone;

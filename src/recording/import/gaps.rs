@@ -13,7 +13,7 @@ const ENOUGH: f64 = 0.9;
 const MORE: f64 = 1.1;
 
 impl Imported {
-    /// Bridges drop-outs no longer than `longest` seconds: the column map says so, and rows that are not there at all are put in, blank.
+    /// Bridges drop-outs no longer than `longest` seconds: the column map states it, and missing rows are inserted blank.
     pub fn bridge(&mut self, longest: f64) {
         self.bridge = Some(longest);
         for recording in &mut self.recordings {

@@ -117,7 +117,7 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     for log in &logs {
         notes.extend(log.notes.iter().map(|note| format!("{}: {note}", log.path.display())));
     }
-    // What was turned comes before all else.
+    // Notes on turned axes come first.
     signals.notes.append(&mut notes);
     let mut notes = std::mem::take(&mut signals.notes);
     if !signals.by.contains_key(&Meaning::Channel(Channel::X)) {

@@ -415,7 +415,7 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
     // Only an actuator acts on the motion in the same way in all runs.
     let pool = actuated(&among_others).filter(|_| pair.acts);
     let shares = pool.as_ref().map(|pool| shares_at_best(&among_others, pool));
-    // What a run says by itself, the other runs must not contradict, nor those that are cut from the same recording.
+    // The other runs must not contradict what a run shows by itself, nor must those that are cut from the same recording.
     let agreed = |run: &Evidence, seconds: f64| {
         let Some(place) = runs.iter().position(|r| std::ptr::eq(r, run)) else { return false };
         let losses = |other: usize| {
@@ -457,7 +457,7 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
     found
 }
 
-/// Runs that show an actuator of the wrong sign less clearly than is needed for one run by itself, where several others show it.
+/// Runs that show an actuator of the wrong sign less clearly than a single run must, where several others show it.
 fn turned_as_others(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
     let known = runs.iter().filter(|r| r.turned.contains(&pair.channel)).count();
     let turns = |run: &&Evidence| {

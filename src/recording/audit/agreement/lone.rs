@@ -41,7 +41,7 @@ impl Lone {
         let severity = if turned { Severity::Warning } else { Severity::Note };
         if issue.severity > severity && self.0.iter().any(is) {
             issue.severity = severity;
-            issue.text += ", as in few of the runs: the others do not say so";
+            issue.text += ", but few of the runs show it, and the others do not";
         }
     }
 }

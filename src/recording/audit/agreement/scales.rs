@@ -1,5 +1,5 @@
 //! One run against all others: whether a rudder, a propeller rate or a sway velocity is in another unit, or of another sign.
-//! It asks with the coefficients that the other runs have; lags are in `pooled`, and what contradicts itself within a run is in `units`.
+//! It uses the coefficients of the other runs; lags are in `pooled`, and contradictions within a run in `units`.
 
 use crate::numerals::sig;
 use crate::recording::Channel;

@@ -289,7 +289,7 @@ pub struct Effect {
     left: f64,
     /// Runs.
     runs: f64,
-    /// By lag, what is spared of these shares where it acts to its own side at that lag.
+    /// By lag, the reduction of these shares where it acts to its own side at that lag.
     late: BTreeMap<isize, f64>,
 }
 
@@ -307,7 +307,7 @@ impl Effect {
     }
 
     /// Whether it acts to the other side in all runs together, and no lag that they share explains that as well: in one run a rudder that
-    /// swings to and fro is as good as turned when it is half a period late.
+    /// swings to and fro cannot be distinguished from a turned one when it is half a period late.
     pub fn turned(&self) -> bool {
         let is_late = self.late.values().any(|spared| self.runs - spared < self.left);
         self.evidence < -SIGN_EVIDENCE && self.left < EXPLAINS * self.runs && !is_late

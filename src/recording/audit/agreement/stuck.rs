@@ -1,5 +1,5 @@
-//! A rudder or a propeller whose log stood still: over a stretch of one value the motion differs from that with this value in the other
-//! runs, while the rest of the run agrees with them. Channels of the motion that stand still are in `frozen` and `held`.
+//! A rudder or a propeller whose log stood still: over a stretch in which it keeps one value the motion is unlike that of the other runs at
+//! this value, while the rest of the run is like theirs. Channels of the motion that stand still are in `frozen` and `held`.
 
 use crate::recording::audit::limits::{EXPLAINS, STUCK_UNLIKE};
 use crate::recording::audit::motion::plateau::Plateau;

@@ -104,7 +104,8 @@ fn is_step(curve: &Curve, step: f64) -> bool {
     (curve.step / step - 1.0).abs() < 0.01
 }
 
-/// What is odd in each run, in their order, against the pool, and in the recording from which it is cut. `worth` says which lags \\[s\\] matter.
+/// What is odd in each run, in their order, compared with the pool and with the other runs of its recording. `worth` says which lags
+/// \\[s\\] matter.
 pub(in crate::recording::audit) fn odd(
     curves: &[Option<&Curve>],
     pool: &Pool,
@@ -157,7 +158,7 @@ pub(in crate::recording::audit) fn shares_at_best(curves: &[Option<&Curve>], poo
     curves.iter().map(share).collect()
 }
 
-/// Whether a run shows by itself nothing that the channel does, and is explained better without it than by what it does in the others,
+/// Whether a run by itself shows no effect of the channel, and is explained better without it than with its effect in the other runs,
 /// which leaves more than usual.
 fn is_unanswered(curve: &Curve, others: &[f64], usual: f64) -> bool {
     let sums = curve.at_zero();
@@ -167,11 +168,12 @@ fn is_unanswered(curve: &Curve, others: &[f64], usual: f64) -> bool {
     curve.side().abs() < POOLED_EVIDENCE && as_it_is > POOLED_UNUSUAL * usual && evidence > SCALE_EVIDENCE
 }
 
-/// What is odd in a run, given the coefficients of the others: the explanation with the most evidence, over the windows that it shares with the run as it is.
+/// What is odd in a run, given the coefficients of the others: the explanation with the most evidence, over the windows that it shares with
+/// the run as it is.
 fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option<Odd> {
     let turned = to_the_other_side(curve, others);
     let zero = curve.zero();
-    // A run that shows by itself to which side the channel acts is believed before the others are.
+    // A run that shows by itself to which side the channel acts is not judged by the others.
     let own_side = curve.side() > POOLED_EVIDENCE;
     let mut best: Option<(f64, Odd)> = None;
     for (place, sums) in curve.sums.iter().enumerate() {

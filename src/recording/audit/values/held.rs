@@ -75,7 +75,8 @@ fn of_channel(recording: &Recording, channel: Channel, state: &[Channel]) -> Opt
         Channel::R => recording.get(Channel::Psi),
         _ => None,
     };
-    // Where a ship that is simulated without noise sails straight on, or a model is not yet released, several channels stand still at a time, at 0.
+    // Where a ship that is simulated without noise sails straight on, or a model is not yet released, several channels stand still at a
+    // time, at 0.
     let alone = |rows: &Range<usize>| {
         let moves = |of: &&[f64], row: usize| of[row] != of[row - 1];
         let most = |row: usize| others.iter().filter(|o| moves(o, row)).count() + 1 >= others.len().max(3);

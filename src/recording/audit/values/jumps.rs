@@ -1,5 +1,5 @@
 //! Damaged single values: rows that lie far from their neighbours, inside a run and at its ends, from which simulation starts.
-//! Positions that jump are in `fixes`; jumps that last are in `receiver`, since a run is parted there.
+//! Positions that jump are in `fixes`; jumps that last are in `receiver`, since a run is divided there.
 
 use crate::recording::audit::issue::{Issue, Severity};
 use crate::recording::audit::limits::{
@@ -148,7 +148,7 @@ fn far_at_ends(t: &[f64], rows: &[usize], values: &[f64], limit: impl Fn(f64) ->
             }
         }
     }
-    // A damaged row bends the line of the row beside it: of rows that are next to each other the first or last one is meant.
+    // A damaged row shifts the line through the rows next to it: of adjacent rows only the first or last one of the run is reported.
     let ends = |k: &usize| *k == 0 || *k == values.len() - 1;
     if far.iter().any(ends) { far.into_iter().filter(ends).collect() } else { far }
 }

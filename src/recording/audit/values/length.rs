@@ -1,5 +1,5 @@
 //! One recording that is shorter than all others, which have one length: its file may have been cut.
-//! Runs of several lengths say nothing.
+//! Runs of several lengths are not compared.
 
 use crate::numerals::sig;
 use crate::recording::Recording;

@@ -58,7 +58,7 @@ pub fn settled<'r>(runs: impl Into<Cow<'r, [Run]>>, length: f64) -> (Vec<Run>, V
             times.join(", "),
             sig(longest, 2)
         );
-        let next = "a diagnosis parts the run there, so that no force is read off the jump";
+        let next = "a diagnosis divides the run there, so that the jump is not taken for a force";
         issues.push(Issue::new(Severity::Note, "jump", text, next).of(Channel::X));
         parted.extend(parts(&run, &jumps));
     }

@@ -1,5 +1,5 @@
 //! Rates of signals and how two of them compare: the evidence from which units, signs and senses are determined.
-//! It knows no unit; what a ratio means is decided where it is asked for.
+//! It uses no units; what a ratio means is decided by the caller.
 
 use super::signal::{Signal, median, nearest, size_below};
 use crate::recording::local;

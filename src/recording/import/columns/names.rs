@@ -1,5 +1,5 @@
 //! Names of columns as ships and loggers write them: what is measured, and the unit where the name has one.
-//! Whether a column is what its name says is asked of its values elsewhere.
+//! Whether a column is what its name says is checked against its values elsewhere.
 
 use super::log::Meaning;
 use super::vocabulary::{

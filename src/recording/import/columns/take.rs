@@ -291,7 +291,7 @@ impl Signals {
         Ok(())
     }
 
-    /// Counts an axis of position the other way, and says so first of all.
+    /// Counts an axis of position the other way, and reports that first.
     fn turn_axis(&mut self, axis: usize) {
         let (channel, meaning) = [(Channel::X, Meaning::Latitude), (Channel::Y, Meaning::Longitude)][axis];
         if let Some(signal) = self.by.get_mut(&Meaning::Channel(channel)) {

@@ -1,5 +1,5 @@
 //! The words that ships and loggers write for what they record, in the languages of those who build them.
-//! How a name is read with them is in `names`; whether a column is what its name says is asked of its values elsewhere.
+//! How a name is read with them is in `names`; whether a column is what its name says is checked against its values elsewhere.
 
 use super::log::Meaning::{self, *};
 use crate::recording::Channel::*;
