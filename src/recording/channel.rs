@@ -270,13 +270,13 @@ impl PartialOrd for Command {
     }
 }
 
-/// Orders may be shares, per cent, volts or pulse widths, forces those of any craft: only what no channel holds is refused.
+/// Orders may be shares, per cent, volts or pulse widths, forces those of any craft: only values beyond those of any such channel are refused.
 const ORDER: (f64, f64) = (-1e6, 1e6);
 const FORCE: (f64, f64) = (-1e9, 1e9);
 /// Revolutions a second of a small craft's thruster: above 6000 rpm the unit is another.
 const THRUSTER: (f64, f64) = (-100.0, 100.0);
 
-/// Catalogue rows of the channels of actuators that were named in this process; each is kept for good, as those of the table are.
+/// Catalogue rows of the channels of actuators that were named in this process; each is kept until the process ends, as those of the table are.
 static COMMANDS: RwLock<Vec<&'static ChannelInfo>> = RwLock::new(Vec::new());
 
 /// The channel of an actuator with this name, if it is one.

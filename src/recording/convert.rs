@@ -32,7 +32,7 @@ impl Recording {
     /// A recording from arrays already in SI units and the project's frames; `t` must be among them.
     ///
     /// # Errors
-    /// [`RecordingError`] as for a file; row `i` is spoken of as line `i + 2`, where it stands once written.
+    /// [`RecordingError`] as for a file; messages name row `i` as line `i + 2`, its line in a written file.
     pub fn from_channels(name: &str, channels: Vec<(Channel, Vec<f64>)>) -> Result<Self, RecordingError> {
         let rows = channels.iter().find(|(c, _)| *c == Channel::T).map_or(0, |(_, t)| t.len());
         let mut recording = Self::empty(name.to_owned(), Path::new(name), 1);
@@ -59,7 +59,7 @@ impl Recording {
         for [a, b] in PAIRS {
             for (one, other) in [(a, b), (b, a)] {
                 if self.has(one) {
-                    self.require(other, "beside its partner", &format!("record it, or leave `{one}` out"))?;
+                    self.require(other, "together with its partner", &format!("record it, or leave `{one}` out"))?;
                 }
             }
         }
@@ -202,7 +202,7 @@ impl Recording {
         }
     }
 
-    /// Takes channels that tell late back to when it happened, by straight lines between rows, and drops the rows at either end for
+    /// Shifts delayed channels back to the time of the measurement, by straight lines between rows, and drops the rows at either end for
     /// which one of them has no value any more.
     fn shift(&mut self, delays: &[(Channel, f64)]) -> Result<(), RecordingError> {
         let t = self.time().to_vec();

@@ -1,5 +1,5 @@
 //! What drives a craft, as channels: which of them a recording must have, and in which order a simulation takes those of named actuators.
-//! What an actuator does with its channels is the affair of its term.
+//! What an actuator does with its channels is defined by its term.
 
 use super::channel::Channel;
 use crate::ship::Ship;

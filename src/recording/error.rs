@@ -127,7 +127,7 @@ pub enum RecordingError {
         found: usize,
     },
     /// A field is not a number.
-    #[error("{path}:{line}: column `{column}` holds `{found}`, which is not a number; {next}", path = path.display())]
+    #[error("{path}:{line}: column `{column}` contains `{found}`, which is not a number; {next}", path = path.display())]
     NotANumber {
         /// The file.
         path: PathBuf,

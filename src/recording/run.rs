@@ -1,5 +1,5 @@
 //! A run: a stretch of samples on a uniform grid with inputs, measured states and an initial state, as every command takes it.
-//! It holds what was recorded and nothing that follows from a model; how recordings are cut into runs is in `window`.
+//! It contains what was recorded and nothing that follows from a model; how recordings are cut into runs is in `window`.
 
 use crate::state::{Inputs, STATES};
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! Runs that are asked for one at a time: in memory while they are few, in a temporary file from some size on.
+//! Runs that are read one at a time: in memory while they are few, in a temporary file from some size on.
 //! It keeps runs and gives them back bit for bit; it neither cuts nor judges them.
 
 use super::run::{Run, Split};
@@ -55,7 +55,7 @@ impl<'a> Runs<'a> {
         self.len() == 0
     }
 
-    /// Whether they are in memory, so that what is made of them may be as well.
+    /// Whether they are in memory, so that what is computed from them may be as well.
     pub fn held(&self) -> bool {
         matches!(self, Self::Held(_))
     }
@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_cannot_be_read_is_told_once() {
+    fn a_file_that_cannot_be_read_is_reported_once() {
         let mut store = RunStore::new(0);
         runs().into_iter().for_each(|run| store.push(run).unwrap());
         store.file.as_ref().unwrap().file.lock().unwrap().set_len(100).unwrap();

@@ -1,5 +1,5 @@
 //! How much of the data lies outside the ranges over which the laws of a model's terms are valid, by term and quantity.
-//! It reports and judges nothing: a fit to data outside a range may be as good as any, and need not hold anywhere else.
+//! It reports and judges nothing: a fit to data outside a range may be as good as any, and need not be valid anywhere else.
 
 use crate::dynamics::Dynamics;
 use crate::model::Model;
@@ -28,7 +28,7 @@ pub struct Outside {
     pub met: [f64; 2],
 }
 
-/// The range of one term in one quantity beside the values that the data visit.
+/// The range of one term in one quantity, with the values that the data visit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Visit {
     /// Name of the term.
@@ -127,7 +127,7 @@ impl<'a> Count<'a> {
         }
     }
 
-    /// Every range beside what was counted here, in the order of the terms; ranges that hold everything visited too.
+    /// Every range with what was counted here, in the order of the terms; also ranges that contain everything visited.
     pub fn visits(&self) -> Vec<Visit> {
         self.limits.iter().map(Limit::visit).collect()
     }

@@ -126,7 +126,7 @@ pub struct Windows {
 
 /// Steps a window must have to say anything of a motion.
 const MIN_STEPS: usize = 2;
-/// A grid may divide the recording's own step into so many parts: a finer one repeats what is known and asks for memory.
+/// A grid may divide the recording's own step into so many parts: a finer one adds no information and needs more memory.
 const FINEST: f64 = 1000.0;
 /// Relative difference below which two steps are the same.
 const SAME_STEP: f64 = 1e-6;
@@ -391,7 +391,7 @@ impl Recording {
     }
 
     /// State at `t0` of the local motion that fits all state channels of `segment` best over `span` seconds: u, v and r linear in
-    /// time, x, y and psi their integrals. What a channel's own rows tell of its value at `t0` beside that motion is added, so that the
+    /// time, x, y and psi their integrals. The deviation of a channel's own rows from that motion at `t0` is added, so that the
     /// state is what the sensors report. Channels that were not recorded come out of the others, or as 0 (position, and heading without
     /// one). `None` when fewer than three rows are covered.
     fn local_motion(&self, segment: &Range<usize>, t0: f64, span: f64) -> Option<[f64; STATES]> {
@@ -414,7 +414,7 @@ impl Recording {
         let psi_at = |s: f64| heading[0] + heading[1] * s + 0.5 * heading[2] * s * s;
         let mut motion = Rows::default();
         let table: Vec<[f64; 4]> = tau.iter().map(|&s| integrals(psi_at, s)).collect();
-        // Unknowns: x0, y0, u0, u', v0, v'. Without a heading the track cannot be told from drift, so it is left out.
+        // Unknowns: x0, y0, u0, u', v0, v'. Without a heading the track cannot be distinguished from drift, so it is left out.
         if psi.is_some() {
             if let Some(x) = x {
                 motion.push(&tau, x, |i, _| {

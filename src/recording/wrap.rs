@@ -1,5 +1,5 @@
 //! Headings that were interpolated across north: between 359 and 1 degree some program put values on the way through 180.
-//! It finds and repairs such samples of an unwrapped heading; who asks for the repair is said by the column map.
+//! It finds and repairs such samples of an unwrapped heading; whether they are repaired is set in the column map.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -10,7 +10,7 @@ pub const MOST_BETWEEN: usize = 20;
 pub const BEYOND_USUAL: f64 = 5.0;
 /// Smallest angle \[rad\] of a step through the middle: twenty readings share a turn less what the ship turned.
 pub const LEAST_STEP: f64 = 0.15;
-/// How far a whole turn may be missed \[rad\], beside what the ship turns meanwhile.
+/// How far a whole turn may be missed \[rad\], in addition to what the ship turns meanwhile.
 pub const MISSED: f64 = 0.35;
 
 /// Takes jumps of more than half a turn out of a heading; values that need no turn added stay as they are, bit for bit.

@@ -131,7 +131,7 @@ fn layouts() -> Vec<Mistake> {
                 map(s, "delimiter = \"semicolon\"\n");
             },
             SIMULATE,
-            &["ship_a_001.csv:2: column `x [m]` holds `120,16`", "`decimal = \"comma\"`"],
+            &["ship_a_001.csv:2: column `x [m]` contains `120,16`", "`decimal = \"comma\"`"],
             |s| s.write("columns.toml", "delimiter = \"semicolon\"\ndecimal = \"comma\"\n"),
         ),
         in_command(
@@ -141,7 +141,7 @@ fn layouts() -> Vec<Mistake> {
                 std::fs::copy(&recordings(s)[6], s.path("log.csv")).unwrap();
             },
             SIMULATE,
-            &["ship_a_001.csv:2: column `t [s]` holds `2024-05-01T12:00:00Z`", "`trimtab import`"],
+            &["ship_a_001.csv:2: column `t [s]` contains `2024-05-01T12:00:00Z`", "`trimtab import`"],
             IMPORT,
         ),
         in_file(
@@ -162,7 +162,7 @@ fn layouts() -> Vec<Mistake> {
             "text among numbers",
             |s| second(s, |lines| lines[41] = lines[41].replacen("80,", "end,", 1)),
             SIMULATE,
-            &["ship_a_002.csv:42: column `t [s]` holds `end`", "correct it"],
+            &["ship_a_002.csv:42: column `t [s]` contains `end`", "correct it"],
             |s| second(s, |lines| lines[41] = lines[41].replacen("end,", "80,", 1)),
         ),
     ]

@@ -399,7 +399,7 @@ fn what_is_beside_is_not_taken_for_it_and_fill_values_are_missing() {
     };
     let read = assert_read("columns beside", log(&names, ",", row).as_bytes());
     assert!(channel(&read, 0, Channel::Psi)[5].is_nan() && channel(&read, 0, Channel::Delta)[5].is_nan());
-    contains_all(&read.notes.join("; "), &["`Heading` holds 511", "`SOG` holds 102.3", "`Rudder` holds -999"]);
+    contains_all(&read.notes.join("; "), &["`Heading` contains 511", "`SOG` contains 102.3", "`Rudder` contains -999"]);
     // Runs one below the other, each from its own start.
     let names = NAMES.replace("Time", "t [s]");
     let run = |s: &Sample| with(s, &[(0, s.t.to_string())]);

@@ -98,7 +98,7 @@ fn values() -> Vec<Fault> {
         (
             "text in a row",
             with_line(6, "4,8,0,0,fast,0,0,60,5"),
-            "run.csv:6: column `u [m/s]` holds `fast`",
+            "run.csv:6: column `u [m/s]` contains `fast`",
             "leave the field empty",
         ),
         (

@@ -1,5 +1,5 @@
 //! A doubt about recordings: what it is, how much it weighs, what was seen and what to do next.
-//! It finds no fault itself; the questions asked of recordings are in the files beside it.
+//! It finds no fault itself; the checks of recordings are in the other files of this folder.
 
 use crate::recording::Channel;
 use serde::{Deserialize, Serialize};

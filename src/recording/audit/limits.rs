@@ -1,5 +1,5 @@
 //! Every number on which a decision of the audit turns, with what it means.
-//! It decides nothing itself; what also serves to repair or to read a recording (headings across north, fill values) is there.
+//! It decides nothing itself; limits that also serve to repair or to read a recording (headings across north, fill values) are defined there.
 
 // --- Single values ---
 
@@ -29,7 +29,7 @@ pub const LOST_SAME: f64 = 0.5;
 pub const RUDDER_BLIP: f64 = 1.0 * std::f64::consts::PI / 180.0;
 /// A rudder up to this angle \[rad\], 45 deg, at an end of a run is one on its way over: runs are cut where an order is given.
 pub const RUDDER_OVER: f64 = 45.0 * std::f64::consts::PI / 180.0;
-/// Windows from which the scatter at the ends of a run is told; of longer runs every n-th is taken.
+/// Windows from which the scatter at the ends of a run is estimated; of longer runs every n-th is taken.
 pub const END_WINDOWS: usize = 2000;
 /// Share of the values on each side that does not count for the range of the others.
 pub const TAIL: f64 = 0.02;
@@ -54,7 +54,7 @@ pub const FIX_SHARE: f64 = 0.25;
 pub const FIX_OPPOSITE: f64 = 0.5;
 /// Share of the recorded speeds that its fastest is above.
 pub const FASTEST: f64 = 0.95;
-/// Changes before and after, from which the resolution of positions is told: it may change with their digits.
+/// Changes before and after, from which the resolution of positions is estimated: it may change with their digits.
 pub const RESOLUTION_CHANGES: usize = 12;
 /// Steps below this many resolutions are rounding.
 pub const RESOLUTIONS: f64 = 2.0;
@@ -71,26 +71,26 @@ pub const FROZEN_DIFFERENCES: f64 = 2.0;
 pub const FROZEN_SELDOM: f64 = 0.95;
 /// A frozen velocity lasts this many spans of the local fits,
 pub const FROZEN_SPANS: f64 = 3.0;
-/// while position and heading tell a velocity that changes by this share of its whole range.
+/// while position and heading show a velocity that changes by this share of its whole range.
 pub const FROZEN_RANGE: f64 = 0.3;
-/// and by this share of the speed, or of the yaw rate: on a straight course a velocity does hold.
+/// and by this share of the speed, or of the yaw rate: on a straight course a velocity does stay constant.
 pub const FROZEN_LEVEL: f64 = 0.05;
 
-// --- Held values ---
+// --- Repeated values ---
 
-/// Fewest rows of one value that are called held.
+/// Fewest rows of one value that count as a repeated value.
 pub const HELD_ROWS: usize = 3;
-/// By chance a value is held so long in one of so many studies, from how often values are repeated elsewhere, and from the resolution.
+/// By chance a value is repeated for so long in one of so many studies, by how often values repeat elsewhere and by the resolution.
 pub const HELD_CHANCE: f64 = 300.0;
-/// Changes below this many of the smallest one are asked whether they are its multiples,
+/// The smallest change is the step of a sensor if all changes below this many times its size are its multiples,
 pub const HELD_CHANGES: f64 = 20.0;
 /// to this share of it: a sensor's step is written with few decimals.
 pub const HELD_SAME: f64 = 0.05;
 /// Most decimals of a written value.
 pub const HELD_DIGITS: i32 = 9;
-/// Changes before and after a held value that tell how the channel moves beside it.
+/// Changes before and after a repeated value that show how the channel moves there.
 pub const HELD_BESIDE: usize = 6;
-/// Changes below this share of the usual ones of the run are those of a ship at rest: HSVA's KVLCC2 is held on its course for 27 to 32
+/// Changes below this share of the usual ones of the run are those of a ship at rest: HSVA's KVLCC2 is kept on its course for 27 to 32
 /// rows before it is released.
 pub const HELD_REST: f64 = 0.2;
 /// A channel that changes by fewer of its steps before or after may stand still as it turns: that model's heading does for 16 rows.
@@ -98,7 +98,7 @@ pub const HELD_STEPS: f64 = 10.0;
 /// Elsewhere at most this share of the rows may repeat a value, in the run and in all runs. Recordings of models in basins, written to
 /// three or four digits (KVLCC2 of MARIN and of HSVA), repeat more than that near the ends of their swings.
 pub const HELD_SELDOM: f64 = 0.01;
-/// A rudder or a propeller leaps from a value that was lost to it by this many times what brought it there.
+/// A rudder or a propeller whose log stood still leaps from that value by this many times the largest change just before it.
 pub const HELD_LEAP: f64 = 3.0;
 /// Rows in which the channel must move in the run.
 pub const HELD_ROWS_MOVING: usize = 30;
@@ -113,9 +113,9 @@ pub const SMALL_RUDDER_TURNS: f64 = 30.0;
 pub const SMALL_RATE: f64 = 0.05;
 /// How far a gain may be from a known one to be taken for it: noise in what is compared pulls gains towards zero.
 pub const SAME_GAIN: f64 = 0.12;
-/// Coherence above which two channels tell the same motion, so that their gain means something.
+/// Coherence above which two channels show the same motion, so that their gain means something.
 pub const COHERENT: f64 = 0.9;
-/// Heading and integrated yaw rate of a run that differ by this, root mean square, do not tell one motion \[rad\], 3 deg: noise of a gyro
+/// Heading and integrated yaw rate of a run that differ by this, root mean square, do not show one motion \[rad\], 3 deg: noise of a gyro
 /// and of a compass stays below.
 pub const APART: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// Gains further than this from 1 are worth a look.
@@ -154,7 +154,7 @@ pub const LEVER_LONGEST: f64 = 0.75;
 pub const SAILED: [f64; 2] = [0.2, 1.6];
 /// A propeller that turns slower than this share of its fastest in the run is stopped, and has no advance ratio.
 pub const POWERED: f64 = 0.05;
-/// Samples ahead under power that a ratio is told from.
+/// Samples ahead under power from which a ratio is estimated.
 pub const RATIO_SAMPLES: usize = 20;
 /// A ship is under way at this many times the speed below which its dynamics are regularised.
 pub const UNDER_WAY: f64 = 10.0;
@@ -186,20 +186,20 @@ pub const GEAR_STEP: f64 = 1.5;
 
 // --- Clocks ---
 
-/// Steps from which a lag between two channels that tell one motion is worth a note, and a warning.
+/// Steps from which a lag between two channels that show one motion is worth a note, and a warning.
 pub const LAG_STEPS: [f64; 2] = [1.5, 5.0];
-/// A lag of a channel that tells of the motion, or of rudder and propeller, is worth a warning from this share of the time in which
+/// A lag of a channel of the motion, or of rudder and propeller, is worth a warning from this share of the time in which
 /// the ship sails its length; shorter ones are those of steering gear, engines and filters.
 pub const LAG_SHARE: f64 = 0.25;
 /// A position of another point of the ship than the velocity's is early or late by up to this share of that time: bow and stern are half a
 /// length from midship.
 pub const LEVER_LAG: f64 = 0.5;
-/// Twice the log-likelihood ratio over the residuals, in terms of independent samples, from which a lag is told: of some tens of
+/// Twice the log-likelihood ratio over the residuals, in terms of independent samples, from which a lag is reported: of some tens of
 /// lags the best is taken, and gusts are not independent. Of 1280 sound runs (32 concealed cases without an
 /// effect, seeds 901 to 916) 8 had such a lag at 10.
 pub const LAG_EVIDENCE: f64 = 20.0;
 /// The same for the sign of an actuator, whose effect must also explain the response. It stops a fit, so that it must be beyond doubt:
-/// at 8 it was told of 3 of these runs, in which a slow ship was turned by gusts.
+/// at 8 it was reported for 3 of these runs, in which a slow ship was turned by gusts.
 pub const SIGN_EVIDENCE: f64 = 25.0;
 /// A run in which an actuator acts to the other side, or later, than in the others: the squares that this explains, over those that it
 /// leaves an independent sample,
@@ -214,20 +214,20 @@ pub const POOLED_LEAVES: f64 = 0.4;
 pub const POOLED_STILL: f64 = 1e-9;
 /// Runs in which a channel is this many times as large, squared and by window, as in the middle one do not count among the others.
 pub const POOLED_SIZE: f64 = 5.0;
-/// A unit or a sign, or whether the motion answers at all, is asked of a run of which the others' coefficients leave at least this many
+/// A unit or a sign, or whether the motion answers at all, is tested in a run of which the others' coefficients leave at least this many
 /// times what they usually leave. Of 3501 sound runs (96 concealed cases, seeds 8601 to 8624, and the three studies) none that shows nothing
 /// of its rudder by itself was explained better without it, with evidence of 15 or more, and left 1.5 times as much as usual.
 pub const POOLED_UNUSUAL: f64 = 2.5;
-/// A rudder or a propeller that holds one value is held against the other runs where so many windows are in the stretch and beside it,
+/// A rudder or a propeller that keeps one value is compared with the other runs where so many windows are in the stretch and outside it,
 pub const STUCK_WINDOWS: usize = 10;
 /// and is stuck where it explains nothing ([`EXPLAINS`]) and the others' coefficients leave this many times as much, squared and by window,
-/// as they do usually and beside it. In 168 concealed cases (seeds 8801 to 8842) and KVLCC2 at MARIN and HSVA no sound stretch left both; one
+/// as they do usually and outside it. In 168 concealed cases (seeds 8801 to 8842) and KVLCC2 at MARIN and HSVA no sound stretch met both; one
 /// in a hard turn left 16 times as much, and the rudder explained two thirds. At Esso Osaka two recordings that go on after their trial are
-/// told: one of a ship that is turned about with rudder and propeller at 0, one of a ship that is stopped within 4 s with its propeller at 0.
+/// reported: one of a ship that is turned about with rudder and propeller at 0, one of a ship that is stopped within 4 s with its propeller at 0.
 pub const STUCK_UNLIKE: f64 = 15.0;
 /// A channel in another unit, or of another sign, than in the other runs: undone it leaves at most this share of the squares,
 pub const SCALE_LEAVES: f64 = 0.25;
-/// and twice the log-likelihood ratio is at least this: it is asked of every run, channel and unit.
+/// and twice the log-likelihood ratio is at least this: every run, channel and unit is tested.
 pub const SCALE_EVIDENCE: f64 = 40.0;
 /// A run in which the channel is this many times as large, squared and by row, as in the middle one does not count: less is a turn with
 /// the rudder hard over among runs on a course.
@@ -240,14 +240,14 @@ pub const SCALE_COHERENCE: f64 = 0.7;
 pub const SCATTER_ALIKE: f64 = 1.4;
 /// The scatter of that one is the factor between two units, to this factor.
 pub const SCATTER_SAME: f64 = 1.25;
-/// Runs from which coefficients of others can be told.
+/// Fewest runs from which the coefficients of the others can be estimated.
 pub const POOLED_RUNS: usize = 6;
 /// A lag of all runs together is that of a single one if it differs by at most this share.
 pub const SAME_LAG: f64 = 0.5;
 /// With the lag the response is explained so much better that at most this share of the squares is left, by its own coefficients and by
 /// those of the other runs: of the sound runs above none has such a lag by both.
 pub const LAG_LEAVES: f64 = 0.7;
-/// What an actuator explains of the response at all: with it at most this share of the squares is left, else it tells nothing.
+/// What an actuator explains of the response at all: with it at most this share of the squares is left, else it is no evidence.
 pub const EXPLAINS: f64 = 0.7;
 /// Clocks of two sessions, or of one run and the others, differ where the lag of a channel does by this share of the time in which the ship
 /// sails its length; so do a channel and the motion in all runs, where nothing else explains it.
@@ -307,15 +307,15 @@ pub const COPY_OWNERS: usize = 8;
 
 // --- Jumps that last ---
 
-/// Samples on each side of a jump that tell it from motion.
+/// Samples on each side of a jump that distinguish it from motion.
 pub const SIDE: usize = 4;
-/// Samples from which the scatter of steps can be told.
+/// Samples from which the scatter of steps can be estimated.
 pub const ENOUGH: usize = 100;
 /// A jump is this many standard deviations of what noise and manoeuvres make of steps.
 pub const BEYOND_NOISE: f64 = 8.0;
 /// A jump would take this many times the acceleration of the ship's own turns, `U^2 / L`, within one sample period.
 pub const BEYOND_FORCE: f64 = 2.0;
-/// A receiver that held its value catches up by at least this share of what the ship sailed meanwhile.
+/// A receiver that repeated its value catches up by at least this share of what the ship sailed meanwhile.
 pub const CAUGHT_UP: f64 = 0.75;
 
 // --- Derivatives ---

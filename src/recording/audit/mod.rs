@@ -1,7 +1,7 @@
 //! Audit of recordings before anything is concluded from them: gaps, units, signs, clocks, frozen channels, jumps.
 //! It reports doubts about recordings that can be read, one question a file; it fits nothing and knows no model.
 //!
-//! [`audit_study`] is what `trimtab check` shows; [`audit_runs`] and [`settled`] are asked before a fit and before a diagnosis.
+//! [`audit_study`] is what `trimtab check` shows; [`audit_runs`] and [`settled`] are called before a fit and before a diagnosis.
 
 mod agreement;
 #[cfg(test)]
@@ -133,25 +133,25 @@ mod tests {
     #[test]
     fn a_time_in_milliseconds_is_an_error_of_every_gain() {
         let found = scaled(&[Channel::T], 1000.0);
-        let told: Vec<&Issue> = found.iter().filter(|i| i.text.contains("the time is in ms")).collect();
-        assert!(told.len() == 2 && told.iter().all(|i| i.severity == Severity::Error), "{found:?}");
+        let of_time: Vec<&Issue> = found.iter().filter(|i| i.text.contains("the time is in ms")).collect();
+        assert!(of_time.len() == 2 && of_time.iter().all(|i| i.severity == Severity::Error), "{found:?}");
     }
 
     #[test]
     fn a_propeller_rate_of_another_unit_shows_in_the_advance_ratio() {
         let ship = Ship::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/ships/a.toml")).unwrap();
-        for (factor, told) in [(1.0, None), (TAU, Some("rad/s")), (1.0 / 60.0, Some("rps"))] {
+        for (factor, unit) in [(1.0, None), (TAU, Some("rad/s")), (1.0 / 60.0, Some("rps"))] {
             let mut run = swing();
             values(&mut run, Channel::N).iter_mut().for_each(|n| *n *= factor);
             let ratio = propeller::advance_ratio(&Recording::from_channels("run", run).unwrap(), &ship);
             let issues: Vec<Issue> = propeller::advance(&[ratio], &ship).into_iter().flatten().collect();
-            assert_eq!(issues.len(), usize::from(told.is_some()), "{issues:?}");
-            assert!(told.is_none_or(|t| issues[0].text.contains(&format!("the column is in {t} "))), "{issues:?}");
+            assert_eq!(issues.len(), usize::from(unit.is_some()), "{issues:?}");
+            assert!(unit.is_none_or(|t| issues[0].text.contains(&format!("the column is in {t} "))), "{issues:?}");
         }
     }
 
     #[test]
-    fn a_propeller_that_is_stopped_has_no_advance_ratio_and_one_that_never_turns_is_told() {
+    fn a_propeller_that_is_stopped_has_no_advance_ratio_and_one_that_never_turns_is_reported() {
         let ship = Ship::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/ships/a.toml")).unwrap();
         let with = |rate: &dyn Fn(usize) -> f64| {
             let mut run = swing();
@@ -164,7 +164,7 @@ mod tests {
         assert!(!propeller::is_unpowered(&windmilling, &ship) && propeller::is_unpowered(&with(&|_| 0.0), &ship));
     }
 
-    /// A turn under a rudder that is held: the yaw rate answers once, and then follows from nothing that changes.
+    /// A turn under a nearly constant rudder: the yaw rate answers once, and then follows from nothing that changes.
     fn turn(side: f64) -> Vec<(Channel, Vec<f64>)> {
         let t: Vec<f64> = (0..400).map(f64::from).collect();
         // The turn slackens as the ship loses speed, while the rudder stays.
@@ -188,13 +188,13 @@ mod tests {
     }
 
     #[test]
-    fn a_rudder_that_never_moves_is_told_where_the_ship_turns() {
+    fn a_rudder_that_never_moves_is_reported_where_the_ship_turns() {
         let still = |run| issues(run).iter().any(|i| i.fault == "still");
         assert!(still(turn(0.0)) && !still(turn(1.0)));
     }
 
     #[test]
-    fn what_follows_from_a_turned_sign_is_not_told_beside_it() {
+    fn what_follows_from_a_turned_sign_is_not_reported_as_well() {
         for channel in [Channel::V, Channel::R, Channel::Delta] {
             let found = scaled(&[channel], -1.0);
             assert!(found.iter().all(|i| i.fault == "sign_error"), "{channel}: {found:?}");
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_late_channel_is_told_with_its_lag() {
+    fn a_late_channel_is_reported_with_its_lag() {
         for late in [4_usize, 8] {
             let mut run = swing();
             let r = values(&mut run, Channel::R);
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_position_taken_off_midship_is_told_with_its_lever() {
+    fn a_position_taken_off_midship_is_reported_with_its_lever() {
         let mut run = swing();
         let psi = values(&mut run, Channel::Psi).clone();
         values(&mut run, Channel::X).iter_mut().zip(&psi).for_each(|(x, p)| *x += 30.0 * p.cos());
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frozen_channel_is_told_with_its_lines() {
+    fn a_frozen_channel_is_reported_with_its_lines() {
         for channel in [Channel::X, Channel::Psi] {
             let mut run = swing();
             let v = values(&mut run, channel);
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outlier_is_told_with_its_line() {
+    fn an_outlier_is_reported_with_its_line() {
         let mut run = swing();
         values(&mut run, Channel::U)[123] += 3.0;
         let found = issues(run);

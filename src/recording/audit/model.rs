@@ -1,11 +1,11 @@
 //! Doubts about a model before it is simulated: what it lacks that every ship has.
-//! It runs no simulation; what a fit makes of the model is told by the fit.
+//! It runs no simulation; the fit reports what it makes of the model.
 
 use super::issue::{Issue, Severity};
 use crate::model::{BASE, Model, Parameter};
 use crate::physics::TermInfo;
 
-/// What the values of a model leave out without a word.
+/// What the values of a model leave out silently.
 pub fn audit_model(model: &Model) -> Vec<Issue> {
     let mut issues = Vec::new();
     if model.without_resistance() {
@@ -16,9 +16,9 @@ pub fn audit_model(model: &Model) -> Vec<Issue> {
     }
     for term in idle_terms(model) {
         let count = term.parameters.len();
-        let held = if count == 1 { "its parameter is".to_owned() } else { format!("its {count} parameters are") };
+        let what = if count == 1 { "its parameter is".to_owned() } else { format!("its {count} parameters are") };
         let text =
-            format!("the term `{}` does nothing: {held} held at the values at which it has no effect", term.name);
+            format!("the term `{}` does nothing: {what} fixed at the values at which it has no effect", term.name);
         let lines: Vec<String> = term
             .parameters
             .iter()
@@ -38,7 +38,7 @@ pub fn audit_model(model: &Model) -> Vec<Issue> {
     issues
 }
 
-/// Terms beside the base ones that have no effect, in no session, and that no fit may change.
+/// Terms other than the base ones that have no effect, in no session, and that no fit may change.
 fn idle_terms(model: &Model) -> Vec<&'static TermInfo> {
     let added = |name: &str| model.sessions.values().flatten().any(|(i, _)| model.parameters[*i].name == name);
     let rests = |term: &&TermInfo| {
@@ -55,14 +55,14 @@ mod tests {
     use crate::study::demo::example;
 
     #[test]
-    fn a_term_that_does_nothing_is_told_with_the_lines_that_free_it() {
+    fn a_term_that_does_nothing_is_reported_with_the_lines_that_free_it() {
         let mut model = example().unwrap().model;
         model.add_term("wind").unwrap();
-        let told = audit_model(&model);
-        assert!(told.len() == 1 && told[0].fault == "idle_term" && told[0].text.contains("`wind`"), "{told:?}");
+        let found = audit_model(&model);
+        assert!(found.len() == 1 && found[0].fault == "idle_term" && found[0].text.contains("`wind`"), "{found:?}");
         let names: Vec<String> =
             model.parameters.iter().map(|p| p.name.clone()).filter(|n| n.starts_with("wind.")).collect();
-        assert!(names.iter().all(|n| told[0].next_step.contains(&format!("\"{n}\" = "))), "{told:?}");
+        assert!(names.iter().all(|n| found[0].next_step.contains(&format!("\"{n}\" = "))), "{found:?}");
         let mut freed = model.clone();
         freed.release("wind").unwrap();
         assert_eq!(audit_model(&freed), []);
@@ -71,13 +71,13 @@ mod tests {
     }
 
     #[test]
-    fn a_ship_without_resistance_is_told() {
+    fn a_ship_without_resistance_is_reported() {
         let mut model = example().unwrap().model;
         assert_eq!(audit_model(&model), []);
         for name in ["resistance.linear", "resistance.quadratic", "resistance.cubic"] {
             model.set(&[(name, 0.0)]).unwrap();
         }
-        let told = audit_model(&model);
-        assert!(told.len() == 1 && told[0].severity == Severity::Warning && told[0].next_step.contains("ship file"));
+        let found = audit_model(&model);
+        assert!(found.len() == 1 && found[0].severity == Severity::Warning && found[0].next_step.contains("ship file"));
     }
 }

@@ -124,12 +124,12 @@ pub(super) fn examined(recording: &Recording) -> (Audit, Responses) {
     // What was found so far would be found again and again in what follows.
     let filled = fills(recording, &mut issues);
     let recording = filled.as_ref().unwrap_or(recording);
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     if fixes(recording, &mut issues) {
-        told.extend([Channel::X, Channel::Y]);
+        reported.extend([Channel::X, Channel::Y]);
     }
     let turned = headings(recording, &mut issues).then(|| recording.with_repaired_heading());
-    told.extend(turned.as_ref().map(|_| Channel::Psi));
+    reported.extend(turned.as_ref().map(|_| Channel::Psi));
     let recording = turned.as_ref().unwrap_or(recording);
     magnitudes(recording, &mut issues);
     still(recording, &mut issues);
@@ -137,7 +137,7 @@ pub(super) fn examined(recording: &Recording) -> (Audit, Responses) {
     let responses = Responses::of(&series);
     let kinematics = agreement([(&series, &responses)], &mut issues);
     frozen(&series, &mut issues);
-    outliers(recording, &told, &mut issues);
+    outliers(recording, &reported, &mut issues);
     issues.sort_by_key(|i| std::cmp::Reverse(i.severity));
     let t = recording.time();
     let stretch = |s: &std::ops::Range<usize>| Stretch {
@@ -160,7 +160,7 @@ pub(super) fn examined(recording: &Recording) -> (Audit, Responses) {
     (audit, responses)
 }
 
-/// Whether the channels tell the same motion, over all series together.
+/// Whether the channels show the same motion, over all series together.
 pub fn agreement<'a>(
     series: impl IntoIterator<Item = (&'a Series<'a>, &'a Responses)>,
     issues: &mut Vec<Issue>,

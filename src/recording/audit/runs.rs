@@ -1,5 +1,5 @@
-//! The audit of runs, asked before a fit and before a diagnosis: what contradicts itself, and what stands still.
-//! It puts the questions of a recording's audit to all runs together; what a model makes of the runs is asked elsewhere.
+//! The audit of runs before a fit and before a diagnosis: channels that contradict each other, and channels that stand still.
+//! It applies the checks of a recording's audit to all runs together; how well a model fits the runs is examined elsewhere.
 
 use super::issue::Issue;
 use super::motion::series::Series;
@@ -7,7 +7,7 @@ use super::record::{Responses, agreement};
 use super::values::frozen::frozen;
 use crate::recording::Run;
 
-/// What is wrong with runs by themselves: units, signs and axes that contradict each other over all runs together, which block any
+/// Faults of runs that need no model to be found: units, signs and axes that contradict each other over all runs together, which block any
 /// conclusion, and channels that are frozen in one.
 pub fn audit_runs(runs: &[Run]) -> Vec<Issue> {
     let series: Vec<Series<'static>> = runs.iter().map(Series::from).collect();

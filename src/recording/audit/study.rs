@@ -1,5 +1,5 @@
 //! The audit of a study: every recording, what comes of cutting it, and what a diagnosis would leave out.
-//! It asks nothing of its own of a recording; the questions are in the files beside it.
+//! It makes no check of its own; the checks of a recording are in the other files of this folder.
 
 use super::agreement::across::{Evidence, across};
 use super::agreement::lone::Lone;
@@ -60,7 +60,7 @@ pub fn audit_study(study: &Study, ship: &Ship) -> StudyAudit {
         match &runs[..] {
             [one] => {
                 let Some(audit) = result.recordings.iter_mut().find(|a| a.run == *one) else { continue };
-                // The run alone may have told it, or noted it.
+                // The audit of the run alone may have reported it, perhaps as a note.
                 let same = |i: &Issue| (i.fault, i.channel) == (issue.fault, issue.channel);
                 if !audit.issues.iter().any(|i| same(i) && i.severity >= issue.severity) {
                     audit.issues.retain(|i| !same(i));
@@ -91,7 +91,7 @@ pub fn audit_each(study: &Study, ship: &Ship) -> StudyAudit {
         result.train_windows += train;
         result.test_windows += test;
         result.evidence.extend(evidence);
-        // What is wrong with a file is wrong in every run that is cut from it, and told in the first.
+        // A fault of a file is in every run that is cut from it, and is reported for the first.
         let path = audit.path.clone();
         audit
             .issues
@@ -145,7 +145,7 @@ fn off_the_ship(audit: &mut Audit, ship: &Ship) {
     }
     for issue in audit.issues.iter_mut().filter(|i| i.fault == "lever") {
         issue.fault = "disagreement";
-        issue.text = "in turns the track slides beside heading and velocity as no point of the ship does".into();
+        issue.text = "in turns the track slides sideways farther than any point of the ship would".into();
         issue.next_step =
             "is the heading offset, or counted anticlockwise from east (`psi = { sign = -1, offset = 90 }`, for one in deg, in a column map)? Else check axes and units of x, y and v"
                 .into();
@@ -211,15 +211,15 @@ mod tests {
     use crate::recording::RecordingError;
 
     #[test]
-    fn a_setting_that_does_not_suit_is_told_without_a_file_and_a_file_that_cannot_be_read_with_it() {
+    fn a_setting_that_does_not_suit_is_reported_without_a_file_and_a_file_that_cannot_be_read_with_it() {
         let setting =
             |path: &str| RecordingError::Setting { path: path.into(), message: "`window` is long; cut it".into() };
         let of = |error: RecordingError| {
             let issue = failure(&error.into());
             (issue.fault, issue.text, issue.next_step)
         };
-        let told = ("setting", "`window` is long".to_owned(), "cut it".to_owned());
-        assert_eq!([of(setting("a.csv")), of(setting("b.csv"))], [told.clone(), told]);
+        let expected = ("setting", "`window` is long".to_owned(), "cut it".to_owned());
+        assert_eq!([of(setting("a.csv")), of(setting("b.csv"))], [expected.clone(), expected]);
         let source = std::io::Error::from(std::io::ErrorKind::NotFound);
         let (fault, text, _) = of(RecordingError::Read { path: "a.csv".into(), source });
         assert!(fault == "unreadable" && text.contains("a.csv"), "{text}");

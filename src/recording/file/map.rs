@@ -198,13 +198,13 @@ pub struct Column {
     pub sign: Option<f64>,
     /// Added, in the column's unit.
     pub offset: Option<f64>,
-    /// How late the column tells what happened.
+    /// How late the column records what happened.
     pub delay: Option<Delay>,
     /// Values of the column, as written, that stand for a missing one.
     pub blank: Blank,
 }
 
-/// How late a column tells what happened \[s\]; negative where it tells it early. At most an hour.
+/// How late a column records what happened \[s\]; negative where it is early. At most an hour.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Delay {
@@ -269,7 +269,7 @@ struct ColumnTable {
     sign: Option<f64>,
     /// Added, in the column's unit.
     offset: Option<f64>,
-    /// How late the column tells what happened \[s\]: a number, or a table of numbers by session.
+    /// How late the column records what happened \[s\]: a number, or a table of numbers by session.
     delay: Option<Delay>,
     /// Values of the column, as written, that stand for a missing one.
     #[serde(default)]

@@ -490,7 +490,7 @@ fn missing_column(
     }
 }
 
-/// A problem of the column map, told of the map's file, or of the recording where the map is the default one.
+/// A problem of the column map, reported for the map's file, or for the recording where the map is the default one.
 fn map_problem(map: &ColumnMap, path: &Path, line: usize, message: &str) -> RecordingError {
     let path: PathBuf = map.path.clone().unwrap_or_else(|| path.to_owned());
     RecordingError::Map { path, line, message: message.to_owned() }
@@ -676,7 +676,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quoted_field_may_hold_the_delimiter_and_blanks() {
+    fn a_quoted_field_may_contain_the_delimiter_and_blanks() {
         let text = "\"t [s]\",\"n [rps]\",delta [rad],\"remark, long\"\n\
                     0,\" 1 \",0.1,\"calm, clear\"\n1,1,\"0.2\",\"a \"\"turn\"\"\"\n2,1,0.3,\n";
         let r = both_ways(text.as_bytes(), "");
@@ -708,7 +708,7 @@ mod tests {
         let r = both_ways(text.as_bytes(), "");
         assert_eq!((0..r.len()).map(|row| r.line(row)).collect::<Vec<_>>(), [2, 4, 6, 8]);
         assert_eq!(r.without_time(), [(5, 5), (7, 7), (9, 10)]);
-        // A line that starts with another sign is no comment: it is told, with its line.
+        // A line that starts with another sign is no comment: it is reported, with its line.
         let message = read("t [s],n [rps],delta [rad]\n# calm\n0,1,0\n", "").unwrap_err().to_string();
         assert!(message.starts_with("run.csv:2: "), "{message}");
         let message = read("t [s],n [rps],delta [rad]\n0,1,0\n1,1,0,7\n", "").unwrap_err().to_string();

@@ -35,7 +35,7 @@ pub enum ImportError {
         /// What is wrong and what to do.
         message: String,
     },
-    /// What the files do not tell: everything at once, each with the flag to pass.
+    /// What the files do not say: everything at once, each with the flag to pass.
     #[error("the files do not contain everything that is needed: {}; pass what is asked for and import again", .0.join("; "))]
     Undecided(
         /// What is not known, and the flag that says it.

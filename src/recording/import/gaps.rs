@@ -9,11 +9,11 @@ use crate::recording::Channel;
 const GAP_IN_STEPS: f64 = 1.5;
 /// Share of what the longest bridge keeps that a shorter one must keep to be enough.
 const ENOUGH: f64 = 0.9;
-/// A bridge is told where it keeps this many times what is kept without.
+/// A bridge is suggested where it keeps this many times what is kept without.
 const MORE: f64 = 1.1;
 
 impl Imported {
-    /// Bridges drop-outs no longer than `longest` seconds: the column map says so, and rows that are not there at all are put in, blank.
+    /// Bridges drop-outs no longer than `longest` seconds: the column map states it, and missing rows are inserted blank.
     pub fn bridge(&mut self, longest: f64) {
         self.bridge = Some(longest);
         for recording in &mut self.recordings {
@@ -50,9 +50,9 @@ impl Imported {
     /// Lengths of the unbroken stretches of a recording \[s\].
     fn stretches(&self, recording: &ImportedRecording, bridge: f64) -> Vec<f64> {
         let rows = &recording.rows;
-        let told = || rows.channels.iter().filter(|(c, _)| self.cuts(*c)).map(|(_, v)| v);
+        let needed = || rows.channels.iter().filter(|(c, _)| self.cuts(*c)).map(|(_, v)| v);
         let (mut found, mut begun, mut last) = (Vec::new(), None::<f64>, None::<f64>);
-        for (i, t) in rows.t.iter().enumerate().filter(|(i, _)| told().all(|v| v[*i].is_finite())) {
+        for (i, t) in rows.t.iter().enumerate().filter(|(i, _)| needed().all(|v| v[*i].is_finite())) {
             let blank = last.map_or(0.0, |last| t - last);
             if last.is_some() && blank > (GAP_IN_STEPS * rows.step).max(bridge + 1e-6) {
                 found.extend(last.zip(begun).map(|(last, begun)| last - begun));
@@ -86,7 +86,7 @@ impl Imported {
             sig(shortest, 2),
             self.blanks()
         );
-        // Half of the shortest run: the time in which the ship turns ten degrees, over which a straight line still tells its motion.
+        // Half of the shortest run: the time in which the ship turns ten degrees, over which a straight line still describes its motion.
         let most = 0.5 * shortest;
         let mut lengths: Vec<f64> =
             self.recordings.iter().flat_map(|r| self.drop_outs(r)).filter(|l| *l <= most).collect();
@@ -113,8 +113,8 @@ impl Imported {
         let rows = &recording.rows;
         let mut found = Vec::new();
         for (_, values) in rows.channels.iter().filter(|(c, _)| self.cuts(*c)) {
-            let told: Vec<f64> = rows.t.iter().zip(values).filter(|(_, v)| v.is_finite()).map(|(t, _)| *t).collect();
-            found.extend(told.windows(2).map(|t| t[1] - t[0]).filter(|l| *l > GAP_IN_STEPS * rows.step));
+            let times: Vec<f64> = rows.t.iter().zip(values).filter(|(_, v)| v.is_finite()).map(|(t, _)| *t).collect();
+            found.extend(times.windows(2).map(|t| t[1] - t[0]).filter(|l| *l > GAP_IN_STEPS * rows.step));
         }
         found
     }

@@ -1,5 +1,5 @@
 //! Import: what ships and loggers write becomes recordings in SI units, with what each column was taken for and why.
-//! It asks only for what the data do not tell, fills no gap, and judges no ship: doubts about a recording are raised by `audit`.
+//! It asks only for what the data do not show, fills no gap, and judges no ship: doubts about a recording are raised by `audit`.
 
 mod columns;
 mod error;

@@ -1,4 +1,4 @@
-//! Files and parts of files that tell the same quantity over the same time: recordings of their own, or refused, never sorted together.
+//! Files and parts of files that record the same quantity over the same time: recordings of their own, or refused, never sorted together.
 //! Parts that complete one another, such as positions in one file and rudder angles in another, share a clock.
 
 use super::columns::choose::Choices;
@@ -20,7 +20,7 @@ pub fn range(log: &Log) -> [f64; 2] {
     [times().fold(f64::MAX, f64::min), times().fold(f64::MIN, f64::max)]
 }
 
-/// What is to be added to the times of each file \[s\]: those that tell the same over the same time are recordings of their own.
+/// What is to be added to the times of each file \[s\]: those that record the same over the same time are recordings of their own.
 ///
 /// # Errors
 /// [`ImportError::Choice`] for files whose clocks cannot be compared, and for parts of a recording that overlap.
@@ -63,7 +63,7 @@ pub fn shifts(logs: &[Log], choices: &Choices) -> Result<Vec<f64>, ImportError> 
     Ok(shifts)
 }
 
-/// A column of the second that the first tells too over the same time, and otherwise.
+/// A column of the second that the first has too over the same time, with other values.
 fn repeated<'a>(first: &Log, second: &'a Log, choices: &Choices) -> Option<&'a str> {
     let known = second.columns.iter().filter(|column| choices.meaning(column).is_some());
     let mut both = known.filter_map(|c| Some((first.columns.iter().find(|other| other.name == c.name)?, c)));

@@ -1,5 +1,5 @@
 //! From signals with their own times to rows that have them all, cut into recordings; what was not recorded stays missing.
-//! No drop-out is filled but from channels that tell the same: a row without a value keeps the field blank, and a long gap ends the recording.
+//! No drop-out is filled but from channels that measure the same: a row without a value keeps the field blank, and a long gap ends the recording.
 
 use super::columns::log::Meaning;
 use super::columns::motion::Track;

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 use trimtab_ad::smooth::wrap_angle;
 
-/// Where the parts of a study come from that no log tells.
+/// Where the parts of a study come from that no log contains.
 #[derive(Clone, Debug)]
 pub struct Origins<'a> {
     /// Name of the study.
@@ -57,7 +57,7 @@ fn rounded(channel: Channel, value: f64) -> f64 {
     }
 }
 
-/// The files of the study beside recordings and runs: name and text.
+/// The files of the study other than recordings and runs: name and text.
 pub fn study_files(imported: &Imported, origins: &Origins<'_>) -> Vec<(&'static str, String)> {
     vec![
         ("columns.toml", columns(imported, origins)),

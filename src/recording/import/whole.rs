@@ -54,7 +54,7 @@ pub struct Imported {
     pub taken: Vec<Taken>,
     /// Columns that are not used.
     pub unused: Vec<Unused>,
-    /// What is to be told besides.
+    /// Notes on the import.
     pub notes: Vec<String>,
     /// Point of the tangent plane, latitude and longitude \[deg\].
     pub origin: Option<[f64; 2]>,
@@ -73,7 +73,7 @@ pub struct Imported {
 /// Reads files of any known format and makes recordings of them.
 ///
 /// # Errors
-/// [`ImportError`]: a file that cannot be read, and everything that the files do not tell.
+/// [`ImportError`]: a file that cannot be read, and everything that the files do not say.
 pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, ImportError> {
     settings.choices.check()?;
     let mut logs: Vec<Log> = Vec::new();
@@ -117,7 +117,7 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     for log in &logs {
         notes.extend(log.notes.iter().map(|note| format!("{}: {note}", log.path.display())));
     }
-    // What was turned comes before all else.
+    // Notes on turned axes come first.
     signals.notes.append(&mut notes);
     let mut notes = std::mem::take(&mut signals.notes);
     if !signals.by.contains_key(&Meaning::Channel(Channel::X)) {
@@ -162,7 +162,7 @@ fn blank_fills(log: &mut Log, choices: &Choices) {
         for (fill, count) in take_out(column, choices.meaning(column)) {
             let name = &column.name;
             log.notes.push(format!(
-                "column `{name}` holds {fill} in {count} lines, far from all other values; taken as missing"
+                "column `{name}` contains {fill} in {count} lines, far from all other values; taken as missing"
             ));
         }
     }

@@ -1,4 +1,4 @@
-//! Tells stretches apart by rudder, propeller and turning: the rules, with their numbers.
+//! Divides a recording into stretches by rudder, propeller and turning: the rules, with their numbers.
 //! Every row is in exactly one stretch, so that nothing is lost.
 
 use super::controls::{Controls, size_below};
@@ -24,7 +24,7 @@ const ACROSS: f64 = 3.0;
 const SHORTEST: f64 = 2.0;
 
 /// Rows while the rudder is on one side: -1, 0 or 1.
-struct Held {
+struct Side {
     side: i8,
     rows: Range<usize>,
 }
@@ -82,8 +82,8 @@ fn back(c: &Controls, row: usize, seconds: f64) -> usize {
 }
 
 /// Rows by the side of the rudder, with hysteresis; `rows` is not empty.
-fn held(c: &Controls, rows: Range<usize>) -> Vec<Held> {
-    let mut found: Vec<Held> = Vec::new();
+fn sides(c: &Controls, rows: Range<usize>) -> Vec<Side> {
+    let mut found: Vec<Side> = Vec::new();
     let mut side = 0_i8;
     for i in rows {
         let d = c.delta[i];
@@ -96,7 +96,7 @@ fn held(c: &Controls, rows: Range<usize>) -> Vec<Held> {
         };
         match found.last_mut() {
             Some(last) if last.side == side => last.rows.end = i + 1,
-            _ => found.push(Held { side, rows: i..i + 1 }),
+            _ => found.push(Side { side, rows: i..i + 1 }),
         }
     }
     found
@@ -112,25 +112,25 @@ fn change(c: &Controls, rows: &Range<usize>) -> f64 {
 
 /// Stretches of rows with the propeller ahead.
 fn steered(c: &Controls, rows: Range<usize>, scale: f64) -> Vec<Stretch> {
-    let held = held(c, rows);
+    let sides = sides(c, rows);
     let mut stretches: Vec<Stretch> = Vec::new();
     let mut i = 0;
-    while i < held.len() {
-        if held[i].side == 0 {
-            stretches.push(amidships(c, held[i].rows.clone()));
+    while i < sides.len() {
+        if sides[i].side == 0 {
+            stretches.push(amidships(c, sides[i].rows.clone()));
             i += 1;
             continue;
         }
-        let last = zigzag_end(c, &held, i, scale);
-        let sides = held[i..=last].iter().filter(|h| h.side != 0).count();
-        if sides >= ZIGZAG_SIDES {
-            let rows = held[i].rows.start..held[last].rows.end;
+        let last = zigzag_end(c, &sides, i, scale);
+        let count = sides[i..=last].iter().filter(|h| h.side != 0).count();
+        if count >= ZIGZAG_SIDES {
+            let rows = sides[i].rows.start..sides[last].rows.end;
             let angle = size_below(c.delta[rows.clone()].iter().copied(), 0.8).to_degrees();
-            let why = format!("{sides} times over, {angle:.0} deg");
+            let why = format!("{count} times over, {angle:.0} deg");
             stretches.push(Stretch { kind: Kind::Zigzag, rows, why });
             i = last + 1;
         } else {
-            stretches.push(one_side(c, &held[i]));
+            stretches.push(one_side(c, &sides[i]));
             i += 1;
         }
     }
@@ -138,16 +138,16 @@ fn steered(c: &Controls, rows: Range<usize>, scale: f64) -> Vec<Stretch> {
 }
 
 /// The last of the sides that follow one another as in a zigzag, from `first` on.
-fn zigzag_end(c: &Controls, held: &[Held], first: usize, scale: f64) -> usize {
+fn zigzag_end(c: &Controls, sides: &[Side], first: usize, scale: f64) -> usize {
     let (mut last, mut i) = (first, first + 1);
-    while let Some(next) = held.get(i) {
+    while let Some(next) = sides.get(i) {
         let pause = next.side == 0;
         if pause && lasts(c, &next.rows) > ACROSS * scale {
             break;
         }
         if !pause {
-            let small = change(c, &held[last].rows).abs() < ZIGZAG_SIDE && change(c, &next.rows).abs() < ZIGZAG_SIDE;
-            if next.side != -held[last].side || !small {
+            let small = change(c, &sides[last].rows).abs() < ZIGZAG_SIDE && change(c, &next.rows).abs() < ZIGZAG_SIDE;
+            if next.side != -sides[last].side || !small {
                 break;
             }
             last = i;
@@ -157,13 +157,13 @@ fn zigzag_end(c: &Controls, held: &[Held], first: usize, scale: f64) -> usize {
     last
 }
 
-fn one_side(c: &Controls, held: &Held) -> Stretch {
-    let turned = change(c, &held.rows);
-    let angle = size_below(c.delta[held.rows.clone()].iter().copied(), 0.5).to_degrees();
-    let side = if held.side > 0 { "starboard" } else { "port" };
+fn one_side(c: &Controls, one: &Side) -> Stretch {
+    let turned = change(c, &one.rows);
+    let angle = size_below(c.delta[one.rows.clone()].iter().copied(), 0.5).to_degrees();
+    let side = if one.side > 0 { "starboard" } else { "port" };
     let kind = if turned.abs() >= TURN { Kind::Turn } else { Kind::Free };
     let why = format!("rudder {angle:.0} deg to {side}, heading changes by {:.0} deg", turned.to_degrees().abs());
-    Stretch { kind, rows: held.rows.clone(), why }
+    Stretch { kind, rows: one.rows.clone(), why }
 }
 
 fn amidships(c: &Controls, rows: Range<usize>) -> Stretch {

@@ -1,5 +1,5 @@
 //! The runs that recordings are split into, each with its session, manoeuvre, side and times, and the table that lists them.
-//! What is done in a stretch is told in `blocks`, which side it comes to in `sides`.
+//! What is done in a stretch is determined in `blocks`, which side it comes to in `sides`.
 
 use super::blocks::stretches;
 use super::controls::{Controls, time_scale};
@@ -19,7 +19,7 @@ pub struct SplitSettings {
     pub test: f64,
     /// What comes to one side as a whole.
     pub by: TestBy,
-    /// How sessions are told apart.
+    /// How sessions are distinguished.
     pub sessions: Sessions,
     /// Longer runs are cut into equal pieces \[s\]; forty times the time in which the ship turns ten degrees when not given.
     pub longest: Option<f64>,
@@ -84,7 +84,7 @@ const FEWEST: usize = 10;
 /// Splits recordings into runs; also says how many stretches between gaps are too short for one.
 ///
 /// # Errors
-/// [`SplitError`]: a setting that cannot be, names that tell no session, nothing to test on.
+/// [`SplitError`]: a setting that cannot be, names that give no session, nothing to test on.
 pub fn split(parts: &[SplitPart<'_>], settings: &SplitSettings) -> Result<(Vec<SplitRun>, usize), SplitError> {
     if !(0.0..1.0).contains(&settings.test) {
         return Err(SplitError(format!("--test {}: give a share from 0 to below 1, such as 0.25", settings.test)));
@@ -100,7 +100,7 @@ pub fn split(parts: &[SplitPart<'_>], settings: &SplitSettings) -> Result<(Vec<S
     for (i, (part, segments)) in parts.iter().zip(&controls).enumerate() {
         let own = session_of(part, &settings.sessions)?;
         let mut last_end: Option<f64> = None;
-        // Where nothing tells sessions apart, recordings share one.
+        // Where nothing distinguishes sessions, recordings share one.
         numbers.session += usize::from(i > 0 && matches!(settings.sessions, Sessions::Gaps(_)));
         for c in segments {
             let (Some(first), Some(last)) = (c.t.first(), c.t.last()) else { continue };
@@ -138,8 +138,8 @@ pub fn shortest_run(parts: &[SplitPart<'_>]) -> f64 {
 fn session_of(part: &SplitPart<'_>, sessions: &Sessions) -> Result<Option<String>, SplitError> {
     let stem =
         std::path::Path::new(&part.file).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    let told = sessions.of_file(&stem).map_err(SplitError)?;
-    Ok(told.or_else(|| part.session.clone().filter(|_| *sessions == Sessions::Known)))
+    let named = sessions.of_file(&stem).map_err(SplitError)?;
+    Ok(named.or_else(|| part.session.clone().filter(|_| *sessions == Sessions::Known)))
 }
 
 /// Numbers for names.
@@ -190,7 +190,7 @@ impl Numbers {
     }
 }
 
-/// The rudder angles that are exceeded to either side for a twentieth of the time: a single sample tells nothing.
+/// The rudder angles that are exceeded to either side for a twentieth of the time: a single sample is no evidence.
 fn reach(delta: &[f64]) -> Reach {
     let mut angles: Vec<f64> = delta.iter().copied().filter(|d| d.is_finite()).collect();
     angles.sort_unstable_by(f64::total_cmp);
@@ -208,7 +208,7 @@ fn assign(runs: &mut Vec<SplitRun>, settings: &SplitSettings) -> Result<(), Spli
         names.sort_unstable();
         names.dedup();
         if names.len() < 2 {
-            let text = "--by session: there is only one session, so that nothing would be left to test on; use --by block, or tell sessions apart with --sessions";
+            let text = "--by session: there is only one session, so that nothing would be left to test on; use --by block, or distinguish sessions with --sessions";
             return Err(SplitError(text.to_owned()));
         }
         let sides = sides(&vec![0; names.len()], &vec![[0.0; 2]; names.len()], settings.test);

@@ -1,7 +1,7 @@
 //! Sessions: what runs have in common that may share a hidden condition (a day, a voyage, a loading).
-//! Told by gaps, by dates or by a pattern in the names of files.
+//! They are identified by gaps, by dates or by a pattern in the names of files.
 
-/// How sessions are told apart.
+/// How sessions are distinguished.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Sessions {
     /// As the study has them, else by gaps of half an hour.
@@ -46,7 +46,7 @@ impl Sessions {
         ))
     }
 
-    /// The session that the name of a file tells; `None` where names do not tell it.
+    /// The session that the name of a file gives; `None` where names do not give one.
     ///
     /// # Errors
     /// What is wrong and what to do.
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_files_tell_sessions() {
+    fn names_of_files_give_sessions() {
         assert_eq!(date("trial_20240501_run3").as_deref(), Some("2024-05-01"));
         assert_eq!(date("2024-05-01_100000").as_deref(), Some("2024-05-01"));
         assert_eq!(date("run_99887766"), None);

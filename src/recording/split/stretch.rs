@@ -1,5 +1,5 @@
 //! The kinds of stretches that a recording is split into, and a stretch.
-//! How they are told apart is in `blocks`.
+//! The rules that distinguish them are in `blocks`.
 
 use serde::Serialize;
 use std::ops::Range;
@@ -12,7 +12,7 @@ pub enum Kind {
     Straight,
     /// Rudder amidships, speed still changing: acceleration or the way to a manoeuvre.
     Approach,
-    /// Rudder held to one side while the heading changes by more than a right angle.
+    /// Rudder kept to one side while the heading changes by more than a right angle.
     Turn,
     /// Rudder put over to one side and the other in turns.
     Zigzag,

@@ -36,7 +36,7 @@ use std::path::PathBuf;
 /// Channels that dead reckoning compares.
 const TRACK: [Channel; 6] = [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R];
 
-/// What of a run is compared with other runs.
+/// The quantities of a run that are compared with those of other runs.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Evidence {
     run: String,
@@ -53,11 +53,11 @@ pub struct Evidence {
     turned: Vec<Channel>,
     /// Channels that are too small for their unit.
     small: Vec<Channel>,
-    /// Channels with damaged single values, from which no lag is told.
+    /// Channels with damaged single values, from which no lag is estimated.
     damaged: Vec<Channel>,
     /// Channels of the motion that were not recorded, and not derived, and what to do.
     lacks: Vec<(Channel, String)>,
-    /// Whether something is told of its track by itself, so that dead reckoning has no more to say.
+    /// Whether the audit of the run alone already reports a fault of its track, so that dead reckoning adds nothing.
     track_told: bool,
     /// Whether its propeller never turns though it sails.
     unpowered: bool,
@@ -73,12 +73,12 @@ pub struct Evidence {
     length: Option<Length>,
     /// Fingerprints of the rows in which the ship's motion changed.
     rows: Vec<u64>,
-    /// The same of its values but for rounding, with the row of each.
+    /// Fingerprints of its rounded values, with the row of each.
     rounded: Vec<(usize, u64)>,
 }
 
 impl Evidence {
-    /// That of a run, from the part of its recording that the study uses.
+    /// The evidence of a run, from the part of its recording that the study uses.
     pub(in crate::recording::audit) fn of(
         run: &Listed,
         recording: &Recording,
@@ -239,11 +239,11 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     found
 }
 
-/// Channels that a few runs lack and most have: what is summed over channels is another number for these runs.
+/// Channels that a few runs lack and most have: a sum over channels is another quantity for these runs.
 fn lacking(runs: &[Evidence]) -> Vec<Shared> {
     let lacks = |run: &Evidence, channel: Channel| run.lacks.iter().any(|(c, _)| *c == channel);
     let few = |channel: Channel| 2 * runs.iter().filter(|r| lacks(r, channel)).count() < runs.len();
-    let told = |run: &Evidence, channel: Channel, next: &str| {
+    let lack = |run: &Evidence, channel: Channel, next: &str| {
         let text = format!(
             "{} was not recorded, as it was in most runs: cost and cVDM of this run are of fewer channels",
             channel.info().words
@@ -252,20 +252,20 @@ fn lacking(runs: &[Evidence]) -> Vec<Shared> {
         let issue = Issue::new(Severity::Error, "not_recorded", text, next).of(channel);
         Shared { runs: vec![run.run.clone()], issue }
     };
-    let of = |run| move |(channel, next): &(Channel, String)| few(*channel).then(|| told(run, *channel, next));
+    let of = |run| move |(channel, next): &(Channel, String)| few(*channel).then(|| lack(run, *channel, next));
     runs.iter().flat_map(|run| run.lacks.iter().filter_map(of(run))).collect()
 }
 
-/// A channel and the motion that it is held against.
+/// A channel and the motion that it is compared with.
 struct Pair {
     channel: Channel,
     of: fn(&Responses) -> Option<&Curve>,
-    /// Whether the channel acts on the motion, and does not only tell of it.
+    /// Whether the channel acts on the motion, and does not only measure it.
     acts: bool,
-    /// Up to which lag behind and ahead of the motion, as shares of the time in which the ship sails its length, all runs may have another
-    /// cause than a clock.
+    /// The largest lags behind and ahead of the motion, common to all runs, that may have another cause than a clock, as shares of the time
+    /// in which the ship sails its length.
     excused: [f64; 2],
-    /// With a lag of all runs at most this share of the squares is left.
+    /// The largest share of the squares that a lag common to all runs may leave.
     leaves: f64,
     motion: &'static str,
 }
@@ -277,8 +277,8 @@ impl Pair {
     }
 }
 
-/// Rudder and propeller cause the motion, so that only a wrong clock has them behind it; ahead of it they may be by the lag of steering
-/// gear and engines. An antenna off midship tells a position early or late.
+/// Rudder and propeller cause the motion, so that only a wrong clock puts them behind it; ahead of it they may be by the lag of steering
+/// gear and engines. An antenna off midship reports a position early or late.
 ///
 /// The yaw answers the rudder by way of the sway too, which is recorded with noise, or over ground in a current. What is left of that looks
 /// like a rudder that is late by a part of the ship's own lag, whoever steers it by the heading, and explains little: in sound zigzags it
@@ -376,22 +376,22 @@ impl Sum {
     }
 }
 
-/// Whether a curve tells of the motion at all, at its best lag and with the right sign.
-fn telling(curve: &Curve) -> bool {
+/// Whether a channel explains the motion at all, at its best lag and with the right sign.
+fn evident(curve: &Curve) -> bool {
     let best = curve.best();
     let explained = curve.left[best] <= EXPLAINS * curve.without && curve.effect(best) > LAG_EVIDENCE;
     explained && curve.sign[best] > 0.0
 }
 
-/// What is late or early: in all runs together, and of rudder and propeller in those runs that differ from that; the lag of sensors is told
-/// run by run.
+/// Channels that are late or early in all runs together, and rudder and propeller in those runs that differ from that; the lag of sensors
+/// in single runs is reported by the audit of each run.
 fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Shared> {
     let beyond = |seconds: f64, share: f64, step: f64| seconds.abs() > (share * time).max(LAG_STEPS[0] * step);
     let excused = |seconds: f64| pair.excused[usize::from(seconds < 0.0)];
-    // What acts to the wrong side, or on a motion that is told to the wrong side, is as good as late by half a period.
+    // An actuator of the wrong sign, or of a motion of the wrong sign, cannot be distinguished from one that is late by half a period.
     let sound = |r: &&Evidence| !r.turned.iter().any(|c| [pair.channel, Channel::R, Channel::U].contains(c));
     let of_sound = runs.iter().filter(sound).filter_map(|r| Some((r, pair.curve(r)?)));
-    let curves: Vec<(&Evidence, &Curve)> = of_sound.filter(|(_, c)| telling(c)).collect();
+    let curves: Vec<(&Evidence, &Curve)> = of_sound.filter(|(_, c)| evident(c)).collect();
     // Where several runs show that the sign is turned, it may be so in the others.
     let turned_in = runs.iter().filter(|r| r.turned.contains(&pair.channel)).count();
     let all = Sum::of(curves.iter().map(|(_, c)| *c)).filter(|_| curves.len() > 1 && turned_in < 2).and_then(|sum| {
@@ -407,7 +407,7 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
         let seconds = curve.seconds(best);
         let better = curve.evidence(best, zero) > LAG_EVIDENCE && curve.left[best] <= LAG_LEAVES * curve.left[zero];
         let inside = best > 0 && best + 1 < curve.lags.len();
-        // One run tells it by itself where it is beyond what gear, engines and filters do.
+        // A single run is reported only where its lag is longer than gear, engines and filters cause.
         let long = beyond(seconds, excused(seconds).max(LAG_SHARE), curve.step);
         (long && better && inside && !known(seconds)).then_some(seconds)
     };
@@ -415,7 +415,7 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
     // Only an actuator acts on the motion in the same way in all runs.
     let pool = actuated(&among_others).filter(|_| pair.acts);
     let shares = pool.as_ref().map(|pool| shares_at_best(&among_others, pool));
-    // What a run says by itself, the other runs must not contradict, nor those that are cut from the same recording.
+    // The other runs must not contradict what a run shows by itself, nor must those that are cut from the same recording.
     let agreed = |run: &Evidence, seconds: f64| {
         let Some(place) = runs.iter().position(|r| std::ptr::eq(r, run)) else { return false };
         let losses = |other: usize| {
@@ -425,19 +425,19 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
         let share = shares.as_ref().and_then(|shares| shares[place]);
         share.is_none_or(|share| share <= LAG_LEAVES) && sources.agree(place, losses)
     };
-    let told = |(run, curve): &(&Evidence, &Curve)| {
+    let own_lag = |(run, curve): &(&Evidence, &Curve)| {
         let issue = lagging(pair, lag(curve).filter(|lag| pair.acts && agreed(run, *lag))?, "", pair.motion);
         Some(Shared { runs: vec![run.run.clone()], issue })
     };
     let step = curves.first().map_or(0.0, |(_, c)| c.step);
     let worth = |seconds: f64| beyond(seconds, SESSION_SHARE, step) && all.is_none();
-    let odd_told = |odd: Odd| match odd {
+    let odd_issue = |odd: Odd| match odd {
         Odd::Turned => turned(pair),
         Odd::Late(seconds) => lagging(pair, seconds, "", pair.motion),
         Odd::Unanswered => unanswered(pair),
     };
     let by_others = pool.as_ref().map_or_else(Vec::new, |pool| {
-        let odd = odd(&among_others, pool, sources, worth).into_iter().map(|odd| odd.map(odd_told));
+        let odd = odd(&among_others, pool, sources, worth).into_iter().map(|odd| odd.map(odd_issue));
         let stuck = stuck(&among_others, pool).into_iter().map(|plateau| plateau.map(|p| stands_still(pair, p)));
         let of_run =
             |(run, issue): (&Evidence, Option<Issue>)| Some(Shared { runs: vec![run.run.clone()], issue: issue? });
@@ -447,7 +447,7 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
         runs: curves.iter().map(|(run, _)| run.run.clone()).collect(),
         issue: lagging(pair, seconds, "", pair.motion),
     });
-    let mut found: Vec<Shared> = together.into_iter().chain(curves.iter().filter_map(told)).collect();
+    let mut found: Vec<Shared> = together.into_iter().chain(curves.iter().filter_map(own_lag)).collect();
     let also = turned_as_others(runs, pair).into_iter().chain(turned_in_a_session(runs, pair));
     for shared in also.chain(by_others) {
         if !found.iter().any(|f| f.runs == shared.runs) {
@@ -457,7 +457,7 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
     found
 }
 
-/// Runs that show an actuator of the wrong sign less clearly than is needed for one run by itself, where several others show it.
+/// Runs that show an actuator of the wrong sign less clearly than a single run must, where several others show it.
 fn turned_as_others(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
     let known = runs.iter().filter(|r| r.turned.contains(&pair.channel)).count();
     let turns = |run: &&Evidence| {
@@ -474,10 +474,10 @@ fn turned_as_others(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
     also.map(|run| Shared { runs: vec![run.run.clone()], issue: issue.clone() }).collect()
 }
 
-/// The runs of a session in which an actuator has the wrong sign, where all of them together show what these do not show for sure by
-/// themselves, and none shows that its sign is right.
+/// The runs of a session in which an actuator has the wrong sign, where all of them together show it, single ones do not show it with
+/// certainty, and none shows that the sign is right.
 fn turned_in_a_session(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
-    // The motion itself must be told to its own side.
+    // The motion itself must be recorded with the right sign.
     let sound = |r: &Evidence| !r.turned.iter().any(|c| [Channel::R, Channel::U].contains(c));
     let mut sessions: BTreeMap<&str, Vec<(&Evidence, &Curve)>> = BTreeMap::new();
     for run in runs.iter().filter(|r| pair.acts && sound(r)) {
@@ -490,7 +490,7 @@ fn turned_in_a_session(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
         of.iter().for_each(|(_, curve)| effect.add(Some(curve)));
         of.len() > 1 && effect.turned() && of.iter().all(|(_, curve)| curve.side() <= POOLED_EVIDENCE)
     });
-    let told = |session: &str, (run, _): &(&Evidence, &Curve)| {
+    let issue_of = |session: &str, (run, _): &(&Evidence, &Curve)| {
         let text = format!(
             "acts on {} to the other side than it must, as the runs of session `{session}` show together",
             pair.motion
@@ -499,8 +499,8 @@ fn turned_in_a_session(runs: &[Evidence], pair: &Pair) -> Vec<Shared> {
         let issue = Issue::new(Severity::Error, "sign_error", text, next).of(pair.channel);
         Shared { runs: vec![run.run.clone()], issue }
     };
-    let untold = |(run, _): &&(&Evidence, &Curve)| !run.turned.contains(&pair.channel);
-    sessions.iter().flat_map(|(session, of)| of.iter().filter(untold).map(|run| told(session, run))).collect()
+    let unreported = |(run, _): &&(&Evidence, &Curve)| !run.turned.contains(&pair.channel);
+    sessions.iter().flat_map(|(session, of)| of.iter().filter(unreported).map(|run| issue_of(session, run))).collect()
 }
 
 /// The doubt about an actuator of the wrong sign.
@@ -523,7 +523,7 @@ fn unanswered(pair: &Pair) -> Issue {
 /// The doubt about an actuator that is stuck.
 fn stands_still(pair: &Pair, plateau: &Plateau) -> Issue {
     let text = format!(
-        "holds one value for {} s, and {} there is not what it is with such a value in the other runs",
+        "keeps one value for {} s, and {} there is not what it is with such a value in the other runs",
         sig(plateau.seconds, 3),
         pair.motion
     );
@@ -563,11 +563,11 @@ fn sessions(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
     let curves = |inside: bool, name: &str| {
         let name = name.to_owned();
         let wanted = move |r: &&Evidence| (r.session == name) == inside;
-        runs.iter().filter(wanted).filter_map(|r| (pair.of)(&r.responses)).filter(|c| telling(c)).collect::<Vec<_>>()
+        runs.iter().filter(wanted).filter_map(|r| (pair.of)(&r.responses)).filter(|c| evident(c)).collect::<Vec<_>>()
     };
     let differing = |name: &&str| {
         let (own, others) = (curves(true, name), curves(false, name));
-        // A session of one run is a run: whatever is wrong with it is told there.
+        // A session of one run needs no comparison: its faults are reported for that run.
         if own.len() < 2 || others.len() < 2 {
             return None;
         }
@@ -576,22 +576,22 @@ fn sessions(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
         let same = own.lags.iter().position(|lag| *lag == others.lags[usual])?;
         let apart = own.seconds(best) - others.seconds(usual);
         let worth = apart.abs() > (SESSION_SHARE * time).max(LAG_STEPS[0] * own.step);
-        // Not by the one run that says so most.
-        let spoken = |c: &Curve| gain(c, own.lags[same], own.lags[best]);
-        let most = curves(true, name).into_iter().map(spoken).fold(0.0, f64::max);
+        // The evidence of the strongest run does not count.
+        let own_gain = |c: &Curve| gain(c, own.lags[same], own.lags[best]);
+        let most = curves(true, name).into_iter().map(own_gain).fold(0.0, f64::max);
         let sure = own.evidence(best, same) - most > LAG_EVIDENCE && !own.at_end(best);
         (worth && sure && (own.step / others.step - 1.0).abs() < 0.01).then_some((name.to_string(), apart))
     };
     let found: Vec<(String, f64)> = names.iter().filter_map(differing).collect();
     // With two sessions each differs from the other: one doubt, of the later one in the list.
     let found = if names.len() == 2 { found.into_iter().skip(1).collect() } else { found };
-    let told = |(name, seconds): (String, f64)| {
+    let doubt = |(name, seconds): (String, f64)| {
         let than = format!("{}, compared with the other sessions", pair.motion);
         let issue = lagging(pair, seconds, &format!("in session `{name}` it "), &than);
         let runs = runs.iter().filter(|r| r.session == name).map(|r| r.run.clone()).collect();
         Shared { runs, issue }
     };
-    found.into_iter().map(told).collect()
+    found.into_iter().map(doubt).collect()
 }
 
 /// Runs that share rows: on both sides of the split they prove nothing, on one side they count twice.
@@ -630,18 +630,18 @@ fn copies(runs: &[Evidence]) -> Vec<Shared> {
                 *common.entry((*other, *row as isize - *at as isize)).or_default() += 1;
             }
         }
-        let mut told: Vec<usize> = Vec::new();
+        let mut listed: Vec<usize> = Vec::new();
         for ((other, _), rows) in common {
             let shorter = run.rounded.len().min(runs[other].rounded.len());
-            if rows >= SHARED_ROWS && rows as f64 >= COPY_SHARE * shorter as f64 && !told.contains(&other) {
-                told.push(other);
+            if rows >= SHARED_ROWS && rows as f64 >= COPY_SHARE * shorter as f64 && !listed.contains(&other) {
+                listed.push(other);
                 let issue = sharing(run, &runs[other], &format!("agree in {rows} of {shorter} rows but for rounding"));
                 found.push(Shared { runs: vec![runs[other].run.clone(), run.run.clone()], issue });
             }
         }
         for (row, number) in &run.rounded {
             let owned = owners.entry(*number).or_default();
-            // A motion that many rows have tells none of them apart.
+            // A motion that many rows share identifies none of them.
             if owned.len() < COPY_OWNERS {
                 owned.push((i, *row));
             }

@@ -1,4 +1,4 @@
-//! Doubts about an actuator that one run shows and most others deny: one run of many is no sign, and no unit, of a logger.
+//! Doubts about an actuator that one run shows and most others deny: a logger has one sign and one unit in all runs.
 //! What the doubts are is decided where a run is audited; a comparison with the coefficients of the others may still confirm one.
 
 use super::across::Evidence;
@@ -41,12 +41,12 @@ impl Lone {
         let severity = if turned { Severity::Warning } else { Severity::Note };
         if issue.severity > severity && self.0.iter().any(is) {
             issue.severity = severity;
-            issue.text += ", as in few of the runs: the others do not say so";
+            issue.text += ", but few of the runs show it, and the others do not";
         }
     }
 }
 
-/// Whether a run without the doubt speaks against it: a sign where the motion answers to the side to which it must, a unit where the
+/// Whether a run without the doubt is evidence against it: a sign where the motion answers to the side to which it must, a unit where the
 /// motion answers at all. A propeller has no run that proves its sign; one that sails is enough.
 fn denies(responses: &Responses, fault: &str, channel: Channel) -> bool {
     match (fault, channel) {

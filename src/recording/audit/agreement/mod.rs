@@ -1,4 +1,4 @@
-//! Doubts about what channels and runs say of each other: units, signs, clocks, dead reckoning, one run against all others.
+//! Doubts from comparing channels, and runs, with one another: units, signs, clocks, dead reckoning, one run against all others.
 //! Single values are looked at elsewhere.
 
 pub(super) mod across;

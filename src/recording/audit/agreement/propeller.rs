@@ -1,5 +1,5 @@
-//! The propeller rate against the ship's speed: an advance ratio that no propeller has tells a wrong unit of the one or the other.
-//! What the propeller's thrust is, is the model's affair.
+//! The propeller rate against the ship's speed: an advance ratio that no propeller has reveals a wrong unit of one of the two.
+//! The thrust of the propeller is left to the model.
 
 use crate::numerals::sig;
 use crate::recording::audit::issue::{Issue, Severity};
@@ -27,8 +27,8 @@ pub fn advance_ratio(recording: &Recording, ship: &Ship) -> Option<f64> {
     if ratios.len() < RATIO_SAMPLES { None } else { median(ratios) }
 }
 
-/// Holds the ratios of all runs against those that ships have, and each against the others: a berthing is no voyage, so that one run
-/// is in doubt with all others, or where it is far from them.
+/// Compares the ratios of all runs with those that ships have, and each with the others: a berthing is no voyage, so that one run
+/// is doubted together with all others, or where it is far from them.
 pub fn advance(ratios: &[Option<f64>], ship: &Ship) -> Vec<Option<Issue>> {
     let [low, high] = SAILED;
     let usual = median(ratios.iter().flatten().copied());
@@ -39,8 +39,8 @@ pub fn advance(ratios: &[Option<f64>], ship: &Ship) -> Vec<Option<Issue>> {
         let outside = |r: f64| !(low..=high).contains(&r);
         if alone { outside(ratio) } else { outside(others) != apart }
     };
-    let told = |ratio: &Option<f64>| ratio.filter(|r| doubtful(*r)).map(|r| doubt(r, ship));
-    ratios.iter().map(told).collect()
+    let doubted = |ratio: &Option<f64>| ratio.filter(|r| doubtful(*r)).map(|r| doubt(r, ship));
+    ratios.iter().map(doubted).collect()
 }
 
 fn doubt(ratio: f64, ship: &Ship) -> Issue {

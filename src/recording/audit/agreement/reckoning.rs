@@ -119,14 +119,14 @@ pub fn reckoned(known: &[(&str, &Reckoned)], sources: &Sources, length: f64) -> 
     }
     let all = vec![true; known.len()];
     let Some((others, usual)) = pooled(known, &all) else { return Vec::new() };
-    // A run that is far off would draw all others to its side.
+    // A run that is far off would distort the coefficients for all others.
     let near: Vec<bool> = known
         .iter()
         .zip(&others)
         .map(|((_, one), others)| others.as_ref().is_some_and(|o| one.mean_square(o) < RECKONED_UNUSUAL * usual))
         .collect();
     let Some((others, usual)) = pooled(known, &near) else { return Vec::new() };
-    let told = |place: usize| {
+    let doubt_of = |place: usize| {
         let ((run, one), others) = (known[place], others[place].as_deref()?);
         let in_all = |factor: f64| {
             let own = divided(others, factor);
@@ -135,7 +135,7 @@ pub fn reckoned(known: &[(&str, &Reckoned)], sources: &Sources, length: f64) -> 
         let issue = judged(one, others, usual, length, in_all)?;
         Some(Shared { runs: vec![run.to_owned()], issue })
     };
-    (0..known.len()).filter_map(told).collect()
+    (0..known.len()).filter_map(doubt_of).collect()
 }
 
 /// For each run the coefficients of the others among those that count, each as much as any other, and the median of the mean squares
@@ -164,7 +164,7 @@ fn divided(others: &[f64], factor: f64) -> Vec<f64> {
     own
 }
 
-/// What is told of a run of a ship of some length \[m\], given the coefficients of the others and the mean square \[m2\] that they usually
+/// The doubt about a run of a ship of some length \[m\], given the coefficients of the others and the mean square \[m2\] that they usually
 /// leave; `in_all` says whether all runs of its recording agree on a factor of the sway.
 fn judged(one: &Reckoned, others: &[f64], usual: f64, length: f64, in_all: impl Fn(f64) -> bool) -> Option<Issue> {
     let as_it_is = one.mean_square(others);
@@ -239,38 +239,38 @@ mod tests {
         Reckoned::of(&Series::from(&Recording::from_channels("run", all).unwrap())).unwrap()
     }
 
-    fn told(runs: &[(String, Reckoned)], speed: f64) -> Vec<Shared> {
+    fn doubts(runs: &[(String, Reckoned)], speed: f64) -> Vec<Shared> {
         let known: Vec<(&str, &Reckoned)> = runs.iter().map(|(name, one)| (name.as_str(), one)).collect();
         reckoned(&known, &Sources::of(0..runs.len()), 85.0 * speed / 4.0)
     }
 
-    /// What is told of nine runs of a ship, of which the first is damaged.
+    /// The doubts about nine runs of a ship, of which the first is damaged.
     fn study(speed: f64, change: impl Fn(&mut [Vec<f64>; 5])) -> Vec<Shared> {
         let runs: Vec<(String, Reckoned)> = (0..9)
             .map(|i| (format!("r{i}"), if i == 0 { run(1, speed, &change) } else { run(i + 1, speed, |_| ()) }))
             .collect();
-        told(&runs, speed)
+        doubts(&runs, speed)
     }
 
     #[test]
-    fn sound_runs_of_a_fast_ship_and_of_a_slow_model_tell_nothing() {
+    fn sound_runs_of_a_fast_ship_and_of_a_slow_model_raise_no_doubt() {
         for speed in [8.0, 4.0, 0.5] {
             assert_eq!(study(speed, |_| ()), [], "{speed}");
             // A compass that is offset in every run is an offset in every run.
             let offset: Vec<(String, Reckoned)> = (0..9)
                 .map(|i| (format!("r{i}"), run(i + 1, speed, |c| c[2].iter_mut().for_each(|psi| *psi += 0.05))))
                 .collect();
-            assert_eq!(told(&offset, speed), []);
+            assert_eq!(doubts(&offset, speed), []);
         }
     }
 
     #[test]
-    fn a_sway_of_another_sign_or_unit_is_told_in_its_run_alone() {
+    fn a_sway_of_another_sign_or_unit_is_reported_in_its_run_alone() {
         for speed in [8.0, 4.0, 0.5] {
             for (factor, fault) in [(-1.0, "sign_error"), (1.943_844, "unit_error"), (1.0 / 3.6, "unit_error")] {
-                let told = study(speed, |c| c[4].iter_mut().for_each(|v| *v *= factor));
-                assert!(told.len() == 1 && told[0].runs == ["r0"], "{speed} {factor}: {told:?}");
-                assert_eq!((told[0].issue.fault, told[0].issue.channel), (fault, Some(Channel::V)));
+                let found = study(speed, |c| c[4].iter_mut().for_each(|v| *v *= factor));
+                assert!(found.len() == 1 && found[0].runs == ["r0"], "{speed} {factor}: {found:?}");
+                assert_eq!((found[0].issue.fault, found[0].issue.channel), (fault, Some(Channel::V)));
             }
         }
     }
@@ -284,9 +284,9 @@ mod tests {
             c[1][..8].fill(first);
         };
         let feet = |c: &mut [Vec<f64>; 5]| c[0].iter_mut().for_each(|x| *x *= 0.3048);
-        for (name, told) in [("jumps", study(4.0, jumps)), ("late", study(4.0, late)), ("feet", study(4.0, feet))] {
-            assert!(told.len() == 1 && told[0].runs == ["r0"], "{name}: {told:?}");
-            assert_eq!((told[0].issue.fault, told[0].issue.channel), ("disagreement", Some(Channel::X)), "{name}");
+        for (name, found) in [("jumps", study(4.0, jumps)), ("late", study(4.0, late)), ("feet", study(4.0, feet))] {
+            assert!(found.len() == 1 && found[0].runs == ["r0"], "{name}: {found:?}");
+            assert_eq!((found[0].issue.fault, found[0].issue.channel), ("disagreement", Some(Channel::X)), "{name}");
         }
     }
 }

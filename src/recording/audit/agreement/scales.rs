@@ -1,5 +1,5 @@
 //! One run against all others: whether a rudder, a propeller rate or a sway velocity is in another unit, or of another sign.
-//! It asks with the coefficients that the other runs have; lags are in `pooled`, and what contradicts itself within a run is in `units`.
+//! It uses the coefficients of the other runs; lags are in `pooled`, and contradictions within a run in `units`.
 
 use crate::numerals::sig;
 use crate::recording::Channel;
@@ -32,7 +32,7 @@ const ASKED: [Asked; 3] = [
         channel: Channel::Delta,
         of: |r| r.rudder.as_ref(),
         explained: false,
-        // Its sign is told in `pooled`. One in degrees that counts as radians is no rudder at all; to a run in which it does nothing, every large factor fits.
+        // Its sign is checked in `pooled`. A rudder in degrees that is read as radians is not sought: every large factor fits a run in which it does nothing.
         factors: &[1.0 / DEGREES],
         turned: "acts on the yaw of the ship to the other side",
     },
@@ -66,7 +66,7 @@ impl Asked {
         sums.left(&own)
     }
 
-    /// The factor of each run, in their order; `None` where its channel is as in the other runs, or that cannot be told.
+    /// The factor of each run, in their order; `None` where its channel is as in the other runs, or where that cannot be determined.
     fn factors(&self, curves: &[Option<&Curve>], sources: &Sources) -> Vec<Option<f64>> {
         let none = || vec![None; curves.len()];
         let size = |c: &Curve| {
@@ -99,8 +99,8 @@ impl Asked {
         };
         let best = self.factors.iter().copied().max_by(|a, b| evidence(*a).total_cmp(&evidence(*b)))?;
         let unusual = as_it_is > POOLED_UNUSUAL * usual && left(best) < POOLED_UNUSUAL * usual;
-        let told = unusual && left(best) < SCALE_LEAVES * as_it_is && evidence(best) > SCALE_EVIDENCE;
-        (told && (!self.explained || proportional(sums, others, best))).then_some(best)
+        let convincing = unusual && left(best) < SCALE_LEAVES * as_it_is && evidence(best) > SCALE_EVIDENCE;
+        (convincing && (!self.explained || proportional(sums, others, best))).then_some(best)
     }
 
     fn issue(&self, factor: f64) -> Issue {
@@ -164,7 +164,7 @@ mod tests {
         Responses::of(&Series::from(&recording))
     }
 
-    /// What is told of eight runs, the first of which is recorded with these factors.
+    /// The doubts about eight runs, the first of which is recorded with these factors.
     fn study(factors: [f64; 2]) -> Vec<Shared> {
         let runs: Vec<(String, Responses)> =
             (0..8).map(|i| (format!("r{i}"), run(i + 1, if i == 0 { factors } else { [1.0; 2] }))).collect();
@@ -172,21 +172,21 @@ mod tests {
     }
 
     #[test]
-    fn a_sound_study_tells_nothing() {
+    fn a_sound_study_raises_no_doubt() {
         assert_eq!(study([1.0, 1.0]), []);
     }
 
     #[test]
-    fn another_unit_and_another_sign_in_one_run_are_told() {
+    fn another_unit_and_another_sign_in_one_run_are_reported() {
         let cases = [
             ([-1.0, 1.0], Channel::V, "sign_error"),
             ([3.6, 1.0], Channel::V, "unit_error"),
             ([1.0, 1.0 / DEGREES], Channel::Delta, "unit_error"),
         ];
         for (factors, channel, fault) in cases {
-            let told = study(factors);
+            let found = study(factors);
             let right = |s: &Shared| s.runs == ["r0"] && (s.issue.channel, s.issue.fault) == (Some(channel), fault);
-            assert!(told.iter().any(right) && told.iter().all(|s| s.runs == ["r0"]), "{factors:?}: {told:?}");
+            assert!(found.iter().any(right) && found.iter().all(|s| s.runs == ["r0"]), "{factors:?}: {found:?}");
         }
     }
 }

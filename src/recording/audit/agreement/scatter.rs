@@ -1,5 +1,5 @@
 //! How velocities scatter from row to row: a sensor has the same noise in every run, so that a run in another unit stands out by it.
-//! It also speaks where the ship sails straight on, and what the other channels tell of a velocity is lost in noise.
+//! It also serves on a straight course, where a comparison of a velocity with the other channels is lost in noise.
 
 use crate::numerals::sig;
 use crate::recording::audit::issue::{Issue, Severity, Shared};
@@ -9,11 +9,11 @@ use crate::recording::{Channel, Recording};
 use crate::statistics::median;
 use serde::{Deserialize, Serialize};
 
-/// Channels that are asked, and the factors between their units: km/h and m/s. Knots are too near to m/s: gusts and waves may do as much.
+/// Channels that are compared, and the factors between their units: km/h and m/s. Knots are too near to m/s: gusts and waves may do as much.
 const ASKED: [Channel; 2] = [Channel::U, Channel::V];
 const FACTORS: [f64; 2] = [3.6, 1.0 / 3.6];
 
-/// Scatter of the velocities of a run \[m/s\]; `None` where a channel was not recorded, or is too coarse or too short to tell.
+/// Scatter of the velocities of a run \[m/s\]; `None` where a channel was not recorded, or is too coarse or too short for an estimate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scatter([Option<f64>; 2]);
 
@@ -37,7 +37,7 @@ pub fn scatters(runs: &[(&str, Scatter)], sources: &Sources) -> Vec<Shared> {
     let mut found = Vec::new();
     for (at, channel) in ASKED.into_iter().enumerate() {
         let values = sources.medians(&runs.iter().map(|(_, s)| s.0[at]).collect::<Vec<_>>());
-        // What is so in a recording is told in the first of its runs.
+        // A fault of a recording is reported for the first of its runs.
         let first = |run: usize| sources.beside(run).find(|other| values[*other].is_some()) == Some(run);
         let of = |run: usize| Some((runs[run].0, values[run].filter(|_| first(run))?));
         let known: Vec<(&str, f64)> = (0..runs.len()).filter_map(of).collect();
@@ -81,11 +81,11 @@ mod tests {
     }
 
     #[test]
-    fn noise_of_another_unit_is_told_where_the_other_runs_are_alike() {
+    fn noise_of_another_unit_is_reported_where_the_other_runs_are_alike() {
         for factor in [3.6, 1.0 / 3.6] {
-            let told = study(factor, |_| 1.0);
-            assert!(told.len() == 1 && told[0].runs == ["r1"], "{factor}: {told:?}");
-            assert_eq!(told[0].issue.channel, Some(Channel::V));
+            let found = study(factor, |_| 1.0);
+            assert!(found.len() == 1 && found[0].runs == ["r1"], "{factor}: {found:?}");
+            assert_eq!(found[0].issue.channel, Some(Channel::V));
         }
         assert_eq!(study(1.0, |_| 1.0), []);
         assert_eq!(study(12.0, |_| 1.0), []);

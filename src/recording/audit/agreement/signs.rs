@@ -44,7 +44,7 @@ pub struct Track {
 }
 
 impl Track {
-    /// Adds what some rows say. Where v was not recorded it counts as 0, and nothing is said of sway.
+    /// Adds some rows. Where v was not recorded it counts as 0, and sway is not compared.
     pub fn add(&mut self, series: &Series<'_>) {
         let [Some(x), Some(y), Some(psi)] = [Channel::X, Channel::Y, Channel::Psi].map(|c| series.get(c)) else {
             return;
@@ -104,7 +104,7 @@ impl Track {
         (self.earth > 0.0 && both > COHERENT * (self.track * self.earth).sqrt()).then(|| both / self.earth)
     }
 
-    /// What all rows say; `turn` is the gain of the heading on the yaw rate.
+    /// Reports what all rows show; `turn` is the gain of the heading on the yaw rate.
     pub fn tell(&self, kinematics: &mut Kinematics, turn: Option<f64>, issues: &mut Vec<Issue>) {
         if self.track <= 0.0 || self.earth <= 0.0 {
             return;
@@ -217,9 +217,9 @@ impl Track {
             push(severity, "axes_error", Channel::Psi, text, next);
         }
         let next = "correct `unit` of u and v, or of x and y, in a column map";
-        if let Some(told) = known_gain(gain, turn, &SPEED_GAINS, next) {
-            let text = format!("the track is {} times as fast as the velocity: {}", sig(gain, 3), told.text);
-            push(Severity::Error, told.fault, Channel::U, text, told.next);
+        if let Some(meaning) = known_gain(gain, turn, &SPEED_GAINS, next) {
+            let text = format!("the track is {} times as fast as the velocity: {}", sig(gain, 3), meaning.text);
+            push(Severity::Error, meaning.fault, Channel::U, text, meaning.next);
             return true;
         }
         if (ratio - 1.0).abs() > CALIBRATED + TRACK_ERRORS * ratio_error {
@@ -230,7 +230,7 @@ impl Track {
         false
     }
 
-    /// Whether the track slides to the other side than v says: that turns the velocity, too, and what follows from it is not told beside it.
+    /// Whether the track slides to the other side than v says: that turns the velocity, too, and its consequences are not reported as well.
     fn sway_turned(&self) -> bool {
         let known = self.lever.known() && self.sway.known();
         known && self.sway.rms_sum() < SWAY_LEAVES * self.sway.rms() && self.sway.coherence() < SWAY_COHERENCE
@@ -238,7 +238,7 @@ impl Track {
 
     /// Sway of the track against recorded sway: a lever arm between the two points, or a turned sign.
     fn tell_sway(&self, kinematics: &mut Kinematics, turn: Option<f64>, issues: &mut Vec<Issue>) {
-        // Where r itself is wrong, what is in proportion to it says nothing of a lever.
+        // Where r itself is wrong, a slide in proportion to it is no evidence of a lever.
         let sound = turn.is_none_or(|turn| (turn - 1.0).abs() < LEVER_TURN);
         if !self.lever.known() {
             return;
@@ -274,7 +274,7 @@ pub struct Actuators {
     /// Runs ahead with the propeller astern, and all runs.
     astern: [usize; 2],
     /// Of rudder and yaw rate: products, squares.
-    held: [f64; 3],
+    products: [f64; 3],
     /// Rows, and change of heading \[rad\].
     rows: f64,
     turned: f64,
@@ -289,12 +289,12 @@ pub struct Effect {
     left: f64,
     /// Runs.
     runs: f64,
-    /// By lag, what is spared of these shares where it acts to its own side at that lag.
+    /// By lag, the reduction of these shares where it acts to its own side at that lag.
     late: BTreeMap<isize, f64>,
 }
 
 impl Effect {
-    /// Adds what a run says.
+    /// Adds the evidence of a run.
     pub fn add(&mut self, curve: Option<&Curve>) {
         let Some(curve) = curve else { return };
         let zero = curve.zero();
@@ -307,7 +307,7 @@ impl Effect {
     }
 
     /// Whether it acts to the other side in all runs together, and no lag that they share explains that as well: in one run a rudder that
-    /// swings to and fro is as good as turned when it is half a period late.
+    /// swings to and fro cannot be distinguished from a turned one when it is half a period late.
     pub fn turned(&self) -> bool {
         let is_late = self.late.values().any(|spared| self.runs - spared < self.left);
         self.evidence < -SIGN_EVIDENCE && self.left < EXPLAINS * self.runs && !is_late
@@ -315,7 +315,7 @@ impl Effect {
 }
 
 impl Actuators {
-    /// Adds what some rows say; `rudder` is the response to it.
+    /// Adds some rows; `rudder` is the response to the rudder.
     pub fn add(&mut self, series: &Series<'_>, rudder: Option<&Curve>) {
         self.rudder.add(rudder);
         self.astern[0] += usize::from(ahead_with_propeller_astern(series));
@@ -326,16 +326,16 @@ impl Actuators {
         for row in series.stretches.iter().flat_map(Range::clone).filter(|row| ahead(u, *row) && ahead(n, *row)) {
             let (delta, r) = (delta[row], r[row]);
             if delta.is_finite() && r.is_finite() {
-                [delta * r, delta * delta, r * r].iter().zip(&mut self.held).for_each(|(new, sum)| *sum += new);
+                [delta * r, delta * delta, r * r].iter().zip(&mut self.products).for_each(|(new, sum)| *sum += new);
                 self.rows += 1.0;
                 self.turned += r * series.step;
             }
         }
     }
 
-    /// What all rows say.
+    /// Reports what all rows show.
     pub fn tell(&self, issues: &mut Vec<Issue>) {
-        let [both, delta, r] = self.held;
+        let [both, delta, r] = self.products;
         let (turns, together) = (self.turned.abs() > AGAINST_TURN, both / (delta * r).sqrt());
         let steered = turns && delta > AGAINST_RUDDER * AGAINST_RUDDER * self.rows;
         // A steady turn shows its side by itself; how the yaw rate answers shows only where it changes.

@@ -1,5 +1,5 @@
-//! A rudder or a propeller whose log stood still: it holds one value over a stretch in which the motion is not what it does with that value
-//! in the other runs, while the rest of the run is. Channels of the motion that stand still are in `frozen` and `held`.
+//! A rudder or a propeller whose log stood still: over a stretch in which it keeps one value the motion is unlike that of the other runs at
+//! this value, while the rest of the run is like theirs. Channels of the motion that stand still are in `frozen` and `held`.
 
 use crate::recording::audit::limits::{EXPLAINS, STUCK_UNLIKE};
 use crate::recording::audit::motion::plateau::Plateau;
@@ -19,8 +19,8 @@ pub(in crate::recording::audit) fn stuck<'c>(
     curves.iter().map(most).collect()
 }
 
-/// The plateau of a run that is least like the other runs, of those in which the held value explains nothing, and how many times as much
-/// they leave there, squared and by window, as they do usually and beside it.
+/// The plateau of a run that is least like the other runs, of those whose constant value explains nothing, and the mean square that the
+/// other runs' coefficients leave there, as a multiple of what they leave usually or outside it, whichever is larger.
 fn unlike<'c>(curve: &'c Curve, pool: &Pool<'_>, usual: f64) -> Option<(f64, &'c Plateau)> {
     let others = pool.others(curve).filter(|_| pool.is_alike(curve))?;
     let share = |plateau: &'c Plateau| {
@@ -44,7 +44,7 @@ mod tests {
     use crate::recording::{Channel, Recording};
     use std::ops::Range;
 
-    /// A ship that turns with its rudder, which holds an angle for 40 s at a time, and whose log stands still over some rows.
+    /// A ship that turns with its rudder, which keeps an angle for 40 s at a time, and whose log stands still over some rows.
     fn turning(seed: u32, still: Range<usize>) -> Curve {
         let mut noise = noise(seed);
         let mut angles: Vec<f64> = (0..200).map(|i| 0.3 * f64::from(noise_of(seed, i / 20))).collect();
@@ -53,8 +53,8 @@ mod tests {
             rates.push(r + 0.002 * noise());
             r += 2.0 * (0.02 * delta - 0.05 * r - 0.3 * r * r.abs());
         }
-        let held = angles[still.start];
-        angles[still].fill(held);
+        let value = angles[still.start];
+        angles[still].fill(value);
         let t = (0..200).map(|i| 2.0 * f64::from(i)).collect();
         let columns = vec![(Channel::T, t), (Channel::R, rates), (Channel::Delta, angles)];
         rudder(&Series::from(&Recording::from_channels("run", columns).unwrap())).unwrap()
@@ -66,16 +66,16 @@ mod tests {
     }
 
     #[test]
-    fn a_rudder_whose_log_stands_still_while_the_ship_turns_is_told_with_its_lines_and_a_held_rudder_is_not() {
+    fn a_rudder_whose_log_stands_still_while_the_ship_turns_is_reported_with_its_lines_and_a_steady_rudder_is_not() {
         let of = |still: Range<usize>| -> Vec<Option<(usize, usize)>> {
             let curves: Vec<Curve> = (0..8).map(|i| turning(i, if i == 3 { still.clone() } else { 0..1 })).collect();
             let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
             stuck(&all, &actuated(&all).unwrap()).into_iter().map(|s| s.and_then(|s| s.lines)).collect()
         };
         assert_eq!(of(0..1), [None; 8]);
-        let told = of(60..130);
-        assert!(told.iter().enumerate().all(|(run, lines)| lines.is_some() == (run == 3)), "{told:?}");
-        let lines = told[3].unwrap();
+        let found = of(60..130);
+        assert!(found.iter().enumerate().all(|(run, lines)| lines.is_some() == (run == 3)), "{found:?}");
+        let lines = found[3].unwrap();
         assert!(lines.0 <= 62 && lines.1 >= 131, "{lines:?}");
     }
 }

@@ -1,5 +1,5 @@
-//! Units: actuators too small for theirs, and the gains by which a wrong unit or sign shows where two channels tell the same motion.
-//! Here heading is held against yaw rate; the track against velocity is in `signs`.
+//! Units: actuators too small for their unit, and the gains that a wrong unit or sign causes between two channels of the same motion.
+//! Here heading is compared with yaw rate; the track is compared with velocity in `signs`.
 
 use crate::recording::audit::issue::{Issue, Severity};
 use crate::recording::audit::limits::{
@@ -19,7 +19,7 @@ pub fn magnitudes(recording: &Recording, issues: &mut Vec<Issue>) {
         let largest = values.iter().copied().filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
         // A ship that is steered straight needs no more rudder than that.
         let straight = channel == Channel::Delta && turned(recording).is_some_and(|t| t < SMALL_RUDDER_TURNS * largest);
-        // What is in radians already may have been converted twice; then only the turn of the ship tells.
+        // What is in radians already may have been converted twice; only the turn of the ship shows that.
         let twice = channel == Channel::Delta && recording.unit(channel) == unit && turned(recording).is_some();
         if largest > 0.0 && largest < limit && (recording.unit(channel) != unit || twice) && !straight {
             let factor = channel.info().quantity.factor(recording.unit(channel)).unwrap_or(1.0);
@@ -90,14 +90,14 @@ const TIME_GAINS: [(f64, &str); 6] = [
     (1.0 / 3600.0, "the time is in s and was declared h"),
 ];
 
-/// What a gain tells: the fault, its meaning, and what to do.
+/// What a gain means: the fault, its description, and what to do.
 pub struct Meaning {
     pub fault: &'static str,
     pub text: String,
     pub next: &'static str,
 }
 
-/// What a gain on a speed or on a turn tells, beside that on the other of the two, if it is known; `None` for a gain that is none of the
+/// What a gain on a speed or on a turn means, given the gain on the other of the two, if it is known; `None` for a gain that is none of the
 /// known ones. A time in another unit changes both alike. `next` says what mends the units of the channels.
 pub fn known_gain(gain: f64, other: Option<f64>, known: &[(f64, &'static str)], next: &'static str) -> Option<Meaning> {
     let of = |known: &[(f64, &'static str)]| {
@@ -161,7 +161,7 @@ pub struct Turning {
 }
 
 impl Turning {
-    /// Adds what some rows say.
+    /// Adds some rows.
     pub fn add(&mut self, series: &Series<'_>) {
         let both = series.get(Channel::Psi).zip(series.recorded(Channel::R));
         let Some((psi, r)) = both else { return };
@@ -179,7 +179,7 @@ impl Turning {
         (self.sums.known() && self.sums.coherence().abs() > COHERENT).then(|| self.sums.gain())
     }
 
-    /// What all rows say; `speed` is the gain of the track on the velocity.
+    /// Reports what all rows show; `speed` is the gain of the track on the velocity.
     pub fn tell(&self, kinematics: &mut Kinematics, speed: Option<f64>, issues: &mut Vec<Issue>) {
         if !self.sums.known() {
             return;
@@ -192,9 +192,9 @@ impl Turning {
         };
         if coherence.abs() > COHERENT {
             let next = "correct `unit` or `sign` of `r` or `psi` in a column map";
-            if let Some(told) = known_gain(gain, speed, &TURN_GAINS, next) {
-                let text = format!("heading turns {gain:.4} times as fast as r says: {}", told.text);
-                push(Severity::Error, told.fault, text, told.next);
+            if let Some(meaning) = known_gain(gain, speed, &TURN_GAINS, next) {
+                let text = format!("heading turns {gain:.4} times as fast as r says: {}", meaning.text);
+                push(Severity::Error, meaning.fault, text, meaning.next);
                 return;
             }
             if self.sums.is_off(CALIBRATED) && self.apart.all > APART {

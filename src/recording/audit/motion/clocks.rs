@@ -1,4 +1,4 @@
-//! Clocks: how much later one channel tells a motion than another.
+//! Clocks: how much later one channel shows a motion than another.
 //! Which channels are compared is decided by those that differentiate and smooth them.
 
 use crate::recording::Channel;
@@ -26,7 +26,7 @@ impl Pair {
         lag(&self.a, &self.b, self.step)
     }
 
-    /// Says so, where it is more than a step and a half.
+    /// Reports the lag, where it is more than a step and a half.
     pub fn tell(&self, lag: Option<f64>, channel: Channel, other: &str, issues: &mut Vec<Issue>) {
         let [noted, doubtful] = LAG_STEPS;
         let Some(lag) = lag.filter(|l| l.abs() > noted * self.step) else { return };
@@ -40,7 +40,7 @@ impl Pair {
 }
 
 /// Time by which `b` lags behind `a` \[s\]: the shift that leaves the least difference, refined by a parabola through the least
-/// and its neighbours. `None` when no shift up to an eighth of the series is clearly the best, so that none can be told.
+/// and its neighbours. `None` when no shift up to an eighth of the series is clearly the best, so that no lag can be determined.
 fn lag(a: &[f64], b: &[f64], step: f64) -> Option<f64> {
     let most = ((LAG_LONGEST.0 * a.len() as f64) as usize).min(PAIR_STEPS) as isize;
     if most < 3 {

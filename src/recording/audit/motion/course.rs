@@ -105,8 +105,8 @@ mod tests {
             let all: Vec<([f64; 2], [f64; 2])> = (1..200).map(|seed| sailed(seed, rows, metres)).collect();
             for i in 0..2 {
                 let scatter = variance(&all.iter().map(|(value, _)| value[i]).collect::<Vec<_>>()).unwrap().sqrt();
-                let told = all.iter().map(|(_, error)| error[i]).sum::<f64>() / all.len() as f64;
-                assert!((0.8..1.4).contains(&(told / scatter)), "{rows} {metres} {i}: {told} {scatter}");
+                let reported = all.iter().map(|(_, error)| error[i]).sum::<f64>() / all.len() as f64;
+                assert!((0.8..1.4).contains(&(reported / scatter)), "{rows} {metres} {i}: {reported} {scatter}");
             }
         }
     }

@@ -19,7 +19,7 @@ pub struct Kinematics {
     pub velocity_coherence: Option<f64>,
     /// Time by which velocity lags behind the track \[s\].
     pub velocity_lag: Option<f64>,
-    /// Position of the recorded point forward of the point whose velocity is recorded \[m\], as sway in turns tells it.
+    /// Position of the recorded point forward of the point whose velocity is recorded \[m\], estimated from sway in turns.
     pub lever: Option<f64>,
     /// Root mean square of d(psi)/dt less r \[rad/s\].
     pub yaw_rate_rms: Option<f64>,
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn noise_in_one_of_two_equal_series_is_no_gain_and_a_gain_is_told_through_it() {
+    fn noise_in_one_of_two_equal_series_is_no_gain_and_a_gain_is_found_through_it() {
         let motion: Vec<f64> = (0..400).map(|i| (0.05 * f64::from(i)).sin()).collect();
         let noise = |i: usize| if i.is_multiple_of(2) { 0.3 } else { -0.3 };
         let noisy: Vec<f64> = motion.iter().enumerate().map(|(i, m)| m + noise(i)).collect();

@@ -1,5 +1,5 @@
-//! Plateaus: stretches over which a channel holds one value, with the sums of a regression inside them and beside them.
-//! It judges nothing; what is unlike the other runs is told in `stuck`.
+//! Plateaus: stretches over which a channel keeps one value, with the sums of a regression inside and outside them.
+//! It judges nothing; plateaus that are unlike the other runs are reported in `stuck`.
 
 use super::series::{Series, constant};
 use super::sums::Sums;
@@ -7,7 +7,7 @@ use crate::recording::audit::limits::STUCK_WINDOWS;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// A plateau: the regression at lag 0 inside it and beside it, the constant among the columns.
+/// A plateau: the regression at lag 0 inside and outside it, the constant among the columns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plateau {
     /// First and last line, where the rows were read from a file.
@@ -16,7 +16,7 @@ pub struct Plateau {
     pub seconds: f64,
     /// The windows in it.
     pub inside: Part,
-    /// Those beside it.
+    /// The windows outside it.
     pub beside: Part,
 }
 
@@ -38,7 +38,7 @@ impl Part {
         self.sums.left_without(own, coefficients) / self.windows
     }
 
-    /// The constant that fits best beside the other coefficients.
+    /// The constant that fits best together with the other coefficients.
     pub fn constant(&self, others: &[f64]) -> f64 {
         let n = others.len() + 1;
         let explained: f64 = others.iter().enumerate().map(|(i, c)| c * self.sums.columns[i * n + n - 1]).sum();
@@ -46,7 +46,7 @@ impl Part {
     }
 }
 
-/// The plateaus of a channel, with [`STUCK_WINDOWS`] windows of some steps or more in them and beside them. `starts` are the first rows of
+/// The plateaus of a channel, with [`STUCK_WINDOWS`] windows of some steps or more inside and outside them. `starts` are the first rows of
 /// all windows, in order; `sums` are those of the windows that begin at some rows.
 pub fn plateaus(
     series: &Series<'_>,
@@ -72,8 +72,8 @@ pub fn plateaus(
         let seconds = series.t[rows.end - 1] - series.t[rows.start];
         Some(Plateau { lines: series.lines(rows), seconds, inside, beside })
     };
-    let held = series.stretches.iter().flat_map(|s| constant(values, s.clone()));
-    held.filter(|rows| rows.len() > steps).filter_map(|rows| of(&rows)).collect()
+    let still = series.stretches.iter().flat_map(|s| constant(values, s.clone()));
+    still.filter(|rows| rows.len() > steps).filter_map(|rows| of(&rows)).collect()
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 pub enum Odd {
     /// The channel acts to the other side.
     Turned,
-    /// The channel tells so much later than the motion \\[s\\].
+    /// The channel lags so much behind the motion \\[s\\].
     Late(f64),
     /// The motion does not answer the channel.
     Unanswered,
@@ -47,7 +47,7 @@ pub(in crate::recording::audit) fn coefficients(sum: &Sums, less: Option<&Sums>)
     Some(solved.iter().copied().collect())
 }
 
-/// Runs of one sample period in which a channel is of the usual size, and against which a run is held.
+/// Runs of one sample period in which a channel is of the usual size, and with which a run is compared.
 pub(in crate::recording::audit) struct Pool<'c> {
     step: f64,
     known: Vec<&'c Curve>,
@@ -104,7 +104,8 @@ fn is_step(curve: &Curve, step: f64) -> bool {
     (curve.step / step - 1.0).abs() < 0.01
 }
 
-/// What is odd in each run, in their order, against the pool, and in the recording from which it is cut. `worth` says which lags \\[s\\] matter.
+/// What is odd in each run, in their order, compared with the pool and with the other runs of its recording. `worth` says which lags
+/// \\[s\\] matter.
 pub(in crate::recording::audit) fn odd(
     curves: &[Option<&Curve>],
     pool: &Pool,
@@ -140,7 +141,7 @@ fn to_the_other_side(curve: &Curve, others: &[f64]) -> Vec<f64> {
     others.iter().enumerate().map(|(i, c)| if i < curve.own { -c } else { *c }).collect()
 }
 
-/// The runs against which what an actuator does is held.
+/// The runs with which the effect of an actuator is compared.
 pub(in crate::recording::audit) fn actuated<'c>(curves: &[Option<&'c Curve>]) -> Option<Pool<'c>> {
     let size = |c: &Curve| c.at_zero().columns.first().copied().unwrap_or(0.0) / c.rows;
     Pool::new(curves, size, POOLED_SIZE)
@@ -157,7 +158,7 @@ pub(in crate::recording::audit) fn shares_at_best(curves: &[Option<&Curve>], poo
     curves.iter().map(share).collect()
 }
 
-/// Whether a run shows by itself nothing that the channel does, and is explained better without it than by what it does in the others,
+/// Whether a run by itself shows no effect of the channel, and is explained better without it than with its effect in the other runs,
 /// which leaves more than usual.
 fn is_unanswered(curve: &Curve, others: &[f64], usual: f64) -> bool {
     let sums = curve.at_zero();
@@ -167,11 +168,12 @@ fn is_unanswered(curve: &Curve, others: &[f64], usual: f64) -> bool {
     curve.side().abs() < POOLED_EVIDENCE && as_it_is > POOLED_UNUSUAL * usual && evidence > SCALE_EVIDENCE
 }
 
-/// What is odd in a run, given the coefficients of the others: what explains most more, over the windows that both explanations have.
+/// What is odd in a run, given the coefficients of the others: the explanation with the most evidence, over the windows that it shares with
+/// the run as it is.
 fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option<Odd> {
     let turned = to_the_other_side(curve, others);
     let zero = curve.zero();
-    // A run that shows by itself to which side the channel acts is believed before the others are.
+    // A run that shows by itself to which side the channel acts is not judged by the others.
     let own_side = curve.side() > POOLED_EVIDENCE;
     let mut best: Option<(f64, Odd)> = None;
     for (place, sums) in curve.sums.iter().enumerate() {
@@ -187,8 +189,8 @@ fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option
             let evidence = curve.samples * (before - left) / left.max(f64::MIN_POSITIVE);
             // Where the run by itself is explained best by this lag, it is not the best of many.
             let least = if inside && place == curve.best() { POOLED_AGREED } else { POOLED_EVIDENCE };
-            let told = left < POOLED_LEAVES * before && left < EXPLAINS * nothing && evidence > least;
-            if told && best.is_none_or(|(most, _)| evidence > most) {
+            let better = left < POOLED_LEAVES * before && left < EXPLAINS * nothing && evidence > least;
+            if better && best.is_none_or(|(most, _)| evidence > most) {
                 best = Some((evidence, what));
             }
         }
@@ -230,20 +232,20 @@ mod tests {
 
     #[test]
     fn a_run_of_a_recording_whose_other_runs_are_sound_is_not_turned() {
-        // The last one answers to the other side, and does not say so beyond doubt by itself.
+        // The last one answers to the other side, and is not significant by itself.
         let curves: Vec<Curve> = (0..9).map(|i| run(if i < 8 { 1.0 } else { -1.0 })).collect();
         let mut curves = curves;
         curves[8].sums[0].response[0] *= -1.0;
         let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
         let odd = |sources: Sources| among(&all, &sources);
-        let told = odd(Sources::of(0..9));
-        assert!(told[..8].iter().all(Option::is_none) && told[8] == Some(Odd::Turned), "{told:?}");
+        let found = odd(Sources::of(0..9));
+        assert!(found[..8].iter().all(Option::is_none) && found[8] == Some(Odd::Turned), "{found:?}");
         assert_eq!(odd(Sources::of(std::iter::repeat_n("log", 9))), [None; 9]);
         // A file that is turned is turned in all of its runs.
         curves[7] = curves[8].clone();
         let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
-        let told = among(&all, &Sources::of((0..9).map(|i| i.min(7))));
-        assert!(told[..7].iter().all(Option::is_none) && told[7..] == [Some(Odd::Turned); 2], "{told:?}");
+        let found = among(&all, &Sources::of((0..9).map(|i| i.min(7))));
+        assert!(found[..7].iter().all(Option::is_none) && found[7..] == [Some(Odd::Turned); 2], "{found:?}");
     }
 
     #[test]
@@ -255,27 +257,27 @@ mod tests {
         }
         curves[28].sums[0].response[0] *= -1.0;
         let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
-        let told = among(&all, &Sources::of(0..29));
-        assert!(told[..28].iter().all(Option::is_none) && told[28] == Some(Odd::Turned), "{told:?}");
+        let found = among(&all, &Sources::of(0..29));
+        assert!(found[..28].iter().all(Option::is_none) && found[28] == Some(Odd::Turned), "{found:?}");
     }
 
     #[test]
-    fn a_channel_that_a_run_does_not_answer_is_told_where_the_others_would_answer_it() {
+    fn a_channel_that_a_run_does_not_answer_is_reported_where_the_others_would_answer_it() {
         // `moves` is how much the channel moves in the last run, which does not answer it; `shows` whether it says something else by itself.
-        let told = |moves: f64, shows: bool| {
+        let found = |moves: f64, shows: bool| {
             let mut curves = vec![run(1.0); 9];
             curves[8].sums[0] = Sums { columns: vec![moves], response: vec![0.0], squares: 0.4 };
             curves[8].without = if shows { 3.0 } else { curves[8].left[0] };
             let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
             among(&all, &Sources::of(0..9))
         };
-        let unanswered = told(4.0, false);
+        let unanswered = found(4.0, false);
         assert!(
             unanswered[..8].iter().all(Option::is_none) && unanswered[8] == Some(Odd::Unanswered),
             "{unanswered:?}"
         );
         for (moves, shows) in [(0.1, false), (4.0, true)] {
-            assert_eq!(told(moves, shows), [None; 9]);
+            assert_eq!(found(moves, shows), [None; 9]);
         }
     }
 
@@ -296,13 +298,13 @@ mod tests {
             let recording = Recording::from_channels("run", names.into_iter().zip(columns).collect()).unwrap();
             rudder(&Series::from(&recording)).unwrap()
         };
-        let told = |speed: f64, acts: f64| {
+        let found = |speed: f64, acts: f64| {
             let curves: Vec<Curve> = (0..8).map(|i| swung(i + 1, 4.0, 1.0)).chain([swung(9, speed, acts)]).collect();
             among(&curves.iter().map(Some).collect::<Vec<_>>(), &Sources::of(0..9))
         };
-        assert_eq!(told(0.5, 1.0), [None; 9]);
+        assert_eq!(found(0.5, 1.0), [None; 9]);
         // As one in degrees that counts as radians does at the usual speed.
-        let small = told(4.0, 0.02);
+        let small = found(4.0, 0.02);
         assert!(small[..8].iter().all(Option::is_none) && small[8] == Some(Odd::Unanswered), "{small:?}");
     }
 

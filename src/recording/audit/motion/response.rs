@@ -1,5 +1,5 @@
 //! Responses: how the motion answers what is recorded of rudder, propeller, gyro and receiver, with each of many lags between them.
-//! It gives evidence on lag and sign, run by run; what is told of it is decided in `signs` and `across`.
+//! It gives evidence on lag and sign, run by run; what is reported is decided in `signs` and `across`.
 
 use super::plateau::{Plateau, plateaus};
 use super::series::{Series, mean_square};
@@ -15,7 +15,7 @@ use std::ops::Range;
 pub struct Curve {
     /// Sample period \[s\].
     pub step: f64,
-    /// Lags \[rows\], positive where the channel tells later than the motion.
+    /// Lags \[rows\], positive where the channel is behind the motion.
     pub lags: Vec<isize>,
     /// Sum of squares left at each lag.
     pub left: Vec<f64>,
@@ -33,7 +33,7 @@ pub struct Curve {
     pub beside: [Sums; 2],
     /// Columns of the regression that belong to the channel: the first ones.
     pub own: usize,
-    /// Stretches over which a rudder or a propeller holds one value.
+    /// Stretches over which a rudder or a propeller keeps one value.
     pub plateaus: Vec<Plateau>,
 }
 
@@ -147,7 +147,7 @@ pub fn rudder(series: &Series<'_>) -> Option<Curve> {
     let square = integral(t, |i| r[i] * r[i].abs());
     let sway = integral(t, |i| of(v, i));
     let u = series.get(Channel::U);
-    // The square of each row would tell runs apart as well, but within a turn it also stands for the speed that is lost there.
+    // The square of each row would distinguish runs as well, but within a turn it also stands for the speed that is lost there.
     let flow = u.and_then(mean_square).unwrap_or(1.0);
     let angle = integral(t, |i| delta[i] * flow);
     let force = integral(t, |i| delta[i] * of(n, i) * of(n, i).abs());
@@ -259,7 +259,7 @@ pub fn receiver(series: &Series<'_>) -> Option<Curve> {
 /// the first rows, where a late channel still has its value.
 fn curve<const N: usize, const P: usize, const E: usize>(
     series: &Series<'_>,
-    held: Option<&[f64]>,
+    actuator: Option<&[f64]>,
     usable: impl Fn(usize) -> bool,
     equations: impl Fn(usize, isize) -> [([f64; N], f64); E],
 ) -> Option<Curve> {
@@ -307,7 +307,7 @@ fn curve<const N: usize, const P: usize, const E: usize>(
     let rows = (E * whole.len()) as f64;
     let beside = [before.sums, after.sums];
     let of_windows = |starts: &[usize]| Some(Gathered::new(starts, 0, &equations)?.whole());
-    let plateaus = held.map_or_else(Vec::new, |values| plateaus(series, values, &whole, steps, of_windows));
+    let plateaus = actuator.map_or_else(Vec::new, |values| plateaus(series, values, &whole, steps, of_windows));
     Some(Curve { step: series.step, lags, left, sign, without, samples, rows, sums, beside, own: P, plateaus })
 }
 
@@ -406,7 +406,7 @@ mod tests {
                 assert!(curve.lags[best].abs_diff(late as isize) <= 1, "{seed} {late}: {}", curve.lags[best]);
                 assert!(curve.evidence(best, zero) > LAG_EVIDENCE, "{seed} {late}: {}", curve.evidence(best, zero));
             }
-            // A sound one is explained better by another lag only as far as chance goes.
+            // A sound one is explained better by another lag only by chance, not significantly.
             let sound = gathering(seed, 0);
             assert!(sound.evidence(sound.best(), sound.zero()) < LAG_EVIDENCE, "{seed}");
         }

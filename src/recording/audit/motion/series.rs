@@ -1,5 +1,5 @@
 //! The motion that an audit reads, whether of a recording or of runs cut from one: columns by channel, NaN where a value is missing.
-//! It judges nothing; the questions are in the files beside it.
+//! It judges nothing; the checks are in the other files of this folder.
 
 use crate::recording::audit::limits::SPAN;
 use crate::recording::{Channel, Recording, Run, STATE_CHANNELS, local, slope};

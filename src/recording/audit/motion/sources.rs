@@ -1,5 +1,5 @@
 //! Recordings from which several runs are cut: what is wrong with a channel of a file is wrong in all of its runs.
-//! It weighs what is found in one of them against the others; what is found is the affair of those who ask.
+//! It compares what is found in one of them with the others; the caller decides what is looked for.
 
 use crate::statistics::median;
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ use std::hash::Hash;
 pub struct Sources(Vec<usize>);
 
 impl Sources {
-    /// From what tells a recording, and how it is read, from another: a key a run.
+    /// From a key a run that identifies its recording and how it is read.
     pub fn of<K: Hash + Eq>(keys: impl Iterator<Item = K>) -> Self {
         let mut first: HashMap<K, usize> = HashMap::new();
         Self(keys.enumerate().map(|(i, key)| *first.entry(key).or_insert(i)).collect())
@@ -22,7 +22,7 @@ impl Sources {
     }
 
     /// Whether all runs of the recording of one are explained better by what was found in it. `losses` gives what is left of a run as
-    /// it is, and with what was found; `None` where that cannot be told.
+    /// it is, and with what was found; `None` where that cannot be determined.
     pub fn agree(&self, run: usize, losses: impl Fn(usize) -> Option<[f64; 2]>) -> bool {
         let sum = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a + c, b + d];
         self.beside(run).filter_map(losses).reduce(sum).is_none_or(|[before, after]| after < before)
@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fault_of_one_run_is_held_against_the_others_of_its_recording() {
+    fn a_fault_of_one_run_is_compared_with_the_others_of_its_recording() {
         let sources = Sources::of(["a", "b", "a", "a", "c"].into_iter());
         assert_eq!(sources.beside(2).collect::<Vec<_>>(), [0, 2, 3]);
         // Run 2 alone is explained better; with its sister runs it is not, and run 4 has none.

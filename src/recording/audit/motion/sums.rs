@@ -1,5 +1,5 @@
-//! Sums of regressions, so that those of several runs can be added and coefficients of one held against another.
-//! Which columns explain what is asked in `response`.
+//! Sums of regressions, so that those of several runs can be added and the coefficients of one compared with another.
+//! Which columns explain which motion is decided in `response`.
 
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};

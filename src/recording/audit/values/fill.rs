@@ -5,7 +5,7 @@ use crate::recording::audit::issue::{Issue, Severity};
 use crate::recording::audit::limits::{FILL_APART, FILL_KINDS, FILL_ROWS};
 use crate::recording::{Channel, Recording, STATE_CHANNELS, usual_fill};
 
-/// Tells the fill values, and gives the recording without them, for the other questions; `None` where there are none.
+/// Reports the fill values, and returns the recording without them, for the other checks; `None` where there are none.
 pub fn fills(recording: &Recording, issues: &mut Vec<Issue>) -> Option<Recording> {
     let mut left: Option<Recording> = None;
     for (channel, values) in recording.channels().filter(|(c, _)| *c != Channel::T) {

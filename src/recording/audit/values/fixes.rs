@@ -9,7 +9,7 @@ use crate::recording::audit::limits::{
 use crate::recording::{Channel, Recording, across_the_wrap};
 use crate::statistics::{median, quantile};
 
-/// A step from one fix to the next that is another one.
+/// A step from one fix to the next that differs from it.
 struct Step {
     /// Row of the second.
     row: usize,
@@ -29,7 +29,7 @@ pub fn fixes(recording: &Recording, issues: &mut Vec<Issue>) -> bool {
     let known = [Channel::Psi, Channel::U, Channel::V].iter().all(|c| recording.has(*c));
     let Some(fastest) = fastest(recording, &steps) else { return false };
     let usual = 1.4826 * median(steps.iter().map(|s| s.off)).unwrap_or(0.0);
-    // Only what looks impossible is asked for its resolution.
+    // The resolution is computed only for steps that look impossible.
     let beyond = |rounding: f64, step: &Step| {
         step.length - rounding > FIX_SPEED * fastest * step.time && step.off - rounding > FIX_FAR * usual
     };

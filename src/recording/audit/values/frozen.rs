@@ -1,5 +1,5 @@
-//! Frozen channels: those that hold one value while what the other channels tell says that they should not.
-//! A receiver that holds its value and then catches up is in `receiver`, since its samples can be left out.
+//! Frozen channels: those that keep one value while the other channels show that they should not.
+//! A receiver that repeats its value and then catches up is in `receiver`, since its samples can be left out.
 
 use crate::recording::audit::issue::{Issue, Severity};
 use crate::recording::audit::limits::{
@@ -10,7 +10,7 @@ use crate::recording::{Channel, STATE_CHANNELS};
 use crate::statistics::{median, quantile};
 use std::ops::Range;
 
-/// Channels that hold one value while their partners say they should not: position and heading against the integral of the rates,
+/// Channels that keep one value while their partners show that they should not: position and heading against the integral of the rates,
 /// velocities against the derivative of position and heading.
 pub fn frozen(series: &Series<'_>, issues: &mut Vec<Issue>) {
     let t = &series.t;
@@ -31,7 +31,7 @@ pub fn frozen(series: &Series<'_>, issues: &mut Vec<Issue>) {
     }
 }
 
-/// The stretches over which a channel holds one value and should not.
+/// The stretches over which a channel keeps one value and should not.
 fn still(series: &Series<'_>, channel: Channel, values: &[f64]) -> Vec<Range<usize>> {
     let t = &series.t;
     let integrates = matches!(channel, Channel::X | Channel::Y | Channel::Psi);
@@ -77,7 +77,7 @@ fn rate(series: &Series<'_>, channel: Channel) -> Option<Vec<f64>> {
     Some((0..psi.len()).map(at).collect())
 }
 
-/// Velocity or yaw rate as position and heading tell it.
+/// Velocity or yaw rate, derived from position and heading.
 fn derivative(series: &Series<'_>, channel: Channel) -> Option<Vec<f64>> {
     let all = 0..series.t.len();
     let psi = series.get(Channel::Psi)?;
@@ -112,8 +112,8 @@ fn usual_change(values: &[f64], stretches: &[Range<usize>], at: usize) -> f64 {
     usual(before).max(usual(after))
 }
 
-/// Difference, over so many rows, of what a channel changes and what its rate says, that it seldom exceeds where the channel does not
-/// hold a value: noise, rounding, and the error of the rate. `long` are the stretches over which it does.
+/// Difference, over so many rows, between the change of a channel and the integral of its rate, that is seldom exceeded where the channel
+/// does not stand still: noise, rounding, and the error of the rate. `long` are the stretches over which it does.
 fn usual_difference(
     series: &Series<'_>,
     values: &[f64],
@@ -128,13 +128,13 @@ fn usual_difference(
         for i in stretch.start + 1..stretch.end {
             said.push(said[said.len() - 1] + rate[i] * (t[i] - t[i - 1]));
         }
-        let mut held = 0;
+        let mut next = 0;
         for i in 0..stretch.len() - length + 1 {
             let (from, to) = (stretch.start + i, stretch.start + i + length - 1);
-            while held < long.len() && long[held].1.end <= from {
-                held += 1;
+            while next < long.len() && long[next].1.end <= from {
+                next += 1;
             }
-            if long.get(held).is_none_or(|(_, rows)| rows.start > to) {
+            if long.get(next).is_none_or(|(_, rows)| rows.start > to) {
                 differences.push((values[to] - values[from] - (said[i + length - 1] - said[i])).abs());
             }
         }

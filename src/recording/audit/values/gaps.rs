@@ -1,5 +1,5 @@
 //! Gaps: missing values, rows without time, uneven steps, columns that are not used, channels that are derived or bridged.
-//! It asks only what is there; whether what is there can be true is asked by the other files.
+//! It checks only what is there; whether that can be true is checked in the other files.
 
 use crate::files::suggestion;
 use crate::recording::audit::issue::{Issue, Severity};
@@ -14,17 +14,17 @@ pub fn completeness(recording: &Recording, issues: &mut Vec<Issue>) {
     channels(recording, issues);
 }
 
-/// Rows in which a channel has no value, told once for each set of channels that is missing together.
+/// Rows in which a channel has no value, reported once for each set of channels that is missing together.
 fn dropouts(recording: &Recording, issues: &mut Vec<Issue>) {
-    let mut told: Vec<(Vec<Channel>, Vec<Range<usize>>)> = Vec::new();
+    let mut sets: Vec<(Vec<Channel>, Vec<Range<usize>>)> = Vec::new();
     for rows in recording.dropouts() {
         let missing = recording.missing_in(rows.clone());
-        match told.iter_mut().find(|(channels, _)| *channels == missing) {
+        match sets.iter_mut().find(|(channels, _)| *channels == missing) {
             Some((_, all)) => all.push(rows),
-            None => told.push((missing, vec![rows])),
+            None => sets.push((missing, vec![rows])),
         }
     }
-    for (missing, all) in told {
+    for (missing, all) in sets {
         let Some(first) = all.first() else { continue };
         let names = missing.iter().map(|c| c.name()).collect::<Vec<_>>().join(", ");
         let rows: usize = all.iter().map(Range::len).sum();
@@ -79,7 +79,7 @@ fn time(recording: &Recording, issues: &mut Vec<Issue>) {
     }
 }
 
-/// Names of columns that hold geographic positions.
+/// Names of columns that contain geographic positions.
 const GEOGRAPHIC: [&str; 6] = ["lat", "latitude", "lon", "long", "lng", "longitude"];
 
 /// Name of a column, without its unit.
@@ -87,7 +87,7 @@ fn name(column: &str) -> &str {
     column.split(['[', '(']).next().unwrap_or_default().trim()
 }
 
-/// Whether a column holds geographic positions, by its name.
+/// Whether a column contains geographic positions, by its name.
 fn is_geographic(column: &str) -> bool {
     GEOGRAPHIC.contains(&name(column).to_lowercase().as_str())
 }

@@ -1,4 +1,4 @@
-//! A rudder or a propeller that leaps in one run faster than its gear moves it in any other: its values were held, or lost, before.
+//! A rudder or a propeller that leaps in one run faster than its gear moves it in any other: its values were repeated, or lost, before.
 //! Gear whose limit the other runs do not show is not judged; orders that leap in most runs are in `orders`.
 
 use crate::numerals::sig;
@@ -51,12 +51,12 @@ pub fn leaps(channel: Channel, runs: &[(&str, Option<&Fastest>)]) -> Vec<Shared>
         let limit = others.iter().copied().fold(0.0, f64::max);
         let reached = others.iter().filter(|rate| **rate >= GEAR_REACHED * limit).count();
         let beyond = reached >= GEAR_RUNS && fastest.rate > GEAR_BEYOND * limit;
-        beyond.then(|| Shared { runs: vec![(*run).to_owned()], issue: told(channel, fastest, limit, reached) })
+        beyond.then(|| Shared { runs: vec![(*run).to_owned()], issue: doubt(channel, fastest, limit, reached) })
     };
     runs.iter().filter_map(one).collect()
 }
 
-fn told(channel: Channel, fastest: &Fastest, limit: f64, reached: usize) -> Issue {
+fn doubt(channel: Channel, fastest: &Fastest, limit: f64, reached: usize) -> Issue {
     let text = format!(
         "leaps by {} {} in {} s (lines {} to {}), {} times as fast as it moves in any other run; {reached} of them reach that limit",
         sig(fastest.change, 3),
@@ -109,11 +109,11 @@ mod tests {
 
     #[test]
     fn a_rudder_that_was_frozen_leaps_when_it_moves_again() {
-        let told = study(zigzag(20.0, |a| (30..58).for_each(|i| a[i] = a[30])));
-        assert!(told.len() == 1 && told[0].runs == ["last"], "{told:?}");
+        let found = study(zigzag(20.0, |a| (30..58).for_each(|i| a[i] = a[30])));
+        assert!(found.len() == 1 && found[0].runs == ["last"], "{found:?}");
         assert!(
-            told[0].issue.text.contains("8.0 times as fast") && told[0].issue.text.contains("4 of them"),
-            "{told:?}"
+            found[0].issue.text.contains("8.0 times as fast") && found[0].issue.text.contains("4 of them"),
+            "{found:?}"
         );
     }
 

@@ -1,6 +1,6 @@
-//! Held values: a channel that repeats its value to the last digit, where by chance it never does.
-//! Coarse channels repeat; stretches that contradict other channels are in `frozen`. Rudder and propeller are held by their nature, and are
-//! asked only where they never are in the rest of the run, and leap from the value at last.
+//! Repeated values: a channel that keeps its value to the last digit, where by chance it never does.
+//! Coarse channels repeat; stretches that contradict other channels are in `frozen`. Rudder and propeller often stay at one value, and are
+//! tested only where they never do so in the rest of the run, and leap from the value at its end.
 
 use super::gear::ACTUATORS;
 use crate::recording::audit::issue::{Issue, Severity, Shared};
@@ -44,7 +44,7 @@ struct Hold {
 }
 
 impl Repeats {
-    /// Pairs that repeat a value outside the longest stretch, if that may be held.
+    /// Pairs that repeat a value, less those of the longest stretch if `held`.
     fn elsewhere(&self, held: bool) -> f64 {
         let longest = self.held.as_ref().filter(|_| held).map_or(0, |h| h.rows - 1);
         (self.repeated - longest) as f64
@@ -75,7 +75,8 @@ fn of_channel(recording: &Recording, channel: Channel, state: &[Channel]) -> Opt
         Channel::R => recording.get(Channel::Psi),
         _ => None,
     };
-    // Where a ship that is simulated without noise sails straight on, or a model is held, several channels stand still at a time, at 0.
+    // Where a ship that is simulated without noise sails straight on, or a model is not yet released, several channels stand still at a
+    // time, at 0.
     let alone = |rows: &Range<usize>| {
         let moves = |of: &&[f64], row: usize| of[row] != of[row - 1];
         let most = |row: usize| others.iter().filter(|o| moves(o, row)).count() + 1 >= others.len().max(3);
@@ -124,7 +125,7 @@ fn steps(changes: &[f64]) -> f64 {
 }
 
 /// Chance of a repetition: of two values with normal noise, whose difference is `1.48 change` in standard deviation, it is
-/// `resolution / (1.48 sqrt(2 pi) change)`. Where the channel moves beside it by few steps, or by much less than it does in the run,
+/// `resolution / (1.48 sqrt(2 pi) change)`. Where the channel moves before or after it by few steps, or by much less than it does in the run,
 /// it may stand still as it turns, or before it starts.
 fn coarse(resolution: f64, change: f64, typical: f64) -> f64 {
     let rests = change < HELD_STEPS * resolution || change < HELD_REST * typical;
@@ -141,14 +142,14 @@ fn change_beside(values: &[f64], stretches: &[Range<usize>], at: usize) -> f64 {
     before.into_iter().chain(after).reduce(f64::min).unwrap_or(0.0)
 }
 
-/// Whether a channel leaps from the value of stretch `at` by many times what brought it there: gear is held where it was moved to.
+/// Whether a channel leaps from the value of stretch `at` by many times what brought it there: gear stays where it was moved to.
 fn leaps(values: &[f64], stretches: &[Range<usize>], at: usize) -> bool {
     let step = |i: usize| (values[stretches[i].start] - values[stretches[i - 1].start]).abs();
     let before = (1..=at).rev().take(HELD_BESIDE).map(step).fold(0.0, f64::max);
     at > 0 && at + 1 < stretches.len() && step(at + 1) > HELD_LEAP * before
 }
 
-/// The values that are held in each run, one doubt a run and channel: by chance one is in less than one study of [`HELD_CHANCE`].
+/// The repeated values of each run, one doubt a run and channel: by chance there is one in less than one study of [`HELD_CHANCE`].
 pub fn held(runs: &[(&str, &[Repeats])]) -> Vec<Shared> {
     let mut found = Vec::new();
     for (run, repeats) in runs {
@@ -156,7 +157,7 @@ pub fn held(runs: &[(&str, &[Repeats])]) -> Vec<Shared> {
             let by_nature = ACTUATORS.contains(&one.channel);
             let comparable = |r: &&Repeats| r.channel == one.channel && (!by_nature || std::ptr::eq(*r, one));
             let all: Vec<&Repeats> = runs.iter().flat_map(|(_, r)| *r).filter(comparable).collect();
-            if let Some(issue) = told(one, &all) {
+            if let Some(issue) = doubt(one, &all) {
                 found.push(Shared { runs: vec![(*run).to_owned()], issue });
             }
         }
@@ -165,9 +166,9 @@ pub fn held(runs: &[(&str, &[Repeats])]) -> Vec<Shared> {
 }
 
 /// The doubt about a channel of one run, with what it repeats in all runs: a late channel may begin each of them with one value.
-fn told(one: &Repeats, all: &[&Repeats]) -> Option<Issue> {
+fn doubt(one: &Repeats, all: &[&Repeats]) -> Option<Issue> {
     let hold = one.held.as_ref().filter(|h| h.leaps || !ACTUATORS.contains(&one.channel))?;
-    // A lag is the same in all runs; the time that a model is held before it is released is not.
+    // A lag is the same in all runs; the time until a model is released is not.
     let other = |r: &&&Repeats| r.held.as_ref().is_some_and(|h| h.first && h.rows != hold.rows);
     if hold.first && all.iter().any(|r| other(&r)) {
         return None;
@@ -182,7 +183,7 @@ fn told(one: &Repeats, all: &[&Repeats]) -> Option<Issue> {
         return None;
     }
     let text = format!(
-        "holds {} over {} rows (lines {} to {}), where it changes from row to row",
+        "keeps the value {} over {} rows (lines {} to {}), but elsewhere changes from row to row",
         hold.value, hold.rows, hold.lines.0, hold.lines.1
     );
     let blank = "leave the fields blank, so that it counts as a dropout";
@@ -224,48 +225,48 @@ mod tests {
     }
 
     #[test]
-    fn a_sound_study_holds_nothing_whatever_its_digits() {
+    fn a_sound_study_raises_no_doubt_whatever_its_digits() {
         for digits in [1e5, 1e3, 1e2, 20.0, 5.0] {
             assert_eq!(study(digits, 0, |_| ()), [], "{digits}");
         }
     }
 
     #[test]
-    fn a_value_that_is_held_is_told_in_one_run_and_in_all() {
+    fn a_repeated_value_is_reported_in_one_run_and_in_all() {
         let late = |r: &mut Vec<f64>| (1..3).for_each(|i| r[i] = r[0]);
         let frozen = |r: &mut Vec<f64>| (40..80).for_each(|i| r[i] = r[40]);
         assert_eq!(study(1e6, 1, late)[0].runs, ["r0"]);
         // In some run the values that follow may happen to change by little.
         assert!(study(1e6, 8, late).len() >= 6);
-        let told = study(1e4, 1, frozen);
-        assert!(told.len() == 1 && told[0].runs == ["r0"], "{told:?}");
-        assert_eq!(told[0].issue.lines, Some((42, 81)));
+        let found = study(1e4, 1, frozen);
+        assert!(found.len() == 1 && found[0].runs == ["r0"], "{found:?}");
+        assert_eq!(found[0].issue.lines, Some((42, 81)));
         assert!(study(1e6, 1, late)[0].issue.next_step.contains("`delay`"));
     }
 
     #[test]
-    fn a_frozen_value_is_told_wherever_it_begins() {
-        // Beside some of these the channel happens to move little.
+    fn a_frozen_value_is_reported_wherever_it_begins() {
+        // Next to some of these the channel happens to move little.
         for at in 15..75 {
-            let told = study(1e4, 1, |r| (at + 1..at + 40).for_each(|i| r[i] = r[at]));
-            assert!(told.len() == 1 && told[0].runs == ["r0"], "{at}: {told:?}");
+            let found = study(1e4, 1, |r| (at + 1..at + 40).for_each(|i| r[i] = r[at]));
+            assert!(found.len() == 1 && found[0].runs == ["r0"], "{at}: {found:?}");
         }
     }
 
     #[test]
-    fn a_frozen_yaw_rate_of_thousandths_of_a_radian_is_told() {
+    fn a_frozen_yaw_rate_of_thousandths_of_a_radian_is_reported() {
         for size in [1e-2, 1e-3, 1e-4] {
             let frozen = |r: &mut Vec<f64>| {
                 r.iter_mut().for_each(|r| *r = (size * *r * 1e8).round() / 1e8);
                 (41..80).for_each(|i| r[i] = r[40]);
             };
-            let told = study(1e6, 1, frozen);
-            assert!(told.len() == 1 && told[0].runs == ["r0"], "{size}: {told:?}");
+            let found = study(1e6, 1, frozen);
+            assert!(found.len() == 1 && found[0].runs == ["r0"], "{size}: {found:?}");
         }
     }
 
     #[test]
-    fn a_rudder_is_frozen_where_it_never_rests_and_leaps_and_held_where_it_was_ordered() {
+    fn a_rudder_is_frozen_where_it_never_rests_and_leaps_and_sound_where_it_was_ordered() {
         let study = |change: &dyn Fn(&mut Vec<f64>)| {
             let mut noise = noise(9);
             // A rudder that keeps a course, and channels that move.
@@ -277,8 +278,8 @@ mod tests {
             let repeats = repeats(&Recording::from_channels("run", columns).unwrap());
             held(&[("a", &repeats)])
         };
-        let told = study(&|d| (41..80).for_each(|i| d[i] = d[40]));
-        assert!(told.len() == 1 && told[0].issue.channel == Some(Channel::Delta), "{told:?}");
+        let found = study(&|d| (41..80).for_each(|i| d[i] = d[40]));
+        assert!(found.len() == 1 && found[0].issue.channel == Some(Channel::Delta), "{found:?}");
         assert_eq!(study(&|_| ()), []);
         let hard_over = |d: &mut Vec<f64>| {
             let (from, to) = (d[40], d[90]);
@@ -287,12 +288,12 @@ mod tests {
         };
         // Put hard over at the limit of the gear, and eased as fast.
         assert_eq!(study(&|d| hard_over(d)), []);
-        // A zigzag holds its angles.
+        // A zigzag keeps its angles.
         assert_eq!(study(&|d| d.iter_mut().enumerate().for_each(|(i, d)| *d = [0.17, -0.17][(i / 20) % 2])), []);
     }
 
     #[test]
-    fn motion_that_dies_away_to_its_last_digit_is_not_held() {
+    fn motion_that_dies_away_to_its_last_digit_is_no_doubt() {
         let settles = |r: &mut Vec<f64>| {
             r.iter_mut().enumerate().for_each(|(i, r)| *r = ((-0.08 * i as f64).exp() * 1e3).round() / 1e3);
         };

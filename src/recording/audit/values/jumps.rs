@@ -1,5 +1,5 @@
 //! Damaged single values: rows that lie far from their neighbours, inside a run and at its ends, from which simulation starts.
-//! Positions that jump are in `fixes`; jumps that last are in `receiver`, since a run is parted there.
+//! Positions that jump are in `fixes`; jumps that last are in `receiver`, since a run is divided there.
 
 use crate::recording::audit::issue::{Issue, Severity};
 use crate::recording::audit::limits::{
@@ -26,11 +26,11 @@ const SET: [Channel; 9] = [
     Channel::Depth,
 ];
 
-/// Single rows far from the median of their neighbours (Hampel's test), in every channel but those in `told`.
-pub fn outliers(recording: &Recording, told: &[Channel], issues: &mut Vec<Issue>) {
+/// Single rows far from the median of their neighbours (Hampel's test), in every channel but those in `reported`.
+pub fn outliers(recording: &Recording, reported: &[Channel], issues: &mut Vec<Issue>) {
     let moved = STATE_CHANNELS.into_iter().chain([Channel::UWater, Channel::VWater]).map(|c| (c, false));
     for (channel, set) in moved.chain(SET.map(|c| (c, true))) {
-        let known = told.contains(&channel) || recording.derived().contains(&channel);
+        let known = reported.contains(&channel) || recording.derived().contains(&channel);
         let Some(values) = recording.get(channel).filter(|_| !known) else { continue };
         let far = far(channel, recording.time(), values, set);
         let (Some(&first), Some(&last)) = (far.first(), far.last()) else { continue };
@@ -63,9 +63,9 @@ fn far(channel: Channel, t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
     sorted.sort_by(f64::total_cmp);
     let tail = (TAIL * sorted.len() as f64).ceil() as usize;
     let (low, high) = (sorted[tail], sorted[sorted.len() - 1 - tail]);
-    // What is set may hold one value for most of a run: its size then counts for its range.
+    // What is set may keep one value for most of a run: its size then counts for its range.
     let range = if set { (high - low).max(high.abs().max(low.abs())) } else { high - low };
-    // The usual scatter; beside it a share of the range, since data without noise have none.
+    // The usual scatter, or a share of the range, since data without noise have none.
     let rudder = matches!(channel, Channel::Delta | Channel::DeltaOrder);
     let least = if rudder { RUDDER_BLIP / APART_SHARE } else { 0.0 };
     let usual = (FAR * deviation(from_median.iter().copied())).max(FAR_SHARE * range).max(least);
@@ -79,7 +79,7 @@ fn far(channel: Channel, t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
     let off = |k: &usize| from_median[*k].abs();
     let impossible: Vec<usize> = inner.filter(|k| off(k) > APART_SHARE * usual && !possible(*k)).collect();
     let mut far: Vec<usize> = impossible.iter().copied().filter(|k| off(k) > usual).collect();
-    // None is half way: these are no tail of what the channel does.
+    // Apart from these no value is half as far: they are no tail of what the channel does.
     let beside = |k: &usize| far.iter().any(|f| f.abs_diff(*k) <= MEDIAN_ROWS);
     let apart = impossible.iter().all(beside);
     // A set channel may have been changed just before the end.
@@ -148,7 +148,7 @@ fn far_at_ends(t: &[f64], rows: &[usize], values: &[f64], limit: impl Fn(f64) ->
             }
         }
     }
-    // A damaged row bends the line of the row beside it: of rows that are next to each other the first or last one is meant.
+    // A damaged row shifts the line through the rows next to it: of adjacent rows only the first or last one of the run is reported.
     let ends = |k: &usize| *k == 0 || *k == values.len() - 1;
     if far.iter().any(ends) { far.into_iter().filter(ends).collect() } else { far }
 }
@@ -159,7 +159,7 @@ fn neighbours(values: &[f64], k: usize) -> f64 {
     middle(before.chain(after).map(|i| values[i])).unwrap_or(values[k])
 }
 
-/// The median of the values of a window, or of the slopes between them, kept where no memory is asked for: windows are many.
+/// The median of the values of a window, or of the slopes between them, stored without allocating memory: windows are many.
 fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (mut few, mut count) = ([0.0; PAIRS], 0);
     for value in values.filter(|v| v.is_finite()).take(PAIRS) {
@@ -185,8 +185,8 @@ mod tests {
     use super::*;
     use crate::recording::audit::example::noise;
 
-    /// Rows that are told of a channel that moves or of a rudder, after damage to them.
-    fn told(channel: Channel, values: impl Fn(usize) -> f64, damage: impl Fn(&mut [f64])) -> Vec<usize> {
+    /// Rows that are reported of a channel that moves or of a rudder, after damage to them.
+    fn found(channel: Channel, values: impl Fn(usize) -> f64, damage: impl Fn(&mut [f64])) -> Vec<usize> {
         let set = SET.contains(&channel);
         let t: Vec<f64> = (0..121).map(|i| 2.0 * i as f64).collect();
         let mut values: Vec<f64> = (0..121).map(values).collect();
@@ -209,44 +209,44 @@ mod tests {
     }
 
     #[test]
-    fn single_rows_are_told_however_many_they_are_as_long_as_none_is_half_way() {
+    fn single_rows_are_reported_however_many_they_are_as_long_as_none_is_half_way() {
         let u = speed(1);
         let damaged = |rows: &'static [usize], to: f64| {
-            told(Channel::U, |i| u[i], move |u| rows.iter().for_each(|row| u[*row] = to))
+            found(Channel::U, |i| u[i], move |u| rows.iter().for_each(|row| u[*row] = to))
         };
         assert!(damaged(&[], 0.0).is_empty());
         assert_eq!(damaged(&[20], 0.0), [20]);
         assert_eq!(damaged(&[18, 73, 103, 109], 0.0), [18, 73, 103, 109]);
         // A channel that leaps by any size is not damaged in single rows.
-        let leaps = told(Channel::U, |i| u[i], |u| (10..115).step_by(10).for_each(|row| u[row] += 0.03 * row as f64));
+        let leaps = found(Channel::U, |i| u[i], |u| (10..115).step_by(10).for_each(|row| u[row] += 0.03 * row as f64));
         assert!(leaps.is_empty(), "{leaps:?}");
     }
 
     #[test]
     fn a_rudder_at_rest_may_show_one_digit_and_one_on_its_way_over_may_end_a_run() {
         let rests = |i: usize| if i.is_multiple_of(7) { 5e-4 } else { 0.0 };
-        assert!(told(Channel::Delta, |_| 0.0, |d| d[60] = 0.0017).is_empty());
-        assert!(told(Channel::Delta, rests, |d| d[120] = 0.0908).is_empty());
-        assert!(told(Channel::Delta, rests, |d| d[0] = -0.0908).is_empty());
-        assert_eq!(told(Channel::Delta, rests, |d| d[60] = 0.3), [60]);
-        assert_eq!(told(Channel::Delta, rests, |d| d[120] = 1.2), [120]);
+        assert!(found(Channel::Delta, |_| 0.0, |d| d[60] = 0.0017).is_empty());
+        assert!(found(Channel::Delta, rests, |d| d[120] = 0.0908).is_empty());
+        assert!(found(Channel::Delta, rests, |d| d[0] = -0.0908).is_empty());
+        assert_eq!(found(Channel::Delta, rests, |d| d[60] = 0.3), [60]);
+        assert_eq!(found(Channel::Delta, rests, |d| d[120] = 1.2), [120]);
     }
 
     #[test]
     fn a_rudder_that_is_zero_for_one_row_was_lost_and_one_that_is_turned_was_not() {
         let zigzag = |i: usize| if (i / 20).is_multiple_of(2) { 0.175 } else { -0.175 };
         let lost =
-            |rows: &'static [usize]| told(Channel::Delta, zigzag, move |d| rows.iter().for_each(|row| d[*row] = 0.0));
+            |rows: &'static [usize]| found(Channel::Delta, zigzag, move |d| rows.iter().for_each(|row| d[*row] = 0.0));
         assert!(lost(&[]).is_empty());
         assert_eq!(lost(&[5, 47, 70, 90]), [5, 47, 70, 90]);
         // On its way to the other side.
         assert!(lost(&[20, 40]).is_empty());
-        assert!(told(Channel::Thruster, zigzag, |d| d[47] = 0.0).is_empty());
-        // Turned at the start of the run, and held.
-        let turned = |side: f64| told(Channel::Delta, |i| side * (0.09 * i as f64).min(0.61), |_| ());
+        assert!(found(Channel::Thruster, zigzag, |d| d[47] = 0.0).is_empty());
+        // Turned at the start of the run, and kept there.
+        let turned = |side: f64| found(Channel::Delta, |i| side * (0.09 * i as f64).min(0.61), |_| ());
         assert!(turned(1.0).is_empty() && turned(-1.0).is_empty());
         // A propeller at one rate that is read ten times too large in four rows.
         let tenfold = |n: &mut [f64]| [4, 29, 68, 98].iter().for_each(|row| n[*row] *= 10.0);
-        assert_eq!(told(Channel::N, |_| 2.57, tenfold), [4, 29, 68, 98]);
+        assert_eq!(found(Channel::N, |_| 2.57, tenfold), [4, 29, 68, 98]);
     }
 }

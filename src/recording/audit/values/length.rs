@@ -1,5 +1,5 @@
 //! One recording that is shorter than all others, which have one length: its file may have been cut.
-//! Runs of several lengths say nothing.
+//! Runs of several lengths are not compared.
 
 use crate::numerals::sig;
 use crate::recording::Recording;
@@ -52,7 +52,7 @@ pub fn shorter(runs: &[(&str, Option<Length>)]) -> Option<Shared> {
 mod tests {
     use super::*;
 
-    fn told(durations: &[f64]) -> Option<Vec<String>> {
+    fn found(durations: &[f64]) -> Option<Vec<String>> {
         let names: Vec<String> = (0..durations.len()).map(|i| format!("r{i}")).collect();
         let length = |duration: &f64| Some(Length { duration: *duration, step: 2.0, line: 9 });
         let runs: Vec<(&str, Option<Length>)> =
@@ -61,17 +61,17 @@ mod tests {
     }
 
     #[test]
-    fn one_recording_that_ends_before_all_others_is_told() {
-        assert_eq!(told(&[240.0, 240.0, 240.0, 130.0, 240.0, 242.0, 240.0, 240.0]), Some(vec!["r3".to_owned()]));
+    fn one_recording_that_ends_before_all_others_is_reported() {
+        assert_eq!(found(&[240.0, 240.0, 240.0, 130.0, 240.0, 242.0, 240.0, 240.0]), Some(vec!["r3".to_owned()]));
     }
 
     #[test]
     fn recordings_of_several_lengths_a_step_and_a_longer_one_are_no_doubt() {
-        assert_eq!(told(&[240.0; 8]), None);
-        assert_eq!(told(&[240.0, 240.0, 240.0, 238.0, 240.0, 240.0, 240.0, 240.0]), None);
-        assert_eq!(told(&[240.0, 240.0, 240.0, 400.0, 240.0, 240.0, 240.0, 240.0]), None);
-        assert_eq!(told(&[240.0, 200.0, 240.0, 130.0, 240.0, 240.0, 240.0, 240.0]), None);
-        assert_eq!(told(&[240.0, 130.0, 240.0]), None);
+        assert_eq!(found(&[240.0; 8]), None);
+        assert_eq!(found(&[240.0, 240.0, 240.0, 238.0, 240.0, 240.0, 240.0, 240.0]), None);
+        assert_eq!(found(&[240.0, 240.0, 240.0, 400.0, 240.0, 240.0, 240.0, 240.0]), None);
+        assert_eq!(found(&[240.0, 200.0, 240.0, 130.0, 240.0, 240.0, 240.0, 240.0]), None);
+        assert_eq!(found(&[240.0, 130.0, 240.0]), None);
         assert_eq!(shorter(&[]), None);
     }
 }

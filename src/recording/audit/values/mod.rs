@@ -1,5 +1,5 @@
-//! Doubts about single values: missing, held, frozen, jumping, out of reach of a receiver or of gear.
-//! Whether channels agree with each other is asked elsewhere.
+//! Doubts about single values: missing, repeated, frozen, jumping, out of reach of a receiver or of gear.
+//! Whether channels agree with each other is checked elsewhere.
 
 pub(super) mod fill;
 pub(super) mod fixes;

@@ -1,5 +1,5 @@
 //! A rudder that leaps: what was recorded is the order, not the angle that the rudder had.
-//! It asks one channel of each run; what runs together say of clocks is asked elsewhere.
+//! It examines one channel of each run; clocks are compared over all runs elsewhere.
 
 use crate::numerals::sig;
 use crate::recording::audit::issue::{Issue, Severity};

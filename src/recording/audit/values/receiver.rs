@@ -1,5 +1,5 @@
-//! What a receiver did that no ship can: jumps, values held while the ship sailed on, and a wild first fix.
-//! It judges recordings by themselves, before any model is asked; what a force could have done it leaves alone.
+//! What a receiver did that no ship can: jumps, values repeated while the ship sailed on, and a wild first fix.
+//! It judges recordings by themselves, before any model is used; motion that a force could cause is left as it is.
 
 use crate::numerals::sig;
 use crate::recording::audit::issue::{Issue, Severity};
@@ -20,20 +20,20 @@ pub struct Jump {
     pub length: f64,
 }
 
-/// The runs parted where the position jumps and without what was held instead of measured, and one note a run on each. `length`
-/// is that of the ship \[m\].
+/// The runs, divided where the position jumps and without samples that repeat a value instead of measuring it, and one note a run on
+/// each. `length` is that of the ship \[m\].
 pub fn settled<'r>(runs: impl Into<Cow<'r, [Run]>>, length: f64) -> (Vec<Run>, Vec<Issue>) {
     let runs = runs.into();
     let jumps = jumps(&runs, length);
     let mut out = runs.into_owned();
     let mut issues = Vec::new();
     for run in &mut out {
-        let held = held(run);
-        for sample in held.iter().flat_map(|(from, to)| *from..=*to) {
+        let repeated = repeated(run);
+        for sample in repeated.iter().flat_map(|(from, to)| *from..=*to) {
             run.measured[sample][..3].fill(None);
         }
-        if let Some((from, to)) = held.first() {
-            let samples: usize = held.iter().map(|(from, to)| to - from + 1).sum();
+        if let Some((from, to)) = repeated.first() {
+            let samples: usize = repeated.iter().map(|(from, to)| to - from + 1).sum();
             let text = format!(
                 "{}: position and heading repeat, and then catch up, first from {} to {} s, {samples} samples in all",
                 run.name,
@@ -58,7 +58,7 @@ pub fn settled<'r>(runs: impl Into<Cow<'r, [Run]>>, length: f64) -> (Vec<Run>, V
             times.join(", "),
             sig(longest, 2)
         );
-        let next = "a diagnosis parts the run there, so that no force is read off the jump";
+        let next = "a diagnosis divides the run there, so that the jump is not taken for a force";
         issues.push(Issue::new(Severity::Note, "jump", text, next).of(Channel::X));
         parted.extend(parts(&run, &jumps));
     }
@@ -117,7 +117,7 @@ fn from_second(runs: &mut [Run]) -> Vec<Issue> {
 
 /// The samples `from..to` of a run as a run of its own; `None` where they are too few to say anything.
 pub fn piece(run: &Run, from: usize, to: usize) -> Option<Run> {
-    // Where a channel is not measured at the start, the last value before it stands in.
+    // Where a channel is not measured at the start, the last value before it is taken.
     let last = |c: usize| run.measured[..=from].iter().rev().find_map(|m| m[c]);
     (to >= from + 2 * SIDE).then(|| Run {
         name: format!("{} {} s", run.recording, sig(run.inputs[from].t, 5)),
@@ -216,7 +216,7 @@ pub fn jumps(runs: &[Run], length: f64) -> Vec<Vec<Jump>> {
 }
 
 /// Stretches of samples that repeat position and heading to the last bit and end with a leap to where the ship has sailed.
-fn held(run: &Run) -> Vec<(usize, usize)> {
+fn repeated(run: &Run) -> Vec<(usize, usize)> {
     let m: Vec<[f64; STATES]> = run.measured.iter().map(or_nan).collect();
     let moved = |a: usize, b: usize| (m[b][0] - m[a][0]).hypot(m[b][1] - m[a][1]);
     let repeats = |k: usize| m[k][..3] == m[k - 1][..3];
@@ -333,8 +333,8 @@ mod tests {
         let whole = runs.clone();
         let (runs, issues) = settled(&runs, LENGTH);
         assert!(issues.iter().all(|i| i.fault == "start" && !i.blocking()), "{issues:?}");
-        let told = |name: &str, channel| issues.iter().any(|i| i.channel == Some(channel) && i.text.starts_with(name));
-        assert!(issues.len() == 2 && told("run 1", Channel::Y) && told("run 6", Channel::Psi), "{issues:?}");
+        let noted = |name: &str, channel| issues.iter().any(|i| i.channel == Some(channel) && i.text.starts_with(name));
+        assert!(issues.len() == 2 && noted("run 1", Channel::Y) && noted("run 6", Channel::Psi), "{issues:?}");
         for (i, (run, whole)) in runs.iter().zip(&whole).enumerate() {
             let from = usize::from(i == 1 || i == 6);
             assert_eq!(run.measured, whole.measured[from..]);
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_held_is_not_measured_and_a_ship_at_rest_is() {
+    fn repeated_samples_are_not_measured_and_a_ship_at_rest_is() {
         let mut runs = circles();
         for k in 41..44 {
             let last = runs[2].measured[40];

@@ -21,11 +21,11 @@ const NEAR: f64 = 0.15;
 const COHERENT: f64 = 0.6;
 /// Any heading or course above this is no radian.
 const MOST_RADIANS: f64 = 7.0;
-/// t value of a rudder's effect that counts half: twice that from which its sign is told.
+/// t value of a rudder's effect that counts half: twice that from which its sign is determined.
 const HALF_T: f64 = 10.0;
 
 impl Sight {
-    /// From 0, where a column contradicts the data, to 1; `None` where they do not tell.
+    /// From 0, where a column contradicts the data, to 1; `None` where they do not show it.
     pub fn agreement(&self, meaning: Meaning, columns: &[&Column]) -> Option<f64> {
         match meaning {
             Meaning::Course | Meaning::Channel(Channel::Psi) => self.direction(columns),

@@ -1,5 +1,5 @@
 //! Which column is taken for what: as the user says, as the format says, as its name and the data say.
-//! Of several columns for one quantity one is taken and the others are told; units and signs are not decided here.
+//! Of several columns for one quantity one is taken and the others are listed; units and signs are not decided here.
 
 use super::actuators::by_names;
 use super::agree::{Sight, heading};
@@ -91,7 +91,7 @@ struct Candidate<'a> {
 }
 
 /// The columns that are taken, by what they are, and those that are not. Candidates are ranked by what the user says, whether they
-/// hold values that move, whether the data contradict them, whether their partner is of the same sensor, how much of their name the
+/// contain values that change, whether the data contradict them, whether their partner is of the same sensor, how much of their name the
 /// quantity explains, whether the file states a unit that fits, and by how well they agree with the data.
 ///
 /// # Errors
@@ -207,7 +207,7 @@ fn by_name(name: &str, unit: Option<&str>) -> Option<(Meaning, f64)> {
     by_name.map(|r| (r.meaning, r.explained)).or_else(|| shaft().then_some((SHAFT, 0.5)))
 }
 
-/// The order in which quantities are chosen: what others are held against comes first.
+/// The order in which quantities are chosen: those with which others are compared come first.
 fn turn(meaning: Meaning) -> usize {
     let first = [
         Meaning::Latitude,
@@ -246,7 +246,7 @@ fn moves(columns: &[&Column]) -> bool {
     columns.iter().any(|c| c.v.iter().any(|v| *v != c.v[0]))
 }
 
-/// Names of which more than a half, or nearly all, is explained rank alike within these bounds: a word more or less tells little.
+/// Names of which more than a half, or nearly all, is explained rank alike within these bounds: a word more or less is no evidence.
 const NAMED: [f64; 3] = [0.95, 0.65, 0.35];
 /// A column that agrees less with the data than this is contradicted by them: a direction at random has an agreement of nought and a
 /// sound one of nearly one.
@@ -278,7 +278,7 @@ fn best(list: &[Candidate<'_>], meaning: Meaning, partner: Option<&str>, sight: 
     (0..list.len()).rev().max_by_key(rank).unwrap_or(0)
 }
 
-/// Takes what others are held against from what was just chosen.
+/// Takes the quantities with which others are compared from what was just chosen.
 fn look(sight: &mut Sight, meaning: Meaning, chosen: &Chosen<'_>, choices: &Choices) {
     let of = |meaning: Meaning| chosen.get(&meaning).map(Vec::as_slice);
     let radians = |meaning: Meaning, columns: &[&Column]| {

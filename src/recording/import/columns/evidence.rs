@@ -1,5 +1,5 @@
-//! Units, signs and senses from what the columns say of one another: heading against the track and the yaw rate, speed against the
-//! track, rudder against the turn. What the data do not tell is asked for, with the flag to pass.
+//! Units, signs and senses by comparing columns with one another: heading against the track and the yaw rate, speed against the
+//! track, rudder against the turn. What the data do not show is asked for, with the flag to pass.
 
 use super::log::{Column, Meaning};
 use super::motion::{Track, ratio, rudder_effect};
@@ -20,7 +20,7 @@ pub struct Verdict {
     pub offset: f64,
     /// Why.
     pub evidence: String,
-    /// What contradicts it, to be told as a warning.
+    /// What contradicts it, to be reported as a warning.
     pub doubt: Option<String>,
 }
 
@@ -54,7 +54,7 @@ pub struct Known {
 
 impl Known {
     /// Whether exchanged axes explain a direction that turns against the track as well as its own sense does: where nothing calls them
-    /// north and east, only a sway velocity tells.
+    /// north and east, only a sway velocity distinguishes the two.
     fn mirrored(&self, columns: &[&Column], verdict: &Verdict) -> bool {
         let Some(track) = self.track.as_ref().filter(|_| self.axes_untold) else { return false };
         let heading = Signal::new(columns, verdict.factor, verdict.offset, true).0;
@@ -63,12 +63,12 @@ impl Known {
 
     /// Whether the ship goes ahead, by heading and track.
     fn goes_ahead(&self) -> bool {
-        let told = self.track.as_ref().zip(self.psi.as_ref()).and_then(|(track, psi)| track.agreement(psi, 1.0));
-        told.is_some_and(|[length, angle]| length > AGREE && angle.abs() < FRAC_PI_2)
+        let both = self.track.as_ref().zip(self.psi.as_ref()).and_then(|(track, psi)| track.agreement(psi, 1.0));
+        both.is_some_and(|[length, angle]| length > AGREE && angle.abs() < FRAC_PI_2)
     }
 }
 
-/// Agreement from which a sway velocity tells to which side the ship goes.
+/// Agreement from which a sway velocity shows to which side the ship goes.
 const SWAYS: f64 = 0.3;
 /// Ratios may differ from those of the units by this share.
 const NEAR: f64 = 0.15;
@@ -78,13 +78,13 @@ const NEAR_IN_WATER: f64 = 0.3;
 const FAR: f64 = 5.0;
 /// Coherence from which a ratio means something.
 const COHERENT: f64 = 0.6;
-/// A steady angle of course and heading that is told \[rad\]: 3 deg, above the error of a gyrocompass under way (1 to 2 deg).
+/// A steady angle of course and heading that is reported \[rad\]: 3 deg, above the error of a gyrocompass under way (1 to 2 deg).
 const STEADY: f64 = 0.052;
 /// A heading goes with the course within this angle on the mean of a log \[rad\]: 14 deg, more than drift, current and variation mostly make.
 const ALONG: f64 = 0.25;
 /// Directions agree.
 const AGREE: f64 = 0.8;
-/// t value of the rudder's effect from which its sign is told.
+/// t value of the rudder's effect from which its sign is determined.
 const RUDDER_T: f64 = 5.0;
 /// Any heading or course above this is no radian.
 const MOST_RADIANS: f64 = 7.0;
@@ -94,7 +94,7 @@ const MOST_RUDDER: f64 = 1.6;
 const RPM_ABOVE: f64 = 25.0;
 const RPS_BELOW: f64 = 6.0;
 
-/// The words of the question for a unit that nothing tells.
+/// The words of the question for a unit that nothing shows.
 pub fn ask(meaning: Meaning, column: &str, choices: &str) -> String {
     format!("the unit of column `{column}` ({}): pass `--unit {}={choices}`", meaning.words(), meaning.name())
 }
@@ -108,8 +108,8 @@ fn as_given(given: &Given, evidence: &str) -> Verdict {
 
 /// A verdict by the data, with a doubt where the file says otherwise.
 fn by_data(unit: &str, factor: f64, evidence: String, given: Option<&Given>) -> Verdict {
-    let told = given.filter(|g| (g.factor / factor.abs()).ln().abs() > 0.05);
-    let doubt = told.map(|g| format!("the file says {}, the data {unit}; taken as {unit}", g.unit));
+    let differs = given.filter(|g| (g.factor / factor.abs()).ln().abs() > 0.05);
+    let doubt = differs.map(|g| format!("the file says {}, the data {unit}; taken as {unit}", g.unit));
     Verdict { unit: unit.to_owned(), factor, offset: 0.0, evidence, doubt }
 }
 
@@ -163,9 +163,9 @@ pub fn direction(
             }
         }
     };
-    let told = given.is_some_and(|g| g.by_user || (g.factor / factor - 1.0).abs() < 1e-6);
+    let agrees = given.is_some_and(|g| g.by_user || (g.factor / factor - 1.0).abs() < 1e-6);
     let mut verdict = match given {
-        Some(given) if told => as_given(given, &why),
+        Some(given) if agrees => as_given(given, &why),
         given => by_data(unit, factor, why, given),
     };
     if is_magnetic(name) {
@@ -174,8 +174,8 @@ pub fn direction(
     if meaning == Meaning::Channel(Channel::Psi) {
         let heading = Signal::new(columns, factor, verdict.offset, true).0;
         let steady = known.track.as_ref().and_then(|track| track.steady_angle(&heading));
-        let told = steady.filter(|angle| angle.abs() > STEADY).map(steady_words);
-        verdict.doubt = [verdict.doubt.take(), told].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
+        let warning = steady.filter(|angle| angle.abs() > STEADY).map(steady_words);
+        verdict.doubt = [verdict.doubt.take(), warning].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
     }
     if let (Some([right, _]), Some([mirrored, turned])) = (agreement(factor, 1.0), agreement(factor, -1.0)) {
         let degrees = |angle: f64| sig(angle.to_degrees(), 3);
@@ -200,7 +200,7 @@ pub fn direction(
     Ok(verdict)
 }
 
-/// Adds the variation to a magnetic direction, or tells that it is not known.
+/// Adds the variation to a magnetic direction, or reports that it is not known.
 fn bring_to_true(verdict: &mut Verdict, meaning: Meaning, known: &Known) {
     match &known.variation {
         Some((variation, column)) => {
@@ -217,7 +217,7 @@ fn bring_to_true(verdict: &mut Verdict, meaning: Meaning, known: &Known) {
     }
 }
 
-/// What is told of a steady angle from heading to course \[rad\].
+/// The warning about a steady angle from heading to course \[rad\].
 fn steady_words(angle: f64) -> String {
     format!(
         "the course is {} deg off the heading on straights in opposite directions, which no current or wind explains: a magnetic compass, or one that is not aligned; `psi = {{ offset = {} }}` (rad) in [columns] of columns.toml takes it out",

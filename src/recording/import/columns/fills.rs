@@ -1,5 +1,5 @@
 //! Numbers that stand for a missing value: -999 amid rudder angles, 511 amid headings, 102.3 amid speeds.
-//! They are taken out before any unit is told from the values, and told.
+//! They are taken out before any unit is determined from the values, and are reported.
 
 use super::log::{Column, Meaning};
 use crate::recording::usual_fill;
@@ -48,7 +48,7 @@ fn stands_apart(sorted: &[f64], candidate: f64, meaning: Option<Meaning>) -> boo
         return false;
     }
     let turns = meaning.is_some_and(Meaning::wraps) && meaning != Some(Meaning::Longitude);
-    // Directions from 0 to 360, but for one number beside them; a heading that counts turns passes through many.
+    // Directions from 0 to 360, but for one other number; a heading that counts turns passes through many.
     let within = most > 7.0 && least >= 0.0 && most <= 360.0;
     let beside = turns && within && count > 1 && !(0.0..=360.0).contains(&candidate);
     // What is set, such as a propeller, may be switched from one value to another far away.

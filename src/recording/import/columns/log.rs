@@ -26,7 +26,7 @@ pub struct Log {
     pub clock: Clock,
     /// Its columns, none of them a time.
     pub columns: Vec<Column>,
-    /// What is to be told of the file: lines left out, times repaired.
+    /// Notes on the file: lines left out, times repaired.
     pub notes: Vec<String>,
 }
 
@@ -37,7 +37,7 @@ pub struct Column {
     pub name: String,
     /// Unit that the file gives, as written.
     pub unit: Option<String>,
-    /// What the format says it is, where the format says; otherwise the name tells.
+    /// What the format says it is, where the format says; otherwise its name decides.
     pub meaning: Option<Meaning>,
     /// Times of the samples \[s\].
     pub t: Vec<f64>,

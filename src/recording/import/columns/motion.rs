@@ -1,5 +1,5 @@
-//! Rates of signals and how two of them compare: the evidence from which units, signs and senses are told.
-//! It knows no unit; what a ratio means is decided where it is asked for.
+//! Rates of signals and how two of them compare: the evidence from which units, signs and senses are determined.
+//! It uses no units; what a ratio means is decided by the caller.
 
 use super::signal::{Signal, median, nearest, size_below};
 use crate::recording::local;
@@ -124,11 +124,11 @@ impl Track {
         let (mut own, mut both, mut other) = (0.0, 0.0, 0.0);
         for (i, t) in self.north.t.iter().enumerate() {
             let (sin, cos) = heading.at(*t, self.north.step).sin_cos();
-            let (across, told) = (self.east.v[i] * cos - self.north.v[i] * sin, sway.at(*t, self.north.step));
-            if across.is_finite() && told.is_finite() {
+            let (across, recorded) = (self.east.v[i] * cos - self.north.v[i] * sin, sway.at(*t, self.north.step));
+            if across.is_finite() && recorded.is_finite() {
                 own += across * across;
-                both += across * told;
-                other += told * told;
+                both += across * recorded;
+                other += recorded * recorded;
             }
         }
         if own * other > 0.0 { both / (own * other).sqrt() } else { 0.0 }
@@ -186,7 +186,7 @@ impl Track {
 }
 
 /// Which way a ship turns when its rudder is put over: the coefficient b of
-/// `r(t + h) - r(t) = a r(t) + b mean(delta over t to t + h) + c`, over its standard error; `None` where it cannot be told.
+/// `r(t + h) - r(t) = a r(t) + b mean(delta over t to t + h) + c`, over its standard error; `None` where it cannot be determined.
 pub fn rudder_effect(r: &Signal, delta: &Signal) -> Option<f64> {
     let fast = size_below(&r.v, 0.95);
     if fast <= 0.0 {
@@ -198,9 +198,9 @@ pub fn rudder_effect(r: &Signal, delta: &Signal) -> Option<f64> {
     let mut rows: Vec<[f64; 4]> = Vec::new();
     for i in (0..r.t.len()).step_by(hop) {
         let later = r.at(r.t[i] + h, r.step);
-        let held = (0..5).map(|k| delta.at(r.t[i] + h * f64::from(k) / 4.0, r.step)).sum::<f64>() / 5.0;
-        if later.is_finite() && held.is_finite() {
-            rows.push([r.v[i], held, 1.0, later - r.v[i]]);
+        let mean = (0..5).map(|k| delta.at(r.t[i] + h * f64::from(k) / 4.0, r.step)).sum::<f64>() / 5.0;
+        if later.is_finite() && mean.is_finite() {
+            rows.push([r.v[i], mean, 1.0, later - r.v[i]]);
         }
     }
     if rows.len() < 12 {
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_zigzag_tells_the_sign_of_its_rudder() {
+    fn a_zigzag_shows_the_sign_of_its_rudder() {
         let (r, delta) = zigzag(1.0);
         assert!(rudder_effect(&r, &delta).unwrap() > 10.0);
         let (r, delta) = zigzag(-1.0);

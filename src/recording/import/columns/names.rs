@@ -1,5 +1,5 @@
 //! Names of columns as ships and loggers write them: what is measured, and the unit where the name has one.
-//! Whether a column is what its name says is asked of its values elsewhere.
+//! Whether a column is what its name says is checked against its values elsewhere.
 
 use super::log::Meaning;
 use super::vocabulary::{
@@ -221,7 +221,7 @@ fn share(parts: &[String], counts: impl Fn(&str) -> bool) -> f64 {
     share_by_place(parts, |i| counts(&parts[i]))
 }
 
-/// Whether a word beside the phrase makes the column something else.
+/// Whether a word outside the phrase makes the column something else.
 fn ruled_out(meaning: Meaning, parts: &[String], phrase: &Range<usize>) -> bool {
     use Channel::{Delta, Depth, Psi, R, U, UWater, V, X, Y};
     let beside = || parts.iter().enumerate().filter(|(i, _)| !phrase.contains(i)).map(|(_, p)| p.as_str());
@@ -302,7 +302,7 @@ pub fn is_magnetic(name: &str) -> bool {
     words(name).iter().any(|p| is_on(MAGNETIC, p))
 }
 
-/// Whether a column is taken only where no other is there: a magnetic heading, the rate of an engine beside that of its shaft.
+/// Whether a column is taken only where no other is there: a magnetic heading, the rate of an engine next to that of its shaft.
 pub fn is_second_choice(name: &str) -> bool {
     is_magnetic(name) || words(name).iter().any(|p| ["engine", "me", "moteur", "motore", "motor"].contains(&p.as_str()))
 }
@@ -310,14 +310,14 @@ pub fn is_second_choice(name: &str) -> bool {
 /// What is left of a name without the words of its quantity and of its unit: columns of one sensor share it.
 pub fn source(name: &str) -> String {
     let parts = without_unit(words(name));
-    let told = |p: &str| {
+    let of_quantity = |p: &str| {
         let word = unnumbered(p);
         let axis = ["x", "y", "n", "e", "north", "east", "long", "longitudinal", "trans", "transverse", "lateral"];
         let named = |table: &[(Meaning, &'static str)]| table.iter().any(|(_, list)| is_on(list, word));
         axis.contains(&word) || is_wind_word(word) || named(PHRASES) || named(VAGUE)
     };
     // The number of a sensor stays: `gps1 lat` and `gps1 lon`, `lat1` and `lon1`.
-    let kept = parts.iter().map(|p| if told(p) { p[unnumbered(p).len()..].to_owned() } else { p.clone() });
+    let kept = parts.iter().map(|p| if of_quantity(p) { p[unnumbered(p).len()..].to_owned() } else { p.clone() });
     kept.filter(|p| !p.is_empty()).collect::<Vec<_>>().join(" ")
 }
 

@@ -14,7 +14,7 @@ pub struct Places {
     pub y: Signal,
     /// Latitude and longitude of the point \[deg\].
     pub origin: [f64; 2],
-    /// Latitude and longitude as they were told.
+    /// Latitude and longitude as they were recorded.
     pub told: [Signal; 2],
     /// What was put in order among the latitudes.
     pub tidied: Tidied,
@@ -85,7 +85,7 @@ fn degrees(both: [&[&Column]; 2], unit: f64) -> Result<([Column; 2], bool), Impo
             let name = columns.first().map_or("", |c| c.name.as_str());
             let (words, channel) = (["latitude", "longitude"][i], ["x", "y"][i]);
             let text = format!(
-                "column `{name}` holds {wrong}, which is no {words} in deg; is it metres? then pass `--column {channel}={name}`"
+                "column `{name}` contains {wrong}, which is no {words} in deg; is it metres? then pass `--column {channel}={name}`"
             );
             return Err(ImportError::Choice(text));
         }

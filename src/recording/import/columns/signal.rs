@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_told_between_samples_and_not_across_a_drop_out() {
+    fn values_are_given_between_samples_and_not_across_a_drop_out() {
         let s = signal(&[(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0), (6.0, 6.0), (7.0, 7.0)], false);
         assert_eq!((s.step, s.at(2.0, 1.0), s.at(1.25, 1.0)), (1.0, 2.0, 1.25));
         assert!(s.at(4.0, 1.0).is_nan() && s.at(-0.5, 1.0).is_nan() && s.at(7.5, 1.0).is_nan());

@@ -31,7 +31,7 @@ pub struct Taken {
     pub step: f64,
 }
 
-/// Signals in SI units by quantity, and what is to be told of them.
+/// Signals in SI units by quantity, and the notes on them.
 #[derive(Default)]
 pub struct Signals {
     /// By quantity; positions as the channels x and y.
@@ -85,7 +85,7 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         let (signal, tidied) = Signal::new(columns, factor, 0.0, true);
         let name = columns.first().map_or("", |c| c.name.as_str());
         known.variation = median(signal.v.clone()).map(|v| (v, name.to_owned()));
-        signals.tell(Meaning::Variation, columns, &signal, tidied, "deg", "positive to the east".to_owned());
+        signals.list(Meaning::Variation, columns, &signal, tidied, "deg", "positive to the east".to_owned());
     }
     for meaning in [Meaning::Channel(Channel::Psi), Meaning::Course] {
         if let Some(columns) = chosen.get(&meaning) {
@@ -101,7 +101,7 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         signals.put(r, columns, verdict);
     }
     let turning = known.psi.as_ref().map(|psi| psi.rate(psi.span()));
-    // A recorded rate with many blanks has few stretches that are long enough to be held against a rudder.
+    // A recorded rate with many blanks has few stretches that are long enough for a comparison with a rudder.
     let whole = |r: &Signal| {
         let fitted = r.smooth(r.span()).t.len();
         turning.as_ref().is_none_or(|turning| 2 * fitted > turning.t.len())
@@ -121,7 +121,7 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
             Channel::N | Channel::NOrder => rotation(*meaning, columns, given(*meaning)?.as_ref(), &known),
             Channel::Command(_) => other(*meaning, columns, given(*meaning)?.as_ref())
                 .map(|verdict| by_its_name(verdict, columns, channel)),
-            _ if signals.by.contains_key(meaning) || signals.is_told(*meaning) => continue,
+            _ if signals.by.contains_key(meaning) || signals.is_asked(*meaning) => continue,
             _ => other(*meaning, columns, given(*meaning)?.as_ref()).map(|verdict| referred(verdict, channel)),
         };
         signals.put(*meaning, columns, verdict);
@@ -145,8 +145,8 @@ fn wrong_axis(track: &Track, chosen: &Chosen<'_>) -> Option<usize> {
         let signal = heading(columns);
         let [[right, _], [mirrored, turned]] = [track.agreement(&signal, 1.0)?, track.agreement(&signal, -1.0)?];
         let quarter = (turned / FRAC_PI_2).round().rem_euclid(4.0);
-        let tells = mirrored > AGREE && mirrored > right + APART;
-        (tells && quarter % 2.0 == 0.0).then_some(if quarter == 0.0 { 1 } else { 0 })
+        let reversed = mirrored > AGREE && mirrored > right + APART;
+        (reversed && quarter % 2.0 == 0.0).then_some(if quarter == 0.0 { 1 } else { 0 })
     };
     let axes: Vec<usize> = directions.iter().map(against).collect::<Option<_>>()?;
     axes.first().copied().filter(|first| axes.iter().all(|axis| axis == first))
@@ -212,7 +212,7 @@ fn needed(meaning: Meaning) -> bool {
 }
 
 impl Signals {
-    fn is_told(&self, meaning: Meaning) -> bool {
+    fn is_asked(&self, meaning: Meaning) -> bool {
         self.asked.iter().any(|a| a.contains(&format!("--unit {}=", meaning.name())))
     }
 
@@ -225,7 +225,7 @@ impl Signals {
                     self.notes.push(format!("{name}: {doubt}"));
                 }
                 let (signal, tidied) = Signal::new(columns, verdict.factor, verdict.offset, meaning.wraps());
-                self.tell(meaning, columns, &signal, tidied, &verdict.unit, verdict.evidence);
+                self.list(meaning, columns, &signal, tidied, &verdict.unit, verdict.evidence);
                 self.by.insert(meaning, signal);
             }
             Err(question) if needed(meaning) => self.asked.push(question),
@@ -233,7 +233,7 @@ impl Signals {
         }
     }
 
-    fn tell(
+    fn list(
         &mut self,
         meaning: Meaning,
         columns: &[&Column],
@@ -283,15 +283,15 @@ impl Signals {
         }
         let why = plane_words(places.origin);
         let [told_lat, told_lon] = &places.told;
-        self.tell(Meaning::Latitude, lat, told_lat, places.tidied, places.form, why.clone());
-        self.tell(Meaning::Longitude, lon, told_lon, Tidied::default(), places.form, why);
+        self.list(Meaning::Latitude, lat, told_lat, places.tidied, places.form, why.clone());
+        self.list(Meaning::Longitude, lon, told_lon, Tidied::default(), places.form, why);
         self.by.insert(Meaning::Channel(Channel::X), places.x);
         self.by.insert(Meaning::Channel(Channel::Y), places.y);
         self.origin = Some(places.origin);
         Ok(())
     }
 
-    /// Counts an axis of position the other way, and says so first of all.
+    /// Counts an axis of position the other way, and reports that first.
     fn turn_axis(&mut self, axis: usize) {
         let (channel, meaning) = [(Channel::X, Meaning::Latitude), (Channel::Y, Meaning::Longitude)][axis];
         if let Some(signal) = self.by.get_mut(&Meaning::Channel(channel)) {

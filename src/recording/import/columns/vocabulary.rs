@@ -1,5 +1,5 @@
 //! The words that ships and loggers write for what they record, in the languages of those who build them.
-//! How a name is read with them is in `names`; whether a column is what its name says is asked of its values elsewhere.
+//! How a name is read with them is in `names`; whether a column is what its name says is checked against its values elsewhere.
 
 use super::log::Meaning::{self, *};
 use crate::recording::Channel::*;
@@ -97,7 +97,7 @@ pub const NEUTRAL: &str = "a, actual, ais, angle, average, avg, bow, data, deg, 
          vessel, vrai, wgs84, helice, elica, welle, schiff, rechtweisend, verdadero, vero, vera, over, of, \
          the, in, port, starboard, stbd, sb, ps, number, no";
 
-/// Words that make a column something else of the thing that it names: how fast a rudder moves, whether its pump runs, when it was told.
+/// Words that make a column something else of the thing that it names: how fast a rudder moves, whether its pump runs, when it was reported.
 pub const CHANGES: &str = "acceleration, accel, acc, accuracy, age, alarm, apparent, aw, bearing, beschleunigung, bias, count, \
          covariance, cross, destination, dest, deviation, diff, difference, drag, dt, error, err, fan, force, \
          fuel, gust, gyroscope, heave, interval, kraft, last, lift, limit, load, max, maximum, min, minimum, \
@@ -137,9 +137,9 @@ pub const CLOCKS: &str = "timestamp, datetime, time, utc, epoch, unix, zeit, uhr
          horodatage, temps, ora, orario, tempo, hora, tiempo, fecha";
 /// Words of a time since something.
 pub const SINCE: &str = "stamp, elapsed, seconds, secs, sec, millis, secondes, segundos, secondi";
-/// Words by which a column tells whose row it is.
+/// Words of a column that identifies the ship of each row.
 pub const SHIPS: &str = "mmsi, imo, callsign, vessel, ship, schiff, navire, nave, buque";
-/// Words that may stand beside these in the name of such a column.
+/// Words that may stand next to these in the name of such a column.
 pub const BESIDE_SHIPS: &str = "name, id, number, no, nr, userid, source";
 
 /// The words or phrases of a list.

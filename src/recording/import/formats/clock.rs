@@ -63,7 +63,7 @@ fn named_month(text: &str) -> Option<f64> {
     NAMED_MONTHS.iter().find_map(|format| utc(DateTime::strptime(format, text).ok()?))
 }
 
-/// The half of the day that a clock of twelve hours tells.
+/// The half of the day that a clock of twelve hours shows.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Half {
     Before,

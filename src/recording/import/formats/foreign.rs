@@ -1,4 +1,4 @@
-//! Files that are no log that is read here, told by how they begin, each with what makes a log of it.
+//! Files that are no log that is read here, identified by how they begin, each with what makes a log of it.
 //! Nothing is unpacked or converted.
 
 /// What a file begins with, what it is then, and what to do.
@@ -33,31 +33,31 @@ const LOOKED_AT: usize = 4096;
 
 /// What is to be said of a file that is no log; `None` where it may be one.
 pub fn foreign(bytes: &[u8]) -> Option<String> {
-    let told = |what: &str, next: &str| Some(format!("is {what} and is not read; {next}"));
+    let refused = |what: &str, next: &str| Some(format!("is {what} and is not read; {next}"));
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Some("is empty; give a file with a line of column names and lines of data".to_owned());
     }
     if let Some((_, what, next)) = BEGINNINGS.iter().find(|(begins, ..)| bytes.starts_with(begins)) {
-        return told(what, next);
+        return refused(what, next);
     }
     let head = &bytes[..bytes.len().min(LOOKED_AT)];
     let has = |word: &[u8]| head.windows(word.len()).any(|w| w == word);
     if bytes.starts_with(b"PK\x03\x04") {
         let workbook = has(b"[Content_Types].xml") || has(b"xl/");
-        let sheet = || told("a workbook (Excel)", "save the sheet as CSV");
-        return if workbook { sheet() } else { told("a zip archive", "unpack it first, with `unzip`") };
+        let sheet = || refused("a workbook (Excel)", "save the sheet as CSV");
+        return if workbook { sheet() } else { refused("a zip archive", "unpack it first, with `unzip`") };
     }
     let text = head.trim_ascii_start();
     let marked = text.starts_with(b"<") && (has(b"<html") || has(b"<HTML") || has(b"<?xml") || has(b"<!DOCTYPE"));
     if marked {
-        return told("a page of HTML or XML", "give the log as CSV, NMEA 0183 or Parquet");
+        return refused("a page of HTML or XML", "give the log as CSV, NMEA 0183 or Parquet");
     }
     let object = text.strip_prefix(b"[").unwrap_or(text).trim_ascii_start();
     if object.starts_with(b"{") && has(b"\":") {
-        return told("JSON", "write its records as CSV or Parquet");
+        return refused("JSON", "write its records as CSV or Parquet");
     }
     if is_candump(text) {
-        return told(
+        return refused(
             "a log of CAN frames (candump)",
             "decode it to columns first, as with `cantools` or `analyzer -json`",
         );
@@ -67,7 +67,7 @@ pub fn foreign(bytes: &[u8]) -> Option<String> {
     let noughts = head.iter().filter(|b| **b == 0).count();
     let binary = bytes.starts_with(b"PAR1");
     (!binary && 20 * (strange - noughts) > head.len())
-        .then(|| "holds bytes that are no text; give a CSV, NMEA 0183 or Parquet file".to_owned())
+        .then(|| "contains bytes that are no text; give a CSV, NMEA 0183 or Parquet file".to_owned())
 }
 
 /// Whether a text begins with frames such as `(1620000000.123456) can0 09F80103#2A366C2B`, or those of candump without a file.
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_log_is_told_with_what_to_do() {
+    fn what_is_no_log_is_refused_with_what_to_do() {
         let cases: [(&[u8], &str); 14] = [
             (b"MATLAB 7.3 MAT-file, Platform: GLNXA64", "MATLAB 7.3"),
             (b"ARROW1\0\0\xff\xff", "Feather"),

@@ -1,5 +1,5 @@
 //! The layout of a text file of numbers: what separates fields, where the header is, and its lines as fields.
-//! It tells no meaning and no unit.
+//! It decides no meaning and no unit.
 
 use std::borrow::Cow;
 
@@ -76,7 +76,7 @@ fn wide(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Cow<'static, str> {
     Cow::Owned(char::decode_utf16(units).map(|c| c.unwrap_or('\u{fffd}')).collect())
 }
 
-/// Lines that are looked at to tell a layout.
+/// Lines that are looked at to determine a layout.
 const LOOKED_AT: usize = 200;
 /// Share of them that must agree.
 const AGREE: f64 = 0.6;
@@ -212,8 +212,8 @@ fn plain(field: &str, decimal_comma: bool) -> Option<Cow<'_, str>> {
     Some(Cow::Owned(format!("{whole}.{fraction}")))
 }
 
-/// Whether a comma separates the fraction in numbers that have one: `Some(false)` where it parts thousands, `None` where nothing
-/// tells. In `1,234` beside `5.6` it parts thousands, as in `1,234.5`; `1,23` has a fraction.
+/// Whether a comma separates the fraction in numbers that have one: `Some(false)` where it parts thousands, `None` where neither
+/// is shown. In `1,234` beside `5.6` it parts thousands, as in `1,234.5`; `1,23` has a fraction.
 pub fn decimal_comma<'a>(fields: impl Iterator<Item = &'a str>) -> Option<bool> {
     let (mut points, mut commas) = (false, false);
     for field in fields.filter(|f| f.starts_with(|c: char| c.is_ascii_digit() || "+-.,".contains(c))) {
@@ -237,7 +237,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_layout_is_told_from_the_lines() {
+    fn the_layout_is_determined_from_the_lines() {
         let cases = [
             ("t;x\n0,5;1,5\n1,0;2,5\n", Delimiter::Character(';'), 2, 1),
             ("logger 7\n\nt\tx\ty\n0\t1\t2\n1\t1\t2\n2\t1\t3\n3\t1\t3\n", Delimiter::Character('\t'), 3, 3),
@@ -268,12 +268,12 @@ mod tests {
             assert!(number(missing, false).unwrap().is_nan(), "{missing}");
         }
         assert!(number("abc", false).is_none());
-        let tell = |fields: &[&'static str]| decimal_comma(fields.iter().copied());
+        let comma = |fields: &[&'static str]| decimal_comma(fields.iter().copied());
         assert_eq!(
-            (tell(&["1,5", "2"]), tell(&["1,234", "5.6"]), tell(&["1,234.5"])),
+            (comma(&["1,5", "2"]), comma(&["1,234", "5.6"]), comma(&["1,234.5"])),
             (Some(true), Some(false), Some(false))
         );
-        assert_eq!((tell(&["1,234", "20:15"]), tell(&["1.234,5"])), (None, Some(true)));
+        assert_eq!((comma(&["1,234", "20:15"]), comma(&["1.234,5"])), (None, Some(true)));
     }
 
     #[test]

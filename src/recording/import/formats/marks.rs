@@ -48,7 +48,7 @@ impl Sides {
 /// What the letters in a column say.
 pub struct Marks {
     sides: Option<&'static Sides>,
-    /// The unit that stands beside every number.
+    /// The unit that stands next to every number.
     pub unit: Option<String>,
     /// Whether a heading or a course counts from magnetic north: `023.4 M`.
     pub magnetic: bool,
@@ -73,12 +73,12 @@ impl Marks {
     /// A field as a number with its sign; NaN for a missing value, `None` for what is no number or has other letters.
     pub fn value(&self, field: &str, decimal_comma: bool) -> Option<f64> {
         let (value, mark) = marked(field, decimal_comma)?;
-        let told = mark.is_empty() || self.unit.as_deref() == Some(mark);
+        let known = mark.is_empty() || self.unit.as_deref() == Some(mark);
         match self.sides {
             // Amidships has no side.
             Some(_) if mark.is_empty() => (value == 0.0 || value.is_nan()).then_some(value),
             Some(sides) => sides.sign(mark).filter(|_| value >= 0.0).map(|sign| sign * value),
-            None => (told || among(&TRUE, mark) || (self.magnetic && among(&MAGNETIC, mark))).then_some(value),
+            None => (known || among(&TRUE, mark) || (self.magnetic && among(&MAGNETIC, mark))).then_some(value),
         }
     }
 }
@@ -88,7 +88,7 @@ fn among(words: &[&str], mark: &str) -> bool {
 }
 
 /// The signs that a column of letters alone gives to the numbers of another with this meaning, NaN where it has none; `None` where it
-/// holds anything else.
+/// contains anything else.
 pub fn signs<'a>(fields: impl Iterator<Item = &'a str>, meaning: Option<Meaning>) -> Option<Vec<f64>> {
     let sides = Sides::of(meaning)?;
     let signs: Option<Vec<f64>> =

@@ -1,5 +1,5 @@
 //! Reads logs of NMEA 0183 sentences: position, course and speed, heading, rate of turn, rudder, propeller, water speed, wind, depth.
-//! Checksums are verified; lines that fail are counted and told, and makers' own sentences are not read.
+//! Checksums are verified; lines that fail are counted and reported, and makers' own sentences are not read.
 
 use super::clock::{DAY, DateOrder, date_time, digits_of_day, past_midnight};
 use super::layout::decoded;
@@ -103,9 +103,9 @@ struct Record {
     talker: String,
     /// Time that a logger wrote before it \[s since 1970\].
     stamp: Option<f64>,
-    /// Time of day that it tells \[s\].
+    /// Time of day that it gives \[s\].
     time: Option<f64>,
-    /// Midnight of the date that it tells \[s since 1970\].
+    /// Midnight of the date that it gives \[s since 1970\].
     date: Option<f64>,
     /// Which of the values, and how much.
     values: Vec<(usize, f64)>,
@@ -151,8 +151,8 @@ fn sentence(line: &str) -> Option<Result<Sentence<'_>, Bad>> {
     let body = match text.split_once('*') {
         Some((body, sum)) => {
             let computed = body.bytes().fold(0_u8, |sum, b| sum ^ b);
-            let told = sum.get(..2).and_then(|s| u8::from_str_radix(s, 16).ok());
-            if told != Some(computed) {
+            let written = sum.get(..2).and_then(|s| u8::from_str_radix(s, 16).ok());
+            if written != Some(computed) {
                 return Some(Err(Bad::Checksum));
             }
             body
@@ -194,7 +194,7 @@ fn index(name: &str) -> Option<usize> {
     VALUES.iter().position(|(n, ..)| *n == name)
 }
 
-/// What a sentence tells.
+/// The values and times of a sentence.
 fn record(s: &Sentence<'_>) -> Record {
     let mut record = Record { talker: s.talker.to_owned(), stamp: stamp(s.before), ..Record::default() };
     let mut put = |name: &str, value: Option<f64>| record.values.extend(index(name).zip(value));
@@ -309,7 +309,7 @@ fn more(s: &Sentence<'_>, record: &mut Record) {
 /// Reads a log of sentences.
 ///
 /// # Errors
-/// [`ImportError::File`] where no sentence tells a time.
+/// [`ImportError::File`] where no sentence gives a time.
 pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Vec<Log>, ImportError> {
     let text = decoded(bytes);
     let (mut records, mut unknown) = (Vec::new(), BTreeMap::<String, usize>::new());
@@ -370,14 +370,14 @@ pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Vec<Log>, ImportError> {
     Ok(passes.into_iter().map(log).collect())
 }
 
-/// Whether two stretches of sentences tell the same quantity again.
+/// Whether two stretches of sentences give the same quantity again.
 fn repeat(before: &[Record], after: &[Record]) -> bool {
     let count = |records: &[Record], kind: &Kind| records.iter().filter(|r| kinds(r).any(|k| k == *kind)).count();
-    let mut told: Vec<Kind> = after.iter().flat_map(kinds).collect();
-    told.sort_unstable();
-    told.dedup();
+    let mut kinds_after: Vec<Kind> = after.iter().flat_map(kinds).collect();
+    kinds_after.sort_unstable();
+    kinds_after.dedup();
     let same = before.len() == after.len() && before.iter().zip(after).all(|(a, b)| a.values == b.values);
-    !same && told.iter().any(|kind| count(before, kind) >= FEW && count(after, kind) >= FEW)
+    !same && kinds_after.iter().any(|kind| count(before, kind) >= FEW && count(after, kind) >= FEW)
 }
 
 fn kinds(record: &Record) -> impl Iterator<Item = Kind> + '_ {
@@ -399,13 +399,13 @@ fn without_letters(s: &Sentence<'_>) -> bool {
     s.text(first).is_empty() || s.text(first + 2).is_empty()
 }
 
-/// Sentences that are read, also where they tell nothing at the moment.
+/// Sentences that are read, also where they give no value at the moment.
 const KNOWN: [&str; 18] = [
     "RMC", "GGA", "GLL", "ZDA", "VTG", "HDT", "THS", "HDG", "HDM", "ROT", "RSA", "RPM", "VHW", "VBW", "MWV", "MWD",
     "VWR", "DPT",
 ];
 
-/// The columns: one for each value, or for each talker where several tell it.
+/// The columns: one for each value, or for each talker where several give it.
 fn columns(records: &[Record], times: &[Option<f64>]) -> Vec<Column> {
     let mut found: BTreeMap<Kind, Column> = BTreeMap::new();
     for (record, t) in records.iter().zip(times) {
@@ -429,7 +429,7 @@ fn columns(records: &[Record], times: &[Option<f64>]) -> Vec<Column> {
     found.into_values().collect()
 }
 
-/// The time of each record, what it counts from, and how it was told.
+/// The time of each record, what it counts from, and how it was determined.
 fn times(records: &[Record]) -> (Clock, Vec<Option<f64>>, &'static str) {
     let stamped = records.iter().filter(|r| r.stamp.is_some()).count();
     if 10 * stamped >= 9 * records.len().max(1) {
@@ -457,16 +457,16 @@ fn times(records: &[Record]) -> (Clock, Vec<Option<f64>>, &'static str) {
     (clock, within_epochs(records, &epochs), "that of RMC, GGA and ZDA; sentences without one follow the last")
 }
 
-/// The times of all records, given those of the records that tell one. What comes several times between two of these is spread
+/// The times of all records, given those of the records that have one. What comes several times between two of these is spread
 /// evenly: headings ten times a second are a tenth of a second apart.
-fn within_epochs(records: &[Record], told: &[Option<f64>]) -> Vec<Option<f64>> {
+fn within_epochs(records: &[Record], epochs: &[Option<f64>]) -> Vec<Option<f64>> {
     let kind = |r: &Record| kinds(r).next();
     // How often each kind comes in an epoch.
     let mut counts: BTreeMap<Kind, Vec<f64>> = BTreeMap::new();
     let mut now: BTreeMap<Kind, usize> = BTreeMap::new();
     let (mut epoch, mut starts) = (None::<f64>, Vec::new());
     let next = |epoch: Option<f64>, t: &Option<f64>| t.filter(|t| epoch.is_none_or(|e| (e - t).abs() > 1e-3));
-    for (r, t) in records.iter().zip(told) {
+    for (r, t) in records.iter().zip(epochs) {
         if let Some(t) = next(epoch, t) {
             for (kind, count) in std::mem::take(&mut now) {
                 counts.entry(kind).or_default().push(count as f64);
@@ -484,7 +484,7 @@ fn within_epochs(records: &[Record], told: &[Option<f64>]) -> Vec<Option<f64>> {
     let mut times = Vec::with_capacity(records.len());
     let mut seen: BTreeMap<Kind, usize> = BTreeMap::new();
     epoch = None;
-    for (r, t) in records.iter().zip(told) {
+    for (r, t) in records.iter().zip(epochs) {
         if let Some(t) = next(epoch, t) {
             epoch = Some(t);
             seen.clear();

@@ -1,5 +1,5 @@
 //! Reads Parquet files: flat columns of numbers, times or text, of any of the usual compressions.
-//! Nested columns are left out and told.
+//! Nested columns are left out and reported.
 
 use super::clock::{DateOrder, NumericTime, date_time, numeric_time, spread};
 use super::layout::number;
@@ -66,14 +66,14 @@ pub fn read_parquet(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<
     let shared = rounded(&cells, &times).then(|| spread(&mut times)).flatten();
     let spread = shared.map_or(String::new(), |k| format!(", rounded: {k} rows share a time and are spread over it"));
     let runs = passes(&times, |before, after| {
-        let told = |cells: &Cells, rows: &Range<usize>| {
+        let enough = |cells: &Cells, rows: &Range<usize>| {
             cells.in_rows(rows).iter().filter(|v| v.is_finite()).take(FEW).count() == FEW
         };
         let bits = |cells: &Cells, rows: &Range<usize>| -> Vec<u64> {
             cells.in_rows(rows).iter().map(|v| v.to_bits()).collect()
         };
         let copy = cells.iter().all(|c| bits(c, &before) == bits(c, &after));
-        !copy && cells.iter().any(|c| told(c, &before) && told(c, &after))
+        !copy && cells.iter().any(|c| enough(c, &before) && enough(c, &after))
     });
     if let [_, second, ..] = runs.as_slice() {
         notes.push(stepped_back(runs.len(), &format!("row {}", second.start + 1)));
@@ -108,11 +108,11 @@ impl Cells {
 /// Whether rows that share a time are later ones, whose time was rounded, and not repeated rows or rows that each fill other columns.
 fn rounded(cells: &[Cells], times: &[f64]) -> bool {
     let known: Vec<&Cells> = cells.iter().filter(|c| meaning(&c.name).is_some()).collect();
-    let telling = if known.is_empty() { cells.iter().collect() } else { known };
+    let compared = if known.is_empty() { cells.iter().collect() } else { known };
     let pairs: Vec<usize> = (1..times.len()).filter(|i| times[*i] == times[i - 1]).collect();
     let differ = |i: &&usize| {
         let both = |c: &&Cells| Some([*c.values.get(**i - 1)?, *c.values.get(**i)?]);
-        telling.iter().filter_map(both).any(|[a, b]| a.is_finite() && b.is_finite() && a != b)
+        compared.iter().filter_map(both).any(|[a, b]| a.is_finite() && b.is_finite() && a != b)
     };
     let differing = pairs.iter().filter(differ).count();
     differing > 0 && differing as f64 >= OTHERWISE * pairs.len() as f64
@@ -155,7 +155,7 @@ fn columns(bytes: &[u8]) -> Result<(Vec<Cells>, Vec<String>), ParquetError> {
     for (i, column) in schema.columns().iter().enumerate() {
         let path = column.path().string();
         if column.max_rep_level() > 0 {
-            notes.push(format!("column `{path}` holds lists and is left out"));
+            notes.push(format!("column `{path}` contains lists and is left out"));
             continue;
         }
         let (name, unit) = name_and_unit(&path);

@@ -1,4 +1,4 @@
-//! A clock that steps back: the stretches of a file in each of which time goes on, where they tell the same time twice.
+//! A clock that steps back: the stretches of a file in each of which time goes on, where they cover the same time twice.
 //! Rows that merely come late are no stretch of their own: they are sorted where signals are made.
 
 use std::ops::Range;
@@ -7,14 +7,14 @@ use std::ops::Range;
 pub const FEW: usize = 3;
 /// Earlier stretches that a further one is compared with.
 const STRETCHES: usize = 100;
-/// Share of the rows with the time of the one before that must tell something else for the times to be rounded: a ship under way moves
+/// Share of the rows with the time of the one before that must record something else for the times to be rounded: a ship under way moves
 /// between any two, and one that lies still does so in part of a log.
 pub const OTHERWISE: f64 = 0.3;
 /// Times closer than this are one \[s\].
 const SAME_TIME: f64 = 1e-6;
 
-/// The stretches of rows with these times. One begins where time steps back over what the file has told before, as `repeats` says of the
-/// rows of both; a batch of late rows fills a hole and begins none.
+/// The stretches of rows with these times. One begins where time steps back over what the file has covered before, which `repeats` decides for
+/// the rows of both; a batch of late rows fills a hole and begins none.
 pub fn passes(t: &[f64], repeats: impl Fn(Range<usize>, Range<usize>) -> bool) -> Vec<Range<usize>> {
     let rows: Vec<usize> = (0..t.len()).filter(|row| t[*row].is_finite()).collect();
     let time = |at: usize| t[rows[at]];
@@ -37,7 +37,7 @@ pub fn passes(t: &[f64], repeats: impl Fn(Range<usize>, Range<usize>) -> bool) -
                 if here.len() < FEW {
                     return false;
                 }
-                // What late rows tell was not told before: only times between theirs count.
+                // Late rows cover a time that was not covered before: only times between theirs count.
                 let until = |least: f64| rise.start + rows[rise.clone()].partition_point(|row| t[*row] < least);
                 let before = until(time(at) - SAME_TIME)..until(time(here.end - 1) + SAME_TIME);
                 before.len() >= FEW
@@ -58,7 +58,7 @@ pub fn passes(t: &[f64], repeats: impl Fn(Range<usize>, Range<usize>) -> bool) -
     starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect()
 }
 
-/// What is to be told of a clock that stepped back; `place` is where it did so first.
+/// The note on a clock that stepped back; `place` is where it did so first.
 pub fn stepped_back(passes: usize, place: &str) -> String {
     let times = if passes == 2 { "once".to_owned() } else { format!("{} times", passes - 1) };
     format!(

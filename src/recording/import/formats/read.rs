@@ -1,5 +1,5 @@
 //! Reads a file of any format that is known, by its content rather than its name.
-//! How each format is read is in the files beside it.
+//! How each format is read is in the other files of this folder.
 
 use super::foreign::foreign;
 use super::nmea::{is_nmea, read_nmea};

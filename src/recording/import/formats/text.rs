@@ -21,7 +21,7 @@ use std::path::Path;
 const NUMBERS: f64 = 0.9;
 /// Words that may stand for a missing value in one column.
 const FEW_WORDS: usize = 2;
-/// Rows that a run has at least, where a file holds several.
+/// Rows that a run has at least, where a file contains several.
 const FEWEST: usize = 10;
 
 /// The lines of a file as fields.
@@ -84,16 +84,16 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
     Ok(logs)
 }
 
-/// The rows of each run, where the clock steps back over what it told before, or a clock of its own starts again; all rows as one where
+/// The rows of each run, where the clock steps back over what it covered before, or a clock of its own starts again; all rows as one where
 /// they are merely out of order.
 fn runs(table: &Table<'_>, columns: &[(Column, Vec<f64>)], clock: Clock, t: &[f64]) -> Vec<Range<usize>> {
     let repeats = |before: Range<usize>, after: Range<usize>| {
         let copy = before.len() == after.len()
             && before.clone().zip(after.clone()).all(|(a, b)| table.rows[a].1 == table.rows[b].1);
-        let told = |values: &[f64], rows: &Range<usize>| {
+        let enough = |values: &[f64], rows: &Range<usize>| {
             values[rows.clone()].iter().filter(|v| v.is_finite()).take(FEW).count() == FEW
         };
-        !copy && columns.iter().any(|(_, values)| told(values, &before) && told(values, &after))
+        !copy && columns.iter().any(|(_, values)| enough(values, &before) && enough(values, &after))
     };
     let mut starts: BTreeSet<usize> = passes(t, repeats).into_iter().map(|run| run.start).collect();
     if clock != Clock::Utc {
@@ -125,7 +125,7 @@ fn restarts(t: &[f64]) -> Vec<usize> {
 /// Ships that one file may name before it is taken for the log of many.
 const MOST_NAMED: usize = 3;
 
-/// Refuses a file that holds the rows of several ships: their tracks would be one.
+/// Refuses a file that contains the rows of several ships: their tracks would be one.
 fn one_ship(table: &Table<'_>) -> Result<(), ImportError> {
     for field in (0..table.names.len()).filter(|f| is_ships_name(&table.names[*f].0)) {
         let mut rows: BTreeMap<&str, usize> = BTreeMap::new();
@@ -172,7 +172,7 @@ fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Result<Table<'a>
     } else {
         (1..=layout.width).map(|i| (i.to_string(), None)).collect()
     };
-    // A second line of the header may hold the units.
+    // A second line of the header may contain the units.
     let second: Vec<&str> = lines.peek().map_or_else(Vec::new, |(_, line)| layout.fields(line));
     let unit_of = |f: &str| f.trim_matches(['[', ']', '(', ')']).trim().to_owned();
     if named && second.iter().any(|f| is_unit(&unit_of(f))) && !second.iter().any(is_value) {
@@ -212,7 +212,7 @@ fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Result<Table<'a>
 /// Whether a comma separates fractions.
 fn commas(path: &Path, rows: &[(usize, Vec<&str>)], layout: &Layout) -> Result<bool, ImportError> {
     match decimal_comma(rows.iter().flat_map(|(_, fields)| fields.iter().copied())) {
-        Some(told) => Ok(told),
+        Some(known) => Ok(known),
         None if layout.delimiter != Delimiter::Character(',') => Ok(true),
         None => {
             let place = rows.iter().flat_map(|(line, fields)| fields.iter().enumerate().map(move |f| (*line, f)));
@@ -253,8 +253,8 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
     let numbers: Vec<f64> = texts(field).map(|t| number(t, table.decimal_comma).unwrap_or(f64::NAN)).collect();
     let digits = are_digits_of_day(&numbers);
     let of_day = |row: usize| {
-        let told = if digits { digits_of_day(numbers[row]) } else { time_of_day(table.rows[row].1[field]) };
-        told.unwrap_or(f64::NAN)
+        let time = if digits { digits_of_day(numbers[row]) } else { time_of_day(table.rows[row].1[field]) };
+        time.unwrap_or(f64::NAN)
     };
     let day = |row: usize, date: usize| date_time(table.rows[row].1[date], order).unwrap_or(f64::NAN);
     let rows = 0..table.rows.len();
@@ -296,20 +296,20 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
 /// repeat all but a counter, or that each fill other fields, were written at one time.
 fn rounded(table: &Table<'_>, times: &Times) -> bool {
     let others = || (0..table.names.len()).filter(|f| !times.used.contains(f));
-    let mut telling: Vec<usize> = others().filter(|f| meaning(&table.names[*f].0).is_some()).collect();
-    if telling.is_empty() {
-        telling = others().collect();
+    let mut compared: Vec<usize> = others().filter(|f| meaning(&table.names[*f].0).is_some()).collect();
+    if compared.is_empty() {
+        compared = others().collect();
     }
     let pairs = || times.t.windows(2).zip(table.rows.windows(2)).filter(|(t, _)| t[0] == t[1]).map(|(_, rows)| rows);
     let differ = |rows: &&[(usize, Vec<&str>)]| {
         let [a, b] = [&rows[0].1, &rows[1].1];
-        telling.iter().any(|f| !a[*f].is_empty() && !b[*f].is_empty() && a[*f] != b[*f])
+        compared.iter().any(|f| !a[*f].is_empty() && !b[*f].is_empty() && a[*f] != b[*f])
     };
     let differing = pairs().filter(differ).count();
     differing > 0 && differing as f64 >= OTHERWISE * pairs().count() as f64
 }
 
-/// Which of day and month comes first, and what is to be told where no date proves it: then the order is taken in which the days
+/// Which of day and month comes first, and a note where no date proves it: then the order is taken in which the days
 /// follow one another, or the day is first.
 fn order<'a, I: Iterator<Item = &'a str>>(texts: impl Fn() -> I) -> (DateOrder, &'static str) {
     if let Some(order) = date_order(texts()) {
@@ -356,8 +356,8 @@ fn time_field(table: &Table<'_>, wanted: Option<&str>) -> Result<usize, ImportEr
     })
 }
 
-/// The columns of numbers, each with its values by row, NaN where one is missing; letters beside them or in a column of their own are
-/// understood. Tells what no number is.
+/// The columns of numbers, each with its values by row, NaN where one is missing; letters next to them or in a column of their own are
+/// understood. Fields that are no number are reported.
 fn columns(table: &mut Table<'_>, used: &[usize], times: &[f64]) -> Vec<(Column, Vec<f64>)> {
     let mut found: Vec<(usize, Column, Vec<f64>)> = Vec::new();
     let mut others = Vec::new();
@@ -391,7 +391,7 @@ fn columns(table: &mut Table<'_>, used: &[usize], times: &[f64]) -> Vec<(Column,
         {
             let line = table.rows[row].0;
             notes.push(format!(
-                "column `{name}` holds what is no number, such as `{text}` in line {line}, and is not used"
+                "column `{name}` contains what is no number, such as `{text}` in line {line}, and is not used"
             ));
         }
     }
@@ -399,7 +399,7 @@ fn columns(table: &mut Table<'_>, used: &[usize], times: &[f64]) -> Vec<(Column,
     found.into_iter().map(|(_, column, values)| (column, values)).collect()
 }
 
-/// A column of numbers without its samples, and its values; `None` where it has none, or holds text.
+/// A column of numbers without its samples, and its values; `None` where it has none, or contains text.
 fn column(table: &Table<'_>, field: usize, notes: &mut Vec<String>) -> Option<(Column, Vec<f64>)> {
     let (name, unit) = &table.names[field];
     let texts = || table.rows.iter().map(|(_, fields)| fields[field]);
@@ -415,7 +415,7 @@ fn column(table: &Table<'_>, field: usize, notes: &mut Vec<String>) -> Option<(C
         return None;
     }
     if let Some((line, text)) = wrong().next() {
-        notes.push(format!("column `{name}` holds what is no number in {count} lines, the first is line {line}, field {}: `{text}`; taken as missing", field + 1));
+        notes.push(format!("column `{name}` contains what is no number in {count} lines, the first is line {line}, field {}: `{text}`; taken as missing", field + 1));
     }
     let column = Column { name: name.clone(), unit: unit.clone().or(marks.unit), ..Column::default() };
     Some((column, values.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect()))
