@@ -1,4 +1,4 @@
-//! The model as a file should hold it: the user's terms and those of the mechanisms that act, without neutral ones, each parameter inside
+//! The model as it is written to a file: the user's terms and those of the mechanisms that act, without neutral ones, each parameter inside
 //! its bounds. It decides nothing.
 
 use crate::likelihood::algebra::pseudo_inverse;
@@ -9,7 +9,7 @@ use crate::simulate::Integration;
 use crate::uncertainty::Uncertainty;
 use std::collections::BTreeMap;
 
-/// The model as a file should hold it: the user's terms and those that were found to act, nothing that is neutral.
+/// The model as it is written to a file: the user's terms and those that were found to act, nothing that is neutral.
 pub fn trimmed(found: &Model, user: &Model, free: &[FreeParameter]) -> Model {
     let mut model = user.clone();
     let wanted = |name: &str| {

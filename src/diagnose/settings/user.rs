@@ -48,7 +48,7 @@ impl Settings {
         Integration { method: Method::Rk4, substeps: self.substeps }
     }
 
-    /// The chance that two independent accidents have: for what other tests must have been wrong about, too.
+    /// The chance of two independent false positives, `alpha` squared: for tests that must be more significant than others.
     pub fn strict(&self) -> f64 {
         self.alpha * self.alpha
     }
