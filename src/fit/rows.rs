@@ -40,7 +40,7 @@ impl WorkingRows {
         (0..self.taken.len()).filter(|i| self.taken[*i]).collect()
     }
 
-    /// Multipliers of all rows from those of the solver's: a row left out holds nothing back.
+    /// Multipliers of all rows from those of the solver's: a row left out is not active.
     pub fn of_all(&self, multipliers: &[f64]) -> Vec<f64> {
         let mut own = multipliers.iter();
         self.taken.iter().map(|taken| if *taken { own.next().copied().unwrap_or(0.0) } else { 0.0 }).collect()

@@ -1,5 +1,5 @@
 //! Directions that active constraints leave free, and the inverse of a curvature within them.
-//! It knows matrices alone: no model, no cost, no solver.
+//! It is about matrices alone: no model, no cost, no solver.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -78,8 +78,8 @@ mod tests {
 
     #[test]
     fn constraints_that_hold_every_variable_leave_no_variance() {
-        let held = inverse(&DMatrix::identity(2, 2), &null_space(&[vector(&[1.0, 0.0]), vector(&[0.0, 1.0])], 2));
-        assert_eq!((held.matrix, held.rank), (DMatrix::zeros(2, 2), 0));
+        let found = inverse(&DMatrix::identity(2, 2), &null_space(&[vector(&[1.0, 0.0]), vector(&[0.0, 1.0])], 2));
+        assert_eq!((found.matrix, found.rank), (DMatrix::zeros(2, 2), 0));
     }
 
     #[test]
