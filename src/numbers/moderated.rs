@@ -1,10 +1,10 @@
 //! How far scores scatter between groups of runs, against what their information says, and that ratio moderated over many directions.
-//! Few groups tell the scatter of one direction badly and of all directions well. It knows no column's meaning, and concludes nothing.
+//! From few groups the scatter of one direction is estimated badly, and that of all directions well. It concludes nothing.
 
 use super::statistics::{counted, mean, quantile};
 use statrs::function::gamma::digamma;
 
-/// Variance of an estimate along one direction over that by its information, as so many degrees of freedom tell it.
+/// Variance of an estimate along one direction over that by its information, as estimated with so many degrees of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratio {
     /// The ratio.
