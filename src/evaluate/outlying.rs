@@ -75,14 +75,14 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_is_predicted_far_worse_is_told_with_the_range_of_the_others() {
+    fn a_run_that_is_predicted_far_worse_is_reported_with_the_range_of_the_others() {
         let found = found(&[3.6, 6.4, 8.6, 4.4, 61.0, 2.6, 5.1, 7.7]).unwrap();
         assert_eq!((found.run.as_str(), found.cvdm, found.others), ("r4", 61.0, [2.6, 8.6]));
         assert!(found.line().contains("warning: `r4`") && found.line().contains("2.6"), "{}", found.line());
     }
 
     #[test]
-    fn runs_that_scatter_alike_few_runs_and_exact_ones_tell_nothing() {
+    fn runs_that_scatter_alike_few_runs_and_exact_ones_have_no_outlier() {
         assert_eq!(found(&[3.6, 6.4, 8.6, 4.4, 14.0, 2.6, 5.1, 7.7]), None);
         assert_eq!(found(&[49.0, 6.5, 79.0, 44.0, 24.0, 10.0, 10.4, 89.0]), None);
         assert_eq!(found(&[1.0, 90.0]), None);

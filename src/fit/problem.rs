@@ -1,5 +1,5 @@
 //! A fit as the nonlinear program that Ipopt is given: scaled parameters, cost plus priors, linear constraints.
-//! It decides nothing about what is fitted and reports nothing: it translates, keeps the best feasible point and minds the limits.
+//! It decides nothing about what is fitted and reports nothing: it translates, keeps the best feasible point and checks the limits.
 
 use super::constraints::Row;
 use super::cost::Quadratic;

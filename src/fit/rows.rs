@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn a_limit_that_holds_a_curve_between_the_rows_taken_first_is_kept() -> Result<(), FitError> {
+    fn a_limit_that_is_active_between_the_rows_taken_first_is_kept() -> Result<(), FitError> {
         let (truth, runs) = (model(), runs(&model(), 6));
         let mut settings = FitSettings { integration: RK4, ..FitSettings::default() };
         // Between this and the upper limit at a = 0 there is hardly room: a few degrees beside it the drag of the ship breaks this one.

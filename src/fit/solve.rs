@@ -45,7 +45,7 @@ const TOUCH: f64 = 1e-6;
 
 /// The check of an optimum: its seed, the rise of the cost by the disturbance as a share of the cost, the largest change of a parameter
 /// in units of its scale, the share of the way to the nearest limit, iterations of the second solve, and the share of what it looks for that
-/// its tolerance leaves: in units of unit curvature a gradient g promises g^2/2.
+/// its tolerance leaves: in units of unit curvature a gradient g predicts a fall of g^2/2.
 const CHECK_SEED: u64 = 20_261_126;
 const CHECK_RISE: f64 = 0.05;
 const CHECK_REACH: f64 = 0.5;

@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn constraints_that_hold_every_variable_leave_no_variance() {
+    fn constraints_that_fix_every_variable_leave_no_variance() {
         let found = inverse(&DMatrix::identity(2, 2), &null_space(&[vector(&[1.0, 0.0]), vector(&[0.0, 1.0])], 2));
         assert_eq!((found.matrix, found.rank), (DMatrix::zeros(2, 2), 0));
     }
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_data_do_not_determine_is_told_from_what_they_do() {
+    fn what_the_data_do_not_determine_is_distinguished_from_what_they_do() {
         // The data see 2 x + y and w alone.
         let h = DMatrix::from_row_slice(3, 3, &[4.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 5.0]);
         let inverse = inverse(&h, &DMatrix::identity(3, 3));

@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn white_noise_is_held_to_its_guess_from_below() {
+    fn white_noise_is_kept_near_its_guess_from_below() {
         let prior = NoisePrior::around(&noise());
         let at = |d: f64| {
             let mut v = noise().to_log();

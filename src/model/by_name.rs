@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_parameter_is_held_bounded_and_given_a_prior_by_name_or_symbol() {
+    fn a_parameter_is_fixed_bounded_and_given_a_prior_by_name_or_symbol() {
         let mut model = crate::study::demo::example().unwrap().model;
         let of = |model: &Model, name: &str| model.parameters[model.find(name).unwrap()].clone();
         model.hold("p5").unwrap();
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_told_and_changes_nothing() {
+    fn what_cannot_be_is_refused_and_changes_nothing() {
         let mut model = crate::study::demo::example().unwrap().model;
         let before = format!("{:?}", model.parameters);
         assert!(model.hold("rudder.lift9").unwrap_err().to_string().contains("did you mean"));

@@ -1094,7 +1094,7 @@ mod tests {
     use crate::physics::Form;
 
     #[test]
-    fn rounding_that_a_constraint_leaves_is_told_as_zero() {
+    fn rounding_that_a_constraint_leaves_is_reported_as_zero() {
         let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
         let model = Model::new(ship, "HD", Form::Regular, &[]).unwrap();
         let lift = &model.parameters[model.index("rudder.lift0").unwrap()];

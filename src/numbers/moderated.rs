@@ -91,7 +91,7 @@ impl Moderation {
         Self { typical: (centre + digamma(half) - half.ln()).exp(), degrees: 2.0 * half }
     }
 
-    /// The ratio of one direction in the light of all, `(d s + n phi)/(d + n)` with d + n degrees of freedom (Smyth 2004, eq. 9), and never
+    /// The ratio of one direction moderated by those of all, `(d s + n phi)/(d + n)` with d + n degrees of freedom (Smyth 2004, eq. 9), and never
     /// below 1: no estimate is better than its information says. Of a direction without a ratio it is that of all.
     pub fn moderated(&self, own: Option<Ratio>) -> Ratio {
         let own = own.unwrap_or(Ratio { value: 1.0, degrees: 0.0 });
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn one_group_that_holds_the_information_tells_no_scatter() {
+    fn one_group_that_has_all_the_information_shows_no_scatter() {
         assert!(ratio(&groups(&[3.0, 0.1], &[1.0, 0.01]), 1.0).is_none());
         assert!(ratio(&[], 1.0).is_none() && ratio(&groups(&[1.0, 2.0], &[1.0; 2]), 0.0).is_none());
     }

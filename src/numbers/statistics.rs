@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn the_interval_of_a_ratio_holds_it_as_often_as_it_says_over_clusters_of_unequal_size() {
+    fn the_interval_of_a_ratio_contains_it_as_often_as_it_says_over_clusters_of_unequal_size() {
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let mut normal = || (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();
         let sizes: [f64; 6] = [1.0, 1.0, 2.0, 3.0, 3.0, 8.0];

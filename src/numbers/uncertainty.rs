@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_covariance_that_does_not_fit_its_model_is_told() {
+    fn a_covariance_that_does_not_fit_its_model_is_reported() {
         let mut u = example(None);
         assert_eq!(u.fault(|_| true), None);
         assert!(u.fault(|name| name != "rudder.lift1").unwrap().contains("rudder.lift1"));

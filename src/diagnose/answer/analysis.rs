@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn beside_an_error_that_the_sensors_show_the_ship_is_held_where_it_predicts_worse() {
+    fn beside_an_error_that_the_sensors_show_the_ship_is_that_of_the_base_where_it_predicts_worse() {
         let (model, settings) = (model(), without_repetitions());
         let question = Question::new(&model, &settings, &|_| ()).unwrap();
         let biased = erring(&[("yaw_rate_bias.bias", 0.002)], 16);

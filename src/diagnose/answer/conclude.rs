@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_concluded_on_a_base_that_does_not_hold() {
+    fn nothing_is_concluded_on_a_base_that_does_not_follow_the_recordings() {
         for decided in [Verdict::Named, Verdict::OneOf, Verdict::NothingMissing, Verdict::NotInCatalogue] {
             assert_eq!(conclude(decided, &[], false), Verdict::Insufficient);
             assert_eq!(conclude(decided, &[], true), decided);

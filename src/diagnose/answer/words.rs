@@ -408,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn a_law_is_told_with_its_grade_and_a_refuted_one_without_its_equation() {
+    fn a_law_is_reported_with_its_grade_and_a_refuted_one_without_its_equation() {
         let of = |grade| Law {
             grade,
             equation: vec!["N [N m] = 3.00e5".into(), "Y [N] = 12 v|v|".into()],

@@ -413,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn the_error_that_the_sensors_have_is_told_from_its_look_alike_and_its_size_is_found() {
+    fn the_error_that_the_sensors_have_is_distinguished_from_its_look_alike_and_its_size_is_found() {
         let late = of(&erring(&[("time_skew.position", -2.0)], 12));
         assert!(
             (value(&late[0], 0, "time_skew.position") + 2.0).abs() < 0.1,
@@ -477,7 +477,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_the_sensors_show_of_each_other_is_significant() {
+    fn only_what_makes_the_sensors_inconsistent_is_significant() {
         let m = model();
         let list = candidates(&m, &[]);
         let asked =
@@ -494,7 +494,7 @@ mod tests {
     }
 
     #[test]
-    fn velocities_that_are_late_are_told_from_late_positions_and_from_a_lever_arm() {
+    fn velocities_that_are_late_are_distinguished_from_late_positions_and_from_a_lever_arm() {
         let m = model();
         let list = candidates(&m, &[]);
         let asked = ["log_skew", "time_skew", "position_lever"]
@@ -524,7 +524,7 @@ mod tests {
     }
 
     #[test]
-    fn sensors_that_agree_tell_no_error_from_another() {
+    fn sensors_that_agree_distinguish_no_error_from_another() {
         let sound = of(&runs(&model(), 12));
         assert!(sound[0].over(&sound[1]).is_some_and(|[low, high]| low < 0.0 && high > 0.0), "{sound:?}");
     }

@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_that_nothing_tells_from_the_base_or_from_each_other_are_not_taken_twice() {
+    fn columns_that_nothing_distinguishes_from_the_base_or_from_each_other_are_not_taken_twice() {
         // The second column is the base's own, the fourth is the third, the fifth was not recorded.
         let x = DMatrix::from_fn(40, 3, |i, j| (1.3 * i as f64 + 2.1 * (j * j) as f64 + 0.7 * (i * j) as f64).sin());
         let y = DVector::from_fn(40, |i, _| 5.0 * x[(i, 1)]);

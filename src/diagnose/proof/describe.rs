@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_push_in_two_recordings_may_be_something_the_catalogue_does_not_hold() {
+    fn a_push_in_two_recordings_may_be_something_that_is_not_in_the_catalogue() {
         let location = locate(&at(&model()), RK4, &runs(&model(), 2));
         let window = |i: usize| Window {
             run: format!("run {i}"),

@@ -71,7 +71,7 @@ mod tests {
     use crate::diagnose::example::{column, model, with};
 
     #[test]
-    fn a_file_holds_the_terms_that_act_and_those_that_differ_between_sessions_and_no_neutral_one() {
+    fn a_file_contains_the_terms_that_act_and_those_that_differ_between_sessions_and_no_neutral_one() {
         let full = model();
         let user = full.restricted(|t| !["current", "mean_wind", "heading_bias"].contains(&t));
         let mut found = with(&[("current.north", 0.2)]);

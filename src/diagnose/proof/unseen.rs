@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_noise_that_has_taken_an_error_in_tells_less_of_it_than_the_noise_beside_it() {
+    fn a_noise_that_includes_an_error_shows_less_of_it_than_the_noise_estimated_with_it() {
         let runs = erring(&[("log_scale.error", 0.08)], 6);
         let off = with(&[("log_scale.error", 0.08)]);
         let mut wide = noise();

@@ -73,8 +73,8 @@ impl Hypothesis {
     }
 }
 
-/// The hypotheses that are refitted beside the leader: look-alikes from outside the ship or among its sensors, and whatever promises
-/// nearly as much.
+/// The hypotheses that are refitted beside the leader: look-alikes from outside the ship or among its sensors, and whatever has nearly
+/// as large a predicted gain.
 fn rivals(s: &Screen, leaders: &[&Row], candidates: &[Candidate]) -> Vec<Hypothesis> {
     let leader = leaders[0];
     let first = candidates[leader.candidate].mechanism;
@@ -86,7 +86,7 @@ fn rivals(s: &Screen, leaders: &[&Row], candidates: &[Candidate]) -> Vec<Hypothe
     if matches!(first.kind, Kind::Environment | Kind::Sensor) {
         out.extend(s.rows.iter().filter(alike).filter_map(|r| Hypothesis::in_place_of(r, leader, s, candidates)));
     }
-    // A rival whose promised gain is far below the leader's does not overtake it.
+    // A rival whose predicted gain is far below the leader's does not overtake it.
     let gain_needed = leader.test.statistic - f64::max(RIVAL_GAP, REMAINDER * leader.test.statistic);
     let near = leaders[1..]
         .iter()
@@ -362,7 +362,7 @@ impl Competition<'_> {
     }
 
     /// Refits the leader of a ranking and its rivals, beside them what is either so or not in the model as it was given, and returns the best
-    /// with its confidence set; `None` where no refit confirms what its test promised.
+    /// with its confidence set; `None` where no refit confirms the gain that its test predicted.
     fn best(&self, leaders: &[&Row], given: Option<&Model>) -> Option<(Selected, Estimate)> {
         let candidates = self.problem.candidates;
         let mut contest = self.contest(leaders);
@@ -504,7 +504,7 @@ pub fn compare(
 }
 
 /// The first error of a sensor that a refit confirms: the kinematic consistency of the sensors comes before every mechanism of the ship. Else as
-/// [`compare`], and beside the leaders what is either so or not, whatever its test promises, in the model as it was `given`.
+/// [`compare`], and beside the leaders what is either so or not, whatever gain its test predicts, in the model as it was `given`.
 pub fn compete(
     screen: &Screen,
     leaders: &[&Row],
@@ -548,7 +548,7 @@ mod tests {
     }
 
     #[test]
-    fn the_confidence_set_holds_the_mechanisms_within_the_tolerance_of_the_best() {
+    fn the_confidence_set_contains_the_mechanisms_within_the_tolerance_of_the_best() {
         let r = Ranking::new(vec![entry(0, 91.0, false), entry(1, 100.0, false), entry(2, 89.9, false)]).unwrap();
         assert_eq!((places(&r.entries), places(r.set())), (vec![1, 0, 2], vec![1, 0]));
         assert!(Ranking::new(Vec::new()).is_none());

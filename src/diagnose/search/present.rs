@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_holds_the_clock_and_the_current_that_were_put_into_it_with_what_a_test_would_gain_by_them() {
+    fn a_model_contains_the_clock_and_the_current_that_were_put_into_it_with_what_a_test_would_gain_by_them() {
         assert!(held(&model(), &runs(&model(), 6)).is_empty());
         let clock = [("time_skew.heading", 0.5)];
         let truth = with(&[("current.north", 0.02)]);
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_free_in_the_model_and_what_acts_in_one_session_only_is_held_and_the_ship_itself_is_not() {
+    fn what_is_free_in_the_model_and_what_acts_in_one_session_only_is_present_and_the_ship_itself_is_not() {
         let clock = [("time_skew.heading", 0.5)];
         let (mut base, runs) = (with(&clock), erring(&clock, 6));
         let statistic = |m: &Model| held(m, &runs).first().map(|h| h.1);

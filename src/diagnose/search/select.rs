@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_sensors_show_of_each_other_comes_before_what_the_ship_shows_more_strongly() {
+    fn what_the_kinematic_consistency_shows_comes_before_what_the_ship_shows_more_strongly() {
         let mut all = runs(&with(&[("current.north", 0.6)]), 12);
         all.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[5] = m[5].map(|r| r + 0.001));
         let s = selection_on(all, &plain());

@@ -1,5 +1,5 @@
 //! The settings that a user may change, each with its limits.
-//! The numbers that nobody changes are in the files beside this one.
+//! The numbers that no user can change are in the other files here.
 
 use crate::evaluate::{EvaluationSettings, Judging};
 use crate::fit::{ConstraintSettings, FitSettings};

@@ -235,7 +235,7 @@ fn imo_limits_follow_length_over_speed_and_bind_from_100_m() {
 }
 
 #[test]
-fn an_interval_has_its_value_in_the_middle_where_recordings_tell_a_product_and_not_its_factors() {
+fn an_interval_has_its_value_in_the_middle_where_recordings_determine_a_product_and_not_its_factors() {
     // Opposite relative errors of 20 % of the lift slope and of the wake: (1 + a)(1 - a) is below one for every draw.
     let model = model(Form::Regular);
     let at = |name: &str| model.index(name).unwrap();
