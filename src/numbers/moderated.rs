@@ -91,8 +91,8 @@ impl Moderation {
         Self { typical: (centre + digamma(half) - half.ln()).exp(), degrees: 2.0 * half }
     }
 
-    /// The ratio of one direction moderated by those of all, `(d s + n phi)/(d + n)` with d + n degrees of freedom (Smyth 2004, eq. 9), and never
-    /// below 1: no estimate is better than its information says. Of a direction without a ratio it is that of all.
+    /// The ratio of one direction moderated by those of all, `(d s + n phi)/(d + n)` with d + n degrees of freedom (Smyth 2004, eq. 9), and
+    /// never below 1: no estimate is better than its information says. Of a direction without a ratio it is that of all.
     pub fn moderated(&self, own: Option<Ratio>) -> Ratio {
         let own = own.unwrap_or(Ratio { value: 1.0, degrees: 0.0 });
         let degrees = self.degrees + own.degrees;

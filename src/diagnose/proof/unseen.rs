@@ -52,7 +52,7 @@ pub struct FindingProof {
 
 impl FindingProof {
     /// Compares `after` with `before` on held-out runs, both under the same noise. It is the noise estimated with the finding: the noise of
-    /// a model without a sensor's error includes that error, and under it the two models do not differ.
+    /// a model without a sensor's error includes that error, and under it the two models hardly differ.
     pub fn new(
         before: &Model,
         after: &Model,

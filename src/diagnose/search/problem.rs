@@ -38,7 +38,7 @@ impl Problem<'_> {
     }
 
     /// An estimate inside its bounds. A hull coefficient that is carried is limited by its prior alone, which allows either sign: where it
-    /// ends outside its bounds (a negative damping) it is put at the bound, and the rest is estimated again, until none is outside.
+    /// ends outside its bounds (a damping of the wrong sign) it is put at the bound, and the rest is estimated again, until none is outside.
     pub fn inside_bounds(&self, estimate: &Estimate) -> Estimate {
         let mut found = estimate.clone();
         loop {
@@ -102,7 +102,7 @@ mod tests {
         let problem = Problem { integration: RK4, runs: &runs, candidates: &list, prior: &prior, settings: &settings };
         let damping = column(&m, "hull.Nrr");
         let p = &m.parameters[damping.parameter];
-        // A narrow prior that the damping is negative, against the runs.
+        // A narrow prior around a damping of the wrong sign, against the runs.
         let sure = Prior { mean: p.upper + 3.0 * p.scale, sd: 1e-3 * p.scale };
         let free =
             [FreeParameter::common(damping, Some(sure)), FreeParameter::common(column(&m, "rudder.lift1"), None)];
