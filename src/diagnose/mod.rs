@@ -7,7 +7,7 @@
 //! | [`evidence`] | what is computed of recordings before a mechanism is chosen | `settings` |
 //! | [`search`] | which mechanisms are selected, and the decision on all tests | `evidence` |
 //! | [`proof`] | every finding by itself, on unseen runs | `search` |
-//! | [`law`] | a law for what the catalogue does not hold; port against starboard | `proof` |
+//! | [`law`] | a law for what is not in the catalogue; port against starboard | `proof` |
 //! | [`answer`] | verdict, error rates, document | `law` |
 //! | `pipeline` | the steps in order | all |
 //! | [`plan`] | what planned trials and sensors would show | `answer` |
@@ -28,7 +28,7 @@
 //! | its grade, a pure function of these | [`proof::grade::Grade`] |
 //! | verdict and what is named, withdrawn findings taken out | `answer::analysis::Answer` |
 //! | the same analysis on transformed recordings | [`proof::stability::Stability`] |
-//! | where the catalogue does not hold what is missing, a law for it | [`law::Law`] |
+//! | where what is missing is not in the catalogue, a law for it | [`law::Law`] |
 //! | the same analysis on simulated recordings | [`answer::calibrate::ErrorRates`] |
 //! | proof of all findings on held-out runs | [`proof::prove::HeldOut`] |
 //! | document | [`answer::diagnosis::Diagnosis`] |

@@ -1,5 +1,5 @@
 //! The diagnosis from end to end: each step a function from one named type to the next.
-//! It holds no arithmetic and no threshold; these are in the steps and in the settings.
+//! Arithmetic is in the steps, and thresholds are in the settings.
 
 use super::answer::analysis::Answer;
 use super::answer::calibrate::ErrorRates;
@@ -33,7 +33,7 @@ use std::borrow::Cow;
 /// Diagnoses a model against recordings.
 ///
 /// `runs` are used to locate, name and model, and are not copied where they are given away; `held_out` only to prove. Without
-/// `held_out` a part of the recordings is set aside for the proof, where there are at least eight. `progress` is told each step in
+/// `held_out` a part of the recordings is set aside for the proof, where there are at least eight. `progress` receives each step in
 /// words. The result is the same bits on any number of threads.
 ///
 /// # Errors
@@ -135,7 +135,7 @@ fn visited(law: Law, traces: &[Trace]) -> Law {
     law.over(traces.iter().flat_map(|t| t.state.iter().zip(&t.inputs)))
 }
 
-/// Whose model improved.toml holds, that model, and the covariance of its parameters where they were estimated.
+/// Whose model is in improved.toml, that model, and the covariance of its parameters where they were estimated.
 fn file(
     question: &Question,
     fit: &BaseFit,
@@ -172,7 +172,7 @@ fn report(
         (_, _, Some(law)) => Some(Missing::Law(Some(law))),
         _ => None,
     };
-    // What predicts unseen runs worse than the base model is no improvement, however sure its parts are.
+    // What predicts unseen runs worse than the base model is no improvement, however significant its parts are.
     let worse = proof.as_ref().is_some_and(HeldOut::is_worse);
     let adds = answer.improves() && !worse;
     let kept = if adds { &fits.found } else { &fits.base };

@@ -81,7 +81,7 @@ pub fn outcome(window: &Run, predicted: &Trajectory, ship: &Ship, max_yaw_rate: 
     }
     let md: [Option<f64>; STATES] = std::array::from_fn(|i| (counts[i] > 0).then(|| sums[i] / counts[i] as f64));
     let cvdm = (0..STATES).filter_map(|i| Some(100.0 * md[i]? * weights[i])).sum::<f64>();
-    // A sensor term with absurd parameters can report what no number holds, from a simulation that ran through.
+    // A sensor term with absurd parameters can report values that are not finite, from a simulation that ran through.
     if !cvdm.is_finite() {
         return diverged(0);
     }

@@ -1,5 +1,5 @@
 //! How well models predict recordings: mean deviations, cVDM, and what a fitted model gains on a baseline, with intervals.
-//! It compares trajectories and fits nothing; which windows are held out is the study's.
+//! It compares trajectories and fits nothing; which windows are held out is set in the study.
 //!
 //! # Definitions
 //! Source: Papandreou et al. 2025 (arXiv 2502.18696). For a window of K steps, with differences d between simulated and

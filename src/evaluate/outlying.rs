@@ -1,4 +1,4 @@
-//! The run that a model predicts far worse than all others: what sums up the runs then hangs on it.
+//! The run that a model predicts far worse than all others: what sums up the runs then depends on it.
 //! It asks how far apart the runs are; why one is, a damaged recording or what the model lacks, is for who reads it.
 
 use super::cvdm::Outcome;
@@ -27,7 +27,7 @@ pub struct Outlying {
 }
 
 /// That run, by the windows of all runs, each with the name of its run; `None` where no run stands apart. A window in which the
-/// simulation diverged is told otherwise, and does not count.
+/// simulation diverged is reported by itself, and does not count.
 pub fn outlying<'n>(windows: impl IntoIterator<Item = (&'n str, &'n Outcome)>) -> Option<Outlying> {
     let mut places: HashMap<&str, usize> = HashMap::new();
     let mut runs: Vec<(&str, Vec<f64>)> = Vec::new();
@@ -67,7 +67,7 @@ mod tests {
     use super::super::cvdm::Deviation;
     use super::*;
 
-    fn told(cvdm: &[f64]) -> Option<Outlying> {
+    fn found(cvdm: &[f64]) -> Option<Outlying> {
         let names: Vec<String> = (0..cvdm.len()).map(|i| format!("r{i}")).collect();
         let outcomes: Vec<Outcome> =
             cvdm.iter().map(|c| Outcome::Simulated(Deviation { md: [None; 6], cvdm: *c })).collect();
@@ -75,19 +75,19 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_is_predicted_far_worse_is_told_with_the_range_of_the_others() {
-        let told = told(&[3.6, 6.4, 8.6, 4.4, 61.0, 2.6, 5.1, 7.7]).unwrap();
-        assert_eq!((told.run.as_str(), told.cvdm, told.others), ("r4", 61.0, [2.6, 8.6]));
-        assert!(told.line().contains("warning: `r4`") && told.line().contains("2.6"), "{}", told.line());
+    fn a_run_that_is_predicted_far_worse_is_reported_with_the_range_of_the_others() {
+        let found = found(&[3.6, 6.4, 8.6, 4.4, 61.0, 2.6, 5.1, 7.7]).unwrap();
+        assert_eq!((found.run.as_str(), found.cvdm, found.others), ("r4", 61.0, [2.6, 8.6]));
+        assert!(found.line().contains("warning: `r4`") && found.line().contains("2.6"), "{}", found.line());
     }
 
     #[test]
-    fn runs_that_scatter_alike_few_runs_and_exact_ones_tell_nothing() {
-        assert_eq!(told(&[3.6, 6.4, 8.6, 4.4, 14.0, 2.6, 5.1, 7.7]), None);
-        assert_eq!(told(&[49.0, 6.5, 79.0, 44.0, 24.0, 10.0, 10.4, 89.0]), None);
-        assert_eq!(told(&[1.0, 90.0]), None);
-        assert_eq!(told(&[1e-12, 1e-11, 3e-9, 1e-13]), None);
-        assert_eq!(told(&[]), None);
+    fn runs_that_scatter_alike_few_runs_and_exact_ones_have_no_outlier() {
+        assert_eq!(found(&[3.6, 6.4, 8.6, 4.4, 14.0, 2.6, 5.1, 7.7]), None);
+        assert_eq!(found(&[49.0, 6.5, 79.0, 44.0, 24.0, 10.0, 10.4, 89.0]), None);
+        assert_eq!(found(&[1.0, 90.0]), None);
+        assert_eq!(found(&[1e-12, 1e-11, 3e-9, 1e-13]), None);
+        assert_eq!(found(&[]), None);
     }
 
     #[test]

@@ -1,5 +1,5 @@
 //! The proof: two models against each other on the same runs, as `trimtab evaluate` prints it and a diagnosis concludes with it.
-//! It fits nothing, and asks each model for nothing but its predictions.
+//! It fits nothing, and uses each model's predictions alone.
 
 use super::compare::{Comparison, compare, predict};
 use super::outlying::{Outlying, outlying};
@@ -71,7 +71,7 @@ pub fn prove(baseline: &Model, fitted: &Model, runs: &[Run], judging: &Judging) 
     proof.evaluation()
 }
 
-/// A proof on more runs than are held at once: parts of them are judged, on any thread, and added in their order.
+/// A proof on more runs than are in memory at once: parts of them are judged, on any thread, and added in their order.
 pub struct Proof<'a> {
     baseline: &'a Model,
     fitted: &'a Model,

@@ -10,7 +10,7 @@ use crate::state::STATES;
 use crate::statistics::median;
 use trimtab_ad::smooth::wrap_angle;
 
-/// Samples from which the noise of a channel is told; of longer windows every n-th is taken.
+/// Samples from which the noise of a channel is estimated; of longer windows every n-th is taken.
 const SAMPLES: usize = 5000;
 
 /// Standard deviation of the noise of each channel (m, m, rad, m/s, m/s, rad/s): that of the second differences of measured less

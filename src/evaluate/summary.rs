@@ -1,5 +1,5 @@
 //! Many trajectories under two models in a few numbers, each with its interval over recordings: an improvement, on which verdicts
-//! turn, by Student's t, everything else from a bootstrap. It knows the outcomes alone: neither models nor recordings.
+//! turn, by Student's t, everything else from a bootstrap. It takes the outcomes alone, neither models nor recordings.
 
 use super::compare::Comparison;
 use super::cvdm::{Outcome, by_dimension};
@@ -20,7 +20,7 @@ type Which = fn(&Comparison) -> &Outcome;
 pub struct Estimate {
     /// The number.
     pub value: f64,
-    /// Its 95 % interval; absent with fewer than three runs, and of an improvement where one run holds most of the error.
+    /// Its 95 % interval; absent with fewer than three runs, and of an improvement where one run has most of the error.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ci95: Option<[f64; 2]>,
 }

@@ -1,5 +1,5 @@
 //! The weighted trajectory cost of a model against recordings, with exact first and second derivatives by the parameters.
-//! It knows no constraint, prior or solver: it evaluates one sum of squares and what follows from it.
+//! It has no constraint, prior or solver: it evaluates one sum of squares and what follows from it.
 //!
 //! With M runs of K_i samples, measured states `xi_bar` and simulated states `xi`,
 //!
@@ -112,7 +112,7 @@ pub struct CostOptions {
     pub integration: Integration,
 }
 
-/// Blocks of runs: built, or planned as the indices of their runs where these are too many to be held.
+/// Blocks of runs: built, or planned as the indices of their runs where these are too many for the memory.
 enum Blocks<P> {
     Built(Vec<Block<P>>),
     Planned(Vec<Vec<usize>>),

@@ -1,4 +1,4 @@
-//! What a fit knows of its estimates: active constraints, covariance, and the combinations the data do not determine.
+//! What a fit says of its estimates: active constraints, covariance, and the combinations the data do not determine.
 //! Its matrices are in scaled parameters `z = p / scale`; it solves nothing.
 //!
 //! Linear theory around the solution. With the cost `C = (1/M) sum e^2`, its Gauss-Newton matrix H, the residual variance
@@ -10,8 +10,8 @@
 //! sandwich       Cov = B (c/(c-1) sum_c g_c g_c^T) B,   g_c the gradient of the part of cluster c (runs of one recording)
 //! ```
 //!
-//! The first takes residuals as independent. Along a simulated trajectory they are not, so that it is far too sure of itself;
-//! the second only takes the recordings as independent of each other, and needs several of them. Source: White, Econometrica
+//! The first takes residuals as independent. Along a simulated trajectory they are not, so that its variances are far too small;
+//! the second only takes the recordings as mutually independent, and needs several of them. Source: White, Econometrica
 //! 50 (1982) 1-25 and Liang & Zeger, Biometrika 73 (1986) 13-22 for the sandwich.
 
 use super::cost::Quadratic;
@@ -109,7 +109,7 @@ impl Covariances {
         } else {
             (CovarianceKind::GaussNewton, freedom)
         };
-        // The data's part of the variance alone: what a prior says is as sure as it was.
+        // The data's part of the variance alone: the variance of a prior does not change.
         let inflated = &data * (unit * likeness) + &prior * unit;
         Self {
             data,
@@ -145,11 +145,11 @@ impl Covariances {
         self.entry(task, self.chosen(), j, j).map(|v| v.max(0.0).sqrt())
     }
 
-    /// Standard error of a parameter in its own unit; 0 where active constraints hold it.
+    /// Standard error of a parameter in its own unit; 0 where active constraints fix it.
     pub fn standard_error(&self, task: &Task, j: usize) -> Option<f64> {
         // Rounding in the projection leaves 1e-16 where active constraints leave nothing.
-        let held = self.directions.row(j).norm() < 1e-9;
-        self.error(task, j).map(|e| if held { 0.0 } else { e })
+        let fixed = self.directions.row(j).norm() < 1e-9;
+        self.error(task, j).map(|e| if fixed { 0.0 } else { e })
     }
 
     /// A covariance matrix in the parameters' own units.

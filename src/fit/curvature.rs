@@ -1,5 +1,5 @@
-//! The matrix of second derivatives that Ipopt is given: Gauss-Newton, what that leaves out as far as gradients tell, and damping.
-//! It chooses no step: that is Ipopt's work.
+//! The matrix of second derivatives that Ipopt is given: Gauss-Newton, what that leaves out as estimated from gradients, and damping.
+//! It chooses no step: Ipopt does.
 //!
 //! ```text
 //! W = abs(H + S) + damping diag(H)
@@ -7,7 +7,7 @@
 //!
 //! H is the Gauss-Newton matrix of cost and priors in scaled parameters. It leaves out the curvature of the residuals, which is a multiple of
 //! H in some direction where residuals are large: Newton steps then overshoot, however near the optimum. The matrix S stands for it,
-//! learnt from how the gradient changed over each step, and is used as long as it foretells the change of the objective better than H
+//! learnt from how the gradient changed over each step, and is used as long as it predicts the change of the objective better than H
 //! alone does. Source: Dennis, Gay and Welsch, "An adaptive nonlinear least-squares algorithm", ACM Trans. Math. Softw. 7 (1981)
 //! 348-368, with the change of the gradient less that by H for the change that S explains. abs() takes the absolute values of the
 //! eigenvalues: at a minimum none is below 0.
@@ -18,7 +18,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// Trial points of a line search up to which a step counts as foretold, and from which on as poorly foretold.
+/// Trial points of a line search up to which a step counts as well predicted, and from which on as poorly predicted.
 const FORETOLD: usize = 1;
 const POORLY: usize = 3;
 

@@ -53,11 +53,11 @@ pub(super) struct Work {
 /// Where one solve, with its restarts, ended.
 pub(super) struct Descent {
     pub p: Vec<f64>,
-    /// Ipopt's word at its end.
+    /// Ipopt's status at its end.
     pub status: Status,
     /// What ended it before that, where something else did.
     pub stop: Option<Stop>,
-    /// What holds `p` back, where it is the solver's optimum, with the multipliers.
+    /// The active limits at `p`, where it is the solver's optimum, with the multipliers.
     pub optimum: Option<(ActiveSet, Multipliers)>,
     /// Ipopt's last answer, to say what it could not satisfy.
     pub last: Option<Solution>,
@@ -249,9 +249,9 @@ impl Task<'_> {
         }
     }
 
-    /// What holds a solution back: without the limit, whose multiplier is y and whose normal is a, the point would move by `y a' H^-1 a`
-    /// across it (H the curvature of the objective), and that is more than its distance from it. An interior-point solution keeps
-    /// a distance of the barrier parameter over y from an active limit, so that neither y nor the distance tells it alone.
+    /// The active limits at a solution. Without the limit, whose multiplier is y and whose normal is a, the point would move by
+    /// `y a' H^-1 a` across it (H the curvature of the objective), and that is more than its distance from it. An interior-point solution keeps
+    /// a distance of the barrier parameter over y from an active limit, so that neither y nor the distance shows alone whether it is active.
     fn active_set(&self, stage: &Stage, p: &[f64], multipliers: &Multipliers) -> ActiveSet {
         let n = p.len();
         let yielding = stage.local(p).map(|local| {

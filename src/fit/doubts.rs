@@ -1,4 +1,4 @@
-//! What the residuals of a fit say against taking it at its word: model error, windows that are too long, residuals alike.
+//! What the residuals of a fit say against its estimates: model error, windows that are too long, residuals alike.
 //! It computes three statistics and compares each with a limit; it changes no estimate.
 //!
 //! With the weighted residual `e_c(k)` of channel c at sample k of a run,
@@ -64,7 +64,7 @@ const WINDOWS: usize = 1000;
 /// Lags of which products are computed at once.
 const LAGS: usize = 16;
 
-/// A reason not to take a fit at its word.
+/// A reason to doubt a fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Doubt {
     /// What is wrong.
@@ -207,7 +207,7 @@ impl ResidualStatistics {
             limit: LIKENESS_LIMIT,
             sentence: format!(
                 "residuals are alike within runs and recordings, {value:.0} of them as good as one (the intervals allow for it as \
-                 far as {} can tell)",
+                 far as {} can show)",
                 number_of(covariances.clusters, "recording")
             ),
         })

@@ -14,7 +14,7 @@ pub enum FitError {
     NoRuns,
     /// The file that keeps the runs cannot be read.
     #[error(
-        "the temporary file with the recordings cannot be read; check the disk that holds the folder for temporary files"
+        "the temporary file with the recordings cannot be read; check the disk with the folder for temporary files"
     )]
     Unreadable,
     /// There is nothing to fit.

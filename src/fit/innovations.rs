@@ -1,4 +1,4 @@
-//! The likelihood of runs with the gains of the Kalman filter held fixed, as a function of the free parameters: its value, the innovations
+//! The likelihood of runs with the gains of the Kalman filter fixed, as a function of the free parameters: its value, the innovations
 //! one by one, and exact derivatives. It estimates no parameter: the fit by likelihood does, and renews noise and gains on its way.
 
 use super::cost::{Compared, Quadratic, Residuals, check};
@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 /// Iterations of the noise estimate in a round.
 pub(super) const NOISE_ITERATIONS: usize = 8;
 
-/// Minus the log-likelihood of runs with the filter's gains held fixed, up to a constant: half the sum of squared standardised innovations.
+/// Minus the log-likelihood of runs with the filter's gains fixed, up to a constant: half the sum of squared standardised innovations.
 ///
 /// ```text
 /// f(p) = 1/2 sum_k e_k^2 / s_k
@@ -52,7 +52,7 @@ pub fn with_uncertain_coefficients(model: &Model) -> Model {
         }
         let prior = model.parameters[i].prior.or(FreeParameter::uncertain(&model, i).prior);
         let p = &mut model.parameters[i];
-        // Whatever the prior says, a value beyond its bounds is no ship.
+        // Whatever the prior says, no ship has a value beyond its bounds.
         (p.free, p.prior) = (true, prior);
     }
     model

@@ -1,7 +1,7 @@
 //! The fit by likelihood: parameters with priors, an unknown force, sensor noise and initial states, solved through Ipopt like any other.
 //! The likelihood itself is that of `crate::likelihood`; which terms a model has is decided elsewhere.
 //!
-//! With the gains of the Kalman filter held fixed, half the sum of squared standardised innovations
+//! With the gains of the Kalman filter fixed, half the sum of squared standardised innovations
 //!
 //! ```text
 //! f(p) = 1/2 sum_k e_k^2 / s_k + 1/2 sum_j ((p_j - mean_j) / sd_j)^2
@@ -45,14 +45,14 @@ use serde::Serialize;
 /// Rounds of gains and noise at most, in each stage.
 const ROUNDS: usize = 30;
 
-/// Rounds up to which a solve takes at most so many iterations: with gains held fixed the objective far from where they were made is another
+/// Rounds up to which a solve takes at most so many iterations: with fixed gains the objective far from where they were made is another
 /// one, and what is gained there is lost when they are renewed.
 const SHORT: [(usize, usize); 2] = [(3, 4), (6, 16)];
 
 /// Rise of the log-posterior in a round below which gains and noise are settled: less than a third of a likelihood unit turns no comparison.
 const SETTLED: f64 = 0.3;
 
-/// Likelihood units by which a start may be below the optimum with gains and noise held fixed: the barrier's own scale, a thousandth of it at
+/// Likelihood units by which a start may be below the optimum with gains and noise fixed: the barrier's own scale, a thousandth of it at
 /// first, is then one unit.
 const REACH: f64 = 1e3;
 
@@ -328,7 +328,7 @@ impl<'t> Task<'t> {
         Ok((descent, fall))
     }
 
-    /// A solve of the likelihood with gains held fixed.
+    /// A solve of the likelihood with fixed gains.
     fn likelihood_stage<'s>(
         &'s self,
         evaluations: &'s Evaluations<'s>,
@@ -474,7 +474,7 @@ mod tests {
 
     #[test]
     fn with_noise_and_gains_of_its_end_a_newton_step_promises_next_to_nothing() -> Result<(), FitError> {
-        // A current that the model lacks: noise and parameters then pull at each other.
+        // A current that the model lacks: the noise then depends on the parameters, and they on the noise.
         let (start, settings) = (off(1.05), settings());
         let runs = runs(&crate::diagnose::example::with(&[("current.north", 0.6)]), 12);
         let found = fit(&start, &runs[..], &settings, &mut |_| true)?;
@@ -489,7 +489,7 @@ mod tests {
         priors.add_gradient(&p, &mut gradient);
         priors.add_hessian(&mut matrix);
         let scale = |j: usize| matrix[(j, j)].sqrt();
-        // A bound holds the others back.
+        // The others are at an active bound.
         let is_away = |j: &usize| {
             let own = &start.parameters[free[*j].column.parameter];
             (p[*j] - own.lower).min(own.upper - p[*j]) > 1e-2 * own.scale

@@ -1,4 +1,4 @@
-//! What ends a fit before its optimum: its limits on iterations, evaluations and time, a caller's word, and a solve that gets nowhere.
+//! What ends a fit before its optimum: its limits on iterations, evaluations and time, a caller's request, and a solve without progress.
 //! It watches and counts; the best point so far is kept elsewhere.
 
 use super::settings::FitSettings;
@@ -121,7 +121,7 @@ impl<'a> Watch<'a> {
         self.stop.is_none()
     }
 
-    /// Notes an iteration that the caller lets go on or not; false where the solve must end.
+    /// Notes an iteration after which the caller continues or not; false where the solve must end.
     pub fn goes_on(&mut self, report: &IterationReport, wanted: bool) -> bool {
         if self.stop.is_some() {
             return false;

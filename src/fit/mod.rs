@@ -18,7 +18,7 @@
 //! | `stages` | runs in shorter pieces, or a few of them, to be fitted first |
 //! | `descent` | one solve through Ipopt, with its restarts |
 //! | `solve` | from the start through the stages to an optimum that was checked |
-//! | `innovations` | the likelihood with the gains of the filter held fixed |
+//! | `innovations` | the likelihood with the gains of the filter fixed |
 //! | `likelihood` | the fit by likelihood: noise, gains and parameters in turn |
 //! | `subspace` | directions that constraints leave free |
 //! | `covariance` | covariances, and what the data do not determine |

@@ -91,7 +91,7 @@ pub fn multi_start(
 }
 
 /// As [`multi_start`], with the starts dealt out to the ranks, each of which has all `runs`: every rank gets every row. A start
-/// whose row is in `known`, from a job that was stopped, is not fitted again; `ended` is told of each other one as it ends.
+/// whose row is in `known`, from a job that was stopped, is not fitted again; `ended` receives each other one as it ends.
 pub fn multi_start_over(
     ranks: &Ranks,
     model: &Model,

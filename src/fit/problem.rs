@@ -1,5 +1,5 @@
 //! A fit as the nonlinear program that Ipopt is given: scaled parameters, cost plus priors, linear constraints.
-//! It decides nothing about what is fitted and reports nothing: it translates, keeps the best feasible point and minds the limits.
+//! It decides nothing about what is fitted and reports nothing: it translates, keeps the best feasible point and checks the limits.
 
 use super::constraints::Row;
 use super::cost::Quadratic;
@@ -31,7 +31,7 @@ pub struct Progress<'a> {
 
 /// Priors on the free parameters, as residuals beside those of the data.
 ///
-/// The cost is no likelihood, so a prior needs to be told how much a unit of cost is worth. With the residuals' variance
+/// The cost is no likelihood, so a prior needs the weight of a unit of cost. With the residuals' variance
 /// `s^2` (of the weighted residuals, which are taken as equally uncertain), `-2 s^2/M log posterior` is, up to a constant,
 /// `C(p) + w sum_j ((p_j - mean_j)/sd_j)^2` with `w = strength s^2/M`.
 #[derive(Clone, Debug)]

@@ -40,7 +40,7 @@ impl WorkingRows {
         (0..self.taken.len()).filter(|i| self.taken[*i]).collect()
     }
 
-    /// Multipliers of all rows from those of the solver's: a row left out holds nothing back.
+    /// Multipliers of all rows from those of the solver's: a row left out is not active.
     pub fn of_all(&self, multipliers: &[f64]) -> Vec<f64> {
         let mut own = multipliers.iter();
         self.taken.iter().map(|taken| if *taken { own.next().copied().unwrap_or(0.0) } else { 0.0 }).collect()
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn a_limit_that_holds_a_curve_between_the_rows_taken_first_is_kept() -> Result<(), FitError> {
+    fn a_limit_that_is_active_between_the_rows_taken_first_is_kept() -> Result<(), FitError> {
         let (truth, runs) = (model(), runs(&model(), 6));
         let mut settings = FitSettings { integration: RK4, ..FitSettings::default() };
         // Between this and the upper limit at a = 0 there is hardly room: a few degrees beside it the drag of the ship breaks this one.

@@ -1,5 +1,5 @@
 //! Section `[fit]` of a study: where derivatives come from, tolerances, limits, constraints.
-//! It holds values and checks them; what they do is elsewhere.
+//! It contains values and checks them; other files use them.
 
 use super::constraints::ConstraintSettings;
 use super::cost::{CostOptions, Derivatives};

@@ -1,5 +1,5 @@
 //! From the start of a fit through its stages to an optimum that was checked, with the priors weighed anew between solves.
-//! It says where the fit ended and what stopped it; how sure the estimates are is the work of `covariance`.
+//! It says where the fit ended and what stopped it; how uncertain the estimates are is the work of `covariance`.
 //!
 //! Shorter pieces of the runs are fitted first where errors grow too fast for whole runs; of many runs, a few (see `stages`).
 //! An optimum is only called one after a second solve from a disturbed point near it, by another Hessian (limited memory), found
@@ -45,7 +45,7 @@ const TOUCH: f64 = 1e-6;
 
 /// The check of an optimum: its seed, the rise of the cost by the disturbance as a share of the cost, the largest change of a parameter
 /// in units of its scale, the share of the way to the nearest limit, iterations of the second solve, and the share of what it looks for that
-/// its tolerance leaves: in units of unit curvature a gradient g promises g^2/2.
+/// its tolerance leaves: in units of unit curvature a gradient g predicts a fall of g^2/2.
 const CHECK_SEED: u64 = 20_261_126;
 const CHECK_RISE: f64 = 0.05;
 const CHECK_REACH: f64 = 0.5;
@@ -64,7 +64,7 @@ pub(super) struct End {
     pub converged: bool,
     /// How the fit ended, in words.
     pub words: String,
-    /// The solver's own word for it.
+    /// The solver's own name for it.
     pub solver: &'static str,
     /// How often an optimum was checked by a second solve, and how many of these found a lower cost.
     pub checks: [usize; 2],
@@ -102,7 +102,7 @@ impl Task<'_> {
         let mut curvature = Curvature::unknown(from.len());
         let mut end = self.weighed(&from, multipliers, &mut priors, &mut curvature, &mut shared)?;
         let (mut checks, mut is_checked) = ([0, 0], false);
-        // Of many runs a few tell of another minimum as well; whether it is lower is a matter of all.
+        // Of many runs a few show another minimum as well as all; only all show whether it is lower.
         let few = self.few_runs()?;
         let few = few.as_ref().map(|(runs, weights)| self.cost_of(runs, weights.clone())).transpose()?.flatten();
         let of_few = few.as_ref().map(|few| Evaluations::of(few));
@@ -257,8 +257,8 @@ impl Task<'_> {
         rows.chain(self.bounds.iter().enumerate().map(of_bound)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The start of the last stage: the fit's own start, or what fits shorter pieces or a few of the runs where that is better. A few of the
-    /// runs are held back by the constraints that hold back all of them: the multipliers come along.
+    /// The start of the last stage: the fit's own start, or what fits shorter pieces or a few of the runs where that is better. The
+    /// constraints that are active for a few of the runs are so for all of them: the multipliers come along.
     fn approach(&self, shared: &mut Shared) -> Result<(usize, Vec<f64>, Option<Multipliers>), FitError> {
         let parts = stages::parts(self);
         if parts < 2 && !self.start_cost.is_finite() {
@@ -335,7 +335,7 @@ impl Task<'_> {
         self.variance_of(cost, value) * self.settings.correlated_samples / cost.runs() as f64
     }
 
-    /// The better of where the solver ended and the start, with what holds it back and why it is the answer.
+    /// The better of where the solver ended and the start, with the active limits and why it is the answer.
     fn settle(
         &self,
         end: Descent,
@@ -382,7 +382,7 @@ impl Task<'_> {
         End { converged: is_checked, words, solver, checks, p: end.p, priors, work, active, parts: 1 }
     }
 
-    /// Infeasibility is an error where it is the constraints' own: they are linear, so that Ipopt's word is final.
+    /// Infeasibility is an error where it is the constraints' own: they are linear, so that Ipopt's answer is exact.
     pub(super) fn check_feasible(&self, end: &Descent) -> Result<(), FitError> {
         if !matches!(end.status, Status::Infeasible | Status::RestorationFailed) || self.is_feasible(&end.p) {
             return Ok(());
@@ -402,7 +402,7 @@ impl Task<'_> {
         }
     }
 
-    /// Rows and bounds that a point touches, where no multipliers say which of them hold it back.
+    /// Rows and bounds that a point touches, where no multipliers say which of them are active.
     fn touched(&self, p: &[f64]) -> ActiveSet {
         let touches = |i: &usize| {
             let row = &self.rows[*i];
@@ -459,8 +459,8 @@ impl Task<'_> {
         }
     }
 
-    /// The point on the limits that hold an end back, where it is feasible and no worse: of all steps to them, that along which the quadratic
-    /// model of the cost rises least, `d = H^-1 N' (N H^-1 N')^-1 r` with the normals N of the limits and the distances r to them.
+    /// The point on the limits that are active at an end, where it is feasible and no worse: of all steps to them, that along which the
+    /// quadratic model of the cost rises least, `d = H^-1 N' (N H^-1 N')^-1 r` with the normals N of the limits and the distances r to them.
     fn on_limits(&self, end: &End) -> Option<Vec<f64>> {
         let (n, scaling) = (end.p.len(), &self.scaling);
         let stage = self.stage(&self.evaluations, &end.priors);

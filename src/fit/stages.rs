@@ -3,10 +3,10 @@
 //!
 //! Where errors of the start grow fast, runs are cut into shorter pieces, each started from its own measured state.
 //! The cost of a run simulated in open loop has one basin near the ship and many far from it: a hull coefficient that is wrong
-//! by a third turns the simulated ship out of step with the recorded one, and from there on its track says nothing of which way
-//! to go. Over a shorter piece the same error has not grown yet. So the shortest pieces over which errors grow no faster than
-//! linearly are fitted first, then pieces twice as long, then the whole runs. Source of the idea: multiple shooting, Bock, in
-//! Modelling of Chemical Reaction Systems (1981) 102-125; here the states at the cuts are the measured ones.
+//! by a third turns the simulated ship out of step with the recorded one, and from there on its track does not show in which
+//! direction the parameters are wrong. Over a shorter piece the same error has not grown yet. So the shortest pieces over which errors
+//! grow no faster than linearly are fitted first, then pieces twice as long, then the whole runs. Source of the idea: multiple shooting,
+//! Bock, in Modelling of Chemical Reaction Systems (1981) 102-125; here the states at the cuts are the measured ones.
 
 use super::cost::Cost;
 use super::error::FitError;
@@ -52,7 +52,7 @@ impl Sample {
         if parts > 1 { falling(parts).map(Self::Pieces).collect() } else { Self::few(task).into_iter().collect() }
     }
 
-    /// A few of the runs, where there are many and a fit takes steps that few of them tell as well as all.
+    /// A few of the runs, where there are many and a fit takes steps that a few of them determine as well as all.
     pub fn few(task: &Task) -> Option<Self> {
         let runs = task.cost.runs();
         let many = runs >= MANY_RUNS && task.settings.hessian == Hessian::GaussNewton;

@@ -1,5 +1,5 @@
 //! Directions that active constraints leave free, and the inverse of a curvature within them.
-//! It knows matrices alone: no model, no cost, no solver.
+//! It is about matrices alone: no model, no cost, no solver.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -77,9 +77,9 @@ mod tests {
     }
 
     #[test]
-    fn constraints_that_hold_every_variable_leave_no_variance() {
-        let held = inverse(&DMatrix::identity(2, 2), &null_space(&[vector(&[1.0, 0.0]), vector(&[0.0, 1.0])], 2));
-        assert_eq!((held.matrix, held.rank), (DMatrix::zeros(2, 2), 0));
+    fn constraints_that_fix_every_variable_leave_no_variance() {
+        let found = inverse(&DMatrix::identity(2, 2), &null_space(&[vector(&[1.0, 0.0]), vector(&[0.0, 1.0])], 2));
+        assert_eq!((found.matrix, found.rank), (DMatrix::zeros(2, 2), 0));
     }
 
     #[test]
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_data_do_not_determine_is_told_from_what_they_do() {
+    fn what_the_data_do_not_determine_is_distinguished_from_what_they_do() {
         // The data see 2 x + y and w alone.
         let h = DMatrix::from_row_slice(3, 3, &[4.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 5.0]);
         let inverse = inverse(&h, &DMatrix::identity(3, 3));

@@ -1,4 +1,4 @@
-//! The outcome of a fit: estimates with their uncertainty, what held them back, what it cost; and [`fit`], which joins the steps.
+//! The outcome of a fit: estimates with their uncertainty, active constraints, what it cost; and [`fit`], which joins the steps.
 //! It solves nothing and prints nothing; the words are in [`report`](super::report).
 
 use super::cost::Cost;
@@ -42,11 +42,11 @@ pub struct Estimate {
     pub standard_error: Option<f64>,
     /// 95 % interval, absent with the standard error.
     pub interval: Option<[f64; 2]>,
-    /// `lower` or `upper` where the estimate lies on a bound that holds it back.
+    /// `lower` or `upper` where the estimate lies on an active bound.
     pub at_bound: Option<&'static str>,
 }
 
-/// A constraint that holds the fit back.
+/// An active constraint or bound at the end of a fit.
 #[derive(Clone, Debug, Serialize)]
 pub struct Active {
     /// In words: `R'(1.31 m/s) >= 0 N s/m`.
@@ -76,13 +76,13 @@ pub struct Fit {
     pub headline: String,
     /// How it ended, in words: what stopped the solver, and whether its last point is the one returned.
     pub status: String,
-    /// The solver's own word for how its last solve ended, as Ipopt names it.
+    /// How the solver's last solve ended, as Ipopt names it.
     pub solver_status: &'static str,
     /// Where the solver's second derivatives came from.
     pub hessian: Hessian,
     /// How often the optimum was checked by a second solve from a disturbed point, and how many of these found a lower cost.
     pub checks: [usize; 2],
-    /// What residuals say against taking the fit at its word.
+    /// What residuals say against the estimates.
     pub doubts: Vec<Doubt>,
     /// The statistics behind the doubts.
     pub residual_statistics: ResidualStatistics,
@@ -103,7 +103,7 @@ pub struct Fit {
     /// How many times larger the variances are than independent residuals would make them; absent with fewer than two
     /// recordings.
     pub design_effect: Option<f64>,
-    /// Constraints and bounds that hold the fit back.
+    /// Active constraints and bounds.
     pub active: Vec<Active>,
     /// What a fit by likelihood says beside its estimates; absent in a fit of trajectories.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -145,9 +145,9 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The estimates as they are told, zero where only rounding is left.
+    /// The estimates as they are reported, zero where only rounding is left.
     pub fn told(&self) -> Vec<Estimate> {
-        let told = |e: &Estimate| {
+        let reported = |e: &Estimate| {
             let parameter = self.model.index(&e.name).map(|i| &self.model.parameters[i]);
             let whole = |x: f64| parameter.map_or(x, |p| p.told(x));
             Estimate {
@@ -158,7 +158,7 @@ impl Fit {
                 ..e.clone()
             }
         };
-        self.estimates.iter().map(told).collect()
+        self.estimates.iter().map(reported).collect()
     }
 
     /// The covariance as a model file keeps it; nothing where the data determine no parameter.
@@ -237,15 +237,15 @@ fn by_likelihood(
     progress: &mut dyn FnMut(&Progress) -> bool,
     clock: Instant,
 ) -> Result<Fit, FitError> {
-    let held: Vec<Run> = runs.iter().map(Cow::into_owned).collect();
-    if held.len() < runs.len() {
+    let read: Vec<Run> = runs.iter().map(Cow::into_owned).collect();
+    if read.len() < runs.len() {
         return Err(FitError::Unreadable);
     }
     let all = with_uncertain_coefficients(model);
-    let cost = Cost::over(ranks, &all, &held[..], settings.cost_options())?;
+    let cost = Cost::over(ranks, &all, &read[..], settings.cost_options())?;
     check_ranks(&cost)?;
-    let task = Task::new(&all, &cost, Runs::from(&held[..]), settings)?;
-    let LikelihoodEnd { end, innovations, likelihood } = task.solve_by_likelihood(&held, progress)?;
+    let task = Task::new(&all, &cost, Runs::from(&read[..]), settings)?;
+    let LikelihoodEnd { end, innovations, likelihood } = task.solve_by_likelihood(&read, progress)?;
     let mut fit = describe(&task, &Evaluations::of(&innovations), 1.0, end, clock);
     for (p, own) in fit.model.parameters.iter_mut().zip(&model.parameters) {
         (p.free, p.prior) = (own.free, own.prior);
@@ -330,7 +330,7 @@ pub(crate) fn labels<'a>(parameters: impl Iterator<Item = (&'a str, &'a str)> + 
     parameters.clone().map(|(symbol, name)| if alone(symbol) { symbol } else { name }).collect()
 }
 
-/// What holds the solution back, in words.
+/// The active constraints and bounds, in words.
 fn active(task: &Task, end: &End) -> Vec<Active> {
     let names =
         labels(task.cost.free().iter().map(|i| &task.model.parameters[*i]).map(|p| (p.info.symbol, p.name.as_str())));

@@ -1,5 +1,5 @@
 //! What runs add to the cost and its derivatives: sums of squares, of gradients and of the products behind the Gauss-Newton matrix.
-//! It knows no run, weight or model: it is given weighted residuals and their derivatives, sample by sample.
+//! It uses no run, weight or model: it is given weighted residuals and their derivatives, sample by sample.
 
 use crate::sensitivity::{Plain, Products};
 use crate::state::STATES;

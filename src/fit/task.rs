@@ -43,7 +43,7 @@ pub(super) struct Task<'a> {
     deviations: Vec<FreeParameter>,
 }
 
-/// Rows and bounds that hold a point back.
+/// Rows and bounds that are active at a point.
 pub(super) struct ActiveSet {
     pub rows: Vec<usize>,
     /// Index of the free parameter, and which bound.
@@ -140,7 +140,7 @@ impl<'a> Task<'a> {
         model_at(self.model, self.cost.free(), &self.deviations, p)
     }
 
-    /// Whether the mass matrix at `p` can be inverted, in every session: a point where it cannot is no ship.
+    /// Whether the mass matrix at `p` can be inverted, in every session: a point where it cannot describes no ship.
     pub fn has_mass(&self, p: &[f64]) -> bool {
         self.sessions.iter().all(|session| {
             let mut theta = self.model.values();

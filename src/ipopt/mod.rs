@@ -1,5 +1,5 @@
 //! A safe front to the interior-point solver Ipopt: an [`Nlp`] and [`Options`] in, a [`Solution`] with its [`Status`] out.
-//! It knows nothing of ships or fits and scales nothing.
+//! It is independent of ships and fits, and scales nothing.
 //!
 //! The problem, with n variables and m constraints:
 //!

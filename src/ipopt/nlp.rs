@@ -1,4 +1,4 @@
-//! What a nonlinear program must be able to evaluate, and what Ipopt tells it of each iteration.
+//! What a nonlinear program must be able to evaluate, and what Ipopt reports of each iteration.
 //! It says nothing of how the program is solved.
 
 /// A nonlinear program: objective, constraints and their derivatives.
@@ -62,8 +62,8 @@ pub trait Nlp {
 /// The multipliers of a solution, as in the Lagrangian of [this module](super).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Multipliers {
-    /// lambda, one a constraint: positive where the upper bound of a constraint holds the objective back, negative where the
-    /// lower one does.
+    /// lambda, one a constraint: positive where the upper bound of a constraint is active, negative where the
+    /// lower one is.
     pub constraints: Vec<f64>,
     /// z_lower, one a variable, not negative; 0 for a fixed variable.
     pub lower: Vec<f64>,
@@ -71,7 +71,7 @@ pub struct Multipliers {
     pub upper: Vec<f64>,
 }
 
-/// What Ipopt tells of one iteration, under the names of the columns of its own log.
+/// What Ipopt reports of one iteration, under the names of the columns of its own log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IterationReport {
     /// Number of the iteration; 0 is the start.

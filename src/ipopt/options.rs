@@ -1,5 +1,5 @@
 //! How to solve: tolerances, limits, the source of the Hessian, and Ipopt's own options by name.
-//! It holds values; handing them to Ipopt is the work of `ffi`.
+//! It contains values; handing them to Ipopt is the work of `ffi`.
 
 use std::fmt;
 

@@ -6,7 +6,7 @@ use super::nlp::{Multipliers, Nlp};
 use super::options::{HessianMode, Options};
 use super::status::{Counts, IpoptError};
 
-/// What Ipopt is told in place of an infinite bound; it takes anything beyond 1e19 for "none".
+/// What Ipopt gets in place of an infinite bound; it takes anything beyond 1e19 for "none".
 const NO_BOUND: f64 = 2e19;
 
 /// The part of an [`Nlp`] that stays fixed during a solve, checked.
@@ -122,7 +122,7 @@ pub(super) struct Context<'a> {
     pub(super) nlp: &'a mut dyn Nlp,
     pub(super) problem: Problem,
     /// Whether the start is asked for only to fill the shim's result arrays, before the solve: they get NaN, so that an
-    /// answer Ipopt never wrote is told from one it did.
+    /// answer Ipopt never wrote is distinguished from one it did.
     pub(super) placeholder: bool,
     pub(super) counts: Counts,
     pub(super) iterations: usize,

@@ -231,7 +231,7 @@ pub enum IpoptError {
         /// Columns of the matrix.
         columns: usize,
     },
-    /// Ipopt knows no such option, or refuses its value.
+    /// Ipopt has no such option, or refuses its value.
     #[error("Ipopt refuses option {name} = {value}; check its name, type and range in the Ipopt manual")]
     Option {
         /// Name of the option.

@@ -344,7 +344,7 @@ fn linear_constraints_have_their_jacobian_evaluated_once() {
 }
 
 #[test]
-fn without_constraints_the_bounds_alone_hold_the_optimum() {
+fn without_constraints_the_bounds_alone_fix_the_optimum() {
     let mut free = distance();
     (free.rows, free.range, free.bounds) = (Vec::new(), Vec::new(), (-1.0, 1.5));
     let solution = solve(&mut free, &Options::default()).unwrap();

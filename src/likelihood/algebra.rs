@@ -1,5 +1,5 @@
 //! The small dense algebra of scores and information: parts of a matrix, and an inverse where directions carry no information.
-//! It knows no ship and no test.
+//! It depends on no ship and no test.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 

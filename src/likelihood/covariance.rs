@@ -14,7 +14,7 @@ pub const Z: usize = 15;
 /// A symmetric matrix over the filter state, of which the entries `[i][j]` with `j <= i` are kept.
 pub type Square<S> = [[S; Z]; Z];
 
-/// What a measurement tells of the filter state.
+/// The correction of the filter state by a measurement.
 #[derive(Clone, Copy, Debug)]
 pub struct Told<S> {
     /// The gain.
@@ -30,7 +30,7 @@ impl<S: Scalar> Told<S> {
     }
 }
 
-/// Writes a row of the covariance as it is once a measurement is taken out that `before` holds and `p` does not know yet.
+/// Writes a row of the covariance after the correction `before`, which is not in `p` yet.
 #[inline(always)]
 fn row<S: Scalar>(p: &Square<S>, before: Option<&Told<S>>, place: usize, out: &mut [S; Z]) {
     (0..=place).for_each(|i| out[i] = p[place][i]);
@@ -75,7 +75,7 @@ pub fn sum_along<S: Scalar + PartialEq>(
     }
 }
 
-/// Takes `gain ph'` out of the covariance: what a measurement tells.
+/// Takes `gain ph'` out of the covariance: the correction by a measurement.
 #[inline(always)]
 pub fn correct<S: Scalar>(p: &mut Square<S>, Told { gain, ph }: &Told<S>) {
     // Each row by itself, so that the loop along it has a fixed length.

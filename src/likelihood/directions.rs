@@ -1,5 +1,5 @@
 //! The directions in parameter space along which a filter carries sensitivities, and their part in accelerations and reports.
-//! It carries nothing through time: that is the filter's.
+//! It carries nothing through time: the filter does.
 
 use super::pass::Column;
 use crate::dynamics::Dynamics;

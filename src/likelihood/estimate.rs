@@ -258,7 +258,7 @@ pub fn estimate(
     estimate_above(f64::NEG_INFINITY, start, integration, runs, free, noise, prior, effort)
 }
 
-/// As [`estimate`], given up where even twice what the quadratic model promises ends below a log-posterior of `least`.
+/// As [`estimate`], given up where even twice the gain that the quadratic model predicts ends below a log-posterior of `least`.
 pub fn estimate_above(
     least: f64,
     start: &Model,
@@ -276,7 +276,7 @@ pub fn estimate_above(
     for round in 0..effort.rounds {
         point = fit.differentiated(point);
         let quadratic = quadratic(&point.sums.evidence, &point.model, free);
-        // A law that bends may hold more than its slope where it starts promises: never before the first step.
+        // A nonlinear law may gain more than its slope at the start predicts: never before the first step.
         if round > 0 && least.is_finite() && point.value + 2.0 * quadratic.promise(&quadratic.step(0.0)) < least {
             break;
         }
@@ -291,7 +291,7 @@ pub fn estimate_above(
             None => true,
             Some(next) => length < STEP_SHORTEST || next.value - point.value < STEP_GAIN,
         };
-        // A noise that was refused at this very point would be refused again.
+        // A noise that was refused at this point would be refused again.
         refused &= next.is_none();
         point = next.unwrap_or(point);
         let before = point.value;
@@ -326,7 +326,7 @@ struct Point {
     sums: Sums,
     /// Log-likelihood plus log-prior.
     value: f64,
-    /// Whether the sums hold scores and information.
+    /// Whether the sums contain scores and information.
     differentiated: bool,
     /// The step maps along the filtered paths, where they were asked for.
     step_maps: Option<Vec<Tangent>>,
@@ -391,14 +391,14 @@ impl Fit<'_> {
         (taken.map(|(point, _)| point), last.map_or(0.0, |(_, length)| length))
     }
 
-    /// The point with the noise fitted to all runs, linearised; `None` where that serves no better than the noise of the point.
+    /// The point with the noise fitted to all runs, linearised; `None` where that is no better than the noise of the point.
     fn better_noise(&self, point: &mut Point, beside: Beside) -> Option<Point> {
         let trial = self.at(point.model.clone(), self.noise(point), beside);
         (trial.value > point.value).then_some(trial)
     }
 
-    /// The noise of the runs at a point, whose step maps it takes. Of all of them: a part of them makes the answer a matter of their
-    /// order.
+    /// The noise of the runs at a point, whose step maps it takes. Of all of them: from a part of them the answer would depend on
+    /// their order.
     fn noise(&self, point: &mut Point) -> Noise {
         let all: Vec<&Run> = self.runs.iter().collect();
         let kept = point.step_maps.take();

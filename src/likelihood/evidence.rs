@@ -45,14 +45,14 @@ pub struct Evidence {
     pub runs: Vec<RunScore>,
     /// Sum over all runs.
     pub total: RunEvidence,
-    /// Sums by session; empty where sessions are not told apart.
+    /// Sums by session; empty where sessions are not distinguished.
     pub sessions: BTreeMap<String, RunEvidence>,
 }
 
 /// A linear test of a group of columns against a base.
 #[derive(Clone, Debug)]
 pub struct Test {
-    /// The statistic: twice the gain in log-likelihood that the quadratic model promises.
+    /// The statistic: twice the gain in log-likelihood that the quadratic model predicts.
     pub statistic: f64,
     /// Degrees of freedom that the data can see.
     pub degrees: usize,
@@ -67,7 +67,7 @@ pub struct Test {
 }
 
 impl Test {
-    /// The test of `k` columns of which the data say nothing that is a number.
+    /// The test of `k` columns for which the data give no finite number.
     fn blind(k: usize) -> Self {
         Self {
             statistic: 0.0,
@@ -88,7 +88,7 @@ impl Evidence {
         sum
     }
 
-    /// Adds a run; `apart` where its session is told apart from the others.
+    /// Adds a run; `apart` where its session is distinguished from the others.
     pub fn add(&mut self, run: RunEvidence, apart: bool) {
         let RunEvidence { session, score, information } = run;
         if self.runs.is_empty() {
@@ -119,7 +119,7 @@ impl Evidence {
     /// How much further the base's parameters scatter between groups of runs than its information says, as factors of at least 1 on
     /// their standard errors: the roots of the moderated ratios ([`Moderation`]) of their efficient scores `A^-1 g_c`, with A the base's
     /// information and `g_c` the scores summed over the runs of group c. What is typical is learnt from the base and from `further`
-    /// columns. A model whose form is not the ship's errs alike in all runs of a kind.
+    /// columns. A model of another form than the ship's has the same error in all runs of a kind.
     pub fn scatter(&self, base: &Base, groups: &[&str], further: &[usize]) -> Scatter {
         let groups = self.groups(groups);
         let own: Vec<Option<Ratio>> = (0..base.columns.len()).map(|i| groups.of_base(base, i)).collect();
@@ -244,7 +244,7 @@ fn floored(ratio: Ratio) -> Ratio {
     Ratio { degrees: ratio.degrees.max(degrees_of(0)), ..ratio }
 }
 
-/// Runs that are no evidence apart, by group.
+/// Runs that are no independent evidence, by group.
 struct Groups<'a> {
     runs: &'a [RunScore],
     members: Vec<Vec<usize>>,
@@ -291,7 +291,7 @@ impl Groups<'_> {
     }
 }
 
-/// Whether so many sessions of so many runs can be held against each other: a session of one run is a run, not a reference.
+/// Whether so many sessions of so many runs can be compared with each other: a session of one run is a run, not a reference.
 pub fn are_references(sessions: usize, runs: usize) -> bool {
     2 * sessions <= runs
 }
@@ -328,7 +328,7 @@ pub struct Scatter {
 
 impl Scatter {
     /// Standard errors, multiplied by the factor, that a parameter's 95 % interval reaches to either side: Student's t, as an error that
-    /// few groups tell is itself uncertain (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
+    /// is estimated from few groups is itself uncertain (Cameron & Miller 2015, J. Human Resources 50, p. 317, section VI.D).
     pub fn reach(&self, place: usize) -> f64 {
         student_quantile(0.975, self.degrees[place])
     }

@@ -1,8 +1,8 @@
 //! An extended Kalman filter whose innovations carry exact, predictable sensitivities to any number of parameters.
-//! It knows nothing of mechanisms or verdicts: it turns a run into a log-likelihood, a score vector and an information matrix.
+//! It has no part in mechanisms or verdicts: it turns a run into a log-likelihood, a score vector and an information matrix.
 //!
 //! State: `[x y psi u v r | w_X w_Y w_N | e_1 .. e_6]`, the ship, an unknown force as three Ornstein-Uhlenbeck processes, and
-//! the coloured part of six sensors. The sensitivities follow the filter with its gains held fixed,
+//! the coloured part of six sensors. The sensitivities follow the filter with its gains fixed,
 //! `d_k = H D_k + dh/dp`, `D_{k+1} = F_k (D_k - G_k d_k) + df/dp`, so that `d_k` depends on the past alone and
 //! `g = sum d_k' S_k^-1 e_k` is a martingale: unbiased at the truth whatever is left out of `d_k`.
 
@@ -43,8 +43,8 @@ impl<'a> Filter<'a> {
     }
 
     /// A pass over each run, up to four that follow each other with one sample period side by side. What `work` makes of the pass of
-    /// a run goes to `take` in the order of the runs, so that sums have the same bits on any number of threads; no more of it is held
-    /// at once than a few runs give.
+    /// a run goes to `take` in the order of the runs, so that sums have the same bits on any number of threads; no more of it is
+    /// in memory at once than a few runs give.
     pub fn each<R: Borrow<Run> + Sync, T: Send>(
         &self,
         runs: &[R],

@@ -1,4 +1,4 @@
-//! The noise behind every statement of the diagnosis: what sensors add, the force that nobody modelled, and a prior of both.
+//! The noise behind every statement of the diagnosis: what sensors add, the force that is not modelled, and a prior of both.
 //! It says nothing of the ship; its numbers are estimated in `noise_fit`.
 
 use super::settings::{NOISE_FORCE_SPREAD, NOISE_SIZE_SPREAD, NOISE_TIME_SPREAD, NOISE_WHITE_SPREAD};
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn white_noise_is_held_to_its_guess_from_below() {
+    fn white_noise_is_kept_near_its_guess_from_below() {
         let prior = NoisePrior::around(&noise());
         let at = |d: f64| {
             let mut v = noise().to_log();

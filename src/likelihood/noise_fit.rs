@@ -1,5 +1,5 @@
 //! The estimate of the noise by maximum likelihood on linearised runs, and a first guess of it from the recordings alone.
-//! The ship's parameters are held: they are estimated elsewhere, in turn with the noise.
+//! The ship's parameters are fixed: they are estimated elsewhere, in turn with the noise.
 
 use super::covariance::{Discrete, Told, Z, correct, correct_twice, initial, predict, sum_along, sum_of_rows};
 use super::filter::{Tangent, boost};
@@ -142,7 +142,7 @@ fn each_lane<'a, T>(of: impl Fn(usize) -> Option<&'a T>, none: &'a T) -> [&'a T;
 }
 
 /// Innovations under the linearised step maps, each with a flag by lane, 1 where the lane has one: a Kalman filter without
-/// sensitivities. What lies beyond `gate` standard deviations is an outlier, from which the filter learns nothing.
+/// sensitivities. What lies beyond `gate` standard deviations is an outlier, which does not change the filter.
 fn innovations<L: Linearised>(
     along: &L,
     noise: &Discrete<Lanes>,
@@ -156,7 +156,7 @@ fn innovations<L: Linearised>(
     let mut p = initial(noise, model);
     let samples = along.samples();
     let mut step = Step::zero();
-    // What measurements of a sample tell: the covariance is corrected by two at a time, so that one may wait for the next.
+    // The corrections by measurements of a sample: the covariance is corrected by two at a time, so that one may wait for the next.
     let mut told = [Told::nothing(); 2];
     for k in 0..samples {
         let mut waiting = false;
@@ -267,8 +267,8 @@ fn noise_score(at: &[Innovation<f64>], nudged: &[Vec<Innovation<Lanes>>; BLOCKS]
 const NUDGE: f64 = 0.01;
 const N: usize = NOISE_PARAMETERS;
 const BLOCKS: usize = N / Lanes::LANES;
-/// Maximises the log-likelihood over the noise, by Fisher scoring on the logarithms, damped where a step does not hold what it
-/// promises. Innovations beyond `gate` standard deviations are outliers.
+/// Maximises the log-likelihood over the noise, by Fisher scoring on the logarithms, damped where a step gains less than
+/// predicted. Innovations beyond `gate` standard deviations are outliers.
 ///
 /// The sums over runs are taken in order, so that the result does not depend on the number of threads.
 pub fn fit_noise(

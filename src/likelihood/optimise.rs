@@ -19,7 +19,7 @@ pub struct Quadratic {
 }
 
 impl Quadratic {
-    /// The best step within bounds, as if each parameter were held where it is with the precision `damping`.
+    /// The best step within bounds, as if each parameter had a prior at its present value with the precision `damping`.
     pub fn step(&self, damping: f64) -> DVector<f64> {
         let n = self.score.len();
         step_inside(&(&self.information + DMatrix::from_diagonal_element(n, n, damping)), &self.score, &self.room)
@@ -36,7 +36,7 @@ impl Quadratic {
 pub struct Damping {
     /// Steps that are tried, the damping growing from each to the next.
     pub attempts: usize,
-    /// A step that promises less is not tried.
+    /// A step whose predicted gain is less is not tried.
     pub least_promise: f64,
     /// A step may lose so much and be taken.
     pub loss: f64,
@@ -48,7 +48,7 @@ pub struct Damping {
     pub shrink: f64,
     /// Below it there is no damping.
     pub off: f64,
-    /// A step that gains less than this share of what it promised was too long: the damping stays at `first` or above.
+    /// A step that gains less than this share of its predicted gain was too long: the damping stays at `first` or above.
     pub trusted: f64,
 }
 
@@ -112,7 +112,7 @@ impl Damping {
     }
 }
 
-/// Rounds in which the set of bounds that hold is looked for: it is nearly always found in three.
+/// Rounds in which the set of active bounds is looked for: it is nearly always found in three.
 const BOUND_ROUNDS: usize = 20;
 
 /// Rounds in which it is looked for from where a climb ends, and sweeps of a climb.
@@ -121,10 +121,10 @@ const SWEEPS: usize = 50;
 
 /// Maximises `g's - s'Hs/2` over steps within `room`, each entry's least and most.
 ///
-/// An entry that would leave its room goes as far as that lets it, and the others go to their best beside it: clipped alone, it
-/// would leave them where only its whole step makes sense. Which bounds hold is found as by Hintermüller, Ito and Kunisch (2003), SIAM J.
-/// Optim. 13, p. 865: those that the present step breaks, and those held that still pull outwards. That set may go in circles;
-/// then it is taken from where a climb, entry by entry, comes to.
+/// An entry that would leave its room stops at its limit, and the others go to their best values given that: with it clipped
+/// alone, the others would be right only for its whole step. Which bounds are active is found as by Hintermüller, Ito and Kunisch (2003),
+/// SIAM J. Optim. 13, p. 865: those that the present step breaks, and those active before that still pull outwards. That set may
+/// repeat in a cycle; then it is taken from where a climb, entry by entry, comes to.
 pub fn step_inside(information: &DMatrix<f64>, score: &DVector<f64>, room: &[(f64, f64)]) -> DVector<f64> {
     let n = score.len();
     let clamped = |s: &DVector<f64>| DVector::from_fn(n, |i, _| s[i].max(room[i].0).min(room[i].1));
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn an_entry_at_its_bound_leaves_the_others_at_their_best_beside_it() {
-        // Alone the first would go to 10/3 and take the second to -5/3; held at 1 it leaves it where its own score is spent.
+        // Alone the first would go to 10/3 and take the second to -5/3; fixed at 1 it leaves it where its own score is zero.
         let information = DMatrix::from_row_slice(2, 2, &[4.0, 2.0, 2.0, 4.0]);
         let score = DVector::from_column_slice(&[10.0, 0.0]);
         let step = step_inside(&information, &score, &[(-1.0, 1.0), (-9.0, 9.0)]);
@@ -253,7 +253,7 @@ mod tests {
         let out = DAMPING.search(0.0, &mut damping, propose, |s| ((), if *s < 3.0 { -1.0 } else { 1.0 }));
         assert_eq!((out.last, out.evaluated, out.taken.is_some()), (Some(3.0), 3, true));
         assert!((damping - 0.9).abs() < 1e-12);
-        // A step that gains less than half its promise keeps the damping at its least.
+        // A step that gains less than half its predicted gain keeps the damping at its least.
         damping = 0.05;
         DAMPING.search(0.0, &mut damping, propose, |_| ((), 0.4));
         assert_eq!(damping, 0.3);

@@ -106,8 +106,8 @@ impl FreeParameter {
         }
     }
 
-    /// The parameter's least and greatest value, in its own unit. A hull coefficient that is carried with a prior is held by the
-    /// prior alone: a sign that a fit may insist on would make its estimate one-sided and the score tests with it.
+    /// The parameter's least and greatest value, in its own unit. A hull coefficient that is carried with a prior is limited by the
+    /// prior alone: a limit on its sign would make its estimate one-sided, and the score tests with it.
     fn limits(&self, model: &Model) -> (f64, f64) {
         let p = &model.parameters[self.column.parameter];
         if self.prior.is_some() && (p.name.starts_with("hull.") || p.name.starts_with("mmg_hull.")) {

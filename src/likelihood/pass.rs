@@ -86,7 +86,7 @@ pub struct Tangent {
     pub report: Vec<[[f64; STATES]; STATES]>,
 }
 
-/// The gains of a filter along one run: with them held fixed, the innovations are a smooth function of the parameters whose
+/// The gains of a filter along one run: with them fixed, the innovations are a smooth function of the parameters whose
 /// derivative is exactly what the sensitivities say.
 #[derive(Clone, Debug, Default)]
 pub struct Gains {

@@ -18,11 +18,11 @@ pub struct Effort {
 pub const FIRST: Effort = Effort { rounds: 12, noise_rounds: 4, noise_iterations: 14 };
 /// A refit at given noise.
 pub const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0 };
-/// A refit with the noise estimated along, to convergence: a noise that had taken over a force gives it back when the force is in the
-/// model. The rounds only bound it.
+/// A refit with the noise estimated along, to convergence: a noise that includes a missing force falls once the force is in the model.
+/// The rounds only bound it.
 pub const SETTLE: Effort = Effort { rounds: 20, noise_rounds: 20, noise_iterations: 8 };
 /// How a step of the parameters is damped, in units of the columns' scales: parameters that the data hardly determine ask for
-/// steps on which the others would fail. It stays while the valley bends.
+/// steps on which the others would fail. It stays while the maximum lies along a curved ridge.
 pub const STEP_DAMPING: Damping = Damping {
     attempts: 6,
     least_promise: STEP_GAIN,
@@ -107,7 +107,7 @@ numbers! {
     SCATTER_GROUPS: usize = 5, SEEDS;
     /// Share of measurements beyond the outlier gate above which the noise is taken as too small and everything counts first.
     OUTLIER_SHARE: f64 = 0.03, "recordings of Esso Osaka, where a quarter lay beyond the gate of the first guess";
-    /// Share of the runs, those of the highest likelihood, that tell the noise without what disturbs some runs only.
+    /// Share of the runs, those of the highest likelihood, from which the noise is estimated without what disturbs some runs only.
     CALM_SHARE: f64 = 0.6, SEEDS;
     /// Iterations of the noise estimate on those runs.
     CALM_ITERATIONS: usize = 8, COST;

@@ -1,5 +1,5 @@
 //! The filter over a few runs of one sample period side by side: correction by the measurements, sensitivities, prediction.
-//! What a step or a column does to the ship is computed elsewhere; how runs are put together is the filter's affair.
+//! What a step or a column does to the ship is computed elsewhere; the filter puts the runs together.
 
 use super::covariance::{self, Discrete, Square, Told, Z, initial, predict, sum_along, sum_of_rows};
 use super::directions::{Directions, Prepared};
@@ -63,7 +63,7 @@ struct Basis<P> {
     side_by_side: Vec<[P; 3]>,
 }
 
-/// The filter under way.
+/// The filter at one sample.
 struct Filtering<'f, P: Plain> {
     runs: &'f Together<'f>,
     wanted: &'f Wanted<'f>,
@@ -75,7 +75,7 @@ struct Filtering<'f, P: Plain> {
     smooth: bool,
     mean: [P; Z],
     covariance: Square<P>,
-    /// What two measurements tell, by which the covariance is corrected at once.
+    /// The corrections by two measurements, which the covariance takes at once.
     told: [Told<P>; 2],
     /// Whether it is still to be corrected by the first of them.
     waits: bool,

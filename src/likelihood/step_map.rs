@@ -1,5 +1,5 @@
 //! The Jacobians of one step of a simulation by state, force and parameters: from the ends of the step, or through every stage.
-//! It knows no measurement and no noise.
+//! It uses no measurement and no noise.
 
 use super::directions::Prepared;
 use crate::dynamics::Dynamics;

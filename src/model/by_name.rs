@@ -1,10 +1,10 @@
-//! What a fit may do with a parameter, set by name: held, within bounds, with a prior; freed by [`Model::release`].
+//! What a fit may do with a parameter, set by name: fixed, within bounds, with a prior; freed by [`Model::release`].
 //! It fits nothing, and a model file says the same in its own words.
 
 use super::{Model, ModelError, Prior};
 
 impl Model {
-    /// Holds a parameter, or all of a term, at its value: a fit does not change it.
+    /// Fixes a parameter, or all of a term, at its value: a fit does not change it.
     ///
     /// # Errors
     /// No parameter and no term of the model has this name.
@@ -41,7 +41,7 @@ impl Model {
         Ok(())
     }
 
-    /// Sets what is known of a parameter before the data, or that nothing is. It frees and holds nothing.
+    /// Sets what is known of a parameter before the data, or that nothing is. It neither frees nor fixes it.
     ///
     /// # Errors
     /// No parameter has this name, or the prior is not a finite mean with a standard deviation above 0.
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_parameter_is_held_bounded_and_given_a_prior_by_name_or_symbol() {
+    fn a_parameter_is_fixed_bounded_and_given_a_prior_by_name_or_symbol() {
         let mut model = crate::study::demo::example().unwrap().model;
         let of = |model: &Model, name: &str| model.parameters[model.find(name).unwrap()].clone();
         model.hold("p5").unwrap();
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_told_and_changes_nothing() {
+    fn what_cannot_be_is_refused_and_changes_nothing() {
         let mut model = crate::study::demo::example().unwrap().model;
         let before = format!("{:?}", model.parameters);
         assert!(model.hold("rudder.lift9").unwrap_err().to_string().contains("did you mean"));

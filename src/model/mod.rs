@@ -1,5 +1,5 @@
 //! A model: a ship, a list of terms, and one vector of parameters; from these the equations of motion.
-//! It holds no recording and no cost: it only gives the accelerations of the ship.
+//! It contains no recording and no cost: it only gives the accelerations of the ship.
 
 mod by_name;
 pub mod dynamics;
@@ -164,7 +164,7 @@ pub struct OtherShip {
     pub here: FittedShip,
 }
 
-/// The ship to which the parameters of a model file belong: what tells it from another.
+/// The ship to which the parameters of a model file belong: what distinguishes it from another.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FittedShip {
@@ -220,7 +220,7 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// A value, an error or an end of an interval of this parameter as it is told: what is a billionth of its scale or less, the
+    /// A value, an error or an end of an interval of this parameter as it is reported: what is a billionth of its scale or less, the
     /// rounding that an active constraint leaves, is zero.
     pub fn told(&self, value: f64) -> f64 {
         if value.abs() <= 1e-9 * self.scale { 0.0 } else { value }
@@ -707,7 +707,7 @@ impl Model {
         Ok(model)
     }
 
-    /// Applies what a model file says of a parameter, and tells what of it is not possible.
+    /// Applies what a model file says of a parameter, and says what of it is not possible.
     fn apply(&mut self, parameter: usize, name: &str, setting: &Setting) -> Option<ModelError> {
         let default = self.default_prior(parameter);
         let p = &mut self.parameters[parameter];
@@ -832,7 +832,7 @@ impl Model {
     }
 
     /// The prior that `prior = "default"` stands for: the ship's value and the term's spread, which is infinite where the term
-    /// knows nothing.
+    /// has none.
     pub fn default_prior(&self, parameter: usize) -> Prior {
         let p = &self.parameters[parameter];
         let given = self.ship.given_parameters().get(&p.name).copied().filter(|_| !self.replaced(p.info));
@@ -890,7 +890,7 @@ impl Model {
         }
     }
 
-    /// This model with its whole parameter vector, but evaluating only the terms for which `keep` holds.
+    /// This model with its whole parameter vector, but evaluating only the terms for which `keep` is true.
     ///
     /// Leaving out terms at their neutral parameters changes no result, only the time it takes.
     pub fn restricted(&self, keep: impl Fn(&str) -> bool) -> Self {
@@ -1069,7 +1069,7 @@ fn model_file(text: &str, path: &Path) -> Result<ModelFile, ModelError> {
     })
 }
 
-/// An error about a name in a model file, told with the line on which it stands.
+/// An error about a name in a model file, with the line on which it stands.
 fn placed(error: ModelError, text: &str, path: &Path) -> ModelError {
     let (ModelError::UnknownTerm { name, .. }
     | ModelError::UnknownParameter { name, .. }
@@ -1094,7 +1094,7 @@ mod tests {
     use crate::physics::Form;
 
     #[test]
-    fn rounding_that_a_constraint_leaves_is_told_as_zero() {
+    fn rounding_that_a_constraint_leaves_is_reported_as_zero() {
         let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
         let model = Model::new(ship, "HD", Form::Regular, &[]).unwrap();
         let lift = &model.parameters[model.index("rudder.lift0").unwrap()];

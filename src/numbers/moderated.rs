@@ -1,10 +1,10 @@
 //! How far scores scatter between groups of runs, against what their information says, and that ratio moderated over many directions.
-//! Few groups tell the scatter of one direction badly and of all directions well. It knows no column's meaning, and concludes nothing.
+//! From few groups the scatter of one direction is estimated badly, and that of all directions well. It concludes nothing.
 
 use super::statistics::{counted, mean, quantile};
 use statrs::function::gamma::digamma;
 
-/// Variance of an estimate along one direction over that by its information, as so many degrees of freedom tell it.
+/// Variance of an estimate along one direction over that by its information, as estimated with so many degrees of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratio {
     /// The ratio.
@@ -91,8 +91,8 @@ impl Moderation {
         Self { typical: (centre + digamma(half) - half.ln()).exp(), degrees: 2.0 * half }
     }
 
-    /// The ratio of one direction in the light of all, `(d s + n phi)/(d + n)` with d + n degrees of freedom (Smyth 2004, eq. 9), and never
-    /// below 1: no estimate is better than its information says. Of a direction without a ratio it is that of all.
+    /// The ratio of one direction moderated by those of all, `(d s + n phi)/(d + n)` with d + n degrees of freedom (Smyth 2004, eq. 9), and
+    /// never below 1: no estimate is better than its information says. Of a direction without a ratio it is that of all.
     pub fn moderated(&self, own: Option<Ratio>) -> Ratio {
         let own = own.unwrap_or(Ratio { value: 1.0, degrees: 0.0 });
         let degrees = self.degrees + own.degrees;
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn one_group_that_holds_the_information_tells_no_scatter() {
+    fn one_group_that_has_all_the_information_shows_no_scatter() {
         assert!(ratio(&groups(&[3.0, 0.1], &[1.0, 0.01]), 1.0).is_none());
         assert!(ratio(&[], 1.0).is_none() && ratio(&groups(&[1.0, 2.0], &[1.0; 2]), 0.0).is_none());
     }

@@ -1,5 +1,5 @@
 //! The statistics that every judgement uses: quantiles, tails, shares, the bootstrap over clusters, cluster-robust variance.
-//! It knows nothing of ships: what is counted, compared or resampled is told where it is asked.
+//! No ship is in it: the caller says what is counted, compared or resampled.
 
 use crate::ranks::{ExactSums, Ranks};
 use nalgebra::{DMatrix, DVector};
@@ -215,7 +215,7 @@ pub struct Bootstrap<'a> {
     ranks: &'a Ranks,
 }
 
-/// Fewest draws from which the ends of an interval are told: of fewer they are single draws.
+/// Fewest draws from which the ends of an interval are taken: of fewer they are single draws.
 const FEWEST_DRAWS: usize = 100;
 /// Fewest clusters that have an interval: of fewer it would only seem to say something.
 const FEWEST_CLUSTERS: usize = 3;
@@ -274,15 +274,15 @@ mod tests {
     }
 
     #[test]
-    fn the_interval_of_a_ratio_holds_it_as_often_as_it_says_over_clusters_of_unequal_size() {
+    fn the_interval_of_a_ratio_contains_it_as_often_as_it_says_over_clusters_of_unequal_size() {
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let mut normal = || (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();
         let sizes: [f64; 6] = [1.0, 1.0, 2.0, 3.0, 3.0, 8.0];
-        let held = (0..4000).filter(|_| {
+        let covered = (0..4000).filter(|_| {
             let clusters = sizes.map(|x| (0.3 * x + 0.2 * x.sqrt() * normal(), x));
             interval_of_ratio(&clusters).is_some_and(|[low, high]| (low..=high).contains(&0.3))
         });
-        let share = held.count() as f64 / 4000.0;
+        let share = covered.count() as f64 / 4000.0;
         assert!((0.93..=0.98).contains(&share), "{share}");
     }
 

@@ -46,7 +46,7 @@ impl Uncertainty {
         })
     }
 
-    /// From standard deviations of parameters that are known independently of each other; nothing where there is none.
+    /// From standard deviations of parameters that are known independently; nothing where there is none.
     pub fn independent(kind: &str, known: &[(String, f64)]) -> Option<Self> {
         let names: Vec<String> = known.iter().map(|(name, _)| name.clone()).collect();
         let entry = |i: usize, j: usize| Some(if i == j { known[i].1 * known[i].1 } else { 0.0 });
@@ -54,7 +54,7 @@ impl Uncertainty {
         Self::new(kind, None, &names, &table)
     }
 
-    /// What is wrong with it, for a model that has the parameters for which `has` holds; nothing if nothing is.
+    /// What is wrong with it, for a model that has the parameters for which `has` is true; nothing if nothing is.
     pub fn fault(&self, has: impl Fn(&str) -> bool) -> Option<String> {
         let n = self.parameters.len();
         if self.matrix.len() != n || self.matrix.iter().any(|row| row.len() != n) {
@@ -75,7 +75,7 @@ impl Uncertainty {
         if self.fault(|_| true).is_some() {
             return Vec::new();
         }
-        // By standard deviations, so that parameters of 1e4 and of 1e-2 are equally exact; a parameter that a constraint holds has none.
+        // By standard deviations, so that parameters of 1e4 and of 1e-2 are equally exact; a parameter that a constraint fixes has none.
         let sd: Vec<f64> = (0..n).map(|i| self.matrix[i][i].sqrt()).collect();
         let correlation = DMatrix::from_fn(n, n, |i, j| {
             let scale = sd[i] * sd[j];
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_covariance_that_does_not_fit_its_model_is_told() {
+    fn a_covariance_that_does_not_fit_its_model_is_reported() {
         let mut u = example(None);
         assert_eq!(u.fault(|_| true), None);
         assert!(u.fault(|name| name != "rudder.lift1").unwrap().contains("rudder.lift1"));

@@ -1,5 +1,5 @@
 //! The answer of one analysis: what is named, what was withdrawn, the verdict; and the same analysis repeated to see whether it is
-//! stable. It runs the steps in order and holds no arithmetic and no threshold.
+//! stable. It runs the steps in order; arithmetic and thresholds are in other files.
 
 use super::conclude::{cap, conclude, lead};
 use crate::diagnose::error::DiagnoseError;
@@ -35,7 +35,7 @@ pub struct Answer {
     pub kept: Kept,
     /// Whether the model follows the recordings.
     pub base: Base,
-    /// A law for what the catalogue does not hold.
+    /// A law for what is not in the catalogue.
     pub law: Option<Law>,
     decision: Decision,
     /// Mechanisms that one of the repetitions does not find.
@@ -60,7 +60,7 @@ impl Answer {
         Self::settled(question, Residual::new(question, selection), Vec::new(), &[], held_out)
     }
 
-    /// Takes out what is not named, one mechanism after the other, and decides on what is left; `tried` holds what was withdrawn before,
+    /// Takes out what is not named, one mechanism after the other, and decides on what is left; `tried` lists what was withdrawn before,
     /// `graded` the names whose grade is known.
     fn settled(
         question: &Question,
@@ -108,7 +108,7 @@ impl Answer {
         Self { verdict, findings, withdrawn: tried, kept, base, law: None, decision, doubtful: Vec::new() }
     }
 
-    /// This answer with a law for what is missing, where the catalogue does not hold it and it is no force in one part of the water.
+    /// This answer with a law for what is missing, where that is not in the catalogue and is no force in one part of the water.
     pub fn with_law(mut self, question: &Question, held_out: &[Run]) -> Self {
         if self.verdict == Verdict::NotInCatalogue && self.unlisted() != Some(Unlisted::Place) {
             self.law = Law::new(question, &self.kept.selection.tests, held_out);
@@ -133,14 +133,14 @@ impl Answer {
         if self.findings.is_empty() { base() } else { estimate }
     }
 
-    /// What the catalogue does not hold.
+    /// What is missing and not in the catalogue.
     pub fn unlisted(&self) -> Option<Unlisted> {
         self.decision.unlisted.filter(|_| self.base.holds)
     }
 
-    /// Repeats the analysis with the recordings as they were given, told otherwise, and, once, with the improved model. A finding that
-    /// one of the repetitions does not find is suspected at most; one that most of them do not find is withdrawn. Nothing is repeated
-    /// where nothing was found or the user does not want it.
+    /// Repeats the analysis on the recordings as they were given: transformed (turned, mirrored, cut, thinned, started elsewhere), and,
+    /// once, with the improved model. A finding that one of the transformed analyses does not find is suspected at most; one that most
+    /// of them do not find is withdrawn. Nothing is repeated where nothing was found or the user does not want it.
     ///
     /// # Errors
     /// When the catalogue's terms cannot be added to a changed model.
@@ -218,7 +218,7 @@ impl Answer {
     }
 }
 
-/// What was withdrawn and is not named: the name is the last word on a mechanism, which was tried in other sessions before.
+/// What was withdrawn and is not named. A named mechanism may have been withdrawn before, in other sessions: it counts as named.
 fn unnamed(mut tried: Vec<Finding>, findings: &[Finding]) -> Vec<Finding> {
     tried.retain(|w| findings.iter().all(|f| f.mechanism != w.mechanism));
     tried
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn beside_an_error_that_the_sensors_show_the_ship_is_held_where_it_predicts_worse() {
+    fn beside_an_error_that_the_sensors_show_the_ship_is_that_of_the_base_where_it_predicts_worse() {
         let (model, settings) = (model(), without_repetitions());
         let question = Question::new(&model, &settings, &|_| ()).unwrap();
         let biased = erring(&[("yaw_rate_bias.bias", 0.002)], 16);

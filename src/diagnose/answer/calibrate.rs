@@ -29,7 +29,7 @@ pub struct ErrorRates {
     /// Simulated studies with the findings in which the first of them was found again; absent without findings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub found_again: Option<Share>,
-    /// 95 % intervals of its parameters that held the simulated value, where it was found again.
+    /// 95 % intervals of its parameters that contained the simulated value, where it was found again.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub covered: Option<Share>,
     /// Seed of the simulations.
@@ -74,7 +74,7 @@ impl ErrorRates {
                 (question.progress)(&format!("simulating studies with what was found ({} of {count})", i + 1));
                 let other = again(answer.improved(), count + i)?;
                 found.push(Some(own.is_found_in(0, &Brief::new(other.verdict, &other.findings))));
-                covered.extend(holds(first, &other.findings));
+                covered.extend(covers(first, &other.findings));
             }
         }
         Ok(Some(Self {
@@ -92,8 +92,8 @@ fn analysed(settings: &Settings, model: &Model, runs: &[Run], held_out: &[Run]) 
     Ok(Answer::new(&question, runs, held_out))
 }
 
-/// Whether each interval of the finding's parameters in other findings holds the finding's value.
-fn holds(truth: &Finding, found: &[Finding]) -> Vec<Option<bool>> {
+/// Whether each interval of the finding's parameters in other findings contains the finding's value.
+fn covers(truth: &Finding, found: &[Finding]) -> Vec<Option<bool>> {
     let Some(same) = found.iter().find(|f| f.mechanism == truth.mechanism && f.sessions == truth.sessions) else {
         return Vec::new();
     };

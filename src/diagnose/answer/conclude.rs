@@ -1,12 +1,12 @@
 //! The verdict once every finding has its grade: what is left of the decision on the tests, as a pure function.
-//! It estimates nothing and knows no runs.
+//! It estimates nothing and looks at no runs.
 
 use crate::diagnose::proof::finding::Finding;
 use crate::diagnose::proof::grade::Grade;
 use crate::diagnose::search::decide::{Verdict, named};
 
-/// The verdict, from the one that the tests of the kept model give, the grades of what was withdrawn, and whether the base
-/// holds.
+/// The verdict, from the one that the tests of the kept model give, the grades of what was withdrawn, and whether the model
+/// follows the recordings.
 ///
 /// A model that does not follow the recordings is no base for any name. What unseen runs refute was significant on the training runs:
 /// something is there, but not this law. What is too small to matter, or not determined, leaves nothing that could be named.
@@ -19,7 +19,7 @@ pub fn conclude(decided: Verdict, withdrawn: &[Grade], base_holds: bool) -> Verd
         {
             Verdict::NotInCatalogue
         }
-        // Something fixed on the earth or to one side, and no heading that tells which.
+        // A force fixed on the earth or to one side of the ship: the headings sailed do not distinguish them.
         Verdict::NotInCatalogue if withdrawn.contains(&Grade::NotIsolated) => Verdict::Insufficient,
         _ => decided,
     }
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_concluded_on_a_base_that_does_not_hold() {
+    fn nothing_is_concluded_on_a_base_that_does_not_follow_the_recordings() {
         for decided in [Verdict::Named, Verdict::OneOf, Verdict::NothingMissing, Verdict::NotInCatalogue] {
             assert_eq!(conclude(decided, &[], false), Verdict::Insufficient);
             assert_eq!(conclude(decided, &[], true), decided);

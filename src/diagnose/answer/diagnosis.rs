@@ -1,5 +1,5 @@
 //! The document of a diagnosis: verdict, findings, and every test that led to them.
-//! It holds and computes nothing; the steps that fill it are in other files.
+//! It computes nothing; the steps that fill it are in other files.
 
 use super::calibrate::ErrorRates;
 use super::models::{OnUnseen, Whose};
@@ -27,7 +27,7 @@ pub struct Ranked {
     pub mechanism: String,
     /// Plain words.
     pub title: String,
-    /// Twice the gain in log-likelihood that the scores promise.
+    /// Twice the gain in log-likelihood that the score test predicts.
     pub statistic: f64,
     /// Degrees of freedom.
     pub degrees: usize,
@@ -115,7 +115,7 @@ pub struct Likeness {
     pub a: String,
     /// The other.
     pub b: String,
-    /// Cosine of the principal angle after the base is projected out: 1 when they cannot be told apart.
+    /// Cosine of the principal angle after the base is projected out: 1 when they cannot be distinguished.
     pub cosine: f64,
 }
 
@@ -164,7 +164,7 @@ pub struct Diagnosis {
     pub findings: Vec<Finding>,
     /// What was selected and is not named, with the grade that says why.
     pub withdrawn: Vec<Finding>,
-    /// Whether the answer is the same on the same recordings told otherwise; absent where nothing was found.
+    /// Whether the answer is the same on transformed recordings; absent where nothing was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability: Option<Stability>,
     /// The study's own error rates, by simulation; absent where they were not asked for.
@@ -179,7 +179,7 @@ pub struct Diagnosis {
     pub improved_is_base: bool,
     /// The study's own model, the base model and the improved one on unseen runs; empty where there are none to judge by.
     pub models: Vec<OnUnseen>,
-    /// Which of them improved.toml holds: the study's own where it simulates the unseen runs better.
+    /// Which of them is in improved.toml: the study's own where it simulates the unseen runs better.
     pub written: Whose,
     /// Audit of recordings and numerics.
     pub admission: Admission,
@@ -203,7 +203,7 @@ pub struct Diagnosis {
     pub adequacy_before: Adequacy,
     /// Generic tests with the findings.
     pub adequacy_after: Adequacy,
-    /// A law for what the catalogue does not hold; absent where no monomial is worth its price.
+    /// A law for what is not in the catalogue; absent where no monomial is worth its price.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub law: Option<Law>,
     /// How far the model's own parameters moved.

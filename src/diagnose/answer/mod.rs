@@ -1,4 +1,4 @@
-//! The answer: what is named and withdrawn, the verdict, the study's error rates, and the document that holds all of it.
+//! The answer: what is named and withdrawn, the verdict, the study's error rates, and the document that contains all of it.
 //! No mechanism is searched for here.
 //!
 //! | file | what |

@@ -8,7 +8,7 @@ use crate::simulate::Integration;
 use crate::state::STATES;
 use rayon::prelude::*;
 
-/// Runs kept at most: a page holds them all.
+/// Runs kept at most: one page shows them all.
 pub const MOST_RUNS: usize = 60;
 /// Samples of a run kept at most.
 const MOST_SAMPLES: usize = 240;

@@ -27,13 +27,13 @@ impl Missing<'_> {
     /// The verdict in one sentence.
     pub fn headline(&self) -> String {
         match self {
-            Self::Law(law) => format!("Something is missing that the catalogue does not hold{}.", law_words(*law)),
+            Self::Law(law) => format!("Something is missing that is not in the catalogue{}.", law_words(*law)),
             Self::Place(place) => {
                 let [south, north] = place.north.map(|v| v.round());
                 let [west, east] = place.east.map(|v| v.round());
                 let [to_north, to_east] = place.force.map(|v| sig(v, 3));
                 format!(
-                    "Something is missing that the catalogue does not hold: a force that differs from place to place, strongest from \
+                    "Something is missing that is not in the catalogue: a force that differs from place to place, strongest from \
                      {south} to {north} m north and {west} to {east} m east, where {to_north} N to north and {to_east} N to east \
                      are added to the force that acts everywhere."
                 )
@@ -73,7 +73,7 @@ fn law_words(law: Option<&Law>) -> String {
     }
 }
 
-/// The trial to sail next, where one would tell more.
+/// The trial to sail next, where one would show more.
 pub fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) -> Option<NextTrial> {
     let by_name = |n: &str| list.iter().find(|c| c.mechanism.name == n).map(|c| c.mechanism);
     match verdict {
@@ -134,11 +134,11 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
                 format!("{} {} was tried, and unseen runs refute it{}.", missing.headline(), sentence(&tried.title), refuted(tried))
             }
             (None, Some(tried)) => format!(
-                "Something is missing, and no law of the catalogue is it: {} fits the training runs best, and unseen runs refute it{}.",
+                "Something is missing, and it is no law of the catalogue: {} fits the training runs best, and unseen runs refute it{}.",
                 tried.title,
                 refuted(tried)
             ),
-            (None, None) => "Something is missing, and no law of the catalogue is it.".into(),
+            (None, None) => "Something is missing, and it is no law of the catalogue.".into(),
         },
         Verdict::Numerics => {
             "The integration step, not the ship: explicit Euler steps of one sample period reproduce the recordings to rounding."
@@ -155,7 +155,7 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
     }
 }
 
-/// That weather cannot be told from the ship itself.
+/// That weather cannot be distinguished from the ship itself.
 fn not_isolated(f: &Finding) -> String {
     format!(
         "These recordings do not decide: {} is significant, but on the headings that were sailed the ship's own parameters and its sensors \
@@ -193,13 +193,13 @@ fn nothing(said: &Said) -> String {
 
 /// That the ship's own forces have another form than the model's, where they are too small to be called unknown forces.
 fn of_another_form(form_holds: bool) -> String {
-    let told = || {
+    let text = || {
         format!(
             " The ship's own forces have another form than the model gives them, by less than {} % of the force that turns it.",
             sig(100.0 * GUST_SHARE, 2)
         )
     };
-    if form_holds { String::new() } else { told() }
+    if form_holds { String::new() } else { text() }
 }
 
 /// Words at the start of a sentence.
@@ -387,7 +387,7 @@ mod tests {
         let with = |grade| Finding { grade, change: Some(0.02), ..current() };
         let refuted = said(Verdict::NotInCatalogue, &[], &[with(Grade::Refuted)], None);
         assert!(refuted.contains("steady current") && refuted.contains("refute"), "{refuted}");
-        assert!(said(Verdict::NotInCatalogue, &[], &[], None).contains("no law of the catalogue is it"));
+        assert!(said(Verdict::NotInCatalogue, &[], &[], None).contains("it is no law of the catalogue"));
         let small = said(Verdict::NothingMissing, &[], &[with(Grade::Immaterial)], None);
         assert!(small.contains("steady current") && small.contains("2.0 % of their error"), "{small}");
         let times = vec![Amplitude::new("time_skew.position".into(), 0.2, "s", 0.01)];
@@ -408,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn a_law_is_told_with_its_grade_and_a_refuted_one_without_its_equation() {
+    fn a_law_is_reported_with_its_grade_and_a_refuted_one_without_its_equation() {
         let of = |grade| Law {
             grade,
             equation: vec!["N [N m] = 3.00e5".into(), "Y [N] = 12 v|v|".into()],

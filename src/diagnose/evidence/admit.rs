@@ -76,7 +76,7 @@ pub fn followed(runs: &[Run], passes: &[Pass]) -> (Option<Vec<Run>>, Vec<Issue>)
     }
     if lost.len() as f64 > FEW_LOST_SHARE * runs.len() as f64 {
         let (run, first) = lost[0];
-        let text = format!("the ship is lost in {} of {} runs, first in {}", lost.len(), runs.len(), told(run, first));
+        let text = format!("the ship is lost in {} of {} runs, first in {}", lost.len(), runs.len(), words(run, first));
         let next_step =
             "look at ship, model and units before anything that is named below: they are far from these recordings";
         let channel = STATE_CHANNELS[first.channel];
@@ -85,7 +85,7 @@ pub fn followed(runs: &[Run], passes: &[Pass]) -> (Option<Vec<Run>>, Vec<Issue>)
     let next_step = "these samples are left out; look there for inputs that were not recorded, a sensor that failed or \
                      something that touched the ship";
     let issue = |(run, loss): (&Run, &Loss)| {
-        Issue::new(Severity::Warning, "lost", told(run, loss), next_step).of(STATE_CHANNELS[loss.channel])
+        Issue::new(Severity::Warning, "lost", words(run, loss), next_step).of(STATE_CHANNELS[loss.channel])
     };
     let issues = lost.into_iter().map(issue).collect();
     let without = |(run, loss): (&Run, &Option<Loss>)| match loss {
@@ -98,10 +98,10 @@ pub fn followed(runs: &[Run], passes: &[Pass]) -> (Option<Vec<Run>>, Vec<Issue>)
 }
 
 /// A loss in words.
-fn told(run: &Run, loss: &Loss) -> String {
+fn words(run: &Run, loss: &Loss) -> String {
     format!(
         "{}: from {} s on {} measurements of {} in a row lie beyond {GATE} standard deviations of what the model and the \
-         measurements before let expect",
+         earlier measurements predict",
         run.name,
         sig(run.inputs[loss.first].t, 5),
         loss.count,

@@ -1,5 +1,5 @@
 //! The evidence for a constant force in any span of blocks of a run's time, the base model projected out.
-//! It knows no force's cause and compares no spans.
+//! It names no cause of a force and compares no spans.
 
 use crate::diagnose::settings::{BLOCK_SAMPLES, BLOCKS, PUSH_LONGEST};
 use crate::likelihood::algebra::pick;
@@ -7,8 +7,8 @@ use crate::likelihood::evidence::{Base, RunEvidence};
 use crate::recording::Run;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-/// Samples in one block of the time scan: the evidence for a force that sets in is mostly in when it does, and a run cut more
-/// finely costs more than it tells.
+/// Samples in one block of the time scan. The evidence for a force that sets in comes mostly from the time of its onset, and a run cut
+/// more finely costs more time than it adds evidence.
 pub fn block_length(runs: &[Run]) -> usize {
     let longest = runs.iter().map(|r| r.measured.len()).max().unwrap_or(0);
     longest.div_ceil(BLOCKS).max(BLOCK_SAMPLES)

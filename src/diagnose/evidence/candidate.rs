@@ -1,5 +1,5 @@
 //! A mechanism of the catalogue as a candidate of one model: its columns, its amplitudes, and the sessions it acts in.
-//! What the mechanisms are is told in the terms' files, beside the physics; whether one is named is decided elsewhere.
+//! The mechanisms are described in the terms' files, with the physics; whether one is named is decided elsewhere.
 
 use crate::diagnose::settings::{BEYOND_BOUNDS, QUARTER_TIDE};
 use crate::likelihood::estimate::{Estimate, FreeParameter};
@@ -64,7 +64,7 @@ pub struct Candidate {
     pub held: Held,
 }
 
-/// What a model had of a mechanism before the diagnosis: a mechanism is missing by what it is more than that.
+/// What a model had of a mechanism before the diagnosis: what is missing is what exceeds that.
 #[derive(Clone, Debug, Default)]
 pub struct Held {
     /// Values of its parameters in all sessions, by column, each in its unit.
@@ -88,9 +88,9 @@ impl Held {
 }
 
 impl Candidate {
-    /// Whether the amplitudes of a test, added to the present values, are possible: kept inside the parameters' bounds they
-    /// hold most of what they promise. A law that bends may well promise more than there can be, and what is either so or not is no more than
-    /// so: a model that was fitted without it promises any multiple of that.
+    /// Whether the amplitudes of a test, added to the present values, are possible: clipped to the parameters' bounds they
+    /// keep most of the predicted gain. The linear test of a nonlinear law may predict more than is possible. What is either so or not, as
+    /// two actuators that are swapped, has no upper limit here: a model fitted without it predicts any multiple of it.
     pub fn admissible(&self, model: &Model, test: &Test) -> bool {
         let beyond = |(i, a): (usize, &f64)| {
             let c = &self.columns[i % self.columns.len()];
@@ -133,7 +133,7 @@ impl Candidate {
         DVector::from_iterator(parameters.len(), parameters.iter().enumerate().map(of))
     }
 
-    /// Where a model holds the coefficients that are not known exactly once it acts.
+    /// The places in a model of the coefficients that are not known exactly once it acts.
     pub fn companions(&self, model: &Model) -> Vec<usize> {
         self.mechanism.companions.iter().filter_map(|name| model.index(&format!("{}.{name}", self.term))).collect()
     }

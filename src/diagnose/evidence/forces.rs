@@ -1,5 +1,5 @@
 //! The force that some parameters of a model bring at the recorded states: with them less without them.
-//! It takes a model at its word; whether the model is right is tested elsewhere.
+//! It takes the model as given; whether the model is right is tested elsewhere.
 
 use super::candidate::Candidate;
 use crate::diagnose::settings::{FORCE_STRIDE, REMAINDER};

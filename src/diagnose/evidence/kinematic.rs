@@ -1,5 +1,5 @@
-//! What the sensors say of each other, whatever the ship does: a track is the integral of the velocities along the heading, and a heading
-//! that of the yaw rate. Errors of sensors are compared by it without a model of the ship; which are compared is decided elsewhere.
+//! Kinematic consistency of position, heading, velocity and yaw rate: a track is the integral of the velocities along the heading, and a
+//! heading that of the yaw rate. Errors of sensors are compared by it without a model of the ship; which are compared is decided elsewhere.
 
 use super::candidate::Candidate;
 use crate::diagnose::settings::{CORRECTIONS, GATE, SENSOR_SPREAD, STRETCH, STRETCHES};
@@ -22,7 +22,7 @@ type Equations = [f64; 3];
 struct Stretch<'r> {
     recording: &'r str,
     session: &'r str,
-    /// Those that follow one another in a run are a block, a few together: the run and the number of the block in it.
+    /// Its block of successive stretches: the run, and the number of the block in it.
     block: (usize, usize),
     /// Way and turn less those that the velocities make, of what was recorded without the errors that the model already has.
     left: Equations,
@@ -56,7 +56,7 @@ impl Agreement {
 }
 
 /// The agreement of the sensors under each of some candidates, which are errors of sensors with one amplitude in all sessions; `None`
-/// where no stretch has every channel. Positions p, heading psi, velocities V over ground and yaw rate r tell
+/// where no stretch has every channel. Positions p, heading psi, velocities V over ground and yaw rate r give
 /// `R(-psi) (p(t + T) - p(t) - int R(psi) V dt)` and `psi(t + T) - psi(t) - int r dt`, which are linear in the amplitudes; each equation
 /// counts by the scatter that all errors together leave in it, with outliers at the filter's gate.
 pub fn agreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> Option<Vec<Agreement>> {
@@ -70,10 +70,9 @@ pub fn agreements(model: &Model, runs: &[Run], candidates: &[&Candidate]) -> Opt
     each.collect()
 }
 
-/// How much likelier what the sensors of some runs say of each other is with the errors of sensors that a model has (`after`) than with those
-/// of another (`before`): in log-likelihood over all recordings, with its 95 % interval over them, where they are enough. Each equation
-/// counts by the scatter that the errors of all sensors among the `candidates` together leave in it. `None` where no stretch has every
-/// channel.
+/// Gain in log-likelihood of the kinematic consistency of some runs, by the errors of sensors that a model has (`after`) over those of
+/// another (`before`): over all recordings, with its 95 % interval over them, where they are enough. Each equation counts
+/// by the scatter that the errors of all sensors among the `candidates` together leave in it. `None` where no stretch has every channel.
 pub fn gain(before: &Model, after: &Model, runs: &[Run], candidates: &[Candidate]) -> Option<(f64, Option<[f64; 2]>)> {
     let sensors: Vec<&Candidate> = candidates.iter().filter(|c| c.mechanism.kind == Kind::Sensor).collect();
     let without = stretches_of(before, runs, &sensors);
@@ -86,25 +85,25 @@ pub fn gain(before: &Model, after: &Model, runs: &[Run], candidates: &[Candidate
     Some((all(&after) - all(&before), after.over(&before)))
 }
 
-/// An error of a sensor by what the sensors say of each other alone, no other sensor erring.
+/// An error of a sensor, estimated from the kinematic consistency alone as if no other sensor had an error.
 pub struct Disagreement {
     /// Its amplitudes, in units of the candidate's columns: those of all sessions, or of each of some, session after session.
     pub amplitude: DVector<f64>,
-    /// The sessions, where they differ beyond chance and all along; empty where they do not.
+    /// The sessions, where they differ significantly and throughout; empty where they do not.
     pub sessions: Vec<String>,
     /// Twice what it adds to the log-likelihood.
     pub statistic: f64,
     /// Its p-value.
     pub p: f64,
-    /// Whether it makes the stretches likelier all along, over blocks of them that follow one another: what is not the same all along is no
-    /// error of a sensor, however large. Too few blocks do not tell.
+    /// Whether it makes the stretches likelier throughout, by the scatter over blocks of successive stretches: what changes in time is no
+    /// error of a sensor, however large. True where there are too few blocks for that.
     pub is_steady: bool,
     /// Log-likelihood of the stretches with it, and their number, by block.
     by_block: BTreeMap<(usize, usize), (f64, f64)>,
 }
 
 impl Disagreement {
-    /// Whether it makes the stretches likelier than another error does, beyond chance.
+    /// Whether it makes the stretches significantly likelier than another error does.
     pub fn is_ahead_of(&self, other: &Self) -> bool {
         gain_over(&self.by_block, &other.by_block).is_some_and(|[low, _]| low > 0.0)
     }
@@ -117,9 +116,9 @@ fn gain_over<K: Ord>(of: &BTreeMap<K, (f64, f64)>, other: &BTreeMap<K, (f64, f64
 }
 
 /// Each candidate at the amplitudes at which the sensors agree best, the others without an error; `None` where no stretch has every channel.
-/// What the sensors cannot show of each other (an antenna that carries its velocities with it) is not significant, whatever it does, and
-/// nor is that all clocks are late together. A candidate has an amplitude in each session where that is likelier with a chance below
-/// `alpha`.
+/// An error that leaves the sensors consistent (an antenna whose position and velocities are both those of another point, or clocks that are
+/// all late together) is not significant, whatever its size. A candidate has an amplitude in each session where that is likelier with a
+/// chance below `alpha`.
 pub fn disagreements(model: &Model, runs: &[Run], candidates: &[&Candidate], alpha: f64) -> Option<Vec<Disagreement>> {
     let stretches = stretches_of(model, runs, candidates);
     let scatter = scatter(&stretches)?;
@@ -259,8 +258,8 @@ fn whole(measured: &Measured) -> Option<[f64; STATES]> {
     Some(state)
 }
 
-/// The states that the sensors of a model report as was measured, where every channel has a value: what a model already knows of its
-/// sensors is no disagreement. By fixed-point iteration, as the errors are small beside what is measured.
+/// The states that the sensors of a model report as was measured, where every channel has a value: an error that the model
+/// already has is no disagreement. By fixed-point iteration, as the errors are small beside what is measured.
 fn corrected(model: &Model, run: &Run) -> Vec<Option<[f64; STATES]>> {
     let dynamics = Dynamics::new(model, model.values_in(&run.session));
     let of = |(measured, input): (&Measured, &Inputs<f64>)| {
@@ -414,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn the_error_that_the_sensors_have_is_told_from_its_look_alike_and_its_size_is_found() {
+    fn the_error_that_the_sensors_have_is_distinguished_from_its_look_alike_and_its_size_is_found() {
         let late = of(&erring(&[("time_skew.position", -2.0)], 12));
         assert!(
             (value(&late[0], 0, "time_skew.position") + 2.0).abs() < 0.1,
@@ -478,7 +477,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_the_sensors_show_of_each_other_is_significant() {
+    fn only_what_makes_the_sensors_inconsistent_is_significant() {
         let m = model();
         let list = candidates(&m, &[]);
         let asked =
@@ -495,7 +494,7 @@ mod tests {
     }
 
     #[test]
-    fn velocities_that_are_late_are_told_from_late_positions_and_from_a_lever_arm() {
+    fn velocities_that_are_late_are_distinguished_from_late_positions_and_from_a_lever_arm() {
         let m = model();
         let list = candidates(&m, &[]);
         let asked = ["log_skew", "time_skew", "position_lever"]
@@ -525,7 +524,7 @@ mod tests {
     }
 
     #[test]
-    fn sensors_that_agree_tell_no_error_from_another() {
+    fn sensors_that_agree_distinguish_no_error_from_another() {
         let sound = of(&runs(&model(), 12));
         assert!(sound[0].over(&sound[1]).is_some_and(|[low, high]| low < 0.0 && high > 0.0), "{sound:?}");
     }

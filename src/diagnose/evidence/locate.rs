@@ -301,8 +301,8 @@ mod tests {
         let all = locate(&found, RK4, &runs).pushes;
         let alone = pushes_left(&found, RK4, &runs);
         assert!(!all.is_empty());
-        let told = |pushes: &[Push]| format!("{pushes:?}");
-        assert_eq!(told(&all), told(&alone));
+        let text = |pushes: &[Push]| format!("{pushes:?}");
+        assert_eq!(text(&all), text(&alone));
     }
 
     #[test]

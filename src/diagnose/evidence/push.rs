@@ -56,7 +56,7 @@ pub struct Push {
     /// Twice the gain in log-likelihood where neither the runs nor their windows are known: beforehand a fifth of the runs have
     /// it, in any of their spans.
     pub statistic: f64,
-    /// Share of the evidence for it that sway force and yaw moment hold by themselves, 0 to 1.
+    /// Share of the evidence for it that sway force and yaw moment give by themselves, 0 to 1.
     pub sideways: f64,
     /// Evidence for its mirror image (the same surge force, sway force and yaw moment to the other side) in windows of its own,
     /// as a share of its own evidence: the ship's motion brings forces to both sides, a push from outside does not.
@@ -66,8 +66,8 @@ pub struct Push {
 }
 
 impl Push {
-    /// How many recordings of equal evidence those in which it acts count as: windows of one recording are no evidence apart, and faint windows
-    /// of others do not make one strong window repeat.
+    /// How many recordings of equal evidence those in which it acts count as: windows of one recording are no independent
+    /// evidence, and faint windows of others do not make one strong window repeat.
     pub fn recordings(&self) -> usize {
         let mut evidence: BTreeMap<&str, f64> = BTreeMap::new();
         for w in &self.windows {

@@ -43,7 +43,7 @@ impl Wald {
         Self { value: self.value - values, ..self }
     }
 
-    /// Some of the parameters, with others held at their estimates: their covariance is conditional on these.
+    /// Some of the parameters, with others fixed at their estimates: their covariance is conditional on these.
     pub fn given(&self, of: &[usize], held: &[usize]) -> Self {
         let mut part = self.part(of);
         if let Some(inverse) = pick(&self.covariance, held, held).try_inverse() {

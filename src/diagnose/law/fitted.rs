@@ -1,4 +1,4 @@
-//! A law for what the catalogue does not hold: a few monomials of speeds, rates, inputs and heading, refitted, and proved on unseen runs.
+//! A law for what is not in the catalogue: a few monomials of speeds, rates, inputs and heading, refitted, and proved on unseen runs.
 //! It describes a force where it was recorded and is no physics: it names no cause.
 
 use super::monomial::Monomial;
@@ -59,7 +59,7 @@ pub struct Visited {
     pub high: f64,
 }
 
-/// A force law for what the catalogue does not hold.
+/// A force law for what is not in the catalogue.
 #[derive(Clone, Debug, Serialize)]
 pub struct Law {
     /// How well it is supported.
@@ -68,7 +68,7 @@ pub struct Law {
     pub equation: Vec<String>,
     /// Its monomials.
     pub terms: Vec<LawTerm>,
-    /// Where the recordings were: the law holds there and nowhere else.
+    /// Where the recordings were: the law is valid there and nowhere else.
     pub range: Vec<Visited>,
     /// The base model without it (before) and with it (after), each refitted, on unseen runs.
     pub held_out: Option<FindingProof>,
@@ -81,7 +81,7 @@ impl Law {
     /// The law that the base model lacks, of the monomials of the generic force law; `None` where no monomial is worth its price. The
     /// base model is refitted with the coefficients free, and one whose interval then contains zero is left out again.
     pub fn new(question: &Question, tests: &BaseTests, held_out: &[Run]) -> Option<Self> {
-        (question.progress)("seeking a law for what the catalogue does not hold");
+        (question.progress)("seeking a law for what is not in the catalogue");
         let (fit, screen) = (&tests.fit, &tests.screen);
         let library = screen.law.columns();
         let chosen = select(&screen.evidence, &screen.base, &library, &recordings(&fit.runs));

@@ -1,4 +1,4 @@
-//! What is reported beside the findings: a law for what the catalogue does not hold, and whether port and starboard differ.
+//! What is reported beside the findings: a law for what is not in the catalogue, and whether port and starboard differ.
 //! Neither is a finding: they name no cause.
 //!
 //! | file | what |

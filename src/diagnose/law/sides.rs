@@ -37,7 +37,7 @@ impl Sides {
 /// it has none. `s` is the screen at the estimate and `kinds` the kind of manoeuvre of each run, between which the parameters may
 /// scatter more than their information says ([`crate::likelihood::evidence::Evidence::scatter`]).
 pub fn sides(s: &Screen, found: &Estimate, base: usize, kinds: &[&str]) -> Option<Sides> {
-    // A sensor that reads to one side is not the ship.
+    // The offset of a sensor is no asymmetry of the ship.
     let of_the_ship = |name: &str| {
         let term = name.split('.').next().and_then(|name| found.model.catalogue().find(name));
         term.is_some_and(|t| matches!(t.info().group, Group::Hull | Group::Propulsion | Group::Rudder))

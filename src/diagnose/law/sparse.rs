@@ -52,8 +52,8 @@ impl Library {
     }
 
     /// What a set of columns is worth: its gain in log-likelihood, less the price of every column times the square of the factor by
-    /// which its error is larger than its information says. `None` where the data cannot tell its columns from each other or from the
-    /// base.
+    /// which its error is larger than its information says. `None` where the data cannot distinguish its columns from each other or from
+    /// the base.
     fn worth(&self, set: &[usize]) -> Option<f64> {
         let unit: Vec<f64> = set.iter().map(|i| 1.0 / self.own[*i].sqrt()).collect();
         let scaled = pick(&self.information, set, set).map_with_location(|i, j, v| v * unit[i] * unit[j]);
@@ -118,7 +118,7 @@ mod tests {
         recordings: usize,
         /// Correlation of neighbouring columns.
         correlation: f64,
-        /// Error that is common to the runs of a recording, over that of a run; the information knows of none.
+        /// Error that is common to the runs of a recording, over that of a run; the information leaves it out.
         common: f64,
         /// True coefficients of the library.
         truth: Vec<(usize, f64)>,
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_that_nothing_tells_from_the_base_or_from_each_other_are_not_taken_twice() {
+    fn columns_that_nothing_distinguishes_from_the_base_or_from_each_other_are_not_taken_twice() {
         // The second column is the base's own, the fourth is the third, the fifth was not recorded.
         let x = DMatrix::from_fn(40, 3, |i, j| (1.3 * i as f64 + 2.1 * (j * j) as f64 + 0.7 * (i * j) as f64).sin());
         let y = DVector::from_fn(40, |i, _| 5.0 * x[(i, 1)]);

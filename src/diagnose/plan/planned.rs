@@ -55,7 +55,7 @@ pub struct Plan {
 }
 
 /// What the trials of a plan would show, and with `pair` the cheapest set of trials that parts two mechanisms, out of the planned
-/// ones and the usual ones on four courses. `progress` is told each step in words. The result is the same bits on any number of
+/// ones and the usual ones on four courses. `progress` receives each step in words. The result is the same bits on any number of
 /// threads.
 ///
 /// # Errors

@@ -1,5 +1,5 @@
 //! Planned trials as runs with exact measurements: orders from the closed-loop trials, motion from the simulation.
-//! What the runs tell of a mechanism is computed elsewhere.
+//! What the runs show of a mechanism is computed elsewhere.
 
 use super::error::PlanError;
 use super::settings::{Kind, PlannedTrial, SensorSettings};

@@ -203,9 +203,9 @@ pub struct Told {
     pub extent: Extent,
 }
 
-/// Mean cVDM \[%\] on held-out runs, as the diagnosis' proof measures it, of a model that was told which mechanisms act, and in
-/// which sessions: estimated and refitted as the diagnosis does with what it finds. How far the held-out error can fall when the name
-/// is right. `None` when the catalogue lacks one of them.
+/// Mean cVDM \[%\] on held-out runs, as the diagnosis' proof measures it, of a model that was given the mechanisms that
+/// act, and their sessions: estimated and refitted as the diagnosis does with what it finds. How far the held-out error can fall when the
+/// name is right. `None` when the catalogue lacks one of them.
 ///
 /// # Errors
 /// When the catalogue's terms cannot be added to the model.
@@ -214,21 +214,21 @@ pub fn oracle(
     runs: &[Run],
     held_out: &[Run],
     settings: &Settings,
-    told: &[Told],
+    given: &[Told],
 ) -> Result<Option<f64>, ModelError> {
     let full = model.complete()?;
     let integration = settings.integration();
     let list = candidates(&full, &[]);
     let of = |t: &Told| list.iter().find(|c| c.mechanism.name == t.mechanism);
-    let Some(chosen) = told.iter().map(of).collect::<Option<Vec<_>>>() else { return Ok(None) };
+    let Some(chosen) = given.iter().map(of).collect::<Option<Vec<_>>>() else { return Ok(None) };
     let first = guess(runs, &full);
     let prior = NoisePrior::around(&first);
     let free = base_parameters(&full, settings.nuisance);
     let mut current = estimate(&full, integration, runs, &free, &first, &prior, GIVEN_START);
-    for (told, candidate) in told.iter().zip(chosen) {
+    for (given, candidate) in given.iter().zip(chosen) {
         let candidates = std::slice::from_ref(candidate);
         let problem = Problem { integration, runs, candidates, prior: &prior, settings };
-        let (start, free) = started(&current, problem, &told.extent);
+        let (start, free) = started(&current, problem, &given.extent);
         current = problem.estimate(&start, &free, &current.noise, GIVEN_FINISH);
     }
     let judging = Judging { integration, ..Settings::default().judging };

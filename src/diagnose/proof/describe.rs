@@ -46,9 +46,9 @@ impl Intervals {
         Self { wald, scatter: s.evidence.scatter(&s.widened, &kinds(runs), &s.mechanism_columns()) }
     }
 
-    /// Whether the region that holds all of a candidate's parameters together with 95 % leaves zero out, by the same variance as their single
-    /// intervals: of one parameter its interval, of several Hotelling's region, wider as few groups tell the scatter of many. Where each
-    /// session has a size of its own, that of one session by itself may leave it out too.
+    /// Whether the joint 95 % region of a candidate's parameters excludes zero, by the same variance as their single intervals: of one
+    /// parameter its interval, of several Hotelling's region, which is wider where few groups determine the scatter of many parameters.
+    /// Where each session has a size of its own, the region of a single session may exclude it too.
     pub(in crate::diagnose) fn excludes_zero(&self, found: &Estimate, c: &Candidate, extent: &Extent) -> bool {
         let places = c.positions(&found.free, extent);
         let mut part = self.wald.part(&places).less(&c.held(extent));
@@ -115,7 +115,7 @@ pub(in crate::diagnose) fn mechanism_finding(
     }
 }
 
-/// Gives the findings of a selection the sizes that an estimate of the same parameters has, which the file holds, with the uncertainty as it is.
+/// Gives the findings of a selection the sizes in the estimate that is written to the file, with the uncertainty as it is.
 /// Returns those whose intervals excluded zero before and all include it then.
 pub(in crate::diagnose) fn sized(
     findings: &mut [Finding],
@@ -236,7 +236,7 @@ pub(in crate::diagnose) fn sensor_findings(admission: &Admission) -> Vec<Finding
         .map(|i| Finding {
             mechanism: i.fault.into(),
             title: title_of_fault(i),
-            // The channels of a recording contradict one another: no run could tell otherwise.
+            // The channels of a recording contradict one another: no further run could refute that.
             grade: Grade::Confirmed,
             kind: Kind::Sensor,
             confidence_set: vec![i.fault.into()],
@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_push_in_two_recordings_may_be_something_the_catalogue_does_not_hold() {
+    fn a_push_in_two_recordings_may_be_something_that_is_not_in_the_catalogue() {
         let location = locate(&at(&model()), RK4, &runs(&model(), 2));
         let window = |i: usize| Window {
             run: format!("run {i}"),

@@ -1,5 +1,5 @@
 //! What a diagnosis names: a value with its interval, and a finding with everything that is said about it.
-//! It holds and computes nothing; how a finding is made and judged is in other files.
+//! It computes nothing; how a finding is made and judged is in other files.
 
 use super::grade::Grade;
 use super::unseen::FindingProof;
@@ -67,7 +67,7 @@ impl From<[EquationShare; 3]> for Equations {
 /// A mechanism, a push or a fault of a sensor that is named.
 #[derive(Clone, Debug, Serialize)]
 pub struct Finding {
-    /// Name of the mechanism; `push` for a time-local force, `generic` when the catalogue does not hold it.
+    /// Name of the mechanism; `push` for a time-local force, `generic` when it is not in the catalogue.
     pub mechanism: String,
     /// Plain words.
     pub title: String,
@@ -120,5 +120,5 @@ impl Finding {
 /// Title of a push.
 pub const PUSH_TITLE: &str = "a push for a limited time (tug, thruster, line)";
 
-/// The name in a confidence set for physics that the catalogue does not hold.
+/// The name in a confidence set for physics that is not in the catalogue.
 pub const GENERIC: &str = "generic";

@@ -1,5 +1,5 @@
-//! The grade of a finding as a pure function of its tests: what the unseen runs, its interval and its size say of it.
-//! It estimates nothing and knows no runs; every number it compares with is in the settings.
+//! The grade of a finding as a pure function of its tests: the gains on unseen runs, its interval and its size.
+//! It estimates nothing and looks at no runs; every number it compares with is in the settings.
 
 use crate::diagnose::settings::{FORM_TOLERANCE, MATERIAL_SHARE, RESOLVED_SAMPLES};
 use serde::Serialize;
@@ -8,9 +8,9 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Grade {
-    /// Unseen runs are better with it: by one of log-likelihood and free simulation beyond chance, and not worse by the other.
+    /// Unseen runs are better with it: significantly by one of log-likelihood and free simulation, and not worse by the other.
     Confirmed,
-    /// The training runs speak for it; unseen runs cannot tell, or there are none.
+    /// It is significant on the training runs; unseen runs do not decide, or there are none.
     Suspected,
     /// Unseen runs are worse with it by log-likelihood or free simulation, the interval below zero: it is not named and not written to the
     /// improved model.
@@ -26,9 +26,9 @@ pub enum Grade {
     /// that were sailed.
     NotIsolated,
     /// A clock, a point of the positions or an actuator that is late, and explicit Euler steps of one sample period explain it as well:
-    /// these recordings cannot tell it from a coarse simulation or from values held until the next sample.
+    /// these recordings cannot distinguish it from a coarse simulation or from values held until the next sample.
     EulerSteps,
-    /// Most repetitions on the same recordings told otherwise do not find it.
+    /// Most repetitions on transformed recordings do not find it.
     Unstable,
 }
 
@@ -59,7 +59,7 @@ impl GainTest {
         self.ci95.is_some_and(|[low, _]| low > 0.0)
     }
 
-    /// Whether it is below zero, beyond chance where there is an interval.
+    /// Whether it is below zero, significantly where there is an interval.
     pub(in crate::diagnose) fn is_worse(&self) -> bool {
         self.ci95.map_or(self.gain < 0.0, |[_, high]| high < 0.0)
     }
@@ -90,7 +90,7 @@ pub struct FindingTests {
     pub likelihood: Option<GainTest>,
     /// Improvement of the free simulation of unseen runs.
     pub prediction: Option<GainTest>,
-    /// For an error of a sensor, gain in log-likelihood of what the sensors of unseen runs say of each other, where they tell.
+    /// For an error of a sensor, gain in log-likelihood of the kinematic consistency of unseen runs, where that is known.
     pub agreement: Option<GainTest>,
 }
 
@@ -100,8 +100,8 @@ pub fn is_unstable(found: usize, repetitions: usize) -> bool {
 }
 
 impl FindingTests {
-    /// Whether unseen runs are worse with it beyond chance by one measure at least: what simulates them worse is no improvement, however
-    /// likely it makes them, and nothing is named beside its refutation.
+    /// Whether unseen runs are significantly worse with it by one measure at least: what simulates them worse is no improvement, however
+    /// likely it makes them, and what one measure refutes is not named.
     pub fn is_refuted(&self) -> bool {
         refute(&[self.likelihood, self.prediction, self.agreement])
     }
@@ -128,12 +128,12 @@ pub enum Shift {
     OfLag(f64),
 }
 
-/// Whether unseen runs are worse beyond chance by one measure.
+/// Whether unseen runs are significantly worse by one measure.
 fn refute(measures: &[Option<GainTest>]) -> bool {
     measures.iter().flatten().any(GainTest::is_below_zero)
 }
 
-/// Whether unseen runs are better by one measure beyond chance, and worse by none, of log-likelihood, free simulation and, for an error of a
+/// Whether unseen runs are significantly better by one measure, and worse by none, of log-likelihood, free simulation and, for an error of a
 /// sensor, kinematic consistency: by its interval, and by its sign where there is none.
 fn confirm(likelihood: Option<GainTest>, prediction: Option<GainTest>, agreement: Option<GainTest>) -> bool {
     let is_shown = agreement.is_some_and(|g| g.is_above_zero());
@@ -143,13 +143,13 @@ fn confirm(likelihood: Option<GainTest>, prediction: Option<GainTest>, agreement
     is_judged && known.clone().any(GainTest::is_above_zero) && known.all(|g| !g.is_worse())
 }
 
-/// How well a law for what the catalogue does not hold is supported.
+/// How well a law for what is not in the catalogue is supported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LawGrade {
     /// Unseen runs are better with it, as for [`Grade::Confirmed`].
     Confirmed,
-    /// The training runs speak for it; unseen runs cannot tell, or there are none.
+    /// It is significant on the training runs; unseen runs do not decide, or there are none.
     Exploratory,
     /// Unseen runs are worse with it, as for [`Grade::Refuted`].
     Refuted,
@@ -179,7 +179,7 @@ pub fn grade(tests: &FindingTests) -> Grade {
     } else if !tests.excludes_zero && !proved {
         Grade::Undetermined
     } else if tests.isolated < FORM_TOLERANCE {
-        // What is left is no more than the form of the ship's own forces is known.
+        // The share left is less than the uncertainty in the form of the ship's own forces.
         Grade::NotIsolated
     } else if tests.by_steps > 1.0 - FORM_TOLERANCE {
         Grade::EulerSteps
@@ -310,16 +310,16 @@ mod tests {
         // A clock that is off by less than half a sample.
         assert_eq!(grade(&FindingTests { shift: Some(Shift::OfClock(0.49)), ..sound() }), Grade::Immaterial);
         assert_eq!(grade(&FindingTests { shift: Some(Shift::OfClock(0.5)), ..sound() }), Grade::Confirmed);
-        // What unseen runs prove at the limit of what it can be is another law's.
+        // At the limit of its possible size an effect may be part of another law, whatever unseen runs prove.
         assert_eq!(grade(&FindingTests { at_limit: true, ..sound() }), Grade::Suspected);
-        // A lag by that, and by how little it changes.
+        // A lag is immaterial by that, or by how little it changes predictions.
         for (change, late, wanted) in
             [(0.5, 0.49, Grade::Immaterial), (0.04, 0.6, Grade::Immaterial), (0.5, 0.6, Grade::Confirmed)]
         {
             let lag = FindingTests { change, shift: Some(Shift::OfLag(late)), ..sound() };
             assert_eq!(grade(&lag), wanted);
         }
-        // One that steps of a coarse simulation explain as well.
+        // A clock that steps of a coarse simulation explain as well.
         let clock = FindingTests { shift: Some(Shift::OfClock(1.0)), ..sound() };
         assert_eq!(grade(&FindingTests { by_steps: 0.89, ..clock }), Grade::Confirmed);
         assert_eq!(grade(&FindingTests { by_steps: 0.91, ..clock }), Grade::EulerSteps);

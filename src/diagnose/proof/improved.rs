@@ -1,4 +1,4 @@
-//! The model as a file should hold it: the user's terms and those of the mechanisms that act, without neutral ones, each parameter inside
+//! The model as it is written to a file: the user's terms and those of the mechanisms that act, without neutral ones, each parameter inside
 //! its bounds. It decides nothing.
 
 use crate::likelihood::algebra::pseudo_inverse;
@@ -9,7 +9,7 @@ use crate::simulate::Integration;
 use crate::uncertainty::Uncertainty;
 use std::collections::BTreeMap;
 
-/// The model as a file should hold it: the user's terms and those that were found to act, nothing that is neutral.
+/// The model as it is written to a file: the user's terms and those that were found to act, nothing that is neutral.
 pub fn trimmed(found: &Model, user: &Model, free: &[FreeParameter]) -> Model {
     let mut model = user.clone();
     let wanted = |name: &str| {
@@ -71,7 +71,7 @@ mod tests {
     use crate::diagnose::example::{column, model, with};
 
     #[test]
-    fn a_file_holds_the_terms_that_act_and_those_that_differ_between_sessions_and_no_neutral_one() {
+    fn a_file_contains_the_terms_that_act_and_those_that_differ_between_sessions_and_no_neutral_one() {
         let full = model();
         let user = full.restricted(|t| !["current", "mean_wind", "heading_bias"].contains(&t));
         let mut found = with(&[("current.north", 0.2)]);

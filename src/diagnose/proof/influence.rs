@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_that_is_better_in_turns_holds_though_steady_motion_is_better_on_most_courses() {
+    fn a_model_that_is_better_in_turns_is_a_base_though_steady_motion_is_better_on_most_courses() {
         let turns = runs(&model(), 8);
         let exact = predict_all(&model(), &turns, RK4);
         let course = |run: &Run| {

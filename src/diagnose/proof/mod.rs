@@ -3,12 +3,12 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | [`finding`], `describe` | what a finding holds, and how it is filled |
+//! | [`finding`], `describe` | what a finding contains, and how it is filled |
 //! | [`influence`] | how far a finding changes what is predicted |
 //! | [`unseen`], [`prove`] | a finding, and all findings, on unseen runs |
 //! | `weigh`, [`grade`] | the tests of a finding, and its grade, a pure function of them |
 //! | [`baseline`] | rival methods, for comparison with the diagnosis |
-//! | `improved` | the model with the findings as a file holds it |
+//! | `improved` | the model with the findings as it is written to a file |
 //! | [`stability`] | whether an answer stays when the recordings are turned, mirrored, cut or thinned |
 
 pub mod baseline;

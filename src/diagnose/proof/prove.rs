@@ -32,7 +32,8 @@ impl RunScore {
     }
 }
 
-/// Before against after on held-out runs. The numbers of free simulation are those that `trimtab evaluate` prints.
+/// The base model (before) against the model with the findings (after) on held-out runs. The numbers of
+/// free simulation are those that `trimtab evaluate` prints.
 #[derive(Clone, Debug, Serialize)]
 pub struct HeldOut {
     /// Number of held-out runs.
@@ -43,7 +44,7 @@ pub struct HeldOut {
     pub after: Option<f64>,
     /// Relative improvement of the mean cVDM, `1 - after/before`.
     pub improvement: Option<f64>,
-    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, where one holds most of the error, and where a
+    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, where one has most of the error, and where a
     /// simulation diverged.
     pub ci95: Option<[f64; 2]>,
     /// Runs that got better.

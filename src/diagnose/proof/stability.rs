@@ -1,5 +1,5 @@
-//! Whether an answer is the same when the same recordings are told otherwise: turned, mirrored, cut, thinned, started elsewhere.
-//! It makes the variants and compares the answers; how an answer is found is the pipeline's affair.
+//! Whether an answer is the same when the same recordings are transformed: turned, mirrored, cut, thinned, started elsewhere.
+//! It makes the variants and compares the answers; the pipeline finds each answer.
 
 use super::finding::Finding;
 use super::grade::is_unstable;
@@ -14,7 +14,7 @@ use crate::state::Inputs;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
 
-/// The same analysis on the same recordings told otherwise.
+/// The same analysis on the same recordings, transformed.
 #[derive(Clone, Debug, Serialize)]
 pub struct Variant {
     /// What was changed.

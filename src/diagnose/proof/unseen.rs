@@ -1,5 +1,5 @@
 //! One finding on runs that no earlier step has used: a model with it against the same model refitted without it, and, for an error of a
-//! sensor, what their sensors say of each other. It computes gains and their intervals over recordings; what follows from them is decided elsewhere.
+//! sensor, their kinematic consistency. It computes gains and their intervals over recordings; what follows from them is decided elsewhere.
 
 use super::grade::GainTest;
 use crate::diagnose::evidence::candidate::Candidate;
@@ -27,9 +27,9 @@ pub struct FindingProof {
     pub runs: usize,
     /// Gain in log-likelihood over all of them.
     pub log_likelihood_gain: Option<f64>,
-    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, and where one holds most of the samples.
+    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, and where one has most of the samples.
     pub log_likelihood_ci95: Option<[f64; 2]>,
-    /// For an error of a sensor, how much likelier it makes what the sensors of the runs say of each other; absent where they do not tell.
+    /// For an error of a sensor, gain in log-likelihood of the kinematic consistency of the runs; absent where that is not known.
     pub agreement_gain: Option<f64>,
     /// Its 95 % interval, as that of the likelihood.
     pub agreement_ci95: Option<[f64; 2]>,
@@ -39,7 +39,7 @@ pub struct FindingProof {
     pub after: Option<f64>,
     /// Relative improvement of the mean cVDM, `1 - after/before`.
     pub improvement: Option<f64>,
-    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, where one holds most of the error, and where a
+    /// Its 95 % interval, by Student's t over recordings; absent with fewer than three, where one has most of the error, and where a
     /// simulation diverged.
     pub improvement_ci95: Option<[f64; 2]>,
     /// Mean distance of the simulated from the measured position \[m\], without and with it; absent where none was measured.
@@ -51,8 +51,8 @@ pub struct FindingProof {
 }
 
 impl FindingProof {
-    /// Compares `after` with `before` on held-out runs, both under the same noise. It is the noise beside the finding: the noise of a model
-    /// without a sensor's error has taken the error in, and under it nothing is told.
+    /// Compares `after` with `before` on held-out runs, both under the same noise. It is the noise estimated with the finding: the noise of
+    /// a model without a sensor's error includes that error, and under it the two models hardly differ.
     pub fn new(
         before: &Model,
         after: &Model,
@@ -94,17 +94,17 @@ impl FindingProof {
         Self { recordings, runs: runs.len(), ..Self::default() }.beside(Some(agreement))
     }
 
-    /// With what the sensors of the runs say of each other.
+    /// With the gain in kinematic consistency.
     pub fn beside(self, agreement: Option<GainTest>) -> Self {
         Self { agreement_gain: agreement.map(|g| g.gain), agreement_ci95: agreement.and_then(|g| g.ci95), ..self }
     }
 
-    /// What the sensors of the runs say of each other.
+    /// The gain in kinematic consistency.
     pub fn agreement(&self) -> Option<GainTest> {
         Some(GainTest { gain: self.agreement_gain?, ci95: self.agreement_ci95 })
     }
 
-    /// Whether the sensors of the runs show the finding themselves, beyond chance.
+    /// Whether the kinematic consistency of the runs shows the finding significantly.
     pub fn is_shown(&self) -> bool {
         self.agreement().is_some_and(|g| g.is_above_zero())
     }
@@ -120,8 +120,8 @@ impl FindingProof {
     }
 }
 
-/// What the sensors of runs say of each other with the errors of sensors of `after` against those of `before`; `None` where that makes
-/// less difference than can be told apart.
+/// The gain in kinematic consistency of runs by the errors of sensors of `after` over those of `before`; `None` where that is too small to
+/// distinguish them.
 pub fn agreement(before: &Model, after: &Model, runs: &[Run], candidates: &[Candidate]) -> Option<GainTest> {
     let (sound, _) = settled(runs, before.ship.hull.lpp);
     let (gain, ci95) = kinematic::gain(before, after, &sound, candidates)?;
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_noise_that_has_taken_an_error_in_tells_less_of_it_than_the_noise_beside_it() {
+    fn a_noise_that_includes_an_error_shows_less_of_it_than_the_noise_estimated_with_it() {
         let runs = erring(&[("log_scale.error", 0.08)], 6);
         let off = with(&[("log_scale.error", 0.08)]);
         let mut wide = noise();

@@ -24,7 +24,7 @@ use crate::statistics::median;
 /// Clocks that differ, in the catalogue.
 const CLOCKS: &str = "time_skew";
 
-/// A selected mechanism with what speaks for and against it.
+/// A selected mechanism with the evidence for and against it.
 pub struct Weight {
     /// The grade.
     pub grade: Grade,
@@ -37,7 +37,7 @@ pub struct Weight {
 }
 
 impl Weight {
-    /// Whether it stays in the model, though it is not named: unseen runs must not speak against it.
+    /// Whether it stays in the model, though it is not named: unseen runs must not refute it.
     pub fn is_carried(&self) -> bool {
         self.grade.may_be_carried() && !self.tests.is_refuted()
     }
@@ -118,8 +118,8 @@ fn proof(question: &Question, kept: &Kept, of: &Selected, without: &Estimate, he
     FindingProof::new(&without.model, &found.model, &found.noise, integration, held_out, judging).beside(agreement)
 }
 
-/// The least share of its information that is left to the weather of a set: what cannot be told from a member that the ship takes over is
-/// taken over with it. 1 for what is no weather.
+/// The least share of its information that is left to the weather of a set: what cannot be distinguished from a member that the ship's own
+/// parameters can take over counts as taken over too. 1 for what is no weather.
 fn isolated(tests: &BaseTests, of: &Selected) -> f64 {
     let is_weather = |i: &&usize| tests.candidates[**i].mechanism.is_weather();
     let left = of.set.iter().filter(is_weather).map(|i| tests.screen.isolated(*i, &of.extent, &tests.candidates));
@@ -128,14 +128,14 @@ fn isolated(tests: &BaseTests, of: &Selected) -> f64 {
 
 /// The share of what a clock, a sensor's error like it or an actuator's lag gains over the model `without` it that explicit Euler steps of
 /// one sample period of the recordings gain in its place: with such steps positions are late by a sample and the ship answers its
-/// actuators late, and so it is where values are held until the next.
+/// actuators late, as they do where values are held until the next sample.
 fn by_steps(question: &Question, kept: &Kept, without: &Estimate) -> f64 {
     let steps = median(kept.selection.tests.fit.runs.iter().map(|r| r.dt / r.recorded_dt)).unwrap_or(1.0);
     let substeps = (steps.round() as usize).clamp(1, MOST_SUBSTEPS);
     let fine = kept.selection.tests.problem(question.settings);
     let coarse = Problem { integration: Integration { method: Method::Euler, substeps }, ..fine };
     let found = &kept.selection.estimate;
-    // All three with noise estimated along, so that no reading is ahead for its rounds.
+    // All three with noise estimated along, so that none gains by more rounds of estimation.
     let settled = |p: &Problem, e: &Estimate| p.estimate(&e.model, &e.free, &found.noise, SETTLE).log_posterior;
     let base = settled(&fine, without);
     let gain = settled(&fine, found) - base;
@@ -172,8 +172,8 @@ pub fn weakest(weights: &[Weight]) -> Option<usize> {
     going.min_by(|a, b| a.1.gain().total_cmp(&b.1.gain())).map(|(i, _)| i)
 }
 
-/// Where all that is kept makes unseen runs worse beyond chance, in the models that are written, and no part did so by itself, the part
-/// that does least for them: it is withdrawn first. What stands beside a name, a push too, must not refute it.
+/// Where all that is kept makes unseen runs significantly worse, in the models that are written, and no part did so by itself, the part
+/// that does least for them: it is withdrawn first. All that is named together, a push too, must not be refuted.
 pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight], held_out: &[Run]) -> Option<usize> {
     if weights.is_empty() || held_out.is_empty() {
         return None;
@@ -188,7 +188,7 @@ pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight]
     }
     let index = does_least(weights, simulated)?;
     if let [alone] = weights {
-        // It was weighed before, by models that need not keep inside their bounds.
+        // It was weighed before, in models whose parameters may be outside their bounds.
         (alone.grade, alone.proof) = (Grade::Refuted, Some(proof));
     } else {
         weights[index].grade = Grade::RefutedTogether;
@@ -196,9 +196,9 @@ pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight]
     Some(index)
 }
 
-/// What is kept, with the ship of the base model where all that the model has of it, named or not, are errors of sensors that the sensors of
-/// the unseen runs show themselves, and the ship that was refitted beside these errors simulates the unseen runs worse: it was never in
-/// question.
+/// What is kept, with the ship of the base model where all that the model has of it, named or not, are errors of sensors that the kinematic
+/// consistency of the unseen runs shows, and the ship that was refitted with these errors simulates the unseen runs worse: such errors are
+/// no evidence against the ship's own parameters.
 pub fn with_ship_held(question: &Question, mut kept: Kept, weights: &[Weight], held_out: &[Run]) -> Kept {
     if weights.is_empty() || !weights.iter().all(Weight::is_shown) {
         return kept;
@@ -268,7 +268,7 @@ pub fn findings(kept: &Kept, weights: &[Weight]) -> Vec<Finding> {
 pub struct Base {
     /// The better of the two.
     pub following: Following,
-    /// Whether it holds.
+    /// Whether it follows them well enough to name anything.
     pub holds: bool,
 }
 

@@ -108,7 +108,7 @@ impl BaseFit {
         let Estimate { model, noise, free, log_posterior: fine, .. } = &self.estimate;
         self.admission.euler_gain = log_posterior(model, coarse, &self.runs, free, noise) - fine;
         if self.admission.euler_gain > -EULER_HOPELESS {
-            // Both readings with parameters of their own: a fit bends them to hide the error of a step.
+            // Each integration with its own fitted parameters: a fit shifts them to compensate the error of a step.
             let fit = |e: &Estimate, effort: Effort| {
                 estimate(&e.model, coarse, &self.runs, &e.free, &e.noise, &self.prior, effort)
             };
@@ -177,10 +177,10 @@ mod tests {
     fn recordings_made_by_explicit_euler_are_read_as_euler() {
         let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
         let mut runs = made_by_euler(&model, 6);
-        // With the errors of sensors nobody can say so.
+        // With errors of sensors this cannot be detected.
         assert!(!is_made_by_euler(&runs));
         for r in &mut runs {
-            // As a file holds them, to a hundredth of a millimetre.
+            // As they are in a file, to a hundredth of a millimetre.
             r.measured = sailed(&model, r, EULER).iter().map(|s| s.map(|v| Some((v * 1e5).round() / 1e5))).collect();
         }
         assert!(is_made_by_euler(&runs));

@@ -22,7 +22,7 @@ use crate::physics::{Kind, Probe};
 use crate::statistics::{corrected, mean, median, scattered_p};
 use nalgebra::DVector;
 
-/// A candidate's amplitudes in an estimate beyond what the model already had, its companions held: an amplitude that only counts times a
+/// A candidate's amplitudes in an estimate beyond what the model already had, its companions fixed: an amplitude that only counts times a
 /// coefficient is as uncertain as that coefficient and yet not zero.
 pub fn amplitudes(all: &Wald, found: &Estimate, c: &Candidate, extent: &Extent) -> Wald {
     let companions = c.companions(&found.model);
@@ -51,7 +51,7 @@ impl Hypothesis {
         }
     }
 
-    /// A look-alike in the leader's place: where a law bends, its slope at zero promises less than it holds, so that it is tried
+    /// A look-alike in the leader's place: where a law is nonlinear, its slope at zero predicts less than its gain, so that it is tried
     /// in the leader's sessions whatever its own test says. A coefficient of the ship does not change from session to session.
     fn in_place_of(row: &Row, leader: &Row, s: &Screen, candidates: &[Candidate]) -> Option<Self> {
         let by_session = matches!(leader.extent, Extent::Each(_));
@@ -73,8 +73,8 @@ impl Hypothesis {
     }
 }
 
-/// The hypotheses that are refitted beside the leader: look-alikes from outside the ship or among its sensors, and whatever promises
-/// nearly as much.
+/// The hypotheses that are refitted beside the leader: look-alikes from outside the ship or among its sensors, and whatever has nearly
+/// as large a predicted gain.
 fn rivals(s: &Screen, leaders: &[&Row], candidates: &[Candidate]) -> Vec<Hypothesis> {
     let leader = leaders[0];
     let first = candidates[leader.candidate].mechanism;
@@ -86,7 +86,7 @@ fn rivals(s: &Screen, leaders: &[&Row], candidates: &[Candidate]) -> Vec<Hypothe
     if matches!(first.kind, Kind::Environment | Kind::Sensor) {
         out.extend(s.rows.iter().filter(alike).filter_map(|r| Hypothesis::in_place_of(r, leader, s, candidates)));
     }
-    // A rival whose promised gain is far below the leader's does not overtake it.
+    // A rival whose predicted gain is far below the leader's does not overtake it.
     let gain_needed = leader.test.statistic - f64::max(RIVAL_GAP, REMAINDER * leader.test.statistic);
     let near = leaders[1..]
         .iter()
@@ -110,7 +110,7 @@ pub fn form_tolerance(gain: f64) -> f64 {
 }
 
 /// The model with a mechanism at the amplitudes of a score test, everything else moved along as far as the quadratic model
-/// holds, and what is free then: what was, the mechanism's companions, and its own parameters.
+/// is valid, and what is free then: what was, the mechanism's companions, and its own parameters.
 pub fn start_with(
     s: &Screen,
     candidate: usize,
@@ -172,7 +172,7 @@ struct Contest {
     refitted: Vec<Refit>,
     /// Candidates whose noise was estimated along.
     settled: Vec<usize>,
-    /// Errors of sensors that the sensors do not tell from the leader.
+    /// Errors of sensors that the kinematic consistency does not distinguish from the leader.
     alike: Vec<usize>,
     /// The leader's p-value.
     p: f64,
@@ -217,10 +217,10 @@ impl Competition<'_> {
         Refit { hypothesis, estimate, value }
     }
 
-    /// Errors of sensors, compared by what the sensors say of each other, whatever the ship does: the one that the recordings prefer to
-    /// the leader beyond chance takes its place, those that are worse than it beyond chance are no rivals, and it comes back with
-    /// the candidates that are not told from it.
-    fn told_by_sensors(&self, first: &mut Hypothesis, rivals: &mut Vec<Hypothesis>) -> Vec<usize> {
+    /// Errors of sensors, compared by the kinematic consistency: the one that is significantly better than the leader takes its place,
+    /// those that are significantly worse than it are no rivals, and it returns the leader and the candidates that are not distinguished
+    /// from it.
+    fn by_consistency(&self, first: &mut Hypothesis, rivals: &mut Vec<Hypothesis>) -> Vec<usize> {
         let Problem { runs, candidates, .. } = self.problem;
         let is_sensor =
             |h: &Hypothesis| candidates[h.candidate].mechanism.kind == Kind::Sensor && h.extent == Extent::All;
@@ -261,8 +261,8 @@ impl Competition<'_> {
         is_so && corrected(p, self.tried.max(1) as f64) < settings.alpha && !only_cancels(c, estimate, runs)
     }
 
-    /// What is either so or not, refitted from where it is wholly so in the model as it was given, where a refit confirms it. The rest is
-    /// estimated first while it is held so: gains that are far off would else be taken for a share of it.
+    /// What is either so or not (two actuators swapped), refitted from where it is wholly so in the model as it was given, where a refit
+    /// confirms it. The rest is estimated first with its amplitude fixed: gains that are far off would else be taken for a share of it.
     fn whole(&self, given: &Model) -> Vec<Refit> {
         let Problem { candidates, .. } = self.problem;
         let visible = self.screen.rows.iter().filter(|r| r.visible).count();
@@ -302,8 +302,8 @@ impl Competition<'_> {
         self.settled(hypothesis, &model, &free, noise)
     }
 
-    /// Refits the error of a sensor from where the sensors agree best; where sensors are made anew every day and one amplitude
-    /// does for what the sensors say of each other, also with one a session, if that explains clearly more.
+    /// Refits the error of a sensor from where the sensors agree best. Where the error may differ from day to day and one amplitude is
+    /// enough for the kinematic consistency, it is also refitted with one a session, and that is kept if it explains clearly more.
     fn refit_from(&self, leading: Leading) -> Refit {
         let Leading { set, extent, amplitude, statistic, p, model, free, noise } = leading;
         let candidate = set[0];
@@ -319,7 +319,7 @@ impl Competition<'_> {
         if each.value > found.value + INDISTINGUISHABLE { each } else { found }
     }
 
-    /// The error of a sensor that the sensors show of each other, where a refit confirms it and they show it at the size that it has there.
+    /// The error of a sensor that the kinematic consistency shows, where a refit confirms it and it is shown at the size of the refit too.
     fn shown(&self, leading: Leading) -> Option<(Selected, Estimate)> {
         let Problem { runs, candidates, .. } = self.problem;
         let set = leading.set.clone();
@@ -343,12 +343,12 @@ impl Competition<'_> {
         let Some(leader) = leaders.first() else { return out };
         let mut first = Hypothesis::of(leader);
         let mut rivals = rivals(self.screen, leaders, self.problem.candidates);
-        out.alike = self.told_by_sensors(&mut first, &mut rivals);
+        out.alike = self.by_consistency(&mut first, &mut rivals);
         (out.settled, out.p) = (vec![first.candidate], first.p);
         let first = self.refit(first, &self.current.noise, SETTLE, f64::NEG_INFINITY);
         let noise = first.estimate.noise;
         if self.is_confirmed(&first) {
-            // A rival that stays further behind a leader than any set is wide changes nothing.
+            // A rival further below the leader than the tolerance of any confidence set changes nothing.
             out.least = first.value - form_tolerance(first.value - self.current.log_posterior);
             out.refitted.push(first);
         }
@@ -362,7 +362,7 @@ impl Competition<'_> {
     }
 
     /// Refits the leader of a ranking and its rivals, beside them what is either so or not in the model as it was given, and returns the best
-    /// with its confidence set; `None` where no refit confirms what its test promised.
+    /// with its confidence set; `None` where no refit confirms the gain that its test predicted.
     fn best(&self, leaders: &[&Row], given: Option<&Model>) -> Option<(Selected, Estimate)> {
         let candidates = self.problem.candidates;
         let mut contest = self.contest(leaders);
@@ -435,7 +435,7 @@ impl Competition<'_> {
         let Some(next) = entries.get(1) else {
             return "no other mechanism of the catalogue fits nearly as well".into();
         };
-        // A refit that was given up may have been further ahead than it got.
+        // A refit that was given up is only known to be below `least`.
         let (over, by) = if next.value < least { ("over ", best - least) } else { ("", best - next.value) };
         format!("next best, {}, fits {over}{by:.0} units of log-likelihood worse", title(next))
     }
@@ -504,7 +504,7 @@ pub fn compare(
 }
 
 /// The first error of a sensor that a refit confirms: the kinematic consistency of the sensors comes before every mechanism of the ship. Else as
-/// [`compare`], and beside the leaders what is either so or not, whatever its test promises, in the model as it was `given`.
+/// [`compare`], and beside the leaders what is either so or not, whatever gain its test predicts, in the model as it was `given`.
 pub fn compete(
     screen: &Screen,
     leaders: &[&Row],
@@ -517,7 +517,7 @@ pub fn compete(
     let refitting = |i: usize| progress(&format!("refitting with {}", problem.candidates[i].mechanism.title));
     for sensor in sensors {
         refitting(sensor.set[0]);
-        // Every mechanism that the data can see was tried where the sensors tell which of them leads.
+        // The chance is corrected for every mechanism that the data can see, though the sensors alone determine the leader.
         let tried = screen.rows.iter().filter(|r| r.visible).count();
         let shown = Competition { screen, current, problem, tried }.shown(sensor);
         if shown.is_some() {
@@ -548,7 +548,7 @@ mod tests {
     }
 
     #[test]
-    fn the_confidence_set_holds_the_mechanisms_within_the_tolerance_of_the_best() {
+    fn the_confidence_set_contains_the_mechanisms_within_the_tolerance_of_the_best() {
         let r = Ranking::new(vec![entry(0, 91.0, false), entry(1, 100.0, false), entry(2, 89.9, false)]).unwrap();
         assert_eq!((places(&r.entries), places(r.set())), (vec![1, 0, 2], vec![1, 0]));
         assert!(Ranking::new(Vec::new()).is_none());

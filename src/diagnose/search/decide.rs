@@ -1,5 +1,5 @@
 //! The verdict as a pure function of a table of tests: which mechanisms are kept, whether a push is named, what is said.
-//! It estimates nothing and knows no runs; every number it compares with is in the settings.
+//! It estimates nothing and looks at no runs; every number it compares with is in the settings.
 
 use crate::diagnose::settings::{
     BEYOND_DOUBT, BEYOND_FORM, FEWEST_RECORDINGS, FEWEST_RUNS, FEWEST_SAMPLES, GUST_SHARE, REMAINDER,
@@ -16,9 +16,9 @@ pub enum Verdict {
     NothingMissing,
     /// One mechanism (or several together) is named.
     Named,
-    /// One of several that these data cannot tell apart.
+    /// One of several that these data cannot distinguish.
     OneOf,
-    /// Something is missing that the catalogue does not hold.
+    /// Something is missing that is not in the catalogue.
     NotInCatalogue,
     /// A sensor, not the ship.
     Sensor,
@@ -43,7 +43,7 @@ pub struct PushTest {
     pub recordings: usize,
 }
 
-/// What a push is held against.
+/// What the test of a push is compared with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chance {
     /// The chance of naming anything when nothing is missing.
@@ -54,7 +54,7 @@ pub struct Chance {
 
 impl PushTest {
     /// Chance of a statistic of three components whose scatter is known from the recordings in which they act alone: the same force
-    /// in many recordings is soon beyond chance, in two it must exceed a far higher statistic. One has no scatter and counts as two.
+    /// in many recordings is soon significant, in two it must exceed a far higher statistic. One has no scatter and counts as two.
     fn by_chance(&self, statistic: f64) -> f64 {
         scattered_p(statistic, COMPONENTS, self.recordings.max(FEWEST_RECORDINGS - 1) as f64)
     }
@@ -146,11 +146,11 @@ pub struct TestTable {
     /// Their samples.
     pub samples: usize,
     /// Standard deviation of the unknown force under the model with what was selected, in the mean over the time in which the ship sails its
-    /// length, the larger of surge and sway \[N\]: what changes faster hardly moves the ship, and its size hangs on the step.
+    /// length, the larger of surge and sway \[N\]: what changes faster hardly moves the ship, and its size depends on the step.
     pub unknown_force: f64,
     /// Force that turns the ship, m u^2 / L \[N\].
     pub turning_force: f64,
-    /// What a push is held against.
+    /// What the test of a push is compared with.
     pub chance: Chance,
     /// Whether a push may be named.
     pub push_allowed: bool,
@@ -164,7 +164,7 @@ pub struct TestTable {
     pub selected: Option<ResidualTests>,
 }
 
-/// How physics that the catalogue does not hold shows.
+/// How physics that is not in the catalogue shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unlisted {
     /// As a force law of state and inputs.
@@ -182,7 +182,7 @@ pub struct Decision {
     pub keeps_mechanisms: bool,
     /// Whether a push is named: the one in the base model, or else the one in what the kept model leaves.
     pub names_push: bool,
-    /// What the catalogue does not hold.
+    /// What is missing and not in the catalogue.
     pub unlisted: Option<Unlisted>,
 }
 
@@ -434,7 +434,7 @@ mod tests {
             let selected = Some(ResidualTests { push: Some(push), ..quiet() });
             decide(&TestTable { selected, ..with(&[CURRENT]) }).names_push
         };
-        // Beyond chance by the scatter over the recordings, and beyond what another form makes.
+        // Significant by the scatter over the recordings, and beyond what another form makes.
         assert!(beside(push_in(3, 88.5)) && !beside(push_in(3, 88.2)));
         assert!(beside(push_in(10, 40.3)) && !beside(push_in(10, 40.0)));
         assert!(!beside(push_in(2, 1e4)));

@@ -76,7 +76,7 @@ pub fn may_be_further(f: &Further, beside: &Beside, candidates: &[Candidate]) ->
     let remainder =
         |first: usize, statistic: f64| m.looks_like(candidates[first].mechanism) && f.statistic < REMAINDER * statistic;
     let left_by = |a: &Selected| {
-        // Changes of the ship's own forces between sessions: the form of the first cannot be told from a second.
+        // Changes of the ship's own forces between sessions: the form of the first cannot be distinguished from a second.
         let between_sessions = a.extent != Extent::All && *f.extent != Extent::All;
         (between_sessions && m.needs_reference && candidates[a.candidate].mechanism.needs_reference)
             || remainder(a.candidate, a.statistic)

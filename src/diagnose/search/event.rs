@@ -84,7 +84,7 @@ impl BaseTests {
 /// How pushes are sought in what a model leaves.
 #[derive(Clone, Copy)]
 pub struct PushSearch {
-    /// What a push is held against.
+    /// What the test of a push is compared with.
     pub chance: Chance,
     integration: Integration,
     prior: NoisePrior,
@@ -100,7 +100,7 @@ impl PushSearch {
     }
 
     /// The push that an estimate leaves. An event inflates the noise that it is tested against; where the ship's own forces have
-    /// the model's form, calmer runs tell the noise better.
+    /// the model's form, calmer runs give a better estimate of the noise.
     fn push(&self, found: &Estimate, runs: &[Run]) -> Option<Push> {
         let noise =
             if self.chance.form_holds { calm_noise(found, self.integration, runs, &self.prior) } else { self.noise };

@@ -1,5 +1,5 @@
 //! What the model that is diagnosed already has of errors of sensors and actuators and of weather, as a diagnosis before it has written
-//! them there. They count as selected, so that the answer to a model does not change once the model holds it.
+//! them there. They count as selected, so that the answer to a model does not change once the model contains it.
 
 use super::screen::Screen;
 use crate::diagnose::evidence::candidate::{Candidate, Extent};
@@ -8,7 +8,7 @@ use crate::likelihood::estimate::{Estimate, FreeParameter};
 use crate::physics::{Kind, Mechanism};
 use nalgebra::DVector;
 
-/// A mechanism that the base model holds.
+/// A mechanism that the base model contains.
 pub struct Present {
     /// Index into the candidates.
     pub candidate: usize,
@@ -16,8 +16,8 @@ pub struct Present {
     pub statistic: f64,
 }
 
-/// The mechanisms that an estimate of the base model holds. The ship's own physics belongs to every model, and what acts through a
-/// recorded input to every model of that ship: neither is told from what a diagnosis found, and neither counts.
+/// The mechanisms that an estimate of the base model contains. The ship's own physics belongs to every model, and what acts through a
+/// recorded input to every model of that ship: whether a diagnosis found them cannot be seen, so neither counts.
 pub fn present(screen: &Screen, estimate: &Estimate, candidates: &[Candidate]) -> Vec<Present> {
     let sessions: Vec<String> = screen.evidence.sessions.keys().cloned().collect();
     let statistic = |i: usize| {
@@ -43,7 +43,7 @@ fn distance(screen: &Screen, estimate: &Estimate, index: usize, c: &Candidate, e
     if own.is_empty() || value.amax() == 0.0 {
         return 0.0;
     }
-    // What is free has its covariance in the base; beside itself a test would see nothing of it.
+    // What is free has its covariance in the base; a score test beside the same free parameter would show nothing.
     let places = c.positions(&estimate.free, extent);
     let covariance = if places.len() == own.len() {
         pick(&screen.base.inverse, &places, &places)
@@ -62,7 +62,7 @@ mod tests {
     use crate::model::Model;
     use crate::recording::Run;
 
-    /// What a model holds, by name, with its statistic and that of a test of the same amount missing from the plain model.
+    /// What a model contains, by name, with its statistic and that of a test of the same amount missing from the plain model.
     fn held(base: &Model, runs: &[Run]) -> Vec<(&'static str, f64, f64)> {
         let list = candidates(base, &[]);
         let screened = |m: &Model| screen(&at(m), RK4, runs, &list);
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_holds_the_clock_and_the_current_that_were_put_into_it_with_what_a_test_would_gain_by_them() {
+    fn a_model_contains_the_clock_and_the_current_that_were_put_into_it_with_what_a_test_would_gain_by_them() {
         assert!(held(&model(), &runs(&model(), 6)).is_empty());
         let clock = [("time_skew.heading", 0.5)];
         let truth = with(&[("current.north", 0.02)]);
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_free_in_the_model_and_what_acts_in_one_session_only_is_held_and_the_ship_itself_is_not() {
+    fn what_is_free_in_the_model_and_what_acts_in_one_session_only_is_present_and_the_ship_itself_is_not() {
         let clock = [("time_skew.heading", 0.5)];
         let (mut base, runs) = (with(&clock), erring(&clock, 6));
         let statistic = |m: &Model| held(m, &runs).first().map(|h| h.1);

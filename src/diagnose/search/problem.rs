@@ -1,5 +1,5 @@
 //! What every refit of one diagnosis shares: runs, integration, candidates, the noise's prior and the user's settings.
-//! It holds them and decides nothing.
+//! It decides nothing.
 
 use crate::diagnose::evidence::candidate::Candidate;
 use crate::diagnose::settings::{Effort, REFIT, Settings};
@@ -37,8 +37,8 @@ impl Problem<'_> {
         self.estimate(&found.model, &found.free, &found.noise, effort)
     }
 
-    /// An estimate inside its bounds. A hull coefficient that is carried is kept by its prior alone, which knows no sign: where it ends
-    /// outside its bounds (a damping that drives) it is put at the bound, and the rest is estimated again, until none is outside.
+    /// An estimate inside its bounds. A hull coefficient that is carried is limited by its prior alone, which allows either sign: where it
+    /// ends outside its bounds (a damping of the wrong sign) it is put at the bound, and the rest is estimated again, until none is outside.
     pub fn inside_bounds(&self, estimate: &Estimate) -> Estimate {
         let mut found = estimate.clone();
         loop {
@@ -53,8 +53,8 @@ impl Problem<'_> {
         }
     }
 
-    /// An estimate as a file holds it: a fit by likelihood through Ipopt, within bounds and constraints, of all its parameters; where no
-    /// such fit is possible, or this build has no Ipopt, the estimate inside its bounds.
+    /// An estimate as it is written to a file: a fit by likelihood through Ipopt, within bounds and constraints, of all its parameters;
+    /// where no such fit is possible, or this build has no Ipopt, the estimate inside its bounds.
     pub fn written(&self, estimate: &Estimate) -> Estimate {
         let inside = self.inside_bounds(estimate);
         #[cfg(feature = "ipopt")]
@@ -102,7 +102,7 @@ mod tests {
         let problem = Problem { integration: RK4, runs: &runs, candidates: &list, prior: &prior, settings: &settings };
         let damping = column(&m, "hull.Nrr");
         let p = &m.parameters[damping.parameter];
-        // Sure that the damping drives, against the runs.
+        // A narrow prior around a damping of the wrong sign, against the runs.
         let sure = Prior { mean: p.upper + 3.0 * p.scale, sd: 1e-3 * p.scale };
         let free =
             [FreeParameter::common(damping, Some(sure)), FreeParameter::common(column(&m, "rudder.lift1"), None)];
@@ -116,7 +116,7 @@ mod tests {
         // What is inside stays as it is.
         let again = problem.inside_bounds(&inside);
         assert_eq!((again.log_posterior, again.free.len()), (inside.log_posterior, 1));
-        // What is written has every parameter, at its limit where it wants to be beyond.
+        // What is written has every parameter, at its limit where its optimum is beyond.
         let written = problem.written(&outside);
         let reached = written.model.parameters[damping.parameter].value;
         assert!(reached <= p.upper && reached > p.upper - 1e-3 * p.scale, "{reached} {}", p.upper);

@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_holds_what_was_selected_and_a_refuted_selection_leaves_the_base_model() {
+    fn the_table_lists_what_was_selected_and_a_refuted_selection_leaves_the_base_model() {
         let (model, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
         let question = Question { model: &model, full: model.clone(), settings: &settings, progress: &|_| () };
         let residual = residual(&question, &with(&[("current.north", 0.3)]));

@@ -147,7 +147,7 @@ impl Screen {
     }
 
     /// Cosine of the smallest principal angle between two candidates once the base is projected out: 1 when the data
-    /// cannot tell them apart.
+    /// cannot distinguish them.
     pub fn likeness(&self, a: usize, b: usize) -> f64 {
         let (ca, cb) = (self.columns(a), self.columns(b));
         let (aa, bb, ab) = (self.reduced(ca, ca), self.reduced(cb, cb), self.reduced(ca, cb));
@@ -171,12 +171,12 @@ fn named(sessions: &[String]) -> Vec<&str> {
 
 /// Runs one sensitivity pass over everything and tests every candidate.
 pub fn screen(found: &Estimate, integration: Integration, runs: &[Run], candidates: &[Candidate]) -> Screen {
-    // Sessions that are no reference are told apart by no test.
+    // No test distinguishes sessions that are no reference for each other.
     let sessions: BTreeSet<&str> = runs.iter().map(|r| r.session.as_str()).collect();
     screen_by_session(found, integration, runs, candidates, are_references(sessions.len(), runs.len()))
 }
 
-/// As [`screen`]; the evidence of every session is kept where they are to be told `apart`.
+/// As [`screen`]; the evidence of every session is kept by itself where they are to be `apart`.
 pub fn screen_by_session(
     found: &Estimate,
     integration: Integration,
@@ -194,7 +194,7 @@ pub fn screen_by_session(
     let widened = widen(&evidence, &base, &law.symmetric);
     let sessions: Vec<String> = evidence.sessions.keys().cloned().collect();
     let recordings = recordings(runs);
-    // A sensor is judged by what no force law whatever can bring.
+    // The rival of a sensor is a force law with all columns: what any force law can explain is no evidence for a sensor.
     let loosest = widen(&evidence, &base, &law.columns());
     let mut rows: Vec<Row> = (0..candidates.len())
         .into_par_iter()
@@ -294,9 +294,9 @@ impl CandidateTests<'_> {
         out
     }
 
-    /// Whether a group of sessions can be held against the rest. The ship is the same in all of them, and its own forces in another form
+    /// Whether a group of sessions can be compared with the rest. The ship is the same in all of them, and its own forces in another form
     /// make each recording differ: so many parameters fit the differences of as many recordings, whatever they are.
-    fn is_told_from_the_rest(&self, group: &[String]) -> bool {
+    fn is_comparable_with_the_rest(&self, group: &[String]) -> bool {
         let Mechanism { needs_reference, kind, .. } = self.candidate.mechanism;
         let of = |session: &str| self.recordings.get(session).copied().unwrap_or(0);
         let (all, own): (usize, usize) = (self.recordings.values().sum(), group.iter().map(|s| of(s)).sum());
@@ -315,7 +315,7 @@ impl CandidateTests<'_> {
         };
         let reference = against(self.base);
         let mut parts = groups(contrast, self.sessions, self.columns.len());
-        parts.retain(|part| self.is_told_from_the_rest(part));
+        parts.retain(|part| self.is_comparable_with_the_rest(part));
         // Where nothing else decides, what differs is what changed since the first recording.
         parts.sort_by_key(|part| self.evidence.runs.first().is_some_and(|r| part.contains(&r.session)));
         let in_group = |group: Vec<String>| {
@@ -334,7 +334,7 @@ impl CandidateTests<'_> {
     }
 }
 
-/// Recordings in each session that runs are parts of: windows of one recording are no evidence apart.
+/// Recordings in each session that runs are parts of: windows of one recording are no independent evidence.
 fn recordings(runs: &[Run]) -> BTreeMap<&str, usize> {
     let distinct: BTreeSet<(&str, &str)> = runs.iter().map(|r| (r.session.as_str(), r.recording.as_str())).collect();
     let mut count = BTreeMap::new();
@@ -347,8 +347,8 @@ fn divisions(sessions: usize) -> f64 {
     f64::max(2f64.powi(sessions.saturating_sub(1).min(60) as i32) - 1.0, 1.0)
 }
 
-/// A p-value corrected for the extents that were tested; a group of sessions was chosen to look best, and pays for every way to
-/// divide them.
+/// A p-value corrected for the extents that were tested; a group of sessions was chosen as the best one, and is corrected for
+/// every way to divide them.
 fn corrected(p: f64, extent: &Extent, options: usize, by_session: bool, divisions: f64) -> f64 {
     let kinds = match options {
         0 | 1 => 1.0,
@@ -463,7 +463,7 @@ mod tests {
         let [six, eight] = [12, 16].map(|count| example::runs(&model, count));
         assert_eq!(["hull_nonlinear", "crossflow", "time_skew"].map(|n| visible(n, &six)), [false, true, true]);
         assert!(visible("hull_nonlinear", &eight));
-        // Windows of one recording are no evidence apart.
+        // Windows of one recording are no independent evidence.
         let mut cut = eight;
         cut.iter_mut().for_each(|r| r.recording = r.session.clone());
         assert_eq!(["hull_nonlinear", "crossflow", "time_skew"].map(|n| visible(n, &cut)), [false, false, true]);

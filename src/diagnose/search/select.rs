@@ -19,7 +19,7 @@ use crate::likelihood::estimate::{Estimate, passes};
 use crate::likelihood::evidence::chi_squared_p;
 use crate::physics::Kind;
 
-/// The mechanisms that were selected, in the model that holds them.
+/// The mechanisms that were selected, in the model that contains them.
 pub struct Selection {
     /// The tests of the base model.
     pub tests: BaseTests,
@@ -57,7 +57,7 @@ impl Selection {
         self.mechanisms.iter().any(|m| m.carried && self.tests.candidates[m.candidate].mechanism.name == name)
     }
 
-    /// The best further mechanism, with the estimate that holds it.
+    /// The best further mechanism, with the estimate that contains it.
     fn next(&mut self, question: &Question) -> Option<(Selected, Estimate)> {
         let problem = self.tests.problem(question.settings);
         let latest = (!self.mechanisms.is_empty())
@@ -70,7 +70,7 @@ impl Selection {
         let beside = Beside { present: &present, selected: &self.mechanisms, nothing_else };
         let leaders = eligible(screen, problem.candidates, beside, question.settings);
         let sensors = leading(&self.estimate, problem, beside);
-        // A base that was bent by what it lacks tells little of what is either so or not; beside what was found the tests tell it.
+        // A base biased by what it lacks is no start for what is either so or not; with what was found in the model its test is enough.
         let given = self.mechanisms.is_empty().then_some(&question.full);
         let next = compete(screen, &leaders, sensors, given, &self.estimate, problem, question.progress);
         if next.is_none() {
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_sensors_show_of_each_other_comes_before_what_the_ship_shows_more_strongly() {
+    fn what_the_kinematic_consistency_shows_comes_before_what_the_ship_shows_more_strongly() {
         let mut all = runs(&with(&[("current.north", 0.6)]), 12);
         all.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[5] = m[5].map(|r| r + 0.001));
         let s = selection_on(all, &plain());

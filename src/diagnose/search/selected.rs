@@ -1,4 +1,4 @@
-//! A mechanism that was selected. How it is selected, weighed and told is elsewhere.
+//! A mechanism that was selected. How it is selected, weighed and reported is elsewhere.
 
 use crate::diagnose::evidence::candidate::{Candidate, Extent};
 
@@ -28,10 +28,10 @@ impl Selected {
         if new.is_empty() {
             return;
         }
-        let told = |(i, share): &(usize, f64)| format!("{} ({:.0} %)", candidates[*i].mechanism.title, 100.0 * share);
-        let told: Vec<String> = new.iter().map(told).collect();
+        let text = |(i, share): &(usize, f64)| format!("{} ({:.0} %)", candidates[*i].mechanism.title, 100.0 * share);
+        let alike: Vec<String> = new.iter().map(text).collect();
         self.why =
-            format!("{}; on these manoeuvres this takes over so much of its gain: {}", self.why, told.join(", "));
+            format!("{}; on these manoeuvres this takes over so much of its gain: {}", self.why, alike.join(", "));
         self.set.extend(new.iter().map(|(i, _)| *i));
     }
 }

@@ -1,6 +1,6 @@
-//! The errors of sensors, before any mechanism of the ship. Against the noise of a model without it an error fails where the noise of a
-//! sensor has taken it in: a speed log that reads 8 % too much has a noise of 8 % where nothing else explains it, and no test against that
-//! noise sees it. What is named, and whether a refit confirms it, is decided elsewhere.
+//! The errors of sensors, before any mechanism of the ship. The noise estimated with a model that lacks an error may include that error: a
+//! speed log that reads 8 % too much has a noise of 8 % where nothing else explains it, and no test against that noise is significant.
+//! What is named, and whether a refit confirms it, is decided elsewhere.
 
 use super::eligible::{Beside, Further};
 use super::problem::Problem;
@@ -15,15 +15,15 @@ use nalgebra::DVector;
 
 /// The error of a sensor that stands out most beside all others, with a model and a noise that a refit can start from.
 pub struct Leading {
-    /// The candidate, and those that the sensors do not tell from it.
+    /// The candidate, and those that the kinematic consistency does not distinguish from it.
     pub set: Vec<usize>,
     /// All sessions with one amplitude, or each with its own.
     pub extent: Extent,
     /// Its amplitudes beyond what the model already has, in units of its columns.
     pub amplitude: DVector<f64>,
-    /// Twice what it adds to the log-likelihood of what the sensors say of each other.
+    /// Twice what it adds to the log-likelihood of the kinematic consistency.
     pub statistic: f64,
-    /// Its p-value, corrected for the sensors that were asked.
+    /// Its p-value, corrected for the number of sensors compared.
     pub p: f64,
     /// The model with it, and without the other sensors' errors.
     pub model: Model,
@@ -33,11 +33,10 @@ pub struct Leading {
     pub noise: Noise,
 }
 
-/// The errors of sensors that may be named beside what the model had and what was selected: those that the sensors show of each other
-/// beyond chance and all along, whatever the ship does, the most significant first. Ship and noise are estimated beside the first, held
-/// where the sensors agree best: a noise that has taken an error in lets go of it only where the error is there instead. From there or from
-/// where they were, whichever is likelier with the error, a refit starts. None where the sensors agree and where they cannot be held against
-/// each other.
+/// The errors of sensors that may be named beside what the model had and what was selected: those that the kinematic
+/// consistency shows significantly and throughout, the most significant first. Ship and noise are estimated beside the first, which is fixed
+/// where the sensors agree best: a noise that includes an error falls only once the model has the error. From there or from where they were,
+/// whichever is likelier with the error, a refit starts. None where the sensors agree and where their consistency cannot be computed.
 pub fn leading(current: &Estimate, problem: Problem, beside: Beside) -> Vec<Leading> {
     let shown = shown(current, problem, beside);
     let Some((first, extent, d)) = shown.first() else { return Vec::new() };
@@ -72,7 +71,8 @@ pub fn leading(current: &Estimate, problem: Problem, beside: Beside) -> Vec<Lead
     shown.iter().enumerate().map(lead).collect()
 }
 
-/// What the sensors show of each other and may be named, the most significant first, with p-values corrected for the sensors that were asked.
+/// The errors that the kinematic consistency shows and that may be named, the most significant first, with p-values corrected for the number
+/// of sensors compared.
 fn shown(current: &Estimate, problem: Problem, beside: Beside) -> Vec<(usize, Extent, Disagreement)> {
     let Problem { runs, candidates, settings, .. } = problem;
     let is_free = |parameter: usize| current.free.iter().any(|f| f.column.parameter == parameter);
@@ -83,7 +83,7 @@ fn shown(current: &Estimate, problem: Problem, beside: Beside) -> Vec<(usize, Ex
     let sensors: Vec<usize> = (0..candidates.len()).filter(may_be).collect();
     let all: Vec<&Candidate> = sensors.iter().map(|i| &candidates[*i]).collect();
     let extent = |d: &Disagreement| if d.sessions.is_empty() { Extent::All } else { Extent::Each(d.sessions.clone()) };
-    let told = disagreements(&current.model, runs, &all, settings.alpha).unwrap_or_default();
+    let errors = disagreements(&current.model, runs, &all, settings.alpha).unwrap_or_default();
     let of = |(i, mut d): (usize, Disagreement)| {
         d.p *= all.len() as f64;
         (i, extent(&d), d)
@@ -92,7 +92,7 @@ fn shown(current: &Estimate, problem: Problem, beside: Beside) -> Vec<(usize, Ex
         let further = Further { candidate: *candidate, extent, statistic: d.statistic, p: d.p };
         d.p < settings.alpha && d.is_steady && beside.allows(&further, candidates)
     };
-    let mut shown: Vec<_> = sensors.iter().copied().zip(told).map(of).filter(is_shown).collect();
+    let mut shown: Vec<_> = sensors.iter().copied().zip(errors).map(of).filter(is_shown).collect();
     shown.sort_by(|a, b| b.2.statistic.total_cmp(&a.2.statistic));
     shown
 }

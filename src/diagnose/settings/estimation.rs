@@ -1,11 +1,11 @@
 //! The numbers by which tests and estimates are made, each with its name, value, meaning, and how it was set.
-//! A verdict turns on those of another file.
+//! The numbers with which tests are compared are in another file.
 
 use crate::likelihood::settings::{COST, CUSTOM, Effort, HULLS, Number, SEEDS, numbers};
 
 /// No step from where a model stands: its value alone.
 pub const AS_IT_IS: Effort = Effort { rounds: 0, noise_rounds: 0, noise_iterations: 0 };
-/// Ship and noise beside the error of a sensor that is held.
+/// Ship and noise beside the error of a sensor that is fixed.
 pub const TOGETHER_EFFORT: Effort = Effort { rounds: 8, noise_rounds: 3, noise_iterations: 6 };
 /// The start of a model that is given its mechanisms: parameters and noise are estimated again with them.
 pub const GIVEN_START: Effort = Effort { rounds: 3, noise_rounds: 2, noise_iterations: 6 };
@@ -14,7 +14,7 @@ pub const GIVEN_FINISH: Effort = Effort { rounds: 8, noise_rounds: 2, noise_iter
 
 /// Shares of the amplitudes of a score test at which a refit may start, the other parameters moved along.
 pub const STARTS: [f64; 3] = [1.0, 0.3, 0.1];
-/// Multiples at which the refit of an effect that grows with the square of its amplitude may start, the others held.
+/// Multiples at which the refit of an effect that grows with the square of its amplitude may start, the others fixed.
 pub const STARTS_OF_SQUARES: [f64; 3] = [3.0, 10.0, 30.0];
 
 numbers! {
@@ -41,11 +41,11 @@ numbers! {
     UNUSUAL: f64 = 2.0, "one normal value in twenty is further off; no verdict turns on it";
     /// Prior standard deviation of a sensor's error, in units of the parameter's scale.
     SENSOR_SPREAD: f64 = 10.0, "wider than any error that a user would not see; not varied";
-    /// Length of the stretches over which the sensors are held against each other, in ship lengths.
+    /// Length of the stretches over which the sensors are compared with each other, in ship lengths.
     STRETCH: f64 = 0.5, "chosen with the method, before any case, and not varied";
     /// Stretches in a row, in a block that counts as one in the scatter of the kinematic consistency of sensors.
     STRETCHES: usize = 10, "five ship lengths, more than a turn takes; chosen before any case, and not varied";
-    /// Forces are held against those of the base's asymmetric parameters at every so many samples.
+    /// Forces are compared with those of the base's asymmetric parameters at every so many samples.
     FORCE_STRIDE: usize = 4, COST;
     /// Most rivals that are refitted beside a leader.
     RIVALS: usize = 3, COST;
@@ -70,6 +70,6 @@ numbers! {
     PLACE_PARTS: usize = 3, CUSTOM;
     /// Share of the positions at either end that the parts leave out.
     PLACE_TAIL: f64 = 0.02, CUSTOM;
-    /// Superfluous monomials that a law for what the catalogue does not hold may have on average.
+    /// Superfluous monomials that a law for what is not in the catalogue may have on average.
     LAW_P: f64 = 0.05, "one law in twenty; simulated nulls have fewer";
 }

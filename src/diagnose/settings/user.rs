@@ -1,5 +1,5 @@
 //! The settings that a user may change, each with its limits.
-//! The numbers that nobody changes are in the files beside this one.
+//! The numbers that no user can change are in the other files here.
 
 use crate::evaluate::{EvaluationSettings, Judging};
 use crate::fit::{ConstraintSettings, FitSettings};
@@ -48,7 +48,7 @@ impl Settings {
         Integration { method: Method::Rk4, substeps: self.substeps }
     }
 
-    /// The chance that two independent accidents have: for what other tests must have been wrong about, too.
+    /// The chance of two independent false positives, `alpha` squared: for tests that must be more significant than others.
     pub fn strict(&self) -> f64 {
         self.alpha * self.alpha
     }

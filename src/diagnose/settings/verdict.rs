@@ -1,9 +1,9 @@
 //! The numbers with which tests are compared, each with its name, value, meaning, and how it was set.
-//! How tests and estimates are made is another file's.
+//! The numbers by which tests and estimates are made are in another file.
 
 use crate::likelihood::settings::{CUSTOM, Number, SEEDS, numbers};
 
-/// p-value below which port and starboard of the ship itself are told apart: the level at which a diagnosis names anything (`alpha`).
+/// p-value below which port and starboard of the ship itself are said to differ: the level at which a diagnosis names anything (`alpha`).
 pub const SIDES_DIFFER: f64 = 0.01;
 numbers! {
     /// The numbers with which tests are compared: all on which a verdict turns once the tests are made, beside the settings of the user.

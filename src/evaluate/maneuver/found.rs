@@ -370,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn steering_a_course_holds_no_trial() {
+    fn steering_a_course_contains_no_trial() {
         let track = sailed(|t, psi| -0.5 * psi + 0.05 * (t / 5.0).sin());
         assert_eq!(find(&track, 10.0), (Vec::new(), Vec::new()));
     }

@@ -65,8 +65,8 @@ pub fn drawn_from(known: Known, model: &Model, uncertainty: &Uncertainty, count:
     uncertainty.deviations(count, seed).into_iter().map(both).collect()
 }
 
-/// What is known of a model that was not fitted: the standard deviations of its priors, and those that the terms know of estimated hull
-/// coefficients that no file gives, taken as independent; nothing where there are none.
+/// What is known of a model that was not fitted: the standard deviations of its priors, and those that the terms give for estimated
+/// hull coefficients that no file gives, taken as independent; nothing where there are none.
 pub fn of_priors(model: &Model) -> Option<Uncertainty> {
     let ship = &model.ship;
     let estimated = |name: &str| {

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rudder_at_rest_tells_neither_gain_nor_time() {
+    fn a_rudder_at_rest_determines_neither_gain_nor_time() {
         let track = sailed(0.05, 20.0, 0.0, |_| 0.0);
         assert_eq!((nomoto(&track, 0, 4000), nomoto_of_step(&track, 0, 4000)), (None, None));
     }

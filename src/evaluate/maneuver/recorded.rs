@@ -1,5 +1,5 @@
 //! At what speed and rudder rate the recordings of a study were sailed, for trials that are to be sailed as they were.
-//! It reads these two numbers alone; whether a recording is sound is asked by the audit.
+//! It reads these two numbers alone; whether a recording is sound is checked by the audit.
 
 use super::approach::{ManeuverSettings, Recorded};
 use crate::recording::{Channel, Recording};
@@ -48,7 +48,7 @@ fn fastest(recording: &Recording) -> Option<f64> {
 }
 
 /// The rate of each move of the rudder from one order to another \[rad/s\]. The first and the last step of a move begin before it or
-/// end after it; of a move without a step between them the rate cannot be told.
+/// end after it; of a move without a step between them the rate is not known.
 fn rates(recording: &Recording) -> Vec<f64> {
     let (t, Some(delta)) = (recording.time(), recording.get(Channel::Delta)) else { return Vec::new() };
     let mut rates = Vec::new();

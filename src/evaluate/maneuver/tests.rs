@@ -235,7 +235,7 @@ fn imo_limits_follow_length_over_speed_and_bind_from_100_m() {
 }
 
 #[test]
-fn an_interval_has_its_value_in_the_middle_where_recordings_tell_a_product_and_not_its_factors() {
+fn an_interval_has_its_value_in_the_middle_where_recordings_determine_a_product_and_not_its_factors() {
     // Opposite relative errors of 20 % of the lift slope and of the wake: (1 + a)(1 - a) is below one for every draw.
     let model = model(Form::Regular);
     let at = |name: &str| model.index(name).unwrap();
@@ -312,7 +312,7 @@ fn the_pull_out_and_the_spiral_agree_on_whether_a_ship_is_stable_on_its_course()
         let m = spiral_trial(&model, &theta, &approach, angle).measures;
         let (width, height) = (m.loop_width.unwrap().to_degrees(), m.loop_height.unwrap());
         let residual = pulled[0].measures.residual_rate.unwrap();
-        // The loop of a ship that is hardly unstable is narrower than the angles are apart; its height tells it.
+        // The loop of a ship that is hardly unstable is narrower than the angles are apart; its height shows that.
         assert_eq!(height < 0.02 * m.points[0][1], expected, "{m:?}");
         assert!(!expected || width < 0.1, "{m:?}");
         // Amidships the two passes are the rates that the pull-outs leave.

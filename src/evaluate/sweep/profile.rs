@@ -1,4 +1,4 @@
-//! Profiles of the likelihood: one parameter, or two, held at values around the estimate, the others fitted again.
+//! Profiles of the likelihood: one parameter, or two, fixed at values around the estimate, the others fitted again.
 //! Which parameters are asked about is the caller's choice.
 
 use crate::fit::{Fit, fit};
@@ -65,8 +65,8 @@ pub struct Pair {
 /// A fall below this is rounding of the solver, not a better point.
 const ROUNDING: f64 = 0.01;
 
-/// The model of a fit with some parameters held.
-fn held(model: &Model, values: &[(usize, f64)]) -> Model {
+/// The model of a fit with some parameters fixed.
+fn fixed(model: &Model, values: &[(usize, f64)]) -> Model {
     let mut out = model.clone();
     for (i, value) in values {
         out.parameters[*i].value = *value;
@@ -75,13 +75,13 @@ fn held(model: &Model, values: &[(usize, f64)]) -> Model {
     out
 }
 
-/// Twice the fall of the log-likelihood with some parameters held, and the values of all at the least cost; `None` where the others
+/// Twice the fall of the log-likelihood with some parameters fixed, and the values of all at the least cost; `None` where the others
 /// cannot be fitted.
 fn fall(found: &Fit, start: &Model, runs: &[Run], values: &[(usize, f64)]) -> Option<(f64, Model)> {
-    let model = held(start, values);
+    let model = fixed(start, values);
     let unit = found.residual_variance * found.design_effect.unwrap_or(1.0).max(1.0) / found.runs as f64;
     let least = found.cost + found.prior_cost;
-    // With its only free parameter held there is nothing to fit, and the cost is what it is.
+    // With its only free parameter fixed there is nothing to fit, and the cost is what it is.
     let free = model.parameters.iter().any(|p| p.free);
     let (cost, model) = if free {
         let again = fit(&model, runs, &found.settings, &mut |_| true).ok()?;
@@ -122,7 +122,7 @@ fn known(found: &Fit, name: &str) -> Option<(usize, [f64; 2], f64, f64)> {
     Some((i, [p.lower, p.upper], estimate.value, error))
 }
 
-/// The profile of a parameter around a fit; `None` for one without a standard error, which a constraint holds or the data do not
+/// The profile of a parameter around a fit; `None` for one without a standard error, which a constraint fixes or the data do not
 /// determine.
 pub fn profile(found: &Fit, runs: &[Run], parameter: &str, settings: &SweepSettings) -> Option<Profile> {
     let (i, bounds, estimate, error) = known(found, parameter)?;

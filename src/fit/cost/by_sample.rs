@@ -33,8 +33,8 @@ impl Cost<'_> {
     pub fn compared(&self) -> Option<Vec<Compared>> {
         let mut all = Vec::with_capacity(self.residuals());
         for (run, weights) in self.weights.iter().enumerate() {
-            let held = self.runs.get(run)?;
-            for (sample, measured) in held.measured.iter().enumerate() {
+            let read = self.runs.get(run)?;
+            for (sample, measured) in read.measured.iter().enumerate() {
                 let counts = |c: &usize| weights[*c] > 0.0 && measured[*c].is_some();
                 all.extend((0..STATES).filter(counts).map(|channel| Compared { run, sample, channel }));
             }

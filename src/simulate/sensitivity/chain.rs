@@ -1,5 +1,5 @@
 //! Carries a simulation and its derivatives by parameters through every step: `S' = A S + B` at each stage of the method, so
-//! that the result is the exact derivative of the discrete simulation. What is done with it is the caller's affair.
+//! that the result is the exact derivative of the discrete simulation. What is done with it is decided by the caller.
 
 use super::columns::{Columns, Constants};
 use super::local::{Local, Plain};
@@ -48,7 +48,7 @@ impl<P: Plain> Stages<P> {
 }
 
 impl<'m, P: Plain> Sensitivity<'m, P> {
-    /// Sensitivities to `columns` at the parameter values of `dynamics`. `sensed` tells whether a term of the model changes what
+    /// Sensitivities to `columns` at the parameter values of `dynamics`. `sensed` says whether a term of the model changes what
     /// sensors report.
     pub fn new(dynamics: Dynamics<'m, P>, columns: &'m Columns, sensed: bool) -> Self {
         let group = |group: &[usize]| {

@@ -1,5 +1,5 @@
 //! The parameters that sensitivities are carried to, grouped by what they can change, and their own part in the accelerations.
-//! How that part is carried through time is the chain's affair.
+//! How that part is carried through time is in `chain`.
 
 use super::local::{Local, Plain};
 use crate::dynamics::Dynamics;

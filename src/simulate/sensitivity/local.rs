@@ -27,7 +27,7 @@ pub struct Local<P> {
 pub trait Plain: Number<Coefficient = Self> + PartialEq {
     /// The number with [`FEW`] derivatives by parameters.
     type Few: Number<Coefficient = Self::Few>;
-    /// How many runs it holds.
+    /// How many runs it contains.
     const WIDTH: usize;
     /// A number from one value a run.
     fn gather(f: impl FnMut(usize) -> f64) -> Self;

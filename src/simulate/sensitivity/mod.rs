@@ -1,5 +1,5 @@
 //! Exact derivatives of a simulation by parameters of its model: a local Jacobian by state, the parameters' own part in the
-//! accelerations, and the chain of both through every step. It knows no cost and no measurement noise.
+//! accelerations, and the chain of both through every step. It uses no cost and no measurement noise.
 
 pub mod chain;
 pub mod columns;

@@ -1,5 +1,5 @@
 //! Sums of products of any two columns of derivatives over samples: the matrix behind Gauss-Newton steps and information.
-//! It knows no weight and no residual: the values come weighted.
+//! It uses no weight and no residual: the values come weighted.
 
 use super::local::Plain;
 use crate::state::STATES;

@@ -1,4 +1,4 @@
-//! The pull-out test: a steady turn, then the rudder amidships; the yaw rate that is left tells whether the ship is stable on its course.
+//! The pull-out test: a steady turn, then the rudder amidships; the yaw rate that is left shows whether the ship is stable on its course.
 //! There is no IMO criterion for it.
 
 use crate::evaluate::maneuver::approach::Approach;
@@ -10,7 +10,7 @@ use crate::model::Model;
 use std::f64::consts::TAU;
 
 /// A yaw rate that moves by less than this share of U0/L over four ship lengths at approach speed is steady. A rate that falls by 1/e in a
-/// hundred ship lengths is then a hundredth of that of a turn, below what tells a ship unstable.
+/// hundred ship lengths is then a hundredth of that of a turn, below the limit for an unstable ship.
 const STEADY: f64 = 1e-4;
 /// Ship lengths at approach speed after which a pull-out ends, steady or not.
 const LONGEST: f64 = 600.0;
@@ -55,7 +55,7 @@ pub fn pull_out(track: &Track, release: usize) -> PullOut {
 pub fn course_stable(trials: &[Trial<PullOut>]) -> Option<bool> {
     let rate = |side| trials.iter().find(|t| t.side == side)?.measures.residual_rate;
     let turning = trials.iter().map(|t| t.measures.turning_rate.abs()).fold(0.0, f64::max);
-    // A hundredth of the rate of the turn is below what a gyro of a trial tells.
+    // A hundredth of the rate of the turn is below what a gyro of a trial can measure.
     Some((rate(Side::Starboard)? - rate(Side::Port)?).abs() < 0.01 * turning)
 }
 
