@@ -60,7 +60,7 @@ pub(super) fn title(d: &Diagnosis) -> String {
         (true, true, false) => "MISSING PHYSICS AND A SENSOR ERROR, SUSPECTED".to_owned(),
         (_, false, false) => "MISSING PHYSICS, SUSPECTED".to_owned(),
         (false, _, false) => "A SENSOR ERROR, SUSPECTED".to_owned(),
-        // Forces that are only suspected stand beside it.
+        // The findings also include forces, which are only suspected.
         (false, _, true) if d.findings.iter().any(|f| f.kind != Kind::Sensor) => "A SENSOR ERROR".to_owned(),
         (_, _, true) => verdict_words(d.verdict).to_owned(),
     }

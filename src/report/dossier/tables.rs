@@ -144,7 +144,7 @@ pub(super) fn model(m: &Reader) -> Markup {
             html! { @if unit != "-" { (unit) } },
             html! { @if p.at("free").holds() { "yes" } @else { "no" } },
             p.at("value").number(1.0, Significant(4)),
-            html! { @if p.at("error").float() == Some(0.0) { "held" } @else { (p.at("error").number(1.0, Significant(2))) } },
+            html! { @if p.at("error").float() == Some(0.0) { "fixed" } @else { (p.at("error").number(1.0, Significant(2))) } },
         ]
     };
     let parameters: Vec<Vec<Markup>> = m.at("parameters").entries().iter().map(parameter).collect();
@@ -159,7 +159,7 @@ pub(super) fn model(m: &Reader) -> Markup {
         (ranges(&m.at("terms")))
         @for t in m.at("terms").entries() { (term(&t)) }
         @if !parameters.is_empty() {
-            (table("Free parameters, and those with a standard error; one that ends at a bound or a constraint is held there.", &["parameter", "unit", "free", "value", "standard error"], 3, parameters))
+            (table("Free parameters, and those with a standard error; one that ends at a bound or a constraint is fixed there.", &["parameter", "unit", "free", "value", "standard error"], 3, parameters))
         }
         @if covariance.is_there() { p { "Standard errors: " (covariance.text()) "." } }
     }

@@ -1,4 +1,4 @@
-//! A sheet of shapes and text, and the files that hold it: PNG, SVG, PDF.
+//! A sheet of shapes and text, and the files it is written to: PNG, SVG, PDF.
 //! It knows no figure.
 
 pub(super) mod canvas;
