@@ -50,7 +50,7 @@ Table [plan] of the study; every key may be left out:
                               rudder angle
   speed = 6.0                 speed at the start [m/s]; the approach speed of [maneuver], half of it
                               for an acceleration
-  n_rpm = 110                 propeller rate [rpm]; the rate that holds the speed, for an acceleration
+  n_rpm = 110                 propeller rate [rpm]; the rate that keeps the speed, for an acceleration
                               the rate of the approach
   heading_deg = [0, 90]       course or courses at the start [deg]; 0
   duration = 600              longest duration [s]; 15 ship lengths for a straight run, 20 for an

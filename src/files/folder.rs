@@ -104,7 +104,7 @@ pub struct Origin {
     pub settings: BTreeMap<String, Value>,
 }
 
-/// A folder that a command writes its result into. Until [`ResultFolder::complete`] it holds the result before; what is dropped
+/// A folder that a command writes its result into. Until [`ResultFolder::complete`] it contains the result before; what is dropped
 /// earlier leaves nothing.
 #[derive(Debug)]
 pub struct ResultFolder {
@@ -165,7 +165,7 @@ impl Kept {
 
 impl ResultFolder {
     /// Makes a folder ready for the result of a command: created, locked, writable. `expected` are names of files that the
-    /// command writes whatever its input is; what could not be overwritten at the end is told now.
+    /// command writes whatever its input is; what could not be overwritten at the end is reported now.
     ///
     /// # Errors
     /// Every [`FolderError`] but [`FolderError::InputChanged`].

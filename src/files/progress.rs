@@ -1,5 +1,5 @@
-//! How far a long work is, told a line a minute where no terminal shows it, with an estimate of what is left.
-//! It does no work, and nothing depends on what it tells.
+//! The progress of a long work, printed a line a minute where no terminal shows it, with an estimate of the time left.
+//! It does no work, and nothing depends on what it prints.
 
 use std::io::Write;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -20,7 +20,7 @@ struct State {
 
 type Shared = Arc<(Mutex<State>, Condvar)>;
 
-/// Tells how far a work is, once in a while, until it is dropped.
+/// Prints how far a work is, once in a while, until it is dropped.
 #[derive(Debug)]
 pub struct Teller {
     shared: Shared,
@@ -29,7 +29,7 @@ pub struct Teller {
 }
 
 impl Teller {
-    /// Tells a line a minute on standard error, each beginning with `name`; the first after a minute.
+    /// Prints a line a minute on standard error, each beginning with `name`; the first after a minute.
     pub fn new(name: &str, doing: &str) -> Self {
         let name = name.to_owned();
         // Without a reader there is nothing to do about it.

@@ -1,4 +1,4 @@
-//! Text files that say at their head that trimtab wrote them and carry a checksum at their end, so that a cut one is told.
+//! Text files that say at their head that trimtab wrote them and carry a checksum at their end, so that a cut one is recognised.
 //! Both are comments of TOML; a file with neither is one that somebody wrote by hand, and is not judged here.
 
 use super::digest::sha256;

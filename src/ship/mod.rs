@@ -1,5 +1,5 @@
 //! A ship's fixed particulars, read from a TOML file and checked once, and the empirical hull coefficients they imply.
-//! It holds no fitted parameter: parameters belong to the terms that use them, and take their defaults from here.
+//! It has no fitted parameter: parameters belong to the terms that use them, and take their defaults from here.
 
 pub mod actuator;
 mod craft;
@@ -321,7 +321,7 @@ impl Ship {
             errors.extend(self.coefficients_of_another_size(source));
         }
         let d = self.mass_determinant();
-        // The regressions are those of ships with propeller and rudder; where they do not hold, the model says so.
+        // The regressions are those of ships with propeller and rudder; where they are not valid, the model says so.
         if errors.is_empty() && self.has_propeller() && (d.is_nan() || d <= 0.0) {
             let expected = format!(
                 "kg makes the sway-yaw mass matrix singular (determinant {d:.3e}); check Yvdot, Yrdot, Nvdot, Nrdot, x_g and gyration"

@@ -1,4 +1,4 @@
-//! The table of runs beside a study: a CSV file with the keys of `[[runs]]` as columns, read with all its mistakes told at once.
+//! The table of runs beside a study: a CSV file with the keys of `[[runs]]` as columns, read with all its mistakes reported at once.
 //! What the runs mean for the study is decided in `listed`.
 
 use super::error::StudyError;

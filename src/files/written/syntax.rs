@@ -1,25 +1,25 @@
-//! Mistakes that keep a text from being TOML at all, told by what people usually meant.
+//! Mistakes that keep a text from being TOML at all, reported by what people usually meant.
 //! What the keys may be is not known here.
 
 use super::mistake::{Mistake, line_at};
 use toml::de::Error;
 
-/// Mistakes of this kind that are told at once: one may bring others with it.
+/// Most mistakes of this kind that are reported at once: one may bring others with it.
 const MOST: usize = 5;
 
 /// The mistakes, one a line.
 pub(super) fn mistakes(text: &str, errors: &[Error]) -> Vec<Mistake> {
-    let mut told: Vec<Mistake> = Vec::new();
+    let mut mistakes: Vec<Mistake> = Vec::new();
     for error in errors {
         let span = error.span().unwrap_or(0..0);
         let line = line_at(text, span.start);
-        if told.iter().all(|m| m.line != line) && told.len() < MOST {
+        if mistakes.iter().all(|m| m.line != line) && mistakes.len() < MOST {
             let written = text.lines().nth(line - 1).unwrap_or_default();
             let key = text.get(span.clone()).unwrap_or_default();
-            told.push(Mistake::new(line, meant(error.message().trim(), written, key)));
+            mistakes.push(Mistake::new(line, meant(error.message().trim(), written, key)));
         }
     }
-    told
+    mistakes
 }
 
 /// What is wrong with a line, by the marks of what was meant; otherwise what the reader says.

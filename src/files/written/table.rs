@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
-/// Mistakes that are told at once.
+/// Most mistakes that are reported at once.
 const MOST: usize = 20;
 
 /// Reads a file of this kind.

@@ -137,7 +137,7 @@ impl Main {
                 format!("{TOWNSIN}, at Fn = {}", rounded(self.froude, 3)),
             ),
         };
-        // A mass that no ship of these dimensions can have is told as such when the file is read.
+        // A mass that no ship of these dimensions can have is reported as such when the file is read.
         let block = match given_mass.filter(|mass| (0.2..1.0).contains(&(mass / box_mass))) {
             Some(mass) => sheet.take("hull.block_coefficient", mass / box_mass, 0.005, "C_b = m / (rho L B d)"),
             None => sheet.take("hull.block_coefficient", line, self.kind.block_spread, &source),

@@ -20,7 +20,7 @@ pub struct Kind {
     pub slenderness: [f64; 2],
     /// Range of B/d \[-\].
     pub beam: [f64; 2],
-    /// Block coefficient, where the line over the Froude number does not hold \[-\].
+    /// Block coefficient, where the line over the Froude number is not valid \[-\].
     pub block: Option<f64>,
     /// Standard deviation of the block coefficient \[-\].
     pub block_spread: f64,
