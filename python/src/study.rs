@@ -150,7 +150,7 @@ impl Study {
 
 #[pymethods]
 impl Study {
-    /// Reads a study file with its ship and model; everything that is wrong with them is told at once. A folder stands for its
+    /// Reads a study file with its ship and model; everything that is wrong with them is reported at once. A folder stands for its
     /// `study.toml`. `model` is a model file to use instead of the study's, such as `fitted.toml`.
     #[staticmethod]
     #[pyo3(signature = (path, *, model=None, _folder=None))]

@@ -618,18 +618,18 @@ mod tests {
         open.write("tracks.png", b"1").unwrap();
         let settings = BTreeMap::from([("fit".to_owned(), serde_json::json!({"step": 0.1}))]);
         open.complete(Origin { arguments: vec!["study.toml".to_owned()], settings }).unwrap();
-        let told = entry(&out, "fit");
+        let manifest = entry(&out, "fit");
         assert_eq!(
-            (told.version.as_str(), told.arguments.as_slice()),
+            (manifest.version.as_str(), manifest.arguments.as_slice()),
             (env!("CARGO_PKG_VERSION"), &["study.toml".to_owned()][..])
         );
-        assert_eq!(told.settings["fit"]["step"], 0.1);
-        assert_eq!(told.inputs[0].sha256, None);
-        assert_eq!(told.inputs[1], Input { path: input.display().to_string(), sha256: Some(sha256(b"abc")) });
+        assert_eq!(manifest.settings["fit"]["step"], 0.1);
+        assert_eq!(manifest.inputs[0].sha256, None);
+        assert_eq!(manifest.inputs[1], Input { path: input.display().to_string(), sha256: Some(sha256(b"abc")) });
         result(&out, "evaluate", &["tracks.png"]).unwrap();
-        let told = entry(&out, "fit");
-        assert_eq!(told.files.keys().collect::<Vec<_>>(), ["a"]);
-        assert_eq!(told.replaced["tracks.png"], "evaluate");
+        let manifest = entry(&out, "fit");
+        assert_eq!(manifest.files.keys().collect::<Vec<_>>(), ["a"]);
+        assert_eq!(manifest.replaced["tracks.png"], "evaluate");
         assert_whole(&out);
     }
 

@@ -118,16 +118,16 @@ mod tests {
 
     #[test]
     fn lines_come_while_the_work_lasts_and_say_what_is_left() {
-        let (send, told) = mpsc::channel();
+        let (send, lines) = mpsc::channel();
         let tell = move |line: &str| send.send(line.to_owned()).unwrap();
         let teller = Teller::with(Duration::from_millis(5), "reading", tell);
-        assert_eq!(told.recv().unwrap(), "reading (0 s so far)");
+        assert_eq!(lines.recv().unwrap(), "reading (0 s so far)");
         teller.say("fitting from 4 starts");
         teller.part(1, 4);
-        assert!(told.iter().any(|line| line == "fitting from 4 starts (0 s so far, about 0 s left)"));
+        assert!(lines.iter().any(|line| line == "fitting from 4 starts (0 s so far, about 0 s left)"));
         drop(teller);
         // The teller ended, and with it the sender.
-        assert!(told.iter().count() < usize::MAX);
+        assert!(lines.iter().count() < usize::MAX);
     }
 
     #[test]

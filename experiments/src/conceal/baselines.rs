@@ -1,5 +1,5 @@
 //! The rival methods and the oracle on the files of a case, for the rows beside the diagnosis in the campaign's table.
-//! They run after the diagnosis, when the seal is open; only the oracle is told the concealed effects.
+//! They run after the diagnosis, when the seal is open; only the oracle gets the concealed effects.
 
 use std::path::Path;
 

@@ -125,7 +125,7 @@ impl Truth for LargeDrift {
         self.added.inertia(&self.particulars)
     }
 
-    /// v_R = -gamma (v + l_R r), without any angle, so that it holds at every drift.
+    /// v_R = -gamma (v + l_R r), without any angle, so that it is valid at every drift.
     fn propulsion(&self, u: f64, v: f64, r: f64, n: f64) -> Propulsion {
         let (s, p, q) = (&self.particulars, &self.propeller, &self.rudder);
         let va = self.propeller_inflow(u, v, r);

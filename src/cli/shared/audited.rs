@@ -248,7 +248,8 @@ mod tests {
         let found = [("a", warning("stands still for 3 s")), ("a", warning("stands still for 9 s")), ("b", error)];
         let more = [("b", warning("stands still for 5 s")), ("c", note)];
         let all: Vec<(&str, Issue)> = found.into_iter().chain(more).collect();
-        let audited = Audited { runs: 3, doubts: grouped(all.iter().filter_map(|(r, i)| doubt_of(&[(*r).to_owned()], i))) };
+        let audited =
+            Audited { runs: 3, doubts: grouped(all.iter().filter_map(|(r, i)| doubt_of(&[(*r).to_owned()], i))) };
         let lines = audited.lines();
         let lines: Vec<&str> = lines.lines().collect();
         assert!(audited.refused());

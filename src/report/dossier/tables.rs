@@ -380,9 +380,9 @@ fn manoeuvres(t: &Reader) -> Markup {
             " m. Intervals are 95 % intervals of " (t.at("draws").count()) " draws of the parameters, seed " (t.at("seed").count()) "."
         }
         (trials("Turning circles.", &t.at("turning"), |m, i| TURNING.iter().map(|(keys, name, unit, factor)| {
-            let told = if keys.len() > 1 && keys[1] == "diameter" { "steady_diameter" } else { keys[keys.len() - 1] };
+            let key = if keys.len() > 1 && keys[1] == "diameter" { "steady_diameter" } else { keys[keys.len() - 1] };
             let factor = if *factor == 0.0 { length(t) } else { *factor };
-            (format!("{name} [{unit}]"), measure(&m.path(keys), &i.at(told), factor, if *unit == "s" || *unit == "%" { Decimals(1) } else { Decimals(2) }))
+            (format!("{name} [{unit}]"), measure(&m.path(keys), &i.at(key), factor, if *unit == "s" || *unit == "%" { Decimals(1) } else { Decimals(2) }))
         }).collect()))
         (trials("Zigzags.", &t.at("zigzag"), |m, i| zigzag(m, i, length(t))))
         (criteria(t))

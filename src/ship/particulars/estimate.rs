@@ -86,15 +86,15 @@ pub fn estimate(kind: &'static Kind, given: &Table, speed: Option<f64>) -> Resul
 
 /// What is wrong with a value, without the line of a file that nobody has seen.
 fn impossible(error: ShipError) -> EstimateError {
-    fn told(error: &ShipError) -> String {
+    fn words(error: &ShipError) -> String {
         match error {
             ShipError::Value { key, found, expected, .. } => format!("{key} = {found} {expected}"),
             ShipError::Parse { message, .. } => message.clone(),
-            ShipError::Several(errors) => errors.iter().map(told).collect::<Vec<_>>().join("\n"),
+            ShipError::Several(errors) => errors.iter().map(words).collect::<Vec<_>>().join("\n"),
             other => other.to_string(),
         }
     }
-    EstimateError::Impossible(told(&error))
+    EstimateError::Impossible(words(&error))
 }
 
 /// What every estimate begins with.

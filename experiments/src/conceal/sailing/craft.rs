@@ -137,7 +137,7 @@ impl Craft {
         self.truth().inertia().force(accelerations)
     }
 
-    /// Propeller rate that holds the speed ahead `u` \[m/s\] with the rudder amidships, at most `most` \[rps\].
+    /// Propeller rate that keeps the speed ahead `u` \[m/s\] with the rudder amidships, at most `most` \[rps\].
     pub fn trimmed_rate(&self, u: f64, most: f64) -> f64 {
         bisected_rate(self.truth(), u, most, 40)
     }

@@ -58,7 +58,7 @@ pub struct Score {
     pub ratio: Option<f64>,
     /// Error of that difference over the truth.
     pub size_error: Option<f64>,
-    /// The 95 % interval, moved by what is found without it, holds the truth.
+    /// The 95 % interval, moved by what is found without it, contains the truth.
     pub covered: Option<bool>,
     /// A name that the measured wind may be the cause of.
     pub windy: Option<bool>,
@@ -200,8 +200,8 @@ impl<'a> Reading<'a> {
         let partners = self.partner.map_or(Vec::new(), Row::findings);
         let one = |accepted: &str| {
             let accepted = names(accepted, '|');
-            let told = |f: &Named| accepted.iter().any(|n| f.set.contains(n) || f.mechanism == *n);
-            (!accepted.is_empty() && !partners.iter().any(told)).then(|| self.findings.iter().any(told))
+            let named = |f: &Named| accepted.iter().any(|n| f.set.contains(n) || f.mechanism == *n);
+            (!accepted.is_empty() && !partners.iter().any(named)).then(|| self.findings.iter().any(named))
         };
         self.row.accepted.split('+').map(one).collect()
     }

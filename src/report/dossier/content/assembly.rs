@@ -180,8 +180,8 @@ fn limits(d: &Dossier) -> Vec<String> {
     if !d.model.undetermined.is_empty() {
         all.push(format!("Free parameters that the recordings do not determine: {}.", d.model.undetermined.join(", ")));
     }
-    let told = |s: Severity| d.ship.doubts.iter().filter(|t| t.severity == s).count();
-    let (errors, warnings) = (told(Severity::Error), told(Severity::Warning));
+    let count = |s: Severity| d.ship.doubts.iter().filter(|t| t.severity == s).count();
+    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
     if errors + warnings > 0 {
         all.push(format!("The audit of the recordings has {errors} kinds of error and {warnings} kinds of warning, listed under ship."));
     }
