@@ -644,7 +644,7 @@ mod tests {
     }
 
     #[test]
-    fn files_of_the_user_are_told_before_the_work_and_stay() {
+    fn files_of_the_user_are_reported_before_the_work_and_stay() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("a"), "of the user").unwrap();
         let error = result(folder.path(), "fit", &["a"]).unwrap_err();
@@ -788,7 +788,7 @@ mod tests {
     }
 
     #[test]
-    fn an_input_that_changes_while_it_is_used_is_told() {
+    fn an_input_that_changes_while_it_is_used_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let input = folder.path().join("run.csv");
         fs::write(&input, "1").unwrap();

@@ -789,7 +789,7 @@ mod tests {
     }
 
     #[test]
-    fn several_wrong_values_are_told_at_once_and_a_wrong_length_hides_what_follows_from_it() {
+    fn several_wrong_values_are_reported_at_once_and_a_wrong_length_hides_what_follows_from_it() {
         let text = SHIP.replace("wake = 0.28", "wake = 28.0").replace("gyration = 0.25", "gyration = 21.25");
         let said = |text: &str| Ship::parse(text, Path::new("ship.toml")).unwrap_err().to_string();
         let both = said(&text);

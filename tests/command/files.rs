@@ -186,7 +186,7 @@ fn a_run_that_is_killed_at_any_instant_leaves_a_folder_that_is_whole_after_the_n
 
 /// Every command that fits into a folder without permission to write is told so before it reads anything.
 #[test]
-fn a_folder_that_cannot_be_written_is_told_before_the_work() {
+fn a_folder_that_cannot_be_written_is_reported_before_the_work() {
     let study = Study::new();
     study.write("taken", "a file");
     for command in [&["fit", "nowhere.toml"][..], &["check", "nowhere.toml"], &["terms"], &["demo"]] {
@@ -286,7 +286,7 @@ fn text_or(bytes: &[u8]) -> Option<String> {
 /// `/dev/full` takes nothing, as a full disk does.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_under_standard_output_is_told() {
+fn a_full_disk_under_standard_output_is_reported() {
     let full = || Stdio::from(std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap());
     let output = Command::new(TRIMTAB).arg("terms").stdout(full()).stderr(Stdio::piped()).output().unwrap();
     assert_eq!(output.status.code(), Some(2));

@@ -801,7 +801,7 @@ fn logs() -> Vec<Mistake> {
 }
 
 #[test]
-fn every_natural_mistake_is_told_with_its_place_and_mended_from_the_message_alone() {
+fn every_natural_mistake_is_reported_with_its_place_and_mended_from_the_message_alone() {
     let recorded = [layouts(), names(), units(), signs_and_axes(), rows_and_gaps(), logs()];
     let written = [tables_of_runs(), studies(), ships(), models(), arguments(), options()];
     let all: Vec<Mistake> = recorded.into_iter().chain(written).flatten().collect();

@@ -110,7 +110,7 @@ fn ships_that_are_known_are_within_two_spreads_of_their_estimates() {
 }
 
 #[test]
-fn a_missing_dimension_and_an_impossible_value_are_told() {
+fn a_missing_dimension_and_an_impossible_value_are_reported() {
     let kind = Kind::find("tug").unwrap();
     let told = |text: &str| estimate(kind, &text.parse().unwrap(), None).unwrap_err().to_string();
     contains_all(&told("[hull]\nlpp = 30.0\nbreadth = 10.0\n"), &["hull.draught must be given"]);

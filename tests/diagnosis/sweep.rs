@@ -10,7 +10,7 @@ use trimtab::evaluate::sweep::{SweepSettings, pair, profile, sensitivities};
 use trimtab::fit::{FitSettings, fit};
 
 #[test]
-fn a_profile_is_the_standard_error_of_what_the_data_determine_and_a_pair_holds_its_profiles() {
+fn a_profile_is_the_standard_error_of_what_the_data_determine_and_a_pair_contains_its_profiles() {
     let mut model = support::model();
     let runs = &support::runs(&model, &support::truth_noise(), 12, 1);
     let wanted = ["resistance.quadratic", "propeller.side_force"];

@@ -154,7 +154,7 @@ fn a_fit_stopped_anywhere_is_no_worse_than_its_start() {
 }
 
 #[test]
-fn a_fit_that_a_limit_holds_back_takes_hardly_more_evaluations_than_one_inside_its_limits() {
+fn a_fit_with_an_active_limit_takes_hardly_more_evaluations_than_one_inside_its_limits() {
     let runs = recordings(&model(), 4, 1.0, unspoiled);
     let mut start = model();
     start.set_eleven(&P.map(|p| 1.2 * p));
@@ -264,7 +264,7 @@ fn an_effect_that_the_model_lacks_is_in_the_first_line() {
 }
 
 #[test]
-fn windows_over_which_an_open_loop_runs_away_are_told_from_those_over_which_it_does_not() {
+fn windows_over_which_an_open_loop_runs_away_are_distinguished_from_those_over_which_it_does_not() {
     // The recorded ship ends up elsewhere, by a distance that grows with the cube of time.
     let away = |_: usize, k: usize| {
         let grown = 2e3 * (k as f64 / SAMPLES as f64).powi(3);

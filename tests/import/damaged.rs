@@ -316,7 +316,7 @@ fn closed_loop(zigzag: bool, late: usize) -> Files {
 }
 
 #[test]
-fn a_rudder_that_is_steered_by_the_heading_is_not_late_and_one_that_is_late_is_told() {
+fn a_rudder_that_is_steered_by_the_heading_is_not_late_and_one_that_is_late_is_reported() {
     for zigzag in [false, true] {
         let sound = doubts(&closed_loop(zigzag, 0).audit());
         assert!(sound.is_empty(), "{zigzag}: {sound:#?}");
@@ -331,7 +331,7 @@ fn a_rudder_that_is_steered_by_the_heading_is_not_late_and_one_that_is_late_is_t
 }
 
 #[test]
-fn of_a_run_that_is_cut_the_part_is_audited_and_each_thing_is_told_once() {
+fn of_a_run_that_is_cut_the_part_is_audited_and_each_thing_is_reported_once() {
     // The damaged row is in the first part of three of one file; the unused column is told once a file.
     let files = Files::sound().run(RUN, |t| {
         t.each("u", |i, u| if i == 20 { 3.0 * u } else { u });
@@ -825,7 +825,7 @@ fn the_runs_of_a_session_show_together_a_rudder_that_none_shows_by_itself() {
 }
 
 #[test]
-fn every_fault_is_told_with_its_run_its_channel_and_what_to_do() {
+fn every_fault_is_reported_with_its_run_its_channel_and_what_to_do() {
     let mut missed = Vec::new();
     let cases: Vec<Case> = [samples(), units(), sides(), clocks(), together(), foreign(), places(), shared()]
         .into_iter()

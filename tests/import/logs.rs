@@ -220,7 +220,7 @@ fn a_log_with_semicolons_and_decimal_commas_comes_back_as_sailed() {
 
 /// A log whose units and senses are all told by the data alone.
 #[test]
-fn units_and_senses_are_told_by_the_data() {
+fn units_and_senses_are_found_from_the_data() {
     let text = |angle: f64, anticlockwise: bool, speed: f64, rate: f64, rudder: f64| {
         let mut text = String::from("t,x,y,heading,u,v,r,rudder,rps\n");
         for s in SAILED.iter() {

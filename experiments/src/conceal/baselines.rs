@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn the_oracle_is_told_a_name_of_the_catalogue_for_every_force() {
+    fn the_oracle_gets_a_name_of_the_catalogue_for_every_force() {
         let names: Vec<&str> = mechanism_names(trimtab::terms::standard()).collect();
         for entry in catalogue().filter(|e| e.class == Class::Force) {
             assert!(names.contains(&entry.accepted[0]), "{}", entry.name);
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn an_oracle_told_of_a_strong_current_beats_the_refit_and_bic_names_a_mechanism() {
+    fn an_oracle_that_knows_a_strong_current_beats_the_refit_and_bic_names_a_mechanism() {
         let folder = tempfile::tempdir().unwrap();
         let effects = vec![("current".to_owned(), Strength::Times(2.0))];
         let spec = Spec { effects, ..Spec::null(Family::Hd, 12) };

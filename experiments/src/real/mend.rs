@@ -103,7 +103,7 @@ mod tests {
     use crate::real::agreement::tests::circle;
 
     #[test]
-    fn held_values_and_jumps_of_a_receiver_are_distinguished() {
+    fn repeated_values_and_jumps_of_a_receiver_are_distinguished() {
         let good = circle(0.0, 0.0, 0.0, 0.0);
         assert!(held(&good, 2).is_empty() && jumps(&good, 1.5, 0.5).is_empty());
         let broken = |edit: &dyn Fn(&mut [Vec<f64>; 3])| {

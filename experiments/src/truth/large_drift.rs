@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn only_the_astern_screw_tells_port_from_starboard() {
+    fn only_the_astern_screw_distinguishes_port_from_starboard() {
         let ship = ship_b();
         let ahead = ship.force(4.0, 0.0, 0.0, 1.5, 0.0).total();
         assert_eq!((ahead.y, ahead.n), (0.0, 0.0));

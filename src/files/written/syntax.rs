@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn slips_of_the_hand_are_told_by_what_was_meant() {
+    fn slips_of_the_hand_are_reported_by_what_was_meant() {
         for (line, words) in [
             ("step = 0,5", "decimal point"),
             ("ship = ship.toml", "stands in quotes"),
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_on_several_lines_are_told_at_once() {
+    fn mistakes_on_several_lines_are_reported_at_once() {
         let text = "a = 0,5\nb = True\nc = 1\n";
         let lines: Vec<usize> = mistakes(text, &DeTable::parse_recoverable(text).1).iter().map(|m| m.line).collect();
         assert_eq!(lines, [1, 2]);
