@@ -132,7 +132,7 @@ impl Study {
         let args = AcceptArgs { accept };
         let work = |_: &Line<()>| if refuse { audited(&self.loaded, &args) } else { examined(&self.loaded, &args) };
         let found = whole(py, |()| Ok(true), work)?.map_err(Raised::raised)?;
-        found.told().iter().try_for_each(|words| warn(py, words))?;
+        found.sentences().iter().try_for_each(|words| warn(py, words))?;
         if refuse {
             self.read.lock().unwrap_or_else(PoisonError::into_inner).passed = Some(args.accept);
         }

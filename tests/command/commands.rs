@@ -432,10 +432,10 @@ fn the_option_frees_the_hull_as_the_model_file_does() {
         let value: Value = serde_json::from_slice(&output.stdout).unwrap();
         at(&value, "result.estimates").clone()
     };
-    let (held, option) = (estimates(&[]), estimates(&["--free-hull"]));
+    let (fixed, option) = (estimates(&[]), estimates(&["--free-hull"]));
     study.edit("model.toml", "form = \"paper\"", "form = \"paper\"\nhull = \"free\"");
     assert_eq!(option, estimates(&[]));
-    assert!(option.as_array().unwrap().len() > held.as_array().unwrap().len() + 10);
+    assert!(option.as_array().unwrap().len() > fixed.as_array().unwrap().len() + 10);
 }
 
 #[test]

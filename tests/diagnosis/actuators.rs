@@ -1,4 +1,4 @@
-//! Faults of named actuators on simulated recordings of a catamaran, of which the diagnosis is not told.
+//! Faults of named actuators, unknown to the diagnosis, in simulated recordings of a catamaran.
 //! What real craft show is no part of it.
 
 use crate::support::{catamaran, catamaran_runs};

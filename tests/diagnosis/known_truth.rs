@@ -1,4 +1,4 @@
-//! The diagnosis on recordings of known truth, which it is not told.
+//! The diagnosis on recordings whose truth the test knows and the diagnosis does not.
 
 use crate::support::{STAR, add, commanded, model, runs, truth_noise};
 use trimtab::diagnose::proof::grade::LawGrade;

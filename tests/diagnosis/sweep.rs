@@ -1,4 +1,4 @@
-//! Laws of a sweep: profiles of a fit to the model's own simulations are near their standard errors, and a pair holds its profiles.
+//! Laws of a sweep: profiles of a fit to the model's own simulations are near their standard errors, and a pair contains its profiles.
 //! `trimtab sweep` and `trimtab compare` are run end to end on the study of the demo.
 
 use crate::support;
@@ -35,7 +35,7 @@ fn a_profile_is_the_standard_error_of_what_the_data_determine_and_a_pair_contain
     assert_eq!(moved.len(), 2);
     assert!(moved.iter().all(|m| m.position.unwrap() > 0.0 && m.trials.len() >= 4));
     assert!(moved[0].position >= moved[1].position);
-    // A parameter that is held has no profile.
+    // A fixed parameter has no profile.
     assert!(profile(&found, runs, "rudder.lift3", &settings).is_none());
 }
 

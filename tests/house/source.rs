@@ -15,7 +15,7 @@ pub struct Use {
     pub public: bool,
 }
 
-/// What a file holds, test code left out of all but the functions.
+/// What is in a file, test code left out of all but the functions.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
     /// Modules declared with a file of their own.

@@ -325,7 +325,7 @@ fn a_makers_own_sentences_are_not_broken_and_positions_are_read_from_gll() {
 #[test]
 fn a_clock_that_steps_back_begins_a_recording_and_late_rows_do_not() {
     let rows: Vec<String> = log("", |_| String::new()).lines().map(str::to_owned).collect();
-    // The last 200 rows are told with the clock of 300 rows before.
+    // The last 200 rows have the clock of 300 rows before.
     let mut text = rows[..401].join("\n") + "\n";
     for (i, row) in rows[401..].iter().enumerate() {
         text += &format!("{},{}\n", iso(2.0 * (100 + i) as f64), row.split_once(',').unwrap().1);

@@ -56,7 +56,7 @@ fn a_default_prior_frees_a_coefficient_with_the_spread_that_its_term_knows() {
     assert!(text.contains("prior = \"default\"") && !text.contains("sd ="), "{text}");
     assert_eq!(again.parameters[i].prior, p.prior);
     assert!(again.parameters[i].free);
-    // A prior may be held ready for a coefficient that stays fixed.
+    // A prior may be given for a coefficient that stays fixed.
     let fixed = read("name = \"m\"\n[parameters]\n\"hull.Yv\" = { free = false, prior = \"default\" }\n").unwrap();
     assert!(!fixed.parameters[i].free && fixed.parameters[i].prior.is_some());
 }

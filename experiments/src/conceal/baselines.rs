@@ -62,23 +62,23 @@ pub fn ask(study: &Path, manifest: &Manifest, wanted: Wanted) -> Result<Baseline
     if wanted.oracle {
         let Content { model, train, held_out, settings } = &content;
         said.oracle =
-            oracle(model, train, held_out, settings, &told(manifest)).map_err(|e| ConcealError::content(study, &e))?;
+            oracle(model, train, held_out, settings, &known(manifest)).map_err(|e| ConcealError::content(study, &e))?;
     }
     Ok(said)
 }
 
 /// The concealed effects, in the names of the diagnosis.
-fn told(manifest: &Manifest) -> Vec<Told> {
-    let mut told = Vec::new();
+fn known(manifest: &Manifest) -> Vec<Told> {
+    let mut known = Vec::new();
     for answer in &manifest.answers {
         let extent = if manifest.spec.contrast { Extent::In(answer.sessions.clone()) } else { Extent::All };
         // A log through the water has no effect without the current.
         let needed = (answer.effect == "water_log").then_some("current");
         for mechanism in needed.into_iter().chain(answer.accepted.first().map(String::as_str)) {
-            told.push(Told { mechanism: mechanism.to_owned(), extent: extent.clone() });
+            known.push(Told { mechanism: mechanism.to_owned(), extent: extent.clone() });
         }
     }
-    told
+    known
 }
 
 impl Baselines {
