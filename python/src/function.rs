@@ -1,5 +1,5 @@
 //! What an objective evaluates, one like the other: the trajectory cost, or the likelihood with the gains of its filter fixed.
-//! Python, priors and constraints are not known here.
+//! It does not depend on Python, priors or constraints.
 
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

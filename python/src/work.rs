@@ -1,5 +1,5 @@
 //! How work is done without the lock of the interpreter: short work at once, long work beside a loop that hears Ctrl-C.
-//! What is computed is not known here.
+//! It does not depend on what is computed.
 
 use crate::errors::fault;
 use crate::term::failed;

@@ -1,5 +1,5 @@
 //! Figures as PNG, SVG, PDF and the CSV behind them, from plain numbers and words.
-//! Ships, fits and diagnoses are not known here, and it imports nothing of the project but `numerals`.
+//! It is independent of ships, fits and diagnoses, and imports nothing of the project but `numerals`.
 
 mod axis;
 mod csv;

@@ -1,5 +1,5 @@
 //! The ship of a concealed case: one of three simulators with coefficients of its own, on ship A or one of two other hulls.
-//! It turns velocity, inputs and a [`Tweak`] into accelerations; it simulates nothing and knows no effect.
+//! It turns velocity, inputs and a [`Tweak`] into accelerations; it simulates nothing and depends on no effect.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;

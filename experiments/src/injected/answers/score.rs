@@ -12,7 +12,7 @@ use crate::rivals::NOTHING;
 /// Mechanisms that a calm basin does not have.
 pub const WEATHER: [&str; 8] = ["wind", "mean_wind", "current", "tide", "waves", "wave_drift", "earth_force", "push"];
 
-/// Mechanisms of which the measured wind may be the cause, or that cannot be parted from it.
+/// Mechanisms of which the measured wind may be the cause, or that cannot be distinguished from it.
 const WINDY: [&str; 5] = ["mean_wind", "wind", "wave_drift", "current", "earth_force"];
 
 /// Mean wind above which its direction is compared \[m/s\], and the largest deviation that counts as near \[rad\].

@@ -1,5 +1,5 @@
 //! A sheet of shapes and text, and the files it is written to: PNG, SVG, PDF.
-//! It knows no figure.
+//! It depends on no figure.
 
 pub(super) mod canvas;
 mod compact;
