@@ -162,7 +162,7 @@ fn growth(runs: &[Run], rounds: usize) {
 }
 
 /// A pass over 40 runs of 120 steps that gives log-likelihood, score and Fisher matrix of 42 parameters: with the gains of each point, and
-/// with gains held fixed and every stage of a step differentiated, as a fit by likelihood has it.
+/// with fixed gains and every stage of a step differentiated, as a fit by likelihood has it.
 fn likelihood(runs: &[Run], rounds: usize) {
     let (model, runs) = (freed(LIKELIHOOD_FREE, true), &runs[..LIKELIHOOD_RUNS]);
     let noise = guess(runs, &model);
@@ -181,8 +181,8 @@ fn likelihood(runs: &[Run], rounds: usize) {
     let mut tasks: Vec<Task> = vec![
         ("log-likelihood".into(), Box::new(|| pass(&alone, moving))),
         ("with score and Fisher matrix".into(), Box::new(|| pass(&with, moving))),
-        ("gains held fixed, without derivatives".into(), Box::new(|| pass(&alone, fixed))),
-        ("gains held fixed, with gradient and Fisher matrix".into(), Box::new(|| pass(&with, fixed))),
+        ("gains fixed, without derivatives".into(), Box::new(|| pass(&alone, fixed))),
+        ("gains fixed, with gradient and Fisher matrix".into(), Box::new(|| pass(&with, fixed))),
     ];
     let times = least(rounds, &mut tasks);
     println!("\n| 40 runs of 120 steps, 42 parameters, a pass | least processor time, ms |\n|---|---|");

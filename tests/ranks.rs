@@ -39,7 +39,7 @@ fn job(folder: &Path, ranks: usize) -> Command {
     command
 }
 
-fn told(output: &Output) -> String {
+fn messages(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
@@ -47,11 +47,11 @@ fn told(output: &Output) -> String {
 fn does(folder: &Path, ranks: usize, threads: usize, arguments: &[&str]) -> String {
     let threads = threads.to_string();
     let output = job(folder, ranks).args([TRIMTAB, "--threads", &threads]).args(arguments).output().unwrap();
-    assert!(output.status.success(), "{ranks} ranks, {arguments:?}: {}", told(&output));
+    assert!(output.status.success(), "{ranks} ranks, {arguments:?}: {}", messages(&output));
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The files of a folder by name, without the one that tells the time taken.
+/// The files of a folder by name, without the one that lists the time taken.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
     let entries = entries.filter(|path| !path.ends_with(trimtab::files::TIMING));
@@ -120,8 +120,8 @@ fn a_rank_that_cannot_read_its_recording_ends_the_job_with_the_reason() {
     let last = runs.lines().rfind(|line| line.ends_with("train")).unwrap().split(',').next().unwrap().to_owned();
     std::fs::write(folder.path().join(&last), "t,x\nnothing\n").unwrap();
     let output = job(folder.path(), 2).args([TRIMTAB, "fit", "study.toml"]).output().unwrap();
-    assert!(output.status.code() == Some(2), "{:?} {}", output.status, told(&output));
-    assert!(told(&output).contains("rank 1 of 2: ") && told(&output).contains(&last), "{}", told(&output));
+    assert!(output.status.code() == Some(2), "{:?} {}", output.status, messages(&output));
+    assert!(messages(&output).contains("rank 1 of 2: ") && messages(&output).contains(&last), "{}", messages(&output));
 }
 
 #[test]
@@ -144,12 +144,12 @@ fn a_rank_that_dies_ends_the_job_and_leaves_the_best_point() {
     let pid = std::fs::read_to_string(folder.path().join("pid-1")).unwrap();
     assert!(Command::new("kill").args(["-9", pid.trim()]).status().unwrap().success());
     let output = running.wait_with_output().unwrap();
-    let said = told(&output) + &String::from_utf8_lossy(&output.stdout);
+    let said = messages(&output) + &String::from_utf8_lossy(&output.stdout);
     assert!(!output.status.success() && output.status.code() != Some(124), "{:?} {said}", output.status);
     assert!(said.contains("rank 1") && said.contains("signal 9"), "{said}");
     assert!(!folder.path().join("out/fitted.toml").exists(), "the fit had ended before the rank was killed");
     // What was left is a model that the next command takes.
     let arguments = ["evaluate", "study.toml", "--model", "out/best.toml"];
     let next = Command::new(TRIMTAB).args(arguments).current_dir(folder.path()).output().unwrap();
-    assert!(next.status.success(), "{}", told(&next));
+    assert!(next.status.success(), "{}", messages(&next));
 }

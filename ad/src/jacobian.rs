@@ -8,7 +8,7 @@ use std::fmt;
 /// How many variables [`jacobian`] and [`gradient`] differentiate by in one pass: a cache line of `f64`.
 pub const CHUNK: usize = 8;
 
-/// How many variables [`hessian`] takes on each of its two levels: a number then holds `(1 + 4)^2` values.
+/// How many variables [`hessian`] takes on each of its two levels: a number then has `(1 + 4)^2` values.
 pub const HESSIAN_CHUNK: usize = 4;
 
 /// A function of `x.len()` numbers with [`outputs`](Self::outputs) results, written once for every [`Scalar`].
@@ -46,7 +46,7 @@ pub fn jacobian<F: VectorFunction>(f: &F, x: &[f64]) -> (Vec<f64>, DMatrix<f64>)
 
 /// As [`jacobian`] with `C` columns to a pass (at least 1). The result does not depend on `C`; the time does.
 pub fn jacobian_in_chunks<const C: usize, F: VectorFunction>(f: &F, x: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
-    const { assert!(C > 0, "a chunk holds at least one variable") };
+    const { assert!(C > 0, "a chunk has at least one variable") };
     let mut jacobian = DMatrix::zeros(f.outputs(), x.len());
     let mut y = vec![Dual::<f64, C>::zero(); f.outputs()];
     for start in (0..x.len()).step_by(C) {
@@ -80,7 +80,7 @@ pub fn hessian<F: ScalarFunction>(f: &F, x: &[f64]) -> (f64, DVector<f64>, DMatr
 
 /// As [`hessian`] with `C` by `C` entries to a pass (at least 1), over nested duals.
 pub fn hessian_in_chunks<const C: usize, F: ScalarFunction>(f: &F, x: &[f64]) -> (f64, DVector<f64>, DMatrix<f64>) {
-    const { assert!(C > 0, "a chunk holds at least one variable") };
+    const { assert!(C > 0, "a chunk has at least one variable") };
     let n = x.len();
     let mut gradient = DVector::zeros(n);
     let mut hessian = DMatrix::zeros(n, n);

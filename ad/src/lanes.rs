@@ -10,7 +10,7 @@ use wide::f64x4;
 /// `+ - * / sqrt`, comparisons and `select` give in each lane the same bits as `f64`. The transcendental functions are
 /// polynomials evaluated across the lanes and agree with the standard library to a few units in the last place
 /// (`tests/lanes.rs` states the bounds), so a simulation over lanes equals its `f64` counterpart to rounding, not bit for bit.
-/// No lane ever depends on what another lane holds.
+/// No lane ever depends on the value of another lane.
 ///
 /// ```
 /// use trimtab_ad::{Lanes, Scalar};

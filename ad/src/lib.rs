@@ -1,6 +1,6 @@
 //! Numbers for physics that is written once and evaluated many ways.
 //!
-//! [`Scalar`] is the trait that dynamics are written against. This crate knows no ship: it holds the numbers, the
+//! [`Scalar`] is the trait that dynamics are written against. Nothing in this crate is about ships: it has the numbers,
 //! their derivatives, and smooth shapes for which those derivatives exist.
 //!
 //! | number | one evaluation gives |

@@ -1,5 +1,5 @@
 //! The `Scalar` trait: the operations of a number that physics is written against once.
-//! It is not a numeric tower: it holds only the operations that ship dynamics use.
+//! It is not a numeric tower: it has only the operations that ship dynamics use.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -52,7 +52,7 @@ pub trait Scalar:
     fn is_finite(self) -> bool;
     /// Where `self < other`, by real part.
     fn less(self, other: Self) -> Self::Mask;
-    /// `a` where the mask holds, `b` elsewhere; derivatives are taken with the value.
+    /// `a` where the mask is true, `b` elsewhere; derivatives are taken with the value.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
     /// Square root. The argument must be positive where a derivative is wanted.
     fn sqrt(self) -> Self;
@@ -123,7 +123,7 @@ pub trait Scalar:
         let even = self.value().round_ties_even();
         Self::from_f64(if even - self.value() == 0.5 { even - 1.0 } else { even })
     }
-    /// `self` held inside `[lo, hi]`; the derivative vanishes outside.
+    /// `self` limited to `[lo, hi]`; the derivative vanishes outside.
     #[inline(always)]
     fn clamp(self, lo: f64, hi: f64) -> Self {
         self.max(Self::from_f64(lo)).min(Self::from_f64(hi))

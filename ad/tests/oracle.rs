@@ -76,7 +76,7 @@ proptest! {
     }
 
     #[test]
-    fn nesting_does_not_change_what_the_inner_number_holds(unit in [0.0..1.0, 0.0..1.0]) {
+    fn nesting_does_not_change_the_inner_number(unit in [0.0..1.0, 0.0..1.0]) {
         for f in Function::ALL {
             let [x, y] = f.point(unit);
             let value = f.of(x, y);

@@ -1,5 +1,5 @@
 //! Times of several computations measured in turn, so that other work on the machine slows all of them alike.
-//! It knows no ship and draws no conclusion: it returns the least processor time of each, and how well that repeats.
+//! It depends on no ship and draws no conclusion: it returns the least processor time of each, and how well that repeats.
 
 // Each program that includes this file takes a part of it.
 #![allow(dead_code)]

@@ -1,5 +1,5 @@
 //! A file of results: a row is appended whole as its case ends, so that a campaign continues after a kill at any instant.
-//! A last row that was cut off is dropped, and its case is run again; what a row holds is the campaign's affair.
+//! A last row that was cut off is dropped, and its case is run again; the campaign decides what is in a row.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
@@ -33,7 +33,7 @@ impl<R: Serialize + DeserializeOwned + Default> Rows<R> {
         Ok(text(&R::default(), true)?.split_inclusive('\n').next().unwrap_or_default().to_owned())
     }
 
-    /// The rows of a file and the number of bytes that hold them whole; no cell has a line end, so that a line is a row.
+    /// The rows of a file and the number of bytes that contain them whole; no cell has a line end, so that a line is a row.
     fn whole(path: &Path, bytes: &[u8]) -> Result<(Vec<R>, usize), ConcealError> {
         let end = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
         if end == 0 {

@@ -1,5 +1,5 @@
 //! Work in parts, several at a time, whose results are handed out as they come; the first error ends the work.
-//! It knows neither cases nor rows.
+//! It depends on neither cases nor rows.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};

@@ -60,7 +60,7 @@ impl Diagnosis {
         settings: &Settings,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
-        let told = |step: String| match &progress {
+        let report = |step: String| match &progress {
             Some(callback) => goes_on(callback.call1(py, (step,))?.bind(py)),
             None => Ok(true),
         };
@@ -68,7 +68,7 @@ impl Diagnosis {
             let tell = |step: &str| line.tell_or_give_up(step.to_owned());
             trimtab::diagnose(model, train, test, settings, &tell)
         };
-        let inner = whole(py, told, work)?;
+        let inner = whole(py, report, work)?;
         let inner = inner.map_err(|error| CliError::Diagnose { path: loaded.study.path.clone(), error }.raised())?;
         let study = loaded.study.name.clone();
         let whole = trimtab::report::diagnosis::document(&inner, &study)

@@ -101,7 +101,7 @@ pub fn goes_on(answer: &Bound<'_, PyAny>) -> PyResult<bool> {
     if answer.is_none() { Ok(true) } else { answer.is_truthy() }
 }
 
-/// Fits, tells progress, and stops at Ctrl-C with the best point so far.
+/// Fits, reports progress, and stops at Ctrl-C with the best point so far.
 pub fn run(
     py: Python<'_>,
     model: &trimtab::Model,
@@ -110,7 +110,7 @@ pub fn run(
     progress: Option<Py<PyAny>>,
     raised: impl FnOnce(FitError) -> PyErr,
 ) -> PyResult<Fit> {
-    let told = |event: FitProgress| match &progress {
+    let report = |event: FitProgress| match &progress {
         Some(callback) => goes_on(callback.call1(py, (event,))?.bind(py)),
         None => Ok(true),
     };
@@ -130,7 +130,7 @@ pub fn run(
         };
         trimtab::fit(model, runs, settings, &mut each)
     };
-    let ended = long(py, told, work)?;
+    let ended = long(py, report, work)?;
     // Only a fit that still waited for another one gives nothing.
     let inner = ended.value.ok_or_else(|| PyKeyboardInterrupt::new_err(()))?.map_err(raised)?;
     Ok(Fit { inner, interrupted: ended.interrupted })
@@ -154,7 +154,7 @@ pub struct Estimate {
     pub standard_error: Option<f64>,
     /// 95 % interval, low and high; None with the standard error.
     pub interval: Option<(f64, f64)>,
-    /// "lower" or "upper" where the estimate lies on a bound that holds it back; None elsewhere.
+    /// "lower" or "upper" where the estimate lies on an active bound; None elsewhere.
     pub at_bound: Option<&'static str>,
 }
 
@@ -166,7 +166,7 @@ impl Estimate {
     }
 }
 
-/// The outcome of a fit: estimates with their uncertainty, what held them back, and the fitted model.
+/// The outcome of a fit: estimates with their uncertainty, the active limits, and the fitted model.
 #[pyclass(module = "trimtab", frozen)]
 pub struct Fit {
     pub inner: trimtab::Fit,
@@ -299,7 +299,7 @@ impl Fit {
         self.inner.seconds
     }
 
-    /// Constraints and bounds that hold the fit back, in words.
+    /// Active constraints and bounds, in words.
     #[getter]
     fn active(&self) -> Vec<String> {
         self.inner.active.iter().map(|a| a.sentence.clone()).collect()

@@ -1,5 +1,5 @@
-//! What an objective evaluates, one like the other: the trajectory cost, or the likelihood with the gains of its filter held fixed.
-//! It knows nothing of Python, priors or constraints.
+//! What an objective evaluates, one like the other: the trajectory cost, or the likelihood with the gains of its filter fixed.
+//! It does not depend on Python, priors or constraints.
 
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

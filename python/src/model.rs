@@ -1,5 +1,5 @@
 //! A manoeuvring model in Python: parameters by name, simulation, standard trials.
-//! The library holds the physics.
+//! The physics is in the library.
 
 use crate::cli::fit::fitted_text;
 use crate::cli::shared::error::CliError;

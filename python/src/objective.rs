@@ -52,12 +52,12 @@ type PriorTerm = (usize, f64, f64);
 /// over M runs and their samples, W_i = diag(1/L, 1/L, 1/pi, 1/U, 1/U, 1/r_max) with the run's path length L [m] and mean speed
 /// U [m/s] (Papandreou et al. 2025, eq. 5), and the priors with weight w.
 ///
-/// The likelihood with the gains of the Kalman filter held fixed, where `kind` is "likelihood" and a = 1/2:
+/// The likelihood with the gains of the Kalman filter fixed, where `kind` is "likelihood" and a = 1/2:
 ///
 ///     f(theta) = 1/2 sum_k e_k^2 / s_k + w sum_j ((theta_j - mean_j) / sd_j)^2,      e_k = recorded - expected by the filter
 ///
 /// with w = 1/2: -f is the logarithm of the posterior up to a constant. `noise` is estimated and the gains and variances s_k are made at
-/// x0; the further theta is from there, the less does f say of the likelihood with gains of its own. `renewed(theta)` makes them
+/// x0; the further theta is from there, the more f differs from the likelihood with gains made at theta. `renewed(theta)` makes them
 /// anew, as a fit by likelihood does until it settles.
 ///
 /// `theta` has shape (n,), in the parameters' own units and the order of `names`. Where the model leaves the numbers f is inf, residuals

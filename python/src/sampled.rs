@@ -7,7 +7,7 @@ use trimtab_ad::{Along, Dual, Scalar};
 
 /// A number of the physics as plain numbers side by side, with derivatives or without.
 pub trait Sampled: Scalar {
-    /// How many plain numbers it holds.
+    /// How many plain numbers it consists of.
     const WIDTH: usize;
     /// Whether it carries derivatives.
     const CARRIES: bool;

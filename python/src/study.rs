@@ -132,7 +132,7 @@ impl Study {
         let args = AcceptArgs { accept };
         let work = |_: &Line<()>| if refuse { audited(&self.loaded, &args) } else { examined(&self.loaded, &args) };
         let found = whole(py, |()| Ok(true), work)?.map_err(Raised::raised)?;
-        found.told().iter().try_for_each(|words| warn(py, words))?;
+        found.sentences().iter().try_for_each(|words| warn(py, words))?;
         if refuse {
             self.read.lock().unwrap_or_else(PoisonError::into_inner).passed = Some(args.accept);
         }
@@ -150,7 +150,7 @@ impl Study {
 
 #[pymethods]
 impl Study {
-    /// Reads a study file with its ship and model; everything that is wrong with them is told at once. A folder stands for its
+    /// Reads a study file with its ship and model; everything that is wrong with them is reported at once. A folder stands for its
     /// `study.toml`. `model` is a model file to use instead of the study's, such as `fitted.toml`.
     #[staticmethod]
     #[pyo3(signature = (path, *, model=None, _folder=None))]

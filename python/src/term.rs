@@ -161,15 +161,15 @@ fn kept(text: &str) -> &'static str {
     Box::leak(text.to_owned().into_boxed_str())
 }
 
-/// What is told of a parameter.
-fn parameter(key: String, told: &Bound<'_, PyAny>) -> PyResult<(ParameterInfo, Own)> {
-    let told: &Bound<'_, PyDict> = told.cast().map_err(|_| {
+/// The description of a parameter.
+fn parameter(key: String, given: &Bound<'_, PyAny>) -> PyResult<(ParameterInfo, Own)> {
+    let given: &Bound<'_, PyDict> = given.cast().map_err(|_| {
         PyTypeError::new_err(format!(
             "parameter \"{key}\": expected a dictionary with `scale`, as in {{\"scale\": 1e3}}"
         ))
     })?;
     const KNOWN: [&str; 7] = ["scale", "unit", "symbol", "about", "lower", "upper", "sd"];
-    for entry in told.keys() {
+    for entry in given.keys() {
         let entry: String = entry.extract()?;
         if !KNOWN.contains(&entry.as_str()) {
             let near = trimtab::files::suggestion(&entry, KNOWN.iter().copied());
@@ -179,8 +179,8 @@ fn parameter(key: String, told: &Bound<'_, PyAny>) -> PyResult<(ParameterInfo, O
             )));
         }
     }
-    let number = |name: &str| told.get_item(name)?.map(|v| v.extract::<f64>()).transpose();
-    let text = |name: &str| told.get_item(name)?.map(|v| v.extract::<String>()).transpose();
+    let number = |name: &str| given.get_item(name)?.map(|v| v.extract::<f64>()).transpose();
+    let text = |name: &str| given.get_item(name)?.map(|v| v.extract::<String>()).transpose();
     let positive = |name: &str, value: f64| {
         if value > 0.0 && value.is_finite() {
             return Ok(value);

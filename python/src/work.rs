@@ -1,5 +1,5 @@
 //! How work is done without the lock of the interpreter: short work at once, long work beside a loop that hears Ctrl-C.
-//! It knows nothing of what is computed.
+//! It does not depend on what is computed.
 
 use crate::errors::fault;
 use crate::term::failed;
@@ -24,7 +24,7 @@ struct Threads {
     pool: Option<Arc<ThreadPool>>,
 }
 
-/// Held by a long work: another one on the same threads could be begun by a thread that waits for a part of the first, inside its solver.
+/// Locked by a long work: another one on the same threads could be begun by a thread that waits for a part of the first, inside its solver.
 static TURN: Mutex<()> = Mutex::new(());
 
 static THREADS: Mutex<Threads> = Mutex::new(Threads { process: 0, count: 0, pool: None });
@@ -81,14 +81,14 @@ pub fn alone<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResu
     py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|panic| broken(&*panic))
 }
 
-/// By which a long work tells where it is and learns whether it is still wanted.
+/// The line by which a long work reports its progress and learns whether it is still wanted.
 pub struct Line<'a, E> {
     events: Sender<E>,
     stopped: &'a AtomicBool,
 }
 
 impl<E> Line<'_, E> {
-    /// Tells an event; false where the work is to end.
+    /// Sends an event; false where the work is to end.
     pub fn tell(&self, event: E) -> bool {
         // Nobody listens only where the work is to end anyway.
         let _ = self.events.send(event);
@@ -128,12 +128,12 @@ fn turn(stopped: &AtomicBool) -> Result<MutexGuard<'static, ()>, Box<dyn Any + S
     }
 }
 
-/// Does a long work on the threads while this thread hands its events to `told` and looks for signals.
+/// Does a long work on the threads while this thread hands its events to `handle` and looks for signals.
 ///
-/// Ctrl-C, or `told` giving false, asks the work to end. Another exception of `told` or of a signal's handler is raised when it has.
+/// Ctrl-C, or `handle` giving false, asks the work to end. Another exception of `handle` or of a signal's handler is raised when it has.
 pub fn long<T: Send, E: Send>(
     py: Python<'_>,
-    mut told: impl FnMut(E) -> PyResult<bool>,
+    mut handle: impl FnMut(E) -> PyResult<bool>,
     work: impl FnOnce(&Line<E>) -> T + Send,
 ) -> PyResult<Ended<T>> {
     let (pool, stopped) = (pool()?, AtomicBool::new(false));
@@ -150,7 +150,7 @@ pub fn long<T: Send, E: Send>(
         loop {
             let event = py.detach(|| heard.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LISTEN));
             let mut outcome = match event {
-                Ok(event) if raised.is_none() => told(event),
+                Ok(event) if raised.is_none() => handle(event),
                 Ok(_) | Err(RecvTimeoutError::Timeout) => Ok(true),
                 Err(RecvTimeoutError::Disconnected) => break,
             };
@@ -160,7 +160,7 @@ pub fn long<T: Send, E: Send>(
             match outcome {
                 Ok(true) => {}
                 Ok(false) => stopped.store(true, Ordering::Relaxed),
-                // Also where Ctrl-C was pressed while `told` ran.
+                // Also where Ctrl-C was pressed while `handle` ran.
                 Err(error) if error.is_instance_of::<PyKeyboardInterrupt>(py) => {
                     interrupted = true;
                     stopped.store(true, Ordering::Relaxed);
@@ -184,10 +184,10 @@ pub fn long<T: Send, E: Send>(
 /// As [`long`], for work that gives nothing where it was interrupted: `KeyboardInterrupt` then.
 pub fn whole<T: Send, E: Send>(
     py: Python<'_>,
-    told: impl FnMut(E) -> PyResult<bool>,
+    handle: impl FnMut(E) -> PyResult<bool>,
     work: impl FnOnce(&Line<E>) -> T + Send,
 ) -> PyResult<T> {
-    match long(py, told, work)? {
+    match long(py, handle, work)? {
         Ended { value: Some(value), interrupted: false } => Ok(value),
         _ => Err(PyKeyboardInterrupt::new_err(())),
     }

@@ -39,9 +39,9 @@ def test_it_is_the_fit_of_the_command(folder: Path, fitted: trimtab.Fit) -> None
     done = subprocess.run(
         [sys.executable, "-m", "trimtab", "fit", str(folder / "study.toml"), "--json"], capture_output=True, text=True, check=True
     )
-    told = json.loads(done.stdout)["result"]
-    assert [e["value"] for e in told["estimates"]] == fitted.theta.tolist()
-    assert told["cost"] == fitted.cost
+    result = json.loads(done.stdout)["result"]
+    assert [e["value"] for e in result["estimates"]] == fitted.theta.tolist()
+    assert result["cost"] == fitted.cost
 
 
 def test_a_fit_by_likelihood_and_with_another_hessian(study: trimtab.Study, fitted: trimtab.Fit) -> None:

@@ -1,4 +1,4 @@
-"""Natural mistakes: each is told in words from which it can be mended, as an exception, and none as a panic."""
+"""Natural mistakes: each raises an exception whose message says how to correct it, and none is a panic."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import trimtab
 START = [0.0, 0.0, 0.0, 5.0, 0.0, 0.0]
 
 
-def told(words: str) -> str:
+def literal(words: str) -> str:
     return re.escape(words)
 
 
@@ -25,7 +25,7 @@ def test_a_study_that_is_not_there(tmp_path: Path) -> None:
 
 
 def test_an_unknown_parameter(study: trimtab.Study) -> None:
-    with pytest.raises(trimtab.ModelError, match=told("did you mean `rudder.lift1`?")):
+    with pytest.raises(trimtab.ModelError, match=literal("did you mean `rudder.lift1`?")):
         study.model["rudder.lift_1"]
     with pytest.raises(trimtab.ModelError, match="unknown parameter"):
         study.model.fix("lift99")
@@ -34,7 +34,7 @@ def test_an_unknown_parameter(study: trimtab.Study) -> None:
 
 
 def test_a_rudder_angle_in_degrees(study: trimtab.Study) -> None:
-    with pytest.raises(ValueError, match=told('inputs["delta"][0] = 35 is outside -1.6 to 1.6') + ".*numpy.radians"):
+    with pytest.raises(ValueError, match=literal('inputs["delta"][0] = 35 is outside -1.6 to 1.6') + ".*numpy.radians"):
         study.model.simulate({"n": 2.0, "delta": np.full(20, 35.0)}, START, dt=1.0)
 
 
@@ -44,14 +44,14 @@ def test_a_propeller_rate_in_rpm(study: trimtab.Study) -> None:
 
 
 def test_a_heading_in_degrees(study: trimtab.Study) -> None:
-    with pytest.raises(ValueError, match=told("initial_state[2] = 270") + ".*in rad"):
+    with pytest.raises(ValueError, match=literal("initial_state[2] = 270") + ".*in rad"):
         study.model.simulate({"n": 2.0, "delta": np.zeros(20)}, [0, 0, 270, 5, 0, 0], dt=1.0)
 
 
 def test_a_list_for_an_array_is_taken_and_a_text_is_told(study: trimtab.Study) -> None:
     track = study.model.simulate({"n": [2] * 20, "delta": [0] * 20}, (0, 0, 0, 5, 0, 0), dt=1.0)
     assert track.states.shape == (20, 6)
-    with pytest.raises(TypeError, match=told('inputs["delta"]: expected numbers')):
+    with pytest.raises(TypeError, match=literal('inputs["delta"]: expected numbers')):
         study.model.simulate({"n": 2.0, "delta": ["a"] * 20}, START, dt=1.0)
     with pytest.raises(TypeError, match="expected a dictionary or a table"):
         study.model.simulate(np.zeros((20, 2)), START, dt=1.0)
@@ -60,7 +60,7 @@ def test_a_list_for_an_array_is_taken_and_a_text_is_told(study: trimtab.Study) -
 def test_a_gap_in_the_inputs(study: trimtab.Study) -> None:
     delta = np.zeros(20)
     delta[7] = np.nan
-    with pytest.raises(ValueError, match=told('inputs["delta"][7] = NaN is not a finite number; fill the gap')):
+    with pytest.raises(ValueError, match=literal('inputs["delta"][7] = NaN is not a finite number; fill the gap')):
         study.model.simulate({"n": 2.0, "delta": delta}, START, dt=1.0)
 
 
@@ -91,7 +91,7 @@ def test_theta_of_another_length_or_not_finite(study: trimtab.Study) -> None:
         objective.f([1.0, 2.0, 3.0])
     x = objective.x0
     x[4] = np.nan
-    with pytest.raises(ValueError, match=told("theta[4] (rudder.lift0) = NaN")):
+    with pytest.raises(ValueError, match=literal("theta[4] (rudder.lift0) = NaN")):
         objective.grad(x)
     with pytest.raises(TypeError, match="theta: expected numbers in one dimension"):
         objective.f(np.zeros((2, 11)))
@@ -152,7 +152,7 @@ def test_recordings_that_contradict_themselves_stop_a_fit_by_name(folder: Path) 
         (folder / "turned" / name).write_text((folder / name).read_text())
     (folder / "turned" / "study.toml").write_text(text)
     study = trimtab.Study.load(folder / "turned")
-    with pytest.raises(trimtab.RecordingsError, match=told('accept=["sign_error"]')):
+    with pytest.raises(trimtab.RecordingsError, match=literal('accept=["sign_error"]')):
         study.fit()
     assert any(issue["fault"] == "sign_error" for issue in study.check())
     assert study.fit(accept=["sign_error"], max_iterations=20).cost > 0.0
@@ -174,7 +174,7 @@ RADIANS = {"n": "rps", "delta": "rad"}
 STRAIGHT = {"n": 2.0, "delta": np.zeros(20)}
 GAP = np.where(np.arange(20) == 7, np.nan, 0.0)
 
-# What a newcomer writes, what he is told, and what he then writes from that alone; `s` is the example study, `t` one of its recordings as a table.
+# What a newcomer writes, the message, and what he then writes from that alone; `s` is the example study, `t` one of its recordings as a table.
 MISTAKES: dict[str, tuple[Callable[[Any, Any], Any], str, Callable[[Any, Any], Any]]] = {
     "wrong unit": (
         lambda s, t: s.model.simulate({**STRAIGHT, "n": 120.0}, START, dt=1.0),
@@ -234,7 +234,7 @@ MISTAKES: dict[str, tuple[Callable[[Any, Any], Any], str, Callable[[Any, Any], A
 def test_each_of_ten_mistakes_is_mended_from_its_message(name: str, study: trimtab.Study) -> None:
     wrong, words, right = MISTAKES[name]
     table = study.windows()[0].to_frame()
-    with pytest.raises((ValueError, TypeError, KeyError), match=told(words)) as raised:
+    with pytest.raises((ValueError, TypeError, KeyError), match=literal(words)) as raised:
         wrong(study, table)
     assert not isinstance(raised.value, SystemError) and "panicked" not in str(raised.value)
     assert right(study, table) is not None

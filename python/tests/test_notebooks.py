@@ -1,4 +1,4 @@
-"""The notebooks run from beginning to end, and tell no failure."""
+"""The notebooks run from beginning to end, and report no failure."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def test_a_notebook_runs(path: Path, tmp_path: Path) -> None:
     notebook = nbformat.read(path, as_version=4)
     client = nbclient.NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(tmp_path)}})
     client.execute()
-    told = str(notebook)
-    assert "Traceback" not in told
+    text = str(notebook)
+    assert "Traceback" not in text
     if path.stem.startswith("2_"):
-        assert "confirmed on unseen runs" in told and (tmp_path / "report.html").is_file()
+        assert "confirmed on unseen runs" in text and (tmp_path / "report.html").is_file()
 
 
 def test_there_are_notebooks() -> None:

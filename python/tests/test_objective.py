@@ -141,7 +141,7 @@ def test_other_processes_evaluate_it(objective: trimtab.Objective, method: str) 
 
 
 def test_it_releases_the_lock_of_the_interpreter(objective: trimtab.Objective) -> None:
-    # Another thread counts while this one is in Rust: with the lock held it could not.
+    # Another thread counts while this one is in Rust: while that held the lock, it could not.
     counted, done = [0], threading.Event()
 
     def count() -> None:
@@ -222,7 +222,7 @@ def test_a_likelihood_is_what_a_fit_by_likelihood_minimises(study: trimtab.Study
     assert fit.noise is not None
     there = start.renewed(fit.theta, noise=fit.noise)
     np.testing.assert_array_equal(there.x0, fit.theta)
-    # With noise and gains of where it ended a Newton step of the parameters that no bound holds back gains next to nothing.
+    # With noise and gains of where it ended a Newton step of the parameters at no bound gains next to nothing.
     away = np.minimum(*(np.abs(fit.theta - bound) for bound in there.bounds)) > 1e-2 * there.scales
     grad, matrix = (there.grad(fit.theta) * there.scales)[away], there.gauss_newton(fit.theta) * np.outer(there.scales, there.scales)
     gain = 0.5 * grad @ np.linalg.solve(matrix[np.ix_(away, away)], grad)

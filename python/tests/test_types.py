@@ -1,4 +1,4 @@
-"""The types that are told are those of the module."""
+"""The types in the stubs are those of the module."""
 
 from __future__ import annotations
 

@@ -31,8 +31,8 @@ def _write(path: Path, name: str, table: Any, columns: Mapping[str, str]) -> Non
         values.append([_text(value) for value in table[key]])
     lengths = {column: len(entries) for column, entries in zip(header, values)}
     if len(set(lengths.values())) > 1:
-        told = ", ".join(f"{column}: {length}" for column, length in lengths.items())
-        raise ValueError(f"{name}: the columns are of unequal length ({told}); give each a value for every row")
+        listed = ", ".join(f"{column}: {length}" for column, length in lengths.items())
+        raise ValueError(f"{name}: the columns are of unequal length ({listed}); give each a value for every row")
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(header)

@@ -31,7 +31,7 @@ def import_log(
     """Makes a study folder `out` of logs (CSV, NMEA 0183, Parquet) and loads it, as `trimtab import` does.
 
     What each column is taken for, its unit and its sign are found from names and data, with the evidence at level INFO of the logger
-    "trimtab". What nothing tells is asked for in one message: by `columns`, as in `{"delta": "helm_fb"}`, and `units`, as in
+    "trimtab". What they do not show is asked for in one message: by `columns`, as in `{"delta": "helm_fb"}`, and `units`, as in
     `{"n": "rpm"}`. `antenna` is its position in m forward and to starboard of midship. A gap longer than `session_gap` [s] ends a
     recording; drop-outs up to `bridge` [s] are bridged by straight lines. `split=False` lists each recording as one run instead of
     cutting it into straight runs, turns, zigzags and stops.

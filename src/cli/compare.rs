@@ -17,8 +17,8 @@ use trimtab::report::plot::{Axis, FITTED, Figure, Layer, Panel};
 const LONG: &str = "\
 Simulates the test runs of a study with each of several models and compares their cVDM (mean deviation in all dimensions, percent of \
     the motion). Differences from the first model are paired: of the same windows, with intervals from a bootstrap that draws whole \
-    runs, so that what makes a run hard for every model does not blur them. An interval that holds zero means that these runs do not \
-    tell the two models apart.
+    runs, so that what makes a run hard for every model does not blur them. An interval that contains zero means that these runs do not \
+    distinguish the two models.
 
 No model may have been fitted to the test runs.";
 
@@ -62,7 +62,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     output.reads(&loaded, true);
     output.reads_files(&args.models);
     let mut models = args.models.iter().map(|path| loaded.other_model(path)).collect::<Result<Vec<_>, _>>()?;
-    // Models of one name are told apart by their files.
+    // Models of one name are distinguished by their files.
     let names: Vec<String> = models.iter().map(|m| m.name.clone()).collect();
     for (model, path) in models.iter_mut().zip(&args.models) {
         if names.iter().filter(|name| **name == model.name).count() > 1 {

@@ -127,7 +127,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     }
     write_files(&mut output, &diagnosis, name, &json, next.as_ref())?;
     let written = output.close();
-    let told = if args.output.json {
+    let printed = if args.output.json {
         print_json(&json)
     } else {
         let where_to = match (&args.output.out, written.is_there()) {
@@ -141,7 +141,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
         };
         print(&(audited.lines() + &summary(&diagnosis, name) + &where_to))
     };
-    written.ended(told)?;
+    written.ended(printed)?;
     Ok(if unanswered { Answer::No } else { Answer::Yes })
 }
 

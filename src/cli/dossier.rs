@@ -141,8 +141,8 @@ fn made(loaded: &Loaded, runs: &[Run], settings: &Settings) -> Result<Option<(Va
         return Ok(None);
     }
     let bar = progress("diagnosing");
-    let told = |step: &str| bar.set_message(format!("diagnosing: {step}"));
-    let diagnosis = diagnose(&loaded.model, train, &held_out, settings, &told);
+    let show = |step: &str| bar.set_message(format!("diagnosing: {step}"));
+    let diagnosis = diagnose(&loaded.model, train, &held_out, settings, &show);
     bar.finish_and_clear();
     let diagnosis = diagnosis.map_err(|error| CliError::Diagnose { path: loaded.study.path.clone(), error })?;
     Ok(Some((document(&diagnosis, &loaded.study.name)?, "made with this dossier".to_owned())))

@@ -159,7 +159,7 @@ pub fn judge(loaded: &Loaded, baseline: &Model, model: &Model, windows: &[Run]) 
     Ok(evaluation)
 }
 
-/// Below this a deviation (in m, deg, m/s, deg/s or %) is rounding, and is told as 0.
+/// Below this a deviation (in m, deg, m/s, deg/s or %) is rounding, and is printed as 0.
 const ROUNDING: f64 = 1e-6;
 
 fn ends(x: f64) -> String {
@@ -498,7 +498,7 @@ fn tracks(evaluation: &Evaluation, models: [&Model; 2], windows: &[Run], integra
         for (name, color, states) in shown {
             let stride = (states.len() / 6).max(1);
             let poses = states.iter().step_by(stride).map(|s| [s[0], s[1], s[2]]).collect::<Vec<_>>();
-            // Told apart without colours too.
+            // Distinguished without colours too.
             let styled = |line: Layer| if name == "baseline" { line.dashed() } else { line };
             track = track
                 .with(styled(Layer::line(name, color, states.iter().map(|s| east_north(s[0], s[1])))))

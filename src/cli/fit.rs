@@ -32,7 +32,7 @@ Fits the free parameters of the model to the training runs of the study with exa
     estimate as mean and the spread that its term knows (`trimtab terms`) as standard deviation.
 
 Every fit is solved by Ipopt. It returns the best feasible point of all that it evaluated, never one above a feasible start, and says what \
-    stopped the solver: max_iterations, max_evaluations and max_seconds of [fit] always hold. It is called converged only after a second solve from \
+    stopped the solver: max_iterations, max_evaluations and max_seconds of [fit] always limit it. It is called converged only after a second solve from \
     a disturbed point found no lower cost. Damping, added mass, thrust and drag keep their physical signs (the bounds of each term), and the mass matrix stays \
     invertible. Its first line says what the residuals say against it: a cost far above the noise of the sensors, windows \
     too long to be predicted in open loop, residuals that are alike.
@@ -288,7 +288,7 @@ pub fn fitted_text(model: &Model, covariance: Option<Uncertainty>) -> Result<Str
     Ok(seal("use it with --model.", &text))
 }
 
-/// R(u) over the recorded speeds, c_L and c_D over the angles of attack at which the curves hold.
+/// R(u) over the recorded speeds, c_L and c_D over the angles of attack at which the curves are valid.
 pub fn curves(models: &[(&str, Color, &Model)], [low, high]: [f64; 2]) -> Figure {
     let over = |from: f64, to: f64| (0..=120).map(move |i| from + (to - from) * f64::from(i) / 120.0);
     let layers = |f: &dyn Fn(&Model) -> Vec<(f64, f64)>| {
@@ -314,7 +314,7 @@ pub fn curves(models: &[(&str, Color, &Model)], [low, high]: [f64; 2]) -> Figure
         .panel_size(720, 560)
         .caption(
             "Resistance R(u) over the recorded speeds, and lift and drag coefficients c_L and c_D of the rudder over the angles of attack \
-             at which the curves hold; dotted: the limits that the fit keeps to.",
+             at which the curves are valid; dotted: the limits that the fit keeps to.",
         )
         .with(panel("surge velocity u [m/s]", "resistance R [kN]").with_all(layers(&resistance)))
         .with(

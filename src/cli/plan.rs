@@ -23,8 +23,8 @@ the model and tested as `trimtab diagnose` would test their recordings:
   - which mechanisms of the catalogue are identifiable once the model's parameters and the unknown
     hull, propeller and rudder coefficients are fitted too
   - the smallest size of each that is seen in 80 % of such programmes
-  - which mechanisms cannot be parted, as one takes over 90 % of the gain of the other
-  - with --part A,B the cheapest set of trials found that parts two mechanisms
+  - which mechanisms cannot be distinguished, as one takes over 90 % of the gain of the other
+  - with --part A,B the cheapest set of trials found that distinguishes two mechanisms
 
 Recordings are not needed: STUDY may name recordings that do not exist yet, or list none. Instead
 of a study --ship and --model can be given.
@@ -50,7 +50,7 @@ Table [plan] of the study; every key may be left out:
                               rudder angle
   speed = 6.0                 speed at the start [m/s]; the approach speed of [maneuver], half of it
                               for an acceleration
-  n_rpm = 110                 propeller rate [rpm]; the rate that holds the speed, for an acceleration
+  n_rpm = 110                 propeller rate [rpm]; the rate that keeps the speed, for an acceleration
                               the rate of the approach
   heading_deg = [0, 90]       course or courses at the start [deg]; 0
   duration = 600              longest duration [s]; 15 ship lengths for a straight run, 20 for an
@@ -86,7 +86,7 @@ not run.";
 pub struct Args {
     #[command(flatten)]
     study: ShipArgs,
-    /// Two mechanisms (see `trimtab terms`): looks for the cheapest trials that part them.
+    /// Two mechanisms (see `trimtab terms`): looks for the cheapest trials that distinguish them.
     #[arg(long, value_name = "A,B", value_delimiter = ',', num_args = 1)]
     part: Vec<String>,
     #[command(flatten)]

@@ -52,8 +52,8 @@ pub fn man(args: &ManArgs, mut program: Command) -> Result<Answer, CliError> {
     program.build();
     pages(&mut output, program, "trimtab")?;
     let written = output.close();
-    let told = print(written.line().trim_start());
-    written.ended(told)?;
+    let printed = print(written.line().trim_start());
+    written.ended(printed)?;
     Ok(Answer::Yes)
 }
 

@@ -182,11 +182,11 @@ fn divergences(rows: &[Row]) -> String {
         Outcome::Diverged { diverged_after } => Some(format!("{} diverged after {diverged_after:.0} s", r.run)),
         Outcome::Simulated(_) => None,
     };
-    let told: Vec<String> = rows.iter().filter_map(after).collect();
-    match told.len() {
+    let diverged: Vec<String> = rows.iter().filter_map(after).collect();
+    match diverged.len() {
         0 => String::new(),
-        n if n > 5 => format!("{}, and {} windows more\n", told[..5].join(", "), n - 5),
-        _ => format!("{}\n", told.join(", ")),
+        n if n > 5 => format!("{}, and {} windows more\n", diverged[..5].join(", "), n - 5),
+        _ => format!("{}\n", diverged.join(", ")),
     }
 }
 

@@ -181,7 +181,7 @@ fn csv(table: &Table) -> Result<Vec<u8>, CliError> {
 fn text(found: &Fit, profiles: &[Profile], moved: &[Sensitivity]) -> String {
     let unknown: Vec<&str> =
         found.estimates.iter().filter(|e| e.standard_error.is_none()).map(|e| e.name.as_str()).collect();
-    let held: Vec<&str> =
+    let fixed: Vec<&str> =
         found.estimates.iter().filter(|e| e.standard_error == Some(0.0)).map(|e| e.name.as_str()).collect();
     let list = |title: &str, names: &[&str]| {
         if names.is_empty() { String::new() } else { format!("\n{title}: {}", names.join(", ")) }
@@ -192,7 +192,7 @@ fn text(found: &Fit, profiles: &[Profile], moved: &[Sensitivity]) -> String {
         found.headline,
         profiles_table(profiles),
         list("Not determined by these data", &unknown),
-        list("Held by constraints or bounds", &held),
+        list("Fixed by constraints or bounds", &fixed),
         sensitivities_table(moved)
     )
 }

@@ -1,5 +1,5 @@
 //! `trimtab terms`: the catalogue of physical effects, with equation, source and parameters.
-//! The library holds the catalogue and its listing; this file prints them.
+//! The catalogue and its listing are in the library; this file prints them.
 
 use super::shared::answer::Answer;
 use super::shared::error::CliError;

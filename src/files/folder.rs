@@ -104,7 +104,7 @@ pub struct Origin {
     pub settings: BTreeMap<String, Value>,
 }
 
-/// A folder that a command writes its result into. Until [`ResultFolder::complete`] it holds the result before; what is dropped
+/// A folder that a command writes its result into. Until [`ResultFolder::complete`] it contains the result before; what is dropped
 /// earlier leaves nothing.
 #[derive(Debug)]
 pub struct ResultFolder {
@@ -165,7 +165,7 @@ impl Kept {
 
 impl ResultFolder {
     /// Makes a folder ready for the result of a command: created, locked, writable. `expected` are names of files that the
-    /// command writes whatever its input is; what could not be overwritten at the end is told now.
+    /// command writes whatever its input is; what could not be overwritten at the end is reported now.
     ///
     /// # Errors
     /// Every [`FolderError`] but [`FolderError::InputChanged`].
@@ -618,18 +618,18 @@ mod tests {
         open.write("tracks.png", b"1").unwrap();
         let settings = BTreeMap::from([("fit".to_owned(), serde_json::json!({"step": 0.1}))]);
         open.complete(Origin { arguments: vec!["study.toml".to_owned()], settings }).unwrap();
-        let told = entry(&out, "fit");
+        let manifest = entry(&out, "fit");
         assert_eq!(
-            (told.version.as_str(), told.arguments.as_slice()),
+            (manifest.version.as_str(), manifest.arguments.as_slice()),
             (env!("CARGO_PKG_VERSION"), &["study.toml".to_owned()][..])
         );
-        assert_eq!(told.settings["fit"]["step"], 0.1);
-        assert_eq!(told.inputs[0].sha256, None);
-        assert_eq!(told.inputs[1], Input { path: input.display().to_string(), sha256: Some(sha256(b"abc")) });
+        assert_eq!(manifest.settings["fit"]["step"], 0.1);
+        assert_eq!(manifest.inputs[0].sha256, None);
+        assert_eq!(manifest.inputs[1], Input { path: input.display().to_string(), sha256: Some(sha256(b"abc")) });
         result(&out, "evaluate", &["tracks.png"]).unwrap();
-        let told = entry(&out, "fit");
-        assert_eq!(told.files.keys().collect::<Vec<_>>(), ["a"]);
-        assert_eq!(told.replaced["tracks.png"], "evaluate");
+        let manifest = entry(&out, "fit");
+        assert_eq!(manifest.files.keys().collect::<Vec<_>>(), ["a"]);
+        assert_eq!(manifest.replaced["tracks.png"], "evaluate");
         assert_whole(&out);
     }
 
@@ -644,7 +644,7 @@ mod tests {
     }
 
     #[test]
-    fn files_of_the_user_are_told_before_the_work_and_stay() {
+    fn files_of_the_user_are_reported_before_the_work_and_stay() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("a"), "of the user").unwrap();
         let error = result(folder.path(), "fit", &["a"]).unwrap_err();
@@ -788,7 +788,7 @@ mod tests {
     }
 
     #[test]
-    fn an_input_that_changes_while_it_is_used_is_told() {
+    fn an_input_that_changes_while_it_is_used_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let input = folder.path().join("run.csv");
         fs::write(&input, "1").unwrap();

@@ -5,7 +5,7 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Error, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// The file that is locked; it holds the number of the process.
+/// The file that is locked; it contains the number of the process.
 const NAME: &str = ".trimtab-lock";
 
 /// A locked folder, until it is dropped.

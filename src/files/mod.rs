@@ -1,5 +1,5 @@
 //! Files as the project writes them: whole or not at all, under safe names, with digests, in folders that say how they came about.
-//! What is in a file, and how its failure is told, is with those who write it.
+//! The callers decide what is in a file, and how a failure is reported.
 
 mod cell;
 mod date;

@@ -26,7 +26,7 @@ pub fn file_name(text: &str) -> String {
     name
 }
 
-/// File names that differ from each other, also where a file system does not tell capitals from small letters.
+/// File names that all differ, also where a file system does not distinguish capitals from small letters.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
     taken: HashSet<String>,

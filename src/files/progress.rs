@@ -1,5 +1,5 @@
-//! How far a long work is, told a line a minute where no terminal shows it, with an estimate of what is left.
-//! It does no work, and nothing depends on what it tells.
+//! The progress of a long work, printed a line a minute where no terminal shows it, with an estimate of the time left.
+//! It does no work, and nothing depends on what it prints.
 
 use std::io::Write;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -20,7 +20,7 @@ struct State {
 
 type Shared = Arc<(Mutex<State>, Condvar)>;
 
-/// Tells how far a work is, once in a while, until it is dropped.
+/// Prints how far a work is, once in a while, until it is dropped.
 #[derive(Debug)]
 pub struct Teller {
     shared: Shared,
@@ -29,7 +29,7 @@ pub struct Teller {
 }
 
 impl Teller {
-    /// Tells a line a minute on standard error, each beginning with `name`; the first after a minute.
+    /// Prints a line a minute on standard error, each beginning with `name`; the first after a minute.
     pub fn new(name: &str, doing: &str) -> Self {
         let name = name.to_owned();
         // Without a reader there is nothing to do about it.
@@ -118,16 +118,16 @@ mod tests {
 
     #[test]
     fn lines_come_while_the_work_lasts_and_say_what_is_left() {
-        let (send, told) = mpsc::channel();
+        let (send, lines) = mpsc::channel();
         let tell = move |line: &str| send.send(line.to_owned()).unwrap();
         let teller = Teller::with(Duration::from_millis(5), "reading", tell);
-        assert_eq!(told.recv().unwrap(), "reading (0 s so far)");
+        assert_eq!(lines.recv().unwrap(), "reading (0 s so far)");
         teller.say("fitting from 4 starts");
         teller.part(1, 4);
-        assert!(told.iter().any(|line| line == "fitting from 4 starts (0 s so far, about 0 s left)"));
+        assert!(lines.iter().any(|line| line == "fitting from 4 starts (0 s so far, about 0 s left)"));
         drop(teller);
         // The teller ended, and with it the sender.
-        assert!(told.iter().count() < usize::MAX);
+        assert!(lines.iter().count() < usize::MAX);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Text files that say at their head that trimtab wrote them and carry a checksum at their end, so that a cut one is told.
+//! Text files that say at their head that trimtab wrote them and carry a checksum at their end, so that a cut one is recognised.
 //! Both are comments of TOML; a file with neither is one that somebody wrote by hand, and is not judged here.
 
 use super::digest::sha256;
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_that_was_cut_at_either_end_or_changed_is_told() {
+    fn a_text_that_was_cut_at_either_end_or_changed_is_reported() {
         let sealed = seal("use it", "a = 1\nb = 2\n");
         for end in HEAD.len()..sealed.len() - 1 {
             assert_eq!(intact(&sealed[..end]), Err(Broken::Cut), "{}", &sealed[..end]);

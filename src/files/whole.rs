@@ -1,5 +1,5 @@
 //! Files that are there whole or not at all: written aside, then renamed.
-//! What is in a file, and how its failure is told, is with those who write it.
+//! The callers decide what is in a file, and how a failure is reported.
 
 use std::io::{BufWriter, Error, Write};
 use std::path::Path;

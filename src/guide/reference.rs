@@ -1,5 +1,5 @@
 //! The lists of keys in the guide, written from the schemas of the files, the channels, the units and the keys of a diagnosis.
-//! A test compares them with what the chapters hold, and can write them there; the readers themselves are elsewhere.
+//! A test compares them with the chapters, and can write them there; the readers themselves are elsewhere.
 
 use super::schema::schema;
 use crate::diagnose::settings::{Number, VERDICT};
@@ -97,7 +97,7 @@ fn collect(path: &str, schema: &Value, listed: bool, tables: &mut Vec<Table>) {
     }
 }
 
-/// What may hold a table, and whether it is an entry of a list: the value itself, one of its forms, or an entry of either.
+/// What may contain a table, and whether it is an entry of a list: the value itself, one of its forms, or an entry of either.
 fn inner(schema: &Value) -> Vec<(&Value, bool)> {
     let forms = schema["anyOf"].as_array().into_iter().flatten();
     let mut found: Vec<(&Value, bool)> = std::iter::once(schema).chain(forms).map(|one| (one, false)).collect();

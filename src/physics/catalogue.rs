@@ -1,5 +1,5 @@
 //! A list of terms that models can be made of. The project's own list is in `terms`; a term of another crate is added with
-//! [`Catalogue::with`]. It holds no parameter values.
+//! [`Catalogue::with`]. It has no parameter values.
 
 use super::term::AnyTerm;
 use std::sync::Arc;

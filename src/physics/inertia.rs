@@ -1,5 +1,5 @@
 //! The mass matrix of the three equations of motion, added mass included.
-//! It holds no force: those on the right-hand side are the terms'.
+//! It has no force: those on the right-hand side are the terms'.
 
 use super::flow::Adjust;
 use crate::state::Force;

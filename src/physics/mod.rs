@@ -1,5 +1,5 @@
 //! What a term is and what terms share: instant, flow, inertia, mechanism. Open to terms of other crates.
-//! It knows no list of terms, no model and nothing of fits or diagnoses.
+//! It depends on no list of terms, no model, no fit and no diagnosis.
 
 pub mod catalogue;
 pub mod flow;

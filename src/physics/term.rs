@@ -83,7 +83,7 @@ pub enum Reach {
 
 /// What a term computes, generic over the number. Every method defaults to "no effect".
 ///
-/// `p` holds the term's own parameters in the order of its `TermInfo`. At its default parameters a term that is not part
+/// `p` contains the term's own parameters in the order of its `TermInfo`. At its default parameters a term that is not part
 /// of the base model must have no effect at all.
 pub trait Physics<S: Scalar>: Term {
     /// Changes the inputs of a whole run before it is simulated (actuator lag, rudder offset). `dt` is the sample

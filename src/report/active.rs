@@ -1,4 +1,4 @@
-//! Active constraints in words: neighbours on the grid of one rule are told as one range, `c_D(-45 to 45 deg) >= 0 (drag, 91 samples)`.
+//! Active constraints in words: neighbours on the grid of one rule are listed as one range, `c_D(-45 to 45 deg) >= 0 (drag, 91 samples)`.
 //! Which constraints are active is decided in [`crate::fit`].
 
 use crate::fit::Active;
@@ -27,7 +27,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// A line for each constraint, or range of constraints, that holds a fit back.
+/// A line for each active constraint, or range of constraints.
 pub(super) fn lines(active: &[Active]) -> Vec<String> {
     let mut lines = Vec::new();
     let mut i = 0;
@@ -50,7 +50,7 @@ pub(super) fn lines(active: &[Active]) -> Vec<String> {
 fn range(first: &Parts<'_>, active: &[Active]) -> usize {
     let alike: Vec<f64> = active.iter().map_while(|a| Parts::of(a).filter(|p| p.alike(first)).map(|p| p.at)).collect();
     let Some(step) = alike.windows(2).map(|w| (w[1] - w[0]).abs()).min_by(f64::total_cmp) else { return 1 };
-    // A grid that skips zero has one gap of two steps, which no constraint fills. Angles are told with few digits.
+    // A grid that skips zero has one gap of two steps, which no constraint fills. Angles are printed with few digits.
     let near = |w: &[f64]| (w[1] - w[0]).abs() <= 1.6 * step || (w[0] < 0.0 && w[1] > 0.0 && w[1] - w[0] <= 2.1 * step);
     1 + alike.windows(2).take_while(|w| near(w)).count()
 }

@@ -17,7 +17,7 @@ impl Estimate {
     fn error_in_words(&self) -> String {
         match self.standard_error {
             None => "not determined".into(),
-            Some(0.0) => "held".into(),
+            Some(0.0) => "fixed".into(),
             Some(e) => number(e),
         }
     }
@@ -25,7 +25,7 @@ impl Estimate {
     fn interval_in_words(&self) -> String {
         match (self.at_bound, self.standard_error, self.interval) {
             (Some(side), _, _) => format!("at its {side} bound"),
-            (None, Some(0.0), _) => "held by constraints".into(),
+            (None, Some(0.0), _) => "fixed by constraints".into(),
             (None, _, Some([lower, upper])) => interval(lower, upper, DIGITS),
             (None, _, None) => "not determined".into(),
         }

@@ -1,5 +1,5 @@
 //! A paragraph for a terminal: words divided into lines with a hanging margin.
-//! What the paragraph says, and how wide a terminal is, is told where it is asked.
+//! The caller gives the text and the width of the terminal.
 
 /// A paragraph behind `lead`, which fills the first line up to `margin`; its lines end at `width`, and those after the first begin
 /// two characters behind the margin.

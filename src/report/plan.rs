@@ -149,30 +149,32 @@ fn grouped(trials: &[Sailed]) -> Table {
     table.wrapped(WIDTH)
 }
 
-/// What cannot be parted.
+/// Mechanisms that cannot be distinguished.
 fn inseparable(plan: &Plan) -> String {
     let i = &plan.isolability;
     let limit = fixed(100.0 * i.tolerance, 0);
     if i.classes.is_empty() {
-        return format!("CANNOT BE PARTED: none; no mechanism takes over more than {limit} % of the gain of another.");
+        return format!(
+            "CANNOT BE DISTINGUISHED: none; no mechanism takes over more than {limit} % of the gain of another."
+        );
     }
     let class = |c: &Vec<String>| c.join(" / ");
     let classes: Vec<String> = i.classes.iter().map(class).collect();
     format!(
-        "CANNOT BE PARTED by these trials (one takes over more than {limit} % of the gain of another): {}. `--part A,B` looks for \
-         trials that part two of them.",
+        "CANNOT BE DISTINGUISHED by these trials (one takes over more than {limit} % of the gain of another): {}. `--part A,B` \
+         looks for trials that distinguish two of them.",
         classes.join("; ")
     )
 }
 
-/// Which trials part the pair.
+/// The trials that distinguish the pair.
 fn parted(p: &Parting) -> String {
     let (a, b, share) = (&p.pair.a, &p.pair.b, fixed(100.0 * p.pair.share, 0));
     let (minutes, trials) = (fixed(p.minutes, 1), p.trials.join("; "));
     let limit = fixed(100.0 * p.tolerance, 0);
     if p.parted {
         return format!(
-            "TO PART {a} and {b}: {minutes} minutes, {share} % of the gain is taken over (at most {limit} % allowed): {trials}. Chosen \
+            "TO DISTINGUISH {a} and {b}: {minutes} minutes, {share} % of the gain is taken over (at most {limit} % allowed): {trials}. Chosen \
              one by one out of {} trials, what is not needed removed; a cheaper set is possible.",
             p.of
         );
@@ -180,7 +182,7 @@ fn parted(p: &Parting) -> String {
     if p.trials.is_empty() {
         let hidden = p.unidentifiable.join(" and ");
         return format!(
-            "TO PART {a} and {b}: none of {} trials adds to what is known of {hidden}, alone or together.",
+            "TO DISTINGUISH {a} and {b}: none of {} trials adds to what is known of {hidden}, alone or together.",
             p.of
         );
     }
@@ -190,7 +192,7 @@ fn parted(p: &Parting) -> String {
         format!("they do not identify {}", p.unidentifiable.join(" and "))
     };
     format!(
-        "TO PART {a} and {b}: no set found out of {} trials. The best ({minutes} minutes): {trials}; {hidden}.",
+        "TO DISTINGUISH {a} and {b}: no set found out of {} trials. The best ({minutes} minutes): {trials}; {hidden}.",
         p.of
     )
 }

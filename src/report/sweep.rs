@@ -56,8 +56,8 @@ pub fn sensitivities_table(all: &[Sensitivity]) -> Table {
     let mut table = Table::new(header.into_iter().chain(names.iter().map(|name| degrees(name))));
     let number = |x: Option<f64>| x.map_or_else(|| DASH.to_owned(), |x| sig(x, 3));
     for s in all {
-        let told = |name: &str, v: f64| if name.ends_with("[rad]") { v.to_degrees() } else { v };
-        let trial = |name: &&str| s.trials.iter().find(|(n, _)| n == name).map(|(n, v)| told(n, *v));
+        let shown = |name: &str, v: f64| if name.ends_with("[rad]") { v.to_degrees() } else { v };
+        let trial = |name: &&str| s.trials.iter().find(|(n, _)| n == name).map(|(n, v)| shown(n, *v));
         let heading = s.heading.map(f64::to_degrees);
         let own = [s.parameter.clone(), sig(s.standard_error, 3), number(s.position), number(heading)];
         table.row(own.into_iter().chain(names.iter().map(|name| number(trial(name)))));
@@ -100,7 +100,7 @@ pub fn profiles_figure(profiles: &[Profile], limit: f64) -> Figure {
         let (low, high) =
             (p.points.first().map_or(p.estimate, |q| q.value), p.points.last().map_or(p.estimate, |q| q.value));
         let normal = (0..=40).map(|i| low + (high - low) * f64::from(i) / 40.0).map(|v| (v, quadratic(v)));
-        // A value that a constraint refuses costs any amount: the panel shows the fall as far as a standard error tells it.
+        // A value that a constraint refuses costs any amount: the panel shows the fall as far as the standard error predicts it.
         let least = points.iter().map(|(_, fall)| *fall).fold(0.0_f64, f64::min);
         let top = quadratic(low).max(quadratic(high)).max(1.3 * limit);
         let label = if p.unit == "-" { p.parameter.clone() } else { format!("{} [{}]", p.parameter, p.unit) };

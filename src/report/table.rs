@@ -48,7 +48,7 @@ impl Table {
         &self.rows
     }
 
-    /// Whether column `i` holds numbers (and dashes) only.
+    /// Whether column `i` contains numbers (and dashes) only.
     #[must_use]
     pub fn is_numeric(&self, i: usize) -> bool {
         let mut cells = self.rows.iter().filter_map(|row| row.get(i)).filter(|c| !c.is_empty()).peekable();

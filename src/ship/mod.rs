@@ -1,5 +1,5 @@
 //! A ship's fixed particulars, read from a TOML file and checked once, and the empirical hull coefficients they imply.
-//! It holds no fitted parameter: parameters belong to the terms that use them, and take their defaults from here.
+//! It has no fitted parameter: parameters belong to the terms that use them, and take their defaults from here.
 
 pub mod actuator;
 mod craft;
@@ -321,7 +321,7 @@ impl Ship {
             errors.extend(self.coefficients_of_another_size(source));
         }
         let d = self.mass_determinant();
-        // The regressions are those of ships with propeller and rudder; where they do not hold, the model says so.
+        // The regressions are those of ships with propeller and rudder; where they are not valid, the model says so.
         if errors.is_empty() && self.has_propeller() && (d.is_nan() || d <= 0.0) {
             let expected = format!(
                 "kg makes the sway-yaw mass matrix singular (determinant {d:.3e}); check Yvdot, Yrdot, Nvdot, Nrdot, x_g and gyration"
@@ -789,7 +789,7 @@ mod tests {
     }
 
     #[test]
-    fn several_wrong_values_are_told_at_once_and_a_wrong_length_hides_what_follows_from_it() {
+    fn several_wrong_values_are_reported_at_once_and_a_wrong_length_hides_what_follows_from_it() {
         let text = SHIP.replace("wake = 0.28", "wake = 28.0").replace("gyration = 0.25", "gyration = 21.25");
         let said = |text: &str| Ship::parse(text, Path::new("ship.toml")).unwrap_err().to_string();
         let both = said(&text);

@@ -1,5 +1,5 @@
 //! What is known of a parameter before any fit: name, symbol, unit, default, bounds, prior and mirror parity.
-//! Values are not here: a model holds them in one vector, in the order of its terms.
+//! Values are not here: a model has them in one vector, in the order of its terms.
 
 use crate::ship::Ship;
 

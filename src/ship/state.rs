@@ -76,7 +76,7 @@ macro_rules! inputs {
     ($($name:ident $channel:ident: $quantity:ident, $limits:expr, $words:literal, $doc:literal;)*) => {
         /// What acts on the ship from outside at one instant: actuators and environment.
         ///
-        /// A channel that was not recorded holds its neutral value (no wind, no current, no waves, deep water, no bank, no
+        /// A channel that was not recorded has its neutral value (no wind, no current, no waves, deep water, no bank, no
         /// thruster), so that the terms which read it give no force.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Inputs<S> {

@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_of_the_study_in_the_table_of_a_command_is_told_with_its_place() {
+    fn a_key_of_the_study_in_the_table_of_a_command_is_reported_with_its_place() {
         #[derive(Debug, serde::Deserialize)]
         #[serde(deny_unknown_fields, default)]
         #[derive(Default)]
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_recording_is_told_with_the_line_that_lists_it() {
+    fn a_missing_recording_is_reported_with_the_line_that_lists_it() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("turn_1.csv"), "").unwrap();
         let path = folder.path().join("study.toml");

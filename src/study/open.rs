@@ -233,7 +233,7 @@ impl Study {
     }
 
     /// Reads the runs for which `wanted` says so, cuts each into windows, and hands these to `work`; what that makes of them goes
-    /// to `take` in the order listed. No more recordings are held in memory than there are threads. `draught` \[m\] is the ship's.
+    /// to `take` in the order listed. No more recordings are kept in memory than there are threads. `draught` \[m\] is the ship's.
     ///
     /// # Errors
     /// The first [`StudyError`] in the order of the runs, or what `take` fails with.
@@ -341,7 +341,7 @@ fn in_a_table(mistake: Mistake) -> Mistake {
     if is_key_of_a_study(key) {
         return out_of_place(mistake.line, key);
     }
-    // Only the keys at the top are told with those of the windows.
+    // Only for the keys at the top does the message list those of the windows.
     if mistake.message.contains("`initial_state`") && !mistake.message.contains("did you mean") {
         let below =
             "; the settings of a command stand below the heading of its table, such as [fit] (`trimtab help study`)";

@@ -1,5 +1,5 @@
 //! The split: which runs train and which test, drawn by a rule where the table of runs does not say.
-//! It knows runs by name and session alone.
+//! It uses the names and sessions of runs alone.
 
 use crate::recording::{Labels, Split};
 use rand::SeedableRng;

@@ -1,4 +1,4 @@
-//! The table of runs beside a study: a CSV file with the keys of `[[runs]]` as columns, read with all its mistakes told at once.
+//! The table of runs beside a study: a CSV file with the keys of `[[runs]]` as columns, read with all its mistakes reported at once.
 //! What the runs mean for the study is decided in `listed`.
 
 use super::error::StudyError;
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_of_every_line_are_told_at_once() {
+    fn mistakes_of_every_line_are_reported_at_once() {
         let found = wrong("file,split,from\na.csv,training,\n,train,\nc.csv,test,\"0,5\"\nd.csv,test\n");
         let lines: Vec<usize> = found.iter().map(|(line, _)| *line).collect();
         assert_eq!(lines, [2, 3, 4, 5], "{found:?}");
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_first_line_that_names_no_columns_is_told() {
+    fn a_first_line_that_names_no_columns_is_reported() {
         for (text, words) in [
             ("file;split\na.csv;train\n", "separated by semicolons"),
             ("a.csv,train\nb.csv,test\n", "its first line must name the columns"),

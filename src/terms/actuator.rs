@@ -283,7 +283,7 @@ impl ActuatorTerm {
         }
     }
 
-    /// Whether a parameter is free in a model that says nothing of it: gains, which no particulars tell, and a lag that is to be
+    /// Whether a parameter is free in a model that says nothing of it: gains, which no particulars give, and a lag that is to be
     /// estimated.
     pub fn free_at_first(actuator: &Actuator, parameter: &str) -> bool {
         parameter.starts_with("gain") || parameter == "lag" && matches!(actuator.lag, Some(Lag::Word(_)))

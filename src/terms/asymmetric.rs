@@ -22,7 +22,7 @@ static INFO: TermInfo = TermInfo {
     source: "generic basis, no source",
     needs: &[],
     validity: Validity::any(
-        "an unnamed force law: it holds where the data that set its coefficients are, and nowhere else",
+        "an unnamed force law: it is valid where the data that set its coefficients are, and nowhere else",
     ),
     mechanisms: &[],
     parameters: &[

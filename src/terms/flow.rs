@@ -1,4 +1,4 @@
-//! The pseudo-term that holds the parameters of the flow: wake, thrust, propeller race and rudder inflow.
+//! The pseudo-term with the parameters of the flow: wake, thrust, propeller race and rudder inflow.
 //! It gives no force; [`Flow::new`](crate::physics::Flow::new) uses the parameters.
 
 use crate::parameter::ParameterInfo;
@@ -7,7 +7,7 @@ use crate::physics::{Group, Physics, Reach, Term, TermInfo};
 use crate::ship::Ship;
 use trimtab_ad::Scalar;
 
-/// The pseudo-term that holds the parameters of [`Flow`](crate::physics::Flow).
+/// The pseudo-term with the parameters of [`Flow`](crate::physics::Flow).
 pub struct FlowTerm;
 
 /// A tenth of K_T at rest; of a craft without propeller, whose K_T is 0, that of a usual one.

@@ -31,7 +31,7 @@ fn square(s: &Ship) -> f64 {
     s.hull.lpp * s.hull.lpp
 }
 
-/// A coefficient of damping: it begins at its size, and cannot be negative. Sizes are such that a craft turns slowly and holds its course
+/// A coefficient of damping: it begins at its size, and cannot be negative. Sizes are such that a craft turns slowly and keeps its course
 /// at first: a fit that begins with one that spins does not find its way back.
 macro_rules! damping {
     ($name:literal, $symbol:literal, $unit:literal, $about:literal, $size:expr) => {

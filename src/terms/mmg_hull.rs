@@ -56,7 +56,7 @@ static INFO: TermInfo = TermInfo {
     equation: "v' = v/U, r' = r L/U; X = 1/2 rho L d U^2 (-R_0' + X_vv' v'^2 + X_vr' v' r' + X_rr' r'^2 + X_vvvv' v'^4); \
                Y = 1/2 rho L d U^2 (Y_v' v' + Y_r' r' + Y_vvv' v'^3 + Y_vvr' v'^2 r' + Y_vrr' v' r'^2 + Y_rrr' r'^3); \
                N = 1/2 rho L^2 d U^2 (N_v' v' + ... + N_rrr' r'^3); with (m + m_x) u r and (m + m_y) v r on the left in form `mmg`. \
-               For sternway R_0, Y_r, Y_vvr, Y_rrr, N_v, N_vvv and N_vrr change sign with u; r' beyond 3 is held near 3",
+               For sternway R_0, Y_r, Y_vvr, Y_rrr, N_v, N_vvv and N_vrr change sign with u; r' beyond 3 is limited to about 3",
     source: "Yasukawa & Yoshimura 2015, J. Mar. Sci. Technol. 20, eq. 4 and 8 to 10; start values by Yoshimura & Masumoto 2012 (MARSIM), their X_vr less m_y'. The signs astern and the limit on r' are added, so that the law is finite at rest and the ship's ends are alike",
     needs: &[],
     validity: Validity {

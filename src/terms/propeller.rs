@@ -20,7 +20,7 @@ static INFO: TermInfo = TermInfo {
     needs: &[],
     validity: Validity {
         rate: Some([0.0, f64::INFINITY]),
-        source: "a side force proportional to thrust holds for a propeller that turns ahead: astern Hachii's measurements have the other sign and a share of the thrust that changes with speed",
+        source: "a side force proportional to thrust is valid for a propeller that turns ahead: astern Hachii's measurements have the other sign and a share of the thrust that changes with speed",
         ..Validity::ANY
     },
     mechanisms: &[],

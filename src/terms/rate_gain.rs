@@ -1,4 +1,4 @@
-//! A propeller rate that the recording holds too high or too low by a constant factor: pulses counted wrongly, or the rate of the engine
+//! A propeller rate that is recorded too high or too low by a constant factor: pulses counted wrongly, or the rate of the engine
 //! before a gear. It acts on thrust, race and walk alike, where a loss of thrust leaves the advance ratio as it was.
 
 use crate::parameter::ParameterInfo;

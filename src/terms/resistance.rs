@@ -22,7 +22,7 @@ static INFO: TermInfo = TermInfo {
     validity: Validity {
         froude: Some([0.0, 0.25]),
         depth: Some([3.0, f64::INFINITY]),
-        source: "the even power of the printed cubic keeps its sign astern, so that it holds for headway; deep water is h/d > 3 by the classes of PIANC 1992; 0.25, from where wave making outgrows a cubic, is an engineering limit",
+        source: "the even power of the printed cubic keeps its sign astern, so that it is valid for headway; deep water is h/d > 3 by the classes of PIANC 1992; 0.25, from where wave making outgrows a cubic, is an engineering limit",
         ..Validity::ANY
     },
     mechanisms: &[],

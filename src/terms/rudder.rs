@@ -1,5 +1,5 @@
 //! Rudder forces from a cubic lift and a quadratic drag curve, the parameters p4 to p10 of the paper.
-//! The curves hold up to 45 degrees of attack; beyond 60 degrees the rudder is a flat plate, with a smooth blend between.
+//! The curves are valid up to 45 degrees of attack; beyond 60 degrees the rudder is a flat plate, with a smooth blend between.
 
 use crate::parameter::{ParameterInfo, Start};
 use crate::physics::Flow;
@@ -12,7 +12,7 @@ use trimtab_ad::{Scalar, smooth};
 /// Rudder forces.
 pub struct Rudder;
 
-/// Angle of attack up to which the polynomials hold \[rad\].
+/// Angle of attack up to which the polynomials are valid \[rad\].
 pub const CURVE_LIMIT: f64 = 45.0 * PI / 180.0;
 /// Angle of attack from which the rudder is a flat plate \[rad\].
 pub const PLATE_LIMIT: f64 = 60.0 * PI / 180.0;

@@ -1,4 +1,4 @@
-//! A rudder angle that the recording holds too large or too small by a constant factor: a feedback sensor out of calibration.
+//! A rudder angle that is recorded too large or too small by a constant factor: a feedback sensor out of calibration.
 //! Where every session has it, the rudder's own coefficients take it over; a session with another factor shows it.
 
 use crate::parameter::ParameterInfo;

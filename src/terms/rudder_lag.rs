@@ -17,7 +17,7 @@ pub struct RudderLag;
 /// Passes one input through `tau y' = x - y`, exactly for `x` linear between samples and `y = x` at the first.
 ///
 /// `y_1 = x_1 - s tau (1 - e) + (y_0 - x_0) e` with the slope `s` of `x` and `e = exp(-dt/tau)`: at tau = 0 the input
-/// unchanged, with the derivative `-s` that a lag has. Below a hundredth of a sample `e` is 1e-44 and held there.
+/// unchanged, with the derivative `-s` that a lag has. Below a hundredth of a sample `e` is 1e-44 and kept there.
 pub(super) fn first_order<S: Scalar>(
     tau: S,
     dt: f64,

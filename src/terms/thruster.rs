@@ -20,7 +20,7 @@ static INFO: TermInfo = TermInfo {
     title: "bow thruster",
     group: Group::External,
     equation: "Y = gain T_0 command/(1 + (u/u_Y)^2), N = x_T gain T_0 command/(1 + (u/u_N)^2)",
-    source: "half the force at 2.5 kn for a coaster, as in harbour-manoeuvring practice; that the moment holds longer: Chislett & Bjoerheden 1966",
+    source: "half the force at 2.5 kn for a coaster, as in harbour-manoeuvring practice; that the moment falls less with speed: Chislett & Bjoerheden 1966",
     needs: &["thruster"],
     validity: Validity {
         froude: Some([0.0, 0.1]),

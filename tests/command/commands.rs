@@ -432,14 +432,14 @@ fn the_option_frees_the_hull_as_the_model_file_does() {
         let value: Value = serde_json::from_slice(&output.stdout).unwrap();
         at(&value, "result.estimates").clone()
     };
-    let (held, option) = (estimates(&[]), estimates(&["--free-hull"]));
+    let (fixed, option) = (estimates(&[]), estimates(&["--free-hull"]));
     study.edit("model.toml", "form = \"paper\"", "form = \"paper\"\nhull = \"free\"");
     assert_eq!(option, estimates(&[]));
-    assert!(option.as_array().unwrap().len() > held.as_array().unwrap().len() + 10);
+    assert!(option.as_array().unwrap().len() > fixed.as_array().unwrap().len() + 10);
 }
 
 #[test]
-fn an_option_frees_a_parameter_or_a_term_as_the_model_file_does_and_tells_a_misspelt_one() {
+fn an_option_frees_a_parameter_or_a_term_as_the_model_file_does_and_reports_a_misspelt_one() {
     let study = Study::new();
     let names = |arguments: &[&str]| {
         let output = study.run(&[&["fit", "study.toml", "--json"], arguments].concat());
@@ -460,7 +460,7 @@ fn an_option_frees_a_parameter_or_a_term_as_the_model_file_does_and_tells_a_miss
 }
 
 #[test]
-fn mistakes_in_several_files_are_told_in_one_go() {
+fn mistakes_in_several_files_are_reported_in_one_go() {
     let study = Study::new();
     study.edit("study.toml", "[evaluate]", "[evaluate]\nwindow = 60.0");
     study.edit("study.toml", "speed = 6.0", "sped = 6.0");
@@ -511,7 +511,7 @@ fn a_fitted_model_is_refused_with_another_ship() {
 }
 
 #[test]
-fn what_a_model_says_of_nothing_in_the_study_is_told() {
+fn what_a_model_says_of_nothing_in_the_study_is_reported() {
     let study = Study::new();
     study.edit("model.toml", "form = \"paper\"", "form = \"paper\"\nterms = [\"wind\"]");
     study.append("model.toml", "[sessions.\"day 9\"]\n\"rudder.lift1\" = 0.1\n");
@@ -524,7 +524,7 @@ fn what_a_model_says_of_nothing_in_the_study_is_told() {
 }
 
 #[test]
-fn arguments_that_cannot_be_are_told_in_words() {
+fn arguments_that_cannot_be_are_reported_in_words() {
     let study = Study::new();
     for (arguments, words) in [
         (&["compare", "study.toml", "model.toml", "model.toml"][..], "model.toml is given twice"),

@@ -109,7 +109,7 @@ fn assigned(script: &str) -> BTreeMap<String, f64> {
 }
 
 #[test]
-fn every_form_holds_the_same_numbers_and_octave_finds_the_same_force() {
+fn every_form_has_the_same_numbers_and_octave_finds_the_same_force() {
     let study = Study::new();
     let said = |format: &str| study.does(&["export", "model.toml", "--study", "study.toml", "--format", format]);
     let json: serde_json::Value = serde_json::from_str(&said("json")).unwrap();

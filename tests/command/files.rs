@@ -184,9 +184,9 @@ fn a_run_that_is_killed_at_any_instant_leaves_a_folder_that_is_whole_after_the_n
     assert!(killed > 3, "{killed} of 60 were killed before their end");
 }
 
-/// Every command that fits into a folder without permission to write is told so before it reads anything.
+/// Every command whose folder cannot be written says so before it reads anything.
 #[test]
-fn a_folder_that_cannot_be_written_is_told_before_the_work() {
+fn a_folder_that_cannot_be_written_is_reported_before_the_work() {
     let study = Study::new();
     study.write("taken", "a file");
     for command in [&["fit", "nowhere.toml"][..], &["check", "nowhere.toml"], &["terms"], &["demo"]] {
@@ -263,12 +263,12 @@ fn a_fit_from_many_starts_that_was_killed_goes_on_with_the_starts_that_are_left(
     child.kill().unwrap();
     child.wait().unwrap();
     // Key and two starts at least; a mark in the second shows that it is not fitted again.
-    let told = std::fs::read_to_string(&log).unwrap();
-    let second = told.lines().nth(2).unwrap();
+    let text_of_log = std::fs::read_to_string(&log).unwrap();
+    let second = text_of_log.lines().nth(2).unwrap();
     assert!(second.starts_with("[1,"), "{second}");
     let (before, after) = second.split_once("\"ended\":\"").unwrap();
     let marked = format!("{before}\"ended\":\"from the log: {after}");
-    std::fs::write(&log, told.replace(second, &marked)).unwrap();
+    std::fs::write(&log, text_of_log.replace(second, &marked)).unwrap();
     study.does(&[&command[..], &["results"]].concat());
     assert!(!log.exists());
     for (name, bytes) in files(&study.path("results")).iter().filter(|(n, _)| *n != TIMING && *n != MANIFEST) {
@@ -286,12 +286,12 @@ fn text_or(bytes: &[u8]) -> Option<String> {
 /// `/dev/full` takes nothing, as a full disk does.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_under_standard_output_is_told() {
+fn a_full_disk_under_standard_output_is_reported() {
     let full = || Stdio::from(std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap());
     let output = Command::new(TRIMTAB).arg("terms").stdout(full()).stderr(Stdio::piped()).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     contains_all(&text(&output.stderr), &["cannot write to standard output"]);
-    // Nor is a message that cannot be told a panic.
+    // A message that cannot be printed is no panic either.
     let status = Command::new(TRIMTAB).args(["check", "nowhere.toml"]).stderr(full()).status().unwrap();
     assert_eq!(status.code(), Some(2));
 }

@@ -107,7 +107,7 @@ fn a_measure_that_draws_do_not_reach_has_no_interval() {
 }
 
 #[test]
-fn a_fitted_model_file_holds_its_covariance_and_the_trials_tell_it() {
+fn a_fitted_model_file_contains_its_covariance_and_the_trials_report_it() {
     let study = Study::new();
     let fit = study.json(&["fit", "study.toml", "--out", "results"]);
     let turning = ["maneuver", "turning", "study.toml", "--model", "results/fitted.toml", "--draws", "60"];

@@ -1,4 +1,4 @@
-//! The natural mistakes of a new user, one table of them all: each is told with its place and with what mends it, and what the message
+//! The natural mistakes of a new user, one table of them all: each is reported with its place and with what mends it, and what the message
 //! says is done here word for word, after which the command succeeds. Faults of single modules have tests of their own.
 
 use crate::support::study::{Study, text};
@@ -13,7 +13,7 @@ const IMPORT: &[&str] = &["import", "log.csv", "--out", "own"];
 struct Mistake {
     name: &'static str,
     make: fn(&Study),
-    /// The command that tells.
+    /// The command that reports it.
     asked: &'static [&'static str],
     /// The place, and then the words that mend it.
     says: &'static [&'static str],
@@ -801,7 +801,7 @@ fn logs() -> Vec<Mistake> {
 }
 
 #[test]
-fn every_natural_mistake_is_told_with_its_place_and_mended_from_the_message_alone() {
+fn every_natural_mistake_is_reported_with_its_place_and_mended_from_the_message_alone() {
     let recorded = [layouts(), names(), units(), signs_and_axes(), rows_and_gaps(), logs()];
     let written = [tables_of_runs(), studies(), ships(), models(), arguments(), options()];
     let all: Vec<Mistake> = recorded.into_iter().chain(written).flatten().collect();
@@ -811,10 +811,10 @@ fn every_natural_mistake_is_told_with_its_place_and_mended_from_the_message_alon
         let study = Study::new();
         (mistake.make)(&study);
         let said = study.run(mistake.asked);
-        let told = text(&said.stderr) + &text(&said.stdout);
-        let missing: Vec<&&str> = mistake.says.iter().filter(|part| !told.contains(**part)).collect();
-        if !missing.is_empty() || told.contains("panicked") || told.contains("NaN") {
-            wrong.push(format!("{}: {missing:?} is not in: {told}", mistake.name));
+        let printed = text(&said.stderr) + &text(&said.stdout);
+        let missing: Vec<&&str> = mistake.says.iter().filter(|part| !printed.contains(**part)).collect();
+        if !missing.is_empty() || printed.contains("panicked") || printed.contains("NaN") {
+            wrong.push(format!("{}: {missing:?} is not in: {printed}", mistake.name));
             continue;
         }
         (mistake.mend)(&study);

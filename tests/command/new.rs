@@ -110,14 +110,14 @@ fn ships_that_are_known_are_within_two_spreads_of_their_estimates() {
 }
 
 #[test]
-fn a_missing_dimension_and_an_impossible_value_are_told() {
+fn a_missing_dimension_and_an_impossible_value_are_reported() {
     let kind = Kind::find("tug").unwrap();
-    let told = |text: &str| estimate(kind, &text.parse().unwrap(), None).unwrap_err().to_string();
-    contains_all(&told("[hull]\nlpp = 30.0\nbreadth = 10.0\n"), &["hull.draught must be given"]);
-    contains_all(&told("[hull]\nlpp = 30.0\nbreadth = -10.0\ndraught = 4.0\n"), &["hull.breadth must be given"]);
+    let refused = |text: &str| estimate(kind, &text.parse().unwrap(), None).unwrap_err().to_string();
+    contains_all(&refused("[hull]\nlpp = 30.0\nbreadth = 10.0\n"), &["hull.draught must be given"]);
+    contains_all(&refused("[hull]\nlpp = 30.0\nbreadth = -10.0\ndraught = 4.0\n"), &["hull.breadth must be given"]);
     let text = "[hull]\nlpp = 30.0\nbreadth = 10.0\ndraught = 4.0\n";
-    contains_all(&told(&format!("{text}mass = 3.0\n")), &["hull.mass = 3 kg is not the"]);
-    contains_all(&told(&format!("{text}masss = 3.0\n")), &["unknown key `masss`", "did you mean `mass`?"]);
+    contains_all(&refused(&format!("{text}mass = 3.0\n")), &["hull.mass = 3 kg is not the"]);
+    contains_all(&refused(&format!("{text}masss = 3.0\n")), &["unknown key `masss`", "did you mean `mass`?"]);
 }
 
 #[test]

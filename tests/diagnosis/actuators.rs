@@ -1,4 +1,4 @@
-//! Faults of named actuators on simulated recordings of a catamaran, of which the diagnosis is not told.
+//! Faults of named actuators, unknown to the diagnosis, in simulated recordings of a catamaran.
 //! What real craft show is no part of it.
 
 use crate::support::{catamaran, catamaran_runs};
@@ -53,7 +53,7 @@ fn a_sound_catamaran_lacks_nothing() {
 }
 
 #[test]
-fn recordings_of_two_thrusters_that_were_exchanged_are_told_by_the_names_of_both() {
+fn recordings_of_two_thrusters_that_were_exchanged_are_reported_by_the_names_of_both() {
     let d = case(&[], None, |[left, right]| [right, left]);
     assert_named(&d, "left.swap", 1.0, 0.05, &[]);
     assert!(d.headline.contains("left") && d.headline.contains("right"), "{}", d.headline);

@@ -137,11 +137,11 @@ fn the_summary_has_seven_parts_in_order_and_no_missing_number() {
 
 #[test]
 fn the_answer_ends_with_the_commands_to_run_next_and_they_run() {
-    let told = text(&CASE.output.stdout).replace(" \\\n      ", " ");
+    let printed = text(&CASE.output.stdout).replace(" \\\n      ", " ");
     let commands = CASE.document["next_commands"].as_array().unwrap();
     assert_eq!(commands.len(), 2);
     for command in commands.iter().map(|c| c.as_str().unwrap()) {
-        assert!(told.contains(&format!("\n  {command}\n")), "{command}\n{told}");
+        assert!(printed.contains(&format!("\n  {command}\n")), "{command}\n{printed}");
         let arguments: Vec<&str> = command.split(' ').skip(1).collect();
         let output = trimtab(&CASE.folder, &arguments);
         assert!(output.status.success(), "{command}: {}", text(&output.stderr));

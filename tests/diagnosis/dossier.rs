@@ -18,8 +18,8 @@ fn trimtab(folder: &Path, arguments: &[&str]) -> Output {
 /// Runs a command that writes its results; a dossier of which a check failed ends with 1.
 fn done(folder: &Path, arguments: &[&str]) {
     let output = trimtab(folder, arguments);
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.code().is_some_and(|c| c < 2), "{arguments:?}: {told}");
+    let messages = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code().is_some_and(|c| c < 2), "{arguments:?}: {messages}");
 }
 
 fn read(path: &Path) -> String {
@@ -186,8 +186,8 @@ fn every_number_on_the_page_is_in_the_document() {
         let factor: f64 = attribute("data-factor").parse().unwrap();
         assert_eq!(at(&d, key).as_f64(), Some(value), "{key}");
         if let Ok(shown) = shown.parse::<f64>() {
-            let told = value * factor;
-            assert!((shown - told).abs() <= 0.051 * told.abs() + 0.51, "{key}: {shown} for {told}");
+            let expected = value * factor;
+            assert!((shown - expected).abs() <= 0.051 * expected.abs() + 0.51, "{key}: {shown} for {expected}");
         }
         (rest, count) = (after, count + 1);
     }
@@ -267,7 +267,7 @@ fn a_diagnosis_of_other_files_is_refused() {
     let longer = read(&folder.join("model.toml")) + "\n# changed since\n";
     std::fs::write(folder.join("model.toml"), longer).unwrap();
     let output = trimtab(&folder, &["dossier", "study.toml", "--diagnosis", "diagnosis/diagnosis.json"]);
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{told}");
-    assert!(told.contains("made of other files") && told.lines().count() == 1, "{told}");
+    let messages = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{messages}");
+    assert!(messages.contains("made of other files") && messages.lines().count() == 1, "{messages}");
 }

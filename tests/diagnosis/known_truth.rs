@@ -1,4 +1,4 @@
-//! The diagnosis on recordings of known truth, which it is not told.
+//! The diagnosis on recordings whose truth the test knows and the diagnosis does not.
 
 use crate::support::{STAR, add, commanded, model, runs, truth_noise};
 use trimtab::diagnose::proof::grade::LawGrade;
@@ -84,7 +84,7 @@ fn velocities_that_were_not_measured_are_not_taken_for_gusts() {
 type Fault = (&'static str, &'static str, fn(&mut Run));
 
 #[test]
-fn a_wrong_unit_or_sign_is_told_before_any_physics() {
+fn a_wrong_unit_or_sign_is_reported_before_any_physics() {
     let faults: [Fault; 4] = [
         ("sign_error", "r", |run| run.measured.iter_mut().for_each(|m| m[5] = m[5].map(|r| -r))),
         ("unit_error", "u", |run| run.measured.iter_mut().for_each(|m| m[3] = m[3].map(|u| u / 0.514_444))),

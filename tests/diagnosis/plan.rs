@@ -142,7 +142,7 @@ fn the_command_needs_no_recordings_and_writes_what_it_says() {
     assert_eq!(result["trials"].as_array().unwrap().len(), 4);
     let rows = std::fs::read_to_string(folder.path().join("planned/detectable.csv")).unwrap().lines().count();
     assert_eq!(rows, 1 + result["mechanisms"].as_array().unwrap().len());
-    // What only a session without it shows is parted by no trial, and the exit code says so.
+    // What only a session without it shows is distinguished by no trial, and the exit code says so.
     let hidden = trimtab(folder.path(), &["plan", "study.toml", "--part", "current,rudder_offset"]);
     let text = String::from_utf8(hidden.stdout).unwrap();
     assert!(hidden.status.code() == Some(1) && text.contains("rudder_offset"), "{text}");

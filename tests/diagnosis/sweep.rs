@@ -1,4 +1,4 @@
-//! Laws of a sweep: profiles of a fit to the model's own simulations are near their standard errors, and a pair holds its profiles.
+//! Laws of a sweep: profiles of a fit to the model's own simulations are near their standard errors, and a pair contains its profiles.
 //! `trimtab sweep` and `trimtab compare` are run end to end on the study of the demo.
 
 use crate::support;
@@ -10,7 +10,7 @@ use trimtab::evaluate::sweep::{SweepSettings, pair, profile, sensitivities};
 use trimtab::fit::{FitSettings, fit};
 
 #[test]
-fn a_profile_is_the_standard_error_of_what_the_data_determine_and_a_pair_holds_its_profiles() {
+fn a_profile_is_the_standard_error_of_what_the_data_determine_and_a_pair_contains_its_profiles() {
     let mut model = support::model();
     let runs = &support::runs(&model, &support::truth_noise(), 12, 1);
     let wanted = ["resistance.quadratic", "propeller.side_force"];
@@ -35,7 +35,7 @@ fn a_profile_is_the_standard_error_of_what_the_data_determine_and_a_pair_holds_i
     assert_eq!(moved.len(), 2);
     assert!(moved.iter().all(|m| m.position.unwrap() > 0.0 && m.trials.len() >= 4));
     assert!(moved[0].position >= moved[1].position);
-    // A parameter that is held has no profile.
+    // A fixed parameter has no profile.
     assert!(profile(&found, runs, "rudder.lift3", &settings).is_none());
 }
 

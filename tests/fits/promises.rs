@@ -119,20 +119,20 @@ fn runs_in_a_file_are_fitted_to_the_same_bits_as_runs_in_memory() {
     let options = settings().cost_options();
     let costs = [Cost::new(&model, &runs, options).unwrap(), Cost::new(&model, &store, options).unwrap()];
     let p: Vec<f64> = model.free().iter().map(|i| 1.01 * model.parameters[*i].value).collect();
-    let [held, stored] = costs.each_ref().map(|cost| cost.quadratic(&p).unwrap());
+    let [kept, stored] = costs.each_ref().map(|cost| cost.quadratic(&p).unwrap());
     assert_eq!(
-        (held.value, &held.gradient, &held.gauss_newton),
+        (kept.value, &kept.gradient, &kept.gauss_newton),
         (stored.value, &stored.gradient, &stored.gauss_newton)
     );
     assert_eq!(costs[0].squares(&p), costs[1].squares(&p));
     assert_eq!(costs[0].residuals(), costs[1].residuals());
     // The stages of a freed hull cut the runs and fit the pieces first.
     let settings = FitSettings { max_iterations: 12, ..settings() };
-    let [held, stored] =
+    let [kept, stored] =
         [Runs::from(&runs), Runs::from(&store)].map(|r| fit(&model, r, &settings, &mut |_| true).unwrap());
-    assert!(held.first_stage_parts > 1 && held.iterations <= 12, "{} {}", held.first_stage_parts, held.iterations);
+    assert!(kept.first_stage_parts > 1 && kept.iterations <= 12, "{} {}", kept.first_stage_parts, kept.iterations);
     let said = |f: &Fit| serde_json::to_value(Fit { seconds: 0.0, ..f.clone() }).unwrap();
-    assert_eq!(said(&held), said(&stored));
+    assert_eq!(said(&kept), said(&stored));
     assert!(store.failure().is_none());
 }
 
@@ -154,7 +154,7 @@ fn a_fit_stopped_anywhere_is_no_worse_than_its_start() {
 }
 
 #[test]
-fn a_fit_that_a_limit_holds_back_takes_hardly_more_evaluations_than_one_inside_its_limits() {
+fn a_fit_with_an_active_limit_takes_hardly_more_evaluations_than_one_inside_its_limits() {
     let runs = recordings(&model(), 4, 1.0, unspoiled);
     let mut start = model();
     start.set_eleven(&P.map(|p| 1.2 * p));
@@ -164,11 +164,11 @@ fn a_fit_that_a_limit_holds_back_takes_hardly_more_evaluations_than_one_inside_i
     let drag = |fit: &Fit| fit.estimates.iter().find(|e| e.symbol == "p8").unwrap().value;
     let mut settings = settings();
     settings.constraints.drag_zero = Rule { upper: Some(0.5 * drag(&inside)), ..Rule::default() };
-    let held = quiet(&start, &runs, &settings);
-    assert!(held.converged && held.cost > inside.cost, "{}", held.report());
-    assert!(2 * held.counts.objective <= 3 * inside.counts.objective, "{}", held.report());
-    assert!(held.active.iter().any(|a| a.rule == "drag_zero"), "{}", held.report());
-    assert!((drag(&held) / drag(&inside) - 0.5).abs() < 1e-6);
+    let limited = quiet(&start, &runs, &settings);
+    assert!(limited.converged && limited.cost > inside.cost, "{}", limited.report());
+    assert!(2 * limited.counts.objective <= 3 * inside.counts.objective, "{}", limited.report());
+    assert!(limited.active.iter().any(|a| a.rule == "drag_zero"), "{}", limited.report());
+    assert!((drag(&limited) / drag(&inside) - 0.5).abs() < 1e-6);
 }
 
 #[test]
@@ -264,7 +264,7 @@ fn an_effect_that_the_model_lacks_is_in_the_first_line() {
 }
 
 #[test]
-fn windows_over_which_an_open_loop_runs_away_are_told_from_those_over_which_it_does_not() {
+fn windows_over_which_an_open_loop_runs_away_are_distinguished_from_those_over_which_it_does_not() {
     // The recorded ship ends up elsewhere, by a distance that grows with the cube of time.
     let away = |_: usize, k: usize| {
         let grown = 2e3 * (k as f64 / SAMPLES as f64).powi(3);

@@ -5,7 +5,7 @@ use super::source::{Source, read};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// The files of one crate and what they use of each other.
+/// The files of one crate, and which of them each file uses.
 pub struct Graph {
     /// Path of each file relative to the root of the repository, with forward slashes.
     pub files: Vec<String>,

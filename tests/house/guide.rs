@@ -27,12 +27,12 @@ fn the_lists_of_keys_in_the_chapters_are_those_of_the_types_that_read_them() {
             assert!(listing.is_empty(), "{} has no place for its list", chapter.name);
             continue;
         };
-        let (held, after) = rest.split_once(END).unwrap();
+        let (present, after) = rest.split_once(END).unwrap();
         if std::env::var_os("TRIMTAB_WRITE_GUIDE").is_some() {
             std::fs::write(file(chapter.name), format!("{before}{BEGIN}\n{listing}\n{END}{after}")).unwrap();
         } else {
             assert!(
-                held == format!("\n{listing}\n"),
+                present == format!("\n{listing}\n"),
                 "{}.md differs; write it with TRIMTAB_WRITE_GUIDE=1 cargo test --test house guide",
                 chapter.name
             );

@@ -182,7 +182,7 @@ fn the_numbers_know_no_ship() {
 }
 
 #[test]
-fn the_size_of_the_house_is_told() {
+fn the_size_of_the_house_is_printed() {
     for (name, folder) in
         [("src", "src"), ("experiments", "experiments/src"), ("ad", "ad/src"), ("python", "python/src")]
     {

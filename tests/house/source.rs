@@ -1,5 +1,5 @@
 //! Reads Rust source files as tokens: `use` lines, paths, names defined, functions and their length, with test code left out.
-//! It knows no crate and no rule; a file's place among others is worked out from what it returns.
+//! It depends on no crate and no rule; a file's place among others is worked out from what it returns.
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::collections::BTreeSet;
@@ -15,7 +15,7 @@ pub struct Use {
     pub public: bool,
 }
 
-/// What a file holds, test code left out of all but the functions.
+/// What is in a file, test code left out of all but the functions.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
     /// Modules declared with a file of their own.

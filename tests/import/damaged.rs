@@ -55,7 +55,7 @@ impl Table {
         self.set(channel, &values);
     }
 
-    /// A channel that tells so many rows late; before, it holds its first value.
+    /// A channel that is so many rows late; before, it repeats its first value.
     fn late(&mut self, channel: &str, rows: usize) {
         let values = self.get(channel);
         self.each(channel, |i, _| values[i.saturating_sub(rows)]);
@@ -139,7 +139,7 @@ fn doubts(audit: &StudyAudit) -> Vec<(String, Issue)> {
     own.chain(of_runs).filter(|(_, i)| i.severity != Severity::Note).collect()
 }
 
-/// Where a fault is to be told.
+/// Where a fault is to be reported.
 #[derive(Clone, Copy, Debug)]
 enum Where {
     /// In one run and no other.
@@ -150,7 +150,7 @@ enum Where {
     Study,
 }
 
-/// A damage, and how it is to be told: the fault, its channel, where, and a part of the next step.
+/// A damage, and how it is to be reported: the fault, its channel, where, and a part of the next step.
 struct Case {
     name: &'static str,
     files: Files,
@@ -316,23 +316,23 @@ fn closed_loop(zigzag: bool, late: usize) -> Files {
 }
 
 #[test]
-fn a_rudder_that_is_steered_by_the_heading_is_not_late_and_one_that_is_late_is_told() {
+fn a_rudder_that_is_steered_by_the_heading_is_not_late_and_one_that_is_late_is_reported() {
     for zigzag in [false, true] {
         let sound = doubts(&closed_loop(zigzag, 0).audit());
         assert!(sound.is_empty(), "{zigzag}: {sound:#?}");
         for late in [4, 8] {
-            let told = doubts(&closed_loop(zigzag, late).audit());
+            let reported = doubts(&closed_loop(zigzag, late).audit());
             let right = |(run, issue): &(String, Issue)| {
                 run == "study" && issue.fault == "clock" && issue.channel == Some(Channel::Delta)
             };
-            assert!(told.iter().any(right), "{zigzag} {late}: {told:#?}");
+            assert!(reported.iter().any(right), "{zigzag} {late}: {reported:#?}");
         }
     }
 }
 
 #[test]
-fn of_a_run_that_is_cut_the_part_is_audited_and_each_thing_is_told_once() {
-    // The damaged row is in the first part of three of one file; the unused column is told once a file.
+fn of_a_run_that_is_cut_the_part_is_audited_and_each_thing_is_reported_once() {
+    // The damaged row is in the first part of three of one file; the unused column is reported once a file.
     let files = Files::sound().run(RUN, |t| {
         t.each("u", |i, u| if i == 20 { 3.0 * u } else { u });
         t.header.push("remark".into());
@@ -349,8 +349,8 @@ fn of_a_run_that_is_cut_the_part_is_audited_and_each_thing_is_told_once() {
     *text = format!("{head}{runs}[fit]{tables}");
     let audit = files.audit();
     let of = |fault: &str| -> Vec<&str> {
-        let told = audit.recordings.iter().filter(|a| a.issues.iter().any(|i| i.fault == fault));
-        told.map(|a| a.run.as_str()).collect()
+        let reported = audit.recordings.iter().filter(|a| a.issues.iter().any(|i| i.fault == fault));
+        reported.map(|a| a.run.as_str()).collect()
     };
     assert_eq!(of("outlier"), ["part 0"]);
     assert_eq!(of("unused"), ["part 0"]);
@@ -817,15 +817,15 @@ fn the_runs_of_a_session_show_together_a_rudder_that_none_shows_by_itself() {
         doubts(&files.audit()).into_iter().filter(|(_, i)| i.fault == "sign_error").collect()
     };
     assert!(of_sign(&short).is_empty(), "{:#?}", of_sign(&short));
-    let told = of_sign(&turned);
+    let reported = of_sign(&turned);
     let together = |(run, i): &(String, Issue)| {
         FEW.contains(&run.as_str()) && i.channel == Some(Channel::Delta) && i.text.contains("show together")
     };
-    assert!(told.len() == FEW.len() && told.iter().all(together), "{told:#?}");
+    assert!(reported.len() == FEW.len() && reported.iter().all(together), "{reported:#?}");
 }
 
 #[test]
-fn every_fault_is_told_with_its_run_its_channel_and_what_to_do() {
+fn every_fault_is_reported_with_its_run_its_channel_and_what_to_do() {
     let mut missed = Vec::new();
     let cases: Vec<Case> = [samples(), units(), sides(), clocks(), together(), foreign(), places(), shared()]
         .into_iter()

@@ -144,7 +144,7 @@ fn damaged(text: &[u8], damages: &[Damage]) -> Vec<u8> {
 /// The inputs that are being read, since when.
 static READING: LazyLock<Mutex<HashMap<ThreadId, (Instant, Vec<u8>)>>> = LazyLock::new(Mutex::default);
 
-/// Ends the test, and tells the input, when a reader gives no answer in half a minute.
+/// Ends the test, and prints the input, when a reader gives no answer in half a minute.
 static WATCH: LazyLock<()> = LazyLock::new(|| {
     std::thread::spawn(|| {
         loop {

@@ -178,7 +178,7 @@ fn a_wind_angle_counts_from_the_bow_and_a_direction_from_north() {
 }
 
 #[test]
-fn a_magnetic_heading_is_brought_to_true_north_by_the_variation_or_told() {
+fn a_magnetic_heading_is_brought_to_true_north_by_the_variation_or_reported() {
     let magnetic = |row: &Row| format!("{:.2}", (row.heading + 12.4).rem_euclid(360.0));
     let with = |name: &str, more: &str| {
         let text = log(more, |_| if more.is_empty() { String::new() } else { ",-12.4".to_owned() });
@@ -204,7 +204,7 @@ fn a_magnetic_heading_is_brought_to_true_north_by_the_variation_or_told() {
 }
 
 #[test]
-fn a_steady_angle_of_course_and_heading_is_told_and_that_of_a_current_is_not() {
+fn a_steady_angle_of_course_and_heading_is_reported_and_that_of_a_current_is_not() {
     let log = |current: f64, angle: f64| {
         let mut text = format!("{NAMES}\n");
         for row in sailed(current) {
@@ -325,7 +325,7 @@ fn a_makers_own_sentences_are_not_broken_and_positions_are_read_from_gll() {
 #[test]
 fn a_clock_that_steps_back_begins_a_recording_and_late_rows_do_not() {
     let rows: Vec<String> = log("", |_| String::new()).lines().map(str::to_owned).collect();
-    // The last 200 rows are told with the clock of 300 rows before.
+    // The last 200 rows have the clock of 300 rows before.
     let mut text = rows[..401].join("\n") + "\n";
     for (i, row) in rows[401..].iter().enumerate() {
         text += &format!("{},{}\n", iso(2.0 * (100 + i) as f64), row.split_once(',').unwrap().1);
@@ -448,7 +448,7 @@ fn a_blank_rate_of_turn_that_the_heading_gives_ends_no_run() {
 }
 
 #[test]
-fn what_blanks_cost_is_told_with_the_bridge_that_keeps_it() {
+fn what_blanks_cost_is_reported_with_the_bridge_that_keeps_it() {
     let rows = sailed(0.0);
     let mut text = format!("{NAMES}\n");
     for (i, row) in rows.iter().enumerate() {
@@ -498,7 +498,7 @@ fn names_are_read_in_german_french_italian_and_spanish() {
 }
 
 #[test]
-fn what_is_no_file_or_no_log_is_told_at_once() {
+fn what_is_no_file_or_no_log_is_reported_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let say = |path: &Path| import(&[path.to_owned()], &ImportSettings::default()).unwrap_err().to_string();
     let wide = folder.path().join("wide.csv");

@@ -218,9 +218,9 @@ fn a_log_with_semicolons_and_decimal_commas_comes_back_as_sailed() {
     assert_eq!(imported.recordings[0].start.as_deref(), Some("2024-05-01 12:00:00"));
 }
 
-/// A log whose units and senses are all told by the data alone.
+/// A log whose units and senses are all found from the data alone.
 #[test]
-fn units_and_senses_are_told_by_the_data() {
+fn units_and_senses_are_found_from_the_data() {
     let text = |angle: f64, anticlockwise: bool, speed: f64, rate: f64, rudder: f64| {
         let mut text = String::from("t,x,y,heading,u,v,r,rudder,rps\n");
         for s in SAILED.iter() {
@@ -774,7 +774,7 @@ fn mistakes_are_mended_from_the_message() {
     }
     let study = Study::new();
     contains_all(&study.refuses(&["import", "none.csv", "--out", "own"]), &["none.csv: cannot read the file"]);
-    // A unit that nothing tells: a propeller that turns at fifteen of something.
+    // A unit that nothing shows: a propeller that turns at fifteen of something.
     let renamed = log.replace("Shaft RPM", "propeller");
     let odd = renamed
         .lines()

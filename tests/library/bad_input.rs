@@ -248,7 +248,7 @@ fn every_fault_of_a_recording_is_one_message_with_place_and_next_step() {
 }
 
 #[test]
-fn times_that_leave_nothing_are_told_with_those_of_the_recording() {
+fn times_that_leave_nothing_are_reported_with_those_of_the_recording() {
     let recording = Recording::parse(&good().join("\n"), Path::new("run.csv"), &ColumnMap::default()).unwrap();
     let labels = Labels { run: "run".into(), session: "a".into(), manoeuvre: "b".into(), split: Split::Train };
     let whole = WindowSettings::whole(5.0);

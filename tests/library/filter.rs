@@ -214,7 +214,7 @@ fn an_estimate_at_a_bound_is_the_optimum_within_the_bound() {
 }
 
 #[test]
-fn with_gains_held_fixed_the_score_is_the_exact_gradient() {
+fn with_fixed_gains_the_score_is_the_exact_gradient() {
     let model = model();
     let noise = truth_noise();
     let data = runs(&model, &noise, 4, 3);

@@ -36,7 +36,7 @@ fn a_value_outside_its_bounds_is_refused_with_the_bound_and_its_reason() {
 }
 
 #[test]
-fn a_bound_that_the_file_moves_holds_instead_of_the_terms() {
+fn a_bound_that_the_file_moves_applies_instead_of_the_terms() {
     let model = read("name = \"m\"\n[parameters]\n\"hull.Yv\" = { value = 1.0, upper = 2.0 }\n").unwrap();
     let i = model.index("hull.Yv").unwrap();
     assert_eq!((model.parameters[i].value, model.parameters[i].upper), (1.0, 2.0));
@@ -56,7 +56,7 @@ fn a_default_prior_frees_a_coefficient_with_the_spread_that_its_term_knows() {
     assert!(text.contains("prior = \"default\"") && !text.contains("sd ="), "{text}");
     assert_eq!(again.parameters[i].prior, p.prior);
     assert!(again.parameters[i].free);
-    // A prior may be held ready for a coefficient that stays fixed.
+    // A prior may be given for a coefficient that stays fixed.
     let fixed = read("name = \"m\"\n[parameters]\n\"hull.Yv\" = { free = false, prior = \"default\" }\n").unwrap();
     assert!(!fixed.parameters[i].free && fixed.parameters[i].prior.is_some());
 }
@@ -221,7 +221,7 @@ fn a_model_without_resistance_says_so() {
 }
 
 #[test]
-fn a_parameter_of_a_term_that_the_model_lacks_is_told_with_the_term() {
+fn a_parameter_of_a_term_that_the_model_lacks_is_reported_with_the_term() {
     let error = read("name = \"m\"\n[parameters]\n\"current.north\" = { value = 0.1 }\n").unwrap_err();
     assert!(error.contains("model.toml:3") && error.contains("add it: terms = [\"current\"]"), "{error}");
     let error = read("name = \"m\"\n[parameters]\n\"side_force\" = { value = 0.1 }\n").unwrap_err();
@@ -255,7 +255,7 @@ fn what_contradicts_itself_in_a_setting_is_refused_in_words() {
 }
 
 #[test]
-fn every_mistake_of_a_model_file_is_told_at_once() {
+fn every_mistake_of_a_model_file_is_reported_at_once() {
     let text = "name = \"m\"\n[parameters]\n\"rudder.lfit1\" = { value = 1.0 }\n\"rudder.drag0\" = { value = nan }\n[sessions.a]\n\"wnid.side\" = 1.0\n";
     let error = read(text).unwrap_err();
     let lines: Vec<&str> = error.lines().collect();

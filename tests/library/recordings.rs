@@ -92,8 +92,8 @@ fn the_lost_rows_of_a_zigzag_are_left_out_and_reported() {
     assert_eq!(recording.without_time(), [(1703, 2029)]);
     let segments = recording.segments();
     assert_eq!((segments.len(), segments[0].clone()), (1, 0..1701));
-    let told = audit(&recording).issues.iter().any(|i| i.lines == Some((1703, 2029)));
-    assert!(told, "the audit names the lines");
+    let named = audit(&recording).issues.iter().any(|i| i.lines == Some((1703, 2029)));
+    assert!(named, "the audit names the lines");
 }
 
 #[test]

@@ -1,5 +1,5 @@
 //! The model against numbers computed independently for the reconstructed ships A and B.
-//! Laws that hold for every term are in `laws.rs` and `catalogue.rs`.
+//! Laws of every term are in `laws.rs` and `catalogue.rs`.
 
 // 6.28 is a speed in m/s, not 2 pi.
 #![allow(clippy::approx_constant)]

@@ -1,4 +1,4 @@
-// Measures the page it is in, uses its figures, and tells the window around it. For tests/diagnosis/report_page.rs.
+// Measures the page it is in, uses its figures, and sends the results to the window around it. For tests/diagnosis/report_page.rs.
 'use strict';
 (() => {
   const errors = [];

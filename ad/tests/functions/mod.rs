@@ -1,5 +1,5 @@
 //! A list of every operator and function that physics may use, for the law tests.
-//! It holds no test and no expected value.
+//! It has no test and no expected value.
 #![allow(dead_code, reason = "each test file is a crate of its own and uses a part of this")]
 
 use proptest::test_runner::{Config, RngSeed};

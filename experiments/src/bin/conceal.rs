@@ -1,4 +1,4 @@
-//! Makes one concealed case: recordings with an effect that the diagnosis is not told, and the sealed manifest beside them.
+//! Makes one concealed case: recordings with an effect that is concealed from the diagnosis, and the sealed manifest beside them.
 //! It judges nothing; `judge` opens the seal afterwards, and `campaign` does both for many cases.
 
 use std::path::PathBuf;

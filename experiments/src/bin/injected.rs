@@ -53,7 +53,7 @@ struct Arguments {
     /// Longest time for one diagnosis \[s\].
     #[arg(long, default_value_t = 300)]
     limit: u64,
-    /// Keep the folders of the cases, for inspection; they hold copies of recordings.
+    /// Keep the folders of the cases, for inspection; they contain copies of recordings.
     #[arg(long)]
     keep: bool,
     /// Ask the rivals too, where nothing or one effect of full strength is injected: a refit with the Bayesian information criterion.

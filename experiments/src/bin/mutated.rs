@@ -1,4 +1,4 @@
-//! Runs every command on thousands of changed studies, a row a command, and counts what was refused, told and silent.
+//! Runs every command on thousands of changed studies, a row a command, and counts what was refused, reported and silent.
 //! A case with all its rows is not run again, so that a campaign that was killed continues.
 
 use std::collections::BTreeMap;

@@ -1,5 +1,5 @@
 //! The rival methods and the oracle on the files of a case, for the rows beside the diagnosis in the campaign's table.
-//! They run after the diagnosis, when the seal is open; only the oracle is told the concealed effects.
+//! They run after the diagnosis, when the seal is open; only the oracle gets the concealed effects.
 
 use std::path::Path;
 
@@ -62,23 +62,23 @@ pub fn ask(study: &Path, manifest: &Manifest, wanted: Wanted) -> Result<Baseline
     if wanted.oracle {
         let Content { model, train, held_out, settings } = &content;
         said.oracle =
-            oracle(model, train, held_out, settings, &told(manifest)).map_err(|e| ConcealError::content(study, &e))?;
+            oracle(model, train, held_out, settings, &known(manifest)).map_err(|e| ConcealError::content(study, &e))?;
     }
     Ok(said)
 }
 
 /// The concealed effects, in the names of the diagnosis.
-fn told(manifest: &Manifest) -> Vec<Told> {
-    let mut told = Vec::new();
+fn known(manifest: &Manifest) -> Vec<Told> {
+    let mut known = Vec::new();
     for answer in &manifest.answers {
         let extent = if manifest.spec.contrast { Extent::In(answer.sessions.clone()) } else { Extent::All };
         // A log through the water has no effect without the current.
         let needed = (answer.effect == "water_log").then_some("current");
         for mechanism in needed.into_iter().chain(answer.accepted.first().map(String::as_str)) {
-            told.push(Told { mechanism: mechanism.to_owned(), extent: extent.clone() });
+            known.push(Told { mechanism: mechanism.to_owned(), extent: extent.clone() });
         }
     }
-    told
+    known
 }
 
 impl Baselines {
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn the_oracle_is_told_a_name_of_the_catalogue_for_every_force() {
+    fn the_oracle_gets_a_name_of_the_catalogue_for_every_force() {
         let names: Vec<&str> = mechanism_names(trimtab::terms::standard()).collect();
         for entry in catalogue().filter(|e| e.class == Class::Force) {
             assert!(names.contains(&entry.accepted[0]), "{}", entry.name);
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn an_oracle_told_of_a_strong_current_beats_the_refit_and_bic_names_a_mechanism() {
+    fn an_oracle_that_knows_a_strong_current_beats_the_refit_and_bic_names_a_mechanism() {
         let folder = tempfile::tempdir().unwrap();
         let effects = vec![("current".to_owned(), Strength::Times(2.0))];
         let spec = Spec { effects, ..Spec::null(Family::Hd, 12) };

@@ -1,5 +1,5 @@
 //! The truth families of the concealed cases: which simulator and which hull make the recordings.
-//! It holds no ship; `craft` draws one of a family.
+//! It has no ship; `craft` draws one of a family.
 
 use serde::{Deserialize, Serialize};
 

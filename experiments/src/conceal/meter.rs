@@ -75,7 +75,7 @@ fn windows(recorded: &Recorded) -> Vec<(usize, usize, usize)> {
     recorded.windows.iter().filter_map(|(run, start, end)| Some((place(*run)?, row(*start), row(*end)))).collect()
 }
 
-/// Whether two sets of runs hold equal numbers, missing ones included.
+/// Whether two sets of runs have equal numbers, missing ones included.
 fn same(a: &[Run], b: &[Run]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.inputs == b.inputs && a.measured == b.measured)
 }

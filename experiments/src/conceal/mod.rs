@@ -1,4 +1,4 @@
-//! Concealed cases: recordings of a ship under an effect the diagnosis is not told, and a sealed manifest that only the judge reads.
+//! Concealed cases: recordings of a ship under an effect concealed from the diagnosis, and a sealed manifest that only the judge reads.
 //! The generator shares no term, integrator or coefficient with the library's model; only judge and campaign read its output.
 //!
 //! A case is a [`spec::Spec`]: a truth family, effects with their strength, a background, a design and a seed.

@@ -18,7 +18,7 @@ use super::sailing::sail::Active;
 use super::sailing::track::PERIOD;
 use super::spec::Spec;
 
-/// One concealed effect, as the judge is told.
+/// One concealed effect, as the judge reads it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// Name of the effect.
@@ -49,7 +49,7 @@ pub struct Answer {
     pub windows: Vec<(String, f64, f64)>,
 }
 
-/// The truth of a case, as the judge is told.
+/// The truth of a case, as the judge reads it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// The specification.

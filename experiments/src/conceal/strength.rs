@@ -38,7 +38,7 @@ impl Default for ForceMeter {
 const WINDOW: usize = 10;
 
 impl Meter for ForceMeter {
-    /// sqrt(sum F^2 T/(2 tau sigma^2) + sum over windows of the mean square of the defect reported): a force held against an
+    /// sqrt(sum F^2 T/(2 tau sigma^2) + sum over windows of the mean square of the defect reported): a force compared with an
     /// Ornstein-Uhlenbeck process of time tau has one independent sample in 2 tau.
     fn snr(&self, _effect: &Entry, with: &Recorded, _without: &Recorded) -> Result<f64, ConcealError> {
         let mut sum = 0.0;

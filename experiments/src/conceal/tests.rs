@@ -76,7 +76,7 @@ fn names_in_the_study_do_not_depend_on_what_is_concealed() {
         assert_eq!(listing(&case), listing(&null));
         for (name, text) in case.study_files().iter().filter(|(name, _)| !name.ends_with(".csv")) {
             let bare = text.contains(entry.name) && !null.study_files().contains(&(name.clone(), text.clone()));
-            assert!(!bare, "{name} tells of {}", entry.name);
+            assert!(!bare, "{name} reveals {}", entry.name);
         }
     }
 }

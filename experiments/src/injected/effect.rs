@@ -311,7 +311,7 @@ pub const EFFECTS: [Effect; 19] = [
         name: "hold",
         unit: "s",
         reference: |set| 2.0 * LATE * set.time(),
-        // The value that is held is late by half the time, in the mean.
+        // The repeated value is late by half the time, in the mean.
         near: &["time_skew"],
         expected: Expected::Silent,
         make: |m| Operation::Hold { instrument: m.instrument(), period: m.size.abs() },

@@ -9,7 +9,10 @@ use crate::conceal::error::ConcealError;
 #[derive(Debug, thiserror::Error)]
 pub enum InjectedError {
     /// The recordings are absent; they are not part of the project.
-    #[error("no folder `{folder}` with recordings in {}; set TRIMTAB_DATA to the folder that holds it", listed(tried))]
+    #[error(
+        "no folder `{folder}` with recordings in {}; set TRIMTAB_DATA to the folder that contains it",
+        listed(tried)
+    )]
     NoData {
         /// Name of the folder of the set.
         folder: &'static str,

@@ -1,5 +1,5 @@
-//! Exact injections into a recording: what the recording would hold if the ship, its instruments or its logger had been so.
-//! It knows tables and kinematics, no model, no mechanism and no diagnosis.
+//! Exact injections into a recording: what would be recorded if the ship, its instruments or its logger had been so.
+//! It uses tables and kinematics, no model, no mechanism and no diagnosis.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -289,7 +289,7 @@ fn jitter(record: &mut Record, most: f64, rng: &mut ChaCha8Rng) {
     }
 }
 
-/// Replaces the rudder angle by the order from which `time delta' = order - delta` makes it, the order held from row to row:
+/// Replaces the rudder angle by the order from which `time delta' = order - delta` makes it, the order constant from row to row:
 /// `order_k = (delta_k+1 - e delta_k)/(1 - e)`, `e = exp(-dt/time)`. The last row has no order and is left out.
 fn order_before_lag(record: &mut Record, time: f64) {
     let e = (-record.period() / time).exp();

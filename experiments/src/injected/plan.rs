@@ -174,7 +174,7 @@ impl Planner {
         Configuration::draw(set, seed(self.campaign, &format!("{}/configuration/{index}", set.name())))
     }
 
-    /// A shared configuration for which this holds, drawn from a key.
+    /// A shared configuration for which this is true, drawn from a key.
     fn shared(
         &self,
         set: Set,

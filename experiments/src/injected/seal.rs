@@ -21,7 +21,7 @@ pub struct Witness {
     pub wind: [f64; 2],
 }
 
-/// The truth of a case, as the judge is told.
+/// The truth of a case, as the judge reads it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Key of the case.

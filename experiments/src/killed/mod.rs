@@ -41,7 +41,7 @@ const LIMIT: Duration = Duration::from_secs(300);
 /// The folder of results, below that of a study.
 const OUT: &str = "results";
 
-/// What a folder holds after a kill.
+/// What is in a folder after a kill.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Default)]
 #[serde(rename_all = "snake_case")]
 pub enum Left {

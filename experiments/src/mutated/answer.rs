@@ -1,11 +1,11 @@
-//! What a command answered: numbers with their standard errors, words, and what it told in its first ten lines.
+//! What a command answered: numbers with their standard errors, words, and the warnings in its first ten lines.
 //! Whether a change was right is judged in `row`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-/// Lines in which something must be told.
+/// Lines in which a warning must be.
 const FIRST: usize = 10;
 
 /// A share of a number by which it may differ without having moved, where it has no standard error.
@@ -72,7 +72,7 @@ impl Answer {
 
     fn number(&mut self, name: Option<&str>, value: &Value, error: Option<f64>) {
         let value = value.as_f64().unwrap_or(f64::NAN);
-        // A parameter that constraints hold has no standard error.
+        // A parameter that constraints fix has no standard error.
         let error = error.filter(|e| e.is_finite() && *e > 0.0).unwrap_or(SHARE * value.abs());
         self.numbers.insert(name.unwrap_or_default().to_owned(), (value, error));
     }
@@ -89,7 +89,7 @@ impl Answer {
         if same && most.is_finite() { most } else { f64::INFINITY }
     }
 
-    /// Whether it tells something that the sound answer does not.
+    /// Whether it has a warning that the sound answer does not have.
     pub fn tells(&self, sound: &Self) -> bool {
         !self.told.is_subset(&sound.told)
     }
@@ -104,7 +104,7 @@ mod tests {
     fn an_answer_has_moved_by_its_standard_errors_and_another_verdict_is_another_answer() {
         let fit = |a: f64| {
             json!({ "result": { "estimates": [
-            { "name": "a", "value": a, "standard_error": 0.5 }, { "name": "held", "value": 1.0, "standard_error": null }
+            { "name": "a", "value": a, "standard_error": 0.5 }, { "name": "fixed", "value": 1.0, "standard_error": null }
         ] } })
         };
         let said = |answer: Answer, text: &str| Answer { told: told(text), ..answer };

@@ -1,5 +1,5 @@
 //! Damage to what was recorded, in one run or in all: units, signs, clocks, sensors that freeze, jump or fill, rows that are lost or
-//! doubled, files that are cut. Each may change the answer, and must then be told.
+//! doubled, files that are cut. Each may change the answer, and must then be reported.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;

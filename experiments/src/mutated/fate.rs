@@ -1,4 +1,4 @@
-//! What becomes of a logger's fault: refused, told, not visible in the estimates, or silent although they moved.
+//! What becomes of a logger's fault: refused, reported, not visible in the estimates, or silent although they moved.
 //! How commands are run is in `runner`, which faults there are in `logger`.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -41,11 +41,11 @@ pub struct FaultRow {
     pub what: String,
     /// What became of it.
     pub fate: Fate,
-    /// The first command that refuses or tells it.
+    /// The first command that refuses or reports it.
     pub by: String,
     /// By how many standard errors the estimate that moved most moved; absent where there is no fit.
     pub moved: Option<f64>,
-    /// The first line that tells it.
+    /// The first line that reports it.
     pub line: String,
 }
 

@@ -1,5 +1,5 @@
 //! Faults that loggers produce and that leave every file readable: clipped, exchanged, scaled and shifted inputs, copies, a wrong ship.
-//! Which of them a command tells is judged from its answers, in [`super::runner`].
+//! Which of them a command reports is judged from its answers, in [`super::runner`].
 
 use super::files::{Files, Table, recordings};
 

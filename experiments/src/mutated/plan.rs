@@ -26,7 +26,7 @@ pub enum Class {
     Harmless,
     /// It must be refused.
     Mistake,
-    /// It may change the answer, and must then be told.
+    /// It may change the answer, and must then be reported.
     Damage,
 }
 

@@ -35,7 +35,7 @@ pub enum Outcome {
     Unclear,
     /// Its answer is that of the sound study.
     Same,
-    /// Its answer has moved, and it told of a doubt that the sound study does not raise.
+    /// Its answer has moved, and it reported a doubt that the sound study does not raise.
     Told,
     /// Its answer has moved without a word.
     Silent,

@@ -142,7 +142,7 @@ impl Runner {
     }
 
     /// What became of a command on the study in a folder, and what it answered, if it did: the numbers from its JSON, and where they
-    /// differ from the sound answer by more than `limit` standard errors what its text tells.
+    /// differ from the sound answer by more than `limit` standard errors the warnings in its text.
     fn ask(&self, folder: &Path, command: &'static str, limit: f64) -> Result<(Ended, Option<Answer>), ConcealError> {
         let run = |command| process::run(command, self.limit).map_err(|source| ConcealError::file(&self.tool, source));
         let mut asked = self.command(folder, command);

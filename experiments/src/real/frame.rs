@@ -101,7 +101,7 @@ impl Frame {
     /// Asks how much further parameters explain.
     ///
     /// The test is algebra on scores and information at the base, in which parameters of the base move along; the model is
-    /// for the proof, and has the further parameters fitted with the base held.
+    /// for the proof, and has the further parameters fitted with the base fixed.
     pub fn ask(&self, runs: &[Run], further: &[FreeParameter]) -> Answer {
         self.ask_on(&self.model, runs, further)
     }

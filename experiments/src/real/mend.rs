@@ -1,4 +1,4 @@
-//! Corrections of sensors before a diagnosis: held positions, jumps of the receiver, delay and bias of the gyro.
+//! Corrections of sensors before a diagnosis: repeated positions, jumps of the receiver, delay and bias of the gyro.
 //! Their sizes are read from the recordings' own kinematics; no model is used.
 
 use trimtab::recording::{Channel, Recording, Run};
@@ -10,7 +10,7 @@ use super::agreement::wrapped;
 pub struct Mend {
     /// Leave out the velocities, which are late or derived from positions.
     pub no_velocity: bool,
-    /// Times in which position and heading were held, not measured \[s\].
+    /// Times in which position and heading were repeated, not measured \[s\].
     pub held: Vec<(f64, f64)>,
     /// Delay of the yaw rate \[s\].
     pub rate_delay: f64,
@@ -51,7 +51,7 @@ fn interpolated(run: &Run, channel: usize, place: f64) -> Option<f64> {
     if share == 0.0 { value(i) } else { Some((1.0 - share) * value(i)? + share * value(i + 1.0)?) }
 }
 
-/// Stretches in which position and heading repeat to the last bit for `rows` rows or more: a receiver that holds its last value.
+/// Stretches in which position and heading repeat to the last bit for `rows` rows or more: a receiver that repeats its last value.
 /// A stretch begins with the first repetition.
 pub fn held(recording: &Recording, rows: usize) -> Vec<(f64, f64)> {
     let [t, x, y, psi] = position(recording);
@@ -103,7 +103,7 @@ mod tests {
     use crate::real::agreement::tests::circle;
 
     #[test]
-    fn held_values_and_jumps_of_a_receiver_are_distinguished() {
+    fn repeated_values_and_jumps_of_a_receiver_are_distinguished() {
         let good = circle(0.0, 0.0, 0.0, 0.0);
         assert!(held(&good, 2).is_empty() && jumps(&good, 1.5, 0.5).is_empty());
         let broken = |edit: &dyn Fn(&mut [Vec<f64>; 3])| {

@@ -1,4 +1,4 @@
-//! Virtual captive tests: a truth simulator held in a planar motion mechanism and measured, as baseline parameters are made.
+//! Virtual captive tests: a truth simulator fixed in a planar motion mechanism and measured, as baseline parameters are made.
 //! It measures and fits resistance and side force; lift and drag need the fitted model's inflow and are read in `paper::captive_baseline`.
 
 use nalgebra::{Matrix3, Vector3};
@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::motion::Contributions;
 use super::simulator::Truth;
 
-/// One measured point: the motion and inputs held, and the forces by origin.
+/// One measured point: the fixed motion and inputs, and the forces by origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// Surge velocity through the water \[m/s\].

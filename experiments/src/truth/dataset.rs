@@ -139,7 +139,7 @@ fn split(runs: usize, rng: &mut ChaCha8Rng) -> Vec<Split> {
 pub fn record(truth: &dyn Truth, ship: ShipId, plan: &Plan) -> Run {
     let Service { period, actuators, .. } = service(ship);
     let mut state = State { psi: plan.heading, u: plan.speed, ..State::default() };
-    // The run begins at the rate that holds the speed, or with the engine stopped.
+    // The run begins at the rate that keeps the speed, or with the engine stopped.
     let mut inputs =
         Inputs { n: if plan.speed > 1.0 { trimmed_rate(truth, plan.speed, 6.0) } else { 0.0 }, delta: 0.0 };
     let lead = (plan.lead / period).round() as i64;

@@ -133,7 +133,7 @@ pub struct Hd {
 
 /// Speed below which U, |u|, |v| and L|r| are rounded off \[m/s\].
 const SMALL: f64 = 0.05;
-/// Angle of attack up to which the polynomials hold, and from which the rudder is a flat plate \[rad\].
+/// Angle of attack up to which the polynomials are valid, and from which the rudder is a flat plate \[rad\].
 const BLEND: [f64; 2] = [45.0 * PI / 180.0, 60.0 * PI / 180.0];
 
 /// Ship A of the paper with its fitted rudder and its baseline resistance.
@@ -272,10 +272,10 @@ impl Truth for Hd {
         let flow = v_r.atan2(u_r);
         let turned = delta + q.offset - flow;
         let a = turned - 2.0 * PI * (turned / (2.0 * PI)).round();
-        let held = a.clamp(-BLEND[1], BLEND[1]);
+        let limited = a.clamp(-BLEND[1], BLEND[1]);
         let plate = smooth_step(a.abs(), BLEND[0], BLEND[1]);
-        let lift = p[4] + held * (p[5] + held * (p[6] + held * p[7]));
-        let drag = p[8] + held * (p[9] + held * p[10]);
+        let lift = p[4] + limited * (p[5] + limited * (p[6] + limited * p[7]));
+        let drag = p[8] + limited * (p[9] + limited * p[10]);
         let lift = lift + plate * (1.2 * a.sin() * a.cos() - lift);
         let drag = drag + plate * (1.2 * a.sin() * a.sin() - drag);
         let pressure = 0.5 * self.particulars.rho * q.area * (u_r * u_r + v_r * v_r) * q.gain;

@@ -19,7 +19,7 @@ pub struct Actuators {
 }
 
 impl Actuators {
-    /// Positions `period` seconds after `at` under a command held all that time.
+    /// Positions `period` seconds after `at` under a command kept all that time.
     pub fn follow(&self, at: &Inputs, command: &Inputs, period: f64) -> Inputs {
         let reach = |from: f64, to: f64, lag: f64, rate: f64| {
             let step = (to - from) * (1.0 - (-period / lag).exp());

@@ -1,4 +1,4 @@
-//! Time steps of the truth simulators: classical Runge-Kutta with inputs that run linearly, and the rate that holds a speed.
+//! Time steps of the truth simulators: classical Runge-Kutta with inputs that run linearly, and the rate that keeps a speed.
 //! It is the integrator of the experiments alone; the library's is never used for a truth.
 
 use super::motion::{Inputs, State};
@@ -43,7 +43,7 @@ pub fn sail(truth: &dyn Truth, state: &State, [from, to]: [&Inputs; 2], period: 
     (0..steps).fold(*state, |state, i| step(truth, &state, [&at(i), &at(i + 1)], period / steps as f64))
 }
 
-/// Propeller rate \[rps\] at which the ship holds the ahead speed `u` \[m/s\] on a straight course with the rudder amidships; the
+/// Propeller rate \[rps\] at which the ship keeps the ahead speed `u` \[m/s\] on a straight course with the rudder amidships; the
 /// result is clipped to 0..=`most`.
 pub fn trimmed_rate(truth: &dyn Truth, u: f64, most: f64) -> f64 {
     bisected_rate(truth, u, most, 80)

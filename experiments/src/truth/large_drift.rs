@@ -125,7 +125,7 @@ impl Truth for LargeDrift {
         self.added.inertia(&self.particulars)
     }
 
-    /// v_R = -gamma (v + l_R r), without any angle, so that it holds at every drift.
+    /// v_R = -gamma (v + l_R r), without any angle, so that it is valid at every drift.
     fn propulsion(&self, u: f64, v: f64, r: f64, n: f64) -> Propulsion {
         let (s, p, q) = (&self.particulars, &self.propeller, &self.rudder);
         let va = self.propeller_inflow(u, v, r);
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn only_the_astern_screw_tells_port_from_starboard() {
+    fn only_the_astern_screw_distinguishes_port_from_starboard() {
         let ship = ship_b();
         let ahead = ship.force(4.0, 0.0, 0.0, 1.5, 0.0).total();
         assert_eq!((ahead.y, ahead.n), (0.0, 0.0));

@@ -1,5 +1,5 @@
 //! The words of the truth simulators: state, inputs, force and particulars of a ship, in `f64` and SI units.
-//! It holds no equation of motion and no coefficient of any ship.
+//! It has no equation of motion and no coefficient of any ship.
 
 use std::ops::Add;
 

@@ -1,5 +1,5 @@
 //! A reference simulation of KVLCC2's trials, 7 m model and full scale: the same equations by RK4 at 0.5 s full scale.
-//! It holds numbers only; the trials themselves are simulated in `trial`.
+//! It has numbers only; the trials themselves are simulated in `trial`.
 
 // An advance of 3.142 ship lengths is not pi.
 #![allow(clippy::approx_constant)]

@@ -15,7 +15,7 @@ pub(super) const AFTER: &str = "\
 Example:
   trimtab maneuver measure study.toml --model results/improved.toml --out measured
 
-A turning circle is a rudder held at one angle, 4 deg or more, until heading has changed by 90 deg or more; a zigzag is three executes \
+A turning circle is a rudder kept at one angle, 4 deg or more, until heading has changed by 90 deg or more; a zigzag is three executes \
     or more to alternating sides at equal changes of heading. Both begin on a straight course: heading within 4 deg over the last ship \
     length, or over what was recorded of it. What is passed over is said with the reason. The whole recording is read at its own step, also where a study cuts it into windows.
 

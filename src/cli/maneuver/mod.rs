@@ -40,12 +40,12 @@ Simulates a standard manoeuvring trial to both sides with the model of a study, 
 The trials are sailed in calm water: what the model has of wind, waves, current, bottom, banks, pushes and sensors is left \
     out, and the answer says which. --as-found keeps it.
 
-A model file of `trimtab fit` or `trimtab diagnose` holds the covariance of its parameters. The measures then have 95 % \
+A model file of `trimtab fit` or `trimtab diagnose` contains the covariance of its parameters. The measures then have 95 % \
     intervals: 2.97 [2.85, 3.09] are the value with the estimates and what the covariance moves it by, to first order, from trials \
     with drawn parameters. Without a covariance the priors of the model file are drawn from, and the spreads of the hull coefficients \
     that are estimated: the intervals then have the middle 95 % of the ships that are drawn. A criterion inside the interval of its measure is open.
 
-The approach is straight ahead at a speed that the propeller holds: give --speed or --rpm, or set them in [maneuver] of \
+The approach is straight ahead at a speed that the propeller keeps: give --speed or --rpm, or set them in [maneuver] of \
     the study with rudder rate, engine rate and angles. What is not set is that of the recordings, without them that of the ship file \
     (`service_speed` of [hull], `rate_deg_s` of [rudder]), else Froude number 0.15 and the usual rate; the first line says which. No \
     recording is needed: --ship and --model instead of a study.";
@@ -93,7 +93,7 @@ const SPIRAL: &str = "\
 Example:
   trimtab maneuver spiral study.toml --model results/fitted.toml --angle 15 --out spiral
 
-Each rudder angle is held until the yaw rate is steady, for 150 ship lengths at most. A ship that is unstable on its course has a loop: two \
+Each rudder angle is kept until the yaw rate is steady, for 150 ship lengths at most. A ship that is unstable on its course has a loop: two \
     rates at small angles. Its width is known to a degree or two, the distance of the angles.
 
 With --out: maneuver_spiral.json, spiral.png and .csv, spiral_measures.csv, the track as CSV.
@@ -287,7 +287,7 @@ impl Prepared {
         trials: &mut [Trial<M>],
         sail: impl Fn(&Approach, &[f64]) -> Vec<Trial<M>> + Sync,
     ) {
-        // The approach of a draw holds the speed with the thrust and the resistance of that draw.
+        // The approach of a draw keeps the speed with the thrust and the resistance of that draw.
         set_intervals_from(self.known, trials, &self.drawn, |theta| {
             Some(sail(&self.settings.approach(&self.model, theta).ok()?, theta))
         });
@@ -327,7 +327,7 @@ impl Prepared {
                 ));
                 if !d.undetermined.is_empty() {
                     notes.push(format!(
-                        "Held at their values, as the data do not determine them: {}.",
+                        "Fixed at their values, as the data do not determine them: {}.",
                         d.undetermined.join(", ")
                     ));
                 }
@@ -500,9 +500,9 @@ fn finish<M: Listed>(
 fn text<M: Listed>(p: &Prepared, trials: &[Trial<M>]) -> String {
     let ship = &p.model.ship;
     let a = &p.approach;
-    let held = if a.balanced { "in balance" } else { "not in balance" };
+    let balance = if a.balanced { "in balance" } else { "not in balance" };
     let mut text = format!(
-        "{}, model {}: L = {} m, approach {} m/s ({}; Froude number {}) at {} rpm, {held}; rudder rate {} deg/s ({}){}\n\n{}\n\n{}",
+        "{}, model {}: L = {} m, approach {} m/s ({}; Froude number {}) at {} rpm, {balance}; rudder rate {} deg/s ({}){}\n\n{}\n\n{}",
         ship.name,
         p.model.name,
         sig(ship.hull.lpp, 4),

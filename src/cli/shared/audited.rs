@@ -1,4 +1,4 @@
-//! The audit of a study's recordings before a command uses them: faults stop it, doubts are told first.
+//! The audit of a study's recordings before a command uses them: faults stop it, doubts are printed first.
 //! The faults are the library's; this file groups them over the runs and says what was accepted.
 
 use super::error::CliError;
@@ -104,12 +104,12 @@ fn examined_over(ranks: &Ranks, loaded: &Loaded, args: &AcceptArgs) -> Result<Au
     let evidence: Vec<_> = ranks.gather(&audit.evidence).into_iter().flatten().collect();
     audit.weigh(&Lone::of(&evidence));
     let found = audit.recordings.iter().flat_map(|a| a.issues.iter().map(|i| (a.run.as_str(), i)));
-    let own: Vec<Doubt> = found.filter_map(|(run, issue)| told(&[run.to_owned()], issue)).collect();
+    let own: Vec<Doubt> = found.filter_map(|(run, issue)| doubt_of(&[run.to_owned()], issue)).collect();
     let compared = across(&evidence, &loaded.model.ship);
     let (single, several): (Vec<_>, Vec<_>) = compared.iter().partition(|shared| shared.runs.len() == 1);
-    let single = single.iter().filter_map(|shared| told(&shared.runs, &shared.issue));
+    let single = single.iter().filter_map(|shared| doubt_of(&shared.runs, &shared.issue));
     let mut doubts = grouped(ranks.gather(&own).into_iter().flatten().chain(single));
-    doubts.extend(several.iter().filter_map(|shared| told(&shared.runs, &shared.issue)));
+    doubts.extend(several.iter().filter_map(|shared| doubt_of(&shared.runs, &shared.issue)));
     doubts.extend(of_model(&loaded.model));
     doubts.sort_by_key(|d| std::cmp::Reverse(d.severity));
     for doubt in &mut doubts {
@@ -125,17 +125,17 @@ pub fn model_alone(model: &Model) -> Option<Audited> {
 }
 
 fn of_model(model: &Model) -> Vec<Doubt> {
-    audit_model(model).iter().filter_map(|issue| told(&[], issue)).collect()
+    audit_model(model).iter().filter_map(|issue| doubt_of(&[], issue)).collect()
 }
 
-/// The doubt that an issue of some runs is; none that is only worth knowing, or that the command tells itself.
-fn told(runs: &[String], issue: &Issue) -> Option<Doubt> {
-    let told = match issue.severity {
+/// The doubt that an issue of some runs raises; none for a note, or for an error that the command reports itself.
+fn doubt_of(runs: &[String], issue: &Issue) -> Option<Doubt> {
+    let raised = match issue.severity {
         Severity::Note => false,
         Severity::Warning => true,
         Severity::Error => CONTRADICTIONS.contains(&issue.fault),
     };
-    told.then(|| Doubt {
+    raised.then(|| Doubt {
         severity: issue.severity,
         fault: issue.fault.to_owned(),
         channel: issue.channel,
@@ -146,8 +146,8 @@ fn told(runs: &[String], issue: &Issue) -> Option<Doubt> {
     })
 }
 
-/// Doubts of one run each by fault and channel, the gravest first, then in the order found; of a fault that is told of a run twice, the
-/// graver.
+/// Doubts of one run each by fault and channel, the gravest first, then in the order found; of a fault that is reported twice for a run,
+/// the graver.
 fn grouped(found: impl Iterator<Item = Doubt>) -> Vec<Doubt> {
     let mut found: Vec<Doubt> = found.collect();
     found.sort_by_key(|d| std::cmp::Reverse(d.severity));
@@ -184,12 +184,12 @@ impl Audited {
     fn sentence(&self, doubt: &Doubt) -> String {
         let channel = doubt.channel.map_or(String::new(), |c| format!("{c}: "));
         let (first, count) = (doubt.runs.first().map_or("", String::as_str), doubt.runs.len());
-        let (told, runs) = match count {
+        let (example, runs) = match count {
             0 => (String::new(), String::new()),
             1 => (String::new(), format!(": run `{first}`")),
             _ => (format!(" (as in `{first}`)"), format!(": {count} of {} runs", self.runs)),
         };
-        format!("{channel}{}{told}{runs}; {}", doubt.text, doubt.next_step)
+        format!("{channel}{}{example}{runs}; {}", doubt.text, doubt.next_step)
     }
 
     /// Whether there is an error that the user does not accept.
@@ -198,7 +198,7 @@ impl Audited {
     }
 
     /// What was found, a sentence each.
-    pub fn told(&self) -> Vec<String> {
+    pub fn sentences(&self) -> Vec<String> {
         let line = |d: &Doubt| {
             let word = match (d.severity, d.accepted) {
                 (Severity::Error, true) => "accepted error",
@@ -212,7 +212,7 @@ impl Audited {
 
     /// The lines that come before the answer; empty where there is nothing to say.
     pub fn lines(&self) -> String {
-        let mut text: String = self.told().iter().flat_map(|line| [line, "\n"]).collect();
+        let mut text: String = self.sentences().iter().flat_map(|line| [line, "\n"]).collect();
         if self.runs > 0 && !text.is_empty() {
             text += "`trimtab check` lists all that was found in the recordings.\n\n";
         }
@@ -229,26 +229,27 @@ mod tests {
     }
 
     #[test]
-    fn of_a_fault_that_is_told_of_a_run_twice_the_graver_is_kept() {
-        let told =
-            |run: &str, severity| told(&[run.to_owned()], &issue(severity, "not_recorded", Channel::Psi, "none"));
+    fn of_a_fault_that_is_reported_twice_for_a_run_the_graver_is_kept() {
+        let raised =
+            |run: &str, severity| doubt_of(&[run.to_owned()], &issue(severity, "not_recorded", Channel::Psi, "none"));
         let found = [("a", Severity::Warning), ("b", Severity::Warning), ("a", Severity::Error)];
-        let sign = super::told(&["a".to_owned()], &issue(Severity::Error, "sign_error", Channel::R, "turned"));
-        let doubts = grouped(found.into_iter().filter_map(|(run, severity)| told(run, severity)).chain(sign));
+        let sign = doubt_of(&["a".to_owned()], &issue(Severity::Error, "sign_error", Channel::R, "turned"));
+        let doubts = grouped(found.into_iter().filter_map(|(run, severity)| raised(run, severity)).chain(sign));
         let of: Vec<(Severity, &[String])> = doubts.iter().map(|d| (d.severity, &d.runs[..])).collect();
         let [a, b] = [["a".to_owned()], ["b".to_owned()]];
         assert_eq!(of, [(Severity::Error, &a[..]), (Severity::Error, &a[..]), (Severity::Warning, &b[..])]);
     }
 
     #[test]
-    fn a_fault_of_many_runs_is_told_once_with_their_number_and_errors_come_first() {
+    fn a_fault_of_many_runs_is_listed_once_with_their_number_and_errors_come_first() {
         let warning = |text| issue(Severity::Warning, "frozen", Channel::Psi, text);
         let error = issue(Severity::Error, "sign_error", Channel::R, "the sign is turned");
         let note = issue(Severity::Note, "clock", Channel::R, "runs late");
         let found = [("a", warning("stands still for 3 s")), ("a", warning("stands still for 9 s")), ("b", error)];
         let more = [("b", warning("stands still for 5 s")), ("c", note)];
         let all: Vec<(&str, Issue)> = found.into_iter().chain(more).collect();
-        let audited = Audited { runs: 3, doubts: grouped(all.iter().filter_map(|(r, i)| told(&[(*r).to_owned()], i))) };
+        let audited =
+            Audited { runs: 3, doubts: grouped(all.iter().filter_map(|(r, i)| doubt_of(&[(*r).to_owned()], i))) };
         let lines = audited.lines();
         let lines: Vec<&str> = lines.lines().collect();
         assert!(audited.refused());

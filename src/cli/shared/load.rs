@@ -80,7 +80,7 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Reads study, ship, model, settings and column maps; what is wrong with any of them is told at once.
+    /// Reads study, ship, model, settings and column maps; what is wrong with any of them is reported at once.
     pub fn new(args: &StudyArgs) -> Result<Self, CliError> {
         settle(&args.study)?;
         let loaded = Self::read(args, Study::read(&args.study)?)?;
@@ -248,7 +248,7 @@ impl Loaded {
         }
     }
 
-    /// An error of a fit, told of the study, with the line of a constraint that cannot be imposed.
+    /// An error of a fit, reported with the study file and the line of a constraint that cannot be imposed.
     pub fn of_fit(&self, error: FitError) -> CliError {
         let path = match &error {
             FitError::BadRule { rule, .. } => {
@@ -320,7 +320,7 @@ pub fn no_mechanism(name: &str, catalogue: &Catalogue) -> Option<String> {
     (!known.contains(&name)).then(message)
 }
 
-/// An error that a model raises over its ship, told of the ship file.
+/// An error that a model raises over its ship, reported with the ship file.
 fn in_ship_file(error: CliError, ship: &Path) -> CliError {
     match error {
         CliError::Model { error: ModelError::ShipParameter { name, suggestion }, .. } => {

@@ -159,7 +159,7 @@ impl Output {
         };
         let files = self.folder.iter().flat_map(ResultFolder::inputs).map(file).collect();
         let given = arguments(given().into_iter());
-        let doubts = self.audited.as_ref().map(Audited::told);
+        let doubts = self.audited.as_ref().map(Audited::sentences);
         Provenance { command: format!("trimtab {}", given.join(" ")), next: None, files, doubts }
     }
 
@@ -193,7 +193,7 @@ impl Output {
         self.folder.is_some()
     }
 
-    /// Writes a file in the folder, if there is one; `name` may have folders of its own. What cannot be written is told when the
+    /// Writes a file in the folder, if there is one; `name` may have folders of its own. What cannot be written is reported when the
     /// command ends, after its answer.
     pub fn file(&mut self, name: impl AsRef<Path>, bytes: &[u8]) {
         self.put(|folder| Ok(folder.write(name, bytes)?));
@@ -219,7 +219,7 @@ impl Output {
         }
     }
 
-    /// Draws a figure into the folder, if there is one; a failure is told as that of [`Self::file`].
+    /// Draws a figure into the folder, if there is one; a failure is reported as that of [`Self::file`].
     pub fn figure(&mut self, stem: &str, figure: impl FnOnce() -> Figure) {
         if self.folder.is_some() {
             self.figures(vec![(stem.to_owned(), figure())]);
@@ -274,16 +274,16 @@ impl Output {
             Ok(folder.fill(format!("{}.json", command.replace(' ', "_")), fill)?)
         });
         let written = self.close();
-        let told = if json {
+        let printed = if json {
             print_json(&Document::new(command, written.files(), audited.as_ref(), result))
         } else {
             let doubts = audited.as_ref().map_or_else(String::new, Audited::lines);
             print(&(doubts + text.trim_end() + "\n" + &written.line()))
         };
-        written.ended(told)
+        written.ended(printed)
     }
 
-    /// Puts the files of the result into their places. What went wrong is told by [`Written::ended`], after the answer.
+    /// Puts the files of the result into their places. What went wrong is reported by [`Written::ended`], after the answer.
     pub fn close(mut self) -> Written {
         for (name, text) in self.captions.files(self.command) {
             self.file(name, text.as_bytes());
@@ -332,8 +332,8 @@ impl Written {
     ///
     /// # Errors
     /// What went wrong with the files, or else with standard output.
-    pub fn ended(self, told: Result<(), CliError>) -> Result<(), CliError> {
-        self.files.and(told)
+    pub fn ended(self, printed: Result<(), CliError>) -> Result<(), CliError> {
+        self.files.and(printed)
     }
 }
 

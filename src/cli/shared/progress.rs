@@ -14,18 +14,18 @@ pub struct Progress {
     teller: Option<Teller>,
 }
 
-/// Whether progress is told: by the command alone, and not where another program calls its parts.
-static TOLD: AtomicBool = AtomicBool::new(false);
+/// Whether progress is printed: by the command alone, and not where another program calls its parts.
+static SHOWN: AtomicBool = AtomicBool::new(false);
 
-/// Tells progress from now on.
+/// Prints progress from now on.
 pub fn tell_progress() {
-    TOLD.store(true, Ordering::Relaxed);
+    SHOWN.store(true, Ordering::Relaxed);
 }
 
 /// A progress line while a computation runs. Where standard error is no terminal, the first line comes after a minute.
 pub fn progress(doing: impl Into<String>) -> Progress {
     let doing = doing.into();
-    if !TOLD.load(Ordering::Relaxed) {
+    if !SHOWN.load(Ordering::Relaxed) {
         return Progress { bar: ProgressBar::hidden(), teller: None };
     }
     let bar = ProgressBar::new_spinner();

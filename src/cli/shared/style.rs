@@ -24,7 +24,7 @@ pub fn shown(text: &str) -> String {
 }
 
 /// A line for standard error.
-pub fn told(line: &str) -> String {
+pub fn on_stderr(line: &str) -> String {
     if colours(stderr().is_terminal()) { painted(line) } else { line.to_owned() }
 }
 

@@ -1,7 +1,7 @@
 //! Text as a terminal may have it: what would move the cursor, change colours or turn the order of letters is shown, not obeyed.
 //! Names of runs, columns and files come from users' files; they reach the terminal through here only.
 
-use super::style::told;
+use super::style::on_stderr;
 use std::fmt::Write as _;
 use std::io::{Result, Write};
 pub use trimtab::files::plain;
@@ -9,7 +9,7 @@ use trimtab::files::{controls, readable};
 
 /// Prints a line on standard error; without a reader there is nothing to do about it.
 pub fn tell(line: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{}", told(&plain(&readable(line))));
+    let _ = writeln!(std::io::stderr().lock(), "{}", on_stderr(&plain(&readable(line))));
 }
 
 /// A writer of JSON whose strings have such characters as `\uXXXX`; JSON itself asks this only below U+0020. Each call of `write`

@@ -1,5 +1,5 @@
 //! What a model or a column map says that no run of the study reaches: sessions that are not there, terms without their channel.
-//! None of it stops a command, for a model may serve several studies; it is told before the answer.
+//! None of it stops a command, for a model may serve several studies; it is printed before the answer.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -19,7 +19,7 @@ const GIVING: [(&str, &[Channel]); 4] = [
 pub fn unreached(study: &Study, model: &Model, model_path: &Path) -> Vec<String> {
     let sessions: BTreeSet<&str> = study.runs.iter().map(|run| run.labels.session.as_str()).collect();
     let known = || sessions.iter().map(|s| format!("`{s}`")).collect::<Vec<_>>().join(", ");
-    let mut told: Vec<String> = model
+    let mut warnings: Vec<String> = model
         .sessions
         .keys()
         .filter(|session| !sessions.contains(session.as_str()))
@@ -33,14 +33,14 @@ pub fn unreached(study: &Study, model: &Model, model_path: &Path) -> Vec<String>
         .collect();
     for (map, column, session) in delays(study) {
         if !sessions.contains(session.as_str()) {
-            told.push(format!(
+            warnings.push(format!(
                 "{map}: the delay of `{column}` in session `{session}` is used in no run; the sessions of the study are {}",
                 known()
             ));
         }
     }
-    told.extend(without_channel(study, model, model_path));
-    told
+    warnings.extend(without_channel(study, model, model_path));
+    warnings
 }
 
 /// Map, column and session of every delay that is given by session.
@@ -65,13 +65,13 @@ fn without_channel(study: &Study, model: &Model, model_path: &Path) -> Vec<Strin
         return Vec::new();
     }
     let recorded: Vec<Vec<Channel>> = study.runs.iter().filter_map(|run| study.channels(run).ok()).collect();
-    let mut told = Vec::new();
+    let mut warnings = Vec::new();
     for (term, need) in needing {
         let Some((_, giving)) = GIVING.iter().find(|(name, _)| *name == need) else { continue };
         let without = recorded.iter().filter(|channels| !giving.iter().any(|c| channels.contains(c))).count();
         if without > 0 {
             let names: Vec<String> = giving.iter().map(|c| format!("`{c}`")).collect();
-            told.push(format!(
+            warnings.push(format!(
                 "{}: the term `{term}` has no effect in {without} of {} runs, which have no channel {}; record it, name its column in a \
                  column map or give it a `value` there, or leave the term out",
                 model_path.display(),
@@ -80,7 +80,7 @@ fn without_channel(study: &Study, model: &Model, model_path: &Path) -> Vec<Strin
             ));
         }
     }
-    told
+    warnings
 }
 
 #[cfg(test)]

@@ -62,14 +62,14 @@ mod tests {
     use clap::Arg;
 
     #[test]
-    fn an_option_without_its_value_is_told_with_its_meaning_and_an_example() {
+    fn an_option_without_its_value_is_reported_with_its_meaning_and_an_example() {
         let program = Command::new("t").subcommand(
             Command::new("sail").arg(Arg::new("speed").long("speed").value_name("M/S").help("Approach speed [m/s].")),
         );
         let arguments = ["t", "sail", "--speed"].map(str::to_owned);
         let error = program.clone().try_get_matches_from(&arguments).unwrap_err();
-        let told = wanted(&error, &program, &arguments[1..]).unwrap();
-        assert_eq!(told, "  --speed wants a value: Approach speed [m/s].\n  Example: --speed 6");
+        let message = wanted(&error, &program, &arguments[1..]).unwrap();
+        assert_eq!(message, "  --speed wants a value: Approach speed [m/s].\n  Example: --speed 6");
         let other = program.clone().try_get_matches_from(["t", "sail", "--sped"]).unwrap_err();
         assert_eq!(wanted(&other, &program, &arguments[1..]), None);
     }

@@ -79,15 +79,15 @@ fn text(audit: &StudyAudit) -> String {
         format!("{} to train on, {} to test on", number_of(audit.train_windows, "window"), audit.test_windows);
     let mut text = format!("{}: {}; {windows}.\n\n{runs}\n", audit.study, audit.split);
     // Notes are many and rarely needed; the file and the JSON have them.
-    let told = grouped(audit);
-    for (runs, issue) in &told {
+    let issues = grouped(audit);
+    for (runs, issue) in &issues {
         text +=
             &format!("\n{}: {}{}: {}; {}", word(issue), who(runs, audit), place(issue), issue.text, issue.next_step);
     }
     let found = || audit.issues.iter().chain(audit.recordings.iter().flat_map(|a| &a.issues));
     let notes = found().filter(|i| i.severity == Severity::Note).count();
     let noted = number_of(notes, "note");
-    text + &match (told.is_empty(), notes) {
+    text + &match (issues.is_empty(), notes) {
         (true, 0) => "\nNothing found.".to_owned(),
         (true, _) => format!("\nNo error and no warning, {noted} (in --out and --json)."),
         (false, 0) => format!("\n\n{}.", graver(found())),
@@ -103,22 +103,22 @@ fn graver<'a>(issues: impl Iterator<Item = &'a Issue> + Clone) -> String {
     parts.join(", ")
 }
 
-/// Errors and warnings with the runs that have them: what is so in a run from beginning to end is told once for all runs.
+/// Errors and warnings with the runs that have them: a fault of a run from beginning to end is listed once for all runs.
 fn grouped(audit: &StudyAudit) -> Vec<(Vec<&str>, &Issue)> {
-    let mut told: Vec<(Vec<&str>, &Issue)> = audit.issues.iter().map(|issue| (Vec::new(), issue)).collect();
+    let mut issues: Vec<(Vec<&str>, &Issue)> = audit.issues.iter().map(|issue| (Vec::new(), issue)).collect();
     for (run, issue) in audit.recordings.iter().flat_map(|a| a.issues.iter().map(|i| (a.run.as_str(), i))) {
         let whole = |i: &Issue| i.lines.is_none() && i.fault != "unreadable";
         let same = |i: &Issue| (i.severity, i.fault, i.channel) == (issue.severity, issue.fault, issue.channel);
-        match told.iter_mut().find(|(runs, i)| !runs.is_empty() && whole(i) && whole(issue) && same(i)) {
+        match issues.iter_mut().find(|(runs, i)| !runs.is_empty() && whole(i) && whole(issue) && same(i)) {
             // A run may have it more than once.
             Some((runs, _)) if runs.contains(&run) => {}
             Some((runs, _)) => runs.push(run),
-            None => told.push((vec![run], issue)),
+            None => issues.push((vec![run], issue)),
         }
     }
-    told.retain(|(_, issue)| issue.severity != Severity::Note);
-    told.sort_by_key(|(_, issue)| std::cmp::Reverse(issue.severity));
-    told
+    issues.retain(|(_, issue)| issue.severity != Severity::Note);
+    issues.sort_by_key(|(_, issue)| std::cmp::Reverse(issue.severity));
+    issues
 }
 
 /// The runs of an issue: one by its name, several by their number and the first.
@@ -196,14 +196,14 @@ mod tests {
         Audit { run, path, rows: 9, duration: 8.0, step: 1.0, stretches, channels, kinematics: None, issues }
     }
 
-    fn told(recordings: Vec<Audit>) -> String {
+    fn printed(recordings: Vec<Audit>) -> String {
         let (issues, evidence) = (Vec::new(), Vec::new());
         let (study, split) = ("study".to_owned(), "as listed".to_owned());
         text(&StudyAudit { study, split, recordings, train_windows: 1, test_windows: 2, issues, evidence })
     }
 
     #[test]
-    fn a_fault_of_whole_runs_is_told_once_and_one_of_some_lines_for_each_run() {
+    fn a_fault_of_whole_runs_is_listed_once_and_one_of_some_lines_for_each_run() {
         let sign = || Issue::new(Severity::Error, "sign_error", "turned", "turn it").of(Channel::R);
         let jump = |line| Issue::new(Severity::Warning, "jump", "far", "blank it").of(Channel::U).at((line, line));
         let note = Issue::new(Severity::Note, "clock", "late", "look");
@@ -213,7 +213,7 @@ mod tests {
             recording("b", vec![sign(), jump(4)]),
             recording("c", vec![span(), sign(), span()]),
         ];
-        let text = told(runs);
+        let text = printed(runs);
         let lines: Vec<&str> = text.lines().filter(|l| l.starts_with("error") || l.starts_with("warning")).collect();
         assert_eq!(
             lines,
@@ -231,6 +231,6 @@ mod tests {
 
     #[test]
     fn sound_recordings_say_so() {
-        assert!(told(vec![recording("a", Vec::new())]).ends_with("\nNothing found."));
+        assert!(printed(vec![recording("a", Vec::new())]).ends_with("\nNothing found."));
     }
 }

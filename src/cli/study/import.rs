@@ -164,7 +164,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     Ok(Answer::Yes)
 }
 
-/// Makes the study and tells nothing yet.
+/// Makes the study and prints nothing yet.
 ///
 /// # Errors
 /// What cannot be read, decided or written.

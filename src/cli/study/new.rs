@@ -30,7 +30,7 @@ Examples:
   trimtab new --from ship.toml --type tanker --out ship_complete.toml
   trimtab new --lpp 85 --breadth 13.5 --draught 4.2 --type coaster --set hull.mass=3.4e6 --set rudder.area=8
 
-Types, with the range of L [m], L/B, B/d and of the Froude number of the service speed (0.14 to 0.34) over which they hold:
+Types, with the range of L [m], L/B, B/d and of the Froude number of the service speed (0.14 to 0.34) over which they are valid:
   coaster        40 to 160, 5.0 to 7.8, 2.0 to 3.8   coasters and general cargo ships
   container      80 to 400, 5.5 to 8.5, 2.2 to 4.2
   tanker         60 to 380, 5.0 to 7.2, 2.1 to 3.6

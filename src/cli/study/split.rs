@@ -1,5 +1,5 @@
 //! `trimtab split`: one long log, or the recordings of a study, into runs.
-//! The library tells manoeuvres, sessions and sides; this file reads the arguments, prints and writes the table.
+//! The library finds manoeuvres, sessions and sides; this file reads the arguments, prints and writes the table.
 
 use crate::cli::shared::answer::Answer;
 use crate::cli::shared::error::CliError;

@@ -4,7 +4,7 @@
 //! A sum is a fixed-point number of [`DIGITS`] digits to the base 2^32, wide enough for every finite `f64`, its digits kept in
 //! `i64` so that carries can wait. Source of the idea: Kulisch, Computer Arithmetic and Validity (2008), chapter 8.
 
-/// Digits of a sum: 2^-1074 to 2^1024 take 66 digits of 32 bits, and one more holds what carries add.
+/// Digits of a sum: 2^-1074 to 2^1024 take 66 digits of 32 bits, and one more takes what carries add.
 const DIGITS: usize = 67;
 
 /// The base of a digit.
@@ -72,7 +72,7 @@ impl ExactSums {
         self.finite
     }
 
-    /// The point that the sums are of; 0 if none was told.
+    /// The point that the sums are of; 0 if none was given.
     pub(super) fn point(&self) -> i64 {
         self.point
     }

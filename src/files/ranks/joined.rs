@@ -1,5 +1,5 @@
 //! The calls of MPI, for a build with the feature `mpi`: a job that `mpirun` started, seen from one of its ranks.
-//! It knows bytes and whole numbers; what they mean is told in [`Ranks`](super::Ranks).
+//! It knows bytes and whole numbers; what they mean is described in [`Ranks`](super::Ranks).
 
 use mpi::collective::SystemOperation;
 use mpi::datatype::PartitionMut;

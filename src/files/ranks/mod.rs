@@ -1,5 +1,5 @@
 //! The processes (ranks) that share one job, as `mpirun -n N` starts them: which part is whose, and sums over all of them.
-//! It divides and adds; what is computed is told by those who use it. A program that nobody else was started with is rank 0 of 1.
+//! It divides and adds; its callers decide what is computed. A program that was started alone is rank 0 of 1.
 //!
 //! Every rank runs the same program on the same input and takes the same decisions; only runs, starts, draws or cases are
 //! divided. What comes out has the same bytes for any number of ranks, since sums over them are exact ([`ExactSums`]) and rows
@@ -42,7 +42,7 @@ pub struct Traffic {
 /// A job of one rank.
 static ONE: Ranks = Ranks { world: None, exchanges: AtomicU64::new(0), bytes: AtomicU64::new(0) };
 
-/// How long a rank waits with an error for rank 0, which most likely tells of the same.
+/// How long a rank waits with an error for rank 0, which most likely reports the same.
 const AFTER_YOU: Duration = Duration::from_secs(2);
 
 impl Ranks {
@@ -167,7 +167,7 @@ impl Ranks {
 
     /// Ends the job on all ranks with exit code 2 and a message on standard error.
     ///
-    /// The other ranks give the first one time to say the same: an error that all ranks meet is told once.
+    /// The other ranks give the first one time to report the same error: one that all ranks meet is printed once.
     pub fn fail(&self, message: &str) -> ! {
         if !self.is_first() {
             std::thread::sleep(AFTER_YOU);

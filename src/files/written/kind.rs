@@ -1,5 +1,5 @@
-//! Which of the files that people write a text is, told from its keys: for a file that stands where another belongs.
-//! Whether it is a good one is told by those who read it.
+//! The kind of a file written by hand, found from its keys: for a file that stands where another belongs.
+//! Whether the file is valid is decided by its reader.
 
 use toml::de::DeTable;
 
@@ -41,7 +41,7 @@ impl Kind {
         }
     }
 
-    /// The kind of a file with these keys, where they tell.
+    /// The kind of a file with these keys, where they determine it.
     fn of(root: &DeTable<'_>) -> Option<Self> {
         let has = |key: &str| root.contains_key(key);
         let table = |key: &str| root.get(key).is_some_and(|v| v.get_ref().is_table());

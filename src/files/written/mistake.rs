@@ -1,4 +1,4 @@
-//! One mistake in a file written by hand, and how several are told together.
+//! One mistake in a file written by hand, and how several are reported together.
 //! Which error type carries them is decided by those who read the file.
 
 use std::path::Path;

@@ -1,25 +1,25 @@
-//! Mistakes that keep a text from being TOML at all, told by what people usually meant.
+//! Mistakes that keep a text from being TOML at all, reported by what people usually meant.
 //! What the keys may be is not known here.
 
 use super::mistake::{Mistake, line_at};
 use toml::de::Error;
 
-/// Mistakes of this kind that are told at once: one may bring others with it.
+/// Most mistakes of this kind that are reported at once: one may bring others with it.
 const MOST: usize = 5;
 
 /// The mistakes, one a line.
 pub(super) fn mistakes(text: &str, errors: &[Error]) -> Vec<Mistake> {
-    let mut told: Vec<Mistake> = Vec::new();
+    let mut mistakes: Vec<Mistake> = Vec::new();
     for error in errors {
         let span = error.span().unwrap_or(0..0);
         let line = line_at(text, span.start);
-        if told.iter().all(|m| m.line != line) && told.len() < MOST {
+        if mistakes.iter().all(|m| m.line != line) && mistakes.len() < MOST {
             let written = text.lines().nth(line - 1).unwrap_or_default();
             let key = text.get(span.clone()).unwrap_or_default();
-            told.push(Mistake::new(line, meant(error.message().trim(), written, key)));
+            mistakes.push(Mistake::new(line, meant(error.message().trim(), written, key)));
         }
     }
-    told
+    mistakes
 }
 
 /// What is wrong with a line, by the marks of what was meant; otherwise what the reader says.
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn slips_of_the_hand_are_told_by_what_was_meant() {
+    fn slips_of_the_hand_are_reported_by_what_was_meant() {
         for (line, words) in [
             ("step = 0,5", "decimal point"),
             ("ship = ship.toml", "stands in quotes"),
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_on_several_lines_are_told_at_once() {
+    fn mistakes_on_several_lines_are_reported_at_once() {
         let text = "a = 0,5\nb = True\nc = 1\n";
         let lines: Vec<usize> = mistakes(text, &DeTable::parse_recoverable(text).1).iter().map(|m| m.line).collect();
         assert_eq!(lines, [1, 2]);

@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
-/// Mistakes that are told at once.
+/// Most mistakes that are reported at once.
 const MOST: usize = 20;
 
 /// Reads a file of this kind.
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_another_kind_is_told_as_such() {
+    fn a_file_of_another_kind_is_reported_as_such() {
         for (text, words) in [
             ("[hull]\nlpp = 1\n", "this is a ship file, not a study"),
             ("terms = [\"wind\"]\n", "this is a model file, not a study"),
@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dotted_name_without_quotes_is_told() {
+    fn a_dotted_name_without_quotes_is_reported() {
         let text = "name = \"a\"\nship = \"b\"\n[parameters]\nrudder.lift1 = 2.0\n";
         let found = read_toml::<File>(text, Kind::Model).err().unwrap_or_default();
         assert!(found.len() == 1 && found[0].message.contains("stands in quotes"), "{found:?}");

@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_serde_says_is_told_in_words() {
+    fn what_serde_says_is_put_into_words() {
         let said = |message| plain(message, Some("window"));
         assert_eq!(
             said("invalid type: string \"60 s\", expected f64"),

@@ -110,7 +110,7 @@
     tip.style.top = `${Math.max(4, event.clientY - box.height - 12)}px`;
   };
 
-  // One panel: axes and layers at a given width. `view` holds the ranges shown, which zooming changes.
+  // One panel: axes and layers at a given width. `view` contains the ranges shown, which zooming changes.
   class Panel {
     constructor(figure, spec, host) {
       Object.assign(this, { figure, spec, host, view: null });

@@ -17,7 +17,7 @@ pub fn keys_listing() -> String {
 
 /// The diagnosis as a JSON document, see [`keys`].
 ///
-/// Numbers that are not finite, lists that hold one, and members without a value are left out, so that no `null` is in it.
+/// Numbers that are not finite, lists that contain one, and members without a value are left out, so that no `null` is in it.
 ///
 /// # Errors
 /// When a member cannot be turned into JSON, which no diagnosis gives cause to.

@@ -1,4 +1,4 @@
-//! A law for what the catalogue does not hold, in words: the equation, its symbols, every coefficient, and where it was recorded.
+//! A law for what is not in the catalogue, in words: the equation, its symbols, every coefficient, and where it was recorded.
 //! Whether it is confirmed is in its grade; nothing is concluded here.
 
 use super::phrases::p_value;
@@ -50,7 +50,7 @@ pub(super) fn section(d: &Diagnosis) -> Option<Section> {
         }
     };
     let style = if law.is_confirmed() { "confirmed" } else { "suspected" };
-    let section = Section::new("A law for what the catalogue does not hold").badge(badge(law.grade), style).markup(html! {
+    let section = Section::new("A law for what is not in the catalogue").badge(badge(law.grade), style).markup(html! {
         p { "It describes the force where it was recorded and names no cause. It is " (grade_words(law.grade)) "." }
         @for line in &law.equation { p { code { (line) } } }
         div.scroll { table {
@@ -117,5 +117,5 @@ fn mirror_words(mirror: &str) -> &'static str {
 fn range(law: &Law) -> Option<String> {
     let one = |v: &Visited| format!("{} from {} to {} {}", v.symbol, sig(v.low, 3), sig(v.high, 3), v.unit);
     let all: Vec<String> = law.range.iter().map(one).collect();
-    (!all.is_empty()).then(|| format!("it holds where it was recorded, and nowhere else: {}", all.join(", ")))
+    (!all.is_empty()).then(|| format!("it is valid where it was recorded, and nowhere else: {}", all.join(", ")))
 }

@@ -1,5 +1,5 @@
 //! The names of mechanisms and parameters, and the plain words for them.
-//! The catalogue holds both; only what it does not hold is worded here.
+//! Both are in the catalogue; only what is not in it is worded here.
 
 use crate::diagnose::proof::finding::{GENERIC, PUSH, PUSH_TITLE};
 use crate::model::Model;
@@ -10,11 +10,11 @@ pub fn mechanism_names(catalogue: &Catalogue) -> impl Iterator<Item = &'static s
     catalogue.iter().flat_map(|t| t.info().mechanisms).map(|m| m.name).chain([PUSH])
 }
 
-/// The plain words for a mechanism; its name when the catalogue of the model does not hold it.
+/// The plain words for a mechanism; its name when it is not in the catalogue of the model.
 pub(super) fn title_of<'a>(model: &Model, name: &'a str) -> &'a str {
     match name {
         PUSH => PUSH_TITLE,
-        GENERIC => "something that the catalogue does not hold",
+        GENERIC => "something that is not in the catalogue",
         _ => {
             let mut mechanisms = model.catalogue().iter().flat_map(|t| t.info().mechanisms);
             mechanisms.find(|m| m.name == name).map_or(name, |m| m.title)

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-/// The comparison of the two models that `folder` holds, and a trial with the improved one, for a study and the faults that its
+/// The comparison of the two models in `folder`, and a trial with the improved one, for a study and the faults that its
 /// user accepts.
 #[must_use]
 pub fn next_commands(study: &Path, folder: &Path, accepted: &[String]) -> [String; 2] {

@@ -42,7 +42,7 @@ pub(super) fn alone(title: &str, h: &FindingProof) -> String {
     format!("{title} by itself, on {}: {}", number_of(h.recordings, "recording"), parts.join(", "))
 }
 
-/// The study's own model, the base model and the improved one side by side on unseen runs, and which of them the files hold.
+/// The study's own model, the base model and the improved one side by side on unseen runs, and which of them is in the files.
 fn models(d: &Diagnosis) -> Vec<String> {
     let name = |whose: Whose| match whose {
         Whose::Own => "the study's own model",

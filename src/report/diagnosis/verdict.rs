@@ -60,7 +60,7 @@ pub(super) fn title(d: &Diagnosis) -> String {
         (true, true, false) => "MISSING PHYSICS AND A SENSOR ERROR, SUSPECTED".to_owned(),
         (_, false, false) => "MISSING PHYSICS, SUSPECTED".to_owned(),
         (false, _, false) => "A SENSOR ERROR, SUSPECTED".to_owned(),
-        // Forces that are only suspected stand beside it.
+        // The findings also include forces, which are only suspected.
         (false, _, true) if d.findings.iter().any(|f| f.kind != Kind::Sensor) => "A SENSOR ERROR".to_owned(),
         (_, _, true) => verdict_words(d.verdict).to_owned(),
     }
@@ -129,7 +129,7 @@ fn withdrawn_because(f: &Finding) -> &'static str {
         Grade::Immaterial => "it is measurable, and too small to matter",
         Grade::NotIsolated => {
             "on the headings that were sailed the ship's own parameters and its sensors (a side force, trim, resistance, the zero \
-             of the compass, the scale of the log) can take over nearly all of its effect; the same runs on opposite headings would part them"
+             of the compass, the scale of the log) can take over nearly all of its effect; the same runs on opposite headings would distinguish them"
         }
         Grade::EulerSteps => {
             "explicit Euler steps of one sample period in the program that made the recordings, or values that stay constant until the next sample, \

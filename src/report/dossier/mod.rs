@@ -1,5 +1,5 @@
 //! A dossier for people: a summary for the terminal and one HTML page, both read from the JSON document.
-//! It computes nothing beyond units, and says nothing that the document does not hold; the document is made in [`content`].
+//! It computes nothing beyond units, and says only what is in the document; the document is made in [`content`].
 
 pub mod content;
 #[cfg(feature = "plot")]

@@ -1,4 +1,4 @@
-//! Parts of a page read from a JSON document: every number stands beside the key and the value that it is in the document.
+//! Parts of a page read from a JSON document: every number carries its key and its value in the document.
 //! Which of them are shown, and where, is decided by the page.
 
 use crate::numerals::{DASH, fixed, sig};

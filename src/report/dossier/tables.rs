@@ -144,7 +144,7 @@ pub(super) fn model(m: &Reader) -> Markup {
             html! { @if unit != "-" { (unit) } },
             html! { @if p.at("free").holds() { "yes" } @else { "no" } },
             p.at("value").number(1.0, Significant(4)),
-            html! { @if p.at("error").float() == Some(0.0) { "held" } @else { (p.at("error").number(1.0, Significant(2))) } },
+            html! { @if p.at("error").float() == Some(0.0) { "fixed" } @else { (p.at("error").number(1.0, Significant(2))) } },
         ]
     };
     let parameters: Vec<Vec<Markup>> = m.at("parameters").entries().iter().map(parameter).collect();
@@ -159,7 +159,7 @@ pub(super) fn model(m: &Reader) -> Markup {
         (ranges(&m.at("terms")))
         @for t in m.at("terms").entries() { (term(&t)) }
         @if !parameters.is_empty() {
-            (table("Free parameters, and those with a standard error; one that ends at a bound or a constraint is held there.", &["parameter", "unit", "free", "value", "standard error"], 3, parameters))
+            (table("Free parameters, and those with a standard error; one that ends at a bound or a constraint is fixed there.", &["parameter", "unit", "free", "value", "standard error"], 3, parameters))
         }
         @if covariance.is_there() { p { "Standard errors: " (covariance.text()) "." } }
     }
@@ -380,9 +380,9 @@ fn manoeuvres(t: &Reader) -> Markup {
             " m. Intervals are 95 % intervals of " (t.at("draws").count()) " draws of the parameters, seed " (t.at("seed").count()) "."
         }
         (trials("Turning circles.", &t.at("turning"), |m, i| TURNING.iter().map(|(keys, name, unit, factor)| {
-            let told = if keys.len() > 1 && keys[1] == "diameter" { "steady_diameter" } else { keys[keys.len() - 1] };
+            let key = if keys.len() > 1 && keys[1] == "diameter" { "steady_diameter" } else { keys[keys.len() - 1] };
             let factor = if *factor == 0.0 { length(t) } else { *factor };
-            (format!("{name} [{unit}]"), measure(&m.path(keys), &i.at(told), factor, if *unit == "s" || *unit == "%" { Decimals(1) } else { Decimals(2) }))
+            (format!("{name} [{unit}]"), measure(&m.path(keys), &i.at(key), factor, if *unit == "s" || *unit == "%" { Decimals(1) } else { Decimals(2) }))
         }).collect()))
         (trials("Zigzags.", &t.at("zigzag"), |m, i| zigzag(m, i, length(t))))
         (criteria(t))

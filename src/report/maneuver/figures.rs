@@ -15,7 +15,7 @@ fn color(side: Side) -> Color {
     }
 }
 
-/// A line of a side: port is dashed, so that the sides are told apart without colours too.
+/// A line of a side: port is dashed, so that the sides are distinguished without colours too.
 fn styled(side: Side, line: Layer) -> Layer {
     match side {
         Side::Starboard => line,

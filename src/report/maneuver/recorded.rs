@@ -7,7 +7,7 @@ use crate::numerals::{DASH, fixed, sig};
 use crate::report::table::Table;
 use crate::ship::Ship;
 
-/// A measure of one trial: its key, words, in what it is told, and its values over ground, through the water and with the model.
+/// A measure of one trial: its key, words, printed unit, and its values over ground, through the water and with the model.
 type Row = (&'static str, &'static str, Told, [Option<f64>; 3]);
 
 fn rows(trial: &MeasuredTrial) -> Vec<Row> {

@@ -7,7 +7,7 @@ use crate::numerals::{DASH, fixed, sig};
 use crate::report::table::Table;
 use crate::ship::Ship;
 
-/// In what a measure is told.
+/// The unit in which a measure is printed.
 #[derive(Clone, Copy)]
 pub enum Told {
     /// Ship lengths.
@@ -25,7 +25,7 @@ pub enum Told {
 }
 
 impl Told {
-    /// The SI unit that it is told from.
+    /// The SI unit that it is converted from.
     pub fn si(self) -> &'static str {
         match self {
             Self::Lengths => "m",
@@ -52,7 +52,7 @@ impl Told {
 
 /// Trials whose measures make a table.
 pub trait Listed: Measured {
-    /// Name of each measure, in words, and in what it is told, in the order of [`Measured::QUANTITIES`].
+    /// Name of each measure, in words, and its printed unit, in the order of [`Measured::QUANTITIES`].
     const ROWS: &'static [(&'static str, &'static str, Told)];
 }
 

@@ -87,7 +87,7 @@ impl Axis {
     }
 }
 
-/// The smallest interval that holds a set of values.
+/// The smallest interval that contains a set of values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {
     pub lo: f64,

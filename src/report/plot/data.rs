@@ -1,5 +1,5 @@
 //! A figure as JSON for a program that draws it itself: panels with ranges, layers with colours and points.
-//! It holds what the images show, thinned to what a screen can; how it is drawn there is not decided here.
+//! It contains what the images show, thinned to what a screen can; how it is drawn there is not decided here.
 
 use super::axis::{Axis, Scale, drawable, limits};
 use super::drawing::extent::extents;
@@ -9,7 +9,7 @@ use super::layer::{Layer, Mark, Marker, Stroke};
 use super::palette::Color;
 use serde_json::{Value, json};
 
-/// Points of a line that a screen can tell apart.
+/// Points of a line that a screen can resolve.
 const MOST: usize = 500;
 /// Figures of a number: five are finer than a pixel of any panel.
 const DIGITS: i32 = 5;

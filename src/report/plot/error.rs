@@ -9,7 +9,7 @@ pub enum FigureError {
     /// The embedded font could not be read.
     #[error("the embedded DejaVu Sans font cannot be read; rebuild from a clean checkout")]
     Font,
-    /// The figure has more pixels than can be held.
+    /// The figure has more pixels than fit into memory.
     #[error("a figure of {width} x {height} px is too large; use fewer panels or smaller ones")]
     TooLarge {
         /// Width, px.

@@ -1,5 +1,5 @@
 //! Panels and the figure they make, as data.
-//! It holds layers, axes and sizes; `output` turns a figure into PNG, SVG and CSV.
+//! It has layers, axes and sizes; `output` turns a figure into PNG, SVG and CSV.
 
 use super::axis::Axis;
 use super::drawing::style::EDGE;

@@ -1,5 +1,5 @@
 //! One series of a panel as data: what it shows, in which colour, and how its lines are drawn.
-//! It holds what the caller gave; where that falls on a sheet is decided elsewhere.
+//! It contains what the caller gave; where that falls on a sheet is decided elsewhere.
 
 use super::palette::Color;
 

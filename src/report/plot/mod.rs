@@ -1,5 +1,5 @@
 //! Figures as PNG, SVG, PDF and the CSV behind them, from plain numbers and words.
-//! It knows nothing about ships, fits or diagnoses, and imports nothing of the project but `numerals`.
+//! It is independent of ships, fits and diagnoses, and imports nothing of the project but `numerals`.
 
 mod axis;
 mod csv;

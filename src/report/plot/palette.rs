@@ -69,7 +69,7 @@ pub const RECORDED: Color = TRUTH;
 pub const BASELINE: Color = VERMILLION;
 /// The model after the fit, or with the mechanism added.
 pub const FITTED: Color = BLUE;
-/// A fit that was told the truth: the best that could be reached.
+/// A fit that was given the true mechanisms: the best that could be reached.
 pub const ORACLE: Color = GREEN;
 /// Constraint bands, bounds and criteria.
 pub const LIMIT: Color = GREY;

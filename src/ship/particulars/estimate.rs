@@ -86,15 +86,15 @@ pub fn estimate(kind: &'static Kind, given: &Table, speed: Option<f64>) -> Resul
 
 /// What is wrong with a value, without the line of a file that nobody has seen.
 fn impossible(error: ShipError) -> EstimateError {
-    fn told(error: &ShipError) -> String {
+    fn words(error: &ShipError) -> String {
         match error {
             ShipError::Value { key, found, expected, .. } => format!("{key} = {found} {expected}"),
             ShipError::Parse { message, .. } => message.clone(),
-            ShipError::Several(errors) => errors.iter().map(told).collect::<Vec<_>>().join("\n"),
+            ShipError::Several(errors) => errors.iter().map(words).collect::<Vec<_>>().join("\n"),
             other => other.to_string(),
         }
     }
-    EstimateError::Impossible(told(&error))
+    EstimateError::Impossible(words(&error))
 }
 
 /// What every estimate begins with.
@@ -137,7 +137,7 @@ impl Main {
                 format!("{TOWNSIN}, at Fn = {}", rounded(self.froude, 3)),
             ),
         };
-        // A mass that no ship of these dimensions can have is told as such when the file is read.
+        // A mass that no ship of these dimensions can have is reported as such when the file is read.
         let block = match given_mass.filter(|mass| (0.2..1.0).contains(&(mass / box_mass))) {
             Some(mass) => sheet.take("hull.block_coefficient", mass / box_mass, 0.005, "C_b = m / (rho L B d)"),
             None => sheet.take("hull.block_coefficient", line, self.kind.block_spread, &source),

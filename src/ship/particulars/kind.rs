@@ -20,7 +20,7 @@ pub struct Kind {
     pub slenderness: [f64; 2],
     /// Range of B/d \[-\].
     pub beam: [f64; 2],
-    /// Block coefficient, where the line over the Froude number does not hold \[-\].
+    /// Block coefficient, where the line over the Froude number is not valid \[-\].
     pub block: Option<f64>,
     /// Standard deviation of the block coefficient \[-\].
     pub block_spread: f64,
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ship_outside_the_range_of_its_type_is_told_so() {
+    fn a_ship_outside_the_range_of_its_type_is_reported() {
         let tanker = Kind::find("tanker").unwrap();
         assert!(tanker.outside([320.0, 58.0, 20.8], 0.15).is_empty());
         let said = tanker.outside([20.0, 8.0, 3.0], 0.15);

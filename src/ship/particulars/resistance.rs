@@ -9,7 +9,7 @@ pub(super) fn wetted_surface(length: f64, draught: f64, volume: f64) -> f64 {
     1.7 * length * draught + volume / draught
 }
 
-/// Form factor k \[-\] by Watanabe: `k = -0.095 + 25.6 C_b / ((L/B)^2 sqrt(B/d))`, held between 0.05 and 0.5.
+/// Form factor k \[-\] by Watanabe: `k = -0.095 + 25.6 C_b / ((L/B)^2 sqrt(B/d))`, limited to 0.05 to 0.5.
 pub(super) fn form_factor(block: f64, [length, breadth, draught]: [f64; 3]) -> f64 {
     (-0.095 + 25.6 * block / ((length / breadth).powi(2) * (breadth / draught).sqrt())).clamp(0.05, 0.5)
 }

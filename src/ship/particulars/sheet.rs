@@ -1,5 +1,5 @@
 //! A sheet of particulars that fills up line by line: each value is the given one, or an estimate with its source and spread.
-//! It knows no formula and no ship.
+//! It contains no formula and no ship.
 
 use toml::{Table, Value};
 

@@ -89,8 +89,8 @@ fn all_or_nothing(e: &Entry) -> bool {
 
 /// The forces and sensor defects of the catalogue that a family can have.
 fn visible(family: Family) -> impl Iterator<Item = &'static Entry> {
-    let told = |e: &&'static Entry| matches!(e.class, Class::Force | Class::Sensor);
-    catalogue().filter(told).filter(move |e| family == Family::Hd || e.in_mmg)
+    let force_or_sensor = |e: &&'static Entry| matches!(e.class, Class::Force | Class::Sensor);
+    catalogue().filter(force_or_sensor).filter(move |e| family == Family::Hd || e.in_mmg)
 }
 
 impl Planner {

@@ -87,7 +87,7 @@ pub const FORCE: Entry = Entry {
 /// A sensor defect.
 pub const SENSOR: Entry = Entry { class: Class::Sensor, ..FORCE };
 
-/// An effect that no catalogue of the diagnosis holds.
+/// An effect that is in no catalogue of the diagnosis.
 pub const WITHHELD: Entry = Entry { class: Class::Withheld, ..FORCE };
 
 /// No effect at all.
@@ -187,14 +187,14 @@ pub trait Physics: Send + Sync {
         [0.0; 2]
     }
 
-    /// Moves the actuators: orders run linearly `from` -> `to` over `h` seconds, the actuators start `at`; `actual` holds
+    /// Moves the actuators: orders run linearly `from` -> `to` over `h` seconds, the actuators start `at`; `actual` has
     /// the positions that they would reach without this effect, and then with it.
     fn actuate(&self, _h: f64, _orders: [Inputs; 2], _at: &Inputs, _state: &State, _actual: &mut Inputs) {}
 
     /// Advances the effect's memory by `h` seconds.
     fn remember(&self, _h: f64, _at: &Instant<'_>, _memory: &mut [f64; 2]) {}
 
-    /// Changes the reported state `y` at row `row`, which holds the true state first; `fine` is the track between rows.
+    /// Changes the reported state `y` at row `row`, which contains the true state first; `fine` is the track between rows.
     fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, _y: &mut [f64; 6]) {}
 
     /// Environment channels that are recorded with it.

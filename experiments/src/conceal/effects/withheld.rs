@@ -1,4 +1,4 @@
-//! Effects that no catalogue of the diagnosis holds: the right answer to them is "not in the catalogue", with the place.
+//! Effects that are in no catalogue of the diagnosis: the right answer to them is "not in the catalogue", with the place.
 //! They are kept out of that catalogue on purpose: an effect whose mechanism is added there must leave this file.
 
 use super::effect::{Draw, Entry, Instant, Physics, WITHHELD, Window, ramp, vector};

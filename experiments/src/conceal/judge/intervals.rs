@@ -1,5 +1,5 @@
 //! Comparisons of numbers and time windows with the truth: size of an effect, coverage of an interval, overlap in time.
-//! It knows no verdict and no mechanism.
+//! It depends on no verdict and no mechanism.
 
 use super::said::{Finding, FoundParameter, FoundWindow};
 use crate::conceal::seal::Answer;

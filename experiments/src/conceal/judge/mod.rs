@@ -1,5 +1,5 @@
 //! The judge: scores a diagnosis of a concealed case after its seal is opened.
-//! It knows a diagnosis only as a file of documented keys and never calls the program that writes it.
+//! It reads a diagnosis as a file of documented keys and never calls the program that writes it.
 
 pub mod intervals;
 pub mod rules;

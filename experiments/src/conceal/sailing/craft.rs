@@ -1,5 +1,5 @@
 //! The ship of a concealed case: one of three simulators with coefficients of its own, on ship A or one of two other hulls.
-//! It turns velocity, inputs and a [`Tweak`] into accelerations; it simulates nothing and knows no effect.
+//! It turns velocity, inputs and a [`Tweak`] into accelerations; it simulates nothing and depends on no effect.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -137,7 +137,7 @@ impl Craft {
         self.truth().inertia().force(accelerations)
     }
 
-    /// Propeller rate that holds the speed ahead `u` \[m/s\] with the rudder amidships, at most `most` \[rps\].
+    /// Propeller rate that keeps the speed ahead `u` \[m/s\] with the rudder amidships, at most `most` \[rps\].
     pub fn trimmed_rate(&self, u: f64, most: f64) -> f64 {
         bisected_rate(self.truth(), u, most, 40)
     }

@@ -1,5 +1,5 @@
 //! Which recordings a concealed case has: designs, and seeded plans of manoeuvres, sessions and the split into train and test.
-//! It knows no effect: two cases of one seed have equal plans whatever is concealed in one of them.
+//! It depends on no effect: two cases of one seed have equal plans whatever is concealed in one of them.
 
 use std::f64::consts::PI;
 

@@ -1,5 +1,5 @@
 //! The helmsman of the concealed cases: orders over time, and the rudder and rate that follow from them row by row.
-//! It knows no effect and no ship but its length.
+//! It depends on no effect, and on no ship but its length.
 
 use std::f64::consts::PI;
 

@@ -114,7 +114,7 @@ pub fn cell<T: for<'a> Deserialize<'a> + Default>(text: &str) -> T {
     serde_json::from_str(text).unwrap_or_default()
 }
 
-/// One line without what would part it.
+/// One line, without line ends.
 fn line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -239,7 +239,7 @@ impl Row {
     }
 }
 
-/// What should come of several injections: what is asked of the most telling of them.
+/// What should come of several injections: the strongest of their expectations, `refused` first, then `named` and `either`.
 fn expected(injections: &[Injection]) -> Expected {
     let asks = |e: Expected| injections.iter().any(|i| i.expected == e);
     [Expected::Refused, Expected::Named, Expected::Either].into_iter().find(|e| asks(*e)).unwrap_or(Expected::Silent)

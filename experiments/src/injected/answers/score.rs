@@ -12,7 +12,7 @@ use crate::rivals::NOTHING;
 /// Mechanisms that a calm basin does not have.
 pub const WEATHER: [&str; 8] = ["wind", "mean_wind", "current", "tide", "waves", "wave_drift", "earth_force", "push"];
 
-/// Mechanisms of which the measured wind may be the cause, or that cannot be parted from it.
+/// Mechanisms of which the measured wind may be the cause, or that cannot be distinguished from it.
 const WINDY: [&str; 5] = ["mean_wind", "wind", "wave_drift", "current", "earth_force"];
 
 /// Mean wind above which its direction is compared \[m/s\], and the largest deviation that counts as near \[rad\].
@@ -58,7 +58,7 @@ pub struct Score {
     pub ratio: Option<f64>,
     /// Error of that difference over the truth.
     pub size_error: Option<f64>,
-    /// The 95 % interval, moved by what is found without it, holds the truth.
+    /// The 95 % interval, moved by what is found without it, contains the truth.
     pub covered: Option<bool>,
     /// A name that the measured wind may be the cause of.
     pub windy: Option<bool>,
@@ -200,8 +200,8 @@ impl<'a> Reading<'a> {
         let partners = self.partner.map_or(Vec::new(), Row::findings);
         let one = |accepted: &str| {
             let accepted = names(accepted, '|');
-            let told = |f: &Named| accepted.iter().any(|n| f.set.contains(n) || f.mechanism == *n);
-            (!accepted.is_empty() && !partners.iter().any(told)).then(|| self.findings.iter().any(told))
+            let named = |f: &Named| accepted.iter().any(|n| f.set.contains(n) || f.mechanism == *n);
+            (!accepted.is_empty() && !partners.iter().any(named)).then(|| self.findings.iter().any(named))
         };
         self.row.accepted.split('+').map(one).collect()
     }

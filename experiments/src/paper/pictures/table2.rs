@@ -65,7 +65,7 @@ impl Row {
         let show = |v: f64| sig(if v.abs() < least { 0.0 } else { v }, 4);
         let ends = match self.interval {
             None => DASH.to_owned(),
-            Some([lo, hi]) if lo == hi => "held by constraints".to_owned(),
+            Some([lo, hi]) if lo == hi => "fixed by constraints".to_owned(),
             Some([lo, hi]) => trimtab::numbers::numerals::interval(lo, hi, 4),
         };
         let [a, b, c, d, e] = [self.baseline, self.captive, self.guess, self.paper, self.ours].map(show);
@@ -108,7 +108,7 @@ fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
         to.figure(&format!("table2_{}", case.ship.name()), figure)?;
         to.table(&format!("table2_{}", case.ship.name()), &table)?;
         let _ = writeln!(text, "{}: {}\n{table}", case.label(), case.fit.status);
-        let _ = writeln!(text, "Held back by {}.", list(&case.fit));
+        let _ = writeln!(text, "Active constraints: {}.", list(&case.fit));
         let effect = case.fit.design_effect.map_or(DASH.to_owned(), |e| sig(e, 3));
         let _ = writeln!(
             text,
@@ -121,7 +121,7 @@ fn make(cases: &[Case], to: &Target) -> Result<String, PaperError> {
 
 fn list(fit: &Fit) -> String {
     if fit.active.is_empty() {
-        return "no constraint".into();
+        return "none".into();
     }
     fit.active.iter().map(|a| a.sentence.as_str()).collect::<Vec<_>>().join("; ")
 }

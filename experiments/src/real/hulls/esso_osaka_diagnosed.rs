@@ -52,7 +52,7 @@ pub struct Diagnosed {
 pub fn run() -> Result<Diagnosed, RealError> {
     let hull = Hull::open("esso_osaka")?;
     let kinematics = Agreement::of_study(&hull, SPAN)?;
-    // The repetitions that tell whether an answer is stable would take seven times as long; `trimtab diagnose` makes them.
+    // The repetitions that show whether an answer is stable would take seven times as long; `trimtab diagnose` makes them.
     let settings = Settings { repeat: false, ..Settings::default() };
     let (train, test) = (runs(&hull, Split::Train)?, runs(&hull, Split::Test)?);
     let calm = hull.model("model.toml")?;
@@ -123,7 +123,7 @@ fn with_rudder_limit(model: &Model, case: &Case) -> Result<Option<Model>, RealEr
     Ok(Some(out))
 }
 
-/// The corrections of each recording: velocities, which lag the positions by a second, held positions and windows over jumps of
+/// The corrections of each recording: velocities, which lag the positions by a second, repeated positions and windows over jumps of
 /// the receiver are left out, and delay and bias of the gyro are removed.
 fn mends(hull: &Hull, kinematics: &[Agreement]) -> Result<Vec<(String, Mend)>, RealError> {
     let mut out = Vec::new();

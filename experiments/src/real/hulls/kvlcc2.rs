@@ -45,7 +45,7 @@ pub struct Sailed {
     pub name: String,
     /// From the execute on.
     pub measured: Track,
-    /// Time at which the test ends \[s\]: the last with the rudder still held, or the last recorded.
+    /// Time at which the test ends \[s\]: the last with the rudder still at its angle, or the last recorded.
     pub end: f64,
     /// By each model.
     pub predicted: Vec<Track>,

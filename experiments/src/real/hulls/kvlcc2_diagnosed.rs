@@ -164,7 +164,7 @@ fn alike(model: &Model) -> Result<Model, RealError> {
     Ok(out)
 }
 
-/// The model with its one-sided parameters set to zero and held.
+/// The model with its one-sided parameters set to zero and fixed.
 fn symmetric(model: &Model) -> Result<Model, RealError> {
     let mut out = alike(model)?;
     for name in ONE_SIDED {
@@ -228,14 +228,18 @@ impl Diagnosed {
             Axis::new("twice the gain in log-likelihood").including(0.0),
         )
         .with(Layer::bars("statistic on the zigzags", FITTED, bars));
-        let held = |f: &dyn Fn(&Step) -> f64| self.steps.iter().map(f).collect::<Vec<_>>();
+        let errors = |f: &dyn Fn(&Step) -> f64| self.steps.iter().map(f).collect::<Vec<_>>();
         let proof = Panel::new(
             "turning circles, held out",
             Axis::categories("", names),
             Axis::new("mean cVDM [%]").including(0.0),
         )
-        .with(Layer::bars("mirror-symmetric", BASELINE, held(&|s| s.held_out.before.unwrap_or(f64::NAN))))
-        .with(Layer::bars("with what the label names", GREEN, held(&|s| s.held_out.after.unwrap_or(f64::NAN))));
+        .with(Layer::bars("mirror-symmetric", BASELINE, errors(&|s| s.held_out.before.unwrap_or(f64::NAN))))
+        .with(Layer::bars(
+            "with what the label names",
+            GREEN,
+            errors(&|s| s.held_out.after.unwrap_or(f64::NAN)),
+        ));
         Figure::new("KVLCC2: what the diagnosis finds in a calm basin")
             .columns(2)
             .panel_size(900, 600)

@@ -1,5 +1,5 @@
-//! Smooth transitions between laws that hold in different ranges.
-//! It holds no law of its own.
+//! Smooth transitions between laws that are valid in different ranges.
+//! It has no law of its own.
 
 /// 0 below `from`, 1 above `to`, and twice continuously differentiable between.
 pub fn smooth_step(x: f64, from: f64, to: f64) -> f64 {

@@ -1,5 +1,5 @@
 //! Cross-flow drag of a hull in strips, integrated in closed form.
-//! It holds no coefficient: the simulators multiply it with their own drag coefficient and weight of the yaw rate.
+//! It has no coefficient: the simulators multiply it with their own drag coefficient and weight of the yaw rate.
 
 /// Integrals over the length, `(int |w| w dx, int |w| w x dx)` with w = v + r x over -L/2..=L/2, in \[m^3/s^2, m^4/s^2\].
 ///

@@ -1,4 +1,4 @@
-//! Figures of the unknown force along the most telling runs: on their tracks, and over time.
+//! Figures of the unknown force along the runs where it is most significant: on their tracks, and over time.
 //! Its mean against state and inputs is in `pattern`.
 
 use super::picture::{Picture, shown};
@@ -48,7 +48,7 @@ pub(in crate::report::diagnosis) fn tracks(d: &Diagnosis, runs: &[&Trace]) -> Op
     Some(Picture {
         stem: "tracks",
         part: "WHERE",
-        caption: "Tracks of the most telling runs with the force that the model does not explain. Grey arrows are smaller than the \
+        caption: "Tracks of the runs with the most significant force that the model does not explain. Grey arrows are smaller than the \
                   filter resolves.".to_owned()
             + &shown(runs.len(), d.traces.len(), "training runs, those on which the force is largest in standard deviations,"),
         figure,

@@ -20,7 +20,7 @@ pub struct Provenance {
     pub next: Option<(String, Vec<String>)>,
     /// The files.
     pub files: Vec<SourceFile>,
-    /// What the audit of the recordings tells, a sentence each; absent where none was made.
+    /// What the audit of the recordings reports, a sentence each; absent where none was made.
     pub doubts: Option<Vec<String>>,
 }
 
@@ -29,7 +29,7 @@ pub struct Provenance {
 pub struct SourceFile {
     /// Its path as it was given.
     pub path: String,
-    /// Date and time of its last change, UTC; absent where the system does not tell.
+    /// Date and time of its last change, UTC; absent where the system does not report it.
     pub changed: Option<String>,
     /// Its SHA-256; absent where it could not be read twice.
     pub sha256: Option<String>,
@@ -66,7 +66,7 @@ const GLOSSARY: [(&str, &str); 15] = [
         "p-value",
         "the probability of at least such evidence if nothing were missing, corrected for the number of mechanisms tested",
     ),
-    ("95 % interval", "holds the true value in 95 of 100 such studies, if the assumptions of the analysis hold"),
+    ("95 % interval", "contains the true value in 95 of 100 such studies, if the assumptions of the analysis are true"),
     ("standard error, s.e.", "standard deviation of an estimate"),
     (
         "log-likelihood",

@@ -167,14 +167,16 @@ fn gains(h: &FindingProof, i: usize) -> Markup {
     html! { @for gain in all.into_iter().flatten() { (gain) ". " } }
 }
 
-/// The class of mechanisms that these data allow, and the trial that parts them.
+/// The class of mechanisms that these data allow, and the trial that distinguishes them.
 fn rivals(d: &Diagnosis, f: &Finding) -> String {
     if f.confidence_set.len() < 2 {
         return format!("No other mechanism of the catalogue explains these data as well: {}.", f.why);
     }
     let all: Vec<&str> = f.confidence_set.iter().map(|m| title_of(&d.model, m)).collect();
-    let trial =
-        d.next_trial.as_ref().map_or(String::new(), |t| format!(" A trial that parts them: {}; {}.", t.trial, t.why));
+    let trial = d
+        .next_trial
+        .as_ref()
+        .map_or(String::new(), |t| format!(" A trial that distinguishes them: {}; {}.", t.trial, t.why));
     format!("These data allow {}: {}.{trial}", all.join(", or "), f.why)
 }
 

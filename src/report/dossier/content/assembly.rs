@@ -1,4 +1,4 @@
-//! The dossier put together: each section from the function that computes it, and what is missing told section by section.
+//! The dossier put together: each section from the function that computes it, and a list of what is missing in each.
 //! It computes nothing itself beyond counting what is there.
 
 use super::causes::Causes;
@@ -46,7 +46,7 @@ pub struct Question<'a> {
     pub inputs: Value,
 }
 
-/// Makes the dossier; `progress` is told each step. The result is the same bits on any number of threads.
+/// Makes the dossier; `progress` receives each step. The result is the same bits on any number of threads.
 pub fn dossier(question: &Question, progress: &dyn Fn(&str)) -> Dossier {
     let Question { model, runs, .. } = question;
     let diagnosis = question.diagnosis.as_ref().map(|(document, _)| *document);
@@ -169,7 +169,7 @@ fn limits(d: &Dossier) -> Vec<String> {
     }
     if let Some(t) = &d.validation.manoeuvres {
         all.push(
-            "The standard manoeuvres are sailed in calm, deep, open water; their intervals hold the uncertainty of the parameters alone, \
+            "The standard manoeuvres are sailed in calm, deep, open water; their intervals include the uncertainty of the parameters alone, \
              not that of the form of the model."
                 .into(),
         );
@@ -180,8 +180,8 @@ fn limits(d: &Dossier) -> Vec<String> {
     if !d.model.undetermined.is_empty() {
         all.push(format!("Free parameters that the recordings do not determine: {}.", d.model.undetermined.join(", ")));
     }
-    let told = |s: Severity| d.ship.doubts.iter().filter(|t| t.severity == s).count();
-    let (errors, warnings) = (told(Severity::Error), told(Severity::Warning));
+    let count = |s: Severity| d.ship.doubts.iter().filter(|t| t.severity == s).count();
+    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
     if errors + warnings > 0 {
         all.push(format!("The audit of the recordings has {errors} kinds of error and {warnings} kinds of warning, listed under ship."));
     }

@@ -63,7 +63,7 @@ pub struct Causes {
 }
 
 impl Causes {
-    /// What a document of a diagnosis says, see [`crate::report`] for its keys; `source` tells where it is from.
+    /// What a document of a diagnosis says, see [`crate::report`] for its keys; `source` names its origin.
     pub fn new(model: &Model, document: &Value, source: String) -> Self {
         let list = |key: &str| document[key].as_array().cloned().unwrap_or_default();
         let (found, withdrawn) = (list("findings"), list("withdrawn"));
@@ -101,7 +101,7 @@ impl Causes {
     }
 }
 
-/// What is not excluded: what cannot be told from a finding, what was tried and is not named, and what other parameters absorb.
+/// What is not excluded: what cannot be distinguished from a finding, what was tried and is not named, and what other parameters absorb.
 fn open(
     model: &Model,
     absorbed: &[Value],
@@ -123,11 +123,11 @@ fn open(
     all.map(|(mechanism, why)| Open { title: title(model, &mechanism), mechanism, why }).collect()
 }
 
-/// The plain words for a mechanism; its name when the catalogue of the model does not hold it.
+/// The plain words for a mechanism; its name when it is not in the catalogue of the model.
 fn title(model: &Model, name: &str) -> String {
     match name {
         PUSH => PUSH_TITLE.to_owned(),
-        GENERIC => "something that the catalogue does not hold".to_owned(),
+        GENERIC => "something that is not in the catalogue".to_owned(),
         _ => {
             let mut mechanisms = model.catalogue().iter().flat_map(|t| t.info().mechanisms);
             mechanisms.find(|m| m.name == name).map_or(name, |m| m.title).to_owned()

@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn impulse_is_kept_and_a_hull_that_is_driven_by_its_resistance_is_told() {
+    fn impulse_is_kept_and_a_hull_that_is_driven_by_its_resistance_is_reported() {
         let [momentum, energy] = turn(34187.0).try_into().unwrap();
         assert!(momentum.passed && momentum.number < 1e-4, "{momentum:?}");
         assert!(energy.passed && energy.number == 0.0, "{energy:?}");

@@ -1,5 +1,5 @@
 //! The dossier as one document: its sections in the order of the procedure, and what is missing in each.
-//! It holds and computes nothing; the parts are made in the other files.
+//! It only lists them; the parts are made in the other files.
 
 use super::causes::Causes;
 use super::claim::Claim;

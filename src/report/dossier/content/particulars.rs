@@ -191,9 +191,9 @@ fn doubts(audit: &StudyAudit) -> Vec<Told> {
         let kind = kinds.entry((std::cmp::Reverse(issue.severity), issue.fault)).or_insert((BTreeSet::new(), issue));
         kind.0.extend(run);
     }
-    let told = |((severity, fault), (runs, issue)): (_, (BTreeSet<&str>, &Issue))| {
+    let doubt = |((severity, fault), (runs, issue)): (_, (BTreeSet<&str>, &Issue))| {
         let std::cmp::Reverse(severity) = severity;
         Told { severity, fault, recordings: runs.len(), text: issue.text.clone() }
     };
-    kinds.into_iter().map(told).collect()
+    kinds.into_iter().map(doubt).collect()
 }

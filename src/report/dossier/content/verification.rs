@@ -108,11 +108,11 @@ fn derivatives(model: &Model, runs: &[Run], fit: &FitSettings) -> Result<Vec<Che
     if free.is_empty() {
         return Err("derivatives: the model has no free parameter, so that there is no derivative to check".into());
     }
-    let told = |e: crate::fit::FitError| format!("derivatives: {e}");
+    let failed = |e: crate::fit::FitError| format!("derivatives: {e}");
     let diverged = || "derivatives: a simulation diverges, so that the cost has no derivative".to_owned();
     let cost = |derivatives| {
         let options = crate::fit::CostOptions { derivatives, ..fit.cost_options() };
-        Cost::new(model, runs, options).map_err(told)
+        Cost::new(model, runs, options).map_err(failed)
     };
     let p: Vec<f64> = free.iter().map(|i| model.parameters[*i].value).collect();
     let exact = cost(Derivatives::Lanes)?;

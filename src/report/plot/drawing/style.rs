@@ -34,7 +34,7 @@ pub(in crate::report::plot) const fn bold(size: f32) -> Type {
     Type { size, bold: true, color: INK }
 }
 
-/// Breaks a text at its spaces into at most `most` lines of `width` px; tells whether it did so without cutting anything.
+/// Breaks a text at its spaces into at most `most` lines of `width` px; returns whether it did so without cutting anything.
 pub(in crate::report::plot) fn fit_lines(
     text: &str,
     size: f32,

@@ -87,7 +87,7 @@ pub(in crate::report::plot) fn ruler(
                 }
                 step = step_of(axis, step * 1.01);
             }
-            // Two ticks hardly tell a scale: finer again, if the labels then do not touch. A step beyond a range that was given asks
+            // Two ticks hardly show a scale: finer again, if the labels then do not touch. A step beyond a range that was given asks
             // for no ticks.
             let asked = axis.range.is_none() || !axis.every.is_some_and(|every| every > hi - lo);
             for _ in 0..4 {
@@ -142,7 +142,7 @@ fn linear_ticks(lo: f64, hi: f64, step: f64) -> (Vec<(f64, String)>, Option<Stri
     (ticks, (exponent != 0).then(|| format!("×10{}", superscript(exponent))))
 }
 
-/// Decimals needed to tell neighbouring multiples of `step` apart and to print them exactly.
+/// Decimals needed to distinguish neighbouring multiples of `step` and to print them exactly.
 fn decimals_of(step: f64) -> usize {
     (0..12)
         .find(|&d| {

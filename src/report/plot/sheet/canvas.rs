@@ -1,5 +1,5 @@
 //! A sheet that is drawn on in pixels, y down: filled polygons, stroked paths, discs and text, cut to a clip and kept in order.
-//! It knows nothing of axes or data, and makes no image itself: `raster` and `svg` do.
+//! It has no axes and no data, and makes no image itself: `raster` and `svg` do.
 //!
 //! Coordinates stay fractional until then, which is what keeps slow curves and ship outlines smooth.
 

@@ -1,5 +1,5 @@
-//! A sheet of shapes and text, and the files that hold it: PNG, SVG, PDF.
-//! It knows no figure.
+//! A sheet of shapes and text, and the files it is written to: PNG, SVG, PDF.
+//! It depends on no figure.
 
 pub(super) mod canvas;
 mod compact;
