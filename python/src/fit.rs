@@ -13,6 +13,7 @@ use serde_json::Value;
 use std::path::PathBuf;
 use trimtab::FitSettings;
 use trimtab::files::suggestion;
+use trimtab::files::written::in_words;
 use trimtab::fit::FitError;
 use trimtab::numbers::ranges::Limited;
 use trimtab::recording::Run;
@@ -52,7 +53,8 @@ impl Settings<'_, '_> {
             }
         }
         let settings: FitSettings = serde_json::from_value(whole).map_err(|e| {
-            PyValueError::new_err(format!("settings of the fit: {e}; `trimtab help study` lists the keys of [fit]"))
+            let words = in_words(&e.to_string());
+            PyValueError::new_err(format!("settings of the fit: {words}; `trimtab help study` lists the keys of [fit]"))
         })?;
         settings.limits().map_err(|e| PyValueError::new_err(format!("settings of the fit: {e}")))?;
         Ok(settings)
@@ -74,9 +76,13 @@ fn merge(into: &mut Value, from: Value) {
 /// Where a running fit stands.
 #[pyclass(module = "trimtab", frozen, get_all)]
 pub struct FitProgress {
-    /// Iteration of the solver.
+    /// Which solve of the fit this is, the first being 1: a fit solves in stages, and checks its optimum by a further solve.
+    pub solve: usize,
+    /// What this solve minimises the cost of: "all runs", "a few runs" or "pieces of the runs", or "check" for the check of an optimum.
+    pub part: &'static str,
+    /// Iteration of the solver, from 0 in each solve.
     pub iteration: usize,
-    /// Cost, priors included.
+    /// Cost of that part, priors included.
     pub cost: f64,
     /// Largest violation of a constraint, scaled.
     pub violation: f64,
@@ -90,8 +96,8 @@ pub struct FitProgress {
 impl FitProgress {
     fn __repr__(&self) -> String {
         format!(
-            "<FitProgress: iteration {}, cost {:.6e}, optimality {:.1e}>",
-            self.iteration, self.cost, self.optimality
+            "<FitProgress: solve {} ({}), iteration {}, cost {:.6e}, optimality {:.1e}>",
+            self.solve, self.part, self.iteration, self.cost, self.optimality
         )
     }
 }
@@ -121,6 +127,8 @@ pub fn run(
                 return !line.is_stopped();
             }
             line.tell(FitProgress {
+                solve: p.solve,
+                part: p.part,
                 iteration: p.iteration,
                 cost: p.cost,
                 violation: p.violation,

@@ -320,6 +320,9 @@ impl<'t> Task<'t> {
         let evaluations = Evaluations::of(&innovations);
         let mut stage = self.likelihood_stage(&evaluations, &innovations, priors);
         stage.max_iterations = stage.max_iterations.min(most.unwrap_or(usize::MAX));
+        if posterior.runs.len() < self.runs.len() {
+            stage.part = stages::FEW;
+        }
         let from = From { p, near: rounds.multipliers.is_some(), multipliers: rounds.multipliers.take() };
         let before = stage.total(p);
         let descent = self.descend(&stage, from, &mut Curvature::unknown(p.len()), shared)?;

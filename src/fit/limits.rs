@@ -58,6 +58,7 @@ pub(super) struct Watch<'a> {
     most_iterations: usize,
     most_evaluations: usize,
     most_seconds: f64,
+    solves: usize,
     iterations: usize,
     evaluations: usize,
     stop: Option<Stop>,
@@ -75,6 +76,7 @@ impl<'a> Watch<'a> {
             most_iterations: settings.max_iterations,
             most_evaluations: settings.max_evaluations,
             most_seconds: settings.max_seconds,
+            solves: 0,
             iterations: 0,
             evaluations: 0,
             stop: None,
@@ -85,11 +87,17 @@ impl<'a> Watch<'a> {
 
     /// Begins a solve.
     pub fn begin(&mut self) {
+        self.solves += 1;
         self.least = [f64::INFINITY; 3];
         self.progressed = self.evaluations;
         if self.stop == Some(Stop::NoProgress) {
             self.stop = None;
         }
+    }
+
+    /// Solves so far, the present one included.
+    pub fn solves(&self) -> usize {
+        self.solves
     }
 
     /// What ended the present solve, where something did.

@@ -17,9 +17,13 @@ use std::rc::Rc;
 /// Where a running fit stands.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress<'a> {
-    /// Iteration of the solver.
+    /// Which solve of the fit this is, the first being 1: a fit solves in stages, and checks its optimum by a further solve.
+    pub solve: usize,
+    /// What this solve minimises the cost of: `all runs`, `a few runs` or `pieces of the runs`, or `check` for the check of an optimum.
+    pub part: &'static str,
+    /// Iteration of the solver, from 0 in each solve.
     pub iteration: usize,
-    /// Cost, priors included.
+    /// Cost of that part, priors included.
     pub cost: f64,
     /// Largest violation of a constraint, scaled.
     pub violation: f64,
@@ -87,6 +91,8 @@ pub(super) struct Settled {
 pub(super) struct Stage<'a> {
     /// The objective that is minimised: the task's, or that of its runs cut into shorter pieces.
     pub evaluations: &'a Evaluations<'a>,
+    /// What that is, as [`Progress::part`] says it.
+    pub part: &'static str,
     pub priors: &'a Priors,
     pub scaling: &'a Scaling,
     pub hessian: Hessian,
@@ -284,6 +290,8 @@ impl Nlp for Problem<'_, '_, '_> {
         self.trials = report.trials;
         let cost = report.objective / self.factor();
         let wanted = (self.progress)(&Progress {
+            solve: self.watch.solves(),
+            part: self.stage.part,
             iteration: report.iteration,
             cost,
             violation: report.inf_pr,

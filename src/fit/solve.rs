@@ -53,6 +53,10 @@ const CHECK_ROOM: f64 = 0.9;
 const CHECK_ITERATIONS: usize = 50;
 const CHECK_LEFT: f64 = 1e-4;
 
+/// The parts of a fit, as [`Progress::part`] says them.
+const ALL: &str = "all runs";
+const CHECK: &str = "check";
+
 /// Objective, as the solver counts it, below which nothing is left to be found: 1e-6 of what residuals are measured in.
 const NOTHING_LEFT: f64 = 1e-12;
 
@@ -163,7 +167,17 @@ impl Task<'_> {
     pub(super) fn stage<'a>(&'a self, evaluations: &'a Evaluations<'a>, priors: &'a Priors) -> Stage<'a> {
         let FitSettings { hessian, tolerance, max_iterations, .. } = *self.settings;
         let (scaling, settled, restarts) = (&self.scaling, None, RESTARTS);
-        Stage { evaluations, priors, scaling, hessian, tolerance, max_iterations, settled, restarts }
+        Stage {
+            evaluations,
+            part: ALL,
+            priors,
+            scaling,
+            hessian,
+            tolerance,
+            max_iterations,
+            settled,
+            restarts,
+        }
     }
 
     /// A feasible point of lower cost that a second solve finds from a disturbed point near an optimum.
@@ -197,6 +211,7 @@ impl Task<'_> {
         let scaling = Scaling::of(scales, &self.rows);
         let second = Stage {
             evaluations: search.evaluations,
+            part: CHECK,
             scaling: &scaling,
             hessian: Hessian::LimitedMemory,
             tolerance: (2.0 * CHECK_LEFT * BETTER * local.value).sqrt().max(stage.tolerance),
@@ -275,6 +290,7 @@ impl Task<'_> {
             priors.weight = self.weight(&cost, value);
             let whole = self.stage(&evaluations, &priors);
             let stage = Stage {
+                part: sample.part(),
                 tolerance: whole.tolerance.max(STAGE_TOLERANCE),
                 max_iterations: whole.max_iterations.min(STAGE_ITERATIONS),
                 ..whole

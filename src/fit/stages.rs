@@ -37,6 +37,9 @@ const MANY_BY_LIKELIHOOD: usize = 24;
 const FEW_BY_LIKELIHOOD: usize = 8;
 const SHARE_BY_LIKELIHOOD: usize = 5;
 
+/// A few of the runs, as [`Progress::part`](super::problem::Progress::part) says it.
+pub(super) const FEW: &str = "a few runs";
+
 /// What a stage fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Sample {
@@ -59,6 +62,14 @@ impl Sample {
         many.then(|| Self::Few(runs / (runs / FEW_SHARE).max(FEW_RUNS)))
     }
 
+    /// What is fitted, as [`Progress::part`](super::problem::Progress::part) says it.
+    pub fn part(self) -> &'static str {
+        match self {
+            Self::Pieces(_) => "pieces of the runs",
+            Self::Few(_) => FEW,
+        }
+    }
+
     /// The runs of the stage with the weights of their whole run.
     ///
     /// # Errors
@@ -72,12 +83,16 @@ impl Sample {
 }
 
 /// Number of parts of the first stage of a fit, 1 for no stages: the fewest parts over which the errors of the start grow no faster than
-/// linearly.
+/// linearly. Of many runs that can all be simulated from the start, a few show how fast errors grow.
 pub(super) fn parts(task: &Task) -> usize {
     let longest = task.runs.iter().map(|r| r.measured.len().saturating_sub(1)).max().unwrap_or(0);
     let longest = task.cost.ranks().largest(&[longest as f64])[0] as usize;
+    let few = Sample::few(task).filter(|_| task.start_cost.is_finite());
+    let few = few.and_then(|few| few.draw(task.runs, task.cost.weights()).ok());
+    let (runs, weights) =
+        few.as_ref().map_or((task.runs, task.cost.weights()), |(runs, weights)| (Runs::from(runs), &weights[..]));
     let cost = |parts: usize| {
-        let (pieces, weights) = cut(task.runs, task.cost.weights(), parts).ok()?;
+        let (pieces, weights) = cut(runs, weights, parts).ok()?;
         let cost =
             Cost::weighted(task.cost.ranks(), task.model, Runs::from(&pieces), weights, task.cost_options()).ok()?;
         cost.value(&task.start).map(|c| c * cost.runs() as f64)

@@ -330,10 +330,15 @@ pub(crate) fn labels<'a>(parameters: impl Iterator<Item = (&'a str, &'a str)> + 
     parameters.clone().map(|(symbol, name)| if alone(symbol) { symbol } else { name }).collect()
 }
 
+/// Short names of the free parameters.
+fn names<'a>(task: &Task<'a>) -> Vec<&'a str> {
+    let model = task.model;
+    labels(task.cost.free().iter().map(|i| &model.parameters[*i]).map(|p| (p.info.symbol, p.name.as_str())))
+}
+
 /// The active constraints and bounds, in words.
 fn active(task: &Task, end: &End) -> Vec<Active> {
-    let names =
-        labels(task.cost.free().iter().map(|i| &task.model.parameters[*i]).map(|p| (p.info.symbol, p.name.as_str())));
+    let names = names(task);
     let row = |i: &usize| Active { sentence: task.rows[*i].sentence(&end.p), rule: task.rows[*i].rule };
     let bound = |(j, side): &(usize, &str)| {
         let (sign, limit) = if *side == "lower" { (">=", task.bounds[*j].0) } else { ("<=", task.bounds[*j].1) };
@@ -344,8 +349,7 @@ fn active(task: &Task, end: &End) -> Vec<Active> {
 
 /// Combinations that the data alone determine to no better than one scale unit, the worst first.
 fn undetermined(task: &Task, covariances: &Covariances) -> Vec<Combination> {
-    let names =
-        labels(task.cost.free().iter().map(|i| &task.model.parameters[*i]).map(|p| (p.info.symbol, p.name.as_str())));
+    let names = names(task);
     let by_data = inverse(&covariances.data, &covariances.directions);
     let inflation = match covariances.kind {
         CovarianceKind::Sandwich => covariances.design_effect.unwrap_or(1.0).max(1.0),

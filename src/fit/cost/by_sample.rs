@@ -17,6 +17,13 @@ pub struct Residuals {
     pub slopes: Vec<f64>,
 }
 
+impl Residuals {
+    /// Room for so many residuals with so many derivatives each.
+    fn of(residuals: usize, slopes: usize) -> Self {
+        Self { values: Vec::with_capacity(residuals), slopes: Vec::with_capacity(residuals * slopes) }
+    }
+}
+
 /// What one residual compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Compared {
@@ -72,22 +79,31 @@ impl Cost<'_> {
                 Some(())
             },
         )?;
-        let mut all = Residuals::default();
+        let mut all = Residuals::of(by_run.iter().map(|own| own.values.len()).sum(), self.slopes(with_slopes));
         for own in by_run {
-            all.values.extend(own.values);
-            all.slopes.extend(own.slopes);
+            all.values.extend_from_slice(&own.values);
+            all.slopes.extend_from_slice(&own.slopes);
         }
         Some(all)
+    }
+
+    /// Derivatives of each residual.
+    fn slopes(&self, with_slopes: bool) -> usize {
+        if with_slopes { self.free().len() } else { 0 }
     }
 
     /// The residuals of each run of a block; `None` where one diverges.
     fn of_block<P: Plain>(&self, block: &Block<P>, p: &[f64], with_slopes: bool) -> Option<Vec<Residuals>> {
         let scale = (self.runs() as f64).sqrt().recip();
-        let mut lanes = vec![Residuals::default(); block.runs.len()];
+        let weighs = |lane: usize| block.root.iter().flatten().filter(|root| root.in_lane(lane) > 0.0).count();
+        let room = |lane: usize| Residuals::of(weighs(lane), self.slopes(with_slopes));
+        let mut lanes: Vec<Residuals> = (0..block.runs.len()).map(room).collect();
+        let mut rows: Vec<[P; STATES]> = Vec::with_capacity(self.slopes(with_slopes));
         let mut fastest = 0.0_f64;
         let mut take = |k: usize, y: &[P; STATES], slopes: &[StateSlope<P>]| {
             let residuals = block.residuals(k, y);
-            let rows: Vec<[P; STATES]> = slopes.iter().map(|slope| block.row(k, slope)).collect();
+            rows.clear();
+            rows.extend(slopes.iter().map(|slope| block.row(k, slope)));
             for (lane, own) in lanes.iter_mut().enumerate() {
                 if block.root[k][3].in_lane(lane) > 0.0 {
                     fastest = fastest.max(y[3].in_lane(lane).hypot(y[4].in_lane(lane)));
