@@ -441,6 +441,35 @@ fn what_can_be_read_in_two_ways_is_asked() {
     contains_all(&said.to_string(), &["is a folder"]);
 }
 
+#[test]
+fn a_column_of_text_is_named_where_it_may_be_why_something_is_asked() {
+    let row = |s: &Sample| {
+        let [x, y, _, _, v, r] = s.state;
+        let [before, after] = [vec![s.t, x, y, s.heading()], vec![v, r, s.delta.to_degrees(), 60.0 * s.n]];
+        let numbers = |values: Vec<f64>| values.into_iter().map(|v| v.to_string());
+        numbers(before).chain(["fast".to_owned()]).chain(numbers(after)).collect::<Vec<_>>()
+    };
+    let names = "t|x|y|heading [deg]|u|v|r [rad/s]|rudder [deg]|rpm";
+    let text = "column `u` contains what is no number, such as `fast` in line 2";
+    let text_of = |names: &str| log(names, ",", row);
+    let said = imported("log.csv", text_of(names).as_bytes(), &ImportSettings::default()).unwrap_err();
+    contains_all(
+        &said,
+        &["needed: column `u` contains", text, "and is not used; the unit of column `v`", "`--unit v="],
+    );
+    // A sway velocity is not compared with the speed of the track.
+    let read = imported("log.csv", text_of(&names.replace("|v|", "|v [m/s]|")).as_bytes(), &ImportSettings::default());
+    contains_all(&read.unwrap().notes.join("; "), &[text]);
+    let choices = Choices { columns: [("u".to_owned(), "u".to_owned())].into(), ..Choices::default() };
+    let settings = ImportSettings { choices, session_gap: None };
+    let said = imported("log.csv", text_of(names).as_bytes(), &settings).unwrap_err();
+    contains_all(&said, &["--column u=u: ", text, "; write numbers there"]);
+    // A rudder of text is missing.
+    let rudder = log(NAMES, ",", |s| with(s, &[(7, "hard over".to_owned())]));
+    let said = imported("log.csv", rudder.as_bytes(), &ImportSettings::default()).unwrap_err();
+    contains_all(&said, &["column `Rudder` contains what is no number", "no column is the rudder angle"]);
+}
+
 fn sentence(body: &str) -> String {
     format!("${body}*{:02X}\r\n", body.bytes().fold(0_u8, |sum, b| sum ^ b))
 }

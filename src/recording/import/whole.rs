@@ -4,7 +4,8 @@
 use super::columns::choose::{Choices, Chosen, Unused, choose};
 use super::columns::fills::take_out;
 use super::columns::log::{Clock, Log, Meaning};
-use super::columns::take::{Signals, Taken, take};
+use super::columns::names::meaning;
+use super::columns::take::{Signals, Taken, needed, take};
 use super::error::ImportError;
 use super::formats::clock::written;
 use super::formats::read::read;
@@ -81,14 +82,15 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
         logs.extend(read(file, &settings.choices)?);
     }
     logs.iter_mut().for_each(|log| blank_fills(log, &settings.choices));
-    let shifts = shifts(&logs, &settings.choices)?;
+    refuse_texts(&logs, &settings.choices)?;
+    let shifts = shifts(&logs, &settings.choices).map_err(|error| with_texts(error, &logs))?;
     for (log, shift) in logs.iter_mut().zip(&shifts) {
         log.columns.iter_mut().for_each(|c| c.t.iter_mut().for_each(|t| *t += shift));
     }
     let (chosen, unused) = choose(&logs, &settings.choices)?;
-    let mut signals = take(&chosen, &settings.choices)?;
+    let mut signals = take(&chosen, &settings.choices).map_err(|error| with_texts(error, &logs))?;
     signals.unused.extend(unused);
-    missing(&chosen, &signals, &logs, &settings.choices.driven)?;
+    missing(&chosen, &signals, &logs, &settings.choices.driven).map_err(|error| with_texts(error, &logs))?;
     mend_heading(&mut signals);
     let (table, filled) = rows(&signals);
     let longest = settings.session_gap.unwrap_or(SESSION_GAP);
@@ -165,6 +167,32 @@ fn blank_fills(log: &mut Log, choices: &Choices) {
                 "column `{name}` contains {fill} in {count} lines, far from all other values; taken as missing"
             ));
         }
+    }
+}
+
+/// Refuses a column that the user names and that is one of text.
+fn refuse_texts(logs: &[Log], choices: &Choices) -> Result<(), ImportError> {
+    for (quantity, column) in choices.columns.iter().filter(|(quantity, _)| Meaning::from_name(quantity).is_some()) {
+        let has_numbers = logs.iter().flat_map(|log| &log.columns).any(|c| c.name.eq_ignore_ascii_case(column));
+        let text = logs.iter().flat_map(|log| &log.texts).find(|(name, _)| name.eq_ignore_ascii_case(column));
+        if let Some((_, words)) = text.filter(|_| !has_numbers) {
+            return Err(ImportError::Choice(format!("--column {quantity}={column}: {words}; write numbers there")));
+        }
+    }
+    Ok(())
+}
+
+/// What files lack or contradict, after the columns of text whose names are those of what every study needs: they may be the reason.
+fn with_texts(error: ImportError, logs: &[Log]) -> ImportError {
+    let mut texts: BTreeMap<&str, &str> = BTreeMap::new();
+    for (name, words) in logs.iter().flat_map(|log| &log.texts).filter(|(name, _)| meaning(name).is_some_and(needed)) {
+        texts.entry(name).or_insert(words);
+    }
+    let told = texts.into_values().map(|words| format!("{words}, and is not used"));
+    match error {
+        ImportError::Undecided(asked) => ImportError::Undecided(told.chain(asked).collect()),
+        ImportError::Choice(words) => ImportError::Choice(told.chain([words]).collect::<Vec<_>>().join("; ")),
+        error => error,
     }
 }
 

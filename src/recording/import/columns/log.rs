@@ -26,6 +26,8 @@ pub struct Log {
     pub clock: Clock,
     /// Its columns, none of them a time.
     pub columns: Vec<Column>,
+    /// Its columns of text, which are not used: the name of each, and a sentence that shows one of its fields.
+    pub texts: Vec<(String, String)>,
     /// Notes on the file: lines left out, times repaired.
     pub notes: Vec<String>,
 }

@@ -122,6 +122,8 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
             Channel::Command(_) => other(*meaning, columns, given(*meaning)?.as_ref())
                 .map(|verdict| by_its_name(verdict, columns, channel)),
             _ if signals.by.contains_key(meaning) || signals.is_asked(*meaning) => continue,
+            // The unit of the surge velocity is that of both.
+            Channel::V if signals.is_asked(Meaning::Channel(Channel::U)) => continue,
             _ => other(*meaning, columns, given(*meaning)?.as_ref()).map(|verdict| referred(verdict, channel)),
         };
         signals.put(*meaning, columns, verdict);
@@ -200,7 +202,7 @@ fn names_north(columns: &[&Column]) -> bool {
 }
 
 /// Channels without which nothing can be simulated, or which measure the motion: their unit must be known.
-fn needed(meaning: Meaning) -> bool {
+pub fn needed(meaning: Meaning) -> bool {
     use Channel::{Delta, N, Psi, R, U, V, X, Y};
     match meaning {
         Meaning::Channel(channel) => {
@@ -228,7 +230,12 @@ impl Signals {
                 self.list(meaning, columns, &signal, tidied, &verdict.unit, verdict.evidence);
                 self.by.insert(meaning, signal);
             }
-            Err(question) if needed(meaning) => self.asked.push(question),
+            Err(question) if needed(meaning) => {
+                // Two parts of one speed share the question.
+                if !self.asked.contains(&question) {
+                    self.asked.push(question);
+                }
+            }
             Err(question) => self.unused.push(Unused { column: name.to_owned(), why: question }),
         }
     }
@@ -335,6 +342,9 @@ impl Signals {
             }
             size.v.iter_mut().for_each(|v| *v = v.abs());
             let name = columns.first().map_or("", |c| c.name.as_str());
+            // The second part alone, a sway velocity, is not the speed of the ship: the track says nothing of its unit.
+            let nothing = Known::default();
+            let known = if parts.len() == 1 && *meaning != first { &nothing } else { known };
             let verdict = speed(*meaning, name, &size, given(*meaning, columns, choices)?.as_ref(), known);
             for (meaning, columns) in parts {
                 self.put(meaning, columns, verdict.clone());

@@ -365,7 +365,8 @@ pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Vec<Log>, ImportError> {
     let format = format!("NMEA 0183; time is {how}");
     let log = |pass: Range<usize>| {
         let columns = columns(&records[pass.clone()], &times[pass]);
-        Log { path: path.to_owned(), format: format.clone(), clock, columns, notes: std::mem::take(&mut notes) }
+        let notes = std::mem::take(&mut notes);
+        Log { path: path.to_owned(), format: format.clone(), clock, columns, texts: Vec::new(), notes }
     };
     Ok(passes.into_iter().map(log).collect())
 }

@@ -63,6 +63,7 @@ pub fn read_parquet(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<
         )));
     }
     cells.iter_mut().for_each(Cells::read_texts);
+    let texts: Vec<(String, String)> = cells.iter().filter_map(|c| Some((c.name.clone(), c.told()?))).collect();
     let shared = rounded(&cells, &times).then(|| spread(&mut times)).flatten();
     let spread = shared.map_or(String::new(), |k| format!(", rounded: {k} rows share a time and are spread over it"));
     let runs = passes(&times, |before, after| {
@@ -86,7 +87,8 @@ pub fn read_parquet(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<
             column
         };
         let columns = cells.iter().map(column).filter(|c| !c.v.is_empty()).collect();
-        Log { path: path.to_owned(), format: format.clone(), clock, columns, notes: std::mem::take(&mut notes) }
+        let (texts, notes) = (texts.clone(), std::mem::take(&mut notes));
+        Log { path: path.to_owned(), format: format.clone(), clock, columns, texts, notes }
     };
     Ok(runs.into_iter().map(log).collect())
 }
@@ -97,6 +99,14 @@ impl Cells {
         if self.values.is_empty() {
             self.values = self.texts.iter().map(|text| number(text, true).unwrap_or(f64::NAN)).collect();
         }
+    }
+
+    /// A sentence about a column of which no field is a number, with one that should be.
+    fn told(&self) -> Option<String> {
+        let wrong = |text: &&String| number(text, true).is_none();
+        let (row, text) = self.texts.iter().enumerate().find(|(_, text)| wrong(text))?;
+        let none = self.values.iter().all(|v| v.is_nan());
+        none.then(|| format!("column `{}` contains what is no number, such as `{text}` in row {}", self.name, row + 1))
     }
 
     /// The values of some rows.

@@ -32,6 +32,8 @@ struct Table<'a> {
     decimal_comma: bool,
     /// Number and fields of each line of data.
     rows: Vec<(usize, Vec<&'a str>)>,
+    /// Columns of text: name and a sentence about each.
+    texts: Vec<(String, String)>,
     notes: Vec<String>,
 }
 
@@ -60,7 +62,15 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
     let decimal =
         if table.decimal_comma && layout.delimiter != Delimiter::Character(',') { " and decimal commas" } else { "" };
     let format = format!("text with {}{decimal}; time is {how}", layout.delimiter.words());
-    let log = |columns, notes| Log { path: path.to_owned(), format: format.clone(), clock, columns, notes };
+    let texts = std::mem::take(&mut table.texts);
+    let log = |columns, notes| Log {
+        path: path.to_owned(),
+        format: format.clone(),
+        clock,
+        columns,
+        texts: texts.clone(),
+        notes,
+    };
     let runs = runs(&table, &columns, clock, &t);
     if let [_, second, ..] = runs.as_slice() {
         let line = table.rows[second.start].0;
@@ -206,7 +216,7 @@ fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Result<Table<'a>
         );
     }
     let decimal_comma = commas(path, &rows, layout)?;
-    Ok(Table { path, names, decimal_comma, rows, notes })
+    Ok(Table { path, names, decimal_comma, rows, texts: Vec::new(), notes })
 }
 
 /// Whether a comma separates fractions.
@@ -360,7 +370,7 @@ fn time_field(table: &Table<'_>, wanted: Option<&str>) -> Result<usize, ImportEr
 /// understood. Fields that are no number are reported.
 fn columns(table: &mut Table<'_>, used: &[usize], times: &[f64]) -> Vec<(Column, Vec<f64>)> {
     let mut found: Vec<(usize, Column, Vec<f64>)> = Vec::new();
-    let mut others = Vec::new();
+    let (mut others, mut of_text) = (Vec::new(), Vec::new());
     let mut notes = Vec::new();
     for field in (0..table.names.len()).filter(|f| !used.contains(f)) {
         match column(table, field, &mut notes) {
@@ -387,14 +397,16 @@ fn columns(table: &mut Table<'_>, used: &[usize], times: &[f64]) -> Vec<(Column,
             found[at].2.iter_mut().zip(signs).for_each(sign);
         } else if let Some((row, text)) =
             texts().enumerate().filter(|(row, _)| timed(row)).find(|(_, t)| number(t, true).is_none())
-            && meaning(name).is_some()
         {
             let line = table.rows[row].0;
-            notes.push(format!(
-                "column `{name}` contains what is no number, such as `{text}` in line {line}, and is not used"
-            ));
+            let words = format!("column `{name}` contains what is no number, such as `{text}` in line {line}");
+            if meaning(name).is_some() {
+                notes.push(format!("{words}, and is not used"));
+            }
+            of_text.push((name.clone(), words));
         }
     }
+    table.texts.append(&mut of_text);
     table.notes.append(&mut notes);
     found.into_iter().map(|(_, column, values)| (column, values)).collect()
 }
