@@ -8,6 +8,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use trimtab::files::suggestion;
+use trimtab::numbers::ranges::{Limited, OutOfRange};
 
 /// A document as dictionaries and lists of Python.
 pub fn document<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
@@ -18,10 +20,49 @@ pub fn document<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<
 /// A word of a setting, such as `"likelihood"`, as the value it stands for.
 pub fn word<T: DeserializeOwned>(name: &str, given: &str, known: &[&str]) -> PyResult<T> {
     serde_json::from_value(serde_json::Value::from(given)).map_err(|_| {
-        let near = trimtab::files::suggestion(given, known.iter().copied());
+        let near = suggestion(given, known.iter().copied());
         let all: Vec<String> = known.iter().map(|k| format!("\"{k}\"")).collect();
         PyValueError::new_err(format!("{name} = \"{given}\"{near}: give one of {}", all.join(", ")))
     })
+}
+
+/// Words that a caller gives: a list of them, or one alone.
+#[derive(Default)]
+pub struct Words(pub Vec<String>);
+
+impl FromPyObject<'_, '_> for Words {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        match given.extract::<String>() {
+            Ok(one) => Ok(Self(vec![one])),
+            Err(_) => given.extract::<Vec<String>>().map(Self),
+        }
+    }
+}
+
+/// What a seed must be.
+pub const SEEDS: &str = "between 0 and 18446744073709551615";
+
+/// A whole number that a caller gives. That of Python may be negative, and of any size.
+pub fn whole_number<T: TryFrom<i128>>(name: &str, given: i128, allowed: &str) -> PyResult<T> {
+    T::try_from(given).map_err(|_| PyValueError::new_err(format!("{name} = {given} must be {allowed}")))
+}
+
+/// A number of things that a caller gives; of one that no setting can be, it says what the settings say of `none` of these things.
+pub fn counted(given: i128, none: &impl Limited) -> PyResult<usize> {
+    usize::try_from(given).map_err(|_| match none.limits() {
+        Err(error) => PyValueError::new_err(OutOfRange { value: given as f64, ..error }.to_string()),
+        Ok(()) => fault("a setting that must be 1 or more may be 0"),
+    })
+}
+
+/// Refuses keywords that a function does not have, in the words of Python and with the one that was probably meant.
+pub fn no_others(function: &str, others: Option<&Bound<'_, PyDict>>, known: &[&str]) -> PyResult<()> {
+    let Some((name, _)) = others.and_then(|others| others.iter().next()) else { return Ok(()) };
+    let name: String = name.extract()?;
+    let near = suggestion(&name, known.iter().copied());
+    Err(PyTypeError::new_err(format!("{function}() got an unexpected keyword argument '{name}'{near}")))
 }
 
 /// A vector of numbers from an array, a list or anything that numpy can make one of.
@@ -36,17 +77,23 @@ pub fn vector(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     Ok(array.as_array().to_vec())
 }
 
-/// A vector of so many finite numbers, one for each of `names`.
-pub fn finite(name: &str, given: &Bound<'_, PyAny>, names: &[String]) -> PyResult<Vec<f64>> {
+/// A vector of so many numbers, one for each of `names`.
+pub fn numbers(name: &str, given: &Bound<'_, PyAny>, names: &[String]) -> PyResult<Vec<f64>> {
     let values = vector(name, given)?;
-    if values.len() != names.len() {
-        return Err(PyValueError::new_err(format!(
-            "{name} has {} values, and {} are needed, in this order: {}",
-            values.len(),
-            names.len(),
-            names.join(", ")
-        )));
+    if values.len() == names.len() {
+        return Ok(values);
     }
+    Err(PyValueError::new_err(format!(
+        "{name} has {} values, and {} are needed, in this order: {}",
+        values.len(),
+        names.len(),
+        names.join(", ")
+    )))
+}
+
+/// As [`numbers`], each of them finite.
+pub fn finite(name: &str, given: &Bound<'_, PyAny>, names: &[String]) -> PyResult<Vec<f64>> {
+    let values = numbers(name, given, names)?;
     match values.iter().position(|v| !v.is_finite()) {
         Some(i) => Err(PyValueError::new_err(format!(
             "{name}[{i}] ({}) = {} is not a finite number; replace it",

@@ -5,6 +5,8 @@ use crate::cli::shared::error::CliError;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use std::io::Error;
+use std::path::Path;
 use trimtab::evaluate::maneuver::ManeuverError;
 use trimtab::fit::FitError;
 use trimtab::model::ModelError as LibraryModelError;
@@ -56,6 +58,8 @@ impl Raised for CliError {
             Self::Faulty { fault, .. } => RecordingsError::new_err(
                 words.replace(&format!("`--accept {fault}`"), &format!("`accept=[\"{fault}\"]`")),
             ),
+            // The command writes into a folder of results, a call where it is told to.
+            Self::Write { path, source } => TrimtabError::new_err(unwritten(&path, &source)),
             Self::Fit { .. } => FitFailed::new_err(words),
             Self::Diagnose { .. } => DiagnosisFailed::new_err(words),
             Self::Maneuver { .. } => TrialFailed::new_err(words),
@@ -98,6 +102,45 @@ impl Raised for ManeuverError {
     fn raised(self) -> PyErr {
         TrialFailed::new_err(self.to_string())
     }
+}
+
+/// Why a file could not be written.
+fn unwritten(path: &Path, source: &Error) -> String {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder.filter(|folder| !folder.is_dir()) {
+        Some(folder) => format!("{}: there is no folder {}; make the folder first", path.display(), folder.display()),
+        None => format!("{}: cannot write ({source}); check that the folder is writable", path.display()),
+    }
+}
+
+/// What the audit asks of a column map, for a study that a call has made of tables or logs: unit and column are arguments of the call, and
+/// all else stands in the map that it has written.
+pub fn of_a_call(words: &str) -> String {
+    const MAP: &str = " in a column map";
+    // A map of some runs alone is none that a call writes.
+    let is_whole = |rest: &str| !rest.starts_with(" of th");
+    let words = words.replace("`bridge` in a column map", "`bridge=...`");
+    if let Some((before, rest)) = words.split_once("set `unit` for `")
+        && let Some((channel, rest)) = rest.split_once(&format!("`{MAP}"))
+        && is_whole(rest)
+    {
+        return format!("{before}pass `units={{\"{channel}\": ...}}`{rest}");
+    }
+    let names_a_column = ["name its column", "name it", "name those"].iter().any(|name| words.contains(name));
+    let by = if words.contains("`unit`") {
+        " by `units={...}`"
+    } else if names_a_column {
+        " by `columns={...}`"
+    } else {
+        " in columns.toml beside the study"
+    };
+    let mut parts = words.split(MAP);
+    let mut told = parts.next().unwrap_or_default().to_owned();
+    for rest in parts {
+        told += if is_whole(rest) { by } else { MAP };
+        told += rest;
+    }
+    told
 }
 
 /// Something that cannot happen, if there is no fault in trimtab.

@@ -5,7 +5,7 @@ use crate::convert::vector;
 use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use trimtab::files::suggestion;
-use trimtab::recording::CHANNELS;
+use trimtab::recording::{CHANNELS, Channel, Driven, Quantity};
 use trimtab::ship::state::{Inputs, STATE_NAMES, STATE_UNITS, STATES};
 
 /// Columns beside those that a recording has as they are: name, smallest and largest value, unit and meaning.
@@ -20,25 +20,31 @@ const AROUND: [(&str, [f64; 2], &str); 8] = [
     ("bank", [-10.0, 10.0], "1/y_starboard - 1/y_port in 1/m, 0 in open water"),
 ];
 
-/// Names of the inputs with the limits and the meaning of each.
-fn known() -> Vec<(&'static str, [f64; 2], String)> {
+/// Names of the inputs of a craft with the limits and the meaning of each.
+fn known(driven: &Driven) -> Vec<(&'static str, [f64; 2], String)> {
     let mut blank: Inputs<f64> = Inputs::actuators(0.0, 0.0, 0.0);
-    let recorded: Vec<&str> = blank.recorded().map(|(name, _)| name).collect();
-    let of = |name: &&str| {
-        let unit = match *name {
-            "n" => "in revolutions per second: divide rpm by 60",
-            "delta" => "in rad: numpy.radians converts degrees",
-            _ => "from -1 to 1",
+    let recorded = blank.recorded().filter_map(|(name, _)| Channel::from_name(name));
+    let of = |channel: Channel| {
+        let info = channel.info();
+        let unit = match (channel, info.quantity) {
+            (Channel::Thruster, _) => ", from -1 to 1",
+            (_, Quantity::Rotation) => ", in revolutions per second: divide rpm by 60",
+            (_, Quantity::Angle) => ", in rad: numpy.radians converts degrees",
+            (_, Quantity::Force) => ", in N",
+            (_, Quantity::Moment) => ", in N m",
+            _ => "",
         };
-        let info = CHANNELS.iter().find(|c| c.name == *name)?;
-        Some((info.name, [info.limits.0, info.limits.1], format!("{}, {unit}", info.doc)))
+        (info.name, [info.limits.0, info.limits.1], format!("{}{unit}", info.doc))
     };
     let around = AROUND.iter().map(|(name, limits, about)| (*name, *limits, (*about).to_owned()));
-    recorded.iter().filter_map(of).chain(around).collect()
+    recorded.chain(driven.commands.iter().copied()).map(of).chain(around).collect()
 }
 
 /// What the entry of an input is.
-fn entry<'a>(inputs: &'a mut Inputs<f64>, name: &str) -> Option<&'a mut f64> {
+fn entry<'a>(inputs: &'a mut Inputs<f64>, name: &str, driven: &Driven) -> Option<&'a mut f64> {
+    if let Some(command) = driven.commands.iter().position(|channel| channel.name() == name) {
+        return inputs.commands.get_mut(command);
+    }
     match name {
         "wind_north" => Some(&mut inputs.wind[0]),
         "wind_east" => Some(&mut inputs.wind[1]),
@@ -52,8 +58,8 @@ fn entry<'a>(inputs: &'a mut Inputs<f64>, name: &str) -> Option<&'a mut f64> {
     }
 }
 
-/// The sample period and the inputs at every sample.
-pub fn inputs(given: &Bound<'_, PyAny>, dt: Option<f64>) -> PyResult<(f64, Vec<Inputs<f64>>)> {
+/// The sample period and the inputs of a craft at every sample.
+pub fn inputs(given: &Bound<'_, PyAny>, dt: Option<f64>, driven: &Driven) -> PyResult<(f64, Vec<Inputs<f64>>)> {
     let names: Vec<String> = match given.call_method0("keys") {
         Ok(keys) => keys.try_iter()?.map(|key| key?.extract()).collect::<PyResult<_>>()?,
         Err(_) => {
@@ -63,7 +69,7 @@ pub fn inputs(given: &Bound<'_, PyAny>, dt: Option<f64>) -> PyResult<(f64, Vec<I
             ));
         }
     };
-    let known = known();
+    let known = known(driven);
     let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
     for name in names {
         if name != "t" && !known.iter().any(|(own, ..)| *own == name) {
@@ -81,6 +87,7 @@ pub fn inputs(given: &Bound<'_, PyAny>, dt: Option<f64>) -> PyResult<(f64, Vec<I
         };
         columns.push((name, values));
     }
+    complete(&columns, driven)?;
     let samples = columns.iter().map(|(_, v)| v.len()).max().unwrap_or(0);
     if samples < 2 {
         return Err(PyValueError::new_err(
@@ -97,13 +104,28 @@ pub fn inputs(given: &Bound<'_, PyAny>, dt: Option<f64>) -> PyResult<(f64, Vec<I
     let at = |k: usize| {
         let mut one = Inputs::actuators(start + dt * k as f64, 0.0, 0.0);
         for (name, values) in &columns {
-            if let Some(place) = entry(&mut one, name) {
+            if let Some(place) = entry(&mut one, name, driven) {
                 *place = values[k.min(values.len() - 1)];
             }
         }
         one
     };
     Ok((dt, (0..samples).map(at).collect()))
+}
+
+/// Whether each actuator has its channels: one that is left out would be simulated as one that stands still.
+fn complete(columns: &[(String, Vec<f64>)], driven: &Driven) -> PyResult<()> {
+    let has = |channel: &Channel| columns.iter().any(|(name, _)| name == channel.name());
+    let missing: Vec<Channel> = driven.needs().filter(|channel| !has(channel)).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let each = |of: &dyn Fn(Channel) -> String| missing.iter().map(|channel| of(*channel)).collect::<Vec<_>>();
+    let absent = each(&|channel| format!("no `{}` ({})", channel.name(), channel.info().words)).join(" and ");
+    let still = each(&|channel| format!("\"{}\": 0.0", channel.name())).join(", ");
+    Err(PyValueError::new_err(format!(
+        "inputs: there is {absent}; give a value for every sample or one number for all of them, as in {still} for what stands still"
+    )))
 }
 
 /// Whether a column has a value in its range for every sample.

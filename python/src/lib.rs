@@ -39,16 +39,12 @@ fn command(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
     work::alone(py, || cli::run(arguments))
 }
 
-/// Sets the number of threads of all work that begins from now on; None for the number of processors. Results do not depend on it.
+/// Sets the number of threads of all work that begins from now on, from 1 to 1024; None for the number of processors. Results do not
+/// depend on it.
 #[pyfunction]
 #[pyo3(signature = (count=None))]
-fn set_threads(count: Option<usize>) -> PyResult<()> {
-    match count {
-        Some(0) => {
-            Err(pyo3::exceptions::PyValueError::new_err("0 threads can do nothing: give 1 or more, or None for all"))
-        }
-        _ => work::set_threads(count.unwrap_or(0)),
-    }
+fn set_threads(count: Option<i128>) -> PyResult<()> {
+    work::set_threads(count)
 }
 
 /// The files of the example study, name and text: forty recordings of a simulated container ship of 85 m.

@@ -3,7 +3,7 @@
 
 use crate::cli::fit::fitted_text;
 use crate::cli::shared::error::CliError;
-use crate::convert::{finite, frame, records, word};
+use crate::convert::{SEEDS, counted, finite, frame, records, whole_number, word};
 use crate::errors::Raised;
 use crate::inputs::{inputs, state};
 use crate::ship::Ship;
@@ -21,6 +21,7 @@ use trimtab::files::write_whole;
 use trimtab::model::Prior;
 use trimtab::numbers::ranges::Limited;
 use trimtab::numbers::uncertainty::Uncertainty;
+use trimtab::recording::Driven;
 use trimtab::{Integration, Scenario};
 
 /// A manoeuvring model of one ship: terms (forces with a name, an equation and units) and their parameters.
@@ -246,8 +247,9 @@ impl Model {
     /// Simulates the ship: inputs at K samples to a trajectory of K states.
     ///
     /// `inputs` is a dictionary or a table with the columns `n` [1/s] and `delta` [rad, positive turns to starboard], each an array of
-    /// shape (K,) or one number, and where the model has such terms `thruster` [-1 to 1], `wind_north`, `wind_east`,
-    /// `current_north`, `current_east` [m/s, where it blows and sets to], `waves_north`, `waves_east`, `draught_to_depth`, `bank`.
+    /// shape (K,) or one number, and of a ship with named actuators their channels, such as `port.rate`; a propeller that stands still
+    /// is `"n": 0.0`. Where the model has such terms, `thruster` [-1 to 1], `wind_north`, `wind_east`, `current_north`, `current_east`
+    /// [m/s, where it blows and sets to], `waves_north`, `waves_east`, `draught_to_depth` and `bank` come too, and are 0 without.
     /// The samples are `dt` [s] apart, or at the times `t` [s] of the inputs. `initial_state` is [x, y, psi, u, v, r] in m, rad, m/s.
     /// `theta` gives the free parameters other values. `method` is "euler" (as in the paper) or "rk4", with `substeps` a sample.
     #[pyo3(signature = (inputs, initial_state, *, dt=None, theta=None, method="euler", substeps=1))]
@@ -259,14 +261,15 @@ impl Model {
         dt: Option<f64>,
         theta: Option<&Bound<'_, PyAny>>,
         method: &str,
-        substeps: usize,
+        substeps: i128,
     ) -> PyResult<Trajectory> {
-        let (dt, samples) = self::inputs(inputs, dt)?;
+        let substeps = counted(substeps, &Integration { substeps: 0, ..Integration::default() })?;
+        let model = self.at(theta)?;
+        let (dt, samples) = self::inputs(inputs, dt, &Driven::of(&model.ship))?;
         let start = samples.first().map_or(0.0, |s| s.t);
         let scenario = Scenario { dt, inputs: samples, initial: state(initial_state)? };
         let integration = Integration { method: word("method", method, &["euler", "rk4"])?, substeps };
         integration.limits().map_err(|e| PyValueError::new_err(e.to_string()))?;
-        let model = self.at(theta)?;
         let inner = short(py, || trimtab::simulate(&model, &model.values(), integration, &scenario))?;
         Ok(Trajectory { start, inner })
     }
@@ -284,9 +287,13 @@ impl Model {
         speed: Option<f64>,
         rpm: Option<f64>,
         as_found: bool,
-        draws: Option<usize>,
-        seed: Option<u64>,
+        draws: Option<i128>,
+        seed: Option<i128>,
     ) -> PyResult<Vec<Trial>> {
+        let draws = draws
+            .map(|given| whole_number("draws", given, "0 or more: draws of the covariance, 0 for no intervals"))
+            .transpose()?;
+        let seed = seed.map(|given| whole_number("seed", given, SEEDS)).transpose()?;
         sail(py, self.snapshot(), kind, angle_deg, [speed, rpm], as_found, draws, seed)
     }
 

@@ -1,7 +1,7 @@
 //! What a fit minimises, as a function for anyone's own optimiser: value, exact derivatives, constraints, bounds and scales.
 //! It is the cost that [`trimtab::fit::fit`] minimises, on the same threads; it solves nothing.
 
-use crate::convert::{document, finite, frame, matrix, records, vector};
+use crate::convert::{document, finite, frame, matrix, numbers, records, vector};
 use crate::errors::{FitFailed, Raised, fault};
 use crate::function::{Function, Made, Question};
 use crate::model::Model;
@@ -60,8 +60,8 @@ type PriorTerm = (usize, f64, f64);
 /// x0; the further theta is from there, the more f differs from the likelihood with gains made at theta. `renewed(theta)` makes them
 /// anew, as a fit by likelihood does until it settles.
 ///
-/// `theta` has shape (n,), in the parameters' own units and the order of `names`. Where the model leaves the numbers f is inf, residuals
-/// are inf, and derivatives are NaN.
+/// `theta` has shape (n,), in the parameters' own units and the order of `names`. Where the model leaves the numbers, or `theta` contains
+/// NaN or inf, f is inf, residuals are inf, and derivatives are NaN: nothing is raised, so that an optimiser can go back.
 ///
 /// The residuals r of shape (m,) are scaled so that f = a sum(r**2): grad = 2 a J^T r, gauss_newton = 2 a J^T J. SciPy's `least_squares`
 /// minimises sum(r**2)/2, which has the same minimum.
@@ -180,8 +180,25 @@ impl Objective {
         self.wanted.settings.objective
     }
 
+    /// A point as an optimiser gives it, which may be out of the numbers.
     fn theta(&self, theta: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+        numbers("theta", theta, &self.names)
+    }
+
+    /// A point at which something is made that lasts.
+    fn finite_theta(&self, theta: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
         finite("theta", theta, &self.names)
+    }
+
+    /// What the function gives at a point; `None` where it gives nothing, as out of the numbers. Optimisers go there: after an infinite
+    /// value the line search of L-BFGS-B asks at NaN.
+    fn at<T: Send>(
+        &self,
+        py: Python<'_>,
+        theta: &[f64],
+        work: impl FnOnce(&Function) -> Option<T> + Send,
+    ) -> PyResult<Option<T>> {
+        if theta.iter().all(|p| p.is_finite()) { self.on_function(py, work) } else { Ok(None) }
     }
 
     /// Value, gradient and Gauss-Newton matrix of the data's part, from the last evaluation where that was here.
@@ -189,7 +206,7 @@ impl Objective {
         if let Some(known) = self.known(theta) {
             return Ok(Some(known));
         }
-        let Some(new) = self.on_function(py, |function| function.quadratic(theta))? else { return Ok(None) };
+        let Some(new) = self.at(py, theta, |function| function.quadratic(theta))? else { return Ok(None) };
         let new = Arc::new(new);
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some((theta.to_vec(), Arc::clone(&new)));
         Ok(Some(new))
@@ -303,12 +320,12 @@ impl Objective {
         self.held.borrow_owner().runs.len()
     }
 
-    /// The value, without a unit; inf where the model leaves the numbers.
+    /// The value, without a unit; inf where the model leaves the numbers, or `theta` does.
     fn f(&self, py: Python<'_>, theta: &Bound<'_, PyAny>) -> PyResult<f64> {
         let theta = self.theta(theta)?;
         let data = match self.known(&theta) {
             Some(known) => Some(known.value),
-            None => self.on_function(py, |function| function.value(&theta))?,
+            None => self.at(py, &theta, |function| function.value(&theta))?,
         };
         Ok(data.map_or(f64::INFINITY, |value| value + self.prior_value(&theta)))
     }
@@ -346,7 +363,7 @@ impl Objective {
             ));
         }
         let theta = self.theta(theta)?;
-        let data = self.on_function(py, |function| function.hessian(&theta))?;
+        let data = self.at(py, &theta, |function| function.hessian(&theta))?;
         self.curvature(py, data)
     }
 
@@ -355,7 +372,7 @@ impl Objective {
     /// inf where the model leaves the numbers.
     fn residuals<'py>(&self, py: Python<'py>, theta: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let theta = self.theta(theta)?;
-        let values = match self.on_function(py, |function| function.residuals_at(&theta))? {
+        let values = match self.at(py, &theta, |function| function.residuals_at(&theta))? {
             Some(own) => own.values.into_iter().chain(self.prior_residuals(&theta)).collect(),
             None => vec![f64::INFINITY; self.count()],
         };
@@ -366,7 +383,7 @@ impl Objective {
     fn jacobian<'py>(&self, py: Python<'py>, theta: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let theta = self.theta(theta)?;
         let (n, m) = (self.names.len(), self.count());
-        let Some(own) = self.on_function(py, |function| function.jacobian_at(&theta))? else {
+        let Some(own) = self.at(py, &theta, |function| function.jacobian_at(&theta))? else {
             return matrix(py, m, n, vec![f64::NAN; m * n]);
         };
         let mut slopes = own.slopes;
@@ -378,7 +395,8 @@ impl Objective {
         matrix(py, m, n, slopes)
     }
 
-    /// What each residual compares, as records with run, sample and channel (x, y, psi, u, v, r), or prior and the parameter's name.
+    /// What each residual compares, as tuples: (run, sample, channel) with the channel x, y, psi, u, v or r, and ("prior", None, parameter)
+    /// of a prior.
     fn labels(&self, py: Python<'_>) -> PyResult<Vec<(String, Option<usize>, String)>> {
         let compared =
             self.on_function(py, |function| function.compared())?.ok_or_else(|| fault("the runs cannot be read"))?;
@@ -415,7 +433,7 @@ impl Objective {
     /// The estimate of the noise is a local one, and another start may find another: `noise`, such as `Fit.noise`, is taken as it is.
     #[pyo3(signature = (theta, *, noise=None))]
     fn renewed(&self, py: Python<'_>, theta: &Bound<'_, PyAny>, noise: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
-        let at = self.theta(theta)?;
+        let at = self.finite_theta(theta)?;
         let Question { model, runs, made } = self.held.borrow_owner();
         let Some(made) = made else {
             return Err(PyValueError::new_err(
@@ -434,7 +452,7 @@ impl Objective {
 
     /// The model with its free parameters at `theta`.
     fn model_at(&self, theta: &Bound<'_, PyAny>) -> PyResult<Model> {
-        let theta = self.theta(theta)?;
+        let theta = self.finite_theta(theta)?;
         let mut model = self.wanted.model.clone();
         for (i, value) in self.held.borrow_owner().model.free().into_iter().zip(theta) {
             model.parameters[i].value = value;
@@ -539,7 +557,7 @@ impl Constraints {
         self.quantities.clone()
     }
 
-    /// By how much each row is broken at `theta`, 0 where it is kept, shape (rows,).
+    /// By how much each row is broken at `theta`, 0 where it is kept, shape (rows,); NaN where `theta` is.
     fn violation<'py>(&self, py: Python<'py>, theta: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let theta = vector("theta", theta)?;
         if theta.len() != self.columns {
@@ -548,7 +566,8 @@ impl Constraints {
         }
         let broken = |(row, (lower, upper)): (&[f64], (&f64, &f64))| {
             let value: f64 = row.iter().zip(&theta).map(|(a, p)| a * p).sum();
-            (lower - value).max(value - upper).max(0.0)
+            // The greater of NaN and a number is the number.
+            if value.is_nan() { value } else { (lower - value).max(value - upper).max(0.0) }
         };
         let limits = self.lower.iter().zip(&self.upper);
         Ok(PyArray1::from_iter(py, self.matrix.chunks(self.columns.max(1)).zip(limits).map(broken)))

@@ -2,7 +2,7 @@
 //! The library reads and estimates.
 
 use crate::cli::shared::error::CliError;
-use crate::convert::{document, warn};
+use crate::convert::{Words, document, warn};
 use crate::errors::{Raised, fault};
 use crate::model::Model;
 use pyo3::exceptions::{PyOSError, PyValueError};
@@ -139,8 +139,8 @@ impl Ship {
     /// The model of this ship: base terms, the paper's eleven parameters free; for an estimated ship with the spreads as priors.
     ///
     /// `terms` are further terms by name; `form` is the low-speed form of hull and resistance, "regular" or "paper".
-    #[pyo3(signature = (*, terms=Vec::new(), form=None, name=None))]
-    fn model(&self, terms: Vec<String>, form: Option<&str>, name: Option<String>) -> PyResult<Model> {
+    #[pyo3(signature = (*, terms=Words::default(), form=None, name=None))]
+    fn model(&self, terms: Words, form: Option<&str>, name: Option<String>) -> PyResult<Model> {
         let mut model = match &self.model {
             Some(text) => trimtab::Model::parse(text, Path::new("<model>"), self.inner.clone()),
             None => trimtab::Model::new(self.inner.clone(), &self.inner.name, trimtab::Form::default(), &[]),
@@ -149,7 +149,7 @@ impl Ship {
         if let Some(form) = form {
             model.form = crate::convert::word("form", form, &["regular", "paper"])?;
         }
-        for term in &terms {
+        for term in &terms.0 {
             model.add_term(term).map_err(Raised::raised)?;
         }
         if let Some(name) = name {

@@ -5,9 +5,9 @@ use crate::cli::evaluate::judge;
 use crate::cli::shared::audited::{AcceptArgs, audited, examined};
 use crate::cli::shared::error::CliError;
 use crate::cli::shared::load::{Loaded, StudyArgs};
-use crate::convert::{document, warn};
+use crate::convert::{SEEDS, Words, counted, document, no_others, warn, whole_number};
 use crate::diagnosis::{Asked, Diagnosis};
-use crate::errors::Raised;
+use crate::errors::{Raised, StudyError, of_a_call};
 use crate::evaluation::Evaluation;
 use crate::fit::{Fit, Settings, run};
 use crate::model::Model;
@@ -20,6 +20,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+use trimtab::FitSettings;
+use trimtab::files::suggestion;
 use trimtab::recording::audit::audit_study;
 use trimtab::recording::{Run, Runs, Split};
 
@@ -38,7 +40,10 @@ impl Side {
             "train" => Ok(Self::Train),
             "test" => Ok(Self::Test),
             "all" => Ok(Self::All),
-            _ => Err(PyValueError::new_err(format!("split = \"{word}\": give \"train\", \"test\" or \"all\""))),
+            _ => {
+                let near = suggestion(word, ["train", "test", "all"].into_iter());
+                Err(PyValueError::new_err(format!("split = \"{word}\"{near}: give \"train\", \"test\" or \"all\"")))
+            }
         }
     }
 
@@ -81,7 +86,13 @@ pub struct Study {
     read: Mutex<Read>,
     /// What the study's files live in, where they are temporary.
     folder: Option<Py<PyAny>>,
+    /// Whether a call has made it of tables or logs, so that units and columns are arguments of that call.
+    imported: bool,
 }
+
+/// Keywords of `Study.fit`.
+const OF_FIT: [&str; 9] =
+    ["model", "objective", "hessian", "tolerance", "max_iterations", "max_seconds", "settings", "accept", "progress"];
 
 impl Study {
     /// The runs of a side, of which there must be some.
@@ -114,7 +125,7 @@ impl Study {
             };
             self.loaded.study.each(draught, |_| true, |one| one, take).map(|()| runs)
         };
-        let runs = Arc::new(whole(py, |()| Ok(true), work)?.map_err(Raised::raised)?);
+        let runs = Arc::new(whole(py, |()| Ok(true), work)?.map_err(|error| self.refused(error))?);
         self.read.lock().unwrap_or_else(PoisonError::into_inner).windows = Some(Arc::clone(&runs));
         Ok(runs)
     }
@@ -124,15 +135,30 @@ impl Study {
         model.map_or_else(|| self.model.get().snapshot(), Model::snapshot)
     }
 
+    /// What the audit says, as whoever made the study mends it.
+    fn told(&self, words: &str) -> String {
+        if self.imported { of_a_call(words) } else { words.to_owned() }
+    }
+
+    /// The exception of recordings that cannot be used, as whoever made the study mends it.
+    fn refused(&self, error: CliError) -> PyErr {
+        match error {
+            CliError::Faulty { path, what, fault } => CliError::Faulty { path, what: self.told(&what), fault }.raised(),
+            CliError::Study(error) => StudyError::new_err(self.told(&error.to_string())),
+            error => error.raised(),
+        }
+    }
+
     /// Audits the recordings, once for the same faults accepted.
-    fn audit(&self, py: Python<'_>, accept: Vec<String>, refuse: bool) -> PyResult<()> {
+    fn audit(&self, py: Python<'_>, accept: Words, refuse: bool) -> PyResult<()> {
+        let Words(accept) = accept;
         if self.read.lock().unwrap_or_else(PoisonError::into_inner).passed.as_ref() == Some(&accept) {
             return Ok(());
         }
         let args = AcceptArgs { accept };
         let work = |_: &Line<()>| if refuse { audited(&self.loaded, &args) } else { examined(&self.loaded, &args) };
-        let found = whole(py, |()| Ok(true), work)?.map_err(Raised::raised)?;
-        found.sentences().iter().try_for_each(|words| warn(py, words))?;
+        let found = whole(py, |()| Ok(true), work)?.map_err(|error| self.refused(error))?;
+        found.sentences().iter().try_for_each(|words| warn(py, &self.told(words)))?;
         if refuse {
             self.read.lock().unwrap_or_else(PoisonError::into_inner).passed = Some(args.accept);
         }
@@ -153,8 +179,14 @@ impl Study {
     /// Reads a study file with its ship and model; everything that is wrong with them is reported at once. A folder stands for its
     /// `study.toml`. `model` is a model file to use instead of the study's, such as `fitted.toml`.
     #[staticmethod]
-    #[pyo3(signature = (path, *, model=None, _folder=None))]
-    fn load(py: Python<'_>, path: PathBuf, model: Option<PathBuf>, _folder: Option<Py<PyAny>>) -> PyResult<Self> {
+    #[pyo3(signature = (path, *, model=None, _folder=None, _imported=false))]
+    fn load(
+        py: Python<'_>,
+        path: PathBuf,
+        model: Option<PathBuf>,
+        _folder: Option<Py<PyAny>>,
+        _imported: bool,
+    ) -> PyResult<Self> {
         let path = if path.is_dir() { path.join("study.toml") } else { path };
         let args = StudyArgs { study: path.clone(), model: model.clone() };
         let study = trimtab::Study::read(&path).map_err(Raised::raised)?;
@@ -162,27 +194,48 @@ impl Study {
         loaded.unreached().iter().try_for_each(|words| warn(py, words))?;
         let (_, uncertainty) = loaded.uncertainty().map_err(Raised::raised)?;
         let own = Py::new(py, Model::of(loaded.model.clone(), uncertainty))?;
-        Ok(Self { loaded, path, model_path: model, model: own, read: Mutex::default(), folder: _folder })
+        let (read, folder, imported) = (Mutex::default(), _folder, _imported);
+        Ok(Self { loaded, path, model_path: model, model: own, read, folder, imported })
     }
 
     /// A study from tables in memory: a DataFrame of pandas, a dictionary of columns, or a dictionary of name and table.
     ///
-    /// The tables are imported like logs (see `import_log`, whose further arguments are taken as well): columns are taken by name for
-    /// t or a date, x and y or lat and lon, psi, u, v, r, n, delta and so on; `columns` says which column is which quantity, as in
+    /// The tables are imported like logs (see `import_log`, which has the arguments that are not named here): columns are taken by name
+    /// for t or a date, x and y or lat and lon, psi, u, v, r, n, delta and so on; `columns` says which column is which quantity, as in
     /// `{"psi": "HDT"}`, and `units` in which unit it is, as in `{"psi": "deg", "n": "rpm"}`. Each is cut into runs unless `split` is
     /// False. The study is written into `folder`, or into a temporary one that lasts as long as the study.
     #[staticmethod]
-    #[pyo3(signature = (data, *, ship, units=None, **more))]
+    #[pyo3(signature = (data, *, ship, units=None, columns=None, model=None, folder=None, name=None, split=true, antenna=None,
+                        session_gap=None, bridge=None))]
     fn from_dataframe<'py>(
         py: Python<'py>,
         data: &Bound<'py, PyAny>,
         ship: &Bound<'py, PyAny>,
         units: Option<&Bound<'py, PyAny>>,
-        more: Option<&Bound<'py, PyDict>>,
+        columns: Option<&Bound<'py, PyAny>>,
+        model: Option<&Bound<'py, PyAny>>,
+        folder: Option<&Bound<'py, PyAny>>,
+        name: Option<&Bound<'py, PyAny>>,
+        split: bool,
+        antenna: Option<&Bound<'py, PyAny>>,
+        session_gap: Option<&Bound<'py, PyAny>>,
+        bridge: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let arguments = more.map_or_else(|| Ok(PyDict::new(py)), |more| more.copy())?;
+        let arguments = PyDict::new(py);
         arguments.set_item("ship", ship)?;
-        arguments.set_item("units", units)?;
+        arguments.set_item("split", split)?;
+        for (key, value) in [
+            ("units", units),
+            ("columns", columns),
+            ("model", model),
+            ("folder", folder),
+            ("name", name),
+            ("antenna", antenna),
+            ("session_gap", session_gap),
+            ("bridge", bridge),
+        ] {
+            arguments.set_item(key, value)?;
+        }
         py.import("trimtab._frames")?.call_method("from_dataframe", (data,), Some(&arguments))
     }
 
@@ -226,7 +279,9 @@ impl Study {
     #[pyo3(signature = (split="all"))]
     fn windows(&self, py: Python<'_>, split: &str) -> PyResult<Vec<Window>> {
         let runs = self.windows_of(py, Side::named(split)?)?;
-        Ok((0..runs.len()).map(|index| Window { runs: Arc::clone(&runs), index }).collect())
+        let commands: Arc<[String]> = self.loaded.model.ship.commands().into();
+        let window = |index| Window { runs: Arc::clone(&runs), index, commands: Arc::clone(&commands) };
+        Ok((0..runs.len()).map(window).collect())
     }
 
     /// Audits the recordings as `trimtab check` does (units, signs, gaps, frozen channels, clocks): records with run, severity, fault,
@@ -239,7 +294,7 @@ impl Study {
         for (run, issue) in whole_study.chain(of_runs) {
             all.push(serde_json::json!({
                 "run": run, "severity": issue.severity, "fault": issue.fault, "channel": issue.channel,
-                "lines": issue.lines, "text": issue.text, "next_step": issue.next_step,
+                "lines": issue.lines, "text": issue.text, "next_step": self.told(&issue.next_step),
             }));
         }
         document(py, &all)
@@ -252,8 +307,11 @@ impl Study {
     /// key of [fit], nested as there. What is None is as the study says. `progress` is called with a FitProgress once an iteration;
     /// the fit stops when it returns False, or at Ctrl-C, and gives the best point so far (`interrupted` is then True).
     /// A fit that does not converge is a result: `converged` is False, and `status` says why.
+    // The others are taken only to be refused: the signature that Python shows has none.
     #[pyo3(signature = (*, model=None, objective=None, hessian=None, tolerance=None, max_iterations=None, max_seconds=None,
-                        settings=None, accept=Vec::new(), progress=None))]
+                        settings=None, accept=Words::default(), progress=None, **others),
+           text_signature = "($self, /, *, model=None, objective=None, hessian=None, tolerance=None, max_iterations=None, \
+                             max_seconds=None, settings=None, accept=..., progress=None)")]
     fn fit(
         &self,
         py: Python<'_>,
@@ -261,12 +319,16 @@ impl Study {
         objective: Option<&str>,
         hessian: Option<&str>,
         tolerance: Option<f64>,
-        max_iterations: Option<usize>,
+        max_iterations: Option<i128>,
         max_seconds: Option<f64>,
         settings: Option<&Bound<'_, PyDict>>,
-        accept: Vec<String>,
+        accept: Words,
         progress: Option<Py<PyAny>>,
+        others: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Fit> {
+        no_others("Study.fit", others, &OF_FIT)?;
+        let none = FitSettings { max_iterations: 0, ..FitSettings::default() };
+        let max_iterations = max_iterations.map(|given| counted(given, &none)).transpose()?;
         let given = Settings { objective, hessian, tolerance, max_iterations, max_seconds, more: settings };
         let settings = self.settings(&given)?;
         self.audit(py, accept, true)?;
@@ -283,7 +345,7 @@ impl Study {
     /// anew from its residuals: `Fit.prior_weight`). In a likelihood the coefficients of hull, propeller and rudder that are never known
     /// exactly are free too, with priors, as in a fit; `uncertain=False` leaves them where they are. `settings` has keys of [fit].
     #[pyo3(signature = (*, model=None, split="train", prior_weight=None, objective=None, uncertain=true, settings=None,
-                        accept=Vec::new()))]
+                        accept=Words::default()))]
     fn objective(
         slf: &Bound<'_, Self>,
         model: Option<&Model>,
@@ -292,7 +354,7 @@ impl Study {
         objective: Option<&str>,
         uncertain: bool,
         settings: Option<&Bound<'_, PyDict>>,
-        accept: Vec<String>,
+        accept: Words,
     ) -> PyResult<Objective> {
         let (py, own) = (slf.py(), slf.get());
         let settings = own.settings(&Settings { objective, more: settings, ..Settings::default() })?;
@@ -308,14 +370,14 @@ impl Study {
     /// How well a model predicts runs beside a baseline, with 95 % intervals over runs: see Evaluation.
     ///
     /// `model` is the study's without; `baseline` a Model, or that of the study's [evaluate], or else the study's model as it was read.
-    #[pyo3(signature = (*, model=None, baseline=None, split="all", accept=Vec::new()))]
+    #[pyo3(signature = (*, model=None, baseline=None, split="all", accept=Words::default()))]
     fn evaluate(
         &self,
         py: Python<'_>,
         model: Option<&Model>,
         baseline: Option<&Model>,
         split: &str,
-        accept: Vec<String>,
+        accept: Words,
     ) -> PyResult<Evaluation> {
         self.audit(py, accept, true)?;
         let runs = self.windows_of(py, Side::named(split)?)?;
@@ -332,18 +394,20 @@ impl Study {
     ///
     /// `once` does not repeat the analysis to see whether what it names is stable (five to seven times as fast); `withhold` names
     /// mechanisms that must not be considered; `progress` is called with each step in words, and its False ends the diagnosis.
-    #[pyo3(signature = (*, model=None, once=false, withhold=Vec::new(), seed=None, accept=Vec::new(), progress=None))]
+    #[pyo3(signature = (*, model=None, once=false, withhold=Words::default(), seed=None, accept=Words::default(),
+                        progress=None))]
     fn diagnose(
         &self,
         py: Python<'_>,
         model: Option<&Model>,
         once: bool,
-        withhold: Vec<String>,
-        seed: Option<u64>,
-        accept: Vec<String>,
+        withhold: Words,
+        seed: Option<i128>,
+        accept: Words,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Diagnosis> {
-        let asked = Asked { once, withhold, seed };
+        let seed = seed.map(|given| whole_number("seed", given, SEEDS)).transpose()?;
+        let asked = Asked { once, withhold: withhold.0, seed };
         let settings = asked.settings(&self.loaded)?;
         self.audit(py, accept, false)?;
         let (train, all) = (self.windows_of(py, Side::Train)?, self.read(py)?);
@@ -371,6 +435,6 @@ impl Study {
     /// A study from what a pickle keeps of it.
     #[staticmethod]
     fn _restore(py: Python<'_>, path: PathBuf, model_path: Option<PathBuf>, model: Py<Model>) -> PyResult<Self> {
-        Ok(Self { model, ..Self::load(py, path, model_path, None)? })
+        Ok(Self { model, ..Self::load(py, path, model_path, None, false)? })
     }
 }

@@ -14,11 +14,22 @@ use trimtab::ship::state::{STATE_NAMES, STATES};
 pub struct Window {
     pub runs: Arc<Vec<Run>>,
     pub index: usize,
+    /// Channels of the craft's named actuators, in the order of the inputs' commands.
+    pub commands: Arc<[String]>,
 }
 
 impl Window {
     fn run(&self) -> &Run {
         &self.runs[self.index]
+    }
+
+    /// Adds the channels of the named actuators to a table.
+    fn put_commands<'py>(&self, py: Python<'py>, columns: &Bound<'py, PyDict>) -> PyResult<()> {
+        for (i, name) in self.commands.iter().enumerate() {
+            let values = self.run().inputs.iter().map(|inputs| inputs.commands.get(i).copied().unwrap_or(f64::NAN));
+            columns.set_item(name, PyArray1::from_iter(py, values))?;
+        }
+        Ok(())
     }
 }
 
@@ -81,7 +92,8 @@ impl Window {
         PyArray1::from_slice(py, &self.run().initial)
     }
 
-    /// The inputs as `Model.simulate` takes them: t [s], n [1/s], delta [rad], thruster, wind, current, waves, depth and bank.
+    /// The inputs as `Model.simulate` takes them: t [s], n [1/s], delta [rad], thruster, channels of named actuators, wind, current,
+    /// waves, depth and bank.
     #[getter]
     fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (run, columns) = (self.run(), PyDict::new(py));
@@ -92,6 +104,7 @@ impl Window {
         put("n", &|i| i.n)?;
         put("delta", &|i| i.delta)?;
         put("thruster", &|i| i.thruster)?;
+        self.put_commands(py, &columns)?;
         put("wind_north", &|i| i.wind[0])?;
         put("wind_east", &|i| i.wind[1])?;
         put("current_north", &|i| i.current[0])?;
@@ -107,7 +120,7 @@ impl Window {
         self.run().inputs.len()
     }
 
-    /// A table of pandas with t, x, y, psi, u, v, r, n, delta.
+    /// A table of pandas with t, x, y, psi, u, v, r, n, delta and the channels of named actuators.
     fn to_frame<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (run, columns) = (self.run(), PyDict::new(py));
         columns.set_item("t", self.t(py))?;
@@ -117,6 +130,7 @@ impl Window {
         }
         columns.set_item("n", PyArray1::from_iter(py, run.inputs.iter().map(|i| i.n)))?;
         columns.set_item("delta", PyArray1::from_iter(py, run.inputs.iter().map(|i| i.delta)))?;
+        self.put_commands(py, &columns)?;
         frame(py, &columns, None)
     }
 

@@ -20,20 +20,29 @@ const LISTEN: Duration = Duration::from_millis(40);
 /// The threads that compute, and the process that started them: they do not outlive a fork.
 struct Threads {
     process: u32,
+    /// 0 for one on each processor.
     count: usize,
     pool: Option<Arc<ThreadPool>>,
 }
+
+/// More threads than this are another number.
+const MOST_THREADS: usize = 1024;
 
 /// Locked by a long work: another one on the same threads could be begun by a thread that waits for a part of the first, inside its solver.
 static TURN: Mutex<()> = Mutex::new(());
 
 static THREADS: Mutex<Threads> = Mutex::new(Threads { process: 0, count: 0, pool: None });
 
-/// Sets the number of threads for all work that begins from now on; 0 for the number of processors. Results do not depend on it.
-pub fn set_threads(count: usize) -> PyResult<()> {
-    if count > 1024 {
-        return Err(PyValueError::new_err(format!("threads = {count}: give a number from 1 to 1024, or None for all")));
-    }
+/// Sets the number of threads for all work that begins from now on; `None` for the number of processors. Results do not depend on it.
+pub fn set_threads(count: Option<i128>) -> PyResult<()> {
+    let count = match count {
+        None => 0,
+        Some(given) => usize::try_from(given).ok().filter(|n| (1..=MOST_THREADS).contains(n)).ok_or_else(|| {
+            PyValueError::new_err(format!(
+                "count = {given} must be between 1 and {MOST_THREADS}: a number of threads; None is one for each processor"
+            ))
+        })?,
+    };
     let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
     threads.count = count;
     threads.pool = None;

@@ -65,6 +65,17 @@ def test_progress_is_told_and_false_stops_the_fit_with_the_best_point(study: tri
     assert stopped.cost > fitted.cost and "best feasible point" in stopped.status
 
 
+def test_progress_says_which_solve_an_iteration_belongs_to(study: trimtab.Study, fitted: trimtab.Fit) -> None:
+    seen: list[trimtab.FitProgress] = []
+    study.fit(progress=lambda p: seen.append(p))
+    begins = [b for a, b in zip(seen, seen[1:]) if b.solve != a.solve]
+    assert seen[0].solve == 1 and all(p.iteration == 0 for p in begins)
+    assert {p.part for p in seen} <= {"all runs", "a few runs", "pieces of the runs", "check"}
+    assert seen[-1].part == "check"
+    whole = [p.cost for p in seen if p.part == "all runs"]
+    assert min(whole) >= fitted.cost + fitted.prior_cost - 1e-6 * fitted.cost
+
+
 def test_ctrl_c_stops_a_fit_with_the_best_point(study: trimtab.Study) -> None:
     def press(progress: trimtab.FitProgress) -> None:
         if progress.iteration == 2:

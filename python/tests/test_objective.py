@@ -114,6 +114,22 @@ def test_where_a_simulation_diverges_the_cost_is_infinite(objective: trimtab.Obj
     assert np.isnan(objective.jacobian(x)).all() and np.isnan(objective.gauss_newton(x)).all()
 
 
+def test_out_of_the_numbers_nothing_is_raised(objective: trimtab.Objective) -> None:
+    # L-BFGS-B asks at NaN after an infinite value, and goes back where the answer is infinite too.
+    for value in (np.nan, np.inf, -np.inf):
+        x = objective.x0.copy()
+        x[3] = value
+        assert objective.f(x) == objective(x) == np.inf and objective.f_and_grad(x)[0] == np.inf
+        assert np.isinf(objective.residuals(x)).all() and objective.residuals(x).shape == (objective.size,)
+        for derivatives in (objective.grad, objective.jacobian, objective.gauss_newton, objective.hessian):
+            assert np.isnan(derivatives(x)).all()
+        assert objective.jacobian(x).shape == (objective.size, len(x)) and objective.hessian(x).shape == (len(x), len(x))
+    x[3] = np.nan
+    assert np.isnan(objective.constraints().violation(x)).any()
+    with pytest.raises(ValueError, match="is not a finite number"):
+        objective.model_at(x)
+
+
 def test_priors_are_rows_of_their_own_and_their_weight_can_be_set(study: trimtab.Study) -> None:
     study.model.prior("rudder.lift1", mean=3.0, sd=0.2)
     light, heavy = study.objective(prior_weight=0.0), study.objective(prior_weight=5.0)

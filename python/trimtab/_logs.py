@@ -43,32 +43,53 @@ def import_log(
     arguments += [f"--column={quantity}={column}" for quantity, column in (columns or {}).items()]
     arguments += [f"--unit={quantity}={unit}" for quantity, unit in (units or {}).items()]
     if antenna is not None:
-        x, y = antenna
-        arguments.append(f"--antenna={x},{y}")
+        if len(antenna) != 2:
+            raise ValueError(f"antenna has {len(antenna)} values: give two, in m forward and to starboard of midship")
+        arguments.append(f"--antenna={float(antenna[0])},{float(antenna[1])}")
     if name is not None:
         arguments.append(f"--name={name}")
     if session_gap is not None:
-        arguments.append(f"--session-gap={session_gap}")
+        arguments.append(f"--session-gap={float(session_gap)}")
     if bridge is not None:
-        arguments.append(f"--bridge={bridge}")
+        arguments.append(f"--bridge={float(bridge)}")
     if not split:
         arguments.append("--no-split")
     with tempfile.TemporaryDirectory() as folder:
-        for option, given in (("ship", ship), ("model", model)):
-            if isinstance(given, (Ship, Model)):
+        for option, given, kind in (("ship", ship, Ship), ("model", model, Model)):
+            if isinstance(given, kind):
                 path = Path(folder, f"{option}.toml")
                 given.save(path)
                 arguments.append(f"--{option}={path}")
-            elif given is not None:
+            elif isinstance(given, (str, os.PathLike)):
                 arguments.append(f"--{option}={os.fspath(given)}")
+            elif given is not None:
+                made = "trimtab.Ship.estimate makes one" if kind is Ship else "ship.model() makes one"
+                wrong = type(given).__name__
+                raise TypeError(f"{option}: expected a {kind.__name__} or the path of a {option} file, and got {wrong}; {made}")
         try:
             text, _ = import_files(arguments)
         except TrimtabError as error:
-            # The command asks for options, a call for arguments.
-            words = re.sub(r"`--(unit|column) (\w+)=([^`]*)`", r'`\1s={"\2": "\3"}`', str(error))
-            raise type(error)(words) from None
+            raise type(error)(_of_a_call(str(error))) from None
     logging.getLogger("trimtab").info("%s", text)
-    return Study.load(Path(out, "study.toml"))
+    return Study.load(Path(out, "study.toml"), _imported=True)
+
+
+def _arguments(options: re.Match[str]) -> str:
+    """Options of the command as arguments of a call: those of one kind are one dictionary."""
+    found: dict[str, list[str]] = {}
+    for kind, quantity, value in re.findall(r"--(unit|column|actuator) ([\w.]+)=(.*?)(?= --|$)", options[1]):
+        found.setdefault("units" if kind == "unit" else "columns", []).append(f'"{quantity}": "{value}"')
+    given = [f"{argument}={{{', '.join(entries)}}}" for argument, entries in found.items()]
+    return f"`{', '.join(given)}`"
+
+
+def _of_a_call(words: str) -> str:
+    """The words of the command, which asks for options, with the arguments of a call."""
+    words = re.sub(r"`(--(?:unit|column|actuator) [\w.]+=[^`]*)`", _arguments, words)
+    words = re.sub(r"^--(unit|column) ([^=]*)=\.\.\.:", r'\1s={"\2": ...}:', words)
+    words = re.sub(r"^--(unit|column) ([^=]*)=([^:]*):", r'\1s={"\2": "\3"}:', words)
+    words = re.sub(r"^--(session-gap|bridge) ([^:]*):", lambda found: f"{found[1].replace('-', '_')}={found[2]}:", words)
+    return words.replace(" (--out)", "")
 
 
 def example(folder: PathLike | None = None) -> Study:

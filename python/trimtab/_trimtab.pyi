@@ -61,7 +61,7 @@ class Ship:
     def model(
         self,
         *,
-        terms: Sequence[str] = ...,
+        terms: str | Sequence[str] = ...,
         form: Literal["regular", "paper"] | None = None,
         name: str | None = None,
     ) -> Model: ...
@@ -238,6 +238,10 @@ class Window:
 @final
 class FitProgress:
     @property
+    def solve(self) -> int: ...
+    @property
+    def part(self) -> str: ...
+    @property
     def iteration(self) -> int: ...
     @property
     def cost(self) -> float: ...
@@ -356,6 +360,7 @@ class Objective:
     def hessian(self, theta: ArrayLike) -> _Array: ...
     def residuals(self, theta: ArrayLike) -> _Array: ...
     def jacobian(self, theta: ArrayLike) -> _Array: ...
+    # (run, sample, channel), or ("prior", None, parameter).
     def labels(self) -> list[tuple[str, int | None, str]]: ...
     def constraints(self) -> Constraints: ...
     @property
@@ -402,21 +407,21 @@ class Diagnosis:
 @final
 class Study:
     @staticmethod
-    def load(path: _Path, *, model: _Path | None = None, _folder: object = None) -> Study: ...
+    def load(path: _Path, *, model: _Path | None = None, _folder: object = None, _imported: bool = False) -> Study: ...
     @staticmethod
     def from_dataframe(
         data: Any,
         *,
         ship: Ship | _Path,
         units: Mapping[str, str] | None = None,
-        columns: Mapping[str, str] | None = ...,
-        model: Model | _Path | None = ...,
-        folder: _Path | None = ...,
-        name: str | None = ...,
-        split: bool = ...,
-        antenna: tuple[float, float] | None = ...,
-        session_gap: float | None = ...,
-        bridge: float | None = ...,
+        columns: Mapping[str, str] | None = None,
+        model: Model | _Path | None = None,
+        folder: _Path | None = None,
+        name: str | None = None,
+        split: bool = True,
+        antenna: tuple[float, float] | None = None,
+        session_gap: float | None = None,
+        bridge: float | None = None,
     ) -> Study: ...
     @property
     def name(self) -> str: ...
@@ -440,7 +445,7 @@ class Study:
         max_iterations: int | None = None,
         max_seconds: float | None = None,
         settings: dict[str, Any] | None = None,
-        accept: Sequence[str] = ...,
+        accept: str | Sequence[str] = ...,
         progress: Callable[[FitProgress], bool | None] | None = None,
     ) -> Fit: ...
     def objective(
@@ -452,7 +457,7 @@ class Study:
         objective: Literal["trajectory", "likelihood"] | None = None,
         uncertain: bool = True,
         settings: dict[str, Any] | None = None,
-        accept: Sequence[str] = ...,
+        accept: str | Sequence[str] = ...,
     ) -> Objective: ...
     def evaluate(
         self,
@@ -460,15 +465,15 @@ class Study:
         model: Model | None = None,
         baseline: Model | None = None,
         split: _Split = "all",
-        accept: Sequence[str] = ...,
+        accept: str | Sequence[str] = ...,
     ) -> Evaluation: ...
     def diagnose(
         self,
         *,
         model: Model | None = None,
         once: bool = False,
-        withhold: Sequence[str] = ...,
+        withhold: str | Sequence[str] = ...,
         seed: int | None = None,
-        accept: Sequence[str] = ...,
+        accept: str | Sequence[str] = ...,
         progress: Callable[[str], bool | None] | None = None,
     ) -> Diagnosis: ...

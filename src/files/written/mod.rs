@@ -13,3 +13,4 @@ pub use kind::Kind;
 pub use mistake::{Mistake, line_at, told};
 pub use table::{read_tables, read_toml, section};
 pub use text::{bytes_of, near_file, read_text};
+pub use words::in_words;

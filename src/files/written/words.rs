@@ -61,6 +61,11 @@ impl Unknown<'_> {
     }
 }
 
+/// What serde says of a value that is in no file, in the words of those who gave it, with the nearest of the known keys or words.
+pub fn in_words(message: &str) -> String {
+    unknown(message).map_or_else(|| plain(message, None), |unknown| unknown.told())
+}
+
 /// The key of which serde says that it is missing.
 pub(super) fn missing(message: &str) -> Option<&str> {
     message.strip_prefix("missing field `")?.split('`').next()
@@ -130,5 +135,15 @@ mod tests {
             "`window`: it has 2 values, but must have 3"
         );
         assert_eq!(plain("a law of its own", None), "a law of its own");
+    }
+
+    #[test]
+    fn the_nearest_word_stands_beside_one_that_is_not_known() {
+        assert_eq!(
+            in_words("unknown variant `gauss_nweton`, expected one of `gauss-newton`, `exact`"),
+            "unknown word `gauss_nweton`, did you mean `gauss-newton`?; it must be one of `gauss-newton`, `exact`"
+        );
+        assert!(in_words("unknown field `onn`, expected `on` or `from`").contains("did you mean `on`?"));
+        assert!(in_words("invalid value: integer `-1`, expected usize").ends_with("a whole number of 0 or more"));
     }
 }
