@@ -167,17 +167,7 @@ impl Task<'_> {
     pub(super) fn stage<'a>(&'a self, evaluations: &'a Evaluations<'a>, priors: &'a Priors) -> Stage<'a> {
         let FitSettings { hessian, tolerance, max_iterations, .. } = *self.settings;
         let (scaling, settled, restarts) = (&self.scaling, None, RESTARTS);
-        Stage {
-            evaluations,
-            part: ALL,
-            priors,
-            scaling,
-            hessian,
-            tolerance,
-            max_iterations,
-            settled,
-            restarts,
-        }
+        Stage { evaluations, part: ALL, priors, scaling, hessian, tolerance, max_iterations, settled, restarts }
     }
 
     /// A feasible point of lower cost that a second solve finds from a disturbed point near an optimum.

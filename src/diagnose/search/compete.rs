@@ -17,9 +17,8 @@ use crate::likelihood::estimate::{Estimate, FreeParameter, estimate_above, log_p
 use crate::likelihood::evidence::chi_squared_p;
 use crate::likelihood::noise::Noise;
 use crate::model::Model;
-use crate::numbers::moderated::Ratio;
 use crate::physics::{Kind, Probe};
-use crate::statistics::{corrected, mean, median, scattered_p};
+use crate::statistics::{corrected, mean, median};
 use nalgebra::DVector;
 
 /// A candidate's amplitudes in an estimate beyond what the model already had, its companions fixed: an amplitude that only counts times a
@@ -201,8 +200,6 @@ struct Competition<'a> {
     screen: &'a Screen,
     current: &'a Estimate,
     problem: Problem<'a>,
-    /// How many mechanisms may be named.
-    tried: usize,
 }
 
 impl Competition<'_> {
@@ -255,10 +252,9 @@ impl Competition<'_> {
         let w = amplitudes(&Wald::at(estimate, integration, runs), estimate, c, &hypothesis.extent);
         let gain = 2.0 * (estimate.log_posterior - self.current.log_posterior);
         let statistic = w.statistic().min(gain.max(0.0));
-        let Ratio { value, degrees } = self.screen.moderated(hypothesis.candidate, &hypothesis.extent, runs);
-        let p = scattered_p(statistic / value, w.value.len(), degrees);
+        let p = self.screen.by_chance(hypothesis.candidate, &hypothesis.extent, statistic, w.value.len(), runs);
         let is_so = c.mechanism.probe != Probe::Whole || w.value.iter().all(|share| *share > WHOLE_SHARE);
-        is_so && corrected(p, self.tried.max(1) as f64) < settings.alpha && !only_cancels(c, estimate, runs)
+        is_so && p < settings.alpha && !only_cancels(c, estimate, runs)
     }
 
     /// What is either so or not (two actuators swapped), refitted from where it is wholly so in the model as it was given, where a refit
@@ -500,7 +496,7 @@ pub fn compare(
     current: &Estimate,
     problem: Problem,
 ) -> Option<(Selected, Estimate)> {
-    Competition { screen, current, problem, tried: leaders.len() }.best(leaders, None)
+    Competition { screen, current, problem }.best(leaders, None)
 }
 
 /// The first error of a sensor that a refit confirms: the kinematic consistency of the sensors comes before every mechanism of the ship. Else as
@@ -517,9 +513,7 @@ pub fn compete(
     let refitting = |i: usize| progress(&format!("refitting with {}", problem.candidates[i].mechanism.title));
     for sensor in sensors {
         refitting(sensor.set[0]);
-        // The chance is corrected for every mechanism that the data can see, though the sensors alone determine the leader.
-        let tried = screen.rows.iter().filter(|r| r.visible).count();
-        let shown = Competition { screen, current, problem, tried }.shown(sensor);
+        let shown = Competition { screen, current, problem }.shown(sensor);
         if shown.is_some() {
             return shown;
         }
@@ -527,7 +521,7 @@ pub fn compete(
     if let Some(first) = leaders.first() {
         refitting(first.candidate);
     }
-    Competition { screen, current, problem, tried: leaders.len() }.best(leaders, given)
+    Competition { screen, current, problem }.best(leaders, given)
 }
 
 #[cfg(test)]

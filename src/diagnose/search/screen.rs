@@ -15,6 +15,7 @@ use crate::numbers::moderated::Ratio;
 use crate::physics::{Kind, Mechanism};
 use crate::recording::Run;
 use crate::simulate::Integration;
+use crate::statistics::scattered_p;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -87,6 +88,14 @@ impl Screen {
             place.map_or(0, |i| if matches!(extent, Extent::Each(_)) { i + 1 } else { 1 })
         };
         self.evidence.moderated(&self.base, self.columns(index), &recordings, &self.mechanism_columns(), part)
+    }
+
+    /// Chance of a statistic of so many parameters of a candidate by the moderated scatter of its score between recordings
+    /// ([`Screen::moderated`]): the tail of Fisher's F, times the number of mechanisms that the data can see.
+    pub fn by_chance(&self, index: usize, extent: &Extent, statistic: f64, parameters: usize, runs: &[Run]) -> f64 {
+        let Ratio { value, degrees } = self.moderated(index, extent, runs);
+        let visible = self.rows.iter().filter(|r| r.visible).count().max(1) as f64;
+        (scattered_p(statistic / value, parameters, degrees) * visible).min(1.0)
     }
 
     /// How the base moves, in units of its columns, when a group of columns takes these amplitudes.
@@ -449,6 +458,21 @@ mod tests {
         }
         let one = share(&runs);
         assert!(one < 0.5 * all_round && all_round > 0.1, "{one} {all_round}");
+    }
+
+    #[test]
+    fn the_chance_of_a_statistic_is_the_tail_of_fishers_f_for_every_mechanism_that_can_be_seen() {
+        let (model, runs) = (example::model(), example::runs(&example::model(), 12));
+        let list = crate::diagnose::evidence::candidate::candidates(&model, &[]);
+        let current = list.iter().position(|c| c.mechanism.name == "current").unwrap();
+        let s = screen(&example::at(&model), example::RK4, &runs, &list);
+        let chance = |statistic: f64| s.by_chance(current, &Extent::All, statistic, 2, &runs);
+        let Ratio { value, degrees } = s.moderated(current, &Extent::All, &runs);
+        // The tail of F with 2 and n degrees of freedom has a closed form: (1 + 2 F / n)^(-n / 2), F = T / (2 phi).
+        let tail = (1.0 + 60.0 / value / degrees).powf(-0.5 * degrees);
+        let visible = s.rows.iter().filter(|r| r.visible).count() as f64;
+        assert!((chance(60.0) / (tail * visible) - 1.0).abs() < 1e-6, "{} {}", chance(60.0), tail * visible);
+        assert!(visible > 5.0 && chance(0.0) == 1.0 && chance(80.0) < chance(60.0));
     }
 
     #[test]

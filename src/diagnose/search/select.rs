@@ -16,7 +16,6 @@ use crate::diagnose::evidence::push::Push;
 use crate::diagnose::evidence::wald::Wald;
 use crate::diagnose::settings::{PARAMETER_PRICE, REFIT, SETTLE, Settings};
 use crate::likelihood::estimate::{Estimate, passes};
-use crate::likelihood::evidence::chi_squared_p;
 use crate::physics::Kind;
 
 /// The mechanisms that were selected, in the model that contains them.
@@ -89,7 +88,8 @@ impl Selection {
         let needless = earlier.iter().position(|a| {
             let c = &problem.candidates[a.candidate];
             let w = amplitudes(&all, &self.estimate, c, &a.extent);
-            chi_squared_p(w.statistic(), w.value.len()) > settings.strict()
+            self.tests.screen.by_chance(a.candidate, &a.extent, w.statistic(), w.value.len(), problem.runs)
+                > settings.alpha
         });
         let Some(i) = needless else { return };
         let needless = self.mechanisms.remove(i);

@@ -42,7 +42,7 @@ const UNIT_ROUNDS: usize = 15;
 /// Time \[s\] and iterations after which a fit has failed: a time that no fit needs, since a fit that it ends takes more or less of the
 /// processor as the machine has other work.
 const LIMIT: f64 = 60.0;
-const PATIENCE: usize = 500;
+const PATIENCE: usize = 300;
 
 /// Sources of derivatives, with their colours.
 const SOURCES: [(&str, Derivatives, Color); 4] = [
@@ -64,7 +64,8 @@ struct Way {
     is_dashed: bool,
     /// From p~.
     course: Course,
-    /// From random starts; none where there was no fit.
+    /// From random starts: none where a start could not be simulated. Empty for num-dual, whose derivatives are those over lanes to
+    /// rounding, so that it takes the same steps.
     starts: Vec<Option<Course>>,
 }
 
@@ -106,7 +107,11 @@ fn ways(case: &Case, model: &Model, runs: &[Run]) -> Result<Vec<Way>, PaperError
                 color,
                 is_dashed: kind == Hessian::LimitedMemory,
                 course: of_rounds(case, &name, rounds)?,
-                starts: starts.iter().map(|from| course_of_whole_runs(from, runs, &settings).ok()).collect(),
+                starts: if derivatives == Derivatives::NumDual {
+                    Vec::new()
+                } else {
+                    starts.iter().map(|from| course_of_whole_runs(from, runs, &settings).ok()).collect()
+                },
             });
         }
     }
@@ -186,7 +191,10 @@ impl Report {
             let style = |layer: Layer| if way.is_dashed { layer.dashed() } else { layer };
             let points = way.course.path.iter().map(|(cost, _, t)| (t / simulation, cost / best - 1.0 + 1e-12));
             from_guess = from_guess.with(style(Layer::line(name.clone(), way.color, points)));
-            from_starts = from_starts.with(style(Layer::line(name, way.color, steps(&way.reached(best), simulation))));
+            if !way.starts.is_empty() {
+                let steps = steps(&way.reached(best), simulation);
+                from_starts = from_starts.with(style(Layer::line(name, way.color, steps)));
+            }
         }
         self.panels[0].push(from_guess);
         self.panels[1].push(from_starts);
@@ -204,7 +212,7 @@ impl Report {
             way.hessian.to_owned(),
             c.iterations.to_string(),
             dash(to_best),
-            format!("{} of {}", times.len(), STARTS.count),
+            if way.starts.is_empty() { DASH.into() } else { format!("{} of {}", times.len(), STARTS.count) },
             dash(median),
         ]);
         let rounded = |value: Option<f64>| value.map(|t| fixed(t, 0)).unwrap_or_default();
@@ -217,7 +225,7 @@ impl Report {
             c.evaluations[1].to_string(),
             cell(c.cost / best - 1.0),
             rounded(to_best),
-            times.len().to_string(),
+            if way.starts.is_empty() { String::new() } else { times.len().to_string() },
             rounded(median),
         ]);
     }
