@@ -11,7 +11,7 @@ use super::shared::progress::progress;
 use std::collections::BTreeMap;
 use trimtab::files::ranks::Ranks;
 use trimtab::files::{Kept, seal};
-use trimtab::fit::{Fit, FitSettings, MultiStart, StartRow, fit_over, multi_start_over};
+use trimtab::fit::{Fit, FitSettings, Goal, MultiStart, StartRow, fit_over, multi_start_over};
 use trimtab::model::{Model, ModelFile};
 use trimtab::numbers::numerals::sig;
 use trimtab::numbers::uncertainty::Uncertainty;
@@ -137,8 +137,9 @@ fn stored(ranks: &Ranks, loaded: &Loaded) -> Result<RunStore, CliError> {
     if ranks.counts([store.len()]) == [0] { Err(loaded.nothing(Split::Train)) } else { Ok(store) }
 }
 
-/// Share of the lowest cost within which starts ended at the same place.
+/// Share of the lowest cost, and units of log-likelihood below the highest log-posterior, within which starts ended at the same place.
 const SAME_PLACE: f64 = 1e-4;
+const SAME_LIKELIHOOD: f64 = 0.5;
 
 /// What a fit adds to the name of its model.
 const FITTED_NAME: &str = ", fitted";
@@ -203,7 +204,9 @@ fn from_many(ranks: &Ranks, loaded: &Loaded, count: usize, output: &mut Output) 
             let _ = log.append(&(start, row));
         }
     };
-    let rows = multi_start_over(ranks, &loaded.model, &windows, &loaded.fit_settings()?, &starts, &known, ended);
+    let settings = loaded.fit_settings()?;
+    let by_likelihood = settings.objective == Goal::Likelihood;
+    let rows = multi_start_over(ranks, &loaded.model, &windows, &settings, &starts, &known, ended);
     bar.finish_and_clear();
     if let Some(log) = log {
         output.done_with(log);
@@ -212,7 +215,8 @@ fn from_many(ranks: &Ranks, loaded: &Loaded, count: usize, output: &mut Output) 
     let free = model.free();
     let names = free.iter().map(|i| model.parameters[*i].name.clone());
     let (from, to): (Vec<String>, Vec<String>) = names.map(|n| (format!("start {n}"), format!("end {n}"))).unzip();
-    let header = ["start", "converged", "cost", "iterations", "ended"].into_iter();
+    let minimised = if by_likelihood { "minus log-posterior" } else { "cost" };
+    let header = ["start", "converged", minimised, "iterations", "ended"].into_iter();
     let header: Vec<&str> = header.chain(from.iter().chain(&to).map(String::as_str)).collect();
     let fields = |(i, row): (usize, &StartRow)| {
         let cost = row.cost.map_or(String::new(), |c| c.to_string());
@@ -232,11 +236,15 @@ fn from_many(ranks: &Ranks, loaded: &Loaded, count: usize, output: &mut Output) 
     for (i, value) in free.iter().zip(&best.end) {
         model.parameters[*i].value = *value;
     }
-    let same = converged.iter().filter(|row| row.cost.is_some_and(|c| c <= cost * (1.0 + SAME_PLACE))).count();
+    let (reach, place) = if by_likelihood {
+        (SAME_LIKELIHOOD, format!("the highest log-posterior {}", sig(-cost, 6)))
+    } else {
+        (SAME_PLACE * cost, format!("the lowest cost {}", sig(cost, 4)))
+    };
+    let same = converged.iter().filter(|row| row.cost.is_some_and(|c| c <= cost + reach)).count();
     let said = format!(
-        "\n\nStarts: {} of {count} converged, {same} of them at the lowest cost {}; the fit is from there.\n",
-        converged.len(),
-        sig(cost, 4)
+        "\n\nStarts: {} of {count} converged, {same} of them at {place}; the fit is from there.\n",
+        converged.len()
     );
     Ok((model, said))
 }

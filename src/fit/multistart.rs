@@ -64,7 +64,7 @@ pub struct StartRow {
     pub start: Vec<f64>,
     /// Their values at the end; empty where there is no fit.
     pub end: Vec<f64>,
-    /// Cost there, priors included; absent where there is no fit.
+    /// What the fit minimises, there: the cost with priors, or by likelihood minus the log-posterior; absent where there is no fit.
     pub cost: Option<f64>,
     /// Whether the solver found an optimum.
     pub converged: bool,
@@ -108,7 +108,7 @@ pub fn multi_start_over(
         if let Some(row) = known.get(&count).filter(|row| row.start == values) {
             return (count, row.clone());
         }
-        let row = StartRow::of(values, fit(from, runs, settings, &mut |_| true));
+        let row = StartRow::of(from, values, fit(from, runs, settings, &mut |_| true));
         ended(count, &row);
         (count, row)
     };
@@ -116,12 +116,13 @@ pub fn multi_start_over(
 }
 
 impl StartRow {
-    fn of(start: Vec<f64>, outcome: Result<Fit, FitError>) -> Self {
+    /// Of a fit that began at a model. A fit by likelihood estimates coefficients along, which are not free in the model.
+    fn of(from: &Model, start: Vec<f64>, outcome: Result<Fit, FitError>) -> Self {
         match outcome {
             Ok(fit) => Self {
                 start,
-                end: fit.estimates.iter().map(|e| e.value).collect(),
-                cost: Some(fit.cost + fit.prior_cost),
+                end: from.free().into_iter().map(|i| fit.model.parameters[i].value).collect(),
+                cost: Some(fit.minimised()).filter(|value| value.is_finite()),
                 converged: fit.converged,
                 iterations: fit.iterations,
                 ended: fit.status,
@@ -136,4 +137,30 @@ impl StartRow {
 
 fn free_values(model: &Model) -> Vec<f64> {
     model.free().into_iter().map(|i| model.parameters[i].value).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::example::{RK4, model, runs};
+    use crate::fit::Goal;
+
+    #[test]
+    fn a_row_has_the_free_parameters_and_what_its_fit_minimises_by_either_objective() {
+        let (model, runs) = (model(), runs(&model(), 4));
+        for objective in [Goal::Trajectory, Goal::Likelihood] {
+            let settings = FitSettings { integration: RK4, objective, ..FitSettings::default() };
+            let starts = MultiStart { count: 2, spread: 0.1, seed: 3 };
+            let none = BTreeMap::new();
+            let rows = multi_start_over(Ranks::one(), &model, &runs, &settings, &starts, &none, |_, _| ());
+            let fits = multi_start(&model, &runs, &settings, &starts, |_| {});
+            for (row, fit) in rows.iter().zip(fits) {
+                let fit = fit.outcome.unwrap();
+                let least = fit.likelihood.as_ref().map_or(fit.cost + fit.prior_cost, |l| -l.log_posterior);
+                assert_eq!(row.cost, Some(least), "{objective:?}");
+                let value = |i: usize| fit.estimates.iter().find(|e| e.name == model.parameters[i].name).unwrap().value;
+                assert_eq!(row.end, model.free().into_iter().map(value).collect::<Vec<_>>(), "{objective:?}");
+            }
+        }
+    }
 }

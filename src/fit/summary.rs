@@ -161,6 +161,11 @@ impl Fit {
         self.estimates.iter().map(reported).collect()
     }
 
+    /// What was minimised, at the estimates: the cost with priors, or by likelihood minus the log-posterior.
+    pub fn minimised(&self) -> f64 {
+        self.likelihood.as_ref().map_or(self.cost + self.prior_cost, |likelihood| -likelihood.log_posterior)
+    }
+
     /// The covariance as a model file keeps it; nothing where the data determine no parameter.
     pub fn uncertainty(&self) -> Option<Uncertainty> {
         let names: Vec<String> = self.estimates.iter().map(|e| e.name.clone()).collect();

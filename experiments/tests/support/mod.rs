@@ -26,7 +26,7 @@ pub fn program() -> PathBuf {
     }
     let release: &[&str] = if folder.ends_with("debug") { &[] } else { &["--release"] };
     let built = Command::new(env!("CARGO"))
-        .args(["build", "--quiet", "--package", "trimtab", "--bin", "trimtab", "--target-dir"])
+        .args(["build", "--quiet", "--workspace", "--bin", "trimtab", "--target-dir"])
         .arg(folder.parent().unwrap())
         .args(release)
         .current_dir(repository)
