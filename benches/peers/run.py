@@ -19,7 +19,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-EXPORT = ["cargo", "build", "--release", "--workspace", "--example", "export_peers"]
+EXPORT = ["cargo", "build", "--release", "-p", "trimtab", "--example", "export_peers"]
 
 # Module and class of each tool, in the order of the table.
 TOOLS = [
