@@ -221,7 +221,9 @@ fn checked(case: &Case, what: &str, Repeats { least, scatter }: Repeats) -> Resu
 /// [`PaperError::Fit`].
 pub(super) fn course(model: &Model, runs: &[Run], settings: &FitSettings) -> Result<Course, PaperError> {
     let mut path = Vec::new();
-    let (fit, seconds) = watched(model, runs, settings, |p, time| path.push((p.cost, p.violation, time)))?;
+    // A stage over pieces or a few of the runs, and the check of an optimum, have costs that compare with no other.
+    let of_all = |p: &Progress, time: f64| (p.part == "all runs").then_some((p.cost, p.violation, time));
+    let (fit, seconds) = watched(model, runs, settings, |p, time| path.extend(of_all(p, time)))?;
     Ok(Course::of(&fit, path, seconds))
 }
 
