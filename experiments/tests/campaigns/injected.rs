@@ -27,7 +27,7 @@ fn present() -> bool {
 }
 
 fn runner(folder: &std::path::Path) -> Runner {
-    let limit = Duration::from_secs(120);
+    let limit = Duration::from_secs(300);
     Runner { tool: program(), limit, folder: folder.join("cases"), keep: false, rivals: true, sindy: None }
 }
 
