@@ -58,7 +58,7 @@ impl Raised for CliError {
             Self::Faulty { fault, .. } => RecordingsError::new_err(
                 words.replace(&format!("`--accept {fault}`"), &format!("`accept=[\"{fault}\"]`")),
             ),
-            // The command writes into a folder of results, a call where it is told to.
+            // The command writes into a folder of results, a call to the path that it is given.
             Self::Write { path, source } => TrimtabError::new_err(unwritten(&path, &source)),
             Self::Fit { .. } => FitFailed::new_err(words),
             Self::Diagnose { .. } => DiagnosisFailed::new_err(words),
@@ -135,12 +135,12 @@ pub fn of_a_call(words: &str) -> String {
         " in columns.toml beside the study"
     };
     let mut parts = words.split(MAP);
-    let mut told = parts.next().unwrap_or_default().to_owned();
+    let mut out = parts.next().unwrap_or_default().to_owned();
     for rest in parts {
-        told += if is_whole(rest) { by } else { MAP };
-        told += rest;
+        out += if is_whole(rest) { by } else { MAP };
+        out += rest;
     }
-    told
+    out
 }
 
 /// Something that cannot happen, if there is no fault in trimtab.

@@ -26,7 +26,7 @@ use super::evaluations::Evaluations;
 use super::innovations::{Innovations, NOISE_ITERATIONS, samples};
 use super::limits::Watch;
 use super::objective::Objective;
-use super::problem::{Priors, Progress, Settled, Stage};
+use super::problem::{FEW, Priors, Progress, Settled, Stage};
 use super::rows::WorkingRows;
 use super::settings::{FitSettings, Goal, Hessian};
 use super::solve::{End, Search};
@@ -321,7 +321,7 @@ impl<'t> Task<'t> {
         let mut stage = self.likelihood_stage(&evaluations, &innovations, priors);
         stage.max_iterations = stage.max_iterations.min(most.unwrap_or(usize::MAX));
         if posterior.runs.len() < self.runs.len() {
-            stage.part = stages::FEW;
+            stage.part = FEW;
         }
         let from = From { p, near: rounds.multipliers.is_some(), multipliers: rounds.multipliers.take() };
         let before = stage.total(p);

@@ -33,6 +33,19 @@ pub struct Progress<'a> {
     pub best: Option<&'a [f64]>,
 }
 
+/// The parts of a fit, as [`Progress::part`] says them.
+pub(super) const ALL: &str = "all runs";
+pub(super) const FEW: &str = "a few runs";
+pub(super) const PIECES: &str = "pieces of the runs";
+pub(super) const CHECK: &str = "check";
+
+impl Progress<'_> {
+    /// Whether this solve minimises the cost of all whole runs: the costs of other parts compare with none of them.
+    pub fn is_of_all_runs(&self) -> bool {
+        self.part == ALL
+    }
+}
+
 /// Priors on the free parameters, as residuals beside those of the data.
 ///
 /// The cost is no likelihood, so a prior needs the weight of a unit of cost. With the residuals' variance

@@ -12,7 +12,7 @@ use super::descent::{BETTER, Descent, From, Shared, UNDETERMINED, Work};
 use super::error::FitError;
 use super::evaluations::Evaluations;
 use super::limits::Watch;
-use super::problem::{Priors, Progress, Stage};
+use super::problem::{ALL, CHECK, Priors, Progress, Stage};
 use super::rows::WorkingRows;
 use super::scaling::Scaling;
 use super::settings::{FitSettings, Hessian};
@@ -52,10 +52,6 @@ const CHECK_REACH: f64 = 0.5;
 const CHECK_ROOM: f64 = 0.9;
 const CHECK_ITERATIONS: usize = 50;
 const CHECK_LEFT: f64 = 1e-4;
-
-/// The parts of a fit, as [`Progress::part`] says them.
-const ALL: &str = "all runs";
-const CHECK: &str = "check";
 
 /// Objective, as the solver counts it, below which nothing is left to be found: 1e-6 of what residuals are measured in.
 const NOTHING_LEFT: f64 = 1e-12;

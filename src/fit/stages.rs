@@ -10,6 +10,7 @@
 
 use super::cost::Cost;
 use super::error::FitError;
+use super::problem::{FEW, PIECES};
 use super::settings::Hessian;
 use super::task::Task;
 use crate::recording::{Run, RunStore, Runs, or_nan};
@@ -37,9 +38,6 @@ const MANY_BY_LIKELIHOOD: usize = 24;
 const FEW_BY_LIKELIHOOD: usize = 8;
 const SHARE_BY_LIKELIHOOD: usize = 5;
 
-/// A few of the runs, as [`Progress::part`](super::problem::Progress::part) says it.
-pub(super) const FEW: &str = "a few runs";
-
 /// What a stage fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Sample {
@@ -65,7 +63,7 @@ impl Sample {
     /// What is fitted, as [`Progress::part`](super::problem::Progress::part) says it.
     pub fn part(self) -> &'static str {
         match self {
-            Self::Pieces(_) => "pieces of the runs",
+            Self::Pieces(_) => PIECES,
             Self::Few(_) => FEW,
         }
     }

@@ -188,10 +188,10 @@ fn with_texts(error: ImportError, logs: &[Log]) -> ImportError {
     for (name, words) in logs.iter().flat_map(|log| &log.texts).filter(|(name, _)| meaning(name).is_some_and(needed)) {
         texts.entry(name).or_insert(words);
     }
-    let told = texts.into_values().map(|words| format!("{words}, and is not used"));
+    let unused = texts.into_values().map(|words| format!("{words}, and is not used"));
     match error {
-        ImportError::Undecided(asked) => ImportError::Undecided(told.chain(asked).collect()),
-        ImportError::Choice(words) => ImportError::Choice(told.chain([words]).collect::<Vec<_>>().join("; ")),
+        ImportError::Undecided(asked) => ImportError::Undecided(unused.chain(asked).collect()),
+        ImportError::Choice(words) => ImportError::Choice(unused.chain([words]).collect::<Vec<_>>().join("; ")),
         error => error,
     }
 }

@@ -222,7 +222,7 @@ fn checked(case: &Case, what: &str, Repeats { least, scatter }: Repeats) -> Resu
 pub(super) fn course(model: &Model, runs: &[Run], settings: &FitSettings) -> Result<Course, PaperError> {
     let mut path = Vec::new();
     // A stage over pieces or a few of the runs, and the check of an optimum, have costs that compare with no other.
-    let of_all = |p: &Progress, time: f64| (p.part == "all runs").then_some((p.cost, p.violation, time));
+    let of_all = |p: &Progress, time: f64| p.is_of_all_runs().then_some((p.cost, p.violation, time));
     let (fit, seconds) = watched(model, runs, settings, |p, time| path.extend(of_all(p, time)))?;
     Ok(Course::of(&fit, path, seconds))
 }

@@ -4,6 +4,11 @@
 use crate::recording::{Channel, Quantity};
 use std::path::PathBuf;
 
+/// The sentence about a column of text, with one of its fields and where it is (`line 7`, `row 3`).
+pub fn of_text(column: &str, field: &str, place: &str) -> String {
+    format!("column `{column}` contains what is no number, such as `{field}` in {place}")
+}
+
 /// What times of a file count from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {

@@ -5,7 +5,7 @@ use super::clock::{DateOrder, NumericTime, date_time, numeric_time, spread};
 use super::layout::number;
 use super::passes::{FEW, OTHERWISE, passes, stepped_back};
 use crate::recording::import::columns::choose::Choices;
-use crate::recording::import::columns::log::{Clock, Column, Log};
+use crate::recording::import::columns::log::{Clock, Column, Log, of_text};
 use crate::recording::import::columns::names::{meaning, name_and_unit, time_rank};
 use crate::recording::import::error::ImportError;
 use ::parquet::basic::{ConvertedType, LogicalType, TimeUnit};
@@ -63,7 +63,7 @@ pub fn read_parquet(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<
         )));
     }
     cells.iter_mut().for_each(Cells::read_texts);
-    let texts: Vec<(String, String)> = cells.iter().filter_map(|c| Some((c.name.clone(), c.told()?))).collect();
+    let texts: Vec<(String, String)> = cells.iter().filter_map(|c| Some((c.name.clone(), c.of_text()?))).collect();
     let shared = rounded(&cells, &times).then(|| spread(&mut times)).flatten();
     let spread = shared.map_or(String::new(), |k| format!(", rounded: {k} rows share a time and are spread over it"));
     let runs = passes(&times, |before, after| {
@@ -102,11 +102,11 @@ impl Cells {
     }
 
     /// A sentence about a column of which no field is a number, with one that should be.
-    fn told(&self) -> Option<String> {
+    fn of_text(&self) -> Option<String> {
         let wrong = |text: &&String| number(text, true).is_none();
         let (row, text) = self.texts.iter().enumerate().find(|(_, text)| wrong(text))?;
         let none = self.values.iter().all(|v| v.is_nan());
-        none.then(|| format!("column `{}` contains what is no number, such as `{text}` in row {}", self.name, row + 1))
+        none.then(|| of_text(&self.name, text, &format!("row {}", row + 1)))
     }
 
     /// The values of some rows.

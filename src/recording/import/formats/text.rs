@@ -10,7 +10,7 @@ use super::marks::{Marks, signs};
 use super::passes::{FEW, OTHERWISE, passes, stepped_back};
 use crate::recording::Quantity;
 use crate::recording::import::columns::choose::Choices;
-use crate::recording::import::columns::log::{Clock, Column, Log};
+use crate::recording::import::columns::log::{Clock, Column, Log, of_text};
 use crate::recording::import::columns::names::{is_ships_name, is_unit, meaning, name_and_unit, time_rank};
 use crate::recording::import::error::ImportError;
 use std::collections::{BTreeMap, BTreeSet};
@@ -370,7 +370,7 @@ fn time_field(table: &Table<'_>, wanted: Option<&str>) -> Result<usize, ImportEr
 /// understood. Fields that are no number are reported.
 fn columns(table: &mut Table<'_>, used: &[usize], times: &[f64]) -> Vec<(Column, Vec<f64>)> {
     let mut found: Vec<(usize, Column, Vec<f64>)> = Vec::new();
-    let (mut others, mut of_text) = (Vec::new(), Vec::new());
+    let (mut others, mut unused) = (Vec::new(), Vec::new());
     let mut notes = Vec::new();
     for field in (0..table.names.len()).filter(|f| !used.contains(f)) {
         match column(table, field, &mut notes) {
@@ -399,14 +399,14 @@ fn columns(table: &mut Table<'_>, used: &[usize], times: &[f64]) -> Vec<(Column,
             texts().enumerate().filter(|(row, _)| timed(row)).find(|(_, t)| number(t, true).is_none())
         {
             let line = table.rows[row].0;
-            let words = format!("column `{name}` contains what is no number, such as `{text}` in line {line}");
+            let words = of_text(name, text, &format!("line {line}"));
             if meaning(name).is_some() {
                 notes.push(format!("{words}, and is not used"));
             }
-            of_text.push((name.clone(), words));
+            unused.push((name.clone(), words));
         }
     }
-    table.texts.append(&mut of_text);
+    table.texts.append(&mut unused);
     table.notes.append(&mut notes);
     found.into_iter().map(|(_, column, values)| (column, values)).collect()
 }
