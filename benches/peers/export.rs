@@ -7,12 +7,12 @@ use std::error::Error;
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
-use trimtab::fit::constraints::{self, Row};
-use trimtab::fit::cost::weights;
+use trimtab::fit::objectives::cost::weights;
+use trimtab::fit::solver::constraints::{self, Row};
 use trimtab::fit::{Derivatives, Fit, FitSettings, fit};
 use trimtab::model::Model;
 use trimtab::recording::{Run, or_nan};
-use trimtab::terms::rudder;
+use trimtab::terms::steering::rudder;
 
 #[path = "../support/case.rs"]
 mod case;

@@ -5,10 +5,10 @@
 //! beforehand. What this model does not have is left out: current, loss of wake with drift, stall of the rudder.
 
 use std::f64::consts::{PI, TAU};
-use trimtab::fit::cost::weights;
+use trimtab::fit::objectives::cost::weights;
 use trimtab::model::Model;
 use trimtab::recording::Run;
-use trimtab::terms::rudder::{CURVE_LIMIT, PLATE_LIMIT, PLATE_NORMAL};
+use trimtab::terms::steering::rudder::{CURVE_LIMIT, PLATE_LIMIT, PLATE_NORMAL};
 use trimtab_ad::{Lanes, Scalar};
 
 type State = [Lanes; 6];

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use self_cell::self_cell;
 use std::sync::{Arc, Mutex, PoisonError};
-use trimtab::fit::constraints::{Row, rows, speed_range};
+use trimtab::fit::solver::constraints::{Row, rows, speed_range};
 use trimtab::fit::{FitError, FitSettings, Goal, Quadratic, bounds, noise_at, with_uncertain_coefficients};
 use trimtab::likelihood::noise::Noise;
 use trimtab::model::Parameter;

@@ -18,8 +18,8 @@ use trimtab::numbers::uncertainty::Uncertainty;
 use trimtab::recording::{Run, RunStore, Runs, Split};
 use trimtab::report::plot::{Axis, Color, FITTED, Figure, GREY, LIMIT, Layer, Panel};
 use trimtab::report::{USUAL, at_width};
-use trimtab::terms::resistance::Resistance;
-use trimtab::terms::rudder::Rudder;
+use trimtab::terms::hydrodynamics::resistance::Resistance;
+use trimtab::terms::steering::rudder::Rudder;
 
 const LONG: &str = "\
 Fits the free parameters of the model to the training runs of the study with exact gradients, under the constraints of \

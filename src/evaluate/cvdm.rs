@@ -1,7 +1,7 @@
 //! How far one simulated trajectory is from the measured one: mean deviations and cVDM, or that the simulation diverged.
 //! It compares no models; the definitions are in the documentation of [`crate::evaluate`].
 
-use crate::fit::cost::weights;
+use crate::fit::objectives::cost::weights;
 use crate::recording::Run;
 use crate::ship::Ship;
 use crate::simulate::Trajectory;

@@ -14,11 +14,11 @@
 //! the second only takes the recordings as mutually independent, and needs several of them. Source: White, Econometrica
 //! 50 (1982) 1-25 and Liang & Zeger, Biometrika 73 (1986) 13-22 for the sandwich.
 
-use super::cost::Quadratic;
-use super::evaluations::Evaluations;
-use super::solve::End;
-use super::subspace::inverse;
-use super::task::Task;
+use crate::fit::objectives::cost::Quadratic;
+use crate::fit::objectives::evaluations::Evaluations;
+use crate::fit::solver::solve::End;
+use crate::fit::solver::subspace::inverse;
+use crate::fit::solver::task::Task;
 use crate::statistics::clustered_variance;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -56,7 +56,7 @@ impl CovarianceKind {
 pub type Covariance = Vec<Vec<Option<f64>>>;
 
 /// The covariances of a fit's estimates, and what they were made from, by the scaled parameters.
-pub(super) struct Covariances {
+pub(in crate::fit) struct Covariances {
     /// Gauss-Newton matrix of the data's part of the cost.
     pub data: DMatrix<f64>,
     /// Columns that span the directions which active constraints leave free.
@@ -188,7 +188,7 @@ fn scores_by_recording(task: &Task, quadratic: Option<&Quadratic>) -> Vec<DVecto
 }
 
 /// A direction in words: its largest entries by name, `0.71 p5 - 0.70 p7`.
-pub(super) fn in_words(direction: &DVector<f64>, names: &[&str]) -> String {
+pub(in crate::fit) fn in_words(direction: &DVector<f64>, names: &[&str]) -> String {
     let mut entries: Vec<usize> = (0..direction.len()).filter(|i| direction[*i].abs() > 0.15).collect();
     entries.sort_by(|a, b| direction[*b].abs().total_cmp(&direction[*a].abs()));
     entries.truncate(5);

@@ -16,7 +16,7 @@
 //! effect.
 
 use super::covariance::Covariances;
-use super::task::Task;
+use crate::fit::solver::task::Task;
 use crate::numerals::{number_of, sig};
 use crate::ranks::{ExactSums, Ranks};
 use crate::recording::Run;
@@ -127,7 +127,7 @@ const STEERED: std::ops::Range<usize> = 4..6;
 
 impl ResidualStatistics {
     /// The statistics of a task's residuals at `p`.
-    pub(super) fn of(task: &Task, p: &[f64]) -> Self {
+    pub(in crate::fit) fn of(task: &Task, p: &[f64]) -> Self {
         let every = task.cost.runs().div_ceil(WINDOWS).max(1);
         let ranks = task.cost.ranks();
         let before = ranks.before(task.runs.len());
@@ -146,7 +146,7 @@ impl ResidualStatistics {
     }
 
     /// What the statistics say against the fit.
-    pub(super) fn doubts(&self, covariances: &Covariances, parameters: usize) -> Vec<Doubt> {
+    pub(in crate::fit) fn doubts(&self, covariances: &Covariances, parameters: usize) -> Vec<Doubt> {
         let model_error = self.model_error.filter(|r| *r > MODEL_ERROR_LIMIT).map(|value| Doubt {
             kind: DoubtKind::ModelError,
             value,
@@ -215,7 +215,7 @@ impl ResidualStatistics {
 }
 
 /// The first line of a fit: how it ended, and what is said against it.
-pub(super) fn headline(converged: bool, words: &str, doubts: &[Doubt]) -> String {
+pub(in crate::fit) fn headline(converged: bool, words: &str, doubts: &[Doubt]) -> String {
     if !converged {
         return format!("NOT CONVERGED: {words}");
     }

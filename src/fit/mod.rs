@@ -3,92 +3,49 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | [`cost`] | the weighted trajectory cost and its derivatives |
-//! | `sums` | sums over samples behind the cost, its gradient and the Gauss-Newton matrix |
-//! | [`constraints`] | the constraints as data: curves bounded on grids |
+//! | `objectives` | what a fit minimises: the weighted trajectory cost, and the likelihood with fixed gains |
+//! | `solver` | from a start to an optimum that was checked: the problem that Ipopt is given, its limits and its stages |
 //! | `settings` | section `[fit]` of a study |
-//! | `objective` | what a fit minimises, as its solver sees it |
-//! | `evaluations` | the last evaluations of an objective, each made once |
-//! | `task` | what stays fixed during a fit: model, cost, constraints, scales, start |
-//! | `scaling` | scales of the parameters, sizes of the rows |
-//! | `curvature` | the matrix of second derivatives that Ipopt is given |
-//! | `rows` | which of the constraint rows the solver gets |
-//! | `limits` | what ends a fit before its optimum |
-//! | `problem` | the task with the priors, scaled, as Ipopt wants it |
-//! | `stages` | runs in shorter pieces, or a few of them, to be fitted first |
-//! | `descent` | one solve through Ipopt, with its restarts |
-//! | `solve` | from the start through the stages to an optimum that was checked |
-//! | `innovations` | the likelihood with the gains of the filter fixed |
-//! | `likelihood` | the fit by likelihood: noise, gains and parameters in turn |
-//! | `subspace` | directions that constraints leave free |
 //! | `covariance` | covariances, and what the data do not determine |
 //! | `doubts` | what residuals say against a fit: model error, windows too long, residuals alike |
 //! | `summary` | the outcome: estimates, intervals, active constraints; [`fit`] joins all |
 //! | [`multistart`] | the same fit from many starts |
 
-pub mod constraints;
-pub mod cost;
 #[cfg(feature = "ipopt")]
 mod covariance;
-#[cfg(feature = "ipopt")]
-mod curvature;
-#[cfg(feature = "ipopt")]
-mod descent;
 #[cfg(feature = "ipopt")]
 mod doubts;
 mod error;
 #[cfg(feature = "ipopt")]
-mod evaluations;
-mod innovations;
-#[cfg(feature = "ipopt")]
-mod likelihood;
-#[cfg(feature = "ipopt")]
-mod limits;
-#[cfg(feature = "ipopt")]
 pub mod multistart;
-#[cfg(feature = "ipopt")]
-mod objective;
-#[cfg(feature = "ipopt")]
-mod problem;
-#[cfg(feature = "ipopt")]
-mod rows;
-#[cfg(feature = "ipopt")]
-mod scaling;
+pub mod objectives;
 mod settings;
-#[cfg(feature = "ipopt")]
-mod solve;
-#[cfg(feature = "ipopt")]
-mod stages;
-#[cfg(feature = "ipopt")]
-mod subspace;
+pub mod solver;
 #[cfg(feature = "ipopt")]
 mod summary;
-mod sums;
-#[cfg(feature = "ipopt")]
-mod task;
 
 #[cfg(feature = "ipopt")]
 pub use crate::ipopt::Counts;
-pub use constraints::{ConstraintSettings, Limits, Rule};
-pub use cost::{Compared, Cost, CostOptions, Derivatives, Quadratic, Residuals};
 #[cfg(feature = "ipopt")]
 pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 #[cfg(feature = "ipopt")]
 pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;
-pub use innovations::{Innovations, noise_at, with_uncertain_coefficients};
-#[cfg(feature = "ipopt")]
-pub use likelihood::Likelihood;
-#[cfg(feature = "ipopt")]
-pub(crate) use likelihood::within_limits;
 #[cfg(feature = "ipopt")]
 pub use multistart::{MultiStart, StartOutcome, StartRow, multi_start, multi_start_over};
-#[cfg(feature = "ipopt")]
-pub use problem::Progress;
+pub use objectives::cost::{Compared, Cost, CostOptions, Derivatives, Quadratic, Residuals};
+pub use objectives::innovations::{Innovations, noise_at, with_uncertain_coefficients};
 pub use settings::{FitSettings, Goal, Hessian};
+pub use solver::constraints::{ConstraintSettings, Limits, Rule};
+#[cfg(feature = "ipopt")]
+pub use solver::likelihood::Likelihood;
+#[cfg(feature = "ipopt")]
+pub(crate) use solver::likelihood::within_limits;
+#[cfg(feature = "ipopt")]
+pub use solver::problem::Progress;
+#[cfg(feature = "ipopt")]
+pub use solver::task::bounds;
 #[cfg(feature = "ipopt")]
 pub(crate) use summary::labels;
 #[cfg(feature = "ipopt")]
 pub use summary::{Active, Combination, Estimate, Fit, fit, fit_over};
-#[cfg(feature = "ipopt")]
-pub use task::bounds;

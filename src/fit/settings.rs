@@ -1,8 +1,8 @@
 //! Section `[fit]` of a study: where derivatives come from, tolerances, limits, constraints.
 //! It contains values and checks them; other files use them.
 
-use super::constraints::ConstraintSettings;
-use super::cost::{CostOptions, Derivatives};
+use crate::fit::objectives::cost::{CostOptions, Derivatives};
+use crate::fit::solver::constraints::ConstraintSettings;
 use crate::ipopt::DEFAULT_HISTORY;
 use crate::ranges::{Limited, OutOfRange, counted, within};
 use crate::simulate::Integration;

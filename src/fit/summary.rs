@@ -1,18 +1,18 @@
 //! The outcome of a fit: estimates with their uncertainty, active constraints, what it cost; and [`fit`], which joins the steps.
 //! It solves nothing and prints nothing; the words are in [`report`](super::report).
 
-use super::cost::Cost;
 use super::covariance::{Covariance, CovarianceKind, Covariances, in_words};
 use super::doubts::{Doubt, ResidualStatistics, headline};
 use super::error::FitError;
-use super::evaluations::Evaluations;
-use super::innovations::with_uncertain_coefficients;
-use super::likelihood::{Likelihood, LikelihoodEnd, check_ranks};
-use super::problem::Progress;
 use super::settings::{FitSettings, Goal, Hessian};
-use super::solve::End;
-use super::subspace::inverse;
-use super::task::Task;
+use crate::fit::objectives::cost::Cost;
+use crate::fit::objectives::evaluations::Evaluations;
+use crate::fit::objectives::innovations::with_uncertain_coefficients;
+use crate::fit::solver::likelihood::{Likelihood, LikelihoodEnd, check_ranks};
+use crate::fit::solver::problem::Progress;
+use crate::fit::solver::solve::End;
+use crate::fit::solver::subspace::inverse;
+use crate::fit::solver::task::Task;
 use crate::ipopt::Counts;
 use crate::model::Model;
 use crate::ranges::Limited;

@@ -4,10 +4,10 @@
 use crate::model::{BASE, Model, Placed};
 use crate::physics::{Adjust, Flow, Inertia, Instant, Mobility, Number, Physics};
 use crate::state::{Force, Inputs, STATES, State};
-use crate::terms::hull::Hull;
-use crate::terms::propeller::Propeller;
-use crate::terms::resistance::Resistance;
-use crate::terms::rudder::Rudder;
+use crate::terms::hydrodynamics::hull::Hull;
+use crate::terms::hydrodynamics::resistance::Resistance;
+use crate::terms::propulsion::propeller::Propeller;
+use crate::terms::steering::rudder::Rudder;
 use trimtab_ad::Scalar;
 
 /// A model with values of its parameters, ready to be evaluated with any number whose coefficients are `C`.

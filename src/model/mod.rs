@@ -13,7 +13,7 @@ use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Group, Inertia, Number, T
 use crate::ship::{COEFFICIENTS, Ship};
 use crate::state::Inputs;
 use crate::terms;
-use crate::terms::actuator::ActuatorTerm;
+use crate::terms::propulsion::actuator::ActuatorTerm;
 use crate::uncertainty::Uncertainty;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
@@ -461,7 +461,7 @@ impl Model {
         form: Form,
         extra: &[&str],
     ) -> Result<Self, ModelError> {
-        let actuators = terms::actuator::terms(&ship);
+        let actuators = terms::propulsion::actuator::terms(&ship);
         if let Some(taken) = ship.actuators.iter().find(|a| catalogue.find(&a.name).is_some()) {
             return Err(ModelError::ActuatorName { name: taken.name.clone() });
         }
@@ -906,7 +906,7 @@ impl Model {
         for a in &mut out.ship.actuators {
             (a.y, a.angle) = (-a.y, a.angle.map(|angle| -angle));
         }
-        for term in terms::actuator::terms(&out.ship) {
+        for term in terms::propulsion::actuator::terms(&out.ship) {
             out.catalogue = out.catalogue.with(term);
             let own = out.terms.iter_mut().filter(|t| t.term.info().name == term.info().name);
             own.for_each(|placed| placed.term = term);

@@ -1,115 +1,72 @@
-//! The catalogue of terms: each physical effect, actuator defect or sensor defect is one file here and two lines below.
+//! The catalogue of terms: each physical effect, actuator defect or sensor defect is one file in one of the folders, one line there and one below.
 //! A term computes; its description (equation, source, parameters) is data in its `TermInfo`.
 //!
 //! # Adding a term
-//! Write `src/terms/my_effect.rs` with a unit struct that implements [`Term`](crate::physics::Term) and [`Physics`](crate::physics::Physics), add `mod my_effect;` and
-//! `&my_effect::MyEffect` below. The registry, `trimtab terms`, bounds, priors, the diagnosis and the catalogue tests
+//! Write `src/terms/ROOM/my_effect.rs` with a unit struct that implements [`Term`](crate::physics::Term) and [`Physics`](crate::physics::Physics), add `pub mod my_effect;` to the `mod.rs` beside it and
+//! `&ROOM::my_effect::MyEffect` below. The registry, `trimtab terms`, bounds, priors, the diagnosis and the catalogue tests
 //! read it from there.
 
 use crate::physics::{AnyTerm, Catalogue};
 use std::sync::LazyLock;
 
-pub mod actuator;
-pub mod antenna;
-pub mod asymmetric;
-pub mod bank;
-pub mod crossflow;
-pub mod current;
-pub mod earth_force;
-pub mod engine_lag;
-pub mod flow;
-pub mod fouling;
-pub mod general_hull;
-pub mod heading_bias;
-pub mod hull;
-pub mod hull_nonlinear;
-pub mod loading;
-pub mod log_scale;
-pub mod mean_wind;
-pub mod mmg_hull;
-pub mod mmg_rudder;
-pub mod mmg_wake;
-pub mod munk;
-pub mod position_lever;
-pub mod propeller;
-pub mod propeller_walk;
-pub mod push;
-pub mod race;
-pub mod rate_gain;
-pub mod resistance;
-pub mod roll;
-pub mod rudder;
-pub mod rudder_gain;
-pub mod rudder_lag;
-pub mod rudder_offset;
-pub mod rudder_rate;
-pub mod rudder_stall;
-pub mod shallow;
+pub mod environment;
+pub mod external;
+pub mod hydrodynamics;
+pub mod propulsion;
+pub mod sensors;
 pub mod size;
-pub mod sternway;
-pub mod sway_log_bias;
-pub mod symmetric;
-pub mod thrust_loss;
-pub mod thruster;
-pub mod tide;
-pub mod time_skew;
-pub mod wake_drift;
-pub mod water_log;
-pub mod wave_drift;
-pub mod waves;
-pub mod wind;
-pub mod yaw_rate_bias;
+pub mod steering;
 
 /// Every term, in the order in which they are listed and added up.
 pub static CATALOGUE: &[&dyn AnyTerm] = &[
-    &flow::FlowTerm,
-    &hull::Hull,
-    &resistance::Resistance,
-    &propeller::Propeller,
-    &rudder::Rudder,
-    &mmg_hull::MmgHull,
-    &mmg_wake::MmgWake,
-    &mmg_rudder::MmgRudder,
-    &general_hull::GeneralHull,
-    &current::Current,
-    &tide::Tide,
-    &wind::Wind,
-    &mean_wind::MeanWind,
-    &waves::Waves,
-    &wave_drift::WaveDrift,
-    &earth_force::EarthForce,
-    &shallow::Shallow,
-    &bank::Bank,
-    &propeller_walk::PropellerWalk,
-    &wake_drift::WakeDrift,
-    &thrust_loss::ThrustLoss,
-    &rate_gain::RateGain,
-    &engine_lag::EngineLag,
-    &race::Race,
-    &rudder_gain::RudderGain,
-    &rudder_offset::RudderOffset,
-    &rudder_lag::RudderLag,
-    &rudder_rate::RudderRate,
-    &rudder_stall::RudderStall,
-    &crossflow::Crossflow,
-    &hull_nonlinear::HullNonlinear,
-    &sternway::Sternway,
-    &munk::Munk,
-    &loading::Loading,
-    &fouling::Fouling,
-    &roll::Roll,
-    &thruster::Thruster,
-    &push::Push,
-    &symmetric::Symmetric,
-    &asymmetric::Asymmetric,
-    &heading_bias::HeadingBias,
-    &yaw_rate_bias::YawRateBias,
-    &log_scale::LogScale,
-    &sway_log_bias::SwayLogBias,
-    &antenna::Antenna,
-    &position_lever::PositionLever,
-    &time_skew::TimeSkew,
-    &water_log::WaterLog,
+    &propulsion::flow::FlowTerm,
+    &hydrodynamics::hull::Hull,
+    &hydrodynamics::resistance::Resistance,
+    &propulsion::propeller::Propeller,
+    &steering::rudder::Rudder,
+    &hydrodynamics::mmg_hull::MmgHull,
+    &propulsion::mmg_wake::MmgWake,
+    &steering::mmg_rudder::MmgRudder,
+    &hydrodynamics::general_hull::GeneralHull,
+    &environment::current::Current,
+    &environment::tide::Tide,
+    &environment::wind::Wind,
+    &environment::mean_wind::MeanWind,
+    &environment::waves::Waves,
+    &environment::wave_drift::WaveDrift,
+    &environment::earth_force::EarthForce,
+    &environment::shallow::Shallow,
+    &environment::bank::Bank,
+    &propulsion::propeller_walk::PropellerWalk,
+    &propulsion::wake_drift::WakeDrift,
+    &propulsion::thrust_loss::ThrustLoss,
+    &propulsion::rate_gain::RateGain,
+    &propulsion::engine_lag::EngineLag,
+    &steering::race::Race,
+    &steering::rudder_gain::RudderGain,
+    &steering::rudder_offset::RudderOffset,
+    &steering::rudder_lag::RudderLag,
+    &steering::rudder_rate::RudderRate,
+    &steering::rudder_stall::RudderStall,
+    &hydrodynamics::crossflow::Crossflow,
+    &hydrodynamics::hull_nonlinear::HullNonlinear,
+    &hydrodynamics::sternway::Sternway,
+    &hydrodynamics::munk::Munk,
+    &hydrodynamics::loading::Loading,
+    &hydrodynamics::fouling::Fouling,
+    &hydrodynamics::roll::Roll,
+    &external::thruster::Thruster,
+    &external::push::Push,
+    &hydrodynamics::symmetric::Symmetric,
+    &external::asymmetric::Asymmetric,
+    &sensors::heading_bias::HeadingBias,
+    &sensors::yaw_rate_bias::YawRateBias,
+    &sensors::log_scale::LogScale,
+    &sensors::sway_log_bias::SwayLogBias,
+    &sensors::antenna::Antenna,
+    &sensors::position_lever::PositionLever,
+    &sensors::time_skew::TimeSkew,
+    &sensors::water_log::WaterLog,
 ];
 
 /// The project's own terms as a [`Catalogue`].

@@ -9,7 +9,7 @@ use trimtab::physics::{Form, Gradient};
 use trimtab::ship::Ship;
 use trimtab::ship::state::{Force, Inputs, STATES, State};
 use trimtab::simulate::{Integration, Method, Scenario, simulate};
-use trimtab::terms::crossflow::strip_integrals;
+use trimtab::terms::hydrodynamics::crossflow::strip_integrals;
 
 fn ship(letter: &str) -> Ship {
     let path = format!("{}/experiments/ships/{letter}.toml", env!("CARGO_MANIFEST_DIR"));

@@ -127,7 +127,7 @@ mod tests {
     use crate::paper::case::initial_model;
     use crate::truth::motion::Force;
     use trimtab::physics::Form;
-    use trimtab::terms::rudder::Rudder;
+    use trimtab::terms::steering::rudder::Rudder;
 
     #[test]
     fn lift_and_drag_of_the_model_s_own_rudder_are_read_back_exactly() {

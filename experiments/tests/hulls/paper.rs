@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use trimtab::fit::constraints;
+use trimtab::fit::solver::constraints;
 use trimtab::physics::Form;
 use trimtab::report::Table;
 use trimtab::report::plot::{Axis, Figure, Format, Panel, Width};

@@ -8,10 +8,10 @@ use crate::physics::{
     Adjust, FEW, Flow, Group, Inflow, Instant, MOST_PARAMETERS, Mobility, Number, Physics, Reach, Term,
 };
 use crate::state::{Force, Inputs, STATES, State};
-use crate::terms::hull::{DAMPING, Hull, MassSlope};
-use crate::terms::propeller::Propeller;
-use crate::terms::resistance::Resistance;
-use crate::terms::rudder::Rudder;
+use crate::terms::hydrodynamics::hull::{DAMPING, Hull, MassSlope};
+use crate::terms::hydrodynamics::resistance::Resistance;
+use crate::terms::propulsion::propeller::Propeller;
+use crate::terms::steering::rudder::Rudder;
 
 /// A parameter that sensitivities are carried to, in units of `scale`.
 #[derive(Clone, Copy, Debug, PartialEq)]

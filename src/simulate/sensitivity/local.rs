@@ -4,8 +4,8 @@
 use crate::dynamics::Dynamics;
 use crate::physics::{FEW, Flow, Inflow, Instant, Number, Physics};
 use crate::state::{Force, Inputs, STATES, State};
-use crate::terms::propeller::Propeller;
-use crate::terms::rudder::Rudder;
+use crate::terms::propulsion::propeller::Propeller;
+use crate::terms::steering::rudder::Rudder;
 use trimtab_ad::{Along, Dual, Lanes, Scalar};
 
 /// Places of the terms `propeller` and `rudder` in a model.

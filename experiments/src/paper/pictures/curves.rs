@@ -12,8 +12,8 @@ use trimtab::model::Model;
 use trimtab::numbers::numerals::{DASH, fixed, sig};
 use trimtab::report::Table;
 use trimtab::report::plot::{Axis, BASELINE, FITTED, Figure, LIMIT, Layer, Marker, ORANGE, PURPLE, Panel, TRUTH};
-use trimtab::terms::resistance::Resistance;
-use trimtab::terms::rudder::Rudder;
+use trimtab::terms::hydrodynamics::resistance::Resistance;
+use trimtab::terms::steering::rudder::Rudder;
 
 /// Figure 2.
 pub static CURVES: Artefact = Artefact {

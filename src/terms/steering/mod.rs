@@ -1,0 +1,10 @@
+//! Rudders and their gear.
+
+pub mod mmg_rudder;
+pub mod race;
+pub mod rudder;
+pub mod rudder_gain;
+pub mod rudder_lag;
+pub mod rudder_offset;
+pub mod rudder_rate;
+pub mod rudder_stall;
