@@ -71,11 +71,9 @@ struct Written {
 }
 
 impl Written {
-    fn new(question: &Question, answer: &Answer) -> Self {
-        let tests = &answer.kept.selection.tests;
-        (question.progress)("fitting the models that are written");
-        let problem = tests.problem(question.settings);
-        let base = problem.written(&tests.fit.estimate);
+    /// Those of an answer, of which `base` is known.
+    fn new(question: &Question, answer: &Answer, base: Estimate) -> Self {
+        let problem = answer.kept.selection.tests.problem(question.settings);
         let found = if answer.improves() { problem.written(answer.improved()) } else { base.clone() };
         Self { base, found }
     }
@@ -83,8 +81,12 @@ impl Written {
 
 /// The models that are written, and the answer with the sizes that these have. A finding whose intervals include zero there is not named.
 fn written_and_sized(question: &Question, mut answer: Answer, held_out: &[Run]) -> (Answer, Written) {
+    (question.progress)("fitting the models that are written");
+    let tests = &answer.kept.selection.tests;
+    // What is named in the end does not change the model without it.
+    let base = tests.problem(question.settings).written(&tests.fit.estimate);
     loop {
-        let written = Written::new(question, &answer);
+        let written = Written::new(question, &answer, base.clone());
         let lost = sized(&mut answer.findings, &answer.kept.selection, &written.found);
         if lost.is_empty() {
             return (answer, written);

@@ -345,7 +345,7 @@ fn forces_have_the_signs_known_from_seamanship() {
 
 #[test]
 fn a_lagged_heel_follows_the_yaw_rate_of_some_seconds_before() {
-    // With r' given, N = c U^3 (r - tau r') moved to the side of the inertia must give back r'.
+    // With r' given, Y and N = c U^3 (r - tau r') moved to the side of the inertia must give back r'.
     let values = [("roll.yaw", 0.3), ("roll.lag", 4.0)];
     let with = model(Form::Paper, &["roll"], &values);
     let without = model(Form::Paper, &[], &[]);
@@ -353,8 +353,9 @@ fn a_lagged_heel_follows_the_yaw_rate_of_some_seconds_before() {
     let state = [0.0, 0.0, 0.0, 6.0, -0.3, 0.01];
     let rate = rates(&with, state, &inputs);
     let cause = force_of(&with, "roll", state, &inputs);
-    let lagged = cause.n * (1.0 - 4.0 * rate[5] / state[5]);
-    let push = Force { x: 0.0, y: 0.0, n: lagged };
+    assert!((cause.y / cause.n * with.ship.hull.lpp - 0.44).abs() < 1e-12);
+    let lagged = 1.0 - 4.0 * rate[5] / state[5];
+    let push = Force { x: 0.0, y: cause.y * lagged, n: cause.n * lagged };
     let expected = Dynamics::new(&without, without.values()).rates(&State::from_array(state), &inputs, &push).0;
     for i in 3..STATES {
         assert!((rate[i] - expected[i]).abs() < 1e-12, "rate {i}: {} {}", rate[i], expected[i]);

@@ -39,13 +39,6 @@ pub(in crate::fit) const FEW: &str = "a few runs";
 pub(in crate::fit) const PIECES: &str = "pieces of the runs";
 pub(in crate::fit) const CHECK: &str = "check";
 
-impl Progress<'_> {
-    /// Whether this solve minimises the cost of all whole runs: the costs of other parts compare with none of them.
-    pub fn is_of_all_runs(&self) -> bool {
-        self.part == ALL
-    }
-}
-
 /// Priors on the free parameters, as residuals beside those of the data.
 ///
 /// The cost is no likelihood, so a prior needs the weight of a unit of cost. With the residuals' variance

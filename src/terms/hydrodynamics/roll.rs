@@ -16,16 +16,16 @@ use trimtab_ad::Scalar;
 pub struct Roll;
 
 /// Sway force and yaw moment per U^3 r.
-fn gains<S: Scalar>(p: &[S], ship: &Ship) -> [S; 2] {
+fn gains<S: Scalar>([yaw, share, _lag]: [S; 3], ship: &Ship) -> [S; 2] {
     let unit = size::pressure(ship) / size::GRAVITY;
-    [p[0] * unit, p[1] * (unit * ship.hull.lpp)]
+    [yaw * share * unit, yaw * (unit * ship.hull.lpp)]
 }
 
 static INFO: TermInfo = TermInfo {
     name: "roll",
     title: "roll-yaw coupling",
     group: Group::Hull,
-    equation: "h = U (r - tau r')/g; Y = sway 1/2 rho L d U^2 h, N = yaw 1/2 rho L^2 d U^2 h; the part in r' joins the mass matrix",
+    equation: "h = U (r - tau r')/g; N = k_N 1/2 rho L^2 d U^2 h, Y = s N/L; the part in r' joins the mass matrix",
     source: "quasi-static reduction of the four-degree-of-freedom container-ship model of Son & Nomoto",
     needs: &[],
     validity: Validity::any("quasi-static: the turn must change slowly against the roll period, which is not recorded"),
@@ -33,8 +33,8 @@ static INFO: TermInfo = TermInfo {
         name: "roll",
         title: "roll coupled into yaw",
         kind: Kind::Ship,
-        parameters: &["sway", "yaw"],
-        companions: &[],
+        parameters: &["yaw"],
+        companions: &["share"],
         probe: Probe::Tangent,
         needs_reference: true,
         by_session: false,
@@ -43,14 +43,21 @@ static INFO: TermInfo = TermInfo {
         trial: "zigzags at high speed with the roll recorded",
     }],
     parameters: &[
-        ParameterInfo::new("sway", "k_Y", "-", "sway force of heel, per U r/g")
-            .scale(|_| 0.1)
-            .spread(|_| 0.5)
-            .bounds(-5.0, 5.0),
         ParameterInfo::new("yaw", "k_N", "-", "yaw moment of heel, per U r/g")
             .scale(|_| 0.1)
             .spread(|_| 0.5)
             .bounds(-5.0, 5.0),
+        // Y_phi/N_phi of the container ship, whose hull heels about its waterline.
+        ParameterInfo::new(
+            "share",
+            "s",
+            "-",
+            "sway force of heel over its yaw moment, times L; 0.44 for a container ship",
+        )
+        .default(|_| 0.44)
+        .scale(|_| 0.3)
+        .spread(|_| 0.5)
+        .bounds(-2.0, 3.0),
         ParameterInfo::new(
             "lag",
             "tau",
@@ -71,13 +78,13 @@ impl Term for Roll {
 
 impl<S: Scalar> Physics<S> for Roll {
     fn adjust(&self, p: &[S], ship: &Ship, _inputs: &Inputs<S>, adjust: &mut Adjust<S>) {
-        let [sway, yaw] = gains(p, ship);
+        let [sway, yaw] = gains([p[0], p[1], p[2]], ship);
         let [sway_yaw, yaw_yaw] = adjust.roll.unwrap_or([S::zero(); 2]);
         adjust.roll = Some([sway_yaw + sway * p[2], yaw_yaw + yaw * p[2]]);
     }
 
     fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
-        let [sway, yaw] = gains(p, at.ship);
+        let [sway, yaw] = gains([p[0], p[1], p[2]], at.ship);
         let cause = flow.speed * flow.speed * flow.speed * flow.r;
         Force { x: S::zero(), y: cause * sway, n: cause * yaw }
     }

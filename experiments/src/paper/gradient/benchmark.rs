@@ -9,7 +9,7 @@ use trimtab::recording::Run;
 use trimtab::report::Table;
 use trimtab::report::plot::{Axis, BLUE, Color, Figure, Layer, Legend, ORANGE, Panel, SKY, VERMILLION};
 
-use super::measure::{Course, INTEGRATION, course_of_whole_runs, of_rounds, repeat};
+use super::measure::{Course, INTEGRATION, course, of_rounds, repeat};
 use crate::freed::free_more;
 use crate::interleaved::{Task, least};
 use crate::paper::artefact::Artefact;
@@ -72,7 +72,7 @@ struct Way {
 impl Way {
     /// Times to the best cost from the starts that reach it \[s\], in rising order.
     fn reached(&self, best: f64) -> Vec<f64> {
-        let time = |c: &Course| c.reached(best).map(|i| c.path[i].2);
+        let time = |c: &Course| c.reached(best).map(|i| c.path[i].1);
         let mut times: Vec<f64> = self.starts.iter().flatten().filter_map(time).collect();
         times.sort_by(f64::total_cmp);
         times
@@ -96,7 +96,7 @@ fn ways(case: &Case, model: &Model, runs: &[Run]) -> Result<Vec<Way>, PaperError
             };
             let mut rounds = Vec::new();
             while rounds.len() < ROUNDS[0] || (rounds.len() < ROUNDS[1] && !repeat(&rounds)) {
-                rounds.push(course_of_whole_runs(model, runs, &settings)?);
+                rounds.push(course(model, runs, &settings)?);
             }
             let name = format!("{} free: {source}, {hessian}", model.free().len());
             let times: Vec<String> = rounds.iter().map(|c| sig(c.seconds, 3)).collect();
@@ -110,7 +110,7 @@ fn ways(case: &Case, model: &Model, runs: &[Run]) -> Result<Vec<Way>, PaperError
                 starts: if derivatives == Derivatives::NumDual {
                     Vec::new()
                 } else {
-                    starts.iter().map(|from| course_of_whole_runs(from, runs, &settings).ok()).collect()
+                    starts.iter().map(|from| course(from, runs, &settings).ok()).collect()
                 },
             });
         }
@@ -178,7 +178,7 @@ impl Report {
     /// Adds all ways to fit with so many parameters free; times in units of one simulation of all runs.
     fn add(&mut self, free: usize, ways: &[Way], simulation: f64) {
         let all = ways.iter().flat_map(|way| way.starts.iter().flatten().chain([&way.course]));
-        let best = all.filter_map(Course::feasible).fold(f64::INFINITY, f64::min);
+        let best = all.filter_map(Course::lowest).fold(f64::INFINITY, f64::min);
         let title = format!("{free} parameters free");
         let time = || Axis::new("processor time over that of one simulation of all runs").log();
         let falls = Axis::new("cost over the best - 1").log().range(1e-9, 1e2);
@@ -189,7 +189,7 @@ impl Report {
             self.add_way(free, way, best, simulation);
             let name = format!("{}, {}", way.source, way.hessian);
             let style = |layer: Layer| if way.is_dashed { layer.dashed() } else { layer };
-            let points = way.course.path.iter().map(|(cost, _, t)| (t / simulation, cost / best - 1.0 + 1e-12));
+            let points = way.course.path.iter().map(|(cost, t)| (t / simulation, cost / best - 1.0 + 1e-12));
             from_guess = from_guess.with(style(Layer::line(name.clone(), way.color, points)));
             if !way.starts.is_empty() {
                 let steps = steps(&way.reached(best), simulation);
@@ -202,7 +202,7 @@ impl Report {
 
     fn add_way(&mut self, free: usize, way: &Way, best: f64, simulation: f64) {
         let c = &way.course;
-        let to_best = c.reached(best).map(|i| c.path[i].2 / simulation);
+        let to_best = c.reached(best).map(|i| c.path[i].1 / simulation);
         let times = way.reached(best);
         let median = times.get(times.len() / 2).map(|t| t / simulation);
         let dash = |value: Option<f64>| value.map_or(DASH.into(), |t| sig(t, 3));

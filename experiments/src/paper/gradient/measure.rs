@@ -15,8 +15,6 @@ use crate::paper::error::PaperError;
 const EXPONENTS: std::ops::RangeInclusive<i32> = -12..=0;
 /// A fit has reached the best when its cost is within this share of the lowest.
 const NEAR: f64 = 1e-3;
-/// Largest violation of a (scaled) constraint at which a cost counts as reached.
-const FEASIBLE: f64 = 1e-6;
 /// Rounds in which each fit, and each gradient, is repeated; repeats that differ by more than this share are refused.
 const FIT_ROUNDS: usize = 3;
 const GRADIENT_ROUNDS: usize = 15;
@@ -86,15 +84,15 @@ pub struct Course {
     pub cost: f64,
     /// Evaluations of the cost, and of its gradient.
     pub evaluations: [usize; 2],
-    /// Cost, violation and processor time \[s\] at each iteration.
-    pub path: Vec<(f64, f64, f64)>,
+    /// Lowest cost of all runs so far that keeps the constraints, and processor time \[s\], at each iteration.
+    pub path: Vec<(f64, f64)>,
     /// Processor time of the whole fit \[s\].
     pub seconds: f64,
 }
 
 impl Course {
     /// The course of a fit that is done.
-    fn of(fit: &Fit, path: Vec<(f64, f64, f64)>, seconds: f64) -> Self {
+    fn of(fit: &Fit, path: Vec<(f64, f64)>, seconds: f64) -> Self {
         Self {
             iterations: fit.iterations,
             converged: fit.converged,
@@ -105,16 +103,14 @@ impl Course {
         }
     }
 
-    /// The lowest cost on the way that keeps the constraints.
-    pub fn feasible(&self) -> Option<f64> {
-        let kept = self.path.iter().filter(|(_, violation, _)| *violation <= FEASIBLE);
-        kept.map(|(cost, _, _)| *cost).reduce(f64::min)
+    /// The lowest cost on the way.
+    pub fn lowest(&self) -> Option<f64> {
+        self.path.last().map(|(cost, _)| *cost)
     }
 
-    /// The first iteration that keeps the constraints within 0.1 % of the cost `best`.
+    /// The first point on the way within 0.1 % of the cost `best`.
     pub fn reached(&self, best: f64) -> Option<usize> {
-        let near = |(cost, violation, _): &(f64, f64, f64)| *cost <= best * (1.0 + NEAR) && *violation <= FEASIBLE;
-        self.path.iter().position(near)
+        self.path.iter().position(|(cost, _)| *cost <= best * (1.0 + NEAR))
     }
 }
 
@@ -192,7 +188,7 @@ pub(super) fn of_rounds(case: &Case, way: &str, courses: Vec<Course>) -> Result<
     let mut courses = courses.into_iter();
     let Some(mut out) = courses.next() else { return Err(PaperError::Empty { ship: case.ship.name(), what: "fit" }) };
     for other in courses {
-        out.path.iter_mut().zip(&other.path).for_each(|(own, other)| own.2 = own.2.min(other.2));
+        out.path.iter_mut().zip(&other.path).for_each(|(own, other)| own.1 = own.1.min(other.1));
     }
     out.seconds = seconds;
     Ok(out)
@@ -215,25 +211,13 @@ fn checked(case: &Case, what: &str, Repeats { least, scatter }: Repeats) -> Resu
     Err(PaperError::Scatter { ship: case.ship.name(), what: what.to_owned(), percent: 100.0 * scatter })
 }
 
-/// The course of one fit.
+/// The course of one fit by the cost of all whole runs at the best feasible point so far, whatever its solver minimises on the way: a stage
+/// over shorter pieces or a few of the runs, and the check of an optimum, have costs that cannot be compared. The clock stands still for
+/// these costs.
 ///
 /// # Errors
 /// [`PaperError::Fit`].
 pub(super) fn course(model: &Model, runs: &[Run], settings: &FitSettings) -> Result<Course, PaperError> {
-    let mut path = Vec::new();
-    // A stage over pieces or a few of the runs, and the check of an optimum, have costs that compare with no other.
-    let of_all = |p: &Progress, time: f64| p.is_of_all_runs().then_some((p.cost, p.violation, time));
-    let (fit, seconds) = watched(model, runs, settings, |p, time| path.extend(of_all(p, time)))?;
-    Ok(Course::of(&fit, path, seconds))
-}
-
-/// The course of one fit by the cost of all whole runs at the best feasible point so far, whatever its solver minimises on the way: a stage
-/// over shorter pieces or a few of the runs, and the check of an optimum, have costs that compare with no other. The clock stands still
-/// for these costs.
-///
-/// # Errors
-/// [`PaperError::Fit`].
-pub(super) fn course_of_whole_runs(model: &Model, runs: &[Run], settings: &FitSettings) -> Result<Course, PaperError> {
     let mut points: Vec<(Vec<f64>, f64)> = Vec::new();
     let (fit, seconds) =
         watched(model, runs, settings, |p, time| points.extend(p.best.map(|best| (best.to_vec(), time))))?;
@@ -244,9 +228,9 @@ pub(super) fn course_of_whole_runs(model: &Model, runs: &[Run], settings: &FitSe
     let mut least = f64::INFINITY;
     let lowered = |(p, time): &(Vec<f64>, f64)| {
         least = whole.value(p).map_or(least, |value| value.min(least));
-        (least, 0.0, *time)
+        (least, *time)
     };
-    let path = points.iter().map(lowered).filter(|(cost, _, _)| cost.is_finite()).collect();
+    let path = points.iter().map(lowered).filter(|(cost, _)| cost.is_finite()).collect();
     Ok(Course::of(&fit, path, seconds))
 }
 

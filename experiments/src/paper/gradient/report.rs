@@ -102,8 +102,7 @@ impl Report {
         for (way, c) in &courses {
             self.add_fit(case, way, c, best);
             self.add_time(case, way, c, reference, best);
-            // Below the best cost only where constraints are still broken: those points have no place on the axis.
-            let points = c.path.iter().enumerate().map(|(i, (cost, _, _))| ((i + 1) as f64, cost / best - 1.0 + 1e-12));
+            let points = c.path.iter().enumerate().map(|(i, (cost, _))| ((i + 1) as f64, cost / best - 1.0 + 1e-12));
             let line = Layer::line(way.name, way.color, points);
             panel = panel.with(if way.is_exact() { line } else { line.dashed() });
         }
@@ -140,7 +139,7 @@ impl Report {
     }
 
     fn add_time(&mut self, case: &Case, way: &Way, c: &Course, reference: &Course, best: f64) {
-        let time = |c: &Course| c.reached(best).map(|i| c.path[i].2);
+        let time = |c: &Course| c.reached(best).map(|i| c.path[i].1);
         let ratio = time(c).and_then(|t| Some(t / time(reference)?));
         self.speed.row([
             case.label().to_owned(),
