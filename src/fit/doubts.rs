@@ -1,11 +1,12 @@
 //! What the residuals of a fit say against its estimates: model error, windows that are too long, residuals alike.
-//! It computes three statistics and compares each with a limit; it changes no estimate.
+//! It computes five statistics and compares each with a limit; it changes no estimate.
 //!
 //! With the weighted residual `e_c(k)` of channel c at sample k of a run,
 //!
 //! | statistic | definition | limit | reason for the limit |
 //! |---|---|---|---|
-//! | model error | `mean e^2 / mean s^2`, `s_c^2 = mean (e_c(k+1) - 2 e_c(k) + e_c(k-1))^2 / 6` | 10 | less than a tenth of the residual variance is the sensors' |
+//! | model error | `mean e^2 / mean q^2`, `q_c^2 = s_c^2 + mean sum_j (de_c/dx0_j)^2 s_j^2`, `s_c^2 = mean (e_c(k+1) - 2 e_c(k) + e_c(k-1))^2 / 6` | 10 | less than a tenth of the residual variance is the sensors', in the sample or in the start x0 that was measured |
+//! | apart | Grubbs's test of `ln (mean e^2 / mean s^2)` over the recordings, the largest | p = 0.001 | hard manoeuvres are described worse than easy ones |
 //! | growth | exponent b of `rms e ~ t^b` in the velocities between the second and the last quarter of the windows | 1 | a force that is wrong makes errors of velocity grow linearly at most; what grows faster is an open loop that runs away |
 //! | loss | `mean e^2` in sway and yaw rate in the last quarter over the variance measured there | 1/2 | more of the motion is lost than is predicted; windows are too long for it where the first quarter loses less than half as much |
 //! | likeness | integrated autocorrelation `1 + 2 sum rho(l)`, and the design effect over recordings | 2 | standard errors of independent residuals are 1.4 times too small |
@@ -16,12 +17,14 @@
 //! effect.
 
 use super::covariance::Covariances;
+use super::inputs::{INPUT_CHANCE, InputError};
+use super::objectives::cost::Cost;
 use crate::fit::solver::task::Task;
 use crate::numerals::{number_of, sig};
 use crate::ranks::{ExactSums, Ranks};
 use crate::recording::Run;
 use crate::state::STATES;
-use crate::statistics::quantile;
+use crate::statistics::{outlier_p, quantile};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -38,19 +41,15 @@ pub const LOSS_LIMIT: f64 = 0.5;
 /// How many residuals may count as one before they are called clustered.
 pub const LIKENESS_LIMIT: f64 = 2.0;
 
-/// A recording is apart where its residuals have this many times the variance, over its sensors', of three quarters of the recordings:
-/// an order of magnitude, as for [`MODEL_ERROR_LIMIT`],
-pub const APART_TIMES: f64 = 10.0;
+/// Largest chance at which a recording is said to be described far worse than the others: a tenth of the usual hundredth, since hard
+/// manoeuvres are described worse than easy ones.
+pub const APART_CHANCE: f64 = 1e-3;
 
-/// and the model describes the middle recording to so many times the noise of its sensors. Where it lacks physics, hard manoeuvres stand
-/// apart from others for that reason.
-pub const APART_MIDDLE: f64 = 3.0;
+/// Windows, evenly drawn, on which errors of the start are carried along.
+const STARTS: usize = 40;
 
 /// Recordings from which one can stand apart.
 const APART_RECORDINGS: usize = 4;
-
-/// Recordings that are named.
-const NAMED: usize = 3;
 
 /// Noise below which no sensor goes, as a share of what a residual is measured in (path length, pi, speed, r_max).
 const FINEST: f64 = 1e-6;
@@ -87,14 +86,16 @@ pub enum DoubtKind {
     WindowsTooLong,
     /// Residuals of a run or a recording are alike.
     Clustered,
-    /// A few recordings are described far worse than the others, which are described down to the noise of their sensors.
+    /// A recording is described far worse than the others.
     Apart,
+    /// The input of one recording or session has another gain or zero than in the others.
+    Input,
 }
 
 /// The statistics behind the doubts; one is absent where there are too few samples for it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ResidualStatistics {
-    /// Variance of the residuals over that of the sensors.
+    /// Variance of the residuals over what the noise of the sensors leaves, in each sample and through the start of each run.
     pub model_error: Option<f64>,
     /// Exponent b of the growth of the errors of velocity along the windows, `rms e ~ t^b`.
     pub growth: Option<f64>,
@@ -106,9 +107,9 @@ pub struct ResidualStatistics {
     pub likeness: Option<f64>,
     /// Variance of the residuals over that of the sensors in the middle recording.
     pub middle: Option<f64>,
-    /// The recordings that are described far worse than the others, with that number, the worst first.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub apart: Vec<(String, f64)>,
+    /// The recording that is described far worse than the others, with that number and the chance of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub apart: Option<(String, f64, f64)>,
 }
 
 /// Weighted residuals of one run: an entry is NaN where nothing was measured.
@@ -142,11 +143,31 @@ impl ResidualStatistics {
             tally.add(Residuals { recording: run.recording.clone(), values, variance }, drawn);
             Some(())
         });
-        tally.statistics(ranks)
+        let channels = ranks.total(tally.squares.clone());
+        let noise = channels.as_ref().map(|sums| noise(sums));
+        let by_start = noise.and_then(|noise| by_start(task, p, &noise)).unwrap_or_default();
+        let model_error = channels.and_then(|sums| over_noise(&sums, &by_start));
+        ResidualStatistics { model_error, ..tally.statistics(ranks) }
     }
 
     /// What the statistics say against the fit.
-    pub(in crate::fit) fn doubts(&self, covariances: &Covariances, parameters: usize) -> Vec<Doubt> {
+    pub(in crate::fit) fn doubts(
+        &self,
+        input: Option<&InputError>,
+        covariances: &Covariances,
+        parameters: usize,
+    ) -> Vec<Doubt> {
+        let of_input = input.map(|error| Doubt {
+            kind: DoubtKind::Input,
+            value: error.p,
+            limit: INPUT_CHANCE,
+            sentence: error.sentence(),
+        });
+        // What is said of its input need not be said of the recording again.
+        let apart = self.set_apart().filter(|_| {
+            let same = |error: &InputError| self.apart.as_ref().is_some_and(|(name, ..)| *name == error.name);
+            !input.is_some_and(same)
+        });
         let model_error = self.model_error.filter(|r| *r > MODEL_ERROR_LIMIT).map(|value| Doubt {
             kind: DoubtKind::ModelError,
             value,
@@ -157,25 +178,23 @@ impl ResidualStatistics {
                 sig(value, 2)
             ),
         });
-        [self.set_apart(), model_error, self.too_long(), self.clustered(covariances, parameters)]
+        [of_input, apart, model_error, self.too_long(), self.clustered(covariances, parameters)]
             .into_iter()
             .flatten()
             .collect()
     }
 
     fn set_apart(&self) -> Option<Doubt> {
-        let ((_, value), middle) = (self.apart.first()?, self.middle?);
-        let named: Vec<String> =
-            self.apart.iter().take(NAMED).map(|(name, ratio)| format!("{name} ({})", sig(*ratio, 2))).collect();
-        let more = self.apart.len().saturating_sub(NAMED);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let ((name, ratio, p), middle) = (self.apart.as_ref()?, self.middle?);
         let sentence = format!(
-            "of {}{more} the residuals have so many times the variance of the sensors' noise, and {} times in the middle recording: is \
-             its rudder, propeller rate, gain, zero or time another than in the others? (`trimtab check`; fit without it and compare)",
-            named.join(", "),
-            sig(middle, 2)
+            "recording `{name}` is described far worse than the others: the residuals have {} times the variance of the sensors' noise, and {} \
+             times in the middle recording (p = {}): is it damaged, is its rudder, propeller rate, gain, zero or time another, or does \
+             something act in it alone? (`trimtab check`; fit without it and compare)",
+            sig(*ratio, 2),
+            sig(middle, 2),
+            sig(*p, 1)
         );
-        Some(Doubt { kind: DoubtKind::Apart, value: *value, limit: APART_TIMES * middle, sentence })
+        Some(Doubt { kind: DoubtKind::Apart, value: *p, limit: APART_CHANCE, sentence })
     }
 
     fn too_long(&self) -> Option<Doubt> {
@@ -313,7 +332,7 @@ impl Tally {
         ResidualStatistics {
             middle,
             apart,
-            model_error: model_error(ranks, self.squares),
+            model_error: ranks.total(self.squares).and_then(|sums| over_noise(&sums, &[0.0; STATES])),
             growth: growth.map(|g| g.0),
             growth_error: growth.and_then(|g| g.1),
             loss: loss(ranks, self.lost),
@@ -322,36 +341,83 @@ impl Tally {
     }
 }
 
-/// The middle recording's variance of residuals over that of its sensors, and the recordings that are far above the others' by it.
-fn apart(ranks: &Ranks, recordings: &BTreeMap<String, [f64; 4 * STATES]>) -> (Option<f64>, Vec<(String, f64)>) {
+/// The middle recording's variance of residuals over that of its sensors, and the recording that is far above the others by it.
+fn apart(ranks: &Ranks, recordings: &BTreeMap<String, [f64; 4 * STATES]>) -> (Option<f64>, Option<(String, f64, f64)>) {
+    let of = |sums: &[f64; 4 * STATES]| over_noise(sums, &[0.0; STATES]);
     let own: Vec<(String, f64)> =
-        recordings.iter().filter_map(|(name, sums)| Some((name.clone(), over_noise(sums)?))).collect();
+        recordings.iter().filter_map(|(name, sums)| Some((name.clone(), of(sums)?))).collect();
     let mut all: Vec<(String, f64)> = ranks.gather(&own).into_iter().flatten().collect();
-    all.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let sorted: Vec<f64> = all.iter().rev().map(|(_, ratio)| *ratio).collect();
+    all.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let sorted: Vec<f64> = all.iter().map(|(_, ratio)| *ratio).collect();
     let middle = quantile(&sorted, 0.5).filter(|_| sorted.len() >= APART_RECORDINGS);
-    let most = quantile(&sorted, 0.75).unwrap_or(f64::INFINITY);
-    let sound = middle.is_some_and(|middle| middle <= APART_MIDDLE);
-    all.retain(|(_, ratio)| sound && *ratio > MODEL_ERROR_LIMIT && *ratio > APART_TIMES * most);
-    (middle, all)
+    let p = outlier_p(&sorted.iter().map(|ratio| ratio.ln()).collect::<Vec<_>>());
+    let worst = all.pop().filter(|(_, ratio)| middle.is_some() && p < APART_CHANCE && *ratio > MODEL_ERROR_LIMIT);
+    (middle, worst.map(|(name, ratio)| (name, ratio, p)))
 }
 
-/// Mean square of the residuals over that of the sensors' noise.
-fn model_error(ranks: &Ranks, sums: ExactSums) -> Option<f64> {
-    over_noise(&ranks.total(sums)?)
+/// Variance of the sensors in each channel, weighted as the residuals; 0 where nothing was measured.
+fn noise(sums: &[f64]) -> [f64; STATES] {
+    std::array::from_fn(|c| {
+        let [differences, triples] = [2, 3].map(|i| sums[4 * c + i]);
+        if triples > 0.0 { f64::max(differences / triples, FINEST * FINEST) } else { 0.0 }
+    })
 }
 
-/// The same from the sums of some runs.
-fn over_noise(sums: &[f64]) -> Option<f64> {
-    let (mut square, mut noise) = (0.0, 0.0);
-    for of_channel in sums.chunks(4) {
-        let [sum, count, differences, triples] = [0, 1, 2, 3].map(|i| of_channel[i]);
-        if triples > 0.0 {
-            square += sum;
-            noise += count * f64::max(differences / triples, FINEST * FINEST);
+/// Mean square of the residuals over what the noise of the sensors leaves; `by_start` of it comes through the start of the runs.
+fn over_noise(sums: &[f64], by_start: &[f64; STATES]) -> Option<f64> {
+    let (mut square, mut left) = (0.0, 0.0);
+    for ((of_channel, noise), by_start) in sums.chunks(4).zip(noise(sums)).zip(by_start) {
+        if of_channel[3] > 0.0 {
+            square += of_channel[0];
+            left += of_channel[1] * (noise + by_start);
         }
     }
-    (noise > 0.0).then(|| square / noise)
+    (left > 0.0).then(|| square / left)
+}
+
+/// The variance that errors of the start, as large as the `noise` of the sensors that measured it, leave in each channel: some runs are
+/// simulated again with each channel of their start moved by one standard deviation.
+fn by_start(task: &Task, p: &[f64], noise: &[f64; STATES]) -> Option<[f64; STATES]> {
+    let ranks = task.cost.ranks();
+    let every = task.cost.runs().div_ceil(STARTS).max(1);
+    let before = ranks.before(task.runs.len());
+    let drawn: Vec<usize> = (0..task.runs.len()).filter(|run| (before + run).is_multiple_of(every)).collect();
+    let some: Vec<Run> = drawn.iter().filter_map(|run| Some(task.runs.get(*run)?.into_owned())).collect();
+    let residuals = |runs: &[Run]| {
+        let cost = Cost::over(ranks, task.model, runs, task.settings.cost_options()).ok()?;
+        let mut all = vec![Vec::new(); runs.len()];
+        cost.residuals_by_run(p, |run, values| {
+            all[run] = values;
+            Some(())
+        })?;
+        Some(all)
+    };
+    let plain = residuals(&some);
+    let (mut squares, mut counts) = (ExactSums::new(STATES), ExactSums::new(STATES));
+    for (j, noise) in noise.iter().enumerate() {
+        let mut moved = some.clone();
+        for (run, i) in moved.iter_mut().zip(&drawn) {
+            let weight = task.cost.weights()[*i][j];
+            if weight > 0.0 {
+                run.initial[j] += (noise / weight).sqrt();
+            }
+        }
+        // Every rank makes as many costs as the others, whether its own can be simulated or not.
+        let (Some(plain), Some(moved)) = (&plain, residuals(&moved)) else {
+            squares.spoil();
+            continue;
+        };
+        for (a, b) in plain.iter().flatten().zip(moved.iter().flatten()) {
+            for (c, change) in a.iter().zip(b).map(|(a, b)| a - b).enumerate().filter(|(_, d)| d.is_finite()) {
+                squares.add(c, change * change);
+                if j == 0 {
+                    counts.add(c, 1.0);
+                }
+            }
+        }
+    }
+    let (squares, counts) = (ranks.total(squares)?, ranks.total(counts)?);
+    Some(std::array::from_fn(|c| if counts[c] > 0.0 { squares[c] / counts[c] } else { 0.0 }))
 }
 
 /// Exponent of the growth of the residuals along the windows, with its standard error over the recordings.
@@ -500,14 +566,16 @@ mod tests {
     #[test]
     fn a_recording_that_is_described_far_worse_than_the_others_is_named() {
         let wave = |w: usize, k: usize, size: f64| size * (0.1 * k as f64 + w as f64).sin();
-        let one = view(&made(0.01, |w, k| wave(w, k, if w / 2 == 5 { 0.2 } else { 0.0 })));
-        assert!(one.apart.len() == 1 && one.apart[0].0 == "recording 5" && one.apart[0].1 > 100.0, "{one:?}");
+        // Recordings that are described as well as others, some better than others.
+        let usual = |w: usize| 0.01 * (1.0 + 0.3 * (w / 2) as f64);
+        let one = view(&made(0.01, |w, k| wave(w, k, if w / 2 == 5 { 0.5 } else { usual(w) })));
+        let (name, ratio, p) = one.apart.clone().unwrap();
+        assert!(name == "recording 5" && ratio > 100.0 && p < 1e-3, "{one:?}");
         let said = one.set_apart().unwrap().sentence;
-        assert!(said.contains("of recording 5 (") && said.contains("in the middle recording"), "{said}");
-        // Where the model describes none of them, and where hard trials leave somewhat more, none stands apart.
-        for sizes in [[0.2, 0.1], [0.02, 0.0], [0.2, 0.03]] {
-            let found = view(&made(0.01, |w, k| wave(w, k, sizes[usize::from(w / 2 != 5)])));
-            assert_eq!(found.apart, [], "{sizes:?}: {found:?}");
+        assert!(said.contains("recording `recording 5` is described far worse"), "{said}");
+        for largest in [0.01, 0.04, 0.08] {
+            let found = view(&made(0.01, |w, k| wave(w, k, if w / 2 == 5 { largest } else { usual(w) })));
+            assert_eq!(found.apart, None, "{largest}: {found:?}");
         }
     }
 

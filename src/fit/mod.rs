@@ -8,6 +8,7 @@
 //! | `settings` | section `[fit]` of a study |
 //! | `covariance` | covariances, and what the data do not determine |
 //! | `doubts` | what residuals say against a fit: model error, windows too long, residuals alike |
+//! | `inputs` | whether one recording's rudder angle or propeller rate has another gain or zero than the others' |
 //! | `summary` | the outcome: estimates, intervals, active constraints; [`fit`] joins all |
 //! | [`multistart`] | the same fit from many starts |
 
@@ -16,6 +17,8 @@ mod covariance;
 #[cfg(feature = "ipopt")]
 mod doubts;
 mod error;
+#[cfg(feature = "ipopt")]
+mod inputs;
 #[cfg(feature = "ipopt")]
 pub mod multistart;
 pub mod objectives;
@@ -31,6 +34,8 @@ pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 #[cfg(feature = "ipopt")]
 pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;
+#[cfg(feature = "ipopt")]
+pub use inputs::{INPUT_CHANCE, InputError, InputErrorKind};
 #[cfg(feature = "ipopt")]
 pub use multistart::{MultiStart, StartOutcome, StartRow, multi_start, multi_start_over};
 pub use objectives::cost::{Compared, Cost, CostOptions, Derivatives, Quadratic, Residuals};

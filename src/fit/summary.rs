@@ -4,6 +4,7 @@
 use super::covariance::{Covariance, CovarianceKind, Covariances, in_words};
 use super::doubts::{Doubt, ResidualStatistics, headline};
 use super::error::FitError;
+use super::inputs::{InputError, input_error};
 use super::settings::{FitSettings, Goal, Hessian};
 use crate::fit::objectives::cost::Cost;
 use crate::fit::objectives::evaluations::Evaluations;
@@ -14,6 +15,7 @@ use crate::fit::solver::solve::End;
 use crate::fit::solver::subspace::inverse;
 use crate::fit::solver::task::Task;
 use crate::ipopt::Counts;
+use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::ranges::Limited;
 use crate::ranks::Ranks;
@@ -86,6 +88,9 @@ pub struct Fit {
     pub doubts: Vec<Doubt>,
     /// The statistics behind the doubts.
     pub residual_statistics: ResidualStatistics,
+    /// The input that one recording or one session records in another way than the others, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub input_error: Option<InputError>,
     /// The free parameters.
     pub estimates: Vec<Estimate>,
     /// Which covariance `covariance`, `correlations` and the standard errors are.
@@ -230,7 +235,7 @@ pub fn fit_over<'a>(
     task.polish(&mut end);
     let variance = task.variance(task.evaluations.value(&end.p).unwrap_or(task.start_cost));
     let unit = 2.0 * variance * settings.correlated_samples / cost.runs() as f64;
-    Ok(describe(&task, &task.evaluations, unit, end, clock))
+    Ok(describe(&task, &task.evaluations, None, unit, end, clock))
 }
 
 /// As [`fit`], by likelihood. The model keeps which of its parameters are free: the coefficients that were estimated along are not.
@@ -251,7 +256,7 @@ fn by_likelihood(
     check_ranks(&cost)?;
     let task = Task::new(&all, &cost, Runs::from(&read[..]), settings)?;
     let LikelihoodEnd { end, innovations, likelihood } = task.solve_by_likelihood(&read, progress)?;
-    let mut fit = describe(&task, &Evaluations::of(&innovations), 1.0, end, clock);
+    let mut fit = describe(&task, &Evaluations::of(&innovations), Some(&likelihood.noise), 1.0, end, clock);
     for (p, own) in fit.model.parameters.iter_mut().zip(&model.parameters) {
         (p.free, p.prior) = (own.free, own.prior);
     }
@@ -260,13 +265,14 @@ fn by_likelihood(
 }
 
 /// The outcome of a task from where it ended; its covariance from the objective that was minimised.
-fn describe(task: &Task, evaluations: &Evaluations, unit: f64, end: End, clock: Instant) -> Fit {
+fn describe(task: &Task, evaluations: &Evaluations, noise: Option<&Noise>, unit: f64, end: End, clock: Instant) -> Fit {
     let cost = task.evaluations.value(&end.p).unwrap_or(task.start_cost);
     let model = task.model_at(&end.p);
     let statistics = ResidualStatistics::of(task, &end.p);
     let likeness = if unit == 1.0 { None } else { statistics.likeness };
     let covariances = Covariances::of(task, evaluations, unit, &end, likeness);
-    let doubts = statistics.doubts(&covariances, task.scaling.scales.len());
+    let input_error = input_error(task, &end.p, noise);
+    let doubts = statistics.doubts(input_error.as_ref(), &covariances, task.scaling.scales.len());
     let mut validity = Count::new(&model);
     task.runs.iter().for_each(|run| validity.add(validity::samples(&run)));
     validity.gather(task.cost.ranks());
@@ -276,6 +282,7 @@ fn describe(task: &Task, evaluations: &Evaluations, unit: f64, end: End, clock: 
         headline: headline(end.converged, &end.words, &doubts),
         doubts,
         residual_statistics: statistics,
+        input_error,
         status: end.words.clone(),
         solver_status: end.solver,
         hessian: task.settings.hessian,

@@ -149,6 +149,32 @@ pub fn outlier_p(values: &[f64]) -> f64 {
     StudentsT::new(0.0, 1.0, n - 2.0).map_or(1.0, |d| corrected(d.sf(t).max(f64::MIN_POSITIVE), n))
 }
 
+/// Which of n normal values is furthest from the others to either side, and the chance of that ([`outlier_p`] on both sides).
+pub fn furthest(values: &[f64]) -> Option<(usize, f64)> {
+    let opposite: Vec<f64> = values.iter().map(|v| -v).collect();
+    let of = |v: &[f64]| Some(((0..v.len()).max_by(|i, j| v[*i].total_cmp(&v[*j]))?, corrected(outlier_p(v), 2.0)));
+    let (up, down) = (of(values)?, of(&opposite)?);
+    Some(if up.1 <= down.1 { up } else { down })
+}
+
+/// Chance that two samples of normal values of one variance have means so far apart, to either side: Student's t with the pooled variance
+/// (Student 1908). 1 where one has fewer than two values, and where no value differs from another.
+pub fn means_differ_p(a: &[f64], b: &[f64]) -> f64 {
+    let (Some(means), Some(variances)) = (
+        mean(a.iter().copied()).zip(mean(b.iter().copied())),
+        variance(a).zip(variance(b)).filter(|_| a.len() > 1 && b.len() > 1),
+    ) else {
+        return 1.0;
+    };
+    let [m, n] = [a, b].map(|v| v.len() as f64);
+    let pooled = ((m - 1.0) * variances.0 + (n - 1.0) * variances.1) / (m + n - 2.0);
+    let t = (means.0 - means.1).abs() / (pooled * (1.0 / m + 1.0 / n)).sqrt();
+    if !t.is_finite() {
+        return 1.0;
+    }
+    StudentsT::new(0.0, 1.0, m + n - 2.0).map_or(1.0, |d| (2.0 * d.sf(t)).max(f64::MIN_POSITIVE))
+}
+
 /// The variance of a sum of scores over c clusters, `c/(c-1) sum_c g_c g_c^T` with `g_c` the sum of the scores of cluster c (Liang &
 /// Zeger 1986, Biometrika 73, p. 13), and c; `n` is the length of a score. The clusters are those of all ranks, each with whole
 /// ones. A score that is not finite leaves zeros.
@@ -250,6 +276,22 @@ impl<'a> Bootstrap<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_value_that_stands_apart_to_either_side_is_found_and_means_that_differ_are_improbable() {
+        let apart = |v: &[f64]| furthest(v).unwrap();
+        let (above, p) = apart(&[1.0, 1.2, 0.8, 1.1, 9.0]);
+        assert!(above == 4 && p < 1e-3);
+        let (below, same) = apart(&[-1.0, -1.2, -0.8, -1.1, -9.0]);
+        assert!(below == 4 && (p - same).abs() < 1e-12 * p);
+        assert!(apart(&[1.0, 1.2, 0.8, 1.1]).1 > 0.1 && furthest(&[]).is_none());
+        assert!(means_differ_p(&[1.0, 1.1, 0.9], &[1.0, 1.05, 0.9]) > 0.5);
+        assert!(means_differ_p(&[1.0, 1.1, 0.9], &[5.0, 5.1, 4.9]) < 1e-4);
+        // Student's t of 2 with 4 degrees of freedom, two-sided.
+        let t2 = [0.0, 1.0, 2.0].map(|x| x + 2.0 * (2.0_f64 / 3.0).sqrt());
+        assert!((means_differ_p(&[0.0, 1.0, 2.0], &t2) - 0.116_117).abs() < 1e-5);
+        assert_eq!(means_differ_p(&[1.0], &[2.0, 3.0]), 1.0);
+    }
 
     #[test]
     fn the_interval_of_a_sum_over_clusters_of_one_size_is_that_of_students_t() {

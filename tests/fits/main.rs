@@ -9,5 +9,6 @@ mod support;
 
 mod craft;
 mod fits_end;
+mod inputs;
 mod promises;
 mod recovery;

@@ -216,6 +216,20 @@ impl<'a> Innovations<'a> {
         finite.then_some(Quadratic { value, gradient, gauss_newton: information, by_run })
     }
 
+    /// For each run and each variable p_j, `[sum e de/dp_j, sum (de/dp_j)^2]` over the standardised innovations e of the run; `None` where the
+    /// model leaves the numbers.
+    #[cfg(feature = "ipopt")]
+    pub(in crate::fit) fn scores_by_run(&self, p: &[f64]) -> Option<Vec<Vec<[f64; 2]>>> {
+        let mut by_run = Vec::with_capacity(self.runs.len());
+        self.passes(p, &self.columns, |score, information| {
+            let of = |(j, column): (usize, &Column)| {
+                [-score[j] / column.scale, information[(j, j)] / (column.scale * column.scale)]
+            };
+            by_run.push(self.columns.iter().enumerate().map(of).collect());
+        })?;
+        Some(by_run)
+    }
+
     /// The standardised innovations e_k / sqrt(s_k), recorded less expected, run after run, sample after sample, channel after channel:
     /// half the sum of their squares is the value. `None` where the model leaves the numbers.
     pub fn residuals_at(&self, p: &[f64]) -> Option<Residuals> {

@@ -10,9 +10,9 @@
 //! is a smooth function of the parameters; the filter's sensitivities are exactly its derivatives, and the Fisher information is its
 //! Gauss-Newton matrix. Ipopt minimises it within constraints and bounds; then the noise is estimated anew by maximum likelihood, the
 //! gains follow, and it is minimised again, until the log-posterior rises no more. With that noise the gains are then renewed alone, until f
-//! falls no more. Noise and parameters in turn approach each other by a sixth of the way a round, so that their rounds are extrapolated;
-//! gains alone by six sevenths. Where it ends, the scores of the filter, which are unbiased at the true parameters whatever the gains, are
-//! zero in the directions that no constraint blocks.
+//! falls no more: noise and parameters in turn approach each other by a sixth of the way a round, gains alone by six sevenths. Where it ends,
+//! the scores of the filter, which are unbiased at the true parameters whatever the gains, are zero in the directions that no constraint
+//! blocks.
 //!
 //! Hull, propeller and rudder coefficients that are never known exactly are estimated along, with the values of the model as means and the
 //! spreads of their terms as standard deviations of their priors.
@@ -34,7 +34,7 @@ use crate::fit::objectives::objective::Objective;
 use crate::fit::settings::{FitSettings, Goal, Hessian};
 use crate::ipopt::Multipliers;
 use crate::likelihood::estimate::{Estimate, fitted_noise, log_posterior};
-use crate::likelihood::noise::{NOISE_PARAMETERS, Noise, NoisePrior};
+use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::likelihood::noise_fit::guess;
 use crate::likelihood::parameters::{FreeParameter, base_parameters};
 use crate::recording::{Run, Runs};
@@ -51,9 +51,6 @@ const SHORT: [(usize, usize); 2] = [(3, 4), (6, 16)];
 
 /// Rise of the log-posterior in a round below which gains and noise are settled: less than a third of a likelihood unit turns no comparison.
 const SETTLED: f64 = 0.3;
-
-/// Lengths that are tried of a step ahead of three rounds, each half of the one before.
-const STEPS: i32 = 3;
 
 /// Likelihood units by which a start may be below the optimum with gains and noise fixed: the barrier's own scale, a thousandth of it at
 /// first, is then one unit.
@@ -158,42 +155,6 @@ struct Rounds {
     reached: Reached,
     multipliers: Option<Multipliers>,
     count: usize,
-}
-
-/// Ends of rounds in a row, from which it is guessed where they lead.
-///
-/// Rounds `x_0, x_1, x_2` come nearer to their limit by one share of the way, a small one where the noise of sensors and the unknown force
-/// can take each other's place. With `r = x_1 - x_0`, `v = x_2 - x_1 - r` and the step `a = -|r|/|v|` of the noise's logarithms it is near
-/// `x_0 - 2 a r + a^2 v`, which is `x_2` for `a = -1`: squared extrapolation, step S3 of Varadhan & Roland (2008), Scand. J. Statist. 35,
-/// 335-353.
-#[derive(Default)]
-struct Trail(Vec<(Vec<f64>, [f64; NOISE_PARAMETERS])>);
-
-impl Trail {
-    /// A point ahead of three rounds of which `reached` is the last, if it has a larger log-posterior.
-    fn ahead(&mut self, posterior: &Posterior, reached: &Reached) -> Option<Reached> {
-        self.0.push((reached.p.clone(), reached.noise.to_log()));
-        let [first, second, third] = &self.0[..] else { return None };
-        let norm = |of: &dyn Fn(usize) -> f64| (0..NOISE_PARAMETERS).map(|i| of(i).powi(2)).sum::<f64>().sqrt();
-        let change = norm(&|i| second.1[i] - first.1[i]);
-        let turn = norm(&|i| third.1[i] - 2.0 * second.1[i] + first.1[i]);
-        let full = -change / turn;
-        let at = |a: f64, x: [f64; 3]| x[0] - 2.0 * a * (x[1] - x[0]) + a * a * (x[2] - 2.0 * x[1] + x[0]);
-        // Nearer to the last round where the full step leads too far.
-        let ahead = (0..STEPS).map(|i| -1.0 + (full + 1.0) * 0.5_f64.powi(i)).find_map(|a| {
-            let p: Vec<f64> = (0..first.0.len()).map(|j| at(a, [first.0[j], second.0[j], third.0[j]])).collect();
-            let p = posterior.task.within_bounds(&p);
-            let log = std::array::from_fn(|i| at(a, [first.1[i], second.1[i], third.1[i]]));
-            let noise = Noise::from_log(&log);
-            let possible = a.is_finite() && a < -1.0 && posterior.task.is_feasible(&p);
-            let value = if possible { posterior.log_density(&p, &noise) } else { f64::NAN };
-            (value > reached.value).then_some(Reached { p, noise, value })
-        });
-        self.0.clear();
-        let Reached { p, noise, .. } = ahead.as_ref().unwrap_or(reached);
-        self.0.push((p.clone(), noise.to_log()));
-        ahead
-    }
 }
 
 impl<'t> Task<'t> {
@@ -325,7 +286,7 @@ impl<'t> Task<'t> {
         rounds: &mut Rounds,
         shared: &mut Shared,
     ) -> Result<Descent, FitError> {
-        let (mut round, mut trail) = (0, Trail::default());
+        let mut round = 0;
         loop {
             round += 1;
             let most = short.iter().find(|(until, _)| round <= *until).map(|(_, most)| *most);
@@ -339,11 +300,6 @@ impl<'t> Task<'t> {
             if settled || round >= ROUNDS || shared.watch.is_over() {
                 descent.p.clone_from(&rounds.reached.p);
                 return Ok(descent);
-            }
-            if most.is_none()
-                && let Some(ahead) = trail.ahead(posterior, &rounds.reached)
-            {
-                rounds.reached = ahead;
             }
         }
     }

@@ -87,6 +87,40 @@ impl Cost<'_> {
         Some(all)
     }
 
+    /// For each run of this rank and each free parameter p_j, `[sum r dr/dp_j, sum (dr/dp_j)^2]` over the run's residuals r; `None` where a
+    /// simulation diverges.
+    #[cfg(feature = "ipopt")]
+    pub(in crate::fit) fn scores_by_run(&self, p: &[f64]) -> Option<Vec<Vec<[f64; 2]>>> {
+        if self.lanes.is_empty() { self.scores_over(&self.single, p) } else { self.scores_over(&self.lanes, p) }
+    }
+
+    #[cfg(feature = "ipopt")]
+    fn scores_over<P: Plain>(&self, blocks: &Blocks<P>, p: &[f64]) -> Option<Vec<Vec<[f64; 2]>>> {
+        let n = self.free().len();
+        let sums = |own: &Residuals| {
+            let mut sums = vec![[0.0; 2]; n];
+            for (r, row) in own.values.iter().zip(own.slopes.chunks(n)) {
+                for ([score, information], slope) in sums.iter_mut().zip(row) {
+                    *score += r * slope;
+                    *information += slope * slope;
+                }
+            }
+            sums
+        };
+        let mut by_run = vec![Vec::new(); self.runs.len()];
+        self.each(
+            blocks,
+            |block| Some(self.of_block(block, p, true)?.iter().map(sums).collect::<Vec<_>>()),
+            |runs, part| {
+                for (run, own) in runs.iter().zip(part?) {
+                    by_run[*run] = own;
+                }
+                Some(())
+            },
+        )?;
+        Some(by_run)
+    }
+
     /// Derivatives of each residual.
     fn slopes(&self, with_slopes: bool) -> usize {
         if with_slopes { self.free().len() } else { 0 }
