@@ -40,7 +40,7 @@ const LONG: &[(&str, &str)] = &[];
 const FULLEST: usize = 15;
 
 /// Folders that have more.
-const FULL: &[&str] = &["python/src", "src/fit", "src/terms"];
+const FULL: &[&str] = &["python/src"];
 
 /// Public modules at the root of the library.
 const FRONT: usize = 15;

@@ -557,3 +557,66 @@ fn inputs_that_once_failed_are_right() {
         eprintln!("skipped: {} is not there", cases.display());
     }
 }
+
+#[test]
+fn a_word_for_course_and_heading_is_the_heading_beside_a_course_over_ground() {
+    let german = ["Zeit", "Breite", "Länge", "FüG [kn]", "Kurs über Grund", "Kurs", "Ruderlage", "Drehzahl [rpm]"];
+    let text = log("", |_| String::new()).replacen(NAMES, &german.join(","), 1);
+    let imported = read(&text);
+    assert_eq!(["psi", "cog"].map(|quantity| taken(&imported, quantity)), ["Kurs", "Kurs über Grund"]);
+    assert!(off(&imported) < 0.1);
+}
+
+/// Two logs of a catamaran that each begin at 0, with positions named by one letter and a thruster in each hull, and its ship file.
+fn catamaran_logs(study: &Study) {
+    let thruster = |name: &str, y: f64| {
+        format!("[[actuator]]\nname = \"{name}\"\nx = -0.4\ny = {y:?}\nangle = 0\nlaw = \"thruster\"\n")
+    };
+    let hull = "name = \"cat\"\n[hull]\nlpp = 1.2\nbreadth = 0.9\nmass = 17.0\n";
+    study.write("cat.toml", &(hull.to_owned() + &thruster("left", -0.3) + &thruster("right", 0.3)));
+    for (day, side) in [("day1_run1", 1.0), ("day2_run1", -1.0)] {
+        let mut text =
+            String::from("t [s],N [m],E [m],psi [deg],u [m/s],v [m/s],r [deg/s],n_left [rps],n_right [rps]\n");
+        let (mut psi, mut r, mut place) = (0.3_f64, 0.0_f64, [0.0_f64; 2]);
+        for i in 0..1200 {
+            // A turn, then straight ahead, then weaving, faster and faster.
+            let at = f64::from(i);
+            let goal = match i {
+                0..300 => 0.20 * side,
+                300..600 => 0.0,
+                _ => 0.15 * side * (0.01 * at + 1e-5 * at * at).sin(),
+            };
+            r += 0.1 * (goal - r);
+            let turn = 3.0 * r / 0.2;
+            let cells = [at * 0.2, place[0], place[1], psi.to_degrees(), 0.8, 0.0, r.to_degrees()];
+            cells.iter().for_each(|cell| write!(text, "{cell:.4},").unwrap());
+            writeln!(text, "{:.3},{:.3}", 12.0 + turn, 12.0 - turn).unwrap();
+            psi += 0.2 * r;
+            place[0] += 0.16 * psi.cos();
+            place[1] += 0.16 * psi.sin();
+        }
+        study.write(&format!("{day}.csv"), &text);
+    }
+}
+
+#[test]
+fn a_craft_without_rudder_and_propeller_is_split_by_how_it_turns_and_its_positions_are_no_propeller_rate() {
+    let study = Study::new();
+    catamaran_logs(&study);
+    let files = ["import", "day1_run1.csv", "day2_run1.csv", "--ship", "cat.toml", "--sessions", "day{}_*", "--out"];
+    let said = study.does(&[&files[..], &["split"]].concat());
+    assert!(!said.contains("`E` is not used"), "{said}");
+    let runs = std::fs::read_to_string(study.path("split/runs.csv")).unwrap();
+    for word in ["day1_run1", "day2_run1", "turn", "straight"] {
+        assert!(runs.contains(word), "no {word}: {runs}");
+    }
+    let map = std::fs::read_to_string(study.path("split/recordings/day1_run1.csv")).unwrap();
+    let header = map.lines().find(|line| line.contains("psi")).unwrap();
+    contains_all(header, &["x", "y", "left.rate", "right.rate"]);
+    study.does(&["check", "split/study.toml"]);
+    // Whole recordings have their sessions too.
+    study.does(&[&files[..], &["whole", "--no-split"]].concat());
+    let runs = std::fs::read_to_string(study.path("whole/runs.csv")).unwrap();
+    let sessions: Vec<&str> = runs.lines().skip(1).filter_map(|line| line.rsplit(',').next()).collect();
+    assert_eq!(sessions, ["1", "2"], "{runs}");
+}

@@ -758,7 +758,7 @@ fn a_study_and_a_recording_are_split_anew() {
     study.write("log.csv", &csv(0.0, |_| true, |_| true));
     study.run(&["import", "log.csv", "--ship", "ship.toml", "--no-split", "--out", "own"]);
     let runs = std::fs::read_to_string(study.path("own/runs.csv")).unwrap();
-    assert_eq!(runs, "file\nrecordings/2024-05-01_120000.csv\n");
+    assert_eq!(runs, "file,session\nrecordings/2024-05-01_120000.csv,2024-05-01\n");
     let json = study.json(&["split", "own/study.toml", "--test", "0.01", "--sessions", "dates", "--out", "split"]);
     let runs = at(&json, "result.runs").as_array().unwrap();
     assert!(runs.iter().any(|r| r["split"] == "test") && runs.iter().all(|r| r["session"] == "2024-05-01"));

@@ -15,7 +15,7 @@ use trimtab::numbers::numerals::{fixed, sig};
 use trimtab::recording::import::{
     Choices, ImportSettings, Imported, Origins, Taken, Unused, import, recording_csv, study_files,
 };
-use trimtab::recording::split::{Sessions, SplitPart, SplitRun, runs_csv, shortest_run, split};
+use trimtab::recording::split::{Sessions, SplitError, SplitPart, SplitRun, runs_csv, shortest_run, split, whole_csv};
 use trimtab::recording::{ColumnMap, Driven, Recording};
 use trimtab::report::Table;
 use trimtab::ship::Ship;
@@ -213,9 +213,8 @@ pub fn made(args: &Args) -> Result<Made, CliError> {
             Recording::parse(&text, &args.out.join(&file), &map).map_err(trimtab::study::StudyError::from)?;
         recordings.push((file, recording));
     }
-    let (runs, skipped, lost) = runs(args, &imported, &recordings)?;
+    let Divided { runs, skipped, lost, table } = divided(args, &imported, &recordings)?;
     imported.notes.extend(lost);
-    let table = if args.no_split { whole_runs(&recordings) } else { runs_csv(&runs) };
     output.file("runs.csv", table.as_bytes());
     let mut kept = Vec::new();
     for (file, text) in &files {
@@ -306,15 +305,18 @@ fn own_file(path: Option<&Path>) -> Result<Option<String>, CliError> {
     path.map(read).transpose()
 }
 
-/// The runs of all recordings, how many stretches are too short for one, and what blanks and gaps cost.
-fn runs(
-    args: &Args,
-    imported: &Imported,
-    recordings: &[(String, Recording)],
-) -> Result<(Vec<SplitRun>, usize, Option<String>), CliError> {
-    if args.no_split {
-        return Ok((Vec::new(), 0, None));
-    }
+/// The runs of all recordings.
+struct Divided {
+    runs: Vec<SplitRun>,
+    /// Stretches that are too short for a run.
+    skipped: usize,
+    /// What blanks and gaps cost.
+    lost: Option<String>,
+    /// The table that lists the runs.
+    table: String,
+}
+
+fn divided(args: &Args, imported: &Imported, recordings: &[(String, Recording)]) -> Result<Divided, CliError> {
     let settings = args.split.settings()?;
     let sessions = imported.sessions(args.session_gap);
     let known = settings.sessions == Sessions::Known;
@@ -322,19 +324,16 @@ fn runs(
     for ((file, recording), session) in recordings.iter().zip(sessions) {
         parts.push(SplitPart { file: file.clone(), session: Some(session).filter(|_| known), recording });
     }
+    let failed = |error: SplitError, more: String| CliError::Argument(format!("{}: {error}{more}", args.out.display()));
+    if args.no_split {
+        let table = whole_csv(&parts, &settings).map_err(|error| failed(error, String::new()))?;
+        return Ok(Divided { runs: Vec::new(), skipped: 0, lost: None, table });
+    }
     let lost = imported.lost(shortest_run(&parts));
     match split(&parts, &settings) {
-        Ok((runs, skipped)) => Ok((runs, skipped, lost)),
-        Err(error) => {
-            let more = lost.map_or_else(String::new, |lost| format!(". {lost}"));
-            Err(CliError::Argument(format!("{}: {error}{more}", args.out.display())))
-        }
+        Ok((runs, skipped)) => Ok(Divided { table: runs_csv(&runs), runs, skipped, lost }),
+        Err(error) => Err(failed(error, lost.map_or_else(String::new, |lost| format!(". {lost}")))),
     }
-}
-
-/// A table of runs with each recording as one.
-fn whole_runs(recordings: &[(String, Recording)]) -> String {
-    "file\n".to_owned() + &recordings.iter().map(|(file, _)| format!("{file}\n")).collect::<String>()
 }
 
 fn report<'a>(args: &'a Args, imported: &'a Imported, runs: &'a [SplitRun], skipped: usize) -> Report<'a> {

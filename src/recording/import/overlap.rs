@@ -1,6 +1,7 @@
 //! Files and parts of files that record the same quantity over the same time: recordings of their own, or refused, never sorted together.
 //! Parts that complete one another, such as positions in one file and rudder angles in another, share a clock.
 
+use super::columns::actuators::by_names;
 use super::columns::choose::Choices;
 use super::columns::log::{Clock, Column, Log, Meaning};
 use super::error::ImportError;
@@ -91,10 +92,19 @@ fn tell_otherwise(a: &Column, b: &Column, copies_join: bool) -> bool {
     a.len() >= FEW && b.len() >= FEW && !(copies_join && b.iter().all(same))
 }
 
-/// Whether a file has what a recording needs, by itself.
+/// Whether a file has what a recording of this craft needs, by itself: the heading, and every input.
 fn is_whole(log: &Log, choices: &Choices) -> bool {
-    let has = |channel| log.columns.iter().any(|c| choices.meaning(c) == Some(Meaning::Channel(channel)));
-    [Channel::Psi, Channel::Delta, Channel::N].into_iter().all(has)
+    let driven = &choices.driven;
+    let names: Vec<(&str, Option<&str>)> = log.columns.iter().map(|c| (c.name.as_str(), c.unit.as_deref())).collect();
+    let of_actuators = by_names(&names, &driven.commands);
+    let has = |channel: Channel| {
+        of_actuators.values().any(|c| *c == channel)
+            || log.columns.iter().any(|c| choices.meaning(c) == Some(Meaning::Channel(channel)))
+    };
+    has(Channel::Psi)
+        && (!driven.rudder || has(Channel::Delta))
+        && (!driven.propeller || has(Channel::N))
+        && driven.commands.iter().all(|c| has(*c))
 }
 
 fn refusal(first: &Log, second: &Log, column: &str, from: f64) -> ImportError {

@@ -1,4 +1,4 @@
-//! Divides a recording into stretches by rudder, propeller and turning: the rules, with their numbers.
+//! Divides a recording into stretches by steering, propeller and turning: the rules, with their numbers.
 //! Every row is in exactly one stretch, so that nothing is lost.
 
 use super::controls::{Controls, size_below};
@@ -8,6 +8,9 @@ use std::ops::Range;
 /// A rudder is put over beyond the first angle and amidships again within the second \[rad\]: 6 and 3.5 deg.
 const PUT_OVER: f64 = 0.105;
 const AMIDSHIPS: f64 = 0.061;
+/// The same of a yaw rate, as shares of that below which it lies for nineteen twentieths of the time: those of 20 deg of rudder.
+const TURNING: f64 = 0.3;
+const STEADY: f64 = 0.175;
 /// A turn changes the heading by this at least \[rad\]: 80 deg.
 const TURN: f64 = 1.4;
 /// Between two sides of a zigzag the heading changes by this at most \[rad\]: 100 deg.
@@ -23,7 +26,7 @@ const ACROSS: f64 = 3.0;
 /// Times the time scale: shorter stretches amidships belong to what surrounds them.
 const SHORTEST: f64 = 2.0;
 
-/// Rows while the rudder is on one side: -1, 0 or 1.
+/// Rows while the ship is steered to one side: -1, 0 or 1.
 struct Side {
     side: i8,
     rows: Range<usize>,
@@ -58,7 +61,7 @@ fn stops(c: &Controls, scale: f64) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::new();
     let mut start = None;
     for i in 0..=c.len() {
-        let stopped = i < c.len() && c.n[i] < STOPPED * usual;
+        let stopped = i < c.n.len() && c.n[i] < STOPPED * usual;
         match (start, stopped) {
             (None, true) => start = Some(i),
             (Some(from), false) => {
@@ -81,17 +84,23 @@ fn back(c: &Controls, row: usize, seconds: f64) -> usize {
     c.t[..row].partition_point(|t| *t < c.t[row] - seconds)
 }
 
-/// Rows by the side of the rudder, with hysteresis; `rows` is not empty.
+/// Rows by the side to which the ship is steered, with hysteresis; `rows` is not empty.
 fn sides(c: &Controls, rows: Range<usize>) -> Vec<Side> {
     let mut found: Vec<Side> = Vec::new();
     let mut side = 0_i8;
+    let [over, amidships] = if c.by_rudder {
+        [PUT_OVER, AMIDSHIPS]
+    } else {
+        let fast = size_below(c.steering.iter().copied(), 0.95);
+        [TURNING * fast, STEADY * fast]
+    };
     for i in rows {
-        let d = c.delta[i];
+        let d = c.steering[i];
         side = match side {
-            _ if d > PUT_OVER => 1,
-            _ if d < -PUT_OVER => -1,
-            1 if d > AMIDSHIPS => 1,
-            -1 if d < -AMIDSHIPS => -1,
+            _ if d > over => 1,
+            _ if d < -over => -1,
+            1 if d > amidships => 1,
+            -1 if d < -amidships => -1,
             _ => 0,
         };
         match found.last_mut() {
@@ -125,8 +134,7 @@ fn steered(c: &Controls, rows: Range<usize>, scale: f64) -> Vec<Stretch> {
         let count = sides[i..=last].iter().filter(|h| h.side != 0).count();
         if count >= ZIGZAG_SIDES {
             let rows = sides[i].rows.start..sides[last].rows.end;
-            let angle = size_below(c.delta[rows.clone()].iter().copied(), 0.8).to_degrees();
-            let why = format!("{count} times over, {angle:.0} deg");
+            let why = format!("{count} times over, {}", size(c, &rows, 0.8));
             stretches.push(Stretch { kind: Kind::Zigzag, rows, why });
             i = last + 1;
         } else {
@@ -157,12 +165,19 @@ fn zigzag_end(c: &Controls, sides: &[Side], first: usize, scale: f64) -> usize {
     last
 }
 
+/// The steering below which a share of rows lies, in words.
+fn size(c: &Controls, rows: &Range<usize>, share: f64) -> String {
+    let size = size_below(c.steering[rows.clone()].iter().copied(), share).to_degrees();
+    if c.by_rudder { format!("{size:.0} deg") } else { format!("{size:.1} deg/s") }
+}
+
 fn one_side(c: &Controls, one: &Side) -> Stretch {
     let turned = change(c, &one.rows);
-    let angle = size_below(c.delta[one.rows.clone()].iter().copied(), 0.5).to_degrees();
+    let size = size(c, &one.rows, 0.5);
     let side = if one.side > 0 { "starboard" } else { "port" };
+    let what = if c.by_rudder { "rudder" } else { "turning" };
     let kind = if turned.abs() >= TURN { Kind::Turn } else { Kind::Free };
-    let why = format!("rudder {angle:.0} deg to {side}, heading changes by {:.0} deg", turned.to_degrees().abs());
+    let why = format!("{what} {size} to {side}, heading changes by {:.0} deg", turned.to_degrees().abs());
     Stretch { kind, rows: one.rows.clone(), why }
 }
 
@@ -175,7 +190,8 @@ fn amidships(c: &Controls, rows: Range<usize>) -> Stretch {
     let (begin, end) = (mean(rows.start..rows.start + third), mean(rows.end - third..rows.end));
     let settling = (end - begin).abs() > SETTLING * begin.max(end) && begin.max(end) > 0.0;
     let kind = if settling { Kind::Approach } else { Kind::Straight };
-    Stretch { kind, rows, why: format!("rudder amidships, {begin:.1} to {end:.1} m/s") }
+    let what = if c.by_rudder { "rudder amidships" } else { "next to no turning" };
+    Stretch { kind, rows, why: format!("{what}, {begin:.1} to {end:.1} m/s") }
 }
 
 /// Joins stretches that are too short to be one, and lets a manoeuvre begin shortly before the rudder moves.

@@ -1,4 +1,5 @@
-//! What is done with a ship: rudder, propeller, speed and turning as series without gaps, and the time scale of its motion.
+//! What is done with a ship: steering, propeller, speed and turning as series without gaps, and the time scale of its motion. A craft without
+//! the channel of a rudder is steered by what turns it, one without that of a propeller is not stopped by it.
 //! What it makes of them is decided in `blocks`.
 
 use crate::recording::{Channel, Recording, local, slope};
@@ -9,9 +10,11 @@ use std::ops::Range;
 pub struct Controls {
     /// Time \[s\].
     pub t: Vec<f64>,
-    /// Rudder angle \[rad\], without single outliers.
-    pub delta: Vec<f64>,
-    /// Propeller rate \[1/s\], without single outliers.
+    /// Rudder angle \[rad\] without single outliers; the yaw rate \[rad/s\] where no rudder was recorded.
+    pub steering: Vec<f64>,
+    /// Whether that is a rudder angle.
+    pub by_rudder: bool,
+    /// Propeller rate \[1/s\], without single outliers; empty where none was recorded.
     pub n: Vec<f64>,
     /// Heading \[rad\], unwrapped, or the integral of the yaw rate.
     pub psi: Vec<f64>,
@@ -54,7 +57,9 @@ impl Controls {
             _ => vec![f64::NAN; rows.len()],
         };
         let control = |channel| get(channel).map(|v| without_outliers(&v[rows.clone()]));
-        Some(Self { delta: control(Channel::Delta)?, n: control(Channel::N)?, t, psi, r, speed, step })
+        let (rudder, n) = (control(Channel::Delta), control(Channel::N).unwrap_or_default());
+        let by_rudder = rudder.is_some();
+        Some(Self { steering: rudder.unwrap_or_else(|| r.clone()), by_rudder, n, t, psi, r, speed, step })
     }
 
     /// Samples.

@@ -8,7 +8,7 @@ mod session;
 mod sides;
 mod stretch;
 
-pub use runs::{SplitError, SplitPart, SplitRun, SplitSettings, runs_csv, shortest_run, split};
+pub use runs::{SplitError, SplitPart, SplitRun, SplitSettings, runs_csv, shortest_run, split, whole_csv};
 pub use session::Sessions;
 pub use sides::TestBy;
 pub use stretch::Kind;

@@ -64,7 +64,7 @@ pub struct SplitRun {
     /// Runs of one block come to one side.
     #[serde(skip)]
     block: usize,
-    /// How far the rudder goes in the block.
+    /// How far the ship is steered in the block.
     #[serde(skip)]
     reach: Reach,
 }
@@ -129,6 +129,19 @@ pub fn split(parts: &[SplitPart<'_>], settings: &SplitSettings) -> Result<(Vec<S
     Ok((runs, skipped))
 }
 
+/// A table of runs with each recording as one, in its session.
+///
+/// # Errors
+/// [`SplitError`]: names that give no session.
+pub fn whole_csv(parts: &[SplitPart<'_>], settings: &SplitSettings) -> Result<String, SplitError> {
+    let mut text = String::from("file,session\n");
+    for part in parts {
+        let session = session_of(part, &settings.sessions)?.unwrap_or_default();
+        text += &format!("{},{}\n", csv_cell(&part.file), csv_cell(&session));
+    }
+    Ok(text)
+}
+
 /// The shortest stretch without a gap that is a run of these recordings \[s\].
 pub fn shortest_run(parts: &[SplitPart<'_>]) -> f64 {
     let controls: Vec<Controls> = parts.iter().flat_map(|p| Controls::of(p.recording)).collect();
@@ -165,7 +178,7 @@ impl Numbers {
         *number += 1;
         self.block += 1;
         let rows = stretch.rows.clone();
-        let reach = reach(&c.delta[rows.clone()]);
+        let reach = reach(&c.steering[rows.clone()]);
         let lasts = c.t[rows.end - 1] - c.t[rows.start];
         let most = rows.len() / FEWEST;
         // A manoeuvre that is a little longer stays whole.
@@ -190,7 +203,7 @@ impl Numbers {
     }
 }
 
-/// The rudder angles that are exceeded to either side for a twentieth of the time: a single sample is no evidence.
+/// The rudder angles, or yaw rates, that are exceeded to either side for a twentieth of the time: a single sample is no evidence.
 fn reach(delta: &[f64]) -> Reach {
     let mut angles: Vec<f64> = delta.iter().copied().filter(|d| d.is_finite()).collect();
     angles.sort_unstable_by(f64::total_cmp);
@@ -245,23 +258,21 @@ fn last_tests(runs: &mut Vec<SplitRun>, share: f64) {
     runs.iter_mut().rev().take(count).for_each(|r| r.split = Split::Test);
 }
 
+/// A cell of a table, in quotes where it needs them.
+fn csv_cell(text: &str) -> String {
+    let cell = plain_cell(text);
+    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.into_owned() }
+}
+
 /// The table of runs of a study.
 pub fn runs_csv(runs: &[SplitRun]) -> String {
-    let quoted = |text: &str| {
-        let cell = plain_cell(text);
-        if cell.contains([',', '"', '\n', '\r']) {
-            format!("\"{}\"", cell.replace('"', "\"\""))
-        } else {
-            cell.into_owned()
-        }
-    };
     let mut text = String::from("file,name,session,manoeuvre,split,from,to\n");
     for run in runs {
         let split = if run.split == Split::Test { "test" } else { "train" };
         let cells = [
-            quoted(&run.file),
-            quoted(&run.name),
-            quoted(&run.session),
+            csv_cell(&run.file),
+            csv_cell(&run.name),
+            csv_cell(&run.session),
             run.manoeuvre.word().to_owned(),
             split.to_owned(),
             run.from.to_string(),

@@ -5,7 +5,7 @@ use super::actuators::by_names;
 use super::agree::{Sight, heading};
 use super::log::{Column, Log, Meaning};
 use super::motion::Track;
-use super::names::{is_second_choice, is_shaft, is_unit, reading, source};
+use super::names::{VAGUELY, is_second_choice, is_shaft, is_unit, reading, source};
 use super::place::places;
 use super::signal::Signal;
 use crate::files::suggestion;
@@ -33,6 +33,15 @@ impl Choices {
         let forced = self.columns.iter().find(|(_, name)| name.eq_ignore_ascii_case(&column.name));
         let forced = forced.and_then(|(quantity, _)| Meaning::from_name(quantity));
         forced.or(column.meaning).or_else(|| by_name(&column.name, column.unit.as_deref()).map(|(meaning, _)| meaning))
+    }
+
+    /// Whether the craft has what such a column is of.
+    fn has(&self, meaning: Meaning) -> bool {
+        match meaning {
+            SHAFT => self.driven.propeller,
+            Meaning::Channel(Channel::Delta) => self.driven.rudder,
+            _ => true,
+        }
     }
 
     /// Checks that each quantity there is, and each unit of it.
@@ -90,6 +99,26 @@ struct Candidate<'a> {
     forced: bool,
 }
 
+/// The columns `N` and `E`, where a log has both: one letter alone is the name of a propeller rate too.
+fn axes(names: &[(&str, Vec<&Column>)]) -> Vec<(&'static str, Meaning)> {
+    let axes = [("N", Meaning::Channel(Channel::X)), ("E", Meaning::Channel(Channel::Y))];
+    let has_both = axes.iter().all(|(axis, _)| names.iter().any(|(name, _)| name == axis));
+    if has_both { axes.into() } else { Vec::new() }
+}
+
+/// Takes a column whose name is the course in one log and the heading in another, as `Kurs`, for the heading beside a course over ground.
+fn heading_of_courses(candidates: &mut BTreeMap<Meaning, Vec<Candidate>>) {
+    let heading = Meaning::Channel(Channel::Psi);
+    if !candidates.contains_key(&heading)
+        && let Some(courses) = candidates.get_mut(&Meaning::Course)
+        && courses.iter().any(|c| c.explained > VAGUELY)
+        && let Some(vague) = courses.iter().position(|c| c.explained == VAGUELY && !c.forced)
+    {
+        let candidate = courses.remove(vague);
+        candidates.insert(heading, vec![candidate]);
+    }
+}
+
 /// The columns that are taken, by what they are, and those that are not. Candidates are ranked by what the user says, whether they
 /// contain values that change, whether the data contradict them, whether their partner is of the same sensor, how much of their name the
 /// quantity explains, whether the file states a unit that fits, and by how well they agree with the data.
@@ -112,18 +141,26 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec
         .filter(|c| !forced.values().any(|m| *m == Meaning::Channel(*c)))
         .collect();
     let named = by_names(&free, &open);
+    let axes = axes(&names);
     let mut candidates: BTreeMap<Meaning, Vec<Candidate<'a>>> = BTreeMap::new();
     let mut unused = Vec::new();
     for (name, columns) in names {
         let of_actuator = named.get(name).map(|channel| (Meaning::Channel(*channel), 1.0));
-        match of_actuator.or_else(|| read(name, &columns, &forced)) {
+        let is_forced = forced.contains_key(name);
+        let axis = axes.iter().find(|(axis, _)| *axis == name).filter(|_| !is_forced).map(|(_, m)| (*m, 1.0));
+        match of_actuator.or(axis).or_else(|| read(name, &columns, &forced)) {
+            Some((meaning, _)) if !is_forced && !choices.has(meaning) => {
+                let why = format!("the ship file has no {}", if meaning == SHAFT { "propeller" } else { "rudder" });
+                unused.push(Unused { column: name.to_owned(), why });
+            }
             Some((meaning, explained)) => {
-                let forced = forced.contains_key(name);
+                let forced = is_forced;
                 candidates.entry(meaning).or_default().push(Candidate { name, columns, explained, forced });
             }
             None => unused.push(Unused { column: name.to_owned(), why: "nothing here uses it".to_owned() }),
         }
     }
+    heading_of_courses(&mut candidates);
     let mut order: Vec<Meaning> = candidates.keys().copied().collect();
     order.sort_by_key(|meaning| (turn(*meaning), *meaning));
     let (mut chosen, mut sight) = (Chosen::new(), Sight::default());

@@ -1,7 +1,7 @@
 //! What columns stand for: names, units, signs and senses, each decided with its evidence, and signals in SI units.
 //! How files are laid out is read elsewhere.
 
-mod actuators;
+pub(super) mod actuators;
 mod agree;
 pub(super) mod choose;
 mod evidence;

@@ -135,7 +135,7 @@ pub struct Reading {
 /// A word such as `speed` may stand for several quantities: it explains this much of what a word of one quantity does. Between the
 /// share of a name that is explained whole and that of one explained by half, so that `SOG` comes before `speed` and `speed` before
 /// `SOG of the pilot's plug`.
-const VAGUELY: f64 = 0.7;
+pub const VAGUELY: f64 = 0.7;
 
 /// What a name says a column is; `None` where it says nothing that is used.
 pub fn meaning(name: &str) -> Option<Meaning> {

@@ -133,7 +133,7 @@ pub const FROM_NORTH: &str = "direction, dir, twd, awd, richtung, direzione, dir
 pub const FROM_BOW: &str = "angle, twa, awa, winkel, einfallswinkel, angolo, angulo";
 
 /// Words that are a time of their own.
-pub const CLOCKS: &str = "timestamp, datetime, time, utc, epoch, unix, zeit, uhrzeit, zeitstempel, tid, tijd, heure, \
+pub const CLOCKS: &str = "timestamp, datetime, time, tvec, utc, epoch, unix, zeit, uhrzeit, zeitstempel, tid, tijd, heure, \
          horodatage, temps, ora, orario, tempo, hora, tiempo, fecha";
 /// Words of a time since something.
 pub const SINCE: &str = "stamp, elapsed, seconds, secs, sec, millis, secondes, segundos, secondi";
