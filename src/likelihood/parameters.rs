@@ -2,7 +2,8 @@
 //! exactly. It estimates nothing.
 
 use super::pass::Column;
-use crate::model::{Model, Prior};
+use crate::model::{BASE, Model, Prior};
+use crate::physics::Form;
 
 /// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
 pub(crate) const NUISANCE: [&str; 31] = [
@@ -40,18 +41,22 @@ pub(crate) const NUISANCE: [&str; 31] = [
 ];
 
 /// The coefficients of a model that are never known exactly: in forms `mmg` and `general` those of their terms for those that these replace.
+/// A general hull has drag across the flow and further powers by itself: terms that add them to another hull are none of it.
 pub(crate) fn uncertain_coefficients(model: &Model) -> Vec<usize> {
     let of_craft = |name: &&&str| !model.lacks_owner(name);
     let listed = NUISANCE
         .iter()
         .filter(of_craft)
         .filter_map(|name| model.index(name))
-        .filter(|i| !model.replaced(model.parameters[*i].info));
-    let of_form = |i: &usize| {
-        let name = &model.parameters[*i].name;
-        model.of_form().iter().any(|term| name.strip_prefix(term).is_some_and(|rest| rest.starts_with('.')))
-    };
+        .filter(|i| !model.replaced(model.parameters[*i].info))
+        .filter(|i| model.form != Form::General || of_terms(&model.parameters[*i].name, &BASE));
+    let of_form = |i: &usize| of_terms(&model.parameters[*i].name, model.of_form());
     listed.chain((0..model.parameters.len()).filter(of_form)).collect()
+}
+
+/// Whether a parameter belongs to one of these terms.
+fn of_terms(parameter: &str, terms: &[&str]) -> bool {
+    parameter.split_once('.').is_some_and(|(term, _)| terms.contains(&term))
 }
 
 /// The free parameters of the base: those of the model, and where asked for the nuisance coefficients with their priors.

@@ -15,8 +15,8 @@ use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::evaluate::maneuver::{
     Approach, DRAWS, Drawn, Ended, Known, ManeuverError, ManeuverSettings, Measured, SEED, Side, Trial,
-    calm_water_of_depth, course_stable, drawn_from, of_priors, pull_out_trial, set_intervals_from, spiral_trial,
-    stopping_trial, turning_trial, zigzag_trial,
+    calm_water_of_depth, course_stable, drawn_from, is_stability_open, of_priors, pull_out_trial, set_intervals_from,
+    spiral_trial, stopping_trial, turning_trial, zigzag_trial,
 };
 use trimtab::files::Names;
 use trimtab::model::Model;
@@ -399,10 +399,13 @@ fn pull_out(args: &AngleArgs) -> Result<(), CliError> {
     let trials = sailed(&p, "pull-out", &sail);
     finish(&mut output, &p, &trials, "pullout", || pull_out_figure(&p.model.ship, &trials))?;
     let stable = course_stable(&trials);
-    let said = match stable {
-        Some(true) => "\nThe yaw rates come together: the ship is stable on its course.",
-        Some(false) => "\nThe yaw rates do not come together: the ship is unstable on its course.",
-        None => "",
+    let said = match (stable, is_stability_open(&trials)) {
+        (None, _) => "",
+        (Some(_), true) => {
+            "\nWhether the yaw rates come together is open: the intervals of what is left of them contain both answers."
+        }
+        (Some(true), false) => "\nThe yaw rates come together: the ship is stable on its course.",
+        (Some(false), false) => "\nThe yaw rates do not come together: the ship is unstable on its course.",
     };
     let report = Steadied { report: report(&p, &trials), course_stable: stable };
     output.finish(&(text(&p, &trials) + said), &report)

@@ -216,8 +216,8 @@ fn not_followed(f: &Following) -> String {
     };
     format!(
         "These recordings cannot answer, because the model does not follow them: it simulates {} of {} runs better than motion that \
-         stays as it was at the start, and these do not outweigh the others{cvdm}. Free the hull coefficients (hull = \"free\"), check \
-         units, signs and the inputs that act on the ship, or divide the recordings into shorter windows.",
+         stays as it was at the start, and these do not outweigh the others{cvdm}. Check units, signs and the inputs that act on the ship, divide the recordings into \
+         shorter windows, or free the hull coefficients where the model file leaves them fixed (hull = \"free\").",
         f.better_than_steady, f.runs
     )
 }

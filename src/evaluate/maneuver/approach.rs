@@ -127,9 +127,18 @@ impl ManeuverSettings {
     /// The approach of a ship with this model and parameter vector.
     ///
     /// # Errors
-    /// [`ManeuverError`]: an impossible setting, or no balance between thrust and resistance.
+    /// [`ManeuverError`]: a craft without propeller or rudder, an impossible setting, or no balance between thrust and resistance.
     pub fn approach(&self, model: &Model, theta: &[f64]) -> Result<Approach, ManeuverError> {
         self.limits()?;
+        let missing = match (model.ship.has_propeller(), model.ship.has_rudder()) {
+            (true, true) => None,
+            (false, false) => Some("propeller and no rudder"),
+            (false, true) => Some("propeller"),
+            (true, false) => Some("rudder"),
+        };
+        if let Some(missing) = missing {
+            return Err(ManeuverError::NoDrive { missing });
+        }
         let length = model.ship.hull.lpp;
         if let Some(speed) = self.speed {
             let fastest = (GRAVITY * length).sqrt();

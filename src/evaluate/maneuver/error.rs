@@ -10,6 +10,14 @@ pub enum ManeuverError {
     /// A setting with a value that cannot be used.
     #[error("[maneuver] {0}")]
     Setting(#[from] OutOfRange),
+    /// The trial is steered by a rudder and driven by a propeller, and the craft has one of them at most.
+    #[error(
+        "the ship file has no {missing}, and trials are sailed with the propeller of the channel `n` and the rudder of the channel `delta`; `trimtab simulate` sails recorded orders of named actuators"
+    )]
+    NoDrive {
+        /// What there is not: `propeller`, `rudder`, or both.
+        missing: &'static str,
+    },
     /// No propeller rate holds the approach speed.
     #[error(
         "no propeller rate up to {limit:.2} rps holds the approach speed of {speed:.3} m/s on a straight course; set a lower `speed`, or `speed` and `n` together to approach without balance"

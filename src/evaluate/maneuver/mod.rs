@@ -26,7 +26,7 @@ pub use measures::{Measured, PullOut, Quantity, Spiral, Steady, Stopping, Turnin
 pub use nomoto::Nomoto;
 pub use track::Track;
 pub use trial::{Ended, Intervals, Side, Trial};
-pub use trials::pullout::{course_stable, pull_out, pull_out_trial};
+pub use trials::pullout::{course_stable, is_stability_open, pull_out, pull_out_trial};
 pub use trials::spiral::{spiral, spiral_angles, spiral_trial};
 pub use trials::stopping::{stopping, stopping_trial};
 pub use trials::turning::{turning, turning_execute, turning_trial};

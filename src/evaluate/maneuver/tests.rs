@@ -309,6 +309,15 @@ fn the_pull_out_and_the_spiral_agree_on_whether_a_ship_is_stable_on_its_course()
         let angle = 20f64.to_radians();
         let pulled = Side::BOTH.map(|side| pull_out_trial(&model, &theta, &approach, side, angle));
         assert_eq!(course_stable(&pulled), Some(expected), "{:?}", pulled.map(|t| t.measures));
+        // An interval of what is left of the rate that contains both answers leaves it open.
+        let turning = pulled[0].measures.turning_rate;
+        let left = |ends: [f64; 2]| {
+            let mut trials = pulled.clone();
+            trials[0].intervals.insert("residual_rate", ends.map(|end| end * turning));
+            is_stability_open(&trials)
+        };
+        assert!(!is_stability_open(&pulled) && left([0.0, 0.5]) && left([-0.3, 0.2]));
+        assert!(!left([-1e-4, 1e-4]) && !left([0.2, 0.5]));
         let m = spiral_trial(&model, &theta, &approach, angle).measures;
         let (width, height) = (m.loop_width.unwrap().to_degrees(), m.loop_height.unwrap());
         let residual = pulled[0].measures.residual_rate.unwrap();
@@ -348,4 +357,13 @@ fn shallow_water_widens_the_circle_and_a_depth_that_is_less_than_the_ship_needs_
     assert!(shallow.0 > 1.02 * deep.0 && shallow.1 > deep.1, "{shallow:?} {deep:?}");
     let refused = calm_water_of_depth(&model, Some(1.05 * draught)).unwrap_err();
     assert!(refused.key == "depth" && refused.to_string().contains("1.2 times the draught"), "{refused}");
+}
+
+#[test]
+fn a_craft_without_propeller_and_rudder_sails_no_trial_and_the_error_says_what_it_lacks() {
+    let text = "name = \"cat\"\n[hull]\nlpp = 1.2\nbreadth = 0.9\nmass = 17.0\n[[actuator]]\nname = \"left\"\nx = -0.4\ny = -0.3\nangle = 0\n\
+                law = \"thruster\"\n";
+    let model = Model::new(Ship::parse(text, Path::new("ship.toml")).unwrap(), "cat", Form::General, &[]).unwrap();
+    let error = ManeuverSettings::default().approach(&model, &model.values()).unwrap_err();
+    assert_eq!(error, ManeuverError::NoDrive { missing: "propeller and no rudder" });
 }

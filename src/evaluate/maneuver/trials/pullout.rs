@@ -51,12 +51,26 @@ pub fn pull_out(track: &Track, release: usize) -> PullOut {
     }
 }
 
+/// Share of the rate of the turn that is none: less than what a gyro of a trial can measure.
+const STILL: f64 = 0.01;
+
 /// Whether the yaw rates left after turns to both sides are one: then the ship is stable on its course. `None` without both sides.
 pub fn course_stable(trials: &[Trial<PullOut>]) -> Option<bool> {
     let rate = |side| trials.iter().find(|t| t.side == side)?.measures.residual_rate;
     let turning = trials.iter().map(|t| t.measures.turning_rate.abs()).fold(0.0, f64::max);
-    // A hundredth of the rate of the turn is below what a gyro of a trial can measure.
-    Some((rate(Side::Starboard)? - rate(Side::Port)?).abs() < 0.01 * turning)
+    Some((rate(Side::Starboard)? - rate(Side::Port)?).abs() < STILL * turning)
+}
+
+/// Whether the intervals of the rates that are left contain a stable and an unstable ship.
+pub fn is_stability_open(trials: &[Trial<PullOut>]) -> bool {
+    let turning = trials.iter().map(|t| t.measures.turning_rate.abs()).fold(0.0, f64::max);
+    let is_open = |t: &Trial<PullOut>| {
+        t.intervals.get("residual_rate").is_some_and(|[low, high]| {
+            let nearest = if *low <= 0.0 && *high >= 0.0 { 0.0 } else { low.abs().min(high.abs()) };
+            nearest < STILL * turning && low.abs().max(high.abs()) >= STILL * turning
+        })
+    };
+    trials.iter().any(is_open)
 }
 
 /// Simulates a pull-out: a turn of 360 deg or more with the rudder at `angle` \[rad\] to one side until the rate is steady, then the rudder
